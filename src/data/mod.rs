@@ -1,0 +1,2 @@
+//! Labels and sparse tables.
+pub mod value;

@@ -1,0 +1,39 @@
+//! The one door to the outside world: files, clock, interruption.
+//!
+//! Invariant: nothing below the command line does input or output except through a [`Host`].
+
+use std::path::{Path, PathBuf};
+
+/// Why the host would not do something.
+#[derive(Debug, Clone, PartialEq)]
+pub enum HostError {
+    /// There is no such file.
+    NotFound,
+    /// The file lies outside the folders that may be read or written.
+    Outside(PathBuf),
+    /// The file is not UTF-8: offset of the first bad byte.
+    NotUtf8(usize),
+    /// Anything else, in the system's words.
+    Other(String),
+}
+
+/// What a run may ask of the world.
+pub trait Host {
+    /// Reads a text. `from` is the file whose text asks (for relative paths).
+    /// Returns the path under which it is known, and the text.
+    fn read(&mut self, path: &str, from: Option<&Path>) -> Result<(PathBuf, String), HostError>;
+    /// Whether a file may be read and is there (`$if exist`).
+    fn exists(&mut self, path: &str, from: Option<&Path>) -> bool;
+    /// Writes a whole file inside the output folder, or nothing.
+    fn write(&mut self, path: &str, bytes: &[u8]) -> Result<PathBuf, HostError>;
+    /// Text for the person who runs the model (display, summaries, logs).
+    fn print(&mut self, text: &str);
+    /// Seconds since the run began.
+    fn elapsed(&self) -> f64;
+    /// Date and time now, as GAMS counts it: days since 1899-12-31 with fraction.
+    fn now(&self) -> f64;
+    /// True once the person has asked to stop.
+    fn interrupted(&self) -> bool;
+    /// Tells what a long step is doing: for a terminal, at most a few times a second.
+    fn progress(&mut self, _message: &str) {}
+}

@@ -1,0 +1,271 @@
+//! The sparse model IR: what `solve` hands to a solver.
+//!
+//! Columns and rows are structs of arrays; the linear part is one compressed sparse matrix; the
+//! nonlinear part is a list of [`Kernel`]s, one expression with slots, each with arrays of the
+//! columns and constants that fill the slots.
+//!
+//! Row i reads  `sum_j matrix[i][j]·x_j + sum_t coef_t·kernel_t(x, c)  (= | >= | <= | free)  rhs_i`.
+//!
+//! Invariants: column indices in a matrix row are strictly increasing and no stored coefficient is
+//! 0; all coefficients and right-hand sides are finite; solvers see no names.
+
+/// −∞ as used in bounds.
+pub const NEG_INF: f64 = f64::NEG_INFINITY;
+/// +∞ as used in bounds.
+pub const INF: f64 = f64::INFINITY;
+
+pub use crate::syntax::ast::{Relation, Sense};
+
+/// Kind of a column.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum ColumnKind {
+    /// Continuous.
+    #[default]
+    Continuous,
+    /// Any kind of discrete variable, relaxed.
+    Discrete,
+}
+
+/// Columns, one entry per variable.
+#[derive(Clone, Default, Debug)]
+pub struct Columns {
+    /// Lower bounds, −∞ allowed.
+    pub lower: Vec<f64>,
+    /// Upper bounds, +∞ allowed.
+    pub upper: Vec<f64>,
+    /// Start level (where the last solve left it), not necessarily within bounds.
+    pub level: Vec<f64>,
+    /// Start marginal.
+    pub marginal: Vec<f64>,
+    /// `.scale` (1 unless `scaleopt` is on).
+    pub scale: Vec<f64>,
+    /// Kind.
+    pub kind: Vec<ColumnKind>,
+}
+
+/// Rows, one entry per equation.
+#[derive(Clone, Default, Debug)]
+pub struct Rows {
+    /// Relation.
+    pub relation: Vec<Relation>,
+    /// Right-hand side: all constants moved to the right.
+    pub rhs: Vec<f64>,
+    /// Start marginal.
+    pub marginal: Vec<f64>,
+    /// `.scale`.
+    pub scale: Vec<f64>,
+}
+
+/// A matrix compressed by rows.
+#[derive(Clone, Default, Debug)]
+pub struct SparseRows {
+    /// Row i is `start[i]..start[i+1]`; length rows + 1.
+    pub start: Vec<usize>,
+    /// Columns, increasing within a row.
+    pub column: Vec<u32>,
+    /// Coefficients.
+    pub value: Vec<f64>,
+}
+
+impl SparseRows {
+    /// Entries of row i.
+    pub fn row(&self, i: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let r = self.start[i]..self.start[i + 1];
+        self.column[r.clone()]
+            .iter()
+            .map(|&j| j as usize)
+            .zip(self.value[r].iter().copied())
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.start.len().saturating_sub(1)
+    }
+}
+
+/// One step of a kernel: a program in postfix order on a stack of numbers.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum Op {
+    /// Pushes the variable in slot k.
+    Var(u32),
+    /// Pushes the constant in slot k.
+    Const(u32),
+    /// Pushes `const[k] + sum_{m<n} const[k+1+m]·var[v+m]`: an affine form.
+    Affine {
+        /// First constant slot (the constant term; coefficients follow).
+        constant: u32,
+        /// First variable slot.
+        variable: u32,
+        /// Number of terms.
+        terms: u32,
+    },
+    /// Pops b, a; pushes a + b.
+    Add,
+    /// Pops n values; pushes their sum.
+    AddN(u32),
+    /// Pops b, a; pushes a − b.
+    Subtract,
+    /// Pops b, a; pushes a · b.
+    Multiply,
+    /// Pops n values; pushes their product.
+    MultiplyN(u32),
+    /// Pops b, a; pushes a / b.
+    Divide,
+    /// Pops a; pushes −a.
+    Negate,
+    /// Pops b, a; pushes a ** b (real power, a >= 0).
+    Power,
+    /// Pops a; pushes a to the whole number k.
+    PowerInt(i32),
+    /// Pops the function's arguments (first pushed first); pushes its value.
+    Call(Function, u32),
+}
+
+/// Functions that may stand in an equation with a variable argument.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[allow(missing_docs)]
+pub enum Function {
+    Exp,
+    Log,
+    Log2,
+    Log10,
+    Sqrt,
+    Sqr,
+    Power,
+    CvPower,
+    VcPower,
+    RPower,
+    SignPower,
+    Sin,
+    Cos,
+    Tan,
+    ArcSin,
+    ArcCos,
+    ArcTan,
+    ArcTan2,
+    Sinh,
+    Cosh,
+    Tanh,
+    ErrorF,
+    Gamma,
+    LogGamma,
+    Beta,
+    LogBeta,
+    BetaReg,
+    GammaReg,
+    Binomial,
+    Centropy,
+    Entropy,
+    Sigmoid,
+    Logit,
+    Poly,
+    SlExp,
+    SlLog10,
+    SlRec,
+    SqExp,
+    SqLog10,
+    SqRec,
+    NcpCm,
+    NcpF,
+    NcpVuSin,
+    NcpVuPow,
+    EDist,
+    Div,
+    Div0,
+    LseMax,
+    LseMin,
+    LseMaxSc,
+    LseMinSc,
+    Abs,
+    Sign,
+    Min,
+    Max,
+    Floor,
+    Ceil,
+    Round,
+    Trunc,
+    Frac,
+    Mod,
+    IfThen,
+    BoolAnd,
+    BoolOr,
+    BoolNot,
+    BoolXor,
+    BoolEqv,
+    BoolImp,
+    RelEq,
+    RelNe,
+    RelLt,
+    RelLe,
+    RelGt,
+    RelGe,
+}
+
+/// One expression with slots.
+#[derive(Clone, PartialEq, Default, Debug)]
+pub struct Kernel {
+    /// The program. Leaves exactly one value.
+    pub ops: Vec<Op>,
+    /// Number of variable slots; two slots of one term may hold the same column.
+    pub variables: u32,
+    /// Number of constant slots.
+    pub constants: u32,
+}
+
+/// All terms that share a kernel: term t is `coef[t] · kernel(x[columns[t·v ..]], constants[t·c ..])` in row `row[t]`.
+#[derive(Clone, Default, Debug)]
+pub struct KernelTerms {
+    /// The expression.
+    pub kernel: Kernel,
+    /// Row of each term.
+    pub row: Vec<u32>,
+    /// Coefficient of each term.
+    pub coef: Vec<f64>,
+    /// Columns, `kernel.variables` per term.
+    pub columns: Vec<u32>,
+    /// Constants, `kernel.constants` per term.
+    pub constants: Vec<f64>,
+}
+
+/// What is minimised or maximised: the level of one column.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Objective {
+    /// The objective variable.
+    pub column: u32,
+    /// Direction.
+    pub sense: Sense,
+}
+
+/// A model instance.
+#[derive(Clone, Default, Debug)]
+pub struct Instance {
+    /// Variables.
+    pub columns: Columns,
+    /// Equations.
+    pub rows: Rows,
+    /// Linear part.
+    pub matrix: SparseRows,
+    /// Nonlinear part.
+    pub nonlinear: Vec<KernelTerms>,
+    /// Objective; None for mcp and cns.
+    pub objective: Option<Objective>,
+    /// For mcp and mpec: per column the row it is matched with, if any.
+    pub matched: Option<Vec<Option<u32>>>,
+}
+
+impl Instance {
+    /// Number of columns.
+    pub fn column_count(&self) -> usize {
+        self.columns.lower.len()
+    }
+
+    /// Number of rows.
+    pub fn row_count(&self) -> usize {
+        self.rows.rhs.len()
+    }
+
+    /// Whether there is no nonlinear term.
+    pub fn is_linear(&self) -> bool {
+        self.nonlinear.iter().all(|k| k.row.is_empty())
+    }
+}

@@ -1,0 +1,2 @@
+//! The sparse model IR.
+pub mod instance;

@@ -1,0 +1,199 @@
+//! Solvers. They see an [`Instance`] of indices and numbers, never names.
+//!
+//! A solver's word is not believed: [`crate::model::certificate`] recomputes the residuals of the
+//! point on the unscaled instance, and that decides the reported status.
+
+use crate::model::instance::Instance;
+
+/// GAMS's model status codes, as far as they can occur.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[repr(u8)]
+pub enum ModelStatus {
+    /// Optimal (for mcp: solved).
+    Optimal = 1,
+    /// Locally optimal.
+    LocallyOptimal = 2,
+    /// Unbounded.
+    Unbounded = 3,
+    /// Infeasible.
+    Infeasible = 4,
+    /// Locally infeasible.
+    LocallyInfeasible = 5,
+    /// Not solved: the last point is infeasible.
+    IntermediateInfeasible = 6,
+    /// The last point is feasible, but not shown to be optimal.
+    Feasible = 7,
+    /// Error, unknown.
+    ErrorUnknown = 12,
+    /// Error, no solution.
+    ErrorNoSolution = 13,
+    /// No solution returned.
+    NoSolution = 14,
+    /// A square system, solved uniquely.
+    SolvedUnique = 15,
+    /// A square system, solved.
+    Solved = 16,
+    /// Unbounded, no solution.
+    UnboundedNoSolution = 18,
+    /// Infeasible, no solution.
+    InfeasibleNoSolution = 19,
+}
+
+impl ModelStatus {
+    /// GAMS's words for it, lower case.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Optimal => "optimal",
+            Self::LocallyOptimal => "locally optimal",
+            Self::Unbounded => "unbounded",
+            Self::Infeasible => "infeasible",
+            Self::LocallyInfeasible => "locally infeasible",
+            Self::IntermediateInfeasible => "intermediate infeasible",
+            Self::Feasible => "feasible solution",
+            Self::ErrorUnknown => "error unknown",
+            Self::ErrorNoSolution => "error no solution",
+            Self::NoSolution => "no solution returned",
+            Self::SolvedUnique => "solved unique",
+            Self::Solved => "solved",
+            Self::UnboundedNoSolution => "unbounded - no solution",
+            Self::InfeasibleNoSolution => "infeasible - no solution",
+        }
+    }
+}
+
+/// GAMS's solver status codes, as far as they can occur.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[repr(u8)]
+pub enum SolverStatus {
+    /// It ended as it should.
+    NormalCompletion = 1,
+    /// Iteration limit.
+    IterationInterrupt = 2,
+    /// Time limit.
+    ResourceInterrupt = 3,
+    /// The solver gave up.
+    TerminatedBySolver = 4,
+    /// Too many evaluation errors.
+    EvaluationInterrupt = 5,
+    /// The solver cannot take this model.
+    CapabilityProblems = 6,
+    /// Ctrl-C.
+    UserInterrupt = 8,
+    /// Something failed inside.
+    InternalSolverFailure = 11,
+}
+
+impl SolverStatus {
+    /// GAMS's words for it, lower case.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::NormalCompletion => "normal completion",
+            Self::IterationInterrupt => "iteration interrupt",
+            Self::ResourceInterrupt => "resource interrupt",
+            Self::TerminatedBySolver => "terminated by solver",
+            Self::EvaluationInterrupt => "evaluation interrupt",
+            Self::CapabilityProblems => "capability problems",
+            Self::UserInterrupt => "user interrupt",
+            Self::InternalSolverFailure => "internal solver failure",
+        }
+    }
+}
+
+/// What a solver claims, besides the point.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Claim {
+    /// Solved to tolerance.
+    Solved,
+    /// Proved (to tolerance) infeasible, with a certificate in `Outcome::ray` where there is one.
+    Infeasible,
+    /// Proved (to tolerance) unbounded, with a direction in `Outcome::ray` where there is one.
+    Unbounded,
+    /// Stopped early or stuck: the point is the best there is.
+    Unfinished,
+}
+
+/// What a solver returns: a point in the instance's own units.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// Level of each column.
+    pub level: Vec<f64>,
+    /// Marginal of each row: d objective / d right-hand side (mcp: level of the matched column).
+    pub row_marginal: Vec<f64>,
+    /// Marginal (reduced cost) of each column: d objective / d bound (mcp: F).
+    pub column_marginal: Vec<f64>,
+    /// What the solver claims.
+    pub claim: Claim,
+    /// How it ended.
+    pub status: SolverStatus,
+    /// Iterations.
+    pub iterations: u64,
+    /// Name of the solver that ran, lower case.
+    pub solver: &'static str,
+    /// For `Infeasible`: row multipliers; for `Unbounded`: column direction. May be empty.
+    pub ray: Vec<f64>,
+    /// One line for the person where there is more to say.
+    pub message: Option<String>,
+}
+
+/// Limits and switches common to all solvers.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// Seconds, `reslim` / `--time-limit`.
+    pub time_limit: f64,
+    /// `iterlim`.
+    pub iteration_limit: u64,
+    /// `domlim`: evaluation errors allowed.
+    pub evaluation_error_limit: u64,
+    /// Solver options by name, from an option file or `--option`.
+    pub options: Vec<(String, String)>,
+    /// Whether a log is wanted.
+    pub log: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            time_limit: 1e10,
+            iteration_limit: 2_147_483_647,
+            evaluation_error_limit: 0,
+            options: Vec::new(),
+            log: false,
+        }
+    }
+}
+
+/// The solver's line to the outside.
+pub trait Monitor {
+    /// A line of the log.
+    fn log(&mut self, line: &str);
+    /// True once the person has asked to stop.
+    fn interrupted(&mut self) -> bool;
+    /// Name of a row for the log.
+    fn row_name(&self, row: usize) -> String;
+    /// Name of a column for the log.
+    fn column_name(&self, column: usize) -> String;
+}
+
+/// Why a solver did not run at all.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SolveError {
+    /// In the reader's terms; names are put in by the caller.
+    pub message: String,
+    /// The row to name, if one is to blame.
+    pub row: Option<usize>,
+    /// The column to name, if one is to blame.
+    pub column: Option<usize>,
+}
+
+/// A solver for some problem types.
+pub trait Solver {
+    /// Lower-case name, as in `option lp = name`.
+    fn name(&self) -> &'static str;
+    /// Solves. Err only for an instance that it cannot take.
+    fn solve(
+        &self,
+        instance: &Instance,
+        settings: &Settings,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Outcome, SolveError>;
+}

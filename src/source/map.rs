@@ -1,0 +1,191 @@
+//! From the expanded text back to the files.
+
+use super::Span;
+
+/// Number of a file in a [`SourceMap`].
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub struct FileId(pub u32);
+
+/// One file as it was read.
+#[derive(Debug)]
+pub struct SourceFile {
+    /// Path as the person wrote it.
+    pub name: String,
+    /// Whole text.
+    pub text: String,
+    /// Byte offset of the start of each line.
+    lines: Vec<u32>,
+}
+
+/// A place in an original file.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Place {
+    /// The file.
+    pub file: FileId,
+    /// First byte in the file.
+    pub lo: u32,
+    /// One past the last byte.
+    pub hi: u32,
+}
+
+/// A piece of the expanded text: `len` bytes from `expanded` on stand for the original at `origin`.
+#[derive(Clone, Copy, Debug)]
+struct Segment {
+    expanded: u32,
+    len: u32,
+    file: FileId,
+    origin: u32,
+    /// Bytes in the original. Equal to `len` where the text was copied; otherwise the whole
+    /// segment stands for the whole original range (a substituted `%name%`, a macro call).
+    origin_len: u32,
+}
+
+/// All files of a run, and where each piece of the expanded text came from.
+#[derive(Default, Debug)]
+pub struct SourceMap {
+    files: Vec<SourceFile>,
+    expanded: String,
+    segments: Vec<Segment>,
+}
+
+impl SourceMap {
+    /// Adds a file.
+    pub fn add_file(&mut self, name: impl Into<String>, text: String) -> FileId {
+        let mut lines = vec![0];
+        lines.extend(memchr::memchr_iter(b'\n', text.as_bytes()).map(|i| i as u32 + 1));
+        self.files.push(SourceFile {
+            name: name.into(),
+            text,
+            lines,
+        });
+        FileId(self.files.len() as u32 - 1)
+    }
+
+    /// The file with this number.
+    pub fn file(&self, id: FileId) -> &SourceFile {
+        &self.files[id.0 as usize]
+    }
+
+    /// All files, in the order in which they were read.
+    pub fn files(&self) -> &[SourceFile] {
+        &self.files
+    }
+
+    /// The expanded text so far.
+    pub fn expanded(&self) -> &str {
+        &self.expanded
+    }
+
+    /// The expanded text of a span.
+    pub fn text(&self, span: Span) -> &str {
+        self.expanded
+            .get(span.lo as usize..span.hi as usize)
+            .unwrap_or("")
+    }
+
+    /// Appends a copy of `lo..hi` of a file to the expanded text and returns where it stands.
+    pub fn push_copy(&mut self, file: FileId, lo: u32, hi: u32) -> Span {
+        let start = self.expanded.len() as u32;
+        self.expanded
+            .push_str(&self.files[file.0 as usize].text[lo as usize..hi as usize]);
+        self.push_segment(Segment {
+            expanded: start,
+            len: hi - lo,
+            file,
+            origin: lo,
+            origin_len: hi - lo,
+        });
+        Span::new(start, start + hi - lo)
+    }
+
+    /// Appends a text that stands for `lo..hi` of a file (a substitution).
+    pub fn push_substitute(&mut self, text: &str, file: FileId, lo: u32, hi: u32) -> Span {
+        let start = self.expanded.len() as u32;
+        self.expanded.push_str(text);
+        let len = text.len() as u32;
+        self.segments.push(Segment {
+            expanded: start,
+            len,
+            file,
+            origin: lo,
+            origin_len: hi - lo,
+        });
+        Span::new(start, start + len)
+    }
+
+    fn push_segment(&mut self, s: Segment) {
+        if let Some(last) = self.segments.last_mut() {
+            let contiguous = last.len == last.origin_len
+                && last.file == s.file
+                && last.expanded + last.len == s.expanded
+                && last.origin + last.origin_len == s.origin;
+            if contiguous {
+                last.len += s.len;
+                last.origin_len += s.origin_len;
+                return;
+            }
+        }
+        self.segments.push(s);
+    }
+
+    /// Where a span of the expanded text stands in the original. None for an empty map.
+    pub fn place(&self, span: Span) -> Option<Place> {
+        let at = |pos: u32| {
+            let i = self
+                .segments
+                .partition_point(|s| s.expanded <= pos)
+                .checked_sub(1)?;
+            Some(self.segments[i])
+        };
+        let a = at(span.lo)?;
+        let last = if span.hi > span.lo {
+            span.hi - 1
+        } else {
+            span.lo
+        };
+        let b = at(last)?;
+        let copied = |s: Segment| s.len == s.origin_len;
+        let lo = if copied(a) {
+            a.origin + (span.lo - a.expanded).min(a.len)
+        } else {
+            a.origin
+        };
+        let hi = if copied(b) {
+            b.origin + (last - b.expanded).min(b.len) + u32::from(span.hi > span.lo)
+        } else {
+            b.origin + b.origin_len
+        };
+        // A span that runs over two files is shown at its beginning.
+        let hi = if a.file == b.file && hi >= lo {
+            hi
+        } else {
+            a.origin + a.origin_len
+        };
+        let end = self.files[a.file.0 as usize].text.len() as u32;
+        Some(Place {
+            file: a.file,
+            lo: lo.min(end),
+            hi: hi.clamp(lo.min(end), end),
+        })
+    }
+
+    /// Line (from 1) of the original text in which a span begins.
+    pub fn line(&self, span: Span) -> usize {
+        self.place(span).map_or(0, |p| self.file(p.file).line(p.lo))
+    }
+}
+
+impl SourceFile {
+    /// Line (from 1) of a byte offset.
+    pub fn line(&self, offset: u32) -> usize {
+        self.lines.partition_point(|&l| l <= offset)
+    }
+
+    /// Line and column (both from 1, column in characters) of a byte offset.
+    pub fn line_column(&self, offset: u32) -> (usize, usize) {
+        let line = self.line(offset).max(1);
+        let start = self.lines[line - 1] as usize;
+        let upto = self.text.get(start..offset as usize).unwrap_or("");
+        (line, upto.chars().count() + 1)
+    }
+}

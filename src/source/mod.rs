@@ -1,0 +1,35 @@
+//! Texts, `$` directives, and the places in them.
+//!
+//! The preprocessor (`directives`) turns files into one *expanded text*; every later stage
+//! speaks of places in it as a [`Span`]. A [`SourceMap`] leads from there back to the file the
+//! person wrote, through `$include` and `%name%` substitution.
+//!
+//! Invariant: a span that leaves this crate in a diagnostic is in the *original* text.
+
+mod map;
+
+pub use map::{FileId, Place, SourceFile, SourceMap};
+
+/// A range of bytes in the expanded text. `lo <= hi`; an empty span is a point.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Default, Debug)]
+pub struct Span {
+    /// First byte.
+    pub lo: u32,
+    /// One past the last byte.
+    pub hi: u32,
+}
+
+impl Span {
+    /// The range `lo..hi`.
+    pub fn new(lo: u32, hi: u32) -> Self {
+        Self { lo, hi }
+    }
+
+    /// The smallest span that covers both.
+    pub fn to(self, other: Span) -> Span {
+        Span {
+            lo: self.lo.min(other.lo),
+            hi: self.hi.max(other.hi),
+        }
+    }
+}

@@ -1,0 +1,563 @@
+//! The syntax tree. Every node has its span; nothing is resolved yet.
+//!
+//! What the grammar cannot tell apart is kept as one node until names are known: `p(i+1)` is an
+//! [`Expr`] of kind [`ExprKind::Apply`] whether `p` is a parameter with a lead or a function of a sum.
+
+use crate::source::Span;
+
+/// A name as it was spelled. Names are compared without regard to case.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ident {
+    /// Spelling.
+    pub name: Box<str>,
+    /// Place.
+    pub span: Span,
+}
+
+/// Switches set by `$on…`/`$off…` directives, as they stood at the start of a statement.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Modes {
+    /// `$onMulti`: a symbol may get data more than once (merged).
+    pub multi: bool,
+    /// `$onMultiR`: a second data statement replaces the first.
+    pub multi_replace: bool,
+    /// `$onEmpty`: empty data statements are allowed.
+    pub empty: bool,
+    /// `$onEps`: zeros in data are stored as `eps`.
+    pub eps: bool,
+    /// `$onUndf`: `undf` may be written.
+    pub undf: bool,
+    /// `$offOrder`: lags and `ord` on unordered sets are allowed.
+    pub off_order: bool,
+    /// `$onDotL`: a variable in an assignment means its level.
+    pub dot_l: bool,
+    /// `$onImplicitAssign`, default on here: a symbol may be used without having been assigned.
+    pub strict_single: bool,
+}
+
+impl Default for Modes {
+    fn default() -> Self {
+        Self {
+            multi: false,
+            multi_replace: false,
+            empty: false,
+            eps: false,
+            undf: false,
+            off_order: false,
+            dot_l: false,
+            strict_single: true,
+        }
+    }
+}
+
+/// A statement.
+#[derive(Clone, Debug)]
+pub struct Stmt {
+    /// What it says.
+    pub kind: StmtKind,
+    /// From its first word to its `;`.
+    pub span: Span,
+    /// Switches in force.
+    pub modes: Modes,
+}
+
+/// The kinds of statements.
+#[derive(Clone, Debug)]
+pub enum StmtKind {
+    /// `set i 'plants' / seattle, denver /, arc(i,j);`
+    Set(Vec<SetDecl>),
+    /// `alias (i, j), (k, l);` each group: names, one of which is known already.
+    Alias(Vec<Vec<Ident>>),
+    /// `parameter`, `scalar`.
+    Parameter(Vec<ParameterDecl>),
+    /// `table`.
+    Table(TableDecl),
+    /// `variable` of any kind.
+    Variable(VariableKind, Vec<SymbolDecl>),
+    /// `equation`.
+    Equation(Vec<SymbolDecl>),
+    /// `model`.
+    Model(Vec<ModelDecl>),
+    /// `acronym`.
+    Acronym(Vec<SymbolDecl>),
+    /// `file f 'text' / out.txt /;` the name of the file is None where none is given.
+    File(Vec<(Ident, Option<Box<str>>)>),
+    /// `p(i)$c = e;` also to attributes and sets.
+    Assign(Assign),
+    /// `e(i)$c .. l =e= r;`
+    Equate(Equate),
+    /// `solve m using lp minimizing z;`
+    Solve(Solve),
+    /// `loop((i,j)$c, …);`
+    Loop(Domain, Vec<Stmt>),
+    /// `while(c, …);`
+    While(Expr, Vec<Stmt>),
+    /// `for(k = a to|downto b by s, …);`
+    For {
+        /// The scalar that counts.
+        variable: Reference,
+        /// First value.
+        from: Expr,
+        /// `downto`.
+        down: bool,
+        /// Limit.
+        to: Expr,
+        /// Step, 1 where none is given.
+        by: Option<Expr>,
+        /// Statements.
+        body: Vec<Stmt>,
+    },
+    /// `repeat(… until c);`
+    Repeat(Vec<Stmt>, Expr),
+    /// `if(c, … elseif c, … else …);`
+    If(Vec<(Expr, Vec<Stmt>)>, Vec<Stmt>),
+    /// `break$c;`
+    Break(Option<Expr>),
+    /// `continue$c;`
+    Continue(Option<Expr>),
+    /// `display$c 'text', p, x.l;`
+    Display(Option<Expr>, Vec<DisplayItem>),
+    /// `abort$c 'text', p;` `no_error` for `abort.noError`.
+    Abort {
+        /// Condition.
+        condition: Option<Expr>,
+        /// What to show.
+        items: Vec<DisplayItem>,
+        /// Ends the run with exit status 0.
+        no_error: bool,
+    },
+    /// `option …;`
+    Option(Vec<OptionItem>),
+    /// `put`, `putclose`, `puttl`, `puthd`, `putpage`.
+    Put(Put),
+    /// `execute_unload`, `execute_load`, `execute_loadpoint`, `$load`, `$gdxin` …
+    Exchange(Exchange),
+    /// A statement that is understood and refused or without effect (`execute 'cmd'`): its keyword.
+    Refused(Ident),
+    /// `figure name 'title' { … };`
+    Figure(Figure),
+    /// `draw figure 'file.svg';`
+    Draw(Ident, Option<Expr>),
+    /// Nothing (`;` alone, listing control).
+    Empty,
+}
+
+/// One index position of a declaration: `i`, `*`, or `i<` (the symbol defines the set).
+#[derive(Clone, Debug)]
+pub struct DomainName {
+    /// The set; `*` is the universe.
+    pub name: Ident,
+    /// `<` stands behind it.
+    pub defines: bool,
+}
+
+/// A name with index positions, an explanatory text and perhaps data.
+#[derive(Clone, Debug)]
+pub struct SymbolDecl {
+    /// The name.
+    pub name: Ident,
+    /// Index positions; None where no parentheses stand.
+    pub domain: Option<Vec<DomainName>>,
+    /// Explanatory text.
+    pub text: Option<Box<str>>,
+    /// The body between the slashes, to be read by the data lexer.
+    pub data: Option<Span>,
+}
+
+/// A set of a `set` statement.
+#[derive(Clone, Debug)]
+pub struct SetDecl {
+    /// Name, domain, text, data.
+    pub symbol: SymbolDecl,
+    /// `singleton set`.
+    pub singleton: bool,
+}
+
+/// A parameter or scalar.
+#[derive(Clone, Debug)]
+pub struct ParameterDecl {
+    /// Name, domain, text, data.
+    pub symbol: SymbolDecl,
+    /// Declared by `scalar`.
+    pub scalar: bool,
+}
+
+/// A table: the body is everything from the line after the header to the `;`.
+#[derive(Clone, Debug)]
+pub struct TableDecl {
+    /// Name, domain, text (no data).
+    pub symbol: SymbolDecl,
+    /// The body's lines, to be read by the table lexer.
+    pub body: Span,
+}
+
+/// Kinds of variables.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum VariableKind {
+    /// No kind written: free if new, unchanged if known.
+    Unstated,
+    /// −∞ … +∞.
+    Free,
+    /// 0 … +∞.
+    Positive,
+    /// −∞ … 0.
+    Negative,
+    /// 0 or 1.
+    Binary,
+    /// Integers 0 … +∞.
+    Integer,
+    /// 0 or between bounds.
+    SemiContinuous,
+    /// 0 or an integer between bounds.
+    SemiInteger,
+    /// Special ordered set of type 1.
+    Sos1,
+    /// Special ordered set of type 2.
+    Sos2,
+}
+
+/// `model m 'text' / all, -e2, f.x, (g,h).y /;`
+#[derive(Clone, Debug)]
+pub struct ModelDecl {
+    /// The name.
+    pub name: Ident,
+    /// Explanatory text.
+    pub text: Option<Box<str>>,
+    /// Its parts; None where no slashes stand.
+    pub items: Option<Vec<ModelItem>>,
+}
+
+/// One part of a model's list.
+#[derive(Clone, Debug)]
+pub enum ModelItem {
+    /// `all`.
+    All(Span),
+    /// An equation or another model, perhaps with a restricted domain `e(sub)`.
+    Add(Ident, Option<Vec<Ident>>),
+    /// `- e` or `- m`.
+    Remove(Ident),
+    /// `f.x`, `(f|g).x`, `(f,g):x`.
+    Pair {
+        /// The equations.
+        rows: Vec<Ident>,
+        /// The variable.
+        column: Ident,
+    },
+}
+
+/// A symbol with its attribute and arguments, where something is assigned or referred to.
+#[derive(Clone, Debug)]
+pub struct Reference {
+    /// The symbol.
+    pub name: Ident,
+    /// `.l`, `.lo`, `.modelstat` …
+    pub attribute: Option<Ident>,
+    /// Indices; empty where none stand.
+    pub indices: Vec<Expr>,
+    /// Whole place.
+    pub span: Span,
+}
+
+/// An assignment.
+#[derive(Clone, Debug)]
+pub struct Assign {
+    /// Left side.
+    pub target: Reference,
+    /// Condition on the left.
+    pub condition: Option<Expr>,
+    /// Right side.
+    pub value: Expr,
+}
+
+/// `=e=`, `=g=`, `=l=`, `=n=`.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Relation {
+    /// Equal.
+    Equal,
+    /// Left side at least the right.
+    Greater,
+    /// Left side at most the right.
+    Less,
+    /// No relation.
+    Free,
+}
+
+/// The definition of an equation.
+#[derive(Clone, Debug)]
+pub struct Equate {
+    /// The equation.
+    pub name: Ident,
+    /// Index positions: sets, labels, lags, tuple sets `arc(i,j)`.
+    pub indices: Vec<Expr>,
+    /// Condition.
+    pub condition: Option<Expr>,
+    /// Left side.
+    pub left: Expr,
+    /// Relation.
+    pub relation: Relation,
+    /// Right side.
+    pub right: Expr,
+}
+
+/// Direction of a solve.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Sense {
+    /// `minimizing`
+    Minimize,
+    /// `maximizing`
+    Maximize,
+}
+
+/// A `solve` statement.
+#[derive(Clone, Debug)]
+pub struct Solve {
+    /// The model.
+    pub model: Ident,
+    /// `lp`, `nlp`, `mcp` …
+    pub using: Ident,
+    /// Direction and objective variable.
+    pub objective: Option<(Sense, Ident)>,
+}
+
+/// What a loop, a sum or a figure element runs over: `(i, arc(j,k))$c`.
+#[derive(Clone, Debug)]
+pub struct Domain {
+    /// The items in the order written.
+    pub items: Vec<DomainItem>,
+    /// Condition.
+    pub condition: Option<Expr>,
+    /// Whole place.
+    pub span: Span,
+}
+
+/// `i` or `arc(j,'b')`.
+#[derive(Clone, Debug)]
+pub struct DomainItem {
+    /// The set.
+    pub set: Ident,
+    /// Its indices; None where no parentheses stand.
+    pub indices: Option<Vec<Expr>>,
+    /// Whole place.
+    pub span: Span,
+}
+
+/// An expression.
+#[derive(Clone, Debug)]
+pub struct Expr {
+    /// What it is.
+    pub kind: ExprKind,
+    /// Where it is.
+    pub span: Span,
+}
+
+/// The kinds of expressions.
+#[derive(Clone, Debug)]
+pub enum ExprKind {
+    /// A number, or `inf`, `eps`, `na`, `undf` (see `data::value`), `yes` (1), `no` (0).
+    Number(f64),
+    /// A quoted text: a label in an index position, a text in `put`.
+    Text(Box<str>),
+    /// A name, perhaps with attribute and arguments: symbol, function or index, told apart later.
+    Apply {
+        /// Name.
+        name: Ident,
+        /// `.l`, `.val` …
+        attribute: Option<Ident>,
+        /// Arguments; None where no parentheses stand.
+        arguments: Option<Vec<Expr>>,
+    },
+    /// A prefix operator.
+    Unary(UnaryOp, Box<Expr>),
+    /// An infix operator.
+    Binary(BinaryOp, Box<Expr>, Box<Expr>),
+    /// `e $ c`.
+    Dollar(Box<Expr>, Box<Expr>),
+    /// `sum((i,j)$c, e)` and its kin.
+    Aggregate(AggregateOp, Box<Domain>, Box<Expr>),
+}
+
+/// Prefix operators.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum UnaryOp {
+    /// `-`
+    Minus,
+    /// `+`
+    Plus,
+    /// `not`
+    Not,
+}
+
+/// Infix operators, loosest first: `-> <=>`, `or xor`, `and`, (`not`), relations, `+ -`, `* /`, (unary minus), `**`, `$`.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum BinaryOp {
+    /// `->`, `imp`
+    Implies,
+    /// `<=>`, `eqv`
+    Equivalent,
+    /// `or`
+    Or,
+    /// `xor`
+    Xor,
+    /// `and`
+    And,
+    /// `=`, `eq`
+    Eq,
+    /// `<>`, `ne`
+    Ne,
+    /// `<`, `lt`
+    Lt,
+    /// `<=`, `le`
+    Le,
+    /// `>`, `gt`
+    Gt,
+    /// `>=`, `ge`
+    Ge,
+    /// `+`
+    Add,
+    /// `-`
+    Subtract,
+    /// `*`
+    Multiply,
+    /// `/`
+    Divide,
+    /// `**`
+    Power,
+    /// `++` in an index position: circular lead
+    CircularPlus,
+    /// `--` in an index position: circular lag
+    CircularMinus,
+}
+
+/// Operators over a domain.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum AggregateOp {
+    /// `sum`
+    Sum,
+    /// `prod`
+    Prod,
+    /// `smin`
+    Smin,
+    /// `smax`
+    Smax,
+    /// `sand`
+    Sand,
+    /// `sor`
+    Sor,
+}
+
+/// One item of `display` and `abort`.
+#[derive(Clone, Debug)]
+pub enum DisplayItem {
+    /// A text.
+    Text(Box<str>, Span),
+    /// A symbol, perhaps with attribute.
+    Symbol(Reference),
+}
+
+/// One item of an `option` statement.
+#[derive(Clone, Debug)]
+pub struct OptionItem {
+    /// Option or symbol.
+    pub name: Ident,
+    /// Index names of a projection's left side.
+    pub indices: Option<Vec<Ident>>,
+    /// The rest.
+    pub form: OptionForm,
+}
+
+/// Forms of an option item.
+#[derive(Clone, Debug)]
+pub enum OptionForm {
+    /// `option oneOutput;`
+    Flag,
+    /// `option lp = clarabel`, `option reslim = 5`, `option clear = p` (names come as text).
+    Assign(OptionValue),
+    /// `option p:3:1:2`
+    Format(Vec<i64>),
+    /// `option p < q` (`<=` keeps the last instead of counting).
+    Project {
+        /// Written `<=`.
+        last: bool,
+        /// The source.
+        source: Ident,
+        /// Its index names.
+        indices: Option<Vec<Ident>>,
+    },
+}
+
+/// Right side of `option name = …`.
+#[derive(Clone, Debug)]
+pub enum OptionValue {
+    /// A number.
+    Number(f64),
+    /// A name or a text, with its place.
+    Text(Box<str>, Span),
+}
+
+/// `put` and its kin.
+#[derive(Clone, Debug)]
+pub struct Put {
+    /// `put`, `putclose`, `puttl`, `puthd`, `putpage`, `putclear` … in lower case.
+    pub keyword: Box<str>,
+    /// Condition.
+    pub condition: Option<Expr>,
+    /// Items; a file symbol comes as an `Item` whose expression is a bare name.
+    pub items: Vec<PutItem>,
+}
+
+/// One item of a `put`.
+#[derive(Clone, Debug)]
+pub enum PutItem {
+    /// `/`: new line.
+    NewLine,
+    /// `@ n`: to a column.
+    Column(Expr),
+    /// `# n`: to a line.
+    Row(Expr),
+    /// Something to write, with `:<width:decimals`.
+    Item {
+        /// What.
+        value: Expr,
+        /// `<` left, `>` right, `=` centred (`<>`).
+        align: Option<char>,
+        /// Width.
+        width: Option<i64>,
+        /// Decimals.
+        decimals: Option<i64>,
+    },
+}
+
+/// Data exchange with files.
+#[derive(Clone, Debug)]
+pub struct Exchange {
+    /// `execute_unload`, `execute_load`, `execute_loadpoint`, `gdxin`, `load`, `loaddc`, `gdxout`, `unload` … in lower case.
+    pub keyword: Ident,
+    /// The file, where one is named.
+    pub file: Option<(Box<str>, Span)>,
+    /// `x`, `x = y` (the name inside the file).
+    pub items: Vec<(Ident, Option<Ident>)>,
+}
+
+/// A figure.
+#[derive(Clone, Debug)]
+pub struct Figure {
+    /// Its name.
+    pub name: Ident,
+    /// Title.
+    pub title: Option<Box<str>>,
+    /// Its elements in drawing order.
+    pub elements: Vec<FigureElement>,
+}
+
+/// One element of a figure: `polygon(b,v)$c x = …, y = …, fill = …;`
+#[derive(Clone, Debug)]
+pub struct FigureElement {
+    /// `polygon`, `polyline`, `points`, `arrow`, `text`, `line`, `bar`, `title`, `axes` …
+    pub kind: Ident,
+    /// What it runs over; None where no parentheses stand.
+    pub domain: Option<Domain>,
+    /// `name = value`, or a bare value.
+    pub arguments: Vec<(Option<Ident>, Expr)>,
+    /// Whole place.
+    pub span: Span,
+}
