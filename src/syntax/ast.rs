@@ -15,7 +15,7 @@ pub struct Ident {
 }
 
 /// Switches set by `$on…`/`$off…` directives, as they stood at the start of a statement.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
 pub struct Modes {
     /// `$onMulti`: a symbol may get data more than once (merged).
     pub multi: bool,
@@ -31,23 +31,6 @@ pub struct Modes {
     pub off_order: bool,
     /// `$onDotL`: a variable in an assignment means its level.
     pub dot_l: bool,
-    /// `$onImplicitAssign`, default on here: a symbol may be used without having been assigned.
-    pub strict_single: bool,
-}
-
-impl Default for Modes {
-    fn default() -> Self {
-        Self {
-            multi: false,
-            multi_replace: false,
-            empty: false,
-            eps: false,
-            undf: false,
-            off_order: false,
-            dot_l: false,
-            strict_single: true,
-        }
-    }
 }
 
 /// A statement.
@@ -370,6 +353,10 @@ pub enum ExprKind {
     Unary(UnaryOp, Box<Expr>),
     /// An infix operator.
     Binary(BinaryOp, Box<Expr>, Box<Expr>),
+    /// A chain of two or more terms joined by `+` and `-` (the first has `Plus`).
+    Sum(Vec<(Sign, Expr)>),
+    /// A chain of three or more factors joined by `*` and `/`, left to right (the first has `Multiply`).
+    Product(Vec<(Factor, Expr)>),
     /// `e $ c`.
     Dollar(Box<Expr>, Box<Expr>),
     /// `sum((i,j)$c, e)` and its kin.
@@ -426,6 +413,24 @@ pub enum BinaryOp {
     CircularPlus,
     /// `--` in an index position: circular lag
     CircularMinus,
+}
+
+/// Sign of a term in a chain.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Sign {
+    /// `+`
+    Plus,
+    /// `-`
+    Minus,
+}
+
+/// How a factor joins a chain.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Factor {
+    /// `*`
+    Multiply,
+    /// `/`
+    Divide,
 }
 
 /// Operators over a domain.

@@ -1,0 +1,638 @@
+//! Sparse tables: records of labels with a value.
+//!
+//! A set, a parameter and each attribute of a variable or equation is a [`Table`]. What is not
+//! stored has the table's default value (0 for parameters, +∞ for upper bounds …).
+//!
+//! Invariants: memory is proportional to the records; a *tidy* table is sorted by label order and
+//! has no removed records; iteration is over tidy tables only, so what a person sees is always in
+//! label order. A hash index and *orders* (records grouped by some positions) are built when first
+//! needed and dropped when records move.
+
+use super::universe::Label;
+use hashbrown::HashTable;
+use std::cell::{OnceCell, RefCell};
+use std::hash::Hasher;
+use std::rc::Rc;
+
+/// Records of `dim` labels with a value each.
+#[derive(Clone, Debug)]
+pub struct Table {
+    dim: usize,
+    default: f64,
+    keys: Vec<Label>,
+    values: Vec<f64>,
+    /// Records `..sorted` are strictly increasing.
+    sorted: usize,
+    /// Removed records that still take a place (their value is the default).
+    dead: usize,
+    index: OnceCell<Index>,
+    orders: RefCell<Vec<(u32, Rc<Order>)>>,
+    distinct: OnceCell<Vec<u32>>,
+    special: bool,
+}
+
+#[derive(Clone, Debug)]
+enum Index {
+    /// Record + 1 by label, for one-dimensional tables.
+    Dense(Vec<u32>),
+    Hash(HashTable<u32>),
+}
+
+/// Records grouped by their labels at some positions.
+#[derive(Debug)]
+pub struct Order {
+    /// Records in group order; None where that is the stored order.
+    rows: Option<Vec<u32>>,
+    groups: Groups,
+    positions: Vec<usize>,
+}
+
+#[derive(Debug)]
+enum Groups {
+    /// By label: `start[l]..start[l+1]`.
+    Dense(Vec<u32>),
+    Hash(HashTable<(u32, u32)>),
+}
+
+/// Rows of one group.
+#[derive(Clone, Copy, Debug)]
+pub enum Rows<'a> {
+    /// Records `lo..hi` as stored.
+    Range(u32, u32),
+    /// These records.
+    List(&'a [u32]),
+}
+
+impl Rows<'_> {
+    /// Number of records.
+    pub fn len(&self) -> usize {
+        match self {
+            Rows::Range(lo, hi) => (hi - lo) as usize,
+            Rows::List(l) => l.len(),
+        }
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The k-th record.
+    #[inline]
+    pub fn get(&self, k: usize) -> u32 {
+        match self {
+            Rows::Range(lo, _) => lo + k as u32,
+            Rows::List(l) => l[k],
+        }
+    }
+}
+
+fn hash_key(key: &[Label]) -> u64 {
+    let mut h = rustc_hash::FxHasher::default();
+    for &k in key {
+        h.write_u32(k);
+    }
+    h.finish()
+}
+
+fn hash_at(key: &[Label], positions: &[usize]) -> u64 {
+    let mut h = rustc_hash::FxHasher::default();
+    for &p in positions {
+        h.write_u32(key[p]);
+    }
+    h.finish()
+}
+
+impl Table {
+    /// An empty table.
+    pub fn new(dim: usize, default: f64) -> Self {
+        Self {
+            dim,
+            default,
+            keys: Vec::new(),
+            values: Vec::new(),
+            sorted: 0,
+            dead: 0,
+            index: OnceCell::new(),
+            orders: RefCell::default(),
+            distinct: OnceCell::new(),
+            special: false,
+        }
+    }
+
+    /// A table from records that are sorted and distinct; values equal to the default are skipped.
+    pub fn from_sorted(dim: usize, default: f64, keys: Vec<Label>, values: Vec<f64>) -> Self {
+        let mut t = Self::new(dim, default);
+        t.special = values.iter().any(|v| !v.is_finite());
+        t.sorted = values.len();
+        t.dead = values.iter().filter(|&&v| v == default).count();
+        t.keys = keys;
+        t.values = values;
+        t.tidy();
+        t
+    }
+
+    /// Number of index positions.
+    pub fn dim(&self) -> usize {
+        self.dim
+    }
+
+    /// Value of what is not stored.
+    pub fn default_value(&self) -> f64 {
+        self.default
+    }
+
+    /// Number of records.
+    pub fn len(&self) -> usize {
+        self.values.len() - self.dead
+    }
+
+    /// Whether nothing is stored.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Whether some value may be infinite, `na`, `eps` or `undf`: a zero does not annihilate those.
+    pub fn has_special(&self) -> bool {
+        self.special
+    }
+
+    /// Labels of a stored record.
+    #[inline]
+    pub fn key(&self, row: u32) -> &[Label] {
+        let at = row as usize * self.dim;
+        &self.keys[at..at + self.dim]
+    }
+
+    /// Value of a stored record.
+    #[inline]
+    pub fn value(&self, row: u32) -> f64 {
+        self.values[row as usize]
+    }
+
+    /// Whether all records are sorted and none is dead.
+    pub fn is_tidy(&self) -> bool {
+        self.dead == 0 && self.sorted == self.values.len()
+    }
+
+    /// All records in label order. The table must be tidy.
+    pub fn iter(&self) -> impl Iterator<Item = (&[Label], f64)> + '_ {
+        debug_assert!(self.is_tidy());
+        (0..self.values.len())
+            .map(|r| (&self.keys[r * self.dim..(r + 1) * self.dim], self.values[r]))
+    }
+
+    /// The record with this key.
+    #[inline]
+    pub fn find(&self, key: &[Label]) -> Option<u32> {
+        debug_assert_eq!(key.len(), self.dim);
+        match self.dim {
+            0 => (!self.values.is_empty() && self.values[0] != self.default).then_some(0),
+            _ => match self.index.get_or_init(|| self.build_index()) {
+                Index::Dense(by_label) => match by_label.get(key[0] as usize) {
+                    Some(&r) if r > 0 => Some(r - 1),
+                    _ => None,
+                },
+                Index::Hash(t) => t.find(hash_key(key), |&r| self.key(r) == key).copied(),
+            },
+        }
+    }
+
+    /// The value for this key, the default where nothing is stored.
+    #[inline]
+    pub fn get(&self, key: &[Label]) -> f64 {
+        match self.find(key) {
+            Some(r) => self.values[r as usize],
+            None => self.default,
+        }
+    }
+
+    fn build_index(&self) -> Index {
+        let alive =
+            |r: u32| self.values[r as usize] != self.default || self.values[r as usize].is_nan();
+        if self.dim == 1 {
+            let top = self.keys.iter().max().map_or(0, |&l| l as usize + 1);
+            if top <= 64 + 16 * self.values.len() {
+                let mut by_label = vec![0; top];
+                for (r, &l) in self.keys.iter().enumerate() {
+                    if alive(r as u32) {
+                        by_label[l as usize] = r as u32 + 1;
+                    }
+                }
+                return Index::Dense(by_label);
+            }
+        }
+        let mut t = HashTable::with_capacity(self.values.len());
+        for r in 0..self.values.len() as u32 {
+            if alive(r) {
+                t.insert_unique(hash_key(self.key(r)), r, |&r| hash_key(self.key(r)));
+            }
+        }
+        Index::Hash(t)
+    }
+
+    fn moved(&mut self) {
+        self.orders.get_mut().clear();
+        self.distinct.take();
+    }
+
+    /// Stores a value; the default removes the record.
+    pub fn set(&mut self, key: &[Label], value: f64) {
+        debug_assert_eq!(key.len(), self.dim);
+        if !value.is_finite() {
+            self.special = true;
+        }
+        if self.dim == 0 {
+            self.values.clear();
+            if value != self.default {
+                self.values.push(value);
+            }
+            self.sorted = self.values.len();
+            return;
+        }
+        // Appending in order needs no index.
+        let n = self.values.len();
+        let after_last = self.sorted == n && (n == 0 || self.key(n as u32 - 1) < key);
+        if after_last {
+            if value != self.default {
+                self.push(key, value);
+                self.sorted += 1;
+            }
+            return;
+        }
+        match self.find(key) {
+            Some(r) if value == self.default => {
+                self.values[r as usize] = self.default;
+                self.dead += 1;
+                self.moved();
+                let Self {
+                    index, keys, dim, ..
+                } = self;
+                match index.get_mut() {
+                    Some(Index::Dense(by_label)) => by_label[key[0] as usize] = 0,
+                    Some(Index::Hash(t)) => {
+                        let same = |&r: &u32| keys[r as usize * *dim..][..*dim] == *key;
+                        if let Ok(e) = t.find_entry(hash_key(key), same) {
+                            e.remove();
+                        }
+                    }
+                    None => {}
+                }
+            }
+            Some(r) => self.values[r as usize] = value,
+            None if value != self.default => self.push(key, value),
+            None => {}
+        }
+    }
+
+    fn push(&mut self, key: &[Label], value: f64) {
+        let r = self.values.len() as u32;
+        self.keys.extend_from_slice(key);
+        self.values.push(value);
+        self.moved();
+        let Self {
+            index, keys, dim, ..
+        } = self;
+        match index.get_mut() {
+            Some(Index::Dense(by_label)) => {
+                let l = key[0] as usize;
+                if l < by_label.len() {
+                    by_label[l] = r + 1;
+                } else if l <= 64 + 16 * (r as usize + 1) {
+                    by_label.resize(l + 1, 0);
+                    by_label[l] = r + 1;
+                } else {
+                    index.take();
+                }
+            }
+            Some(Index::Hash(t)) => {
+                let d = *dim;
+                t.insert_unique(hash_key(key), r, |&r| {
+                    hash_key(&keys[r as usize * d..][..d])
+                });
+            }
+            None => {}
+        }
+    }
+
+    /// Appends a record whose key is known to be new, without keeping order (call [`Table::tidy`] after).
+    pub fn append(&mut self, key: &[Label], value: f64) {
+        let n = self.values.len();
+        let in_order = self.sorted == n && (n == 0 || self.key(n as u32 - 1) < key);
+        self.special |= !value.is_finite();
+        self.index.take();
+        self.push(key, value);
+        self.sorted += usize::from(in_order);
+    }
+
+    /// Removes everything.
+    pub fn clear(&mut self) {
+        *self = Self::new(self.dim, self.default);
+    }
+
+    /// Sorts by label order and forgets removed records. Of equal keys the last one stays.
+    pub fn tidy(&mut self) {
+        if self.is_tidy() {
+            return;
+        }
+        let (d, n) = (self.dim, self.values.len());
+        let alive = |v: f64, default: f64| v != default;
+        if self.sorted == n {
+            // Only removals: compact in place.
+            let mut to = 0;
+            for r in 0..n {
+                if alive(self.values[r], self.default) {
+                    self.values[to] = self.values[r];
+                    self.keys.copy_within(r * d..(r + 1) * d, to * d);
+                    to += 1;
+                }
+            }
+            self.values.truncate(to);
+            self.keys.truncate(to * d);
+        } else {
+            let mut tail: Vec<u32> = (self.sorted as u32..n as u32).collect();
+            match d {
+                1 => tail.sort_by_key(|&r| self.keys[r as usize]),
+                2 => tail.sort_by_cached_key(|&r| {
+                    let k = &self.keys[r as usize * 2..];
+                    (k[0] as u64) << 32 | k[1] as u64
+                }),
+                _ => tail.sort_by(|&a, &b| self.key(a).cmp(self.key(b))),
+            }
+            let mut keys = Vec::with_capacity(self.keys.len());
+            let mut values: Vec<f64> = Vec::with_capacity(n);
+            let mut put = |t: &Self, r: u32| {
+                if values.last().is_some() && keys[keys.len() - d..] == *t.key(r) {
+                    values.pop();
+                    keys.truncate(keys.len() - d);
+                }
+                if alive(t.value(r), t.default) {
+                    keys.extend_from_slice(t.key(r));
+                    values.push(t.value(r));
+                }
+            };
+            let mut head = 0u32;
+            for &r in &tail {
+                while (head as usize) < self.sorted && self.key(head) <= self.key(r) {
+                    put(self, head);
+                    head += 1;
+                }
+                put(self, r);
+            }
+            while (head as usize) < self.sorted {
+                put(self, head);
+                head += 1;
+            }
+            self.keys = keys;
+            self.values = values;
+        }
+        self.sorted = self.values.len();
+        self.dead = 0;
+        self.special = self.values.iter().any(|v| !v.is_finite());
+        self.index.take();
+        self.moved();
+    }
+
+    /// Stores many records (sorted by key, distinct) at once.
+    pub fn merge(&mut self, keys: &[Label], values: &[f64]) {
+        let d = self.dim;
+        if d == 0 {
+            if let Some(&v) = values.last() {
+                self.set(&[], v);
+            }
+            return;
+        }
+        if self.is_empty() {
+            *self = Self::from_sorted(d, self.default, keys.to_vec(), values.to_vec());
+            return;
+        }
+        if values.len() < 8 || values.len() * 16 < self.values.len() {
+            for (k, &v) in keys.chunks_exact(d).zip(values) {
+                self.set(k, v);
+            }
+            return;
+        }
+        self.tidy();
+        let (old_keys, old_values) = (
+            std::mem::take(&mut self.keys),
+            std::mem::take(&mut self.values),
+        );
+        let mut t = Self::new(d, self.default);
+        t.keys.reserve(old_keys.len() + keys.len());
+        t.values.reserve(old_values.len() + values.len());
+        let mut old = 0;
+        let default = self.default;
+        let mut put = |k: &[Label], v: f64| {
+            if v != default {
+                t.keys.extend_from_slice(k);
+                t.values.push(v);
+            }
+        };
+        for (k, &v) in keys.chunks_exact(d).zip(values) {
+            while old < old_values.len() && old_keys[old * d..(old + 1) * d] < *k {
+                put(&old_keys[old * d..(old + 1) * d], old_values[old]);
+                old += 1;
+            }
+            if old < old_values.len() && old_keys[old * d..(old + 1) * d] == *k {
+                old += 1;
+            }
+            put(k, v);
+        }
+        while old < old_values.len() {
+            put(&old_keys[old * d..(old + 1) * d], old_values[old]);
+            old += 1;
+        }
+        t.sorted = t.values.len();
+        t.special = t.values.iter().any(|v| !v.is_finite());
+        *self = t;
+    }
+
+    /// Number of different labels at each position (tidy tables).
+    pub fn distinct(&self) -> &[u32] {
+        self.distinct.get_or_init(|| {
+            (0..self.dim)
+                .map(|p| {
+                    let mut seen = rustc_hash::FxHashSet::default();
+                    let mut last = None;
+                    for r in 0..self.values.len() {
+                        let l = self.keys[r * self.dim + p];
+                        if last != Some(l) {
+                            seen.insert(l);
+                            last = Some(l);
+                        }
+                    }
+                    seen.len() as u32
+                })
+                .collect()
+        })
+    }
+
+    /// Records grouped by the positions in `mask` (bit p for position p; not empty, not all). Tidy tables.
+    pub fn order(&self, mask: u32) -> Rc<Order> {
+        debug_assert!(self.is_tidy());
+        if let Some((_, o)) = self.orders.borrow().iter().find(|(m, _)| *m == mask) {
+            return o.clone();
+        }
+        let order = Rc::new(self.build_order(mask));
+        self.orders.borrow_mut().push((mask, order.clone()));
+        order
+    }
+
+    fn build_order(&self, mask: u32) -> Order {
+        let positions: Vec<usize> = (0..self.dim).filter(|p| mask >> p & 1 == 1).collect();
+        let n = self.values.len();
+        let prefix = positions.iter().enumerate().all(|(i, &p)| i == p);
+        if positions.len() == 1 {
+            let p = positions[0];
+            let top = (0..n)
+                .map(|r| self.keys[r * self.dim + p] as usize + 1)
+                .max()
+                .unwrap_or(0);
+            if top <= 64 + 16 * n {
+                let mut start = vec![0u32; top + 1];
+                for r in 0..n {
+                    start[self.keys[r * self.dim + p] as usize + 1] += 1;
+                }
+                for l in 0..top {
+                    start[l + 1] += start[l];
+                }
+                let rows = (!prefix).then(|| {
+                    let mut next = start.clone();
+                    let mut rows = vec![0u32; n];
+                    for r in 0..n {
+                        let l = self.keys[r * self.dim + p] as usize;
+                        rows[next[l] as usize] = r as u32;
+                        next[l] += 1;
+                    }
+                    rows
+                });
+                return Order {
+                    rows,
+                    groups: Groups::Dense(start),
+                    positions,
+                };
+            }
+        }
+        let rows: Option<Vec<u32>> = (!prefix).then(|| {
+            let mut rows: Vec<u32> = (0..n as u32).collect();
+            rows.sort_by(|&a, &b| {
+                let (a, b) = (self.key(a), self.key(b));
+                positions
+                    .iter()
+                    .map(|&p| a[p])
+                    .cmp(positions.iter().map(|&p| b[p]))
+            });
+            rows
+        });
+        let at = |k: usize| self.key(rows.as_ref().map_or(k as u32, |r| r[k]));
+        let mut groups: HashTable<(u32, u32)> = HashTable::new();
+        let mut lo = 0;
+        while lo < n {
+            let mut hi = lo + 1;
+            while hi < n && positions.iter().all(|&p| at(hi)[p] == at(lo)[p]) {
+                hi += 1;
+            }
+            groups.insert_unique(
+                hash_at(at(lo), &positions),
+                (lo as u32, hi as u32),
+                |&(l, _)| hash_at(at(l as usize), &positions),
+            );
+            lo = hi;
+        }
+        Order {
+            rows,
+            groups: Groups::Hash(groups),
+            positions,
+        }
+    }
+
+    /// The group of an order whose labels at the order's positions are those of `key` (a full-length
+    /// key of which only those positions are read).
+    #[inline]
+    pub fn group<'a>(&self, order: &'a Order, key: &[Label]) -> Rows<'a> {
+        let (lo, hi) = match &order.groups {
+            Groups::Dense(start) => {
+                let l = key[order.positions[0]] as usize;
+                if l + 1 < start.len() {
+                    (start[l], start[l + 1])
+                } else {
+                    (0, 0)
+                }
+            }
+            Groups::Hash(t) => {
+                let same = |&(lo, _): &(u32, u32)| {
+                    let row = order.rows.as_ref().map_or(lo, |r| r[lo as usize]);
+                    let k = self.key(row);
+                    order.positions.iter().all(|&p| k[p] == key[p])
+                };
+                t.find(hash_at(key, &order.positions), same)
+                    .copied()
+                    .unwrap_or((0, 0))
+            }
+        };
+        match &order.rows {
+            None => Rows::Range(lo, hi),
+            Some(r) => Rows::List(&r[lo as usize..hi as usize]),
+        }
+    }
+
+    /// All records.
+    pub fn all(&self) -> Rows<'static> {
+        Rows::Range(0, self.values.len() as u32)
+    }
+
+    /// Bytes held, about.
+    pub fn bytes(&self) -> usize {
+        self.keys.capacity() * 4 + self.values.capacity() * 8
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use std::collections::BTreeMap;
+
+    proptest! {
+        /// Any sequence of writes leaves what a sorted map would hold, in order, and every lookup agrees.
+        #[test]
+        fn a_table_is_a_sorted_map(writes in prop::collection::vec(((0u32..6, 0u32..6), 0u8..4, any::<bool>()), 0..200)) {
+            let mut t = Table::new(2, 0.0);
+            let mut m = BTreeMap::new();
+            for ((a, b), v, tidy) in writes {
+                t.set(&[a, b], f64::from(v));
+                if v == 0 { m.remove(&(a, b)); } else { m.insert((a, b), f64::from(v)); }
+                prop_assert_eq!(t.get(&[a, b]), f64::from(v));
+                if tidy { t.tidy(); }
+                prop_assert_eq!(t.len(), m.len());
+            }
+            t.tidy();
+            let got: Vec<_> = t.iter().map(|(k, v)| ((k[0], k[1]), v)).collect();
+            let want: Vec<_> = m.clone().into_iter().collect();
+            prop_assert_eq!(&got, &want);
+            let by_column = t.order(2);
+            for b in 0..6 {
+                let rows = t.group(&by_column, &[0, b]);
+                let got: Vec<u32> = (0..rows.len()).map(|k| t.key(rows.get(k))[0]).collect();
+                let want: Vec<u32> = m.keys().filter(|k| k.1 == b).map(|k| k.0).collect();
+                prop_assert_eq!(got, want);
+            }
+        }
+
+        /// Merging sorted records is the same as storing them one by one.
+        #[test]
+        fn merging_is_storing(old in prop::collection::btree_map((0u32..30, 0u32..30), 1u8..4, 0..60),
+                              new in prop::collection::btree_map((0u32..30, 0u32..30), 0u8..4, 0..60)) {
+            let mut a = Table::new(2, 0.0);
+            for (k, v) in &old { a.set(&[k.0, k.1], f64::from(*v)); }
+            let mut b = a.clone();
+            let keys: Vec<u32> = new.keys().flat_map(|k| [k.0, k.1]).collect();
+            let values: Vec<f64> = new.values().map(|&v| f64::from(v)).collect();
+            a.merge(&keys, &values);
+            for (k, v) in &new { b.set(&[k.0, k.1], f64::from(*v)); }
+            a.tidy();
+            b.tidy();
+            prop_assert!(a.iter().eq(b.iter()));
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! The universe of labels, in the order of their first appearance.
+//!
+//! Label order is the order of everything a person sees: `ord`, lags, `display`, loops.
+//! Labels are compared without regard to case; the first spelling is kept.
+
+use hashbrown::HashTable;
+use std::hash::Hasher;
+
+/// Number of a label: its place in the universe.
+pub type Label = u32;
+
+/// All labels of a run.
+#[derive(Clone, Default, Debug)]
+pub struct Universe {
+    text: String,
+    ends: Vec<u32>,
+    index: HashTable<Label>,
+}
+
+fn hash(label: &str) -> u64 {
+    let mut h = rustc_hash::FxHasher::default();
+    let bytes = label.as_bytes();
+    let mut chunks = bytes.chunks_exact(8);
+    for c in &mut chunks {
+        let word = u64::from_le_bytes(c.try_into().expect("chunks of eight"));
+        h.write_u64(fold(word));
+    }
+    let mut last = [0u8; 8];
+    last[..chunks.remainder().len()].copy_from_slice(chunks.remainder());
+    h.write_u64(fold(u64::from_le_bytes(last)) ^ (bytes.len() as u64) << 56);
+    h.finish()
+}
+
+/// Sets bit 5 of every byte: equal for letters that differ in case only.
+fn fold(word: u64) -> u64 {
+    word | 0x2020_2020_2020_2020
+}
+
+impl Universe {
+    /// Number of labels.
+    pub fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.ends.is_empty()
+    }
+
+    /// First spelling of a label.
+    pub fn name(&self, label: Label) -> &str {
+        let i = label as usize;
+        let lo = if i == 0 { 0 } else { self.ends[i - 1] as usize };
+        &self.text[lo..self.ends[i] as usize]
+    }
+
+    /// The label with this spelling, if there is one.
+    pub fn get(&self, label: &str) -> Option<Label> {
+        let label = label.trim_end();
+        self.index
+            .find(hash(label), |&l| self.name(l).eq_ignore_ascii_case(label))
+            .copied()
+    }
+
+    /// The label with this spelling; a new one goes to the end.
+    pub fn intern(&mut self, label: &str) -> Label {
+        let label = label.trim_end();
+        if let Some(l) = self.get(label) {
+            return l;
+        }
+        let new = self.ends.len() as Label;
+        self.text.push_str(label);
+        self.ends.push(self.text.len() as u32);
+        let (text, ends) = (&self.text, &self.ends);
+        self.index.insert_unique(hash(label), new, |&l| {
+            let i = l as usize;
+            let lo = if i == 0 { 0 } else { ends[i - 1] as usize };
+            hash(&text[lo..ends[i] as usize])
+        });
+        new
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn labels_keep_first_spelling_and_order() {
+        let mut u = Universe::default();
+        let a = u.intern("Seattle");
+        let b = u.intern("san-diego-and-more");
+        assert_eq!(u.intern("SEATTLE"), a);
+        assert_eq!(u.intern("San-Diego-And-More"), b);
+        assert_eq!((a, b), (0, 1));
+        assert_eq!(u.name(a), "Seattle");
+        assert_eq!(u.get("nowhere"), None);
+        assert_ne!(u.intern("a@"), u.intern("a`"));
+    }
+}
