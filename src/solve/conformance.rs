@@ -2,7 +2,8 @@
 //! them: primal, infeasible and unbounded variants, degenerate and badly scaled ones, every kind
 //! of bound, no rows, no columns.
 
-use super::{Claim, Monitor, Outcome, Settings, SolveError, Solver};
+use super::{Claim, ModelStatus, Monitor, Outcome, Settings, SolveError, Solver};
+use crate::model::certificate;
 use crate::model::instance::{
     ColumnKind, Columns, Instance, Objective, Relation, Rows, Sense, SparseRows,
 };
@@ -86,10 +87,24 @@ pub fn push_row(instance: &mut Instance, coefficients: &[f64], relation: Relatio
     instance.matrix.start.push(instance.matrix.column.len());
 }
 
+/// Solves, and checks that the certificate confirms the claim.
 fn run(solver: &dyn Solver, instance: &Instance) -> Outcome {
-    solver
+    let o = solver
         .solve(instance, &Settings::default(), &mut Quiet)
-        .expect("a valid instance")
+        .expect("a valid instance");
+    let residuals = certificate::linear(instance, &o);
+    let status = certificate::linear_status(instance, &o, &residuals);
+    let confirmed = match o.claim {
+        Claim::Solved => status == ModelStatus::Optimal,
+        Claim::Infeasible => status == ModelStatus::Infeasible,
+        Claim::Unbounded => matches!(
+            status,
+            ModelStatus::Unbounded | ModelStatus::UnboundedNoSolution
+        ),
+        Claim::Unfinished => false,
+    };
+    assert!(confirmed, "{status:?} {residuals:?}\n{o:?}");
+    o
 }
 
 #[track_caller]
