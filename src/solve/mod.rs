@@ -6,6 +6,7 @@
 #[cfg(test)]
 pub mod conformance;
 pub mod lp;
+pub mod mcp;
 
 use crate::model::instance::Instance;
 

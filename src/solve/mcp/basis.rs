@@ -35,7 +35,11 @@ impl Basis {
         let lu = SparseLu::factor(matrix, &SparseLuSymbolic::natural(matrix.m), params).ok()?;
         // A factorisation costs several times its nonzeros, more for the ordering.
         let budget = 20 * (lu.factor_nnz() + 4 * matrix.m);
-        Some(Basis { lu, work: 0, budget })
+        Some(Basis {
+            lu,
+            work: 0,
+            budget,
+        })
     }
 
     /// B⁻¹a for a sparse a, as (slot, value) pairs; false if the factors are unusable.
@@ -52,7 +56,8 @@ impl Basis {
     /// before the call).
     pub(super) fn replace(&mut self, slot: usize, column: &[(usize, f64)]) -> bool {
         let replaced = self.lu.update_sparse(slot, column).is_ok();
-        self.work += self.lu.last_update_work() + self.lu.eta_ops() + self.lu.last_sparse_solve_work();
+        self.work +=
+            self.lu.last_update_work() + self.lu.eta_ops() + self.lu.last_sparse_solve_work();
         replaced
     }
 
@@ -63,7 +68,9 @@ impl Basis {
 
     /// Whether a fresh factorisation is due.
     pub(super) fn is_old(&self) -> bool {
-        self.updates() >= UPDATE_LIMIT || self.updates() >= 20 && self.work >= self.budget || self.lu.should_refactor_growth()
+        self.updates() >= UPDATE_LIMIT
+            || self.updates() >= 20 && self.work >= self.budget
+            || self.lu.should_refactor_growth()
     }
 }
 
@@ -82,7 +89,11 @@ mod tests {
         for _ in 0..3 {
             dense[(random.uniform() * m as f64) as usize] += random.between(-1.0, 1.0);
         }
-        dense.into_iter().enumerate().filter(|(_, v)| *v != 0.0).collect()
+        dense
+            .into_iter()
+            .enumerate()
+            .filter(|(_, v)| *v != 0.0)
+            .collect()
     }
 
     #[test]
@@ -101,12 +112,19 @@ mod tests {
             let (mut updated, mut fresh) = (Sparse::new(), vec![0.0; m]);
             assert!(basis.solve_sparse(&a, &mut updated));
             a.iter().for_each(|&(i, v)| fresh[i] = v);
-            assert!(Basis::new(&matrix(&columns)).expect("diagonally dominant").solve(&mut fresh));
+            assert!(
+                Basis::new(&matrix(&columns))
+                    .expect("diagonally dominant")
+                    .solve(&mut fresh)
+            );
             for (i, v) in updated {
                 assert!((v - fresh[i]).abs() < 1e-9, "{v} {}", fresh[i]);
                 fresh[i] = 0.0;
             }
-            assert!(fresh.iter().all(|v| v.abs() < 1e-9), "the sparse solution misses an entry");
+            assert!(
+                fresh.iter().all(|v| v.abs() < 1e-9),
+                "the sparse solution misses an entry"
+            );
         }
     }
 

@@ -48,10 +48,16 @@ pub(super) fn crash(run: &mut Run, start: Point, history: &mut Vec<f64>) -> Resu
             break;
         }
         let basic: Vec<usize> = (0..run.n).filter(|&i| sets[i] == 0).collect();
-        let Some(jacobian) = run.jacobian(&point.x) else { break };
+        let Some(jacobian) = run.jacobian(&point.x) else {
+            break;
+        };
         let mut prox = (1e-2 * norm).min(0.1);
-        let Some(direction) = direction(run, &jacobian, &basic, &point.f, &mut prox)? else { break };
-        let Some((next, step)) = search(run, &point, &basic, &direction) else { break };
+        let Some(direction) = direction(run, &jacobian, &basic, &point.f, &mut prox)? else {
+            break;
+        };
+        let Some((next, step)) = search(run, &point, &basic, &direction) else {
+            break;
+        };
         let new_sets = active_set(&next.x, &next.f, &run.lower, &run.upper);
         let changes = sets.iter().zip(&new_sets).filter(|(a, b)| a != b).count();
         run.crash_iterations += 1;
@@ -67,7 +73,13 @@ pub(super) fn crash(run: &mut Run, start: Point, history: &mut Vec<f64>) -> Resu
 }
 
 /// Solves (J_BB + ρI) d = −F_B, with a larger ρ as long as the matrix is singular.
-fn direction(run: &mut Run, jacobian: &SparseColMatrix, basic: &[usize], f: &[f64], prox: &mut f64) -> Result<Option<Vec<f64>>, Stop> {
+fn direction(
+    run: &mut Run,
+    jacobian: &SparseColMatrix,
+    basic: &[usize],
+    f: &[f64],
+    prox: &mut f64,
+) -> Result<Option<Vec<f64>>, Stop> {
     if basic.is_empty() {
         return Ok(None);
     }
@@ -79,7 +91,8 @@ fn direction(run: &mut Run, jacobian: &SparseColMatrix, basic: &[usize], f: &[f6
     for _ in 0..6 {
         run.check()?;
         run.factorisations += 1;
-        let found = Factor::new(submatrix(jacobian, basic, &position, *prox)).and_then(|mut a| a.solve(&right));
+        let found = Factor::new(submatrix(jacobian, basic, &position, *prox))
+            .and_then(|mut a| a.solve(&right));
         if let Some(d) = found
             && d.iter().all(|v| v.abs() <= DIRECTION_MAX)
         {
@@ -91,7 +104,12 @@ fn direction(run: &mut Run, jacobian: &SparseColMatrix, basic: &[usize], f: &[f6
 }
 
 /// J_BB + ρI.
-fn submatrix(jacobian: &SparseColMatrix, basic: &[usize], position: &[usize], prox: f64) -> SparseColMatrix {
+fn submatrix(
+    jacobian: &SparseColMatrix,
+    basic: &[usize],
+    position: &[usize],
+    prox: f64,
+) -> SparseColMatrix {
     let mut b = Builder::new(basic.len());
     for (k, &j) in basic.iter().enumerate() {
         let (rows, values) = jacobian.column(j);
@@ -120,7 +138,12 @@ fn submatrix(jacobian: &SparseColMatrix, basic: &[usize], position: &[usize], pr
 }
 
 /// Halves the step until the merit falls.
-fn search(run: &mut Run, point: &Point, basic: &[usize], direction: &[f64]) -> Option<(Point, f64)> {
+fn search(
+    run: &mut Run,
+    point: &Point,
+    basic: &[usize],
+    direction: &[f64],
+) -> Option<(Point, f64)> {
     let mut step = 1.0;
     while step > STEP_MIN {
         let mut x = point.x.clone();

@@ -28,7 +28,8 @@ impl Factor {
         }
         let lu = {
             let m = matrix.m;
-            let pattern = SymbolicSparseColMatRef::new_checked(m, m, &matrix.col_ptr, None, &matrix.row_idx);
+            let pattern =
+                SymbolicSparseColMatRef::new_checked(m, m, &matrix.col_ptr, None, &matrix.row_idx);
             SparseColMatRef::new(pattern, &matrix.values).sp_lu().ok()?
         };
         Some(Factor { matrix, lu })
@@ -49,7 +50,11 @@ impl Factor {
             let mut worst = 0.0f64;
             for (r, b) in residual.iter_mut().zip(b) {
                 *r = b - *r;
-                worst = if r.is_nan() { f64::INFINITY } else { worst.max(r.abs()) };
+                worst = if r.is_nan() {
+                    f64::INFINITY
+                } else {
+                    worst.max(r.abs())
+                };
             }
             if !worst.is_finite() {
                 return None;
@@ -77,7 +82,14 @@ impl Builder {
     pub(super) fn new(m: usize) -> Self {
         let mut col_ptr = Vec::with_capacity(m + 1);
         col_ptr.push(0);
-        Builder { matrix: SparseColMatrix { m, col_ptr, row_idx: Vec::new(), values: Vec::new() } }
+        Builder {
+            matrix: SparseColMatrix {
+                m,
+                col_ptr,
+                row_idx: Vec::new(),
+                values: Vec::new(),
+            },
+        }
     }
 
     /// Adds an entry to the column under construction; rows must come in increasing order.
@@ -104,7 +116,11 @@ pub(super) fn shifted(a: &SparseColMatrix, v: f64) -> SparseColMatrix {
 }
 
 /// Diagonal(da) + Diagonal(db)·A.
-pub(super) fn combine(a: &SparseColMatrix, da: impl Fn(usize) -> f64, db: impl Fn(usize) -> f64) -> SparseColMatrix {
+pub(super) fn combine(
+    a: &SparseColMatrix,
+    da: impl Fn(usize) -> f64,
+    db: impl Fn(usize) -> f64,
+) -> SparseColMatrix {
     let mut b = Builder::new(a.m);
     for j in 0..a.m {
         let (rows, values) = a.column(j);
@@ -135,7 +151,12 @@ mod tests {
 
     #[test]
     fn diagonal_is_added_where_the_pattern_lacks_it() {
-        let a = SparseColMatrix { m: 3, col_ptr: vec![0, 2, 3, 4], row_idx: vec![1, 2, 1, 0], values: vec![5.0, 6.0, 7.0, 8.0] };
+        let a = SparseColMatrix {
+            m: 3,
+            col_ptr: vec![0, 2, 3, 4],
+            row_idx: vec![1, 2, 1, 0],
+            values: vec![5.0, 6.0, 7.0, 8.0],
+        };
         let b = shifted(&a, 2.0);
         let mut y = vec![0.0; 3];
         b.matvec(&[1.0, 10.0, 100.0], &mut y);
@@ -147,11 +168,21 @@ mod tests {
     fn singular_matrices_are_noticed() {
         // Rank one, and its perturbation by rounding.
         for epsilon in [0.0, 1e-17] {
-            let a = SparseColMatrix { m: 2, col_ptr: vec![0, 2, 4], row_idx: vec![0, 1, 0, 1], values: vec![1.0, 2.0, 2.0, 4.0 + epsilon] };
+            let a = SparseColMatrix {
+                m: 2,
+                col_ptr: vec![0, 2, 4],
+                row_idx: vec![0, 1, 0, 1],
+                values: vec![1.0, 2.0, 2.0, 4.0 + epsilon],
+            };
             let solved = Factor::new(a).and_then(|mut f| f.solve(&[1.0, 0.0]));
             assert!(solved.is_none());
         }
-        let nan = SparseColMatrix { m: 1, col_ptr: vec![0, 1], row_idx: vec![0], values: vec![f64::NAN] };
+        let nan = SparseColMatrix {
+            m: 1,
+            col_ptr: vec![0, 1],
+            row_idx: vec![0],
+            values: vec![f64::NAN],
+        };
         assert!(Factor::new(nan).is_none());
     }
 }

@@ -75,7 +75,10 @@ struct Majors {
 impl Majors {
     fn new(run: &Run, point: Point, history: Vec<f64>) -> Self {
         Majors {
-            checkpoint: Checkpoint { point: point.clone(), direction: None },
+            checkpoint: Checkpoint {
+                point: point.clone(),
+                direction: None,
+            },
             best: point.clone(),
             point,
             history,
@@ -89,7 +92,11 @@ impl Majors {
 
     fn reference(&self, run: &Run) -> f64 {
         let memory = run.settings.nms_memory_size.max(1);
-        self.history.iter().rev().take(memory).fold(0.0, |a, &b| f64::max(a, b))
+        self.history
+            .iter()
+            .rev()
+            .take(memory)
+            .fold(0.0, |a, &b| f64::max(a, b))
     }
 
     fn run(mut self, run: &mut Run) -> Result<End, Stop> {
@@ -98,7 +105,9 @@ impl Majors {
         let mut polish = false;
         for _ in 0..run.settings.major_iteration_limit {
             if run.converged(self.point.residual) {
-                if polish || self.point.residual <= 1e-12 * run.settings.convergence_tolerance / 1e-8 {
+                if polish
+                    || self.point.residual <= 1e-12 * run.settings.convergence_tolerance / 1e-8
+                {
                     return Ok(End::Solved);
                 }
                 polish = true;
@@ -121,13 +130,37 @@ impl Majors {
                 if let Some(candidate) = candidate
                     && let Some(next) = run.point(candidate.y)
                 {
-                    let kept = if next.residual < self.point.residual { 'M' } else { '-' };
-                    log::major_line(run, &next, run.pivots - pivots, candidate.end, candidate.t, candidate.prox, 1.0, kept, tries);
+                    let kept = if next.residual < self.point.residual {
+                        'M'
+                    } else {
+                        '-'
+                    };
+                    log::major_line(
+                        run,
+                        &next,
+                        run.pivots - pivots,
+                        candidate.end,
+                        candidate.t,
+                        candidate.prox,
+                        1.0,
+                        kept,
+                        tries,
+                    );
                 }
                 return Ok(End::Solved);
             }
             let Some(candidate) = candidate else {
-                log::major_line(run, &self.point.clone(), run.pivots - pivots, PathEnd::Numerical, 0.0, self.prox, 0.0, '-', tries);
+                log::major_line(
+                    run,
+                    &self.point.clone(),
+                    run.pivots - pivots,
+                    PathEnd::Numerical,
+                    0.0,
+                    self.prox,
+                    0.0,
+                    '-',
+                    tries,
+                );
                 if !self.back(run, Some(&jacobian))? {
                     return Ok(End::Stuck);
                 }
@@ -137,14 +170,27 @@ impl Majors {
                 return Ok(End::Stuck);
             }
         }
-        Ok(if run.converged(self.point.residual) { End::Solved } else { End::Limit })
+        Ok(if run.converged(self.point.residual) {
+            End::Solved
+        } else {
+            End::Limit
+        })
     }
 
     /// Tries proximal terms and starting states until the linear problem is solved.
-    fn linear_solution(&mut self, run: &mut Run, jacobian: &SparseColMatrix) -> Result<(Option<Candidate>, usize), Stop> {
+    fn linear_solution(
+        &mut self,
+        run: &mut Run,
+        jacobian: &SparseColMatrix,
+    ) -> Result<(Option<Candidate>, usize), Stop> {
         let r = (2.0 * self.point.merit).sqrt();
         let mut prox = vec![self.prox];
-        for v in [(1e-3 * r.min(1.0)).max(10.0 * self.prox), (0.1 * r.min(1.0)).max(100.0 * self.prox), 1.0, 10.0] {
+        for v in [
+            (1e-3 * r.min(1.0)).max(10.0 * self.prox),
+            (0.1 * r.min(1.0)).max(100.0 * self.prox),
+            1.0,
+            10.0,
+        ] {
             if v > *prox.last().unwrap_or(&0.0) {
                 prox.push(v);
             }
@@ -156,10 +202,16 @@ impl Majors {
         let (mut reserve, mut ray): (Option<Candidate>, Option<Candidate>) = (None, None);
         let mut tries = 0;
         for (level, &v) in prox.iter().enumerate() {
-            let m = if v > 0.0 { shifted(jacobian, v) } else { jacobian.clone() };
+            let m = if v > 0.0 {
+                shifted(jacobian, v)
+            } else {
+                jacobian.clone()
+            };
             let mut q = vec![0.0; run.n];
             m.matvec(&self.point.x, &mut q);
-            q.iter_mut().zip(&self.point.f).for_each(|(q, f)| *q = f - *q);
+            q.iter_mut()
+                .zip(&self.point.f)
+                .for_each(|(q, f)| *q = f - *q);
             if m.values.iter().chain(&q).any(|v| !v.is_finite()) {
                 continue;
             }
@@ -167,16 +219,38 @@ impl Majors {
                 tries += 1;
                 self.seed += 1;
                 let (lower, upper) = (run.lower.clone(), run.upper.clone());
-                let linear = LinearProblem { m: &m, q: &q, lower: &lower, upper: &upper };
-                let PathResult { mut end, x, t, kind, pivots } = follow(run, &linear, &start, limit, self.seed)?;
+                let linear = LinearProblem {
+                    m: &m,
+                    q: &q,
+                    lower: &lower,
+                    upper: &upper,
+                };
+                let PathResult {
+                    mut end,
+                    x,
+                    t,
+                    kind,
+                    pivots,
+                } = follow(run, &linear, &start, limit, self.seed)?;
                 if end == PathEnd::Solved && !solves(&linear, &x) {
                     end = PathEnd::Numerical;
                 }
                 log::try_line(run, end, t, v, pivots, start.cover);
                 match end {
                     PathEnd::Solved => {
-                        let length = x.iter().zip(&self.point.x).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
-                        let found = Candidate { y: x, end, t: 1.0, kind: Some(kind), prox: v };
+                        let length = x
+                            .iter()
+                            .zip(&self.point.x)
+                            .map(|(a, b)| (a - b).powi(2))
+                            .sum::<f64>()
+                            .sqrt();
+                        let found = Candidate {
+                            y: x,
+                            end,
+                            t: 1.0,
+                            kind: Some(kind),
+                            prox: v,
+                        };
                         if v == 0.0 || v * length <= 0.7 * r {
                             return Ok((Some(found), tries));
                         }
@@ -185,9 +259,16 @@ impl Majors {
                         }
                     }
                     PathEnd::Ray | PathEnd::Limit | PathEnd::Numerical | PathEnd::Loop => {
-                        let better = t > RAY_MIN && t <= 1.0 && ray.as_ref().is_none_or(|r| t > r.t);
+                        let better =
+                            t > RAY_MIN && t <= 1.0 && ray.as_ref().is_none_or(|r| t > r.t);
                         if better && x.iter().all(|v| v.is_finite()) {
-                            ray = Some(Candidate { y: x, end, t, kind: None, prox: v });
+                            ray = Some(Candidate {
+                                y: x,
+                                end,
+                                t,
+                                kind: None,
+                                prox: v,
+                            });
                         }
                     }
                     PathEnd::Singular => {}
@@ -212,7 +293,11 @@ impl Majors {
                 })
                 .collect(),
         };
-        starts.push(Start { kind: near.clone(), x: x.clone(), cover: false });
+        starts.push(Start {
+            kind: near.clone(),
+            x: x.clone(),
+            cover: false,
+        });
         if level == 0 {
             // The state of the normal map's variable z = x − F.
             let kind: Vec<Kind> = (0..run.n)
@@ -228,7 +313,11 @@ impl Majors {
                 })
                 .collect();
             if kind != near {
-                starts.push(Start { kind, x: x.clone(), cover: false });
+                starts.push(Start {
+                    kind,
+                    x: x.clone(),
+                    cover: false,
+                });
             }
         }
         if level <= 1 {
@@ -243,15 +332,31 @@ impl Majors {
                     }
                 })
                 .collect();
-            starts.push(Start { kind, x: x.clone(), cover: true });
+            starts.push(Start {
+                kind,
+                x: x.clone(),
+                cover: true,
+            });
         }
         starts
     }
 
     /// Takes the step to the candidate, or another one. False if there is none.
-    fn accept(&mut self, run: &mut Run, candidate: Candidate, jacobian: &SparseColMatrix, pivots: usize, tries: usize) -> Result<bool, Stop> {
+    fn accept(
+        &mut self,
+        run: &mut Run,
+        candidate: Candidate,
+        jacobian: &SparseColMatrix,
+        pivots: usize,
+        tries: usize,
+    ) -> Result<bool, Stop> {
         let reference = self.reference(run);
-        let direction: Vec<f64> = candidate.y.iter().zip(&self.point.x).map(|(y, x)| y - x).collect();
+        let direction: Vec<f64> = candidate
+            .y
+            .iter()
+            .zip(&self.point.x)
+            .map(|(y, x)| y - x)
+            .collect();
         if self.checkpoint.direction.is_none() {
             self.checkpoint.direction = Some(direction);
         }
@@ -259,7 +364,9 @@ impl Majors {
         let next = run.point(candidate.y);
         if let Some(next) = next {
             let monotone = next.merit <= (1.0 - ARMIJO) * reference;
-            let watched = (end == PathEnd::Solved || t > 0.3) && self.untested < run.settings.watchdog_limit && next.merit <= 1e8 * reference;
+            let watched = (end == PathEnd::Solved || t > 0.3)
+                && self.untested < run.settings.watchdog_limit
+                && next.merit <= 1e8 * reference;
             if monotone || watched {
                 let kind = if monotone { 'M' } else { 'O' };
                 log::major_line(run, &next, pivots, end, t, prox, 1.0, kind, tries);
@@ -282,13 +389,26 @@ impl Majors {
                 return Ok(true);
             }
         }
-        log::major_line(run, &self.point.clone(), pivots, end, t, prox, 0.0, '-', tries);
+        log::major_line(
+            run,
+            &self.point.clone(),
+            pivots,
+            end,
+            t,
+            prox,
+            0.0,
+            '-',
+            tries,
+        );
         self.back(run, Some(jacobian))
     }
 
     fn new_checkpoint(&mut self) {
         self.history.push(self.point.merit);
-        self.checkpoint = Checkpoint { point: self.point.clone(), direction: None };
+        self.checkpoint = Checkpoint {
+            point: self.point.clone(),
+            direction: None,
+        };
         self.untested = 0;
     }
 
@@ -299,7 +419,14 @@ impl Majors {
         if let Some(direction) = self.checkpoint.direction.take() {
             let mut step = 0.5;
             while step >= 1e-3 {
-                let mut x: Vec<f64> = self.checkpoint.point.x.iter().zip(&direction).map(|(x, d)| x + step * d).collect();
+                let mut x: Vec<f64> = self
+                    .checkpoint
+                    .point
+                    .x
+                    .iter()
+                    .zip(&direction)
+                    .map(|(x, d)| x + step * d)
+                    .collect();
                 run.clip(&mut x);
                 if let Some(next) = run.point(x)
                     && next.merit <= (1.0 - ARMIJO * step) * reference
@@ -316,7 +443,11 @@ impl Majors {
     }
 
     /// A step on the projected gradient arc of Ψ from the best point.
-    fn gradient_step(&mut self, run: &mut Run, jacobian: Option<&SparseColMatrix>) -> Result<bool, Stop> {
+    fn gradient_step(
+        &mut self,
+        run: &mut Run,
+        jacobian: Option<&SparseColMatrix>,
+    ) -> Result<bool, Stop> {
         if self.gradient_steps >= GRADIENT_LIMIT {
             return Ok(false);
         }
@@ -326,7 +457,9 @@ impl Majors {
             Some(j) if from.x == self.point.x => Some(j.clone()),
             _ => run.jacobian(&from.x),
         };
-        let Some(jacobian) = jacobian else { return Ok(false) };
+        let Some(jacobian) = jacobian else {
+            return Ok(false);
+        };
         let gradient = merit_gradient(run, Phi::PLAIN, &from, &jacobian);
         let norm = gradient.iter().map(|g| g * g).sum::<f64>().sqrt();
         if !(norm.is_finite() && norm > 0.0) {
@@ -334,9 +467,19 @@ impl Majors {
         }
         let mut step = 1.0;
         while step > 1e-12 {
-            let mut x: Vec<f64> = from.x.iter().zip(&gradient).map(|(x, g)| x - step * g).collect();
+            let mut x: Vec<f64> = from
+                .x
+                .iter()
+                .zip(&gradient)
+                .map(|(x, g)| x - step * g)
+                .collect();
             run.clip(&mut x);
-            let fall: f64 = x.iter().zip(&from.x).zip(&gradient).map(|((y, x), g)| (x - y) * g).sum();
+            let fall: f64 = x
+                .iter()
+                .zip(&from.x)
+                .zip(&gradient)
+                .map(|((y, x), g)| (x - y) * g)
+                .sum();
             if let Some(next) = run.point(x)
                 && next.merit <= from.merit - ARMIJO * fall
                 && fall > 0.0
@@ -356,7 +499,12 @@ impl Majors {
 }
 
 /// Gradient of ½‖Φ‖²: DaΦ + Jᵀ(DbΦ).
-pub(super) fn merit_gradient(run: &Run, phi: Phi, point: &Point, jacobian: &SparseColMatrix) -> Vec<f64> {
+pub(super) fn merit_gradient(
+    run: &Run,
+    phi: Phi,
+    point: &Point,
+    jacobian: &SparseColMatrix,
+) -> Vec<f64> {
     let n = run.n;
     let (mut along_x, mut along_f) = (vec![0.0; n], vec![0.0; n]);
     for i in 0..n {

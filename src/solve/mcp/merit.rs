@@ -35,7 +35,13 @@ fn natural(x: f64, f: f64, l: f64, u: f64) -> f64 {
         // Outside the bounds: the distance to mid is at least the violation.
         return (x - (x - f).max(l).min(u)).abs();
     }
-    if f >= 0.0 { f.min(x - l) } else if f < 0.0 { (-f).min(u - x) } else { f64::NAN }
+    if f >= 0.0 {
+        f.min(x - l)
+    } else if f < 0.0 {
+        (-f).min(u - x)
+    } else {
+        f64::NAN
+    }
 }
 
 /// Which function of the Fischer–Burmeister family.
@@ -49,25 +55,47 @@ pub(super) struct Phi {
 
 impl Phi {
     /// The function the main method's merit is made of.
-    pub(super) const PLAIN: Phi = Phi { lambda: 1.0, mu: 0.0 };
+    pub(super) const PLAIN: Phi = Phi {
+        lambda: 1.0,
+        mu: 0.0,
+    };
 
     /// φ(a, b).
     fn value(self, a: f64, b: f64) -> f64 {
-        let root = if self.mu > 0.0 { (a * a + b * b + 2.0 * self.mu).sqrt() } else { a.hypot(b) };
+        let root = if self.mu > 0.0 {
+            (a * a + b * b + 2.0 * self.mu).sqrt()
+        } else {
+            a.hypot(b)
+        };
         let s = a + b;
         // a + b − √… cancels when both are positive and one is small.
-        let fb = if s > 0.0 { 2.0 * (a * b - self.mu) / (s + root) } else { s - root };
-        if self.lambda == 1.0 { fb } else { self.lambda * fb + (1.0 - self.lambda) * a.max(0.0) * b.max(0.0) }
+        let fb = if s > 0.0 {
+            2.0 * (a * b - self.mu) / (s + root)
+        } else {
+            s - root
+        };
+        if self.lambda == 1.0 {
+            fb
+        } else {
+            self.lambda * fb + (1.0 - self.lambda) * a.max(0.0) * b.max(0.0)
+        }
     }
 
     /// An element of the generalised gradient of φ at (a, b).
     fn slopes(self, a: f64, b: f64) -> (f64, f64) {
-        let root = if self.mu > 0.0 { (a * a + b * b + 2.0 * self.mu).sqrt() } else { a.hypot(b) };
+        let root = if self.mu > 0.0 {
+            (a * a + b * b + 2.0 * self.mu).sqrt()
+        } else {
+            a.hypot(b)
+        };
         let (mut da, mut db) = if root > 0.0 {
             (1.0 - a / root, 1.0 - b / root)
         } else {
             // At the kink: the element in the direction (1, 1).
-            (1.0 - std::f64::consts::FRAC_1_SQRT_2, 1.0 - std::f64::consts::FRAC_1_SQRT_2)
+            (
+                1.0 - std::f64::consts::FRAC_1_SQRT_2,
+                1.0 - std::f64::consts::FRAC_1_SQRT_2,
+            )
         };
         if self.lambda != 1.0 {
             da *= self.lambda;
@@ -117,7 +145,9 @@ impl Phi {
 
     /// Ψ alone.
     pub(super) fn merit(self, x: &[f64], f: &[f64], l: &[f64], u: &[f64]) -> f64 {
-        0.5 * (0..x.len()).map(|i| self.pair(x[i], f[i], l[i], u[i]).powi(2)).sum::<f64>()
+        0.5 * (0..x.len())
+            .map(|i| self.pair(x[i], f[i], l[i], u[i]).powi(2))
+            .sum::<f64>()
     }
 }
 
@@ -148,7 +178,11 @@ mod tests {
         for (x, f, l, u, solves) in cases {
             let natural = natural(x, f, l, u);
             let phi = Phi::PLAIN.pair(x, f, l, u);
-            assert_eq!(natural < 1e-12, solves, "natural {natural} at {x} {f} {l} {u}");
+            assert_eq!(
+                natural < 1e-12,
+                solves,
+                "natural {natural} at {x} {f} {l} {u}"
+            );
             assert_eq!(phi.abs() < 1e-12, solves, "phi {phi} at {x} {f} {l} {u}");
         }
     }
@@ -164,7 +198,17 @@ mod tests {
     fn slopes_are_derivatives() {
         let points = [(0.3, 0.7), (2.0, -0.4), (-0.5, 0.2), (0.9, 1.5)];
         let bounds = [(-INF, INF), (0.0, INF), (-INF, 1.0), (0.0, 1.0)];
-        for phi in [Phi::PLAIN, Phi { lambda: 0.9, mu: 0.0 }, Phi { lambda: 1.0, mu: 0.1 }] {
+        for phi in [
+            Phi::PLAIN,
+            Phi {
+                lambda: 0.9,
+                mu: 0.0,
+            },
+            Phi {
+                lambda: 1.0,
+                mu: 0.1,
+            },
+        ] {
             for (x, f) in points {
                 for (l, u) in bounds {
                     let (dx, df) = phi.pair_slopes(x, f, l, u);

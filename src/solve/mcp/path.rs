@@ -136,7 +136,13 @@ enum Event {
 }
 
 /// Follows the path. Pivots and factorisations are counted in `run`; `seed` feeds the shifts.
-pub(super) fn follow(run: &mut Run, problem: &LinearProblem, start: &Start, limit: usize, seed: u64) -> Result<PathResult, Stop> {
+pub(super) fn follow(
+    run: &mut Run,
+    problem: &LinearProblem,
+    start: &Start,
+    limit: usize,
+    seed: u64,
+) -> Result<PathResult, Stop> {
     let mut path = Path::new(problem, start, seed);
     let end = path.run(run, limit)?;
     let mut x = path.values();
@@ -147,7 +153,13 @@ pub(super) fn follow(run: &mut Run, problem: &LinearProblem, start: &Start, limi
             None => end = PathEnd::Numerical,
         }
     }
-    Ok(PathResult { end, x, t: path.t, kind: path.kind, pivots: path.pivots })
+    Ok(PathResult {
+        end,
+        x,
+        t: path.t,
+        kind: path.kind,
+        pivots: path.pivots,
+    })
 }
 
 /// The state of a path.
@@ -225,7 +237,12 @@ impl<'a> Path<'a> {
             };
             r[k] = sign * (slack - values[k]);
         }
-        let slot: Vec<Variable> = start.kind.iter().enumerate().map(|(index, &kind)| Variable { index, kind }).collect();
+        let slot: Vec<Variable> = start
+            .kind
+            .iter()
+            .enumerate()
+            .map(|(index, &kind)| Variable { index, kind })
+            .collect();
         let mut path = Path {
             problem,
             n,
@@ -241,7 +258,22 @@ impl<'a> Path<'a> {
             y: values,
             p: vec![0.0; n],
             t: 0.0,
-            rest: start.kind.iter().enumerate().map(|(k, &kind)| [if kind == Kind::AtUpper { problem.upper[k] } else { problem.lower[k] }, 0.0, 0.0]).collect(),
+            rest: start
+                .kind
+                .iter()
+                .enumerate()
+                .map(|(k, &kind)| {
+                    [
+                        if kind == Kind::AtUpper {
+                            problem.upper[k]
+                        } else {
+                            problem.lower[k]
+                        },
+                        0.0,
+                        0.0,
+                    ]
+                })
+                .collect(),
             pivots: 0,
             rate: vec![0.0; n],
         };
@@ -255,7 +287,10 @@ impl<'a> Path<'a> {
     fn set_bounds(&mut self, slot: usize) {
         let variable = self.slot[slot];
         (self.low[slot], self.high[slot]) = match variable.kind {
-            Kind::Between => (self.problem.lower[variable.index], self.problem.upper[variable.index]),
+            Kind::Between => (
+                self.problem.lower[variable.index],
+                self.problem.upper[variable.index],
+            ),
             _ => (0.0, f64::INFINITY),
         };
     }
@@ -275,7 +310,9 @@ impl<'a> Path<'a> {
     /// Fresh factors, y and p.
     fn refactor(&mut self, run: &mut Run) -> bool {
         self.basis = None;
-        let Some(mut basis) = factorise(run, self.problem, &self.slot) else { return false };
+        let Some(mut basis) = factorise(run, self.problem, &self.slot) else {
+            return false;
+        };
         // b = r − q − Mx + w − v over the variables that are in no slot.
         let mut rest = self.rest.clone();
         for (s, v) in self.slot.iter().enumerate() {
@@ -290,7 +327,9 @@ impl<'a> Path<'a> {
             *b = self.r[k] - self.problem.q[k] - *b + rest[k][1] - rest[k][2];
         }
         let mut p = self.r.clone();
-        if !solve_refined(&mut basis, self.problem, &self.slot, &mut b) || !solve_refined(&mut basis, self.problem, &self.slot, &mut p) {
+        if !solve_refined(&mut basis, self.problem, &self.slot, &mut b)
+            || !solve_refined(&mut basis, self.problem, &self.slot, &mut p)
+        {
             return false;
         }
         self.y = b;
@@ -349,12 +388,17 @@ impl<'a> Path<'a> {
                 if old && !self.refactor(run) {
                     return Ok(PathEnd::Numerical);
                 }
-                let (Some(hole), Some(basis)) = (self.hole, self.basis.as_mut()) else { return Ok(PathEnd::Numerical) };
+                let (Some(hole), Some(basis)) = (self.hole, self.basis.as_mut()) else {
+                    return Ok(PathEnd::Numerical);
+                };
                 if !basis.solve_sparse(&column, &mut direction) {
                     return Ok(PathEnd::Numerical);
                 }
                 let fresh = basis.updates() == 0;
-                let at_hole = direction.iter().find(|(s, _)| *s == hole).map_or(0.0, |d| d.1);
+                let at_hole = direction
+                    .iter()
+                    .find(|(s, _)| *s == hole)
+                    .map_or(0.0, |d| d.1);
                 let event = self.event(&direction, sign, hole, at_hole, entering);
                 match event {
                     Event::Ray => return Ok(PathEnd::Ray),
@@ -368,7 +412,10 @@ impl<'a> Path<'a> {
                         break (entering, sign > 0.0);
                     }
                     Event::Leave { slot, upper, step } => {
-                        let at_slot = direction.iter().find(|(s, _)| *s == slot).map_or(0.0, |d| d.1);
+                        let at_slot = direction
+                            .iter()
+                            .find(|(s, _)| *s == slot)
+                            .map_or(0.0, |d| d.1);
                         let pivot = at_slot.abs().max(at_hole.abs());
                         if pivot < PIVOT_DOUBTFUL && !fresh {
                             if !self.refactor(run) {
@@ -381,7 +428,14 @@ impl<'a> Path<'a> {
                         }
                         self.advance(&direction, entering, sign * step);
                         let gone = self.slot[slot];
-                        self.exchange(&direction, entering, slot, hole, (at_slot, at_hole), &column);
+                        self.exchange(
+                            &direction,
+                            entering,
+                            slot,
+                            hole,
+                            (at_slot, at_hole),
+                            &column,
+                        );
                         break (gone, upper);
                     }
                 }
@@ -391,7 +445,10 @@ impl<'a> Path<'a> {
 
     /// The variable that enters when another has left, and the direction of its motion.
     fn complement(&self, (left, upper): (Variable, bool)) -> (Variable, f64) {
-        let other = |kind| Variable { index: left.index, kind };
+        let other = |kind| Variable {
+            index: left.index,
+            kind,
+        };
         match (left.kind, upper) {
             (Kind::Between, false) => (other(Kind::AtLower), 1.0),
             (Kind::Between, true) => (other(Kind::AtUpper), 1.0),
@@ -408,9 +465,18 @@ impl<'a> Path<'a> {
     }
 
     /// The first event along the motion of the entering variable.
-    fn event(&mut self, direction: &Sparse, sign: f64, hole: usize, at_hole: f64, entering: Variable) -> Event {
+    fn event(
+        &mut self,
+        direction: &Sparse,
+        sign: f64,
+        hole: usize,
+        at_hole: f64,
+        entering: Variable,
+    ) -> Event {
         let range = match entering.kind {
-            Kind::Between => self.problem.upper[entering.index] - self.problem.lower[entering.index],
+            Kind::Between => {
+                self.problem.upper[entering.index] - self.problem.lower[entering.index]
+            }
             _ => f64::INFINITY,
         };
         let tau = -sign * at_hole / self.p[hole];
@@ -441,7 +507,11 @@ impl<'a> Path<'a> {
         // Distance to the bound a slot's variable moves towards.
         let distance = |i: usize, rate: f64| {
             let value = self.y[i] - self.t * self.p[i];
-            if rate < 0.0 { value - self.low[i] } else { self.high[i] - value }
+            if rate < 0.0 {
+                value - self.low[i]
+            } else {
+                self.high[i] - value
+            }
         };
         let mut longest = f64::INFINITY;
         for i in slots.clone() {
@@ -460,7 +530,11 @@ impl<'a> Path<'a> {
             }
         }
         if range <= longest {
-            return if range.is_finite() { Event::Flip(range) } else { Event::Ray };
+            return if range.is_finite() {
+                Event::Flip(range)
+            } else {
+                Event::Ray
+            };
         }
         let (mut best, mut largest) = (None, 0.0f64);
         for i in slots {
@@ -502,9 +576,21 @@ impl<'a> Path<'a> {
 
     /// Brings the entering column into the basis in place of the leaving one (slot) or of the
     /// reference (hole), whichever pivot is larger.
-    fn exchange(&mut self, direction: &Sparse, entering: Variable, slot: usize, hole: usize, (at_slot, at_hole): (f64, f64), column: &Sparse) {
+    fn exchange(
+        &mut self,
+        direction: &Sparse,
+        entering: Variable,
+        slot: usize,
+        hole: usize,
+        (at_slot, at_hole): (f64, f64),
+        column: &Sparse,
+    ) {
         self.come_to_rest(slot);
-        let (place, pivot) = if at_slot.abs() >= at_hole.abs() { (slot, at_slot) } else { (hole, at_hole) };
+        let (place, pivot) = if at_slot.abs() >= at_hole.abs() {
+            (slot, at_slot)
+        } else {
+            (hole, at_hole)
+        };
         if place == hole {
             self.hole = Some(slot);
         }
@@ -537,9 +623,20 @@ impl<'a> Path<'a> {
 
     /// The solution from the final basis alone, without the covering vector.
     fn solution(&self, run: &mut Run) -> Option<Vec<f64>> {
-        let slot: Vec<Variable> = self.kind.iter().enumerate().map(|(index, &kind)| Variable { index, kind }).collect();
+        let slot: Vec<Variable> = self
+            .kind
+            .iter()
+            .enumerate()
+            .map(|(index, &kind)| Variable { index, kind })
+            .collect();
         let mut basis = factorise(run, self.problem, &slot)?;
-        let mut x: Vec<f64> = (0..self.n).map(|k| match self.kind[k] { Kind::Between => 0.0, Kind::AtLower => self.problem.lower[k], Kind::AtUpper => self.problem.upper[k] }).collect();
+        let mut x: Vec<f64> = (0..self.n)
+            .map(|k| match self.kind[k] {
+                Kind::Between => 0.0,
+                Kind::AtLower => self.problem.lower[k],
+                Kind::AtUpper => self.problem.upper[k],
+            })
+            .collect();
         let mut b = vec![0.0; self.n];
         self.problem.m.matvec(&x, &mut b);
         for (b, q) in b.iter_mut().zip(self.problem.q) {
@@ -576,7 +673,12 @@ fn factorise(run: &mut Run, problem: &LinearProblem, slot: &[Variable]) -> Optio
 }
 
 /// Solves with the basis, refines once, and checks the residual.
-fn solve_refined(basis: &mut Basis, problem: &LinearProblem, slot: &[Variable], b: &mut [f64]) -> bool {
+fn solve_refined(
+    basis: &mut Basis,
+    problem: &LinearProblem,
+    slot: &[Variable],
+    b: &mut [f64],
+) -> bool {
     let right = b.to_vec();
     if !basis.solve(b) {
         return false;
@@ -590,11 +692,19 @@ fn solve_refined(basis: &mut Basis, problem: &LinearProblem, slot: &[Variable], 
                 Kind::AtUpper => residual[v.index] -= value,
                 Kind::Between => {
                     let (rows, values) = problem.m.column(v.index);
-                    rows.iter().zip(values).for_each(|(&i, &m)| residual[i] -= m * value);
+                    rows.iter()
+                        .zip(values)
+                        .for_each(|(&i, &m)| residual[i] -= m * value);
                 }
             }
         }
-        let worst = residual.iter().fold(0.0f64, |a, v| if v.is_nan() { f64::INFINITY } else { a.max(v.abs()) });
+        let worst = residual.iter().fold(0.0f64, |a, v| {
+            if v.is_nan() {
+                f64::INFINITY
+            } else {
+                a.max(v.abs())
+            }
+        });
         if worst <= 1e-15 * norm {
             return true;
         }

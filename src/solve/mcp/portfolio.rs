@@ -45,7 +45,11 @@ impl Method {
 }
 
 /// See [`super::solve`].
-pub(super) fn solve(problem: &mut dyn Problem, settings: &Settings, monitor: &mut dyn Monitor) -> Outcome {
+pub(super) fn solve(
+    problem: &mut dyn Problem,
+    settings: &Settings,
+    monitor: &mut dyn Monitor,
+) -> Outcome {
     if let Some(outcome) = invalid(problem) {
         return outcome;
     }
@@ -90,11 +94,16 @@ pub(super) fn solve(problem: &mut dyn Problem, settings: &Settings, monitor: &mu
     drop(reduced);
     judge(problem, x, settings, end, evaluated, &mut outcome);
     if let (Some(error), true) = (error, outcome.status == Status::EvaluationFailed) {
-        let at = error.row.map_or(String::new(), |row| format!("row {}: ", monitor.name(row)));
+        let at = error
+            .row
+            .map_or(String::new(), |row| format!("row {}: ", monitor.name(row)));
         outcome.message = format!("{at}{}", error.message);
     }
     if monitor.wants_log() {
-        let line = format!("{:?}: residual {:.2e}, method {}", outcome.status, outcome.residual, outcome.method);
+        let line = format!(
+            "{:?}: residual {:.2e}, method {}",
+            outcome.status, outcome.residual, outcome.method
+        );
         monitor.log(&line);
     }
     outcome
@@ -107,14 +116,23 @@ fn deadline(settings: &Settings) -> Option<Instant> {
 }
 
 /// The verdict: a fresh F at x on the problem as given.
-fn judge(problem: &mut dyn Problem, x: Vec<f64>, settings: &Settings, end: Result<(), Stop>, evaluated: bool, outcome: &mut Outcome) {
+fn judge(
+    problem: &mut dyn Problem,
+    x: Vec<f64>,
+    settings: &Settings,
+    end: Result<(), Stop>,
+    evaluated: bool,
+    outcome: &mut Outcome,
+) {
     let mut f = vec![f64::NAN; x.len()];
     if problem.function(&x, &mut f).is_ok() {
         let lower: Vec<f64> = problem.lower().iter().map(|&b| bound(b)).collect();
         let upper: Vec<f64> = problem.upper().iter().map(|&b| bound(b)).collect();
         outcome.residual = natural_residual(&x, &f, &lower, &upper).0;
     }
-    let tolerance = settings.acceptable_tolerance.max(settings.convergence_tolerance);
+    let tolerance = settings
+        .acceptable_tolerance
+        .max(settings.convergence_tolerance);
     outcome.status = if outcome.residual <= tolerance {
         Status::Solved
     } else {
@@ -144,13 +162,27 @@ fn attempt(run: &mut Run, restarts: &mut usize) -> Result<(), Stop> {
     run.check()?;
     if let Some(start) = first_point(run) {
         let methods = [
-            Method::Path { crash: run.settings.crash_method },
+            Method::Path {
+                crash: run.settings.crash_method,
+            },
             Method::Smoothing,
-            Method::Semismooth { lambda: 0.95, memory: 8 },
-            Method::Path { crash: !run.settings.crash_method },
-            Method::Semismooth { lambda: 0.8, memory: 1 },
+            Method::Semismooth {
+                lambda: 0.95,
+                memory: 8,
+            },
+            Method::Path {
+                crash: !run.settings.crash_method,
+            },
+            Method::Semismooth {
+                lambda: 0.8,
+                memory: 1,
+            },
         ];
-        let count = if run.settings.fallbacks { methods.len() } else { 1 };
+        let count = if run.settings.fallbacks {
+            methods.len()
+        } else {
+            1
+        };
         for method in &methods[..count] {
             if succeeds(run, *method, start.clone())? {
                 return Ok(());
@@ -167,7 +199,14 @@ fn attempt(run: &mut Run, restarts: &mut usize) -> Result<(), Stop> {
         let x = random_point(run, &mut random, spread);
         log::note(run, || format!("Restart {} from a random point", k + 1));
         let Some(start) = run.point(x) else { continue };
-        for method in [Method::Path { crash: true }, Method::Smoothing, Method::Semismooth { lambda: 0.95, memory: 8 }] {
+        for method in [
+            Method::Path { crash: true },
+            Method::Smoothing,
+            Method::Semismooth {
+                lambda: 0.95,
+                memory: 8,
+            },
+        ] {
             if succeeds(run, method, start.clone())? {
                 return Ok(());
             }
@@ -179,7 +218,9 @@ fn attempt(run: &mut Run, restarts: &mut usize) -> Result<(), Stop> {
 /// Runs a method, and a last major iteration for full accuracy on what the others found.
 fn succeeds(run: &mut Run, method: Method, start: Point) -> Result<bool, Stop> {
     method.run(run, start)?;
-    let Some(best) = run.best.clone() else { return Ok(false) };
+    let Some(best) = run.best.clone() else {
+        return Ok(false);
+    };
     if !run.converged(best.residual) {
         return Ok(false);
     }
@@ -199,7 +240,9 @@ fn succeeds(run: &mut Run, method: Method, start: Point) -> Result<bool, Stop> {
 fn first_point(run: &mut Run) -> Option<Point> {
     let mut x = run.problem.start().to_vec();
     // A start that is no number says nothing.
-    x.iter_mut().filter(|v| !v.is_finite()).for_each(|v| *v = 0.0);
+    x.iter_mut()
+        .filter(|v| !v.is_finite())
+        .for_each(|v| *v = 0.0);
     run.clip(&mut x);
     let defined = |run: &mut Run, x: Vec<f64>| {
         let point = run.point(x)?;
@@ -214,7 +257,9 @@ fn first_point(run: &mut Run) -> Option<Point> {
         let mut y: Vec<f64> = x.iter().map(|x| x + size * random.uniform()).collect();
         run.clip(&mut y);
         if let Some(point) = defined(run, y) {
-            log::note(run, || "F is not defined at the start; starting near it".into());
+            log::note(run, || {
+                "F is not defined at the start; starting near it".into()
+            });
             return Some(point);
         }
     }
@@ -250,7 +295,9 @@ fn invalid(problem: &mut dyn Problem) -> Option<Outcome> {
         && start.len() == n + 1
         && start.first() == Some(&0)
         && start.last() == Some(&rows.len())
-        && start.windows(2).all(|w| w[0] <= w[1] && rows[w[0]..w[1].max(w[0])].windows(2).all(|r| r[0] < r[1]))
+        && start
+            .windows(2)
+            .all(|w| w[0] <= w[1] && rows[w[0]..w[1].max(w[0])].windows(2).all(|r| r[0] < r[1]))
         && rows.iter().all(|&i| i < n);
     let crossed = || {
         (0..n).find(|&i| {
@@ -260,10 +307,16 @@ fn invalid(problem: &mut dyn Problem) -> Option<Outcome> {
         })
     };
     let (status, message) = if !consistent {
-        (Status::InvalidProblem, "the problem's arrays contradict each other".to_string())
+        (
+            Status::InvalidProblem,
+            "the problem's arrays contradict each other".to_string(),
+        )
     } else if let Some(i) = crossed() {
         let (l, u) = (problem.lower()[i], problem.upper()[i]);
-        (Status::InvalidBounds, format!("variable {}: lower bound {l} and upper bound {u}", i + 1))
+        (
+            Status::InvalidBounds,
+            format!("variable {}: lower bound {l} and upper bound {u}", i + 1),
+        )
     } else {
         return None;
     };

@@ -50,9 +50,15 @@ impl<'a> Reduced<'a> {
         let n = inner.n();
         let mut lower: Vec<f64> = inner.lower().iter().map(|&b| bound(b)).collect();
         let mut upper: Vec<f64> = inner.upper().iter().map(|&b| bound(b)).collect();
-        let mut x: Vec<f64> = (0..n).map(|i| inner.start()[i].max(lower[i]).min(upper[i])).collect();
+        let mut x: Vec<f64> = (0..n)
+            .map(|i| inner.start()[i].max(lower[i]).min(upper[i]))
+            .collect();
         let fixed: Vec<bool> = (0..n).map(|i| lower[i] == upper[i]).collect();
-        let dropped = if simplify { bound_rows(inner, &fixed, &mut lower, &mut upper, &mut x) } else { Vec::new() };
+        let dropped = if simplify {
+            bound_rows(inner, &fixed, &mut lower, &mut upper, &mut x)
+        } else {
+            Vec::new()
+        };
         let mut keep: Vec<bool> = fixed.iter().map(|f| !f).collect();
         for d in &dropped {
             keep[d.i] = false;
@@ -79,7 +85,10 @@ impl<'a> Reduced<'a> {
             inner,
             lower: kept.iter().map(|&i| lower[i]).collect(),
             upper: kept.iter().map(|&i| upper[i]).collect(),
-            start: kept.iter().map(|&i| x[i].max(lower[i]).min(upper[i])).collect(),
+            start: kept
+                .iter()
+                .map(|&i| x[i].max(lower[i]).min(upper[i]))
+                .collect(),
             kept,
             dropped,
             col_start,
@@ -119,7 +128,11 @@ impl<'a> Reduced<'a> {
             for d in &self.dropped {
                 // Fⱼ pushes against this bound: its multiplier carries it.
                 let push = -self.f[d.j] / d.c;
-                let active = if d.upper { full[d.j] >= d.value } else { full[d.j] <= d.value };
+                let active = if d.upper {
+                    full[d.j] >= d.value
+                } else {
+                    full[d.j] <= d.value
+                };
                 if active && push > 0.0 && !taken[d.j] {
                     taken[d.j] = true;
                     full[d.i] += push;
@@ -131,7 +144,13 @@ impl<'a> Reduced<'a> {
 }
 
 /// Finds the pairs that only bound a variable and tightens the bounds.
-fn bound_rows(inner: &mut dyn Problem, fixed: &[bool], lower: &mut [f64], upper: &mut [f64], x: &mut [f64]) -> Vec<Dropped> {
+fn bound_rows(
+    inner: &mut dyn Problem,
+    fixed: &[bool],
+    lower: &mut [f64],
+    upper: &mut [f64],
+    x: &mut [f64],
+) -> Vec<Dropped> {
     let n = inner.n();
     // Entries that count: rows and columns of fixed variables are constants.
     let mut row_count = vec![0usize; n];
@@ -151,11 +170,14 @@ fn bound_rows(inner: &mut dyn Problem, fixed: &[bool], lower: &mut [f64], upper:
         }
     }
     let candidates: Vec<(usize, usize, usize, usize)> = (0..n)
-        .filter(|&i| !fixed[i] && row_count[i] == 1 && lower[i].is_finite() && upper[i] == f64::INFINITY)
+        .filter(|&i| {
+            !fixed[i] && row_count[i] == 1 && lower[i].is_finite() && upper[i] == f64::INFINITY
+        })
         .filter_map(|i| {
             let (j, a) = row_entry[i];
             let (row, c) = column_entry[i]?;
-            (row == j && j != i && inner.is_constant(a) && inner.is_constant(c)).then_some((i, j, a, c))
+            (row == j && j != i && inner.is_constant(a) && inner.is_constant(c))
+                .then_some((i, j, a, c))
         })
         .collect();
     if candidates.is_empty() {
@@ -176,14 +198,24 @@ fn bound_rows(inner: &mut dyn Problem, fixed: &[bool], lower: &mut [f64], upper:
         // a·t + b ≥ 0 with b = Fᵢ − a·xⱼ.
         let value = x[j] - f[i] / a;
         let is_upper = a < 0.0;
-        let (l, u) = if is_upper { (lower[j], upper[j].min(value)) } else { (lower[j].max(value), upper[j]) };
+        let (l, u) = if is_upper {
+            (lower[j], upper[j].min(value))
+        } else {
+            (lower[j].max(value), upper[j])
+        };
         if !(value.is_finite() && l < u) {
             continue;
         }
         (lower[j], upper[j]) = (l, u);
         (gone[i], bounded[j]) = (true, true);
         x[i] = lower[i];
-        dropped.push(Dropped { i, j, c, value, upper: is_upper });
+        dropped.push(Dropped {
+            i,
+            j,
+            c,
+            value,
+            upper: is_upper,
+        });
     }
     dropped
 }
@@ -207,13 +239,18 @@ impl Problem for Reduced<'_> {
     fn function(&mut self, x: &[f64], f: &mut [f64]) -> Result<(), EvalError> {
         self.scatter(x);
         self.inner.function(&self.x, &mut self.f)?;
-        f.iter_mut().zip(&self.kept).for_each(|(f, &i)| *f = self.f[i]);
+        f.iter_mut()
+            .zip(&self.kept)
+            .for_each(|(f, &i)| *f = self.f[i]);
         Ok(())
     }
     fn jacobian(&mut self, x: &[f64], values: &mut [f64]) -> Result<(), EvalError> {
         self.scatter(x);
         self.inner.jacobian(&self.x, &mut self.values)?;
-        values.iter_mut().zip(&self.entry).for_each(|(v, &k)| *v = self.values[k]);
+        values
+            .iter_mut()
+            .zip(&self.entry)
+            .for_each(|(v, &k)| *v = self.values[k]);
         Ok(())
     }
     fn is_linear(&self) -> bool {

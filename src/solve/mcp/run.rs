@@ -143,13 +143,26 @@ impl<'a> Run<'a> {
             return None;
         }
         if let Some(row) = f.iter().position(|v| !v.is_finite()) {
-            self.last_error = Some(EvalError { row: self.original.get(row).copied(), message: "the function value is not finite".into() });
+            self.last_error = Some(EvalError {
+                row: self.original.get(row).copied(),
+                message: "the function value is not finite".into(),
+            });
             return None;
         }
         let (residual, worst) = natural_residual(&x, &f, &self.lower, &self.upper);
         let merit = super::merit::Phi::PLAIN.merit(&x, &f, &self.lower, &self.upper);
-        let point = Point { x, f, residual, worst, merit };
-        if self.best.as_ref().is_none_or(|b| point.residual < b.residual) {
+        let point = Point {
+            x,
+            f,
+            residual,
+            worst,
+            merit,
+        };
+        if self
+            .best
+            .as_ref()
+            .is_none_or(|b| point.residual < b.residual)
+        {
             self.best = Some(point.clone());
             self.best_method = self.method;
         }
@@ -170,7 +183,10 @@ impl<'a> Run<'a> {
             return None;
         }
         if jacobian.values.iter().any(|v| !v.is_finite()) {
-            self.last_error = Some(EvalError { row: None, message: "a derivative is not finite".into() });
+            self.last_error = Some(EvalError {
+                row: None,
+                message: "a derivative is not finite".into(),
+            });
             return None;
         }
         Some(jacobian)

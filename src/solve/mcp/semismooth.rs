@@ -21,25 +21,36 @@ const POWER: f64 = 2.1;
 const ARMIJO: f64 = 1e-4;
 
 /// Runs the method with penalty weight `lambda`; `memory` 1 makes the search monotone.
-pub(super) fn semismooth(run: &mut Run, start: Point, lambda: f64, memory: usize) -> Result<End, Stop> {
+pub(super) fn semismooth(
+    run: &mut Run,
+    start: Point,
+    lambda: f64,
+    memory: usize,
+) -> Result<End, Stop> {
     let phi = Phi { lambda, mu: 0.0 };
     let mut point = start;
     let mut merit = phi.merit(&point.x, &point.f, &run.lower, &run.upper);
     let mut history = vec![merit];
-    log::note(run, || format!("Semismooth Newton, lambda = {lambda}\n iter        nu    residual     step"));
+    log::note(run, || {
+        format!("Semismooth Newton, lambda = {lambda}\n iter        nu    residual     step")
+    });
     for iteration in 0..LIMIT {
         if run.converged(point.residual) {
             return Ok(End::Solved);
         }
         run.check()?;
-        let Some(jacobian) = run.jacobian(&point.x) else { return Ok(End::Stuck) };
+        let Some(jacobian) = run.jacobian(&point.x) else {
+            return Ok(End::Stuck);
+        };
         let gradient = merit_gradient(run, phi, &point, &jacobian);
         let (h, right) = newton_system(run, phi, &point, &jacobian);
         run.factorisations += 1;
-        let newton = Factor::new(h.clone()).and_then(|mut a| a.solve(&right)).filter(|d| {
-            let length = d.iter().map(|d| d * d).sum::<f64>().sqrt();
-            slope(&gradient, d) <= -RHO * length.powf(POWER)
-        });
+        let newton = Factor::new(h.clone())
+            .and_then(|mut a| a.solve(&right))
+            .filter(|d| {
+                let length = d.iter().map(|d| d * d).sum::<f64>().sqrt();
+                slope(&gradient, d) <= -RHO * length.powf(POWER)
+            });
         let (direction, nu) = match newton {
             Some(d) => (d, 0.0),
             None => {
@@ -51,16 +62,28 @@ pub(super) fn semismooth(run: &mut Run, start: Point, lambda: f64, memory: usize
                 }
             }
         };
-        let reference = history.iter().rev().take(memory.max(1)).fold(0.0, |a, &b| f64::max(a, b));
+        let reference = history
+            .iter()
+            .rev()
+            .take(memory.max(1))
+            .fold(0.0, |a, &b| f64::max(a, b));
         let Some((next, step)) = search(run, &point, &direction, |run, p, t| {
-            phi.merit(&p.x, &p.f, &run.lower, &run.upper) <= reference + ARMIJO * t * slope(&gradient, &direction)
+            phi.merit(&p.x, &p.f, &run.lower, &run.upper)
+                <= reference + ARMIJO * t * slope(&gradient, &direction)
         }) else {
             return Ok(End::Stuck);
         };
         point = next;
         merit = phi.merit(&point.x, &point.f, &run.lower, &run.upper);
         history.push(merit);
-        log::newton_line(run, iteration + 1, &point, nu, step, if nu == 0.0 { 'N' } else { 'L' });
+        log::newton_line(
+            run,
+            iteration + 1,
+            &point,
+            nu,
+            step,
+            if nu == 0.0 { 'N' } else { 'L' },
+        );
     }
     Ok(End::Limit)
 }
@@ -70,10 +93,18 @@ fn slope(gradient: &[f64], direction: &[f64]) -> f64 {
 }
 
 /// H = Da + Db·J and −Φ.
-pub(super) fn newton_system(run: &Run, phi: Phi, point: &Point, jacobian: &SparseColMatrix) -> (SparseColMatrix, Vec<f64>) {
-    let slopes: Vec<(f64, f64)> =
-        (0..run.n).map(|i| phi.pair_slopes(point.x[i], point.f[i], run.lower[i], run.upper[i])).collect();
-    let right = (0..run.n).map(|i| -phi.pair(point.x[i], point.f[i], run.lower[i], run.upper[i])).collect();
+pub(super) fn newton_system(
+    run: &Run,
+    phi: Phi,
+    point: &Point,
+    jacobian: &SparseColMatrix,
+) -> (SparseColMatrix, Vec<f64>) {
+    let slopes: Vec<(f64, f64)> = (0..run.n)
+        .map(|i| phi.pair_slopes(point.x[i], point.f[i], run.lower[i], run.upper[i]))
+        .collect();
+    let right = (0..run.n)
+        .map(|i| -phi.pair(point.x[i], point.f[i], run.lower[i], run.upper[i]))
+        .collect();
     (combine(jacobian, |i| slopes[i].0, |i| slopes[i].1), right)
 }
 
@@ -115,7 +146,12 @@ pub(super) fn search(
 ) -> Option<(Point, f64)> {
     let mut step = 1.0;
     while step > 1e-12 {
-        let x = point.x.iter().zip(direction).map(|(x, d)| x + step * d).collect();
+        let x = point
+            .x
+            .iter()
+            .zip(direction)
+            .map(|(x, d)| x + step * d)
+            .collect();
         if let Some(next) = run.point(x)
             && accept(run, &next, step)
         {

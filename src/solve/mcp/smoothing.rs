@@ -19,9 +19,14 @@ const ARMIJO: f64 = 1e-4;
 
 /// Runs the method.
 pub(super) fn smoothing(run: &mut Run, start: Point) -> Result<End, Stop> {
-    let mut phi = Phi { lambda: 1.0, mu: MU };
+    let mut phi = Phi {
+        lambda: 1.0,
+        mu: MU,
+    };
     let mut point = start;
-    log::note(run, || "Smoothing Newton\n iter        mu    residual     step".into());
+    log::note(run, || {
+        "Smoothing Newton\n iter        mu    residual     step".into()
+    });
     for iteration in 0..LIMIT {
         if run.converged(point.residual) {
             return Ok(End::Solved);
@@ -29,10 +34,13 @@ pub(super) fn smoothing(run: &mut Run, start: Point) -> Result<End, Stop> {
         run.check()?;
         let mut merit = phi.merit(&point.x, &point.f, &run.lower, &run.upper);
         while merit <= 0.1 * phi.mu && phi.mu > 1e-30 {
-            phi.mu = (0.1 * phi.mu).min(0.2 * Phi::PLAIN.merit(&point.x, &point.f, &run.lower, &run.upper));
+            phi.mu = (0.1 * phi.mu)
+                .min(0.2 * Phi::PLAIN.merit(&point.x, &point.f, &run.lower, &run.upper));
             merit = phi.merit(&point.x, &point.f, &run.lower, &run.upper);
         }
-        let Some(jacobian) = run.jacobian(&point.x) else { return Ok(End::Stuck) };
+        let Some(jacobian) = run.jacobian(&point.x) else {
+            return Ok(End::Stuck);
+        };
         let gradient = merit_gradient(run, phi, &point, &jacobian);
         let (h, right) = newton_system(run, phi, &point, &jacobian);
         run.factorisations += 1;
