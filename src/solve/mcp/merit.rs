@@ -133,17 +133,7 @@ impl Phi {
         }
     }
 
-    /// Φ into `out`; returns Ψ = ½‖Φ‖².
-    pub(super) fn vector(self, x: &[f64], f: &[f64], l: &[f64], u: &[f64], out: &mut [f64]) -> f64 {
-        let mut sum = 0.0;
-        for i in 0..x.len() {
-            out[i] = self.pair(x[i], f[i], l[i], u[i]);
-            sum += out[i] * out[i];
-        }
-        0.5 * sum
-    }
-
-    /// Ψ alone.
+    /// Ψ = ½‖Φ‖².
     pub(super) fn merit(self, x: &[f64], f: &[f64], l: &[f64], u: &[f64]) -> f64 {
         0.5 * (0..x.len())
             .map(|i| self.pair(x[i], f[i], l[i], u[i]).powi(2))

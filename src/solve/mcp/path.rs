@@ -196,6 +196,8 @@ impl<'a> Path<'a> {
         let n = problem.q.len();
         let mut random = Random::new(seed);
         let mut x0 = vec![0.0; n];
+        // Parallel arrays by index, as in the formulas.
+        #[allow(clippy::needless_range_loop)]
         for k in 0..n {
             let (l, u) = (problem.lower[k], problem.upper[k]);
             let size = SHIFT * (0.5 + random.uniform());
@@ -223,6 +225,7 @@ impl<'a> Path<'a> {
         }
         let cover = (largest + 1.0).max(1.0);
         let mut values = x0;
+        #[allow(clippy::needless_range_loop)]
         for k in 0..n {
             let sign = match start.kind[k] {
                 Kind::Between => continue,

@@ -302,8 +302,7 @@ fn invalid(problem: &mut dyn Problem) -> Option<Outcome> {
     let crossed = || {
         (0..n).find(|&i| {
             let (l, u) = (bound(problem.lower()[i]), bound(problem.upper()[i]));
-            // Not-a-number fails every comparison.
-            !(l <= u) || l == f64::INFINITY || u == f64::NEG_INFINITY
+            l.is_nan() || u.is_nan() || l > u || l == f64::INFINITY || u == f64::NEG_INFINITY
         })
     };
     let (status, message) = if !consistent {

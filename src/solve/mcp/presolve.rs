@@ -192,7 +192,7 @@ fn bound_rows(
     let mut bounded = vec![false; n];
     for (i, j, a, c) in candidates {
         let (a, c) = (values[a], values[c]);
-        if gone[j] || bounded[i] || !(a * c < 0.0) || !f[i].is_finite() {
+        if gone[j] || bounded[i] || a * c >= 0.0 || (a * c).is_nan() || !f[i].is_finite() {
             continue;
         }
         // a·t + b ≥ 0 with b = Fᵢ − a·xⱼ.
