@@ -9,6 +9,7 @@ pub mod data;
 pub mod diag;
 pub mod host;
 pub mod model;
+pub mod report;
 pub mod solve;
 pub mod source;
 pub mod syntax;
