@@ -5,6 +5,7 @@
 //! See `docs/architecture.md`.
 #![warn(missing_docs)]
 
+pub mod autodiff;
 pub mod data;
 pub mod diag;
 pub mod host;
