@@ -5,10 +5,12 @@
 //! See `docs/architecture.md`.
 #![warn(missing_docs)]
 
+pub mod autodiff;
 pub mod data;
 pub mod diag;
 pub mod host;
 pub mod model;
+pub mod report;
 pub mod solve;
 pub mod source;
 pub mod syntax;

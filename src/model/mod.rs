@@ -1,2 +1,4 @@
 //! The sparse model IR.
+pub mod certificate;
 pub mod instance;
+pub mod sum;

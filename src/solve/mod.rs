@@ -3,6 +3,11 @@
 //! A solver's word is not believed: [`crate::model::certificate`] recomputes the residuals of the
 //! point on the unscaled instance, and that decides the reported status.
 
+#[cfg(test)]
+pub mod conformance;
+pub mod lp;
+pub mod mcp;
+
 use crate::model::instance::Instance;
 
 /// GAMS's model status codes, as far as they can occur.

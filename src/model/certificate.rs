@@ -1,0 +1,644 @@
+//! The certificate: what a returned point is worth, recomputed on the unscaled instance.
+//!
+//! A solver's status is a claim. This module measures the point itself and decides what is
+//! reported: a point is called optimal when its residuals say so, a model infeasible or unbounded
+//! when the solver's ray proves it.
+//!
+//! With a the activities of the rows, m the marginals of the rows, x the levels, σ = +1 for min
+//! and −1 for max, and z the objective column, the reduced cost of column j is
+//! r_j = \[j = z\] − Σ_i m_i ∂a_i/∂x_j, and
+//!
+//! * **primal** residual: the largest violation of a row or a bound;
+//! * **dual** residual: the largest wrong-signed multiplier: σm_i < 0 for `=g=`, > 0 for `=l=`,
+//!   σr_j > 0 without a lower bound, < 0 without an upper bound;
+//! * **complementarity**: the largest |multiplier · distance to the side it belongs to|;
+//! * **gap**: primal minus dual objective (the sum of those products for linear instances);
+//! * **natural** residual (complementarity models): max |x − mid(l, u, x − F)|.
+//!
+//! These are absolute numbers, in the model's units. Whether they are small is judged relative to
+//! the data: the violation of row i relative to max(|rhs_i|, max_j |a_ij|·max(|x_j|, ξ)), that of a
+//! multiplier of column j relative to max_i |a_ij|·max(|m_i|, η), the gap relative to the largest
+//! term of the two objectives or ξη. ξ is 1, or the largest level that right-hand sides and bounds
+//! suggest where that is smaller; η is 1, or the largest cost (see [`units`]). So an instance in
+//! other units has the same status, and noise around 0 is not mistaken for a violation. The
+//! tolerance is [`TOLERANCE`].
+
+use super::instance::{Instance, Relation, Sense};
+use super::sum::Sum;
+use crate::solve::{Claim, ModelStatus, Outcome};
+
+/// Relative tolerance for primal and dual residuals and the gap.
+pub const TOLERANCE: f64 = 1e-6;
+
+/// Largest violations, in the model's units; None where one does not apply.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Residuals {
+    /// Largest violation of a row or bound.
+    pub primal: Option<f64>,
+    /// Sum of all violations.
+    pub primal_sum: Option<f64>,
+    /// Largest wrong-signed multiplier, or departure from stationarity.
+    pub dual: Option<f64>,
+    /// Largest |multiplier · slack|; for mpec over the pairs.
+    pub complementarity: Option<f64>,
+    /// Sum of them.
+    pub complementarity_sum: Option<f64>,
+    /// max |x − mid(l, u, x − F)|.
+    pub natural: Option<f64>,
+    /// |primal − dual objective|.
+    pub gap: Option<f64>,
+    /// Row of the largest residual (primal; for mcp natural), if it is a row's.
+    pub worst_row: Option<usize>,
+    /// Column of the largest residual, if it is a column's.
+    pub worst_column: Option<usize>,
+    /// Column of the largest dual residual, if it is a column's.
+    pub worst_dual_column: Option<usize>,
+    /// Row of the largest dual residual, if it is a row's.
+    pub worst_dual_row: Option<usize>,
+    /// The primal residual relative to the data.
+    pub primal_relative: f64,
+    /// The dual residual relative to the data.
+    pub dual_relative: f64,
+    /// The gap relative to the data.
+    pub gap_relative: f64,
+    /// The natural residual relative to max(1, |x_j|).
+    pub natural_relative: f64,
+    /// Number of rows and columns that violate the relative tolerance (`.numinfes`).
+    pub infeasible_count: usize,
+}
+
+impl Residuals {
+    /// The point satisfies all rows and bounds to `tolerance`, relative to the data.
+    pub fn is_feasible(&self, tolerance: f64) -> bool {
+        self.primal_relative <= tolerance
+    }
+
+    /// The point is optimal to `tolerance`, relative to the data.
+    pub fn is_optimal(&self, tolerance: f64) -> bool {
+        self.is_feasible(tolerance)
+            && self.dual_relative <= tolerance
+            && self.gap_relative <= tolerance
+    }
+}
+
+/// The instance at a point: values, and derivatives summed with the marginals. For a linear
+/// instance see [`linearise`]; for others the derivatives come from `autodiff`.
+#[derive(Clone, Debug, Default)]
+pub struct Linearised {
+    /// Σ_j a_ij x_j, or the value of the row's left side.
+    pub activity: Vec<f64>,
+    /// r_j = \[j = z\] − Σ_i m_i a_ij.
+    pub reduced: Vec<f64>,
+    /// max_j |a_ij|·max(|x_j|, ξ), per row.
+    pub row_size: Vec<f64>,
+    /// max_i |a_ij|·max(|m_i|, η), per column.
+    pub column_size: Vec<f64>,
+}
+
+/// The units (ξ, η) of levels and of multipliers below which nothing is resolved. Both are at most
+/// 1: ξ is the largest of the finite bounds and of |rhs_i| / max_j |a_ij|, η the largest
+/// |a_ij / a_iz| of a row that contains the objective column z; 1 where there is none but 0.
+/// Only the linear part is looked at.
+pub fn units(instance: &Instance) -> (f64, f64) {
+    let columns = &instance.columns;
+    let bounds = columns.lower.iter().chain(&columns.upper);
+    let mut data = bounds
+        .filter(|b| b.is_finite())
+        .fold(0.0f64, |d, b| d.max(b.abs()));
+    let mut cost = 0.0f64;
+    for i in 0..instance.row_count() {
+        let row = instance.matrix.row(i);
+        let top = row.fold(0.0f64, |t, (_, a)| t.max(a.abs()));
+        if top > 0.0 {
+            data = data.max(instance.rows.rhs[i].abs() / top);
+        }
+        let Some(z) = instance.objective.map(|o| o.column as usize) else {
+            continue;
+        };
+        if let Some((_, a_z)) = instance.matrix.row(i).find(|&(j, _)| j == z) {
+            let others = instance.matrix.row(i).filter(|&(j, _)| j != z);
+            cost = others.fold(cost, |c, (_, a)| c.max((a / a_z).abs()));
+        }
+    }
+    let unit = |x: f64| if x > 0.0 { x.min(1.0) } else { 1.0 };
+    (unit(data), unit(cost))
+}
+
+/// Activities, reduced costs and sizes of a linear instance at an outcome's point.
+pub fn linearise(instance: &Instance, outcome: &Outcome) -> Linearised {
+    let (m, n) = (instance.row_count(), instance.column_count());
+    let x = &outcome.level;
+    let (xi, eta) = units(instance);
+    let mut out = Linearised {
+        activity: Vec::with_capacity(m),
+        row_size: Vec::with_capacity(m),
+        reduced: Vec::new(),
+        column_size: vec![0.0; n],
+    };
+    let mut reduced = vec![Sum::default(); n];
+    if let Some(objective) = instance.objective {
+        reduced[objective.column as usize].add(1.0);
+        out.column_size[objective.column as usize] = 1.0;
+    }
+    for i in 0..m {
+        let multiplier = outcome.row_marginal[i];
+        let mut activity = Sum::default();
+        let mut size = 0.0f64;
+        for (j, a) in instance.matrix.row(i) {
+            activity.add_product(a, x[j]);
+            size = size.max((a * x[j].abs().max(xi)).abs());
+            reduced[j].add_product(-multiplier, a);
+            let dual_size = (a * multiplier.abs().max(eta)).abs();
+            out.column_size[j] = out.column_size[j].max(dual_size);
+        }
+        out.activity.push(activity.value());
+        out.row_size.push(size);
+    }
+    out.reduced = reduced.into_iter().map(Sum::value).collect();
+    out
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |s, v| v.abs().max(s))
+}
+
+/// Keeps the largest value and where it was.
+#[derive(Default)]
+struct Worst {
+    value: f64,
+    place: Option<usize>,
+}
+
+impl Worst {
+    fn see(&mut self, value: f64, place: usize) {
+        // A NaN is the worst of all.
+        if value > self.value || value.is_nan() {
+            self.value = if value.is_nan() { f64::INFINITY } else { value };
+            self.place = Some(place);
+        }
+    }
+}
+
+/// `violation / size`; a violation of 0 is 0, any other of a size 0 is infinite.
+fn relative(violation: f64, size: f64) -> f64 {
+    if violation == 0.0 {
+        0.0
+    } else {
+        violation / size
+    }
+}
+
+/// Violation of a row.
+pub fn row_violation(relation: Relation, activity: f64, rhs: f64) -> f64 {
+    match relation {
+        Relation::Equal => (activity - rhs).abs(),
+        Relation::Greater => (rhs - activity).max(0.0),
+        Relation::Less => (activity - rhs).max(0.0),
+        Relation::Free => 0.0,
+    }
+}
+
+/// Primal residuals only: for any instance, given the activities and sizes of its rows.
+pub fn primal(instance: &Instance, x: &[f64], activity: &[f64], row_size: &[f64]) -> Residuals {
+    let (xi, _) = units(instance);
+    let (mut row, mut column, mut sum) = (Worst::default(), Worst::default(), Sum::default());
+    let mut relative_worst = 0.0f64;
+    let mut count = 0;
+    let mut judge = |violation: f64, size: f64| {
+        let r = relative(violation, size);
+        relative_worst = relative_worst.max(if r.is_nan() { f64::INFINITY } else { r });
+        count += usize::from(r.is_nan() || r > TOLERANCE);
+    };
+    for i in 0..instance.row_count() {
+        let rhs = instance.rows.rhs[i];
+        let v = match activity[i] {
+            a if a.is_nan() => f64::INFINITY,
+            a => row_violation(instance.rows.relation[i], a, rhs),
+        };
+        row.see(v, i);
+        sum.add(v);
+        judge(v, row_size[i].max(rhs.abs()));
+    }
+    for (j, &level) in x.iter().enumerate() {
+        let (l, u) = (instance.columns.lower[j], instance.columns.upper[j]);
+        let v = match level {
+            x if x.is_nan() => f64::INFINITY,
+            x => (l - x).max(x - u).max(0.0),
+        };
+        column.see(v, j);
+        sum.add(v);
+        let bound = if level < l { l } else { u };
+        judge(v, level.abs().max(bound.abs()).max(xi));
+    }
+    Residuals {
+        primal: Some(row.value.max(column.value)),
+        primal_sum: Some(sum.value()),
+        worst_row: row.place.filter(|_| row.value >= column.value),
+        worst_column: column.place.filter(|_| column.value > row.value),
+        primal_relative: relative_worst,
+        infeasible_count: count,
+        ..Residuals::default()
+    }
+}
+
+/// All residuals of an optimisation model, given its linearisation at the point.
+pub fn residuals(instance: &Instance, outcome: &Outcome, at: &Linearised) -> Residuals {
+    let mut out = primal(instance, &outcome.level, &at.activity, &at.row_size);
+    let Some(objective) = instance.objective else {
+        return out;
+    };
+    let sigma = match objective.sense {
+        Sense::Minimize => 1.0,
+        Sense::Maximize => -1.0,
+    };
+    let (mut dual_row, mut dual_column) = (Worst::default(), Worst::default());
+    let (mut product, mut products) = (Worst::default(), Sum::default());
+    let mut dual_relative = 0.0f64;
+    // The largest term of the two objectives, for judging the gap.
+    let (xi, eta) = units(instance);
+    let mut term = outcome.level[objective.column as usize].abs().max(xi * eta);
+    let unit = largest(&outcome.row_marginal).max(eta);
+    for i in 0..instance.row_count() {
+        let m = outcome.row_marginal[i];
+        let rhs = instance.rows.rhs[i];
+        let wrong = match instance.rows.relation[i] {
+            Relation::Equal => 0.0,
+            Relation::Greater => (-sigma * m).max(0.0),
+            Relation::Less => (sigma * m).max(0.0),
+            Relation::Free => m.abs(),
+        };
+        dual_row.see(wrong, i);
+        dual_relative = dual_relative.max(relative(wrong, unit));
+        let slack = match instance.rows.relation[i] {
+            Relation::Free => 0.0,
+            _ => at.activity[i] - rhs,
+        };
+        let p = if m == 0.0 { 0.0 } else { m * slack };
+        product.see(p.abs(), i);
+        products.add(p);
+        term = term.max((m * at.row_size[i].max(rhs.abs())).abs());
+    }
+    for (j, &r) in at.reduced.iter().enumerate() {
+        let (l, u) = (instance.columns.lower[j], instance.columns.upper[j]);
+        let priced = sigma * r;
+        let bound = if priced > 0.0 { l } else { u };
+        let x = outcome.level[j];
+        if bound.is_infinite() || r.is_nan() {
+            dual_column.see(priced.abs(), j);
+            dual_relative = dual_relative.max(relative(priced.abs(), at.column_size[j]));
+        } else {
+            // A reduced cost off its bound counts as complementarity, whichever bound is meant.
+            let p = if r == 0.0 { 0.0 } else { r * (x - bound) };
+            product.see(p.abs(), j);
+            products.add(p);
+        }
+    }
+    let gap = products.value().abs();
+    out.dual = Some(dual_row.value.max(dual_column.value));
+    out.worst_dual_row = dual_row
+        .place
+        .filter(|_| dual_row.value >= dual_column.value);
+    out.worst_dual_column = dual_column
+        .place
+        .filter(|_| dual_column.value > dual_row.value);
+    out.complementarity = Some(product.value);
+    out.gap = Some(gap);
+    out.dual_relative = if dual_relative.is_nan() {
+        f64::INFINITY
+    } else {
+        dual_relative
+    };
+    out.gap_relative = relative(gap, term);
+    if out.gap_relative.is_nan() {
+        out.gap_relative = f64::INFINITY;
+    }
+    out
+}
+
+/// All residuals of a linear instance with an objective.
+pub fn linear(instance: &Instance, outcome: &Outcome) -> Residuals {
+    residuals(instance, outcome, &linearise(instance, outcome))
+}
+
+/// Residuals of a complementarity model: natural, complementarity, and the equations that are
+/// matched with nothing. `f` is left minus right of each row at the levels.
+pub fn complementarity(instance: &Instance, x: &[f64], f: &[f64]) -> Residuals {
+    let nothing = Vec::new();
+    let matched = instance.matched.as_ref().unwrap_or(&nothing);
+    let (mut row, mut column) = (Worst::default(), Worst::default());
+    let (mut product, mut sum) = (0.0f64, Sum::default());
+    let mut natural_relative = 0.0f64;
+    let mut taken = vec![false; instance.row_count()];
+    for (j, &x) in x.iter().enumerate() {
+        let (l, u) = (instance.columns.lower[j], instance.columns.upper[j]);
+        let partner = matched.get(j).copied().flatten().map(|i| i as usize);
+        let step = match partner {
+            Some(i) => {
+                taken[i] = true;
+                f[i]
+            }
+            None => 0.0,
+        };
+        let mid = (x - step).max(l).min(u);
+        let natural = (x - mid).abs();
+        match partner {
+            Some(i) => row.see(natural, i),
+            None => column.see(natural, j),
+        }
+        let r = natural / x.abs().max(1.0);
+        natural_relative = natural_relative.max(if r.is_nan() { f64::INFINITY } else { r });
+        let bound = if step > 0.0 { l } else { u };
+        if step != 0.0 && bound.is_finite() {
+            let p = (step * (x - bound)).abs();
+            product = product.max(p);
+            sum.add(p);
+        }
+    }
+    for i in (0..instance.row_count()).filter(|&i| !taken[i]) {
+        let v = row_violation(instance.rows.relation[i], f[i], 0.0);
+        row.see(v, i);
+        natural_relative = natural_relative.max(if v.is_nan() { f64::INFINITY } else { v });
+    }
+    Residuals {
+        natural: Some(row.value.max(column.value)),
+        complementarity: Some(product),
+        complementarity_sum: Some(sum.value()),
+        worst_row: row.place.filter(|_| row.value >= column.value),
+        worst_column: column.place.filter(|_| column.value > row.value),
+        natural_relative,
+        ..Residuals::default()
+    }
+}
+
+/// Whether the row multipliers `y` prove that no x within bounds satisfies the rows:
+/// y has the rows' signs, and yᵀa(x) < yᵀb for every x within bounds (Farkas).
+/// Only for linear instances.
+pub fn proves_infeasible(instance: &Instance, y: &[f64]) -> bool {
+    if y.len() != instance.row_count() || y.iter().any(|v| !v.is_finite()) {
+        return false;
+    }
+    let n = instance.column_count();
+    let mut reach = vec![Sum::default(); n];
+    let mut reach_size = vec![0.0f64; n];
+    let (mut margin, mut size) = (Sum::default(), 0.0f64);
+    let unit = largest(y);
+    for (i, &y) in y.iter().enumerate() {
+        let wrong = match instance.rows.relation[i] {
+            Relation::Equal => 0.0,
+            Relation::Greater => -y,
+            Relation::Less => y,
+            Relation::Free => y.abs(),
+        };
+        if wrong > 1e-9 * unit {
+            return false;
+        }
+        if wrong > 0.0 {
+            continue;
+        }
+        margin.add_product(y, instance.rows.rhs[i]);
+        size = size.max((y * instance.rows.rhs[i]).abs());
+        for (j, a) in instance.matrix.row(i) {
+            reach[j].add_product(y, a);
+            reach_size[j] = reach_size[j].max((y * a).abs());
+        }
+    }
+    for j in 0..n {
+        let r = reach[j].value();
+        let bound = if r > 0.0 {
+            instance.columns.upper[j]
+        } else {
+            instance.columns.lower[j]
+        };
+        if r.abs() <= 1e-9 * reach_size[j] && bound.abs() >= 1e30 {
+            continue;
+        }
+        if r != 0.0 {
+            margin.add_product(-r, bound);
+            size = size.max((r * bound).abs());
+        }
+    }
+    let margin = margin.value();
+    margin.is_finite() && margin > 1e-9 * size
+}
+
+/// Whether the direction `d` of the columns leads to ever better points: rows and bounds allow it
+/// without end, and the objective improves. Only for linear instances.
+pub fn proves_unbounded(instance: &Instance, d: &[f64]) -> bool {
+    let Some(objective) = instance.objective else {
+        return false;
+    };
+    if d.len() != instance.column_count() || d.iter().any(|v| !v.is_finite()) {
+        return false;
+    }
+    let gain = match objective.sense {
+        Sense::Minimize => -d[objective.column as usize],
+        Sense::Maximize => d[objective.column as usize],
+    };
+    let unit = largest(d);
+    if gain <= 1e-9 * unit {
+        return false;
+    }
+    let bounded = d.iter().enumerate().any(|(j, &d)| {
+        let (l, u) = (instance.columns.lower[j], instance.columns.upper[j]);
+        (d > 1e-9 * unit && u < 1e30) || (d < -1e-9 * unit && l > -1e30)
+    });
+    if bounded {
+        return false;
+    }
+    (0..instance.row_count()).all(|i| {
+        let (mut change, mut size) = (Sum::default(), 0.0f64);
+        for (j, a) in instance.matrix.row(i) {
+            change.add_product(a, d[j]);
+            size = size.max((a * d[j]).abs());
+        }
+        let wrong = row_violation(instance.rows.relation[i], change.value(), 0.0);
+        wrong <= 1e-9 * size.max(gain)
+    })
+}
+
+/// Model status of a linear program: what the point and the rays prove.
+pub fn linear_status(instance: &Instance, outcome: &Outcome, r: &Residuals) -> ModelStatus {
+    if r.is_optimal(TOLERANCE) {
+        return ModelStatus::Optimal;
+    }
+    match outcome.claim {
+        Claim::Infeasible if proves_infeasible(instance, &outcome.ray) => ModelStatus::Infeasible,
+        Claim::Unbounded if proves_unbounded(instance, &outcome.ray) => {
+            if r.is_feasible(TOLERANCE) {
+                ModelStatus::Unbounded
+            } else {
+                ModelStatus::UnboundedNoSolution
+            }
+        }
+        _ if r.is_feasible(TOLERANCE) => ModelStatus::Feasible,
+        _ => ModelStatus::IntermediateInfeasible,
+    }
+}
+
+/// Model status of a complementarity model: solved or not.
+pub fn complementarity_status(r: &Residuals) -> ModelStatus {
+    if r.natural_relative <= TOLERANCE {
+        ModelStatus::Optimal
+    } else {
+        ModelStatus::IntermediateInfeasible
+    }
+}
+
+/// Model status of a square system (`cns`).
+pub fn square_status(r: &Residuals) -> ModelStatus {
+    if r.is_feasible(TOLERANCE) {
+        ModelStatus::Solved
+    } else {
+        ModelStatus::IntermediateInfeasible
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solve::SolverStatus;
+    use crate::solve::conformance::linear as program;
+
+    fn outcome(level: &[f64], row_marginal: &[f64], claim: Claim, ray: &[f64]) -> Outcome {
+        Outcome {
+            level: level.to_vec(),
+            row_marginal: row_marginal.to_vec(),
+            column_marginal: vec![0.0; level.len()],
+            claim,
+            status: SolverStatus::NormalCompletion,
+            iterations: 0,
+            solver: "test",
+            ray: ray.to_vec(),
+            message: None,
+        }
+    }
+
+    /// min x + 2y, x + y >= 10, x <= 5, in units of `unit`.
+    fn example(unit: f64) -> Instance {
+        program(
+            Sense::Minimize,
+            &[1., 2.],
+            &[(0., 5. * unit), (0., f64::INFINITY)],
+            &[(vec![1., 1.], Relation::Greater, 10. * unit)],
+        )
+    }
+
+    #[test]
+    fn status_follows_the_point_in_any_unit() {
+        for unit in [1e-9, 1e-3, 1.0, 1e6] {
+            let instance = example(unit);
+            let status = |x: f64, y: f64, m: f64, claim| {
+                let level = [x * unit, y * unit, (x + 2.0 * y) * unit];
+                let o = outcome(&level, &[m, 1.0], claim, &[]);
+                linear_status(&instance, &o, &linear(&instance, &o))
+            };
+            use ModelStatus::{Feasible, IntermediateInfeasible, Optimal};
+            assert_eq!(status(5.0, 5.0, 2.0, Claim::Solved), Optimal);
+            assert_eq!(status(5.0, 5.0, 2.0, Claim::Unfinished), Optimal);
+            assert_eq!(status(5.0, 5.0001, 2.0, Claim::Solved), Feasible);
+            assert_eq!(status(5.0, 5.0, 2.1, Claim::Solved), Feasible);
+            assert_eq!(status(5.0, 5.0, -1.0, Claim::Solved), Feasible);
+            assert_eq!(
+                status(5.0001, 5.0, 2.0, Claim::Solved),
+                IntermediateInfeasible
+            );
+            assert_eq!(
+                status(5.0, 4.9999, 2.0, Claim::Solved),
+                IntermediateInfeasible
+            );
+            assert_eq!(
+                status(f64::NAN, 5.0, 2.0, Claim::Solved),
+                IntermediateInfeasible
+            );
+            assert_eq!(status(5.0, 5.0, f64::NAN, Claim::Solved), Feasible);
+        }
+    }
+
+    #[test]
+    fn names_the_worst_place() {
+        let instance = example(1.0);
+        let o = outcome(&[5.25, 5.0, 15.25], &[2.0, 1.0], Claim::Solved, &[]);
+        let r = linear(&instance, &o);
+        assert_eq!(r.primal, Some(0.25));
+        assert_eq!((r.worst_column, r.worst_row), (Some(0), None));
+        assert_eq!(r.infeasible_count, 1);
+        let o = outcome(&[5.0, 4.0, 13.0], &[2.0, 1.0], Claim::Solved, &[]);
+        let r = linear(&instance, &o);
+        assert_eq!((r.worst_column, r.worst_row), (None, Some(0)));
+        assert_eq!(r.primal_sum, Some(1.0));
+        assert_eq!(r.complementarity, Some(2.0));
+    }
+
+    #[test]
+    fn claims_need_proofs() {
+        let mut instance = example(1.0);
+        instance.columns.upper[1] = 4.0;
+        let point = [5.0, 4.0, 13.0];
+        let status = |ray: &[f64]| {
+            let o = outcome(&point, &[0.0, 0.0], Claim::Infeasible, ray);
+            linear_status(&instance, &o, &linear(&instance, &o))
+        };
+        assert_eq!(status(&[1.0, 0.0]), ModelStatus::Infeasible);
+        assert_eq!(status(&[-1.0, 0.0]), ModelStatus::IntermediateInfeasible);
+        assert_eq!(status(&[1.0, 0.1]), ModelStatus::IntermediateInfeasible);
+        assert_eq!(status(&[]), ModelStatus::IntermediateInfeasible);
+        assert_eq!(
+            status(&[f64::NAN, 0.0]),
+            ModelStatus::IntermediateInfeasible
+        );
+
+        let mut instance = example(1.0);
+        instance.objective = instance
+            .objective
+            .map(|o| super::super::instance::Objective {
+                sense: Sense::Maximize,
+                ..o
+            });
+        let status = |level: &[f64], ray: &[f64]| {
+            let o = outcome(level, &[0.0, 1.0], Claim::Unbounded, ray);
+            linear_status(&instance, &o, &linear(&instance, &o))
+        };
+        let point = [5.0, 5.0, 15.0];
+        assert_eq!(status(&point, &[0.0, 1.0, 2.0]), ModelStatus::Unbounded);
+        assert_eq!(
+            status(&[0.0; 3], &[0.0, 1.0, 2.0]),
+            ModelStatus::UnboundedNoSolution
+        );
+        assert_eq!(status(&point, &[1.0, 1.0, 3.0]), ModelStatus::Feasible);
+        assert_eq!(status(&point, &[0.0, 1.0, 3.0]), ModelStatus::Feasible);
+        assert_eq!(status(&point, &[0.0, -1.0, -2.0]), ModelStatus::Feasible);
+    }
+
+    #[test]
+    fn natural_residual_of_pairs() {
+        // F1 = x - 2 with x >= 0; F2 = y + 1 with y >= 0; F3 = w - 1 with w free.
+        let mut instance = Instance {
+            matched: Some(vec![Some(0), Some(1), Some(2)]),
+            ..Instance::default()
+        };
+        let inf = f64::INFINITY;
+        instance.columns = crate::solve::conformance::columns(&[(0., inf), (0., inf), (-inf, inf)]);
+        instance.rows.relation = vec![Relation::Greater, Relation::Greater, Relation::Equal];
+        instance.rows.rhs = vec![2.0, -1.0, 1.0];
+        let at = |x: &[f64]| {
+            let f = [x[0] - 2.0, x[1] + 1.0, x[2] - 1.0];
+            complementarity(&instance, x, &f)
+        };
+        let r = at(&[2.0, 0.0, 1.0]);
+        assert_eq!(r.natural, Some(0.0));
+        assert_eq!(complementarity_status(&r), ModelStatus::Optimal);
+        let r = at(&[2.0, 0.5, 1.0]);
+        assert_eq!(r.natural, Some(0.5));
+        assert_eq!(r.complementarity, Some(0.75));
+        assert_eq!(r.worst_row, Some(1));
+        assert_eq!(
+            complementarity_status(&r),
+            ModelStatus::IntermediateInfeasible
+        );
+        assert_eq!(at(&[2.0, 0.0, 1.25]).natural, Some(0.25));
+        assert_eq!(
+            complementarity_status(&at(&[f64::NAN, 0., 1.])),
+            ModelStatus::IntermediateInfeasible
+        );
+    }
+}

@@ -1,0 +1,810 @@
+//! Lays a scene out and writes it as SVG.
+
+use std::fmt::Write;
+
+use super::color::{self, Paint};
+use super::layout::{
+    Axis, extent, log_ticks, power_label, rounded, text_width, tick_labels, ticks, visible,
+};
+use super::{Anchor, Element, Scene, Shape, Style};
+
+/// Ink of axes, texts and lines that have no colour of their own.
+const INK: &str = "#2b3440";
+/// Quieter ink: ticks, subtitle.
+const QUIET: &str = "#5b6673";
+/// Lines of the grid.
+const GRID: &str = "#e3e7ec";
+const FONT: &str = "Inter, 'Helvetica Neue', Helvetica, Arial, 'DejaVu Sans', sans-serif";
+/// Margin around everything, in pixels.
+const MARGIN: f64 = 18.0;
+
+/// A pixel coordinate: two decimals, no trailing zeros.
+struct Px(f64);
+
+impl std::fmt::Display for Px {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        // Widths and sizes come as the person gave them; a number that is none counts as 0.
+        let v = if self.0.is_nan() { 0.0 } else { self.0 };
+        let text = format!("{:.2}", v.clamp(-1e7, 1e7));
+        let text = text.trim_end_matches('0').trim_end_matches('.');
+        f.write_str(if text == "-0" { "0" } else { text })
+    }
+}
+
+/// A text as XML holds it; characters that XML forbids become U+FFFD.
+fn escape(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            '\n' | '\t' | '\r' => out.push(' '),
+            c if c < ' ' || matches!(c, '\u{fffe}' | '\u{ffff}') => out.push('\u{fffd}'),
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+/// The range of the numbers that colours stand for.
+fn scale_range(scene: &Scene) -> Option<[f64; 2]> {
+    let paints = scene
+        .elements
+        .iter()
+        .flat_map(|e| [&e.style.fill, &e.style.stroke]);
+    let values = paints.filter_map(|p| match p {
+        Some(Paint::Value(v)) if v.is_finite() => Some(*v),
+        _ => None,
+    });
+    values.fold(None, |r: Option<[f64; 2]>, v| {
+        let [lo, hi] = r.unwrap_or([v, v]);
+        Some([lo.min(v), hi.max(v)])
+    })
+}
+
+/// Names of the legend in order, each with the place that chooses its colour.
+fn legend_names(scene: &Scene) -> Vec<&str> {
+    let mut names: Vec<&str> = Vec::new();
+    for name in scene.elements.iter().filter_map(|e| e.name.as_deref()) {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    names
+}
+
+struct Drawing<'a> {
+    scene: &'a Scene,
+    out: String,
+    x: Axis,
+    y: Axis,
+    colors: Option<[f64; 2]>,
+    names: Vec<&'a str>,
+    /// Attributes of the open `<g>`.
+    group: Option<String>,
+}
+
+/// The scene as an SVG text.
+pub fn svg(scene: &Scene) -> String {
+    let chart = |e: &Element| matches!(e.shape, Shape::Line(_) | Shape::Bars(_));
+    let has_chart = scene.elements.iter().any(chart);
+    let axes = scene.axes.unwrap_or(has_chart);
+    let equal = scene.equal.unwrap_or(!has_chart) && !scene.x_log && !scene.y_log;
+    let [x_range, y_range] = extent(scene);
+    let (x_range, y_range) = (x_range.unwrap_or([0.0, 1.0]), y_range.unwrap_or([0.0, 1.0]));
+    let colors = scale_range(scene);
+    let names = legend_names(scene);
+
+    // What surrounds the plot.
+    let width = scene
+        .width
+        .filter(|w| w.is_finite())
+        .unwrap_or(720.0)
+        .clamp(80.0, 10_000.0);
+    let mut top = MARGIN;
+    if scene.title.is_some() {
+        top += 26.0;
+    }
+    if scene.subtitle.is_some() {
+        top += 18.0;
+    }
+    let legend = legend_rows(&names, width - 2.0 * MARGIN);
+    let legend_top = top;
+    if !legend.is_empty() {
+        top += 20.0 * legend.len() as f64 + 8.0;
+    }
+    let mut y_range = pad(y_range, scene.y_log, axes, equal);
+    let mut x_range = match scene.categories.is_empty() {
+        true => pad(
+            x_range,
+            scene.x_log,
+            axes && has_bars(scene).is_none(),
+            equal,
+        ),
+        false => x_range,
+    };
+    if has_bars(scene).is_some() {
+        // Bars stand on the axis.
+        y_range = [y_range[0].min(0.0), y_range[1].max(0.0)];
+    }
+    let y_labels = tick_texts(y_range, scene.y_log, 6.0);
+    let left_labels = y_labels.iter().map(|(_, t)| text_width(t, 11.5));
+    let mut left = MARGIN;
+    let mut bottom = MARGIN;
+    let mut right = MARGIN;
+    if axes {
+        left += left_labels.fold(0.0, f64::max) + 8.0;
+        left += if scene.y_label.is_some() { 20.0 } else { 0.0 };
+        bottom += 20.0 + if scene.x_label.is_some() { 20.0 } else { 0.0 };
+    }
+    if let Some([lo, hi]) = colors {
+        let texts = tick_texts([lo, hi], false, 5.0);
+        let widest = texts
+            .iter()
+            .map(|(_, t)| text_width(t, 11.0))
+            .fold(0.0, f64::max);
+        right += 34.0 + widest;
+    }
+    let plot_width = (width - left - right).max(20.0);
+    let rotate = axes && rotated(scene, plot_width);
+    if rotate {
+        let widest = scene.categories.iter().map(|c| text_width(c, 11.5));
+        bottom += (widest.fold(0.0, f64::max) * 0.71).min(110.0) - 8.0;
+    }
+
+    // The plot itself.
+    let around = top + bottom;
+    let wanted = scene
+        .height
+        .filter(|h| h.is_finite())
+        .map(|h| (h - around).clamp(20.0, 10_000.0));
+    let plot_height = match wanted {
+        Some(h) => h,
+        None if equal => {
+            let ratio = (y_range[1] - y_range[0]) / (x_range[1] - x_range[0]);
+            (plot_width * ratio).clamp(60.0, plot_width.max(560.0))
+        }
+        None => (plot_width * 0.6).clamp(60.0, 420.0),
+    };
+    if equal {
+        let per_unit =
+            (plot_width / (x_range[1] - x_range[0])).min(plot_height / (y_range[1] - y_range[0]));
+        widen(&mut x_range, plot_width / per_unit);
+        widen(&mut y_range, plot_height / per_unit);
+    }
+    let height = around + plot_height;
+    let mut d = Drawing {
+        scene,
+        out: String::new(),
+        x: Axis {
+            range: x_range,
+            pixels: [left, left + plot_width],
+            log: scene.x_log,
+        },
+        y: Axis {
+            range: y_range,
+            pixels: [top + plot_height, top],
+            log: scene.y_log,
+        },
+        colors,
+        names,
+        group: None,
+    };
+    d.head(width, height);
+    if axes {
+        d.axes(rotate);
+    }
+    for k in 0..scene.elements.len() {
+        d.element(k);
+    }
+    d.close_group();
+    d.legend(&legend, legend_top);
+    d.color_legend(width - right + 14.0);
+    d.out.push_str("</svg>\n");
+    d.out
+}
+
+fn has_bars(scene: &Scene) -> Option<()> {
+    let bars = |e: &Element| matches!(e.shape, Shape::Bars(_));
+    scene.elements.iter().any(bars).then_some(())
+}
+
+/// A range with room at its ends and a positive width.
+fn pad(range: [f64; 2], log: bool, axes: bool, equal: bool) -> [f64; 2] {
+    let [lo, hi] = range;
+    if log {
+        let pad = |k: f64| 10f64.powf(k);
+        return [
+            pad((lo.log10() - 0.02).floor()),
+            pad((hi.log10() + 0.02).ceil()),
+        ];
+    }
+    if axes && !equal {
+        return rounded(range, 6.0);
+    }
+    let width = hi - lo;
+    if width <= 0.0 {
+        let room = if lo == 0.0 { 1.0 } else { lo.abs() * 0.1 };
+        return [lo - room, hi + room];
+    }
+    let room = if equal { 0.02 } else { 0.04 };
+    [lo - room * width, hi + room * width]
+}
+
+/// Widens a range about its middle.
+fn widen(range: &mut [f64; 2], width: f64) {
+    let middle = (range[0] + range[1]) / 2.0;
+    *range = [middle - width / 2.0, middle + width / 2.0];
+}
+
+fn tick_texts(range: [f64; 2], log: bool, wanted: f64) -> Vec<(f64, String)> {
+    if log {
+        let ticks = log_ticks(range, 8.0);
+        return ticks.into_iter().map(|v| (v, power_label(v))).collect();
+    }
+    let ticks = ticks(range, wanted);
+    let labels = tick_labels(&ticks);
+    ticks.into_iter().zip(labels).collect()
+}
+
+/// Whether the labels of the categories are too wide to stand side by side.
+fn rotated(scene: &Scene, plot_width: f64) -> bool {
+    let room = plot_width / scene.categories.len().max(1) as f64;
+    scene
+        .categories
+        .iter()
+        .any(|c| text_width(c, 11.5) + 6.0 > room)
+}
+
+/// Legend entries in rows, each with its x offset.
+fn legend_rows(names: &[&str], width: f64) -> Vec<Vec<(usize, f64)>> {
+    let mut rows: Vec<Vec<(usize, f64)>> = Vec::new();
+    let mut x = f64::INFINITY;
+    for (k, name) in names.iter().enumerate() {
+        let wide = 40.0 + text_width(name, 12.0);
+        if x + wide > width {
+            rows.push(Vec::new());
+            x = 0.0;
+        }
+        if let Some(row) = rows.last_mut() {
+            row.push((k, x));
+        }
+        x += wide;
+    }
+    rows
+}
+
+impl Drawing<'_> {
+    fn head(&mut self, width: f64, height: f64) {
+        let (w, h) = (Px(width.round()), Px(height.round()));
+        let _ = writeln!(
+            self.out,
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" \
+             viewBox=\"0 0 {w} {h}\" font-family=\"{FONT}\" font-size=\"12\">"
+        );
+        if let Some(title) = &self.scene.title {
+            let _ = writeln!(self.out, "  <title>{}</title>", escape(title));
+        }
+        let _ = writeln!(
+            self.out,
+            "  <rect width=\"{w}\" height=\"{h}\" fill=\"white\"/>"
+        );
+        let mut y = MARGIN + 13.0;
+        if let Some(title) = &self.scene.title {
+            let _ = writeln!(
+                self.out,
+                "  <text x=\"{}\" y=\"{}\" font-size=\"16\" font-weight=\"600\" fill=\"{INK}\">{}</text>",
+                Px(MARGIN),
+                Px(y),
+                escape(title)
+            );
+            y += 20.0;
+        }
+        if let Some(subtitle) = &self.scene.subtitle {
+            let _ = writeln!(
+                self.out,
+                "  <text x=\"{}\" y=\"{}\" font-size=\"12.5\" fill=\"{QUIET}\">{}</text>",
+                Px(MARGIN),
+                Px(y),
+                escape(subtitle)
+            );
+        }
+    }
+
+    fn axes(&mut self, rotate: bool) {
+        let [left, right] = self.x.pixels;
+        let [bottom, top] = self.y.pixels;
+        let (mut grid, mut labels) = (String::new(), String::new());
+        for (v, text) in tick_texts(self.y.range, self.scene.y_log, 6.0) {
+            let y = self.y.at(v);
+            if y < top - 0.5 || y > bottom + 0.5 {
+                continue;
+            }
+            let _ = writeln!(
+                grid,
+                "    <line x1=\"{}\" y1=\"{y}\" x2=\"{}\" y2=\"{y}\"/>",
+                Px(left),
+                Px(right),
+                y = Px(y)
+            );
+            let _ = writeln!(
+                labels,
+                "    <text x=\"{}\" y=\"{}\" text-anchor=\"end\">{text}</text>",
+                Px(left - 7.0),
+                Px(y + 4.0)
+            );
+        }
+        let x_ticks: Vec<(f64, String)> = if self.scene.categories.is_empty() {
+            tick_texts(self.x.range, self.scene.x_log, (right - left) / 90.0)
+        } else {
+            // At most about one label per 14 pixels.
+            let every = (14.0 * self.scene.categories.len() as f64 / (right - left)).ceil();
+            let numbered = self.scene.categories.iter().enumerate();
+            let shown = numbered.step_by((every as usize).max(1));
+            shown.map(|(k, c)| (k as f64 + 1.0, escape(c))).collect()
+        };
+        for (v, text) in x_ticks {
+            let x = self.x.at(v);
+            if x < left - 0.5 || x > right + 0.5 {
+                continue;
+            }
+            if self.scene.categories.is_empty() {
+                let _ = writeln!(
+                    grid,
+                    "    <line x1=\"{x}\" y1=\"{}\" x2=\"{x}\" y2=\"{}\"/>",
+                    Px(top),
+                    Px(bottom),
+                    x = Px(x)
+                );
+            }
+            let y = bottom + 18.0;
+            let _ = if rotate {
+                let (x, y) = (Px(x + 4.0), Px(y - 4.0));
+                writeln!(
+                    labels,
+                    "    <text x=\"{x}\" y=\"{y}\" text-anchor=\"end\" transform=\"rotate(-45 {x} {y})\">{text}</text>"
+                )
+            } else {
+                writeln!(
+                    labels,
+                    "    <text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{text}</text>",
+                    Px(x),
+                    Px(y)
+                )
+            };
+        }
+        let _ = write!(
+            self.out,
+            "  <g stroke=\"{GRID}\" stroke-width=\"1\">\n{grid}  </g>\n  <g font-size=\"11.5\" fill=\"{QUIET}\">\n{labels}  </g>\n"
+        );
+        let base = match self.scene.y_log {
+            false => self.y.at(0.0f64.clamp(self.y.range[0], self.y.range[1])),
+            true => bottom,
+        };
+        let _ = writeln!(
+            self.out,
+            "  <line x1=\"{}\" y1=\"{y}\" x2=\"{}\" y2=\"{y}\" stroke=\"{QUIET}\" stroke-width=\"1\"/>",
+            Px(left),
+            Px(right),
+            y = Px(base)
+        );
+        if let Some(label) = &self.scene.x_label {
+            let room = if rotate { 0.0 } else { 38.0 };
+            let y = if rotate {
+                self.bottom_edge() - 8.0
+            } else {
+                bottom + room
+            };
+            let _ = writeln!(
+                self.out,
+                "  <text x=\"{}\" y=\"{}\" text-anchor=\"middle\" fill=\"{INK}\">{}</text>",
+                Px((left + right) / 2.0),
+                Px(y),
+                escape(label)
+            );
+        }
+        if let Some(label) = &self.scene.y_label {
+            let (x, y) = (Px(MARGIN + 4.0), Px((top + bottom) / 2.0));
+            let _ = writeln!(
+                self.out,
+                "  <text x=\"{x}\" y=\"{y}\" text-anchor=\"middle\" transform=\"rotate(-90 {x} {y})\" fill=\"{INK}\">{}</text>",
+                escape(label)
+            );
+        }
+    }
+
+    /// Where the lowest rotated label ends.
+    fn bottom_edge(&self) -> f64 {
+        let widest = self.scene.categories.iter().map(|c| text_width(c, 11.5));
+        self.y.pixels[0] + (widest.fold(0.0, f64::max) * 0.71).min(110.0) + 38.0
+    }
+
+    /// The colour of a paint.
+    fn color(&self, paint: &Paint) -> String {
+        match paint {
+            Paint::None => "none".into(),
+            Paint::Color(c) => c.clone(),
+            Paint::Value(v) => {
+                let [lo, hi] = self.colors.unwrap_or([0.0, 1.0]);
+                let part = if hi > lo { (v - lo) / (hi - lo) } else { 0.5 };
+                color::scale(part)
+            }
+        }
+    }
+
+    /// The colour of a series: its own, or the one of its name's or element's number.
+    fn series_color(&self, k: usize) -> String {
+        let e = &self.scene.elements[k];
+        let own = match e.shape {
+            Shape::Line(_) => e.style.stroke.as_ref(),
+            _ => e.style.fill.as_ref().or(e.style.stroke.as_ref()),
+        };
+        if let Some(paint) = own {
+            return self.color(paint);
+        }
+        let number = match &e.name {
+            Some(name) => self.names.iter().position(|n| n == name).unwrap_or(0),
+            None => {
+                let chart = |e: &&Element| matches!(e.shape, Shape::Line(_) | Shape::Bars(_));
+                self.scene.elements[..k].iter().filter(chart).count()
+            }
+        };
+        color::series(number).into()
+    }
+
+    fn point(&self, p: [f64; 2]) -> Option<(f64, f64)> {
+        if !p.iter().all(|&v| visible(v)) {
+            return None;
+        }
+        let q = (self.x.at(p[0]), self.y.at(p[1]));
+        (q.0.is_finite() && q.1.is_finite()).then_some(q)
+    }
+
+    fn pixels(&self, ps: &[[f64; 2]]) -> Vec<(f64, f64)> {
+        ps.iter().filter_map(|&p| self.point(p)).collect()
+    }
+
+    fn points(&self, ps: &[[f64; 2]]) -> String {
+        let mut text = String::new();
+        for (x, y) in self.pixels(ps) {
+            let gap = if text.is_empty() { "" } else { " " };
+            let _ = write!(text, "{gap}{},{}", Px(x), Px(y));
+        }
+        text
+    }
+
+    /// Opens a group with these attributes, unless it is open already.
+    fn enter(&mut self, attributes: String) {
+        if self.group.as_ref() != Some(&attributes) {
+            self.close_group();
+            let _ = writeln!(self.out, "  <g{attributes}>");
+            self.group = Some(attributes);
+        }
+    }
+
+    fn close_group(&mut self) {
+        if self.group.take().is_some() {
+            self.out.push_str("  </g>\n");
+        }
+    }
+
+    fn element(&mut self, k: usize) {
+        let scene = self.scene;
+        let e = &scene.elements[k];
+        match &e.shape {
+            Shape::Polygon(ps) => {
+                let fill = e
+                    .style
+                    .fill
+                    .as_ref()
+                    .map_or("#dde3ea".into(), |p| self.color(p));
+                let attributes = self.attributes(&e.style, &fill, INK, 1.0, "round");
+                let points = self.points(ps);
+                if !points.is_empty() {
+                    self.enter(attributes);
+                    let _ = writeln!(self.out, "    <polygon points=\"{points}\"/>");
+                }
+            }
+            Shape::Polyline(ps) => {
+                let fill = e
+                    .style
+                    .fill
+                    .as_ref()
+                    .map_or("none".into(), |p| self.color(p));
+                let attributes = self.attributes(&e.style, &fill, INK, 1.5, "round");
+                self.polyline(ps, attributes);
+            }
+            Shape::Line(ps) => {
+                let stroke = self.series_color(k);
+                let attributes = self.attributes(
+                    &Style {
+                        stroke: Some(Paint::Color(stroke)),
+                        ..e.style.clone()
+                    },
+                    "none",
+                    INK,
+                    2.0,
+                    "round",
+                );
+                self.polyline(ps, attributes);
+            }
+            Shape::Points(ps) => {
+                let fill = match (&e.style.fill, &e.name) {
+                    (None, Some(_)) => self.series_color(k),
+                    (fill, _) => fill.as_ref().map_or(INK.into(), |p| self.color(p)),
+                };
+                let stroke = if e.style.stroke.is_some() {
+                    INK
+                } else {
+                    "none"
+                };
+                let attributes = self.attributes(&e.style, &fill, stroke, 1.0, "round");
+                self.enter(attributes);
+                let r = Px(e.style.size.unwrap_or(6.0) / 2.0);
+                for (x, y) in self.pixels(ps) {
+                    let (x, y) = (Px(x), Px(y));
+                    let _ = writeln!(self.out, "    <circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\"/>");
+                }
+            }
+            Shape::Arrow(from, by) => self.arrow(*from, *by, &e.style),
+            Shape::Text(at, text, anchor) => self.text(*at, text, *anchor, &e.style),
+            Shape::Bars(ps) => self.bars(k, ps),
+        }
+    }
+
+    fn attributes(
+        &self,
+        style: &Style,
+        fill: &str,
+        stroke: &str,
+        width: f64,
+        join: &str,
+    ) -> String {
+        let stroke = style
+            .stroke
+            .as_ref()
+            .map_or(stroke.into(), |p| self.color(p));
+        let mut a = format!(" fill=\"{fill}\"");
+        if stroke == "none" {
+            a.push_str(" stroke=\"none\"");
+        } else {
+            let width = Px(style.width.unwrap_or(width).max(0.0));
+            let _ = write!(
+                a,
+                " stroke=\"{stroke}\" stroke-width=\"{width}\" stroke-linejoin=\"{join}\""
+            );
+            if fill == "none" {
+                a.push_str(" stroke-linecap=\"round\"");
+            }
+            let dash: Vec<String> = style
+                .dash
+                .iter()
+                .map(|&d| Px(d.max(0.0)).to_string())
+                .collect();
+            if !dash.is_empty() {
+                let _ = write!(a, " stroke-dasharray=\"{}\"", dash.join(" "));
+            }
+        }
+        if let Some(o) = style.opacity.filter(|o| *o < 1.0) {
+            let _ = write!(a, " opacity=\"{}\"", Px(o.clamp(0.0, 1.0)));
+        }
+        a
+    }
+
+    /// A line in as many pieces as the points that are not finite make of it.
+    fn polyline(&mut self, ps: &[[f64; 2]], attributes: String) {
+        for piece in ps.split(|p| !p.iter().all(|&v| visible(v))) {
+            let points = self.points(piece);
+            if points.contains(' ') {
+                self.enter(attributes.clone());
+                let _ = writeln!(self.out, "    <polyline points=\"{points}\"/>");
+            }
+        }
+    }
+
+    fn arrow(&mut self, from: [f64; 2], by: [f64; 2], style: &Style) {
+        let to = [from[0] + by[0], from[1] + by[1]];
+        let (Some((x0, y0)), Some((x1, y1))) = (self.point(from), self.point(to)) else {
+            return;
+        };
+        let length = (x1 - x0).hypot(y1 - y0);
+        if length < 0.05 {
+            return;
+        }
+        let width = style.width.unwrap_or(1.5);
+        let head = (6.0 + 1.5 * width).min(0.6 * length);
+        let (ux, uy) = ((x1 - x0) / length, (y1 - y0) / length);
+        let (bx, by) = (x1 - head * ux, y1 - head * uy);
+        let half = 0.4 * head;
+        let color = style.stroke.as_ref().map_or(INK.into(), |p| self.color(p));
+        let attributes = self.attributes(style, &color, INK, 1.5, "miter");
+        self.enter(attributes);
+        let _ = writeln!(
+            self.out,
+            "    <path d=\"M{},{} L{},{}\"/><path stroke=\"none\" d=\"M{},{} L{},{} L{},{} Z\"/>",
+            Px(x0),
+            Px(y0),
+            Px(bx),
+            Px(by),
+            Px(x1),
+            Px(y1),
+            Px(bx - half * uy),
+            Px(by + half * ux),
+            Px(bx + half * uy),
+            Px(by - half * ux)
+        );
+    }
+
+    fn text(&mut self, at: [f64; 2], text: &str, anchor: Anchor, style: &Style) {
+        let Some((x, y)) = self.point(at) else { return };
+        let size = style.size.unwrap_or(12.0);
+        let paint = style.fill.as_ref().or(style.stroke.as_ref());
+        let color = paint.map_or(INK.into(), |p| self.color(p));
+        let anchor = match anchor {
+            Anchor::Start => "start",
+            Anchor::Middle => "middle",
+            Anchor::End => "end",
+        };
+        // A soft white outline keeps a text readable on any colour.
+        let mut a = format!(
+            " fill=\"{color}\" stroke=\"white\" stroke-width=\"2.5\" stroke-opacity=\"0.6\" \
+             stroke-linejoin=\"round\" paint-order=\"stroke\" font-size=\"{}\" text-anchor=\"{anchor}\"",
+            Px(size)
+        );
+        if let Some(o) = style.opacity.filter(|o| *o < 1.0) {
+            let _ = write!(a, " opacity=\"{}\"", Px(o.clamp(0.0, 1.0)));
+        }
+        self.enter(a);
+        // The middle of small letters stands at the point.
+        let (x, y) = (Px(x), Px(y + 0.35 * size));
+        let _ = writeln!(
+            self.out,
+            "    <text x=\"{x}\" y=\"{y}\">{}</text>",
+            escape(text)
+        );
+    }
+
+    fn bars(&mut self, k: usize, ps: &[[f64; 2]]) {
+        let bars = |e: &Element| matches!(e.shape, Shape::Bars(_));
+        let count = self.scene.elements.iter().filter(|e| bars(e)).count() as f64;
+        let place = self.scene.elements[..k].iter().filter(|e| bars(e)).count() as f64;
+        let unit = (self.x.at(1.0) - self.x.at(0.0)).abs();
+        let slot = 0.76 * unit / count;
+        let fill = self.series_color(k);
+        let style = &self.scene.elements[k].style;
+        let stroke = if style.stroke.is_some() { INK } else { "none" };
+        let attributes = self.attributes(style, &fill, stroke, 1.0, "miter");
+        self.enter(attributes);
+        let base = self.y.at(0.0f64.clamp(self.y.range[0], self.y.range[1]));
+        let base = if base.is_finite() {
+            base
+        } else {
+            self.y.pixels[0]
+        };
+        for (x, y) in self.pixels(ps) {
+            let left = x + slot * (place - count / 2.0) + 0.04 * slot;
+            let _ = writeln!(
+                self.out,
+                "    <rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>",
+                Px(left),
+                Px(y.min(base)),
+                Px(0.92 * slot),
+                Px((y - base).abs())
+            );
+        }
+    }
+
+    fn legend(&mut self, rows: &[Vec<(usize, f64)>], top: f64) {
+        for (r, row) in rows.iter().enumerate() {
+            let y = top + 20.0 * r as f64 + 8.0;
+            for &(k, offset) in row {
+                let name = self.names[k];
+                let Some(number) = self
+                    .scene
+                    .elements
+                    .iter()
+                    .position(|e| e.name.as_deref() == Some(name))
+                else {
+                    continue;
+                };
+                let e = &self.scene.elements[number];
+                let x = MARGIN + offset;
+                let color = match e.shape {
+                    Shape::Polygon(_) => e
+                        .style
+                        .fill
+                        .as_ref()
+                        .map_or("#dde3ea".into(), |p| self.color(p)),
+                    Shape::Polyline(_) | Shape::Arrow(..) => e
+                        .style
+                        .stroke
+                        .as_ref()
+                        .map_or(INK.into(), |p| self.color(p)),
+                    _ => self.series_color(number),
+                };
+                let line = matches!(
+                    e.shape,
+                    Shape::Line(_) | Shape::Polyline(_) | Shape::Arrow(..)
+                );
+                let _ = if line {
+                    let width = Px(e.style.width.unwrap_or(2.0));
+                    writeln!(
+                        self.out,
+                        "  <line x1=\"{}\" y1=\"{y}\" x2=\"{}\" y2=\"{y}\" stroke=\"{color}\" stroke-width=\"{width}\"/>",
+                        Px(x),
+                        Px(x + 18.0),
+                        y = Px(y)
+                    )
+                } else {
+                    writeln!(
+                        self.out,
+                        "  <rect x=\"{}\" y=\"{}\" width=\"12\" height=\"12\" rx=\"2\" fill=\"{color}\"/>",
+                        Px(x + 3.0),
+                        Px(y - 6.0)
+                    )
+                };
+                let _ = writeln!(
+                    self.out,
+                    "  <text x=\"{}\" y=\"{}\" fill=\"{INK}\">{}</text>",
+                    Px(x + 24.0),
+                    Px(y + 4.0),
+                    escape(name)
+                );
+            }
+        }
+    }
+
+    /// The colour scale, at the right of the plot.
+    fn color_legend(&mut self, x: f64) {
+        let Some([lo, hi]) = self.colors else { return };
+        let [bottom, top] = self.y.pixels;
+        let long = (bottom - top).min(220.0);
+        let middle = (bottom + top) / 2.0;
+        let (y0, y1) = (middle + long / 2.0, middle - long / 2.0);
+        self.out
+            .push_str("  <defs><linearGradient id=\"scale\" x1=\"0\" y1=\"1\" x2=\"0\" y2=\"0\">");
+        for k in 0..=8 {
+            let part = f64::from(k) / 8.0;
+            let _ = write!(
+                self.out,
+                "<stop offset=\"{}\" stop-color=\"{}\"/>",
+                part,
+                color::scale(part)
+            );
+        }
+        self.out.push_str("</linearGradient></defs>\n");
+        let _ = writeln!(
+            self.out,
+            "  <rect x=\"{}\" y=\"{}\" width=\"12\" height=\"{}\" fill=\"url(#scale)\"/>",
+            Px(x),
+            Px(y1),
+            Px(long)
+        );
+        let axis = Axis {
+            range: [lo, hi],
+            pixels: [y0, y1],
+            log: false,
+        };
+        let _ = writeln!(self.out, "  <g font-size=\"11\" fill=\"{QUIET}\">");
+        for (v, text) in tick_texts([lo, hi], false, 5.0) {
+            let y = Px(axis.at(v) + 4.0);
+            let _ = writeln!(
+                self.out,
+                "    <text x=\"{}\" y=\"{y}\">{text}</text>",
+                Px(x + 17.0)
+            );
+        }
+        if let Some(label) = &self.scene.scale_label {
+            let _ = writeln!(
+                self.out,
+                "    <text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>",
+                Px(x + 12.0 + 30.0),
+                Px(y1 - 9.0),
+                escape(label)
+            );
+        }
+        self.out.push_str("  </g>\n");
+    }
+}

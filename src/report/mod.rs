@@ -1,0 +1,3 @@
+//! What people see: figures, diagnostics, summaries, JSON, listings.
+
+pub mod figure;

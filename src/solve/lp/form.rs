@@ -1,0 +1,374 @@
+//! From an [`Instance`] to the form the linear solvers work on, and back.
+//!
+//! ```text
+//!     min  cᵀx + offset    subject to    L ≤ A x ≤ U,   l ≤ x ≤ u
+//! ```
+//!
+//! * A maximisation is the minimisation of −c.
+//! * The objective variable goes when it is free and stands in one row only, an equation
+//!   (`z =e= sum(…)`): its row becomes c. Nothing is lost: z is evaluated at the end. A bounded
+//!   objective variable, or one that other rows use, stays a column with cost ±1.
+//! * `=n=` rows and empty rows that hold anyway are left out; their marginal is 0.
+//! * Bounds of 1e30 and beyond count as infinite.
+//!
+//! Marginals come back with GAMS's signs, for min and max alike: the derivative of the objective
+//! with respect to the right-hand side (rows) or to the bound (columns).
+
+use crate::model::instance::{Instance, Relation, Sense};
+use crate::solve::SolveError;
+
+/// A sparse matrix in compressed form; "lines" are columns or rows.
+#[derive(Clone, Debug, Default)]
+pub struct Sparse {
+    /// Line k is `start[k]..start[k+1]`.
+    pub start: Vec<usize>,
+    /// Position within a line, increasing.
+    pub index: Vec<u32>,
+    /// Coefficients.
+    pub value: Vec<f64>,
+}
+
+impl Sparse {
+    /// A matrix without lines.
+    pub fn new() -> Self {
+        Self {
+            start: vec![0],
+            ..Self::default()
+        }
+    }
+
+    /// Appends a line.
+    pub fn push(&mut self, entries: impl IntoIterator<Item = (usize, f64)>) {
+        for (i, v) in entries {
+            self.index.push(i as u32);
+            self.value.push(v);
+        }
+        self.start.push(self.index.len());
+    }
+
+    /// Entries of a line.
+    #[inline]
+    pub fn line(&self, k: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let r = self.start[k]..self.start[k + 1];
+        self.index[r.clone()]
+            .iter()
+            .map(|&i| i as usize)
+            .zip(self.value[r].iter().copied())
+    }
+
+    /// Number of lines.
+    pub fn lines(&self) -> usize {
+        self.start.len() - 1
+    }
+
+    /// The same matrix, compressed the other way; `width` is the number of positions.
+    pub fn transpose(&self, width: usize) -> Self {
+        let mut start = vec![0usize; width + 1];
+        for &i in &self.index {
+            start[i as usize + 1] += 1;
+        }
+        for k in 0..width {
+            start[k + 1] += start[k];
+        }
+        let mut next = start.clone();
+        let mut index = vec![0u32; self.index.len()];
+        let mut value = vec![0.0; self.value.len()];
+        for k in 0..self.lines() {
+            for (i, v) in self.line(k) {
+                index[next[i]] = k as u32;
+                value[next[i]] = v;
+                next[i] += 1;
+            }
+        }
+        Self {
+            start,
+            index,
+            value,
+        }
+    }
+}
+
+/// `min cᵀx + offset, L ≤ Ax ≤ U, l ≤ x ≤ u`, with A kept both ways.
+#[derive(Clone, Debug, Default)]
+pub struct Problem {
+    /// c.
+    pub cost: Vec<f64>,
+    /// l, −∞ allowed.
+    pub lower: Vec<f64>,
+    /// u, +∞ allowed.
+    pub upper: Vec<f64>,
+    /// L, −∞ allowed.
+    pub row_lower: Vec<f64>,
+    /// U, +∞ allowed.
+    pub row_upper: Vec<f64>,
+    /// A by columns.
+    pub columns: Sparse,
+    /// A by rows.
+    pub rows: Sparse,
+    /// Constant of the objective.
+    pub offset: f64,
+}
+
+impl Problem {
+    /// Number of columns.
+    pub fn n(&self) -> usize {
+        self.cost.len()
+    }
+
+    /// Number of rows.
+    pub fn m(&self) -> usize {
+        self.row_lower.len()
+    }
+}
+
+/// A point of a [`Problem`] with its multipliers.
+#[derive(Clone, Debug, Default)]
+pub struct Point {
+    /// x.
+    pub x: Vec<f64>,
+    /// y, the derivative of the minimum with respect to the active side of each row.
+    pub y: Vec<f64>,
+    /// d = c − Aᵀy.
+    pub d: Vec<f64>,
+}
+
+/// The row that defines the eliminated objective variable.
+#[derive(Clone, Copy, Debug)]
+struct Definition {
+    row: usize,
+    column: usize,
+    coefficient: f64,
+}
+
+/// How a [`Problem`] was made from an instance.
+#[derive(Clone, Debug)]
+pub struct Form {
+    /// The problem.
+    pub problem: Problem,
+    /// Instance column of each column.
+    pub columns: Vec<u32>,
+    /// Instance row of each row.
+    pub rows: Vec<u32>,
+    /// Multiply the problem's objective and marginals by this to get the instance's.
+    pub sign: f64,
+    definition: Option<Definition>,
+    instance_rows: usize,
+    instance_columns: usize,
+}
+
+/// Bounds from here on are infinite.
+const BIG: f64 = 1e30;
+
+fn fail(message: String, row: Option<usize>, column: Option<usize>) -> SolveError {
+    SolveError {
+        message,
+        row,
+        column,
+    }
+}
+
+/// Checks what every solver relies on: shapes, order and range of indices, finite data, bounds
+/// that do not cross. A solver given anything else may return nonsense without a word (Clarabel
+/// does for NaN, infinities and unsorted columns).
+pub fn validate(instance: &Instance) -> Result<(), SolveError> {
+    let (m, n) = (instance.row_count(), instance.column_count());
+    let matrix = &instance.matrix;
+    let shapes = instance.columns.upper.len() == n
+        && instance.rows.relation.len() == m
+        && (matrix.start.len() == m + 1 || (m == 0 && matrix.start.is_empty()))
+        && matrix.column.len() == matrix.value.len()
+        && matrix.start.last().copied().unwrap_or(0) == matrix.value.len();
+    if !shapes {
+        return Err(fail(
+            "the generated model is inconsistent (please report this)".into(),
+            None,
+            None,
+        ));
+    }
+    for j in 0..n {
+        let (l, u) = (instance.columns.lower[j], instance.columns.upper[j]);
+        if l.is_nan() || u.is_nan() {
+            return Err(fail("a bound is not a number".into(), None, Some(j)));
+        }
+        if l > u {
+            let message = format!("the lower bound {l} is greater than the upper bound {u}");
+            return Err(fail(message, None, Some(j)));
+        }
+        if l == f64::INFINITY || u == f64::NEG_INFINITY {
+            let message = "the lower bound is +INF or the upper bound is -INF".into();
+            return Err(fail(message, None, Some(j)));
+        }
+    }
+    for i in 0..m {
+        let rhs = instance.rows.rhs[i];
+        if !rhs.is_finite() {
+            let message = format!("the constant of the row is {rhs}, not a finite number");
+            return Err(fail(message, Some(i), None));
+        }
+        if matrix.start[i] > matrix.start[i + 1] {
+            return Err(fail("the row is inconsistent".into(), Some(i), None));
+        }
+        let mut last = None;
+        for (j, v) in matrix.row(i) {
+            if j >= n || last.is_some_and(|k| k >= j) {
+                return Err(fail("the row is inconsistent".into(), Some(i), None));
+            }
+            if !v.is_finite() {
+                let message = format!("the coefficient is {v}, not a finite number");
+                return Err(fail(message, Some(i), Some(j)));
+            }
+            last = Some(j);
+        }
+    }
+    Ok(())
+}
+
+impl Form {
+    /// Checks an instance and brings it into the solvers' form.
+    pub fn new(instance: &Instance) -> Result<Self, SolveError> {
+        validate(instance)?;
+        let (m, n) = (instance.row_count(), instance.column_count());
+        let infinite = |b: f64| {
+            if b >= BIG {
+                f64::INFINITY
+            } else if b <= -BIG {
+                f64::NEG_INFINITY
+            } else {
+                b
+            }
+        };
+        let sign = match instance.objective {
+            Some(o) if o.sense == Sense::Maximize => -1.0,
+            _ => 1.0,
+        };
+        let definition = definition(instance);
+        let mut number = vec![u32::MAX; n];
+        let mut columns = Vec::with_capacity(n);
+        let mut problem = Problem::default();
+        for (j, number) in number.iter_mut().enumerate() {
+            if definition.is_some_and(|d| d.column == j) {
+                continue;
+            }
+            *number = columns.len() as u32;
+            columns.push(j as u32);
+            problem.lower.push(infinite(instance.columns.lower[j]));
+            problem.upper.push(infinite(instance.columns.upper[j]));
+        }
+        problem.cost = vec![0.0; columns.len()];
+        let mut rows = Vec::with_capacity(m);
+        problem.rows = Sparse::new();
+        for i in 0..m {
+            let rhs = instance.rows.rhs[i];
+            if let Some(d) = definition.filter(|d| d.row == i) {
+                problem.offset = sign * rhs / d.coefficient;
+                for (j, v) in instance.matrix.row(i).filter(|&(j, _)| j != d.column) {
+                    problem.cost[number[j] as usize] = -sign * v / d.coefficient;
+                }
+                continue;
+            }
+            let (lo, hi) = match instance.rows.relation[i] {
+                Relation::Equal => (rhs, rhs),
+                Relation::Greater => (rhs, f64::INFINITY),
+                Relation::Less => (f64::NEG_INFINITY, rhs),
+                Relation::Free => continue,
+            };
+            let empty = instance.matrix.start[i] == instance.matrix.start[i + 1];
+            if empty && lo <= 0.0 && hi >= 0.0 {
+                continue;
+            }
+            rows.push(i as u32);
+            problem.row_lower.push(lo);
+            problem.row_upper.push(hi);
+            problem
+                .rows
+                .push(instance.matrix.row(i).map(|(j, v)| (number[j] as usize, v)));
+        }
+        if let (Some(o), None) = (instance.objective, definition) {
+            problem.cost[number[o.column as usize] as usize] = sign;
+        }
+        problem.columns = problem.rows.transpose(columns.len());
+        Ok(Self {
+            problem,
+            columns,
+            rows,
+            sign,
+            definition,
+            instance_rows: m,
+            instance_columns: n,
+        })
+    }
+
+    /// Levels, row marginals and column marginals of the instance for a point of the problem.
+    pub fn point(&self, instance: &Instance, p: &Point) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
+        let mut level = vec![0.0; self.instance_columns];
+        let mut reduced = vec![0.0; self.instance_columns];
+        let mut marginal = vec![0.0; self.instance_rows];
+        for (k, &j) in self.columns.iter().enumerate() {
+            level[j as usize] = p.x[k];
+            reduced[j as usize] = self.sign * p.d[k] + 0.0;
+        }
+        for (k, &i) in self.rows.iter().enumerate() {
+            marginal[i as usize] = self.sign * p.y[k] + 0.0;
+        }
+        if let Some(d) = self.definition {
+            level[d.column] = self.defined(instance, d, &level, instance.rows.rhs[d.row]);
+            marginal[d.row] = 1.0 / d.coefficient;
+        }
+        (level, marginal, reduced)
+    }
+
+    /// A direction of the instance's columns for one of the problem's.
+    pub fn direction(&self, instance: &Instance, x: &[f64]) -> Vec<f64> {
+        let mut ray = vec![0.0; self.instance_columns];
+        for (k, &j) in self.columns.iter().enumerate() {
+            ray[j as usize] = x[k];
+        }
+        if let Some(d) = self.definition {
+            ray[d.column] = self.defined(instance, d, &ray, 0.0);
+        }
+        ray
+    }
+
+    /// Multipliers of the instance's rows for those of the problem (a proof of infeasibility).
+    pub fn multipliers(&self, y: &[f64]) -> Vec<f64> {
+        let mut ray = vec![0.0; self.instance_rows];
+        for (k, &i) in self.rows.iter().enumerate() {
+            ray[i as usize] = y[k];
+        }
+        ray
+    }
+
+    fn defined(&self, instance: &Instance, d: Definition, x: &[f64], rhs: f64) -> f64 {
+        let others = instance.matrix.row(d.row).filter(|&(j, _)| j != d.column);
+        (rhs - others.map(|(j, v)| v * x[j]).sum::<f64>()) / d.coefficient
+    }
+}
+
+/// The one equation in which a free objective variable stands, if that is all it does.
+fn definition(instance: &Instance) -> Option<Definition> {
+    let column = instance.objective?.column as usize;
+    let bounded = instance.columns.lower[column] > -BIG || instance.columns.upper[column] < BIG;
+    if bounded {
+        return None;
+    }
+    let matrix = &instance.matrix;
+    let mut places = (0..instance.row_count()).filter_map(|i| {
+        let r = matrix.start[i]..matrix.start[i + 1];
+        let k = matrix.column[r.clone()]
+            .binary_search(&(column as u32))
+            .ok()?;
+        Some((i, matrix.value[r.start + k]))
+    });
+    let (row, coefficient) = places.next()?;
+    if places.next().is_some()
+        || instance.rows.relation[row] != Relation::Equal
+        || coefficient == 0.0
+    {
+        return None;
+    }
+    Some(Definition {
+        row,
+        column,
+        coefficient,
+    })
+}

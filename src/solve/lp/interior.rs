@@ -1,0 +1,241 @@
+//! The interior-point method: Clarabel on a scaled [`Problem`].
+//!
+//! Clarabel solves `min ½xᵀPx + qᵀx, Ax + s = b, s ∈ K` with multipliers z ∈ K*, q + Aᵀz = 0. Here
+//! P = 0 and K is a zero cone (equations) followed by a nonnegative orthant (sides of rows, then
+//! bounds). Fixed columns are left out. With y the derivative of the optimum with respect to a
+//! row's side: y = −z for an equation and an upper side, +z for a lower side; likewise for d.
+//!
+//! Clarabel trusts its input: a problem comes from [`super::form`], which has checked it.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{
+    DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, SupportedConeT,
+    ZeroConeT,
+};
+
+use super::form::{Point, Problem, Sparse};
+use super::{Ended, Limits};
+
+/// What one run gave.
+#[derive(Debug)]
+pub struct Run {
+    /// Last iterate; for a proof of infeasibility or unboundedness see `ended`.
+    pub point: Point,
+    /// How it ended.
+    pub ended: Ended,
+    /// Iterations.
+    pub iterations: u64,
+    /// Clarabel met its own tolerance only in a reduced form.
+    pub almost: bool,
+}
+
+/// One inequality or equation of Clarabel's.
+#[derive(Clone, Copy)]
+enum Source {
+    /// Row i, `A x = U`.
+    Equation(usize),
+    /// Row i, `A x ≤ U`.
+    RowUpper(usize),
+    /// Row i, `−A x ≤ −L`.
+    RowLower(usize),
+    /// Column j, `x ≤ u`.
+    Upper(usize),
+    /// Column j, `−x ≤ −l`.
+    Lower(usize),
+}
+
+/// Runs Clarabel. `interrupted` is asked every few milliseconds.
+pub fn solve(
+    p: &Problem,
+    tolerance: f64,
+    limits: &Limits,
+    interrupted: &mut dyn FnMut() -> bool,
+) -> Run {
+    let fixed: Vec<bool> = (0..p.n()).map(|j| p.lower[j] == p.upper[j]).collect();
+    let number: Vec<usize> = fixed
+        .iter()
+        .scan(0, |next, &f| {
+            let k = *next;
+            *next += usize::from(!f);
+            Some(k)
+        })
+        .collect();
+    let free = fixed.iter().filter(|&&f| !f).count();
+    let q: Vec<f64> = (0..p.n())
+        .filter(|&j| !fixed[j])
+        .map(|j| p.cost[j])
+        .collect();
+    let sources = sources(p, &fixed);
+    let equations = sources
+        .iter()
+        .take_while(|s| matches!(s, Source::Equation(_)))
+        .count();
+    let (matrix, b) = stack(p, &sources, &fixed, &number);
+    let by_column = matrix.transpose(free);
+    let a = CscMatrix::new(
+        sources.len(),
+        free,
+        by_column.start,
+        by_column.index.iter().map(|&i| i as usize).collect(),
+        by_column.value,
+    );
+    let cones: Vec<SupportedConeT<f64>> = [
+        ZeroConeT(equations),
+        NonnegativeConeT(sources.len() - equations),
+    ]
+    .into_iter()
+    .filter(|c| !matches!(c, ZeroConeT(0) | NonnegativeConeT(0)))
+    .collect();
+    let settings = DefaultSettings {
+        verbose: false,
+        max_iter: u32::try_from(limits.iterations.min(500)).unwrap_or(500),
+        time_limit: limits.seconds_left(),
+        tol_gap_abs: tolerance,
+        tol_gap_rel: tolerance,
+        tol_feas: tolerance,
+        direct_solve_method: "qdldl".into(),
+        max_threads: 1,
+        // Clarabel's own presolve drops rows with |b| ≥ 1e20; infinite sides are not sent.
+        presolve_enable: false,
+        ..DefaultSettings::default()
+    };
+    let stop = Arc::new(AtomicBool::new(false));
+    let objective = CscMatrix::zeros((free, free));
+    let run = || {
+        let mut solver = DefaultSolver::new(&objective, &q, &a, &b, &cones, settings).ok()?;
+        let flag = Arc::clone(&stop);
+        solver.set_termination_callback(move |_: &_| flag.load(Ordering::Relaxed));
+        solver.solve();
+        Some(solver.solution)
+    };
+    // Clarabel's callback must own what it sees, so the monitor is asked from this thread.
+    let solution = std::thread::scope(|scope| {
+        let worker = scope.spawn(run);
+        let start = Instant::now();
+        while !worker.is_finished() {
+            let pause = start.elapsed().as_micros() as u64 / 16;
+            std::thread::park_timeout(Duration::from_micros(pause.clamp(20, 20_000)));
+            if interrupted() {
+                stop.store(true, Ordering::Relaxed);
+            }
+        }
+        worker.join().ok().flatten()
+    });
+    let mut point = Point {
+        x: (0..p.n())
+            .map(|j| if fixed[j] { p.lower[j] } else { 0.0 })
+            .collect(),
+        y: vec![0.0; p.m()],
+        d: vec![0.0; p.n()],
+    };
+    let Some(solution) = solution else {
+        return Run {
+            point,
+            ended: Ended::Failed,
+            iterations: 0,
+            almost: false,
+        };
+    };
+    let iterations = u64::from(solution.iterations);
+    if !solution.x.iter().chain(&solution.z).all(|v| v.is_finite()) {
+        return Run {
+            point,
+            ended: Ended::Failed,
+            iterations,
+            almost: false,
+        };
+    }
+    for j in (0..p.n()).filter(|&j| !fixed[j]) {
+        point.x[j] = solution.x[number[j]];
+    }
+    for (&source, &z) in sources.iter().zip(&solution.z) {
+        match source {
+            Source::Equation(i) | Source::RowUpper(i) => point.y[i] -= z,
+            Source::RowLower(i) => point.y[i] += z,
+            Source::Upper(_) | Source::Lower(_) => {}
+        }
+    }
+    let (ended, almost) = match solution.status {
+        SolverStatus::Solved => (Ended::Solved, false),
+        SolverStatus::AlmostSolved => (Ended::Solved, true),
+        SolverStatus::PrimalInfeasible => (Ended::Infeasible(point.y.clone()), false),
+        SolverStatus::AlmostPrimalInfeasible => (Ended::Infeasible(point.y.clone()), true),
+        SolverStatus::DualInfeasible | SolverStatus::AlmostDualInfeasible => {
+            let mut ray = point.x.clone();
+            (0..p.n()).filter(|&j| fixed[j]).for_each(|j| ray[j] = 0.0);
+            let almost = solution.status == SolverStatus::AlmostDualInfeasible;
+            (Ended::Unbounded(ray), almost)
+        }
+        SolverStatus::MaxIterations => (Ended::Iterations, false),
+        SolverStatus::MaxTime => (Ended::Time, false),
+        SolverStatus::CallbackTerminated => (Ended::Interrupted, false),
+        SolverStatus::Unsolved
+        | SolverStatus::NumericalError
+        | SolverStatus::InsufficientProgress => (Ended::Failed, false),
+    };
+    for j in 0..p.n() {
+        point.d[j] = p.cost[j] - p.columns.line(j).map(|(i, a)| a * point.y[i]).sum::<f64>();
+    }
+    Run {
+        point,
+        ended,
+        iterations,
+        almost,
+    }
+}
+
+/// The constraints in the order of Clarabel's cones.
+fn sources(p: &Problem, fixed: &[bool]) -> Vec<Source> {
+    let mut s: Vec<Source> = (0..p.m())
+        .filter(|&i| p.row_lower[i] == p.row_upper[i])
+        .map(Source::Equation)
+        .collect();
+    for i in (0..p.m()).filter(|&i| p.row_lower[i] != p.row_upper[i]) {
+        if p.row_upper[i].is_finite() {
+            s.push(Source::RowUpper(i));
+        }
+        if p.row_lower[i].is_finite() {
+            s.push(Source::RowLower(i));
+        }
+    }
+    for j in (0..p.n()).filter(|&j| !fixed[j]) {
+        if p.upper[j].is_finite() {
+            s.push(Source::Upper(j));
+        }
+        if p.lower[j].is_finite() {
+            s.push(Source::Lower(j));
+        }
+    }
+    s
+}
+
+/// Rows and right-hand sides of Clarabel's constraints, fixed columns moved to the right.
+fn stack(p: &Problem, sources: &[Source], fixed: &[bool], number: &[usize]) -> (Sparse, Vec<f64>) {
+    let mut matrix = Sparse::new();
+    let mut b = Vec::with_capacity(sources.len());
+    for &source in sources {
+        let (i, sign, side) = match source {
+            Source::Equation(i) | Source::RowUpper(i) => (i, 1.0, p.row_upper[i]),
+            Source::RowLower(i) => (i, -1.0, -p.row_lower[i]),
+            Source::Upper(j) => {
+                matrix.push([(number[j], 1.0)]);
+                b.push(p.upper[j]);
+                continue;
+            }
+            Source::Lower(j) => {
+                matrix.push([(number[j], -1.0)]);
+                b.push(-p.lower[j]);
+                continue;
+            }
+        };
+        let moved = p.rows.line(i).filter(|&(j, _)| fixed[j]);
+        b.push(side - sign * moved.map(|(j, v)| v * p.lower[j]).sum::<f64>());
+        let kept = p.rows.line(i).filter(|&(j, _)| !fixed[j]);
+        matrix.push(kept.map(|(j, v)| (number[j], sign * v)));
+    }
+    (matrix, b)
+}

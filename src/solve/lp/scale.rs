@@ -1,0 +1,142 @@
+//! Scaling of a [`Problem`]: x = C x', rows R A C, one factor for right-hand sides and bounds and
+//! one for costs.
+//!
+//! All factors are powers of two, so scaling and unscaling are exact: the scaled problem *is* the
+//! problem, in other units. Rows and columns are brought near 1 by a few sweeps of geometric means
+//! and a last one by the largest entry of each column (Tomlin 1975).
+
+use super::form::{Point, Problem};
+
+/// Factors of a scaling.
+#[derive(Clone, Debug)]
+pub struct Scaling {
+    /// Row factors R.
+    pub row: Vec<f64>,
+    /// Column factors C: x = C x' · `size`.
+    pub column: Vec<f64>,
+    /// Unit of right-hand sides and bounds.
+    pub size: f64,
+    /// Unit of costs.
+    pub price: f64,
+}
+
+/// The power of two nearest to `x` (in ratio); 1 for 0 and for what is not finite.
+fn power_of_two(x: f64) -> f64 {
+    if x > 0.0 && x.is_finite() {
+        2f64.powi((x.log2().round() as i32).clamp(-500, 500))
+    } else {
+        1.0
+    }
+}
+
+/// Geometric mean of the nonzero finite magnitudes, 1 if there are none.
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (mut sum, mut count) = (0.0, 0usize);
+    for v in values.map(f64::abs) {
+        if v > 0.0 && v.is_finite() {
+            sum += v.log2();
+            count += 1;
+        }
+    }
+    if count == 0 {
+        1.0
+    } else {
+        (sum / count as f64).exp2()
+    }
+}
+
+impl Scaling {
+    /// Chooses factors for a problem.
+    pub fn new(p: &Problem) -> Self {
+        let mut row = vec![1.0; p.m()];
+        let mut column = vec![1.0; p.n()];
+        for _ in 0..4 {
+            for (i, r) in row.iter_mut().enumerate() {
+                *r = 1.0 / extremes(p.rows.line(i).map(|(j, v)| v * column[j]));
+            }
+            for (j, c) in column.iter_mut().enumerate() {
+                *c = 1.0 / extremes(p.columns.line(j).map(|(i, v)| v * row[i]));
+            }
+        }
+        row.iter_mut().for_each(|r| *r = power_of_two(*r));
+        for (j, c) in column.iter_mut().enumerate() {
+            let largest = p.columns.line(j).map(|(i, v)| (v * row[i]).abs());
+            *c = match largest.fold(0.0, f64::max) {
+                0.0 => 1.0,
+                v => power_of_two(1.0 / v),
+            };
+        }
+        let bounds = p.lower.iter().chain(&p.upper).zip(column.iter().cycle());
+        let bounds = bounds.map(|(&b, &c)| b / c);
+        let sides = p
+            .row_lower
+            .iter()
+            .chain(&p.row_upper)
+            .zip(row.iter().cycle());
+        let sides = sides.map(|(&b, &r)| b * r);
+        let size = power_of_two(mean(bounds.chain(sides)));
+        let price = power_of_two(mean(p.cost.iter().zip(&column).map(|(&q, &c)| q * c)));
+        Self {
+            row,
+            column,
+            size,
+            price,
+        }
+    }
+
+    /// The problem in the new units.
+    pub fn apply(&self, p: &Problem) -> Problem {
+        let mut s = p.clone();
+        for (j, &c) in self.column.iter().enumerate() {
+            s.cost[j] *= c / self.price;
+            s.lower[j] /= c * self.size;
+            s.upper[j] /= c * self.size;
+            for k in s.columns.start[j]..s.columns.start[j + 1] {
+                s.columns.value[k] *= c * self.row[s.columns.index[k] as usize];
+            }
+        }
+        for (i, &r) in self.row.iter().enumerate() {
+            s.row_lower[i] *= r / self.size;
+            s.row_upper[i] *= r / self.size;
+            for k in s.rows.start[i]..s.rows.start[i + 1] {
+                s.rows.value[k] *= r * self.column[s.rows.index[k] as usize];
+            }
+        }
+        s.offset /= self.price * self.size;
+        s
+    }
+
+    /// A point in the old units.
+    pub fn restore(&self, mut p: Point) -> Point {
+        for (x, &c) in p.x.iter_mut().zip(&self.column) {
+            *x *= c * self.size;
+        }
+        for (d, &c) in p.d.iter_mut().zip(&self.column) {
+            *d *= self.price / c;
+        }
+        for (y, &r) in p.y.iter_mut().zip(&self.row) {
+            *y *= self.price * r;
+        }
+        p
+    }
+
+    /// A direction of columns in the old units.
+    pub fn restore_direction(&self, x: &mut [f64]) {
+        x.iter_mut().zip(&self.column).for_each(|(x, &c)| *x *= c);
+    }
+
+    /// Row multipliers of a proof of infeasibility in the old units.
+    pub fn restore_multipliers(&self, y: &mut [f64]) {
+        y.iter_mut().zip(&self.row).for_each(|(y, &r)| *y *= r);
+    }
+}
+
+/// √(smallest · largest) of the nonzero magnitudes, 1 if there are none.
+fn extremes(values: impl Iterator<Item = f64>) -> f64 {
+    let (mut low, mut high) = (f64::INFINITY, 0.0f64);
+    for v in values.map(f64::abs).filter(|&v| v > 0.0) {
+        low = low.min(v);
+        high = high.max(v);
+    }
+    if high > 0.0 { (low * high).sqrt() } else { 1.0 }
+}

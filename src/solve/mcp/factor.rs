@@ -1,0 +1,188 @@
+//! Sparse LU factorisations of Newton systems, each checked by its residual.
+//!
+//! `faer`'s LU (COLAMD ordering, partial pivoting, supernodal where that pays) reports structural
+//! singularity only; a numerically singular matrix gives factors full of infinities, or of
+//! rounding errors. So every solution is refined, and one whose residual is not small against
+//! the right-hand side counts as a singular matrix.
+
+use faer::linalg::solvers::Solve;
+use faer::sparse::linalg::solvers::Lu;
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use feral::SparseColMatrix;
+
+/// A matrix and its LU factors.
+pub(super) struct Factor {
+    matrix: SparseColMatrix,
+    lu: Lu<usize, f64>,
+}
+
+/// Residual, relative to the right-hand side, above which a solution is not one.
+const RESIDUAL_TOLERANCE: f64 = 1e-6;
+
+impl Factor {
+    /// Factorises; None if singular or not finite.
+    pub(super) fn new(matrix: SparseColMatrix) -> Option<Factor> {
+        // A non-finite entry must not reach the factorisation, which compares magnitudes.
+        if matrix.m == 0 || matrix.values.iter().any(|v| !v.is_finite()) {
+            return None;
+        }
+        let lu = {
+            let m = matrix.m;
+            let pattern =
+                SymbolicSparseColMatRef::new_checked(m, m, &matrix.col_ptr, None, &matrix.row_idx);
+            SparseColMatRef::new(pattern, &matrix.values).sp_lu().ok()?
+        };
+        Some(Factor { matrix, lu })
+    }
+
+    fn solve_once(&self, b: &mut [f64]) {
+        self.lu.solve_in_place(faer::ColMut::from_slice_mut(b));
+    }
+
+    /// Solves A x = b; None if the solution does not satisfy the system.
+    pub(super) fn solve(&mut self, b: &[f64]) -> Option<Vec<f64>> {
+        let mut x = b.to_vec();
+        self.solve_once(&mut x);
+        let mut residual = vec![0.0; b.len()];
+        let norm = b.iter().fold(0.0f64, |a, v| a.max(v.abs()));
+        for step in 0..3 {
+            self.matrix.matvec(&x, &mut residual);
+            let mut worst = 0.0f64;
+            for (r, b) in residual.iter_mut().zip(b) {
+                *r = b - *r;
+                worst = if r.is_nan() {
+                    f64::INFINITY
+                } else {
+                    worst.max(r.abs())
+                };
+            }
+            if !worst.is_finite() {
+                return None;
+            }
+            if worst <= 1e-14 * norm {
+                return Some(x);
+            }
+            if step == 2 {
+                return (worst <= RESIDUAL_TOLERANCE * norm).then_some(x);
+            }
+            self.solve_once(&mut residual);
+            x.iter_mut().zip(&residual).for_each(|(x, d)| *x += d);
+        }
+        unreachable!("the loop returns in its last step")
+    }
+}
+
+/// Builds a matrix from columns given as (row, value) lists.
+pub(super) struct Builder {
+    matrix: SparseColMatrix,
+}
+
+impl Builder {
+    /// An m × m matrix without columns yet.
+    pub(super) fn new(m: usize) -> Self {
+        let mut col_ptr = Vec::with_capacity(m + 1);
+        col_ptr.push(0);
+        Builder {
+            matrix: SparseColMatrix {
+                m,
+                col_ptr,
+                row_idx: Vec::new(),
+                values: Vec::new(),
+            },
+        }
+    }
+
+    /// Adds an entry to the column under construction; rows must come in increasing order.
+    pub(super) fn push(&mut self, row: usize, value: f64) {
+        self.matrix.row_idx.push(row);
+        self.matrix.values.push(value);
+    }
+
+    /// Ends the column.
+    pub(super) fn end_column(&mut self) {
+        self.matrix.col_ptr.push(self.matrix.row_idx.len());
+    }
+
+    /// The matrix; all m columns must have been ended.
+    pub(super) fn finish(self) -> SparseColMatrix {
+        debug_assert_eq!(self.matrix.col_ptr.len(), self.matrix.m + 1);
+        self.matrix
+    }
+}
+
+/// A + v·I. The pattern of A need not contain the diagonal.
+pub(super) fn shifted(a: &SparseColMatrix, v: f64) -> SparseColMatrix {
+    combine(a, |_| v, |_| 1.0)
+}
+
+/// Diagonal(da) + Diagonal(db)·A.
+pub(super) fn combine(
+    a: &SparseColMatrix,
+    da: impl Fn(usize) -> f64,
+    db: impl Fn(usize) -> f64,
+) -> SparseColMatrix {
+    let mut b = Builder::new(a.m);
+    for j in 0..a.m {
+        let (rows, values) = a.column(j);
+        let mut diagonal = Some(da(j)).filter(|d| *d != 0.0);
+        for (&i, &v) in rows.iter().zip(values) {
+            if i >= j
+                && let Some(d) = diagonal.take()
+            {
+                if i == j {
+                    b.push(i, d + db(i) * v);
+                    continue;
+                }
+                b.push(j, d);
+            }
+            b.push(i, db(i) * v);
+        }
+        if let Some(d) = diagonal {
+            b.push(j, d);
+        }
+        b.end_column();
+    }
+    b.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn diagonal_is_added_where_the_pattern_lacks_it() {
+        let a = SparseColMatrix {
+            m: 3,
+            col_ptr: vec![0, 2, 3, 4],
+            row_idx: vec![1, 2, 1, 0],
+            values: vec![5.0, 6.0, 7.0, 8.0],
+        };
+        let b = shifted(&a, 2.0);
+        let mut y = vec![0.0; 3];
+        b.matvec(&[1.0, 10.0, 100.0], &mut y);
+        assert_eq!(y, [2.0 + 800.0, 5.0 + 70.0 + 20.0, 6.0 + 200.0]);
+        assert!(b.validate().is_ok());
+    }
+
+    #[test]
+    fn singular_matrices_are_noticed() {
+        // Rank one, and its perturbation by rounding.
+        for epsilon in [0.0, 1e-17] {
+            let a = SparseColMatrix {
+                m: 2,
+                col_ptr: vec![0, 2, 4],
+                row_idx: vec![0, 1, 0, 1],
+                values: vec![1.0, 2.0, 2.0, 4.0 + epsilon],
+            };
+            let solved = Factor::new(a).and_then(|mut f| f.solve(&[1.0, 0.0]));
+            assert!(solved.is_none());
+        }
+        let nan = SparseColMatrix {
+            m: 1,
+            col_ptr: vec![0, 1],
+            row_idx: vec![0],
+            values: vec![f64::NAN],
+        };
+        assert!(Factor::new(nan).is_none());
+    }
+}

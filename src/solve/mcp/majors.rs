@@ -1,0 +1,529 @@
+//! The main method: a stabilised Newton method whose steps are paths.
+//!
+//! Each *major iteration* linearises F and solves the linear problem with [`path`](super::path).
+//! A step to its solution is accepted
+//!
+//! - as **M** if Ψ falls below a nonmonotone reference (the largest of the last ten accepted values),
+//!   which moves the *checkpoint*;
+//! - as **O**, without any test, at most ten times in a row (the *watchdog*): on the way to a
+//!   solution Ψ often has to rise;
+//! - otherwise the run goes back to the checkpoint and searches along its direction (**B**), and if
+//!   that gives nothing takes a projected gradient step from the best point (**G**).
+//!
+//! If the linear problem has no solution, a *proximal term* v·(y − x) is added to F, first small,
+//! then larger. With it every linear problem tends to have a solution, of length 1/v if it stands
+//! for a ray; such a solution is only taken in reserve.
+
+use feral::SparseColMatrix;
+
+use super::crash::{active_set, crash};
+use super::factor::shifted;
+use super::log;
+use super::merit::{Phi, natural_residual};
+use super::path::{Kind, LinearProblem, PathEnd, PathResult, Start, follow};
+use super::run::{End, Point, Run, Stop};
+
+/// Armijo constant of the M test and of the line search.
+const ARMIJO: f64 = 1e-4;
+/// A ray is worth a step if t got this far.
+const RAY_MIN: f64 = 1e-2;
+/// Gradient steps before the run is called stuck.
+const GRADIENT_LIMIT: usize = 6;
+
+/// Runs crash (if `with_crash`) and major iterations from `start`.
+pub(super) fn majors(run: &mut Run, start: Point, with_crash: bool) -> Result<End, Stop> {
+    let mut history = vec![start.merit];
+    let first = start.clone();
+    let mut point = start;
+    if with_crash && !run.converged(point.residual) {
+        point = crash(run, point, &mut history)?;
+    }
+    if run.converged(first.residual) {
+        point = first;
+    }
+    Majors::new(run, point, history).run(run)
+}
+
+/// A point to go back to, and the direction that was taken from it.
+struct Checkpoint {
+    point: Point,
+    direction: Option<Vec<f64>>,
+}
+
+/// The next point, found on the path or otherwise.
+struct Candidate {
+    y: Vec<f64>,
+    end: PathEnd,
+    t: f64,
+    /// Final state of the path, a warm start if it was solved.
+    kind: Option<Vec<Kind>>,
+    prox: f64,
+}
+
+struct Majors {
+    point: Point,
+    checkpoint: Checkpoint,
+    best: Point,
+    history: Vec<f64>,
+    prox: f64,
+    warm: Option<Vec<Kind>>,
+    untested: usize,
+    gradient_steps: usize,
+    seed: u64,
+}
+
+impl Majors {
+    fn new(run: &Run, point: Point, history: Vec<f64>) -> Self {
+        Majors {
+            checkpoint: Checkpoint {
+                point: point.clone(),
+                direction: None,
+            },
+            best: point.clone(),
+            point,
+            history,
+            prox: run.settings.proximal_perturbation,
+            warm: None,
+            untested: 0,
+            gradient_steps: 0,
+            seed: 1,
+        }
+    }
+
+    fn reference(&self, run: &Run) -> f64 {
+        let memory = run.settings.nms_memory_size.max(1);
+        self.history
+            .iter()
+            .rev()
+            .take(memory)
+            .fold(0.0, |a, &b| f64::max(a, b))
+    }
+
+    fn run(mut self, run: &mut Run) -> Result<End, Stop> {
+        log::major_header(run, &self.point);
+        // One more iteration after convergence: Newton's method doubles the digits.
+        let mut polish = false;
+        for _ in 0..run.settings.major_iteration_limit {
+            if run.converged(self.point.residual) {
+                if polish
+                    || self.point.residual <= 1e-12 * run.settings.convergence_tolerance / 1e-8
+                {
+                    return Ok(End::Solved);
+                }
+                polish = true;
+            }
+            run.check()?;
+            let Some(jacobian) = run.jacobian(&self.point.x) else {
+                if polish {
+                    return Ok(End::Solved);
+                }
+                if !self.back(run, None)? {
+                    return Ok(End::Stuck);
+                }
+                continue;
+            };
+            run.majors += 1;
+            let pivots = run.pivots;
+            let (candidate, tries) = self.linear_solution(run, &jacobian)?;
+            if polish {
+                // The point is good already: keep the step only if it is better.
+                if let Some(candidate) = candidate
+                    && let Some(next) = run.point(candidate.y)
+                {
+                    let kept = if next.residual < self.point.residual {
+                        'M'
+                    } else {
+                        '-'
+                    };
+                    log::major_line(
+                        run,
+                        &next,
+                        run.pivots - pivots,
+                        candidate.end,
+                        candidate.t,
+                        candidate.prox,
+                        1.0,
+                        kept,
+                        tries,
+                    );
+                }
+                return Ok(End::Solved);
+            }
+            let Some(candidate) = candidate else {
+                log::major_line(
+                    run,
+                    &self.point.clone(),
+                    run.pivots - pivots,
+                    PathEnd::Numerical,
+                    0.0,
+                    self.prox,
+                    0.0,
+                    '-',
+                    tries,
+                );
+                if !self.back(run, Some(&jacobian))? {
+                    return Ok(End::Stuck);
+                }
+                continue;
+            };
+            if !self.accept(run, candidate, &jacobian, run.pivots - pivots, tries)? {
+                return Ok(End::Stuck);
+            }
+        }
+        Ok(if run.converged(self.point.residual) {
+            End::Solved
+        } else {
+            End::Limit
+        })
+    }
+
+    /// Tries proximal terms and starting states until the linear problem is solved.
+    fn linear_solution(
+        &mut self,
+        run: &mut Run,
+        jacobian: &SparseColMatrix,
+    ) -> Result<(Option<Candidate>, usize), Stop> {
+        let r = (2.0 * self.point.merit).sqrt();
+        let mut prox = vec![self.prox];
+        for v in [
+            (1e-3 * r.min(1.0)).max(10.0 * self.prox),
+            (0.1 * r.min(1.0)).max(100.0 * self.prox),
+            1.0,
+            10.0,
+        ] {
+            if v > *prox.last().unwrap_or(&0.0) {
+                prox.push(v);
+            }
+        }
+        let limit = match run.settings.minor_iteration_limit {
+            0 => (3 * run.n).clamp(100, 1500).max(run.n),
+            given => given,
+        };
+        let (mut reserve, mut ray): (Option<Candidate>, Option<Candidate>) = (None, None);
+        let mut tries = 0;
+        for (level, &v) in prox.iter().enumerate() {
+            let m = if v > 0.0 {
+                shifted(jacobian, v)
+            } else {
+                jacobian.clone()
+            };
+            let mut q = vec![0.0; run.n];
+            m.matvec(&self.point.x, &mut q);
+            q.iter_mut()
+                .zip(&self.point.f)
+                .for_each(|(q, f)| *q = f - *q);
+            if m.values.iter().chain(&q).any(|v| !v.is_finite()) {
+                continue;
+            }
+            for start in self.starts(run, level) {
+                tries += 1;
+                self.seed += 1;
+                let (lower, upper) = (run.lower.clone(), run.upper.clone());
+                let linear = LinearProblem {
+                    m: &m,
+                    q: &q,
+                    lower: &lower,
+                    upper: &upper,
+                };
+                let PathResult {
+                    mut end,
+                    x,
+                    t,
+                    kind,
+                    pivots,
+                } = follow(run, &linear, &start, limit, self.seed)?;
+                if end == PathEnd::Solved && !solves(&linear, &x) {
+                    end = PathEnd::Numerical;
+                }
+                log::try_line(run, end, t, v, pivots, start.cover);
+                match end {
+                    PathEnd::Solved => {
+                        let length = x
+                            .iter()
+                            .zip(&self.point.x)
+                            .map(|(a, b)| (a - b).powi(2))
+                            .sum::<f64>()
+                            .sqrt();
+                        let found = Candidate {
+                            y: x,
+                            end,
+                            t: 1.0,
+                            kind: Some(kind),
+                            prox: v,
+                        };
+                        if v == 0.0 || v * length <= 0.7 * r {
+                            return Ok((Some(found), tries));
+                        }
+                        if reserve.is_none() {
+                            reserve = Some(found);
+                        }
+                    }
+                    PathEnd::Ray | PathEnd::Limit | PathEnd::Numerical | PathEnd::Loop => {
+                        let better =
+                            t > RAY_MIN && t <= 1.0 && ray.as_ref().is_none_or(|r| t > r.t);
+                        if better && x.iter().all(|v| v.is_finite()) {
+                            ray = Some(Candidate {
+                                y: x,
+                                end,
+                                t,
+                                kind: None,
+                                prox: v,
+                            });
+                        }
+                    }
+                    PathEnd::Singular => {}
+                }
+            }
+        }
+        Ok((reserve.or(ray), tries))
+    }
+
+    /// Starting states for the path, the likeliest first.
+    fn starts(&self, run: &Run, level: usize) -> Vec<Start> {
+        let x = &self.point.x;
+        let mut starts = Vec::new();
+        let near = match &self.warm {
+            Some(kind) => kind.clone(),
+            None => active_set(x, &self.point.f, &run.lower, &run.upper)
+                .iter()
+                .map(|s| match s {
+                    -1 => Kind::AtLower,
+                    1 => Kind::AtUpper,
+                    _ => Kind::Between,
+                })
+                .collect(),
+        };
+        starts.push(Start {
+            kind: near.clone(),
+            x: x.clone(),
+            cover: false,
+        });
+        if level == 0 {
+            // The state of the normal map's variable z = x − F.
+            let kind: Vec<Kind> = (0..run.n)
+                .map(|i| {
+                    let z = x[i] - self.point.f[i];
+                    if z <= run.lower[i] {
+                        Kind::AtLower
+                    } else if z >= run.upper[i] {
+                        Kind::AtUpper
+                    } else {
+                        Kind::Between
+                    }
+                })
+                .collect();
+            if kind != near {
+                starts.push(Start {
+                    kind,
+                    x: x.clone(),
+                    cover: false,
+                });
+            }
+        }
+        if level <= 1 {
+            let kind = (0..run.n)
+                .map(|i| {
+                    if run.lower[i].is_finite() {
+                        Kind::AtLower
+                    } else if run.upper[i].is_finite() {
+                        Kind::AtUpper
+                    } else {
+                        Kind::Between
+                    }
+                })
+                .collect();
+            starts.push(Start {
+                kind,
+                x: x.clone(),
+                cover: true,
+            });
+        }
+        starts
+    }
+
+    /// Takes the step to the candidate, or another one. False if there is none.
+    fn accept(
+        &mut self,
+        run: &mut Run,
+        candidate: Candidate,
+        jacobian: &SparseColMatrix,
+        pivots: usize,
+        tries: usize,
+    ) -> Result<bool, Stop> {
+        let reference = self.reference(run);
+        let direction: Vec<f64> = candidate
+            .y
+            .iter()
+            .zip(&self.point.x)
+            .map(|(y, x)| y - x)
+            .collect();
+        if self.checkpoint.direction.is_none() {
+            self.checkpoint.direction = Some(direction);
+        }
+        let (end, t, prox) = (candidate.end, candidate.t, candidate.prox);
+        let next = run.point(candidate.y);
+        if let Some(next) = next {
+            let monotone = next.merit <= (1.0 - ARMIJO) * reference;
+            let watched = (end == PathEnd::Solved || t > 0.3)
+                && self.untested < run.settings.watchdog_limit
+                && next.merit <= 1e8 * reference;
+            if monotone || watched {
+                let kind = if monotone { 'M' } else { 'O' };
+                log::major_line(run, &next, pivots, end, t, prox, 1.0, kind, tries);
+                self.warm = candidate.kind;
+                self.point = next;
+                if self.point.residual < self.best.residual {
+                    self.best = self.point.clone();
+                }
+                if monotone {
+                    self.new_checkpoint();
+                    self.gradient_steps = 0;
+                } else {
+                    self.untested += 1;
+                }
+                let cap = 1e-2 * (2.0 * self.point.merit).sqrt();
+                self.prox = (0.4 * prox.max(self.prox)).min(cap);
+                if self.prox < 1e-12 {
+                    self.prox = 0.0;
+                }
+                return Ok(true);
+            }
+        }
+        log::major_line(
+            run,
+            &self.point.clone(),
+            pivots,
+            end,
+            t,
+            prox,
+            0.0,
+            '-',
+            tries,
+        );
+        self.back(run, Some(jacobian))
+    }
+
+    fn new_checkpoint(&mut self) {
+        self.history.push(self.point.merit);
+        self.checkpoint = Checkpoint {
+            point: self.point.clone(),
+            direction: None,
+        };
+        self.untested = 0;
+    }
+
+    /// Back to the checkpoint: line search along its direction, else a gradient step.
+    fn back(&mut self, run: &mut Run, jacobian: Option<&SparseColMatrix>) -> Result<bool, Stop> {
+        self.warm = None;
+        let reference = self.reference(run);
+        if let Some(direction) = self.checkpoint.direction.take() {
+            let mut step = 0.5;
+            while step >= 1e-3 {
+                let mut x: Vec<f64> = self
+                    .checkpoint
+                    .point
+                    .x
+                    .iter()
+                    .zip(&direction)
+                    .map(|(x, d)| x + step * d)
+                    .collect();
+                run.clip(&mut x);
+                if let Some(next) = run.point(x)
+                    && next.merit <= (1.0 - ARMIJO * step) * reference
+                {
+                    log::step_line(run, &next, step, 'B');
+                    self.point = next;
+                    self.new_checkpoint();
+                    return Ok(true);
+                }
+                step *= 0.5;
+            }
+        }
+        self.gradient_step(run, jacobian)
+    }
+
+    /// A step on the projected gradient arc of Ψ from the best point.
+    fn gradient_step(
+        &mut self,
+        run: &mut Run,
+        jacobian: Option<&SparseColMatrix>,
+    ) -> Result<bool, Stop> {
+        if self.gradient_steps >= GRADIENT_LIMIT {
+            return Ok(false);
+        }
+        self.gradient_steps += 1;
+        let from = self.best.clone();
+        let jacobian = match jacobian {
+            Some(j) if from.x == self.point.x => Some(j.clone()),
+            _ => run.jacobian(&from.x),
+        };
+        let Some(jacobian) = jacobian else {
+            return Ok(false);
+        };
+        let gradient = merit_gradient(run, Phi::PLAIN, &from, &jacobian);
+        let norm = gradient.iter().map(|g| g * g).sum::<f64>().sqrt();
+        if !(norm.is_finite() && norm > 0.0) {
+            return Ok(false);
+        }
+        let mut step = 1.0;
+        while step > 1e-12 {
+            let mut x: Vec<f64> = from
+                .x
+                .iter()
+                .zip(&gradient)
+                .map(|(x, g)| x - step * g)
+                .collect();
+            run.clip(&mut x);
+            let fall: f64 = x
+                .iter()
+                .zip(&from.x)
+                .zip(&gradient)
+                .map(|((y, x), g)| (x - y) * g)
+                .sum();
+            if let Some(next) = run.point(x)
+                && next.merit <= from.merit - ARMIJO * fall
+                && fall > 0.0
+            {
+                log::step_line(run, &next, step, 'G');
+                self.point = next;
+                if self.point.residual < self.best.residual {
+                    self.best = self.point.clone();
+                }
+                self.new_checkpoint();
+                return Ok(true);
+            }
+            step *= 0.3;
+        }
+        Ok(false)
+    }
+}
+
+/// Gradient of ½‖Φ‖²: DaΦ + Jᵀ(DbΦ).
+pub(super) fn merit_gradient(
+    run: &Run,
+    phi: Phi,
+    point: &Point,
+    jacobian: &SparseColMatrix,
+) -> Vec<f64> {
+    let n = run.n;
+    let (mut along_x, mut along_f) = (vec![0.0; n], vec![0.0; n]);
+    for i in 0..n {
+        let value = phi.pair(point.x[i], point.f[i], run.lower[i], run.upper[i]);
+        let (a, b) = phi.pair_slopes(point.x[i], point.f[i], run.lower[i], run.upper[i]);
+        along_x[i] = a * value;
+        along_f[i] = b * value;
+    }
+    let mut gradient = vec![0.0; n];
+    jacobian.matvec_transpose(&along_f, &mut gradient);
+    gradient.iter_mut().zip(&along_x).for_each(|(g, a)| *g += a);
+    gradient
+}
+
+/// Whether y solves the linear problem, to a tolerance that says the path did not lie.
+fn solves(linear: &LinearProblem, y: &[f64]) -> bool {
+    let mut f = vec![0.0; y.len()];
+    linear.m.matvec(y, &mut f);
+    f.iter_mut().zip(linear.q).for_each(|(f, q)| *f += q);
+    let scale = y.iter().fold(1.0f64, |a, v| a.max(v.abs()));
+    natural_residual(y, &f, linear.lower, linear.upper).0 <= 1e-6 * scale
+}

@@ -1,0 +1,231 @@
+//! Mixed complementarity problems, in the manner of PATH.
+//!
+//! Given F: ℝⁿ → ℝⁿ and bounds l ≤ u (infinite ones allowed), find x with l ≤ x ≤ u and, for
+//! every i, one of
+//!
+//! ```text
+//! xᵢ = lᵢ and Fᵢ(x) ≥ 0,     lᵢ < xᵢ < uᵢ and Fᵢ(x) = 0,     xᵢ = uᵢ and Fᵢ(x) ≤ 0,
+//! ```
+//!
+//! that is x = mid(l, u, x − F(x)); the distance max |x − mid(l, u, x − F(x))| is the *natural
+//! residual* and decides what this module calls solved.
+//!
+//! The method is that of Dirkse & Ferris (1995): a stabilised Newton method on the nonsmooth
+//! equation of the problem, whose subproblem, the linear MCP of the linearised F, is solved by
+//! following a piecewise linear path with Lemke-type pivots ([`path`]). Around it: a presolve
+//! ([`presolve`]), a crash by projected Newton steps ([`crash`]), a watchdog on the
+//! Fischer–Burmeister merit function ([`majors`], [`merit`]), and, where the path fails, the
+//! smoothing ([`smoothing`]) and semismooth ([`semismooth`]) Newton methods of the literature.
+//! [`portfolio`] says in which order. Sources:
+//!
+//! - S. P. Dirkse, M. C. Ferris: The PATH solver, a non-monotone stabilization scheme for mixed
+//!   complementarity problems. Optimization Methods and Software 5 (1995).
+//! - M. C. Ferris, T. S. Munson: Complementarity problems in GAMS and the PATH solver. Journal of
+//!   Economic Dynamics and Control 24 (2000).
+//! - T. De Luca, F. Facchinei, C. Kanzow: A semismooth equation approach to the solution of
+//!   nonlinear complementarity problems. Mathematical Programming 75 (1996).
+//! - B. Chen, X. Chen, C. Kanzow: A penalized Fischer–Burmeister NCP-function. Mathematical
+//!   Programming 88 (2000).
+//!
+//! The module knows numbers only: no names, no language. It is deterministic: the random numbers
+//! it needs come from fixed seeds, and no decision depends on the clock but the time limit.
+
+mod basis;
+mod crash;
+mod factor;
+mod log;
+mod majors;
+mod merit;
+mod path;
+mod portfolio;
+mod presolve;
+mod random;
+mod run;
+mod semismooth;
+mod smoothing;
+
+pub use merit::natural_residual;
+
+/// min. description: find l ≤ x ≤ u with x = mid(l, u, x − F(x)).
+pub trait Problem {
+    /// Number of variables, and of rows.
+    fn n(&self) -> usize;
+    /// Lower bounds, one per variable; −∞ allowed (−1e20 and less counts as −∞).
+    fn lower(&self) -> &[f64];
+    /// Upper bounds, one per variable; +∞ allowed (1e20 and more counts as +∞).
+    fn upper(&self) -> &[f64];
+    /// Where to start; need not lie within the bounds.
+    fn start(&self) -> &[f64];
+    /// Jacobian pattern, compressed by columns: (column starts, n + 1 of them; row indices), the
+    /// rows sorted within each column.
+    fn pattern(&self) -> (&[usize], &[usize]);
+    /// F(x) into `f`; an error if a function cannot be evaluated there.
+    fn function(&mut self, x: &[f64], f: &mut [f64]) -> Result<(), EvalError>;
+    /// Values of the Jacobian at x, in pattern order.
+    fn jacobian(&mut self, x: &[f64], values: &mut [f64]) -> Result<(), EvalError>;
+    /// True when F is affine: one linearisation is exact.
+    fn is_linear(&self) -> bool;
+    /// True when the Jacobian entry at position `k` of the pattern is the same for every x. Lets the
+    /// presolve use single linear rows of nonlinear problems.
+    fn is_constant(&self, _k: usize) -> bool {
+        self.is_linear()
+    }
+}
+
+/// A function or derivative that cannot be evaluated at a point.
+#[derive(Debug, Clone)]
+pub struct EvalError {
+    /// The row it belongs to, if known.
+    pub row: Option<usize>,
+    /// What went wrong.
+    pub message: String,
+}
+
+/// What the solver may spend and how exact it shall be. Names are PATH's where the meaning is.
+#[derive(Debug, Clone)]
+pub struct Settings {
+    /// Natural residual at which the problem is solved; one more major iteration is then made and
+    /// kept if it lowers the residual. Default 1e-8.
+    pub convergence_tolerance: f64,
+    /// Natural residual still called solved when no method gets below `convergence_tolerance`
+    /// (singular, degenerate solutions). Default 1e-6, PATH's convergence tolerance.
+    pub acceptable_tolerance: f64,
+    /// Whether the projected Newton crash is made before the first major iteration. Default true
+    /// (PATH: `crash_method pnewton`; false: `none`).
+    pub crash_method: bool,
+    /// Crash iterations at most. Default 50.
+    pub crash_iteration_limit: usize,
+    /// Major iterations at most, per run of the main method. Default 120.
+    pub major_iteration_limit: usize,
+    /// Pivots at most over all runs. Default 10 million.
+    pub cumulative_iteration_limit: usize,
+    /// Pivots at most per linear subproblem; 0 chooses by size. Default 0.
+    pub minor_iteration_limit: usize,
+    /// Proximal term the first major iteration starts with. Default 0: it comes into play only when
+    /// a linear subproblem without it has no solution.
+    pub proximal_perturbation: f64,
+    /// Full steps accepted in a row without a test on the merit function. Default 10.
+    pub watchdog_limit: usize,
+    /// Memory of the nonmonotone reference value. Default 10.
+    pub nms_memory_size: usize,
+    /// Random restarts, after all methods failed from the given start. Default 6.
+    pub restart_limit: usize,
+    /// Wall-clock seconds. Default 1000.
+    pub time_limit: f64,
+    /// Whether simple rows are turned into bounds and fixed variables removed first. Default true.
+    pub preprocess: bool,
+    /// Whether the other methods are tried when the main one fails. Default true.
+    pub fallbacks: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Settings {
+            convergence_tolerance: 1e-8,
+            acceptable_tolerance: 1e-6,
+            crash_method: true,
+            crash_iteration_limit: 50,
+            major_iteration_limit: 120,
+            cumulative_iteration_limit: 10_000_000,
+            minor_iteration_limit: 0,
+            proximal_perturbation: 0.0,
+            watchdog_limit: 10,
+            nms_memory_size: 10,
+            restart_limit: 6,
+            time_limit: 1000.0,
+            preprocess: true,
+            fallbacks: true,
+        }
+    }
+}
+
+/// How a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Status {
+    /// The natural residual of the returned point, from a fresh F(x) on the given problem, is
+    /// within tolerance.
+    Solved,
+    /// A limit on iterations or pivots ended the run.
+    IterationLimit,
+    /// The time limit ended the run.
+    TimeLimit,
+    /// The monitor asked to stop.
+    Interrupted,
+    /// All methods from all starts failed. No proof that there is no solution.
+    NoSolution,
+    /// F or its Jacobian cannot be evaluated at any starting point tried.
+    EvaluationFailed,
+    /// A lower bound lies above the upper one, or a bound is not a number.
+    InvalidBounds,
+    /// The problem's arrays contradict each other (lengths, pattern not sorted, index out of range).
+    InvalidProblem,
+}
+
+/// What [`solve`] returns.
+#[derive(Debug, Clone)]
+pub struct Outcome {
+    /// How the run ended.
+    pub status: Status,
+    /// The point: the solution, or the best one seen (least natural residual).
+    pub x: Vec<f64>,
+    /// F at that point (NaN where it could not be evaluated).
+    pub f: Vec<f64>,
+    /// Natural residual there, unscaled; infinite if F could not be evaluated.
+    pub residual: f64,
+    /// Major iterations, over all methods.
+    pub majors: usize,
+    /// Pivots of the path (PATH: minor iterations).
+    pub pivots: usize,
+    /// Crash iterations.
+    pub crash_iterations: usize,
+    /// Factorisations of a matrix, all kinds.
+    pub factorisations: usize,
+    /// Restarts from random points.
+    pub restarts: usize,
+    /// Evaluations of F.
+    pub evaluations: usize,
+    /// The method that produced the point.
+    pub method: &'static str,
+    /// Why, for a status that wants an explanation; may be empty.
+    pub message: String,
+}
+
+/// Log lines and interruption.
+pub trait Monitor {
+    /// Takes one line of the log (without line end).
+    fn log(&mut self, line: &str);
+    /// Asked now and then; true ends the run with [`Status::Interrupted`].
+    fn interrupted(&mut self) -> bool;
+    /// False saves the work of composing log lines.
+    fn wants_log(&self) -> bool;
+    /// Name of row i and its variable, for the log.
+    fn name(&self, i: usize) -> String {
+        format!("{}", i + 1)
+    }
+}
+
+/// A monitor that wants nothing.
+#[derive(Debug, Default, Clone, Copy)]
+pub struct Silent;
+
+impl Monitor for Silent {
+    fn log(&mut self, _line: &str) {}
+    fn interrupted(&mut self) -> bool {
+        false
+    }
+    fn wants_log(&self) -> bool {
+        false
+    }
+}
+
+/// Bounds beyond this count as infinite, as in PATH and GAMS.
+const INFINITY: f64 = 1e20;
+
+/// Solves a mixed complementarity problem.
+///
+/// Never panics on numbers: bad bounds, functions undefined at the start, singular Jacobians and
+/// problems without a solution end in a [`Status`]. `Solved` is said only of a point whose natural
+/// residual was recomputed, on the problem as given, from a fresh F.
+pub fn solve(problem: &mut dyn Problem, settings: &Settings, monitor: &mut dyn Monitor) -> Outcome {
+    portfolio::solve(problem, settings, monitor)
+}

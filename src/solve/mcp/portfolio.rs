@@ -1,0 +1,336 @@
+//! The order of the methods, and the verdict.
+//!
+//! The main method first; the others fail on other problems than it does, which is what makes them
+//! good company: smoothing where the merit function has local minima, the semismooth method with
+//! two penalties, the main method without crash, and all of it again from random starts.
+
+use std::time::{Duration, Instant};
+
+use super::log;
+use super::majors::majors;
+use super::merit::natural_residual;
+use super::presolve::Reduced;
+use super::random::Random;
+use super::run::{End, Point, Run, Stop, bound};
+use super::semismooth::semismooth;
+use super::smoothing::smoothing;
+use super::{Monitor, Outcome, Problem, Settings, Status};
+
+/// A method of the portfolio.
+#[derive(Debug, Clone, Copy)]
+enum Method {
+    Path { crash: bool },
+    Smoothing,
+    Semismooth { lambda: f64, memory: usize },
+}
+
+impl Method {
+    fn name(self) -> &'static str {
+        match self {
+            Method::Path { crash: true } => "path",
+            Method::Path { crash: false } => "path without crash",
+            Method::Smoothing => "smoothing",
+            Method::Semismooth { .. } => "semismooth",
+        }
+    }
+
+    fn run(self, run: &mut Run, start: Point) -> Result<End, Stop> {
+        run.method = self.name();
+        match self {
+            Method::Path { crash } => majors(run, start, crash),
+            Method::Smoothing => smoothing(run, start),
+            Method::Semismooth { lambda, memory } => semismooth(run, start, lambda, memory),
+        }
+    }
+}
+
+/// See [`super::solve`].
+pub(super) fn solve(
+    problem: &mut dyn Problem,
+    settings: &Settings,
+    monitor: &mut dyn Monitor,
+) -> Outcome {
+    if let Some(outcome) = invalid(problem) {
+        return outcome;
+    }
+    let deadline = deadline(settings);
+    let mut reduced = Reduced::new(problem, settings.preprocess);
+    if monitor.wants_log() {
+        let line = format!(
+            "{} variables, {} nonzeros; after presolve {} (rows turned into bounds: {})",
+            reduced.total(),
+            reduced.total_nonzeros(),
+            reduced.kept.len(),
+            reduced.dropped()
+        );
+        monitor.log(&line);
+    }
+    let original = reduced.kept.clone();
+    let mut run = Run::new(&mut reduced, settings, &mut *monitor, deadline);
+    run.original = original;
+    let (end, restarts) = search(&mut run);
+    let mut outcome = Outcome {
+        status: Status::NoSolution,
+        x: Vec::new(),
+        f: Vec::new(),
+        residual: f64::INFINITY,
+        majors: run.majors,
+        pivots: run.pivots,
+        crash_iterations: run.crash_iterations,
+        factorisations: run.factorisations,
+        restarts,
+        evaluations: run.evaluations + 1,
+        method: run.best_method,
+        message: String::new(),
+    };
+    let evaluated = run.best.is_some();
+    let error = run.last_error.take();
+    let mut x = match run.best.take() {
+        Some(best) => best.x,
+        None => run.problem.start().to_vec(),
+    };
+    run.clip(&mut x);
+    let x = reduced.postsolve(&x);
+    drop(reduced);
+    judge(problem, x, settings, end, evaluated, &mut outcome);
+    if let (Some(error), true) = (error, outcome.status == Status::EvaluationFailed) {
+        let at = error
+            .row
+            .map_or(String::new(), |row| format!("row {}: ", monitor.name(row)));
+        outcome.message = format!("{at}{}", error.message);
+    }
+    if monitor.wants_log() {
+        let line = format!(
+            "{:?}: residual {:.2e}, method {}",
+            outcome.status, outcome.residual, outcome.method
+        );
+        monitor.log(&line);
+    }
+    outcome
+}
+
+fn deadline(settings: &Settings) -> Option<Instant> {
+    // Durations beyond a century overflow; they mean no limit.
+    let seconds = settings.time_limit;
+    (seconds < 3e9).then(|| Instant::now() + Duration::from_secs_f64(seconds.max(0.0)))
+}
+
+/// The verdict: a fresh F at x on the problem as given.
+fn judge(
+    problem: &mut dyn Problem,
+    x: Vec<f64>,
+    settings: &Settings,
+    end: Result<(), Stop>,
+    evaluated: bool,
+    outcome: &mut Outcome,
+) {
+    let mut f = vec![f64::NAN; x.len()];
+    if problem.function(&x, &mut f).is_ok() {
+        let lower: Vec<f64> = problem.lower().iter().map(|&b| bound(b)).collect();
+        let upper: Vec<f64> = problem.upper().iter().map(|&b| bound(b)).collect();
+        outcome.residual = natural_residual(&x, &f, &lower, &upper).0;
+    }
+    let tolerance = settings
+        .acceptable_tolerance
+        .max(settings.convergence_tolerance);
+    outcome.status = if outcome.residual <= tolerance {
+        Status::Solved
+    } else {
+        match end {
+            Err(Stop::Time) => Status::TimeLimit,
+            Err(Stop::Interrupted) => Status::Interrupted,
+            Err(Stop::Pivots) => Status::IterationLimit,
+            Ok(()) if !evaluated => Status::EvaluationFailed,
+            Ok(()) => Status::NoSolution,
+        }
+    };
+    (outcome.x, outcome.f) = (x, f);
+}
+
+/// Runs the methods until one succeeds; the best point is left in the run. Returns the restarts made.
+fn search(run: &mut Run) -> (Result<(), Stop>, usize) {
+    let mut restarts = 0;
+    let end = attempt(run, &mut restarts);
+    (end, restarts)
+}
+
+fn attempt(run: &mut Run, restarts: &mut usize) -> Result<(), Stop> {
+    if run.n == 0 {
+        run.point(Vec::new());
+        return Ok(());
+    }
+    run.check()?;
+    if let Some(start) = first_point(run) {
+        let methods = [
+            Method::Path {
+                crash: run.settings.crash_method,
+            },
+            Method::Smoothing,
+            Method::Semismooth {
+                lambda: 0.95,
+                memory: 8,
+            },
+            Method::Path {
+                crash: !run.settings.crash_method,
+            },
+            Method::Semismooth {
+                lambda: 0.8,
+                memory: 1,
+            },
+        ];
+        let count = if run.settings.fallbacks {
+            methods.len()
+        } else {
+            1
+        };
+        for method in &methods[..count] {
+            if succeeds(run, *method, start.clone())? {
+                return Ok(());
+            }
+        }
+    }
+    if !run.settings.fallbacks {
+        return Ok(());
+    }
+    let mut random = Random::new(20);
+    for k in 0..run.settings.restart_limit {
+        *restarts += 1;
+        let spread = 10f64.powf(random.between(-2.0, 1.0));
+        let x = random_point(run, &mut random, spread);
+        log::note(run, || format!("Restart {} from a random point", k + 1));
+        let Some(start) = run.point(x) else { continue };
+        for method in [
+            Method::Path { crash: true },
+            Method::Smoothing,
+            Method::Semismooth {
+                lambda: 0.95,
+                memory: 8,
+            },
+        ] {
+            if succeeds(run, method, start.clone())? {
+                return Ok(());
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Runs a method, and a last major iteration for full accuracy on what the others found.
+fn succeeds(run: &mut Run, method: Method, start: Point) -> Result<bool, Stop> {
+    method.run(run, start)?;
+    let Some(best) = run.best.clone() else {
+        return Ok(false);
+    };
+    if !run.converged(best.residual) {
+        return Ok(false);
+    }
+    if !matches!(method, Method::Path { .. }) {
+        let mut x = best.x;
+        run.clip(&mut x);
+        if let Some(point) = run.point(x)
+            && run.converged(point.residual)
+        {
+            majors(run, point, false)?;
+        }
+    }
+    Ok(true)
+}
+
+/// The start within the bounds, or a point near it where F is defined.
+fn first_point(run: &mut Run) -> Option<Point> {
+    let mut x = run.problem.start().to_vec();
+    // A start that is no number says nothing.
+    x.iter_mut()
+        .filter(|v| !v.is_finite())
+        .for_each(|v| *v = 0.0);
+    run.clip(&mut x);
+    let defined = |run: &mut Run, x: Vec<f64>| {
+        let point = run.point(x)?;
+        run.jacobian(&point.x).map(|_| point)
+    };
+    if let Some(point) = defined(run, x.clone()) {
+        return Some(point);
+    }
+    let mut random = Random::new(3);
+    for k in 0..8 {
+        let size = 10f64.powf(-3.0 + 0.5 * f64::from(k));
+        let mut y: Vec<f64> = x.iter().map(|x| x + size * random.uniform()).collect();
+        run.clip(&mut y);
+        if let Some(point) = defined(run, y) {
+            log::note(run, || {
+                "F is not defined at the start; starting near it".into()
+            });
+            return Some(point);
+        }
+    }
+    None
+}
+
+/// l + s·random where l is finite, u − s·random where only u is, else about the start.
+fn random_point(run: &Run, random: &mut Random, spread: f64) -> Vec<f64> {
+    let start = run.problem.start();
+    let mut x: Vec<f64> = (0..run.n)
+        .map(|i| {
+            let (l, u) = (run.lower[i], run.upper[i]);
+            if l.is_finite() {
+                l + spread * random.uniform()
+            } else if u.is_finite() {
+                u - spread * random.uniform()
+            } else {
+                start[i] + spread * random.between(-1.0, 1.0)
+            }
+        })
+        .collect();
+    run.clip(&mut x);
+    x
+}
+
+/// An outcome for problems that make no sense.
+fn invalid(problem: &mut dyn Problem) -> Option<Outcome> {
+    let n = problem.n();
+    let (start, rows) = problem.pattern();
+    let consistent = problem.lower().len() == n
+        && problem.upper().len() == n
+        && problem.start().len() == n
+        && start.len() == n + 1
+        && start.first() == Some(&0)
+        && start.last() == Some(&rows.len())
+        && start
+            .windows(2)
+            .all(|w| w[0] <= w[1] && rows[w[0]..w[1].max(w[0])].windows(2).all(|r| r[0] < r[1]))
+        && rows.iter().all(|&i| i < n);
+    let crossed = || {
+        (0..n).find(|&i| {
+            let (l, u) = (bound(problem.lower()[i]), bound(problem.upper()[i]));
+            l.is_nan() || u.is_nan() || l > u || l == f64::INFINITY || u == f64::NEG_INFINITY
+        })
+    };
+    let (status, message) = if !consistent {
+        (
+            Status::InvalidProblem,
+            "the problem's arrays contradict each other".to_string(),
+        )
+    } else if let Some(i) = crossed() {
+        let (l, u) = (problem.lower()[i], problem.upper()[i]);
+        (
+            Status::InvalidBounds,
+            format!("variable {}: lower bound {l} and upper bound {u}", i + 1),
+        )
+    } else {
+        return None;
+    };
+    Some(Outcome {
+        status,
+        x: problem.start().to_vec(),
+        f: vec![f64::NAN; n],
+        residual: f64::INFINITY,
+        majors: 0,
+        pivots: 0,
+        crash_iterations: 0,
+        factorisations: 0,
+        restarts: 0,
+        evaluations: 0,
+        method: "none",
+        message,
+    })
+}

@@ -1,0 +1,199 @@
+//! What all methods share during one call of the solver: the problem, its counted evaluations,
+//! the limits, the best point.
+
+use std::time::Instant;
+
+use feral::SparseColMatrix;
+
+use super::merit::natural_residual;
+use super::{EvalError, INFINITY, Monitor, Problem, Settings};
+
+/// Why a run must end now.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Stop {
+    Time,
+    Interrupted,
+    Pivots,
+}
+
+/// How a method ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum End {
+    /// The natural residual is within the convergence tolerance at the best point.
+    Solved,
+    /// No progress any more.
+    Stuck,
+    /// The method's iteration limit.
+    Limit,
+}
+
+/// A point with its function values.
+#[derive(Debug, Clone)]
+pub(super) struct Point {
+    pub(super) x: Vec<f64>,
+    pub(super) f: Vec<f64>,
+    /// Natural residual.
+    pub(super) residual: f64,
+    /// Where the natural residual is attained.
+    pub(super) worst: usize,
+    /// Ψ, plain Fischer–Burmeister.
+    pub(super) merit: f64,
+}
+
+/// One call of the solver.
+pub(super) struct Run<'a> {
+    pub(super) problem: &'a mut dyn Problem,
+    pub(super) settings: &'a Settings,
+    pub(super) monitor: &'a mut dyn Monitor,
+    pub(super) n: usize,
+    pub(super) lower: Vec<f64>,
+    pub(super) upper: Vec<f64>,
+    pub(super) majors: usize,
+    pub(super) pivots: usize,
+    pub(super) crash_iterations: usize,
+    pub(super) factorisations: usize,
+    pub(super) evaluations: usize,
+    /// The point of least natural residual so far.
+    pub(super) best: Option<Point>,
+    /// Method that found it.
+    pub(super) best_method: &'static str,
+    /// Method at work.
+    pub(super) method: &'static str,
+    /// The last failure to evaluate, for the message.
+    pub(super) last_error: Option<EvalError>,
+    /// Index of variable k in the problem as given, for names in the log.
+    pub(super) original: Vec<usize>,
+    deadline: Option<Instant>,
+}
+
+/// A bound with PATH's and GAMS's idea of infinity.
+pub(super) fn bound(b: f64) -> f64 {
+    if b >= INFINITY {
+        f64::INFINITY
+    } else if b <= -INFINITY {
+        f64::NEG_INFINITY
+    } else {
+        b
+    }
+}
+
+impl<'a> Run<'a> {
+    pub(super) fn new(
+        problem: &'a mut dyn Problem,
+        settings: &'a Settings,
+        monitor: &'a mut dyn Monitor,
+        deadline: Option<Instant>,
+    ) -> Self {
+        let n = problem.n();
+        let lower = problem.lower().iter().map(|&b| bound(b)).collect();
+        let upper = problem.upper().iter().map(|&b| bound(b)).collect();
+        Run {
+            problem,
+            settings,
+            monitor,
+            n,
+            lower,
+            upper,
+            majors: 0,
+            pivots: 0,
+            crash_iterations: 0,
+            factorisations: 0,
+            evaluations: 0,
+            best: None,
+            best_method: "none",
+            method: "none",
+            last_error: None,
+            original: (0..n).collect(),
+            deadline,
+        }
+    }
+
+    /// Time, interruption and the limit on pivots.
+    pub(super) fn check(&mut self) -> Result<(), Stop> {
+        if self.pivots >= self.settings.cumulative_iteration_limit {
+            return Err(Stop::Pivots);
+        }
+        if self.deadline.is_some_and(|d| Instant::now() >= d) {
+            return Err(Stop::Time);
+        }
+        if self.monitor.interrupted() {
+            return Err(Stop::Interrupted);
+        }
+        Ok(())
+    }
+
+    /// x clipped to the bounds.
+    pub(super) fn clip(&self, x: &mut [f64]) {
+        for (x, (&l, &u)) in x.iter_mut().zip(self.lower.iter().zip(&self.upper)) {
+            *x = x.max(l).min(u);
+        }
+    }
+
+    /// Evaluates F at x. None if that is not possible or a value is not finite.
+    ///
+    /// Keeps the best point of all.
+    pub(super) fn point(&mut self, x: Vec<f64>) -> Option<Point> {
+        if x.iter().any(|v| !v.is_finite()) {
+            return None;
+        }
+        let mut f = vec![0.0; self.n];
+        self.evaluations += 1;
+        if let Err(error) = self.problem.function(&x, &mut f) {
+            self.last_error = Some(error);
+            return None;
+        }
+        if let Some(row) = f.iter().position(|v| !v.is_finite()) {
+            self.last_error = Some(EvalError {
+                row: self.original.get(row).copied(),
+                message: "the function value is not finite".into(),
+            });
+            return None;
+        }
+        let (residual, worst) = natural_residual(&x, &f, &self.lower, &self.upper);
+        let merit = super::merit::Phi::PLAIN.merit(&x, &f, &self.lower, &self.upper);
+        let point = Point {
+            x,
+            f,
+            residual,
+            worst,
+            merit,
+        };
+        if self
+            .best
+            .as_ref()
+            .is_none_or(|b| point.residual < b.residual)
+        {
+            self.best = Some(point.clone());
+            self.best_method = self.method;
+        }
+        Some(point)
+    }
+
+    /// The Jacobian at x, or None where it cannot be evaluated.
+    pub(super) fn jacobian(&mut self, x: &[f64]) -> Option<SparseColMatrix> {
+        let (start, rows) = self.problem.pattern();
+        let mut jacobian = SparseColMatrix {
+            m: self.n,
+            col_ptr: start.to_vec(),
+            row_idx: rows.to_vec(),
+            values: vec![0.0; rows.len()],
+        };
+        if let Err(error) = self.problem.jacobian(x, &mut jacobian.values) {
+            self.last_error = Some(error);
+            return None;
+        }
+        if jacobian.values.iter().any(|v| !v.is_finite()) {
+            self.last_error = Some(EvalError {
+                row: None,
+                message: "a derivative is not finite".into(),
+            });
+            return None;
+        }
+        Some(jacobian)
+    }
+
+    /// Whether a residual ends the search.
+    pub(super) fn converged(&self, residual: f64) -> bool {
+        residual <= self.settings.convergence_tolerance
+    }
+}
