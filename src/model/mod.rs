@@ -1,4 +1,5 @@
 //! The sparse model IR.
 pub mod certificate;
 pub mod instance;
+pub mod origin;
 pub mod sum;

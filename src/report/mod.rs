@@ -1,3 +1,4 @@
 //! What people see: figures, diagnostics, summaries, JSON, listings.
 
 pub mod figure;
+pub mod json;
