@@ -1,4 +1,5 @@
 //! What people see: figures, diagnostics, summaries, JSON, listings.
 
+pub mod diagnostics;
 pub mod figure;
 pub mod json;

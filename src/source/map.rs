@@ -181,6 +181,16 @@ impl SourceFile {
         self.lines.partition_point(|&l| l <= offset)
     }
 
+    /// Bytes of a line (from 0) without its line end.
+    pub fn line_range(&self, line: usize) -> (usize, usize) {
+        let end = self.text.len();
+        let lo = self.lines.get(line).map_or(end, |&l| l as usize);
+        let next = self.lines.get(line + 1).map_or(end, |&l| l as usize - 1);
+        let hi = next.max(lo);
+        let cr = hi > lo && self.text.as_bytes()[hi - 1] == b'\r';
+        (lo, hi - usize::from(cr))
+    }
+
     /// Line and column (both from 1, column in characters) of a byte offset.
     pub fn line_column(&self, offset: u32) -> (usize, usize) {
         let line = self.line(offset).max(1);

@@ -1,0 +1,571 @@
+//! Diagnostics as people read them (with miette) and as programs do (JSON, one object per line).
+//!
+//! What is shown of the source is an *excerpt*: the lines of the places with one line around them,
+//! long lines clipped about the place. So a message about one number in a line of 50 MB is as short
+//! and as fast as any other.
+
+use std::fmt;
+use std::fmt::Write;
+
+use miette::{
+    GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteError, MietteSpanContents, Severity,
+    SourceCode, SourceSpan, SpanContents,
+};
+use serde::Serialize;
+
+use crate::diag::{self, Diagnostic, Severity as Serious};
+use crate::source::{FileId, SourceFile, SourceMap, Span};
+
+/// How diagnostics are drawn.
+#[derive(Clone, Copy, Debug)]
+pub struct Look {
+    /// With colours.
+    pub color: bool,
+    /// With box-drawing characters; otherwise ASCII.
+    pub unicode: bool,
+    /// Columns of the screen.
+    pub width: usize,
+}
+
+impl Look {
+    /// ASCII without colours: for files, pipes and tests.
+    pub fn plain() -> Self {
+        Self {
+            color: false,
+            unicode: false,
+            width: 100,
+        }
+    }
+
+    /// For a stream: colours and box drawing on a terminal, unless `NO_COLOR` is set or the terminal
+    /// is a dumb one.
+    pub fn stream(is_terminal: bool) -> Self {
+        let set = |name| std::env::var_os(name).is_some_and(|v| !v.is_empty());
+        let dumb = std::env::var_os("TERM").is_some_and(|v| v == "dumb");
+        let fancy = is_terminal && !dumb && !set("NO_COLOR");
+        let columns = std::env::var("COLUMNS").ok().and_then(|c| c.parse().ok());
+        Self {
+            color: fancy,
+            unicode: fancy,
+            width: columns.unwrap_or(100).clamp(40, 140),
+        }
+    }
+}
+
+/// Columns of a source line that are shown.
+const LINE: usize = 160;
+/// Lines of a place that are shown; a longer one is shown at its first line.
+const LINES: usize = 6;
+
+/// All diagnostics as text, in order, a blank line after each.
+pub fn render(diagnostics: &[Diagnostic], map: &SourceMap, look: Look) -> String {
+    let theme = match (look.unicode, look.color) {
+        (true, true) => GraphicalTheme::unicode(),
+        (true, false) => GraphicalTheme::unicode_nocolor(),
+        (false, _) => GraphicalTheme::none(),
+    };
+    let handler = GraphicalReportHandler::new_themed(theme)
+        .with_width(look.width)
+        .with_context_lines(1)
+        .with_links(false);
+    let mut out = String::new();
+    for d in diagnostics {
+        let report = Report::new(d, map);
+        if handler.render_report(&mut out, &report).is_err() {
+            let _ = writeln!(out, "{}: {}", d.code, d.message);
+        }
+        out.push('\n');
+    }
+    out
+}
+
+/// "2 errors, 1 warning"; empty where there is none.
+pub fn count(diagnostics: &[Diagnostic]) -> String {
+    let count = |s: Serious| diagnostics.iter().filter(|d| d.severity == s).count();
+    let part = |n: usize, what: &str| match n {
+        0 => None,
+        1 => Some(format!("1 {what}")),
+        n => Some(format!("{n} {what}s")),
+    };
+    let parts = [
+        part(count(Serious::Error), "error"),
+        part(count(Serious::Execution), "execution error"),
+        part(count(Serious::Warning), "warning"),
+    ];
+    let parts: Vec<String> = parts.into_iter().flatten().collect();
+    parts.join(", ")
+}
+
+/// A place, as programs read it: lines and columns from 1, columns in characters; the end is
+/// exclusive.
+#[derive(Clone, Debug, Serialize, PartialEq)]
+pub struct JsonPlace {
+    /// The file, as the person wrote it.
+    pub file: String,
+    /// Line of its first character.
+    pub line: usize,
+    /// Column of its first character.
+    pub column: usize,
+    /// Line behind its last character.
+    pub end_line: usize,
+    /// Column behind its last character.
+    pub end_column: usize,
+}
+
+/// A place with a text.
+#[derive(Clone, Debug, Serialize, PartialEq)]
+pub struct JsonLabel {
+    /// Where.
+    #[serde(flatten)]
+    pub place: Option<JsonPlace>,
+    /// What is there.
+    pub text: String,
+}
+
+/// A diagnostic, as programs read it.
+#[derive(Clone, Debug, Serialize, PartialEq)]
+pub struct JsonDiagnostic {
+    /// `E0101`
+    pub code: &'static str,
+    /// `error`, `execution` or `warning`.
+    pub severity: &'static str,
+    /// The problem.
+    pub message: String,
+    /// The main place; absent where there is none.
+    #[serde(flatten)]
+    pub place: Option<JsonPlace>,
+    /// Text at the main place.
+    pub label: String,
+    /// Other places.
+    pub labels: Vec<JsonLabel>,
+    /// How to fix it.
+    pub help: Option<String>,
+}
+
+/// One diagnostic, as programs read it.
+pub fn json(d: &Diagnostic, map: &SourceMap) -> JsonDiagnostic {
+    let place = |span: Span| {
+        let p = map.place(span)?;
+        let file = map.file(p.file);
+        let (line, column) = file.line_column(p.lo);
+        let (end_line, end_column) = file.line_column(p.hi);
+        Some(JsonPlace {
+            file: file.name.clone(),
+            line,
+            column,
+            end_line,
+            end_column,
+        })
+    };
+    JsonDiagnostic {
+        code: d.code,
+        severity: match d.severity {
+            Serious::Error => "error",
+            Serious::Execution => "execution",
+            Serious::Warning => "warning",
+        },
+        message: d.message.clone(),
+        place: place(d.span),
+        label: d.label.clone(),
+        labels: d
+            .others
+            .iter()
+            .map(|o| JsonLabel {
+                place: place(o.span),
+                text: o.text.clone(),
+            })
+            .collect(),
+        help: d.help.clone(),
+    }
+}
+
+/// All diagnostics as JSON, one object per line.
+pub fn json_lines(diagnostics: &[Diagnostic], map: &SourceMap) -> String {
+    let mut out = String::new();
+    for d in diagnostics {
+        // Strings and numbers only: this cannot fail.
+        out.push_str(&serde_json::to_string(&json(d, map)).unwrap_or_default());
+        out.push('\n');
+    }
+    out
+}
+
+/// A piece of a file: whole lines, perhaps clipped.
+#[derive(Debug)]
+struct Chunk {
+    /// Where it begins in the excerpt's text.
+    start: usize,
+    /// One past its last byte.
+    end: usize,
+    /// Line of its first byte, from 0.
+    line: usize,
+    /// Number of its lines.
+    lines: usize,
+}
+
+/// What is shown of one file.
+#[derive(Debug)]
+struct Excerpt {
+    name: String,
+    text: String,
+    chunks: Vec<Chunk>,
+    /// Line and column (from 0) in the file of the place that begins here in the excerpt.
+    heads: Vec<(usize, usize, usize)>,
+}
+
+impl Excerpt {
+    /// The lines of these places (byte ranges of the file, in order) and where the places are in
+    /// the excerpt.
+    fn new(file: &SourceFile, places: &[(u32, u32)]) -> (Self, Vec<(usize, usize)>) {
+        let mut excerpt = Self {
+            name: file.name.clone(),
+            text: String::new(),
+            chunks: Vec::new(),
+            heads: Vec::new(),
+        };
+        // What stands behind the last line end is no line.
+        let lines = file.line(file.text.len() as u32) - usize::from(file.text.ends_with('\n'));
+        let lines = lines.max(1);
+        // Lines to show: each place with one line around it, merged where they touch.
+        let mut wanted: Vec<(usize, usize)> = Vec::new();
+        for &(lo, hi) in places {
+            let first = file.line(lo).max(1) - 1;
+            let last = file.line(hi.max(lo + 1) - 1).max(1) - 1;
+            let last = if last - first >= LINES { first } else { last };
+            let (from, to) = (
+                first.saturating_sub(1),
+                (last + 2).min(lines).max(first + 1),
+            );
+            match wanted.iter_mut().find(|w| from <= w.1 && to >= w.0) {
+                Some(w) => *w = (w.0.min(from), w.1.max(to)),
+                None => wanted.push((from, to)),
+            }
+        }
+        wanted.sort_unstable();
+        let mut shown: Vec<(usize, usize, usize)> = Vec::new(); // file offsets lo..hi, excerpt offset
+        for (from, to) in wanted {
+            let start = excerpt.text.len();
+            for line in from..to {
+                let (lo, hi) = file.line_range(line);
+                let at = places
+                    .iter()
+                    .map(|p| p.0 as usize)
+                    .find(|p| (lo..=hi).contains(p));
+                let (a, b) = clip(&file.text, lo, hi, at.unwrap_or(lo));
+                if a > lo {
+                    excerpt.text.push_str("... ");
+                }
+                shown.push((a, b, excerpt.text.len()));
+                excerpt.text.push_str(file.text.get(a..b).unwrap_or(""));
+                if b < hi {
+                    excerpt.text.push_str(" ...");
+                }
+                excerpt.text.push('\n');
+            }
+            excerpt.chunks.push(Chunk {
+                start,
+                end: excerpt.text.len(),
+                line: from,
+                lines: to - from,
+            });
+        }
+        let find = |p: usize| {
+            let k = shown.iter().rposition(|s| s.0 <= p).unwrap_or(0);
+            shown.get(k).map_or(0, |s| s.2 + p.clamp(s.0, s.1) - s.0)
+        };
+        let found = places.iter().map(|&(lo, hi)| {
+            let (lo, hi) = (lo as usize, hi as usize);
+            let a = find(lo);
+            let many = file.line(hi as u32).saturating_sub(file.line(lo as u32)) >= LINES;
+            let b = if many {
+                let end = excerpt.text[a..].find('\n').unwrap_or(0);
+                a + end
+            } else {
+                find(hi)
+            };
+            (a, b.max(a) - a)
+        });
+        let found: Vec<(usize, usize)> = found.collect();
+        for (&(at, _), &(lo, _)) in found.iter().zip(places) {
+            let (line, column) = file.line_column(lo);
+            excerpt.heads.push((at, line - 1, column - 1));
+        }
+        (excerpt, found)
+    }
+}
+
+/// The part of a line `lo..hi` that is shown: all of it, or [`LINE`] bytes about `at`.
+fn clip(text: &str, lo: usize, hi: usize, at: usize) -> (usize, usize) {
+    if hi - lo <= LINE {
+        return (lo, hi);
+    }
+    let start = at.saturating_sub(LINE / 4).max(lo);
+    let mut a = start;
+    let mut b = (start + LINE).min(hi);
+    while !text.is_char_boundary(a) {
+        a -= 1;
+    }
+    while !text.is_char_boundary(b) {
+        b += 1;
+    }
+    (a, b)
+}
+
+impl SourceCode for Excerpt {
+    fn read_span<'a>(
+        &'a self,
+        span: &SourceSpan,
+        before: usize,
+        after: usize,
+    ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
+        let (lo, hi) = (span.offset(), span.offset() + span.len());
+        let chunk = self
+            .chunks
+            .iter()
+            .find(|c| c.start <= lo && hi <= c.end)
+            .ok_or(MietteError::OutOfBounds)?;
+        // Asked without context, miette wants to know where the place itself begins.
+        let head = self.heads.iter().find(|h| h.0 == lo);
+        let (line, column) = match head {
+            Some(&(_, line, column)) if before == 0 && after == 0 => (line, column),
+            _ => (chunk.line, 0),
+        };
+        Ok(Box::new(MietteSpanContents::new_named(
+            self.name.clone(),
+            self.text
+                .as_bytes()
+                .get(chunk.start..chunk.end)
+                .unwrap_or(b""),
+            (chunk.start, chunk.end - chunk.start).into(),
+            line,
+            column,
+            chunk.lines,
+        )))
+    }
+}
+
+/// A diagnostic in miette's terms.
+#[derive(Debug)]
+struct Report {
+    message: String,
+    code: Option<&'static str>,
+    severity: Severity,
+    help: Option<String>,
+    source: Option<Excerpt>,
+    labels: Vec<LabeledSpan>,
+    related: Vec<Report>,
+}
+
+impl Report {
+    fn new(d: &Diagnostic, map: &SourceMap) -> Self {
+        let mut report = Self {
+            message: d.message.clone(),
+            code: Some(d.code),
+            severity: match d.severity {
+                Serious::Warning => Severity::Warning,
+                Serious::Error | Serious::Execution => Severity::Error,
+            },
+            help: d.help.clone(),
+            source: None,
+            labels: Vec::new(),
+            related: Vec::new(),
+        };
+        let Some(place) = map.place(d.span) else {
+            return report;
+        };
+        let mut here = vec![(place.lo, place.hi, d.label.as_str())];
+        let mut elsewhere: Vec<(FileId, u32, u32, &str)> = Vec::new();
+        for diag::Label { span, text } in &d.others {
+            match map.place(*span) {
+                Some(p) if p.file == place.file => here.push((p.lo, p.hi, text)),
+                Some(p) => elsewhere.push((p.file, p.lo, p.hi, text)),
+                None => {}
+            }
+        }
+        report.show(map.file(place.file), &here);
+        for (file, lo, hi, text) in elsewhere {
+            let mut other = Self {
+                message: if text.is_empty() { "see also" } else { text }.into(),
+                code: None,
+                severity: Severity::Advice,
+                help: None,
+                source: None,
+                labels: Vec::new(),
+                related: Vec::new(),
+            };
+            other.show(map.file(file), &[(lo, hi, "")]);
+            report.related.push(other);
+        }
+        report
+    }
+
+    fn show(&mut self, file: &SourceFile, places: &[(u32, u32, &str)]) {
+        let spans: Vec<(u32, u32)> = places.iter().map(|p| (p.0, p.1)).collect();
+        let (excerpt, found) = Excerpt::new(file, &spans);
+        self.labels = found
+            .iter()
+            .zip(places)
+            .enumerate()
+            .map(|(k, (&(at, len), &(_, _, text)))| {
+                let text = (!text.is_empty()).then(|| text.to_string());
+                if k == 0 {
+                    LabeledSpan::new_primary_with_span(text, (at, len))
+                } else {
+                    LabeledSpan::new_with_span(text, (at, len))
+                }
+            })
+            .collect();
+        self.source = Some(excerpt);
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for Report {}
+
+impl miette::Diagnostic for Report {
+    fn code<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        self.code.map(|c| Box::new(c) as Box<dyn fmt::Display>)
+    }
+    fn severity(&self) -> Option<Severity> {
+        Some(self.severity)
+    }
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        self.help
+            .as_ref()
+            .map(|h| Box::new(h) as Box<dyn fmt::Display>)
+    }
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        self.source.as_ref().map(|s| s as &dyn SourceCode)
+    }
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        Some(Box::new(self.labels.iter().cloned()))
+    }
+    fn related<'a>(&'a self) -> Option<Box<dyn Iterator<Item = &'a dyn miette::Diagnostic> + 'a>> {
+        if self.related.is_empty() {
+            return None;
+        }
+        Some(Box::new(
+            self.related.iter().map(|r| r as &dyn miette::Diagnostic),
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn map(name: &str, text: &str) -> (SourceMap, Span) {
+        let mut map = SourceMap::default();
+        let file = map.add_file(name, text.to_string());
+        let span = map.push_copy(file, 0, text.len() as u32);
+        (map, span)
+    }
+
+    fn at(map: &SourceMap, what: &str) -> Span {
+        let lo = map.expanded().find(what).expect("it is there") as u32;
+        Span::new(lo, lo + what.len() as u32)
+    }
+
+    #[test]
+    fn shows_both_places() {
+        let text = "set i / a, b /;\nparameter p(i);\n\n\n\n\n\nscalar s;\ns = p('a','b');\n";
+        let (map, _) = map("wall.blk", text);
+        let d = Diagnostic::error("E0301", at(&map, "p('a','b')"), "`p` takes 1 index, not 2")
+            .label("2 indices here")
+            .other(at(&map, "p(i)"), "declared here with 1 index")
+            .help("write p('a')");
+        insta::assert_snapshot!(render(std::slice::from_ref(&d), &map, Look::plain()), @r#"
+E0301
+
+  x `p` takes 1 index, not 2
+   ,-[wall.blk:2:11]
+ 1 | set i / a, b /;
+ 2 | parameter p(i);
+   :           ^^|^
+   :             `-- declared here with 1 index
+ 3 | 
+   `----
+   ,-[wall.blk:9:5]
+ 8 | scalar s;
+ 9 | s = p('a','b');
+   :     ^^^^^|^^^^
+   :          `-- 2 indices here
+   `----
+  help: write p('a')
+"#);
+        let unicode = Look {
+            unicode: true,
+            ..Look::plain()
+        };
+        assert!(render(std::slice::from_ref(&d), &map, unicode).contains('╭'));
+        let json: serde_json::Value =
+            serde_json::from_str(&json_lines(&[d], &map)).expect("one JSON object");
+        assert_eq!(json["line"], 9);
+        assert_eq!(json["column"], 5);
+        assert_eq!(json["end_column"], 15);
+        assert_eq!(json["labels"][0]["line"], 2);
+        assert_eq!(json["severity"], "error");
+    }
+
+    #[test]
+    fn other_files_are_shown_as_well() {
+        let mut map = SourceMap::default();
+        let a = map.add_file("main.blk", "x = 1;\n".into());
+        let b = map.add_file("lib/sets.blk", "set x;\n".into());
+        let first = map.push_copy(a, 0, 1);
+        let second = map.push_copy(b, 4, 5);
+        let d = Diagnostic::warning("W0001", first, "`x` is a set").other(second, "declared here");
+        insta::assert_snapshot!(render(&[d], &map, Look::plain()), @r#"
+W0001
+
+  ! `x` is a set
+   ,-[main.blk:1:1]
+ 1 | x = 1;
+   : ^
+   `----
+
+Advice: 
+  > declared here
+   ,-[lib/sets.blk:1:5]
+ 1 | set x;
+   :     ^
+   `----
+"#);
+    }
+
+    #[test]
+    fn long_lines_and_long_places_are_clipped() {
+        let text = format!(
+            "parameter p / {} oops 3 {} /;",
+            "a 1,".repeat(100_000),
+            "ä 2,".repeat(9)
+        );
+        let (map, all) = map("big.blk", &text);
+        let d = Diagnostic::error("E0102", at(&map, "oops"), "no value for the label");
+        let shown = render(&[d], &map, Look::plain());
+        assert!(shown.len() < 600 && shown.contains("oops"), "{shown}");
+        assert!(shown.contains("big.blk:1:400016"), "{shown}");
+        let d = Diagnostic::error("E0102", all, "the whole of it");
+        assert!(render(&[d], &map, Look::plain()).len() < 1000);
+        let lines = "x\n".repeat(10_000);
+        let (map, all) = super::tests::map("tall.blk", &lines);
+        let d = Diagnostic::error("E0102", all, "the whole of it");
+        assert!(render(&[d], &map, Look::plain()).lines().count() < 12);
+    }
+
+    #[test]
+    fn no_place_no_harm() {
+        let map = SourceMap::default();
+        let d = Diagnostic::execution("X0001", Span::default(), "nothing was read");
+        assert!(render(std::slice::from_ref(&d), &map, Look::plain()).contains("nothing was read"));
+        assert!(json_lines(&[d], &map).contains("\"execution\""));
+        let (map, _) = super::tests::map("empty.blk", "");
+        let d = Diagnostic::error("E0100", Span::default(), "the file is empty");
+        assert!(render(&[d], &map, Look::plain()).contains("the file is empty"));
+    }
+}
