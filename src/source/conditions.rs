@@ -84,7 +84,9 @@ impl Preprocessor<'_> {
         let word = text[..len].to_ascii_lowercase();
         let after = &text[len..];
         // A word directly followed by `==` is a text to compare.
-        if after.trim_start().starts_with("==") || (!after.is_empty() && !after.starts_with([' ', '\t'])) {
+        if after.trim_start().starts_with("==")
+            || (!after.is_empty() && !after.starts_with([' ', '\t']))
+        {
             return None;
         }
         let one = |f: &mut dyn FnMut(&str) -> bool| {
@@ -142,7 +144,11 @@ impl Preprocessor<'_> {
                 Some(Ok((false, len + n)))
             }
             "putopen" | "uelexist" | "solver" => {
-                let n = if word == "putopen" { 0 } else { term(after, false).1 };
+                let n = if word == "putopen" {
+                    0
+                } else {
+                    term(after, false).1
+                };
                 Some(Ok((false, len + n)))
             }
             _ => None,
@@ -150,11 +156,21 @@ impl Preprocessor<'_> {
     }
 
     /// `$ifThen`: opens a branch or leaves it out.
-    pub(super) fn if_then(&mut self, line: &Line, tag: String, truth: bool, known: &dyn Known) -> Result<(), Diagnostic> {
+    pub(super) fn if_then(
+        &mut self,
+        line: &Line,
+        tag: String,
+        truth: bool,
+        known: &dyn Known,
+    ) -> Result<(), Diagnostic> {
         let (lo, hi) = line.origin(0, line.text.len());
         let span = self.place(lo, hi);
         if let Some(frame) = self.frames.last_mut() {
-            frame.ifs.push(If { span, tag, taken: truth });
+            frame.ifs.push(If {
+                span,
+                tag,
+                taken: truth,
+            });
         }
         if truth { Ok(()) } else { self.leave_out(known) }
     }
@@ -164,7 +180,9 @@ impl Preprocessor<'_> {
     pub(super) fn leave_out(&mut self, known: &dyn Known) -> Result<(), Diagnostic> {
         let mut depth = 0usize;
         loop {
-            let Some(frame) = self.frames.last() else { return Ok(()) };
+            let Some(frame) = self.frames.last() else {
+                return Ok(());
+            };
             if frame.pos >= frame.len {
                 // `leave` reports the open `$ifThen`.
                 return Ok(());
@@ -194,7 +212,11 @@ impl Preprocessor<'_> {
                     self.advance(end);
                 }
                 "else" | "elseif" | "elseife" | "elseifi" | "endif" if depth == 0 => {
-                    let taken = self.frames.last().and_then(|f| f.ifs.last()).is_none_or(|i| i.taken);
+                    let taken = self
+                        .frames
+                        .last()
+                        .and_then(|f| f.ifs.last())
+                        .is_none_or(|i| i.taken);
                     if word != "endif" && taken {
                         self.advance(end);
                         continue;
@@ -218,7 +240,10 @@ fn comparison(text: &str, flavour: Flavour) -> Result<(bool, usize), String> {
     let rest = &text[n..];
     let blanks = rest.len() - rest.trim_start().len();
     let Some(after) = rest.trim_start().strip_prefix("==") else {
-        return Err(format!("`{}` is no condition: `==` or a word like `set`, `exist`, `declared` was expected", text.trim()));
+        return Err(format!(
+            "`{}` is no condition: `==` or a word like `set`, `exist`, `declared` was expected",
+            text.trim()
+        ));
     };
     // Nothing on the right, or blanks and then the action, is the empty text.
     let (right, m) = if after.starts_with([' ', '\t']) && after.trim_start().starts_with('$') {

@@ -13,34 +13,194 @@ use crate::diag::{Diagnostic, nearest};
 
 /// Switches that change nothing here, as `$onX` and `$offX`.
 const SILENT_SWITCHES: &[&str] = &[
-    "listing", "list", "symlist", "symxref", "uellist", "uelxref", "upper", "digit", "include", "warning", "global",
-    "local", "log", "expand", "macro", "ident", "recurse", "delim", "embedded", "checkerrorlevel", "filtered",
-    "suffixdlvars", "suffixalgebravars", "dollar", "dotscale", "hidden", "external", "save", "uni", "verbatim",
-    "strictdomain", "case", "localvars", "nestcom", "margin", "float", "textmode", "prefix",
+    "listing",
+    "list",
+    "symlist",
+    "symxref",
+    "uellist",
+    "uelxref",
+    "upper",
+    "digit",
+    "include",
+    "warning",
+    "global",
+    "local",
+    "log",
+    "expand",
+    "macro",
+    "ident",
+    "recurse",
+    "delim",
+    "embedded",
+    "checkerrorlevel",
+    "filtered",
+    "suffixdlvars",
+    "suffixalgebravars",
+    "dollar",
+    "dotscale",
+    "hidden",
+    "external",
+    "save",
+    "uni",
+    "verbatim",
+    "strictdomain",
+    "case",
+    "localvars",
+    "nestcom",
+    "margin",
+    "float",
+    "textmode",
+    "prefix",
 ];
 
 /// Directives that change nothing here, with nothing or one word behind them.
 const SILENT: &[&str] = &[
-    "double", "single", "eject", "lines", "stars", "use205", "use225", "use999", "clearerror", "clearerrors",
-    "showvariables", "splitoption", "version", "escape", "warning", "compress", "decompress", "encrypt", "protect",
-    "expose", "purge", "hide", "save", "funclibin", "prefixloadpath", "scratchfilename", "show", "dimension", "ident",
+    "double",
+    "single",
+    "eject",
+    "lines",
+    "stars",
+    "use205",
+    "use225",
+    "use999",
+    "clearerror",
+    "clearerrors",
+    "showvariables",
+    "splitoption",
+    "version",
+    "escape",
+    "warning",
+    "compress",
+    "decompress",
+    "encrypt",
+    "protect",
+    "expose",
+    "purge",
+    "hide",
+    "save",
+    "funclibin",
+    "prefixloadpath",
+    "scratchfilename",
+    "show",
+    "dimension",
+    "ident",
 ];
 
 /// Directives with the rest of their line as argument, without effect here.
-const SILENT_LINES: &[&str] = &["stitle", "subtitle", "remark", "hidden", "comment_", "setddlist"];
+const SILENT_LINES: &[&str] = &[
+    "stitle",
+    "subtitle",
+    "remark",
+    "hidden",
+    "comment_",
+    "setddlist",
+];
 
 /// Other directives, for "did you mean".
 const OTHERS: &[&str] = &[
-    "title", "include", "batinclude", "libinclude", "sysinclude", "set", "setlocal", "setglobal", "setenv", "drop",
-    "droplocal", "dropglobal", "dropenv", "eval", "evallocal", "evalglobal", "if", "ifi", "ife", "ifthen", "iftheni",
-    "ifthene", "elseif", "elseifi", "elseife", "else", "endif", "goto", "label", "exit", "stop", "terminate", "abort",
-    "error", "macro", "ontext", "offtext", "oneolcom", "offeolcom", "eolcom", "oninline", "offinline", "inlinecom",
-    "comment", "onmulti", "offmulti", "onmultir", "onempty", "offempty", "oneps", "offeps", "onundf", "offundf",
-    "onorder", "offorder", "ondotl", "offdotl", "log", "echo", "echon", "onecho", "offecho", "call", "execute", "gdxin",
-    "gdxout", "load", "loaddc", "loadm", "loadr", "unload", "onput", "onputs", "onputv", "offput", "kill", "clear", "shift",
-    "prefixpath", "dollar", "maxcol", "mincol", "maxgoto", "setargs", "setnames", "phantom", "onend", "offend",
-    "onlisting", "offlisting", "onsymxref", "offsymxref", "onsymlist", "offsymlist", "onuelxref", "offuelxref",
-    "onuellist", "offuellist", "onupper", "offupper", "onimplicitassign", "onstrictsingleton", "onembeddedcode",
+    "title",
+    "include",
+    "batinclude",
+    "libinclude",
+    "sysinclude",
+    "set",
+    "setlocal",
+    "setglobal",
+    "setenv",
+    "drop",
+    "droplocal",
+    "dropglobal",
+    "dropenv",
+    "eval",
+    "evallocal",
+    "evalglobal",
+    "if",
+    "ifi",
+    "ife",
+    "ifthen",
+    "iftheni",
+    "ifthene",
+    "elseif",
+    "elseifi",
+    "elseife",
+    "else",
+    "endif",
+    "goto",
+    "label",
+    "exit",
+    "stop",
+    "terminate",
+    "abort",
+    "error",
+    "macro",
+    "ontext",
+    "offtext",
+    "oneolcom",
+    "offeolcom",
+    "eolcom",
+    "oninline",
+    "offinline",
+    "inlinecom",
+    "comment",
+    "onmulti",
+    "offmulti",
+    "onmultir",
+    "onempty",
+    "offempty",
+    "oneps",
+    "offeps",
+    "onundf",
+    "offundf",
+    "onorder",
+    "offorder",
+    "ondotl",
+    "offdotl",
+    "log",
+    "echo",
+    "echon",
+    "onecho",
+    "offecho",
+    "call",
+    "execute",
+    "gdxin",
+    "gdxout",
+    "load",
+    "loaddc",
+    "loadm",
+    "loadr",
+    "unload",
+    "onput",
+    "onputs",
+    "onputv",
+    "offput",
+    "kill",
+    "clear",
+    "shift",
+    "prefixpath",
+    "dollar",
+    "maxcol",
+    "mincol",
+    "maxgoto",
+    "setargs",
+    "setnames",
+    "phantom",
+    "onend",
+    "offend",
+    "onlisting",
+    "offlisting",
+    "onsymxref",
+    "offsymxref",
+    "onsymlist",
+    "offsymlist",
+    "onuelxref",
+    "offuelxref",
+    "onuellist",
+    "offuellist",
+    "onupper",
+    "offupper",
+    "onimplicitassign",
+    "onstrictsingleton",
+    "onembeddedcode",
 ];
 
 /// Length of the word at the start of a text.
@@ -101,12 +261,21 @@ fn civil(now: f64) -> (i64, i64, i64) {
 
 impl Preprocessor<'_> {
     /// A line that begins with `$`.
-    pub(super) fn directive_line(&mut self, line: &Line, known: &dyn Known) -> Result<(), Diagnostic> {
+    pub(super) fn directive_line(
+        &mut self,
+        line: &Line,
+        known: &dyn Known,
+    ) -> Result<(), Diagnostic> {
         self.directives(line, 1, known)
     }
 
     /// The directives from byte `at` on (behind the `$`).
-    fn directives(&mut self, line: &Line, mut at: usize, known: &dyn Known) -> Result<(), Diagnostic> {
+    fn directives(
+        &mut self,
+        line: &Line,
+        mut at: usize,
+        known: &dyn Known,
+    ) -> Result<(), Diagnostic> {
         loop {
             let text = &line.text;
             at += text[at..].len() - text[at..].trim_start().len();
@@ -117,14 +286,22 @@ impl Preprocessor<'_> {
             if word.is_empty() {
                 let (lo, hi) = line.origin(0, text.len().max(1));
                 let span = self.place(lo, hi);
-                return Err(Diagnostic::error("E0107", span, "a `$` in the first column begins a directive, but no name follows")
-                    .help("a `$` condition must not begin in the first column: put a blank before it"));
+                return Err(Diagnostic::error(
+                    "E0107",
+                    span,
+                    "a `$` in the first column begins a directive, but no name follows",
+                )
+                .help(
+                    "a `$` condition must not begin in the first column: put a blank before it",
+                ));
             }
             if self.switch(&word) || SILENT.contains(&word.as_str()) {
                 if SILENT.contains(&word.as_str()) {
                     // A number or a mark may stand behind.
                     let rest = text[at..].trim_start();
-                    if !rest.starts_with(|c: char| c.is_ascii_alphabetic() || c == self.marks.dollar as char) {
+                    if !rest.starts_with(|c: char| {
+                        c.is_ascii_alphabetic() || c == self.marks.dollar as char
+                    }) {
                         let (_, after) = argument(&text[at..]);
                         at = text.len() - after.len();
                     } else if !self.is_directive(rest) {
@@ -147,7 +324,8 @@ impl Preprocessor<'_> {
 
     fn starts_comment(&self, rest: &str) -> bool {
         let b = rest.as_bytes();
-        self.marks.eol_on && b.starts_with(&self.marks.eol) || self.marks.slashes && b.starts_with(b"//")
+        self.marks.eol_on && b.starts_with(&self.marks.eol)
+            || self.marks.slashes && b.starts_with(b"//")
     }
 
     /// Whether a text begins with the name of a directive.
@@ -199,7 +377,14 @@ impl Preprocessor<'_> {
     }
 
     /// A directive with arguments. `from` is where its name begins, `at` where it ends.
-    fn directive(&mut self, line: &Line, word: &str, from: usize, mut at: usize, known: &dyn Known) -> Result<(), Diagnostic> {
+    fn directive(
+        &mut self,
+        line: &Line,
+        word: &str,
+        from: usize,
+        mut at: usize,
+        known: &dyn Known,
+    ) -> Result<(), Diagnostic> {
         let text = line.text.as_str();
         // `$ifThen.tag`, `$abort.noError`
         let mut suffix = String::new();
@@ -250,7 +435,11 @@ impl Preprocessor<'_> {
             }
             "setenv" | "dropenv" | "setcomps" | "prefixpath" | "phantom" => {}
             "setargs" => {
-                let values = self.frames.last().and_then(|f| f.arguments.clone()).unwrap_or_default();
+                let values = self
+                    .frames
+                    .last()
+                    .and_then(|f| f.arguments.clone())
+                    .unwrap_or_default();
                 for (i, name) in rest.split_whitespace().enumerate() {
                     let value = values.get(i).cloned().unwrap_or_default();
                     self.names.set(Reach::Local, name, value);
@@ -259,10 +448,16 @@ impl Preprocessor<'_> {
             "setnames" => {
                 let (file, tail) = argument(rest);
                 let path = std::path::Path::new(file);
-                let dir = path.parent().map_or(String::new(), |p| p.display().to_string());
+                let dir = path
+                    .parent()
+                    .map_or(String::new(), |p| p.display().to_string());
                 let dir = if dir.is_empty() { dir } else { dir + "/" };
-                let stem = path.file_stem().map_or(String::new(), |s| s.to_string_lossy().into_owned());
-                let ext = path.extension().map_or(String::new(), |s| format!(".{}", s.to_string_lossy()));
+                let stem = path
+                    .file_stem()
+                    .map_or(String::new(), |s| s.to_string_lossy().into_owned());
+                let ext = path
+                    .extension()
+                    .map_or(String::new(), |s| format!(".{}", s.to_string_lossy()));
                 for (name, value) in tail.split_whitespace().zip([dir, stem, ext]) {
                     self.names.set(Reach::Local, name, value);
                 }
@@ -316,15 +511,22 @@ impl Preprocessor<'_> {
             }
             "abort" | "error" => {
                 let span = self.place(lo, hi);
-                let message = if rest.trim().is_empty() { "stopped here" } else { unquoted(rest) };
-                let d = Diagnostic::error("E0110", span, message).label(format!("`${word}` stands here"));
+                let message = if rest.trim().is_empty() {
+                    "stopped here"
+                } else {
+                    unquoted(rest)
+                };
+                let d = Diagnostic::error("E0110", span, message)
+                    .label(format!("`${word}` stands here"));
                 if word == "abort" {
                     self.stop(Ending::Aborted);
                 }
                 return Err(d);
             }
             "macro" => return self.define_macro(rest, lo, hi),
-            "eolcom" | "inlinecom" | "comment" | "dollar" => return self.set_mark(word, rest, lo, hi),
+            "eolcom" | "inlinecom" | "comment" | "dollar" => {
+                return self.set_mark(word, rest, lo, hi);
+            }
             "maxcol" | "mincol" => {
                 if let Ok(n) = rest.trim().parse::<usize>() {
                     if word == "maxcol" {
@@ -334,10 +536,13 @@ impl Preprocessor<'_> {
                     }
                 }
             }
-            "maxgoto" => self.max_jumps = rest.trim().parse().unwrap_or(self.max_jumps).min(1_000_000),
+            "maxgoto" => {
+                self.max_jumps = rest.trim().parse().unwrap_or(self.max_jumps).min(1_000_000)
+            }
             "echo" | "echon" => {
                 let (body, file) = rest.rsplit_once('>').unwrap_or((rest, ""));
-                let text = unquoted(body.trim_end_matches('>')).to_owned() + if word == "echo" { "\n" } else { "" };
+                let text = unquoted(body.trim_end_matches('>')).to_owned()
+                    + if word == "echo" { "\n" } else { "" };
                 let append = body.ends_with('>');
                 self.echo(unquoted(file), &text, append);
             }
@@ -352,32 +557,46 @@ impl Preprocessor<'_> {
             "onembeddedcode" | "onembeddedcodes" | "onembeddedcodev" => {
                 let span = self.place(lo, hi);
                 self.skip_to("offembeddedcode");
-                return Err(Diagnostic::error("E0113", span, "embedded code of other languages is not run")
-                    .help("write the computation in the language itself"));
+                return Err(Diagnostic::error(
+                    "E0113",
+                    span,
+                    "embedded code of other languages is not run",
+                )
+                .help("write the computation in the language itself"));
             }
-            "gdxin" | "gdxout" | "load" | "loaddc" | "loadm" | "loadr" | "loaddcm" | "loaddcr" | "loadfiltered" | "loadidx"
-            | "unload" | "kill" | "clear" => {
+            "gdxin" | "gdxout" | "load" | "loaddc" | "loadm" | "loadr" | "loaddcm" | "loaddcr"
+            | "loadfiltered" | "loadidx" | "unload" | "kill" | "clear" => {
                 // The parser reads these; the line goes into the text as a statement.
                 let line = line.clone();
                 let end = line.text.len();
-                let tail = line.text.trim_end();
-                let multiline = word.starts_with("load") && tail.ends_with(',');
                 line.emit(&mut self.map, from.saturating_sub(1), end);
                 let (_, hi) = line.origin(0, end);
                 let file = self.frames.last().map_or(super::FileId(0), |f| f.file);
-                self.map.push_substitute(if multiline { "\n" } else { ";\n" }, file, hi, hi);
+                self.map.push_substitute(";\n", file, hi, hi);
             }
             w if SILENT_LINES.contains(&w) => {}
             _ => {
                 let span = self.place(lo, hi);
-                let mut all: Vec<String> = OTHERS.iter().chain(SILENT).map(|s| (*s).to_owned()).collect();
+                let mut all: Vec<String> = OTHERS
+                    .iter()
+                    .chain(SILENT)
+                    .map(|s| (*s).to_owned())
+                    .collect();
                 for s in SILENT_SWITCHES {
                     all.push(format!("on{s}"));
                     all.push(format!("off{s}"));
                 }
                 let near = nearest(word, all.iter().map(String::as_str));
-                let help = near.map_or("directives begin with `$` in the first column".into(), |n| format!("did you mean `${n}`?"));
-                return Err(Diagnostic::error("E0107", span, format!("there is no directive `${word}`")).help(help));
+                let help = near.map_or(
+                    "directives begin with `$` in the first column".into(),
+                    |n| format!("did you mean `${n}`?"),
+                );
+                return Err(Diagnostic::error(
+                    "E0107",
+                    span,
+                    format!("there is no directive `${word}`"),
+                )
+                .help(help));
             }
         }
         Ok(())
@@ -385,8 +604,12 @@ impl Preprocessor<'_> {
 
     fn bad_condition(&mut self, word: &str, why: String, lo: u32, hi: u32) -> Diagnostic {
         let span = self.place(lo, hi);
-        Diagnostic::error("E0114", span, format!("the condition of `${word}` cannot be read: {why}"))
-            .help("for example `$if set x`, `$if not exist 'data.inc'`, `$if %n% == 3`, `$ifE %n% > 3`")
+        Diagnostic::error(
+            "E0114",
+            span,
+            format!("the condition of `${word}` cannot be read: {why}"),
+        )
+        .help("for example `$if set x`, `$if not exist 'data.inc'`, `$if %n% == 3`, `$ifE %n% > 3`")
     }
 
     /// What follows a true condition: a directive, a text, or nothing.
@@ -400,8 +623,12 @@ impl Preprocessor<'_> {
             if self.conditions_on_line >= 50 {
                 let (lo, hi) = line.origin(0, line.text.len());
                 let span = self.place(lo, hi);
-                return Err(Diagnostic::error("E0114", span, "more than 50 conditions on one line")
-                    .help("use `$ifThen … $endIf` blocks"));
+                return Err(Diagnostic::error(
+                    "E0114",
+                    span,
+                    "more than 50 conditions on one line",
+                )
+                .help("use `$ifThen … $endIf` blocks"));
             }
             self.conditions_on_line += 1;
             let outcome = self.directives(line, start + 1, known);
@@ -433,8 +660,12 @@ impl Preprocessor<'_> {
                 return Ok(true);
             }
             let span = self.place(lo, hi);
-            return Err(Diagnostic::error("E0106", span, format!("`${word}` without an `$ifThen` before it in this file"))
-                .help("`$if` on one line needs no `$endIf`; blocks begin with `$ifThen`"));
+            return Err(Diagnostic::error(
+                "E0106",
+                span,
+                format!("`${word}` without an `$ifThen` before it in this file"),
+            )
+            .help("`$if` on one line needs no `$endIf`; blocks begin with `$ifThen`"));
         };
         if open.tag != tag {
             let (at, expected) = (open.span, open.tag.clone());
@@ -444,9 +675,17 @@ impl Preprocessor<'_> {
                 f.ifs.pop();
             }
             let span = self.place(lo, hi);
-            return Err(Diagnostic::error("E0106", span, format!("`${word}.{tag}` does not belong to the innermost open `$ifThen`"))
-                .other(at, "which is this one")
-                .help(if expected.is_empty() { format!("write `${word}`") } else { format!("write `${word}.{expected}`") }));
+            return Err(Diagnostic::error(
+                "E0106",
+                span,
+                format!("`${word}.{tag}` does not belong to the innermost open `$ifThen`"),
+            )
+            .other(at, "which is this one")
+            .help(if expected.is_empty() {
+                format!("write `${word}`")
+            } else {
+                format!("write `${word}.{expected}`")
+            }));
         }
         match word.as_str() {
             "endif" => {
@@ -487,8 +726,11 @@ impl Preprocessor<'_> {
         }
         let (lo, hi) = line.origin(0, line.text.len());
         let span = self.place(lo, hi);
-        Err(Diagnostic::error("E0101", span, "`$onText` without its `$offText`")
-            .help("the rest of the file is a comment: close it with `$offText` in the first column"))
+        Err(
+            Diagnostic::error("E0101", span, "`$onText` without its `$offText`").help(
+                "the rest of the file is a comment: close it with `$offText` in the first column",
+            ),
+        )
     }
 
     /// Passes over lines up to and with the one that begins with this directive.
@@ -499,7 +741,9 @@ impl Preprocessor<'_> {
     /// Passes over lines up to the one that begins with a directive, and shows each.
     fn collect_to(&mut self, word: &str, each: &mut dyn FnMut(&str, u32)) -> bool {
         loop {
-            let Some(frame) = self.frames.last() else { return false };
+            let Some(frame) = self.frames.last() else {
+                return false;
+            };
             let (pos, len) = (frame.pos, frame.len);
             if pos >= len {
                 return false;
@@ -521,7 +765,14 @@ impl Preprocessor<'_> {
     }
 
     /// `$set x value`, `$eval x expression` and their kin.
-    fn define(&mut self, word: &str, rest: &str, lo: u32, hi: u32, known: &dyn Known) -> Result<(), Diagnostic> {
+    fn define(
+        &mut self,
+        word: &str,
+        rest: &str,
+        lo: u32,
+        hi: u32,
+        known: &dyn Known,
+    ) -> Result<(), Diagnostic> {
         let rest = rest.trim_start();
         let len = rest
             .bytes()
@@ -530,16 +781,29 @@ impl Preprocessor<'_> {
         let (name, value) = (&rest[..len], rest[len..].trim());
         if name.is_empty() {
             let span = self.place(lo, hi);
-            return Err(Diagnostic::error("E0107", span, format!("`${word}` needs a name"))
-                .help(format!("write `${word} name value`; then `%name%` stands for the value")));
+            return Err(
+                Diagnostic::error("E0107", span, format!("`${word}` needs a name")).help(format!(
+                    "write `${word} name value`; then `%name%` stands for the value"
+                )),
+            );
         }
         let value = if word.starts_with("eval") {
             match evaluate(value, known) {
-                Ok((x, n)) if value[n..].trim().is_empty() || self.starts_comment(value[n..].trim_start()) => number_text(x),
+                Ok((x, n))
+                    if value[n..].trim().is_empty()
+                        || self.starts_comment(value[n..].trim_start()) =>
+                {
+                    number_text(x)
+                }
                 Ok((_, n)) => {
-                    let message = format!("`${word} {name}`: the expression ends before `{}`", value[n..].trim());
+                    let message = format!(
+                        "`${word} {name}`: the expression ends before `{}`",
+                        value[n..].trim()
+                    );
                     let span = self.place(lo, hi);
-                    return Err(Diagnostic::error("E0115", span, message).help("is an operator missing?"));
+                    return Err(
+                        Diagnostic::error("E0115", span, message).help("is an operator missing?")
+                    );
                 }
                 Err(why) => {
                     let span = self.place(lo, hi);
@@ -591,7 +855,10 @@ impl Preprocessor<'_> {
                 "comment" => "$comment *",
                 _ => "$dollar #",
             };
-            return Err(Diagnostic::error("E0107", span, format!("`${word}` needs its mark")).help(format!("for example `{example}`")));
+            return Err(
+                Diagnostic::error("E0107", span, format!("`${word}` needs its mark"))
+                    .help(format!("for example `{example}`")),
+            );
         }
         match word {
             "inlinecom" => {
@@ -610,29 +877,43 @@ impl Preprocessor<'_> {
     }
 
     fn goto(&mut self, rest: &str, lo: u32, hi: u32) -> Result<(), Diagnostic> {
-        let label = rest.split_whitespace().next().unwrap_or("").to_ascii_lowercase();
+        let label = rest
+            .split_whitespace()
+            .next()
+            .unwrap_or("")
+            .to_ascii_lowercase();
         let dollar = self.marks.dollar;
         let limit = self.max_jumps;
-        let Some(frame) = self.frames.last_mut() else { return Ok(()) };
+        let Some(frame) = self.frames.last_mut() else {
+            return Ok(());
+        };
         let jumps = frame.jumps.entry(label.clone()).or_default();
         *jumps += 1;
         if *jumps > limit {
             frame.pos = frame.len;
             frame.ifs.clear();
             let span = self.place(lo, hi);
-            return Err(Diagnostic::error("E0116", span, format!("`$goto {label}` was followed {limit} times: it does not end"))
-                .help("`$maxGoto n` allows more"));
+            return Err(Diagnostic::error(
+                "E0116",
+                span,
+                format!("`$goto {label}` was followed {limit} times: it does not end"),
+            )
+            .help("`$maxGoto n` allows more"));
         }
         let text = &self.map.file(frame.file).text;
         let mut pos = 0;
         while pos < text.len() {
-            let end = memchr::memchr(b'\n', &text.as_bytes()[pos..]).map_or(text.len(), |n| pos + n + 1);
+            let end =
+                memchr::memchr(b'\n', &text.as_bytes()[pos..]).map_or(text.len(), |n| pos + n + 1);
             let line = &text[pos..end];
             if line.as_bytes()[0] == dollar {
                 let t = line[1..].trim_start();
                 let n = word_len(t);
                 if t[..n].eq_ignore_ascii_case("label")
-                    && t[n..].split_whitespace().next().is_some_and(|l| l.eq_ignore_ascii_case(&label))
+                    && t[n..]
+                        .split_whitespace()
+                        .next()
+                        .is_some_and(|l| l.eq_ignore_ascii_case(&label))
                 {
                     // A jump may leave open blocks.
                     frame.ifs.clear();
@@ -644,8 +925,12 @@ impl Preprocessor<'_> {
             pos = end;
         }
         let span = self.place(lo, hi);
-        Err(Diagnostic::error("E0116", span, format!("there is no `$label {label}` in this file"))
-            .help("labels are looked for in the file of the `$goto` only"))
+        Err(Diagnostic::error(
+            "E0116",
+            span,
+            format!("there is no `$label {label}` in this file"),
+        )
+        .help("labels are looked for in the file of the `$goto` only"))
     }
 
     /// Remembers what `$echo` writes: a later `$include` may read it. Nothing is written to disk.
@@ -657,7 +942,14 @@ impl Preprocessor<'_> {
         entry.push_str(text);
     }
 
-    fn echo_block(&mut self, line: &Line, word: &str, rest: &str, lo: u32, hi: u32) -> Result<(), Diagnostic> {
+    fn echo_block(
+        &mut self,
+        line: &Line,
+        word: &str,
+        rest: &str,
+        lo: u32,
+        hi: u32,
+    ) -> Result<(), Diagnostic> {
         let append = rest.trim_start().starts_with(">>");
         let file = unquoted(rest.trim_start().trim_start_matches('>')).to_owned();
         let mut lines: Vec<(String, u32)> = Vec::new();
@@ -677,8 +969,10 @@ impl Preprocessor<'_> {
             return Ok(());
         }
         let span = self.place(lo, hi);
-        Err(Diagnostic::error("E0101", span, format!("`${word}` without its `$offEcho`"))
-            .help("close it with `$offEcho` in the first column"))
+        Err(
+            Diagnostic::error("E0101", span, format!("`${word}` without its `$offEcho`"))
+                .help("close it with `$offEcho` in the first column"),
+        )
     }
 
     /// `$onPut … $offPut`: each line becomes a `put` of its text.
@@ -689,7 +983,11 @@ impl Preprocessor<'_> {
         for (t, at) in lines {
             let len = t.len() as u32;
             let line = Line::new(file, at, &t);
-            let t = if word == "onputs" || word == "onput" { self.substituted(line)?.text } else { t };
+            let t = if word == "onputs" || word == "onput" {
+                self.substituted(line)?.text
+            } else {
+                t
+            };
             let mut put = String::from("put ");
             let mut rest = t.as_str();
             while !rest.is_empty() {
@@ -709,8 +1007,10 @@ impl Preprocessor<'_> {
             return Ok(());
         }
         let span = self.place(lo, hi);
-        Err(Diagnostic::error("E0101", span, format!("`${word}` without its `$offPut`"))
-            .help("close it with `$offPut` in the first column"))
+        Err(
+            Diagnostic::error("E0101", span, format!("`${word}` without its `$offPut`"))
+                .help("close it with `$offPut` in the first column"),
+        )
     }
 }
 

@@ -46,7 +46,11 @@ pub(super) fn number_text(x: f64) -> String {
         if n <= whole {
             return format!("{sign}{digits}{}", "0".repeat((whole - n) as usize));
         }
-        return format!("{sign}{}.{}", &digits[..whole as usize], &digits[whole as usize..]);
+        return format!(
+            "{sign}{}.{}",
+            &digits[..whole as usize],
+            &digits[whole as usize..]
+        );
     }
     if (-5..0).contains(&exponent) {
         return format!("{sign}0.{}{digits}", "0".repeat((-exponent - 1) as usize));
@@ -68,7 +72,9 @@ const LEVELS: &[&[&str]] = &[
     &["<=>", "->", "eqv", "imp"],
     &["or", "xor"],
     &["and"],
-    &["<=", ">=", "<>", "==", "=", "<", ">", "eq", "ne", "lt", "le", "gt", "ge"],
+    &[
+        "<=", ">=", "<>", "==", "=", "<", ">", "eq", "ne", "lt", "le", "gt", "ge",
+    ],
     &["+", "-"],
     &["*", "/"],
     &["**", "^"],
@@ -90,7 +96,9 @@ impl<'a> Evaluator<'a> {
         self.blanks();
         let rest = self.rest();
         for &op in LEVELS[level] {
-            let Some(head) = rest.get(..op.len()) else { continue };
+            let Some(head) = rest.get(..op.len()) else {
+                continue;
+            };
             if !head.eq_ignore_ascii_case(op) {
                 continue;
             }
@@ -100,7 +108,8 @@ impl<'a> Evaluator<'a> {
                 continue;
             }
             // `*` is not the first half of `**`, `<` not of `<=>`.
-            if op == "*" && next == b'*' || op == "-" && next == b'>' || op == "<=" && next == b'>' {
+            if op == "*" && next == b'*' || op == "-" && next == b'>' || op == "<=" && next == b'>'
+            {
                 continue;
             }
             self.at += op.len();
@@ -119,7 +128,10 @@ impl<'a> Evaluator<'a> {
             self.blanks();
             let rest = self.rest();
             let not = rest.get(..3).is_some_and(|w| w.eq_ignore_ascii_case("not"))
-                && !rest.as_bytes().get(3).is_some_and(u8::is_ascii_alphanumeric);
+                && !rest
+                    .as_bytes()
+                    .get(3)
+                    .is_some_and(u8::is_ascii_alphanumeric);
             if not {
                 self.at += 3;
                 self.enter()?;
@@ -250,7 +262,11 @@ impl<'a> Evaluator<'a> {
         let lower = name.to_ascii_lowercase();
         let before = self.at;
         self.blanks();
-        let open = self.rest().bytes().next().filter(|c| matches!(c, b'(' | b'[' | b'{'));
+        let open = self
+            .rest()
+            .bytes()
+            .next()
+            .filter(|c| matches!(c, b'(' | b'[' | b'{'));
         let Some(open) = open else {
             self.at = before;
             return match lower.as_str() {
@@ -290,7 +306,8 @@ impl<'a> Evaluator<'a> {
         }
         self.depth -= 1;
         self.close(open)?;
-        function(&lower, &args).ok_or_else(|| format!("`{name}` with {} argument(s) is not known here", args.len()))
+        function(&lower, &args)
+            .ok_or_else(|| format!("`{name}` with {} argument(s) is not known here", args.len()))
     }
 }
 

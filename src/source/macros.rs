@@ -73,21 +73,20 @@ impl Macros {
             let names: Vec<String> = if list.trim().is_empty() {
                 Vec::new()
             } else {
-                list.split(',').map(|p| p.trim().to_ascii_lowercase()).collect()
+                list.split(',')
+                    .map(|p| p.trim().to_ascii_lowercase())
+                    .collect()
             };
             if names.iter().any(|p| word_len(p) != p.len() || p.is_empty()) {
-                return Err(format!("the parameters `({list})` of the macro are not names"));
+                return Err(format!(
+                    "the parameters `({list})` of the macro are not names"
+                ));
             }
             parameters = Some(names);
         }
         let body = rest.trim().to_owned();
         self.known.insert(name, Macro { parameters, body });
         Ok(())
-    }
-
-    /// Forgets a macro.
-    pub(super) fn forget(&mut self, name: &str) {
-        self.known.remove(&name.to_ascii_lowercase());
     }
 
     /// The ranges of a line that are calls, with what they stand for.
@@ -173,7 +172,9 @@ impl Macros {
         if depth >= DEEPEST || self.followed.get() > MOST_CALLS {
             return Err(error(
                 end,
-                format!("the macro `{name}` calls itself, or calls are nested more than {DEEPEST} deep"),
+                format!(
+                    "the macro `{name}` calls itself, or calls are nested more than {DEEPEST} deep"
+                ),
                 "a macro must not stand in its own body",
             ));
         }
@@ -191,11 +192,12 @@ impl Macros {
                         "write the whole call on one line",
                     ));
                 };
-                let arguments = if parameters.is_empty() && arguments.iter().all(|a| a.trim().is_empty()) {
-                    Vec::new()
-                } else {
-                    arguments
-                };
+                let arguments =
+                    if parameters.is_empty() && arguments.iter().all(|a| a.trim().is_empty()) {
+                        Vec::new()
+                    } else {
+                        arguments
+                    };
                 if arguments.len() != parameters.len() {
                     return Err(error(
                         to,
@@ -211,7 +213,11 @@ impl Macros {
             }
         };
         if text.len() > LONGEST {
-            return Err(error(to, format!("the macro `{name}` grows without end"), "a macro must not stand in its own body"));
+            return Err(error(
+                to,
+                format!("the macro `{name}` grows without end"),
+                "a macro must not stand in its own body",
+            ));
         }
         // What comes out may hold calls again.
         let mut out = String::with_capacity(text.len());
@@ -224,7 +230,11 @@ impl Macros {
             out.push_str(&s);
             at = t;
             if out.len() > LONGEST {
-                return Err(error(to, format!("the macro `{name}` grows without end"), "a macro must not stand in its own body"));
+                return Err(error(
+                    to,
+                    format!("the macro `{name}` grows without end"),
+                    "a macro must not stand in its own body",
+                ));
             }
         }
         out.push_str(&text[at..]);
@@ -235,7 +245,10 @@ impl Macros {
 /// Length of the name at the start of a text.
 fn word_len(text: &str) -> usize {
     let b = text.as_bytes();
-    if !b.first().is_some_and(|c| c.is_ascii_alphabetic() || *c == b'_') {
+    if !b
+        .first()
+        .is_some_and(|c| c.is_ascii_alphabetic() || *c == b'_')
+    {
         return 0;
     }
     b.iter()
@@ -328,19 +341,34 @@ mod tests {
 
     #[test]
     fn calls_are_textual() {
-        let d = ["f(x,y) x*y+1", "g f(2,3)", "name(a) par_&a", "st(x) \"x\" , '&x&&'"];
+        let d = [
+            "f(x,y) x*y+1",
+            "g f(2,3)",
+            "name(a) par_&a",
+            "st(x) \"x\" , '&x&&'",
+        ];
         assert_eq!(expand(&d, "f(1+1,3)").unwrap(), "1+1*3+1");
         assert_eq!(expand(&d, "a = g;").unwrap(), "a = 2*3+1;");
-        assert_eq!(expand(&d, "name(q) = 'f(1,2)'").unwrap(), "par_q = 'f(1,2)'");
+        assert_eq!(
+            expand(&d, "name(q) = 'f(1,2)'").unwrap(),
+            "par_q = 'f(1,2)'"
+        );
         assert_eq!(expand(&d, "st(hi)").unwrap(), "\"hi\" , 'hi'");
         assert_eq!(expand(&d, "f((1,2),3) f.l g2").unwrap(), "(1,2)*3+1 f.l g2");
-        assert_eq!(expand(&["sq(x) ((x)*(x))", "tw(x) sq(x)+sq(x)"], "tw(2)").unwrap(), "((2)*(2))+((2)*(2))");
+        assert_eq!(
+            expand(&["sq(x) ((x)*(x))", "tw(x) sq(x)+sq(x)"], "tw(2)").unwrap(),
+            "((2)*(2))+((2)*(2))"
+        );
     }
 
     #[test]
     fn endless_macros_are_reported() {
         assert!(expand(&["a b", "b a"], "a").unwrap_err().contains("itself"));
         assert!(expand(&["a(x) a(x)+a(x)"], "a(1)").is_err());
-        assert!(expand(&["f(x,y) x"], "f(1)").unwrap_err().contains("2 parameter"));
+        assert!(
+            expand(&["f(x,y) x"], "f(1)")
+                .unwrap_err()
+                .contains("2 parameter")
+        );
     }
 }

@@ -15,9 +15,9 @@ mod map;
 mod preprocess;
 mod variables;
 
-pub(crate) use preprocess::{Preprocessor, quoted_end};
-pub use preprocess::{Ending, Known, NothingKnown, PreprocessOptions, SymbolKindName};
 pub use map::{FileId, Place, SourceFile, SourceMap};
+pub use preprocess::{Ending, Known, NothingKnown, PreprocessOptions, SymbolKindName};
+pub(crate) use preprocess::{Preprocessor, quoted_end};
 
 /// A range of bytes in the expanded text. `lo <= hi`; an empty span is a point.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Default, Debug)]

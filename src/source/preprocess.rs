@@ -135,7 +135,7 @@ impl Frame {
 /// See the module.
 pub(crate) struct Preprocessor<'h> {
     pub(super) host: &'h mut dyn Host,
-    pub(super) map: SourceMap,
+    pub(crate) map: SourceMap,
     pub(super) frames: Vec<Frame>,
     pub(super) names: Variables,
     pub(super) macros: Macros,
@@ -254,8 +254,10 @@ impl<'h> Preprocessor<'h> {
     ) -> Result<(), Diagnostic> {
         let asked = self.place(lo, hi);
         if name.is_empty() {
-            return Err(Diagnostic::error("E0103", asked, "the name of the file is missing")
-                .help("write `$include 'file.gms'`"));
+            return Err(
+                Diagnostic::error("E0103", asked, "the name of the file is missing")
+                    .help("write `$include 'file.gms'`"),
+            );
         }
         if let Some(text) = self.echoed.get(&name.to_lowercase()) {
             let text = text.clone();
@@ -268,7 +270,11 @@ impl<'h> Preprocessor<'h> {
             Err(e) => return Err(unreadable(name, &e, asked)),
         };
         // A batch file may call itself with other arguments: that is bounded by the depth.
-        let itself = arguments.is_none() && self.frames.iter().any(|f| f.path == path && f.arguments.is_none());
+        let itself = arguments.is_none()
+            && self
+                .frames
+                .iter()
+                .any(|f| f.path == path && f.arguments.is_none());
         if itself || self.frames.len() >= DEEPEST_INCLUDE {
             let message = if itself {
                 format!("the file `{name}` includes itself")
@@ -303,8 +309,12 @@ impl<'h> Preprocessor<'h> {
             let file = FileId(0);
             let span = self.map.push_substitute("\n", file, at, at);
             return Err(vec![
-                Diagnostic::error("E0108", span, "the text is longer than 3 GB with all its includes")
-                    .help("split the model, or read the data with `execute_load`"),
+                Diagnostic::error(
+                    "E0108",
+                    span,
+                    "the text is longer than 3 GB with all its includes",
+                )
+                .help("split the model, or read the data with `execute_load`"),
             ]);
         }
         loop {
@@ -334,7 +344,9 @@ impl<'h> Preprocessor<'h> {
                         return Ok(true);
                     }
                     let line = self.take_line();
-                    let outcome = self.substituted(line).and_then(|l| self.directive_line(&l, known));
+                    let outcome = self
+                        .substituted(line)
+                        .and_then(|l| self.directive_line(&l, known));
                     if let Err(d) = outcome {
                         self.had_errors = true;
                         return Err(vec![d]);
@@ -349,27 +361,71 @@ impl<'h> Preprocessor<'h> {
                     continue;
                 }
             }
-            if grown > 0 && self.in_comment.is_none() {
-                return Ok(true);
-            }
             let line = self.take_line();
-            let outcome = self.substituted(line).and_then(|l| {
-                let first = l.text.as_bytes().first().copied();
-                if self.in_comment.is_some() {
-                    self.finish_text(l, 0)
-                } else if first == Some(self.marks.comment) {
-                    Ok(())
-                } else if first == Some(self.marks.dollar) {
-                    self.directive_line(&l, known)
-                } else {
-                    self.finish_text(l, 0)
+            let outcome = match self.substituted(line) {
+                Err(d) => Err(d),
+                Ok(l) => {
+                    let first = l.text.as_bytes().first().copied();
+                    if self.in_comment.is_some() {
+                        self.finish_text(l, 0)
+                    } else if first == Some(self.marks.comment) {
+                        Ok(())
+                    } else if first == Some(self.marks.dollar) {
+                        if grown > 0 {
+                            // Statements before it come first.
+                            self.advance(pos);
+                            return Ok(true);
+                        }
+                        self.directive_line(&l, known)
+                    } else {
+                        self.finish_text(l, 0)
+                    }
                 }
-            });
+            };
             if let Err(d) = outcome {
                 self.had_errors = true;
                 return Err(vec![d]);
             }
         }
+    }
+
+    /// The switches in force.
+    pub(crate) fn modes(&self) -> Modes {
+        self.modes
+    }
+
+    /// `$onEnd` is in force.
+    pub(crate) fn on_end(&self) -> bool {
+        self.on_end
+    }
+
+    /// A statement did not parse (`$if errorFree`).
+    pub(crate) fn note_error(&mut self) {
+        self.had_errors = true;
+    }
+
+    pub(crate) fn into_map(self) -> SourceMap {
+        self.map
+    }
+
+    pub(crate) fn take_warnings(&mut self) -> Vec<Diagnostic> {
+        std::mem::take(&mut self.warnings)
+    }
+
+    pub(crate) fn take_log(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.log)
+    }
+
+    pub(crate) fn title(&self) -> Option<&str> {
+        self.title.as_deref()
+    }
+
+    pub(crate) fn ending(&self) -> Ending {
+        self.ending
+    }
+
+    pub(crate) fn value_of(&self, name: &str) -> Option<&str> {
+        self.names.get(name)
     }
 
     /// Goes on reading the present file at `pos`.
@@ -381,7 +437,9 @@ impl<'h> Preprocessor<'h> {
 
     /// The byte after the line end that follows `pos` in the present file.
     pub(super) fn line_end(&self, pos: usize) -> usize {
-        let Some(frame) = self.frames.last() else { return pos };
+        let Some(frame) = self.frames.last() else {
+            return pos;
+        };
         let bytes = self.map.file(frame.file).text.as_bytes();
         memchr::memchr(b'\n', &bytes[pos..]).map_or(bytes.len(), |n| pos + n + 1)
     }
@@ -422,7 +480,9 @@ impl<'h> Preprocessor<'h> {
         if !self.macros.is_empty() || self.marks.columns != (1, usize::MAX) {
             return pos;
         }
-        let Some(frame) = self.frames.last_mut() else { return pos };
+        let Some(frame) = self.frames.last_mut() else {
+            return pos;
+        };
         let bytes = self.map.file(frame.file).text.as_bytes();
         let marks = &self.marks;
         let find = |needle: &[u8]| {
@@ -468,7 +528,9 @@ impl<'h> Preprocessor<'h> {
 
     /// The present file ends.
     fn leave(&mut self) -> Result<(), Diagnostic> {
-        let Some(frame) = self.frames.last() else { return Ok(()) };
+        let Some(frame) = self.frames.last() else {
+            return Ok(());
+        };
         let pos = frame.len;
         self.end_line(pos);
         let open = self.frames.last_mut().and_then(|f| f.ifs.drain(..).next());
@@ -476,12 +538,16 @@ impl<'h> Preprocessor<'h> {
         self.frames.pop();
         self.names.leave();
         if let Some(open) = open {
-            return Err(Diagnostic::error("E0106", open.span, "this `$ifThen` is never closed")
-                .help("every `$ifThen` needs its `$endIf` in the same file"));
+            return Err(
+                Diagnostic::error("E0106", open.span, "this `$ifThen` is never closed")
+                    .help("every `$ifThen` needs its `$endIf` in the same file"),
+            );
         }
         if let Some(span) = comment {
-            return Err(Diagnostic::error("E0101", span, "this comment is never closed")
-                .help("close it with the mark that `$inlineCom` set"));
+            return Err(
+                Diagnostic::error("E0101", span, "this comment is never closed")
+                    .help("close it with the mark that `$inlineCom` set"),
+            );
         }
         Ok(())
     }
@@ -516,7 +582,10 @@ impl<'h> Preprocessor<'h> {
                     continue;
                 }
             }
-            let digits = bytes[from + 1..].iter().take_while(|c| c.is_ascii_digit()).count();
+            let digits = bytes[from + 1..]
+                .iter()
+                .take_while(|c| c.is_ascii_digit())
+                .count();
             if digits > 0
                 && let Some(args) = self.frames.last().and_then(|f| f.arguments.as_ref())
             {
@@ -554,7 +623,9 @@ impl<'h> Preprocessor<'h> {
                 "ps" | "pagesize" => "60".into(),
                 "pw" | "pagewidth" => "255".into(),
                 "input" => self.system("fn", lo)? + &self.system("fe", lo)?,
-                "errmsg" | "error" | "limrow" | "limcol" | "optfile" | "logoption" | "lo" => "0".into(),
+                "errmsg" | "error" | "limrow" | "limcol" | "optfile" | "logoption" | "lo" => {
+                    "0".into()
+                }
                 "reslim" => "10000000000".into(),
                 "iterlim" => "2147483647".into(),
                 _ => String::new(),
@@ -568,8 +639,12 @@ impl<'h> Preprocessor<'h> {
 
     fn system(&mut self, item: &str, lo: u32) -> Option<String> {
         let main = self.frames.first()?.path.clone();
-        let text = |p: Option<&std::ffi::OsStr>| p.map_or(String::new(), |s| s.to_string_lossy().into_owned());
-        let dotted = |p: Option<&std::ffi::OsStr>| p.map_or(String::new(), |s| format!(".{}", s.to_string_lossy()));
+        let text = |p: Option<&std::ffi::OsStr>| {
+            p.map_or(String::new(), |s| s.to_string_lossy().into_owned())
+        };
+        let dotted = |p: Option<&std::ffi::OsStr>| {
+            p.map_or(String::new(), |s| format!(".{}", s.to_string_lossy()))
+        };
         let now = self.host.now();
         Some(match item {
             "fn" => text(main.file_stem()),
@@ -579,7 +654,12 @@ impl<'h> Preprocessor<'h> {
                 _ => "./".into(),
             },
             "ifile" | "sfile" | "incname" => self.frames.last()?.path.display().to_string(),
-            "incparent" => self.frames.iter().rev().nth(1).map_or(String::new(), |f| f.path.display().to_string()),
+            "incparent" => self
+                .frames
+                .iter()
+                .rev()
+                .nth(1)
+                .map_or(String::new(), |f| f.path.display().to_string()),
             "line" | "incline" | "listline" | "prline" => {
                 self.map.file(self.frames.last()?.file).line(lo).to_string()
             }
@@ -595,10 +675,10 @@ impl<'h> Preprocessor<'h> {
             "version" | "gamsversion" | "gamsrelease" => "54".into(),
             "errorlevel" | "page" | "redirlog" | "licenselevel" | "isalphabeta" => "0".into(),
             "memory" | "tstart" | "tcomp" | "texec" | "tclose" | "elapsed" => "0".into(),
-            "username" | "computername" | "prpage" | "opage" | "verid" | "gstring" | "sstring" | "pfile" => String::new(),
-            "lp" | "nlp" | "mcp" | "rmip" | "qcp" | "dnlp" | "cns" | "mpec" | "mip" | "minlp" | "rminlp" | "rmiqcp" | "miqcp" => {
-                "bmod".into()
-            }
+            "username" | "computername" | "prpage" | "opage" | "verid" | "gstring" | "sstring"
+            | "pfile" => String::new(),
+            "lp" | "nlp" | "mcp" | "rmip" | "qcp" | "dnlp" | "cns" | "mpec" | "mip" | "minlp"
+            | "rminlp" | "rmiqcp" | "miqcp" => "bmod".into(),
             _ => return None,
         })
     }
@@ -728,12 +808,17 @@ fn byte_of_column(text: &str, column: usize) -> usize {
 /// The diagnostic for a file that cannot be read.
 fn unreadable(name: &str, e: &HostError, span: Span) -> Diagnostic {
     match e {
-        HostError::NotFound => Diagnostic::error("E0103", span, format!("the file `{name}` is not there"))
-            .help("paths are relative to the file that asks, then to the current directory"),
+        HostError::NotFound => {
+            Diagnostic::error("E0103", span, format!("the file `{name}` is not there"))
+                .help("paths are relative to the file that asks, then to the current directory")
+        }
         HostError::Outside(p) => Diagnostic::error(
             "E0104",
             span,
-            format!("the file `{name}` lies outside the folders that may be read ({})", p.display()),
+            format!(
+                "the file `{name}` lies outside the folders that may be read ({})",
+                p.display()
+            ),
         )
         .help("put it beside the model, or allow its folder on the command line"),
         HostError::NotUtf8(at) => Diagnostic::error(
@@ -742,7 +827,11 @@ fn unreadable(name: &str, e: &HostError, span: Span) -> Diagnostic {
             format!("the file `{name}` is not UTF-8 text: byte {at} is not part of a character"),
         )
         .help("save it as UTF-8, for example with `iconv -f LATIN1 -t UTF-8`"),
-        HostError::Other(why) => Diagnostic::error("E0103", span, format!("the file `{name}` cannot be read: {why}"))
-            .help("check the path and the permissions"),
+        HostError::Other(why) => Diagnostic::error(
+            "E0103",
+            span,
+            format!("the file `{name}` cannot be read: {why}"),
+        )
+        .help("check the path and the permissions"),
     }
 }

@@ -76,7 +76,10 @@ impl Variables {
     pub(super) fn has(&self, reach: Reach, name: &str) -> bool {
         let name = name.to_ascii_lowercase();
         match reach {
-            Reach::Local => self.files.last().is_some_and(|(_, l)| l.contains_key(&name)),
+            Reach::Local => self
+                .files
+                .last()
+                .is_some_and(|(_, l)| l.contains_key(&name)),
             Reach::Scoped => self.files.iter().any(|(s, _)| s.contains_key(&name)),
             Reach::Global => self.global.contains_key(&name),
         }

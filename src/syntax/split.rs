@@ -104,7 +104,14 @@ pub(super) struct Splitter {
     last_end: usize,
     /// The keyword has been read (`positive variables`).
     after_dot: bool,
+    /// A word was read whose parentheses hold statements.
     control: bool,
+    /// The statement is a figure: its braces hold statements.
+    figure: bool,
+    /// Names declared so far in this statement.
+    names: usize,
+    /// Data up to here hold no `;` that could end the statement.
+    searched: usize,
 }
 
 fn span(lo: usize, hi: usize) -> Span {
@@ -128,6 +135,9 @@ impl Splitter {
             last_end: 0,
             after_dot: false,
             control: false,
+            figure: false,
+            names: 0,
+            searched: 0,
         }
     }
 
@@ -169,7 +179,9 @@ impl Splitter {
                 break;
             }
         }
-        let Some(&b) = bytes.get(self.pos) else { return false };
+        let Some(&b) = bytes.get(self.pos) else {
+            return false;
+        };
         let at = self.pos;
         self.start = Some(at);
         self.last_end = at;
@@ -177,12 +189,15 @@ impl Splitter {
         self.new_line = false;
         self.after_dot = false;
         self.control = false;
+        self.figure = false;
+        self.names = 0;
         if b == b'$' && (at == 0 || bytes[at - 1] == b'\n') {
             self.class = Class::Directive;
             return true;
         }
         let (class, end) = words::classify(text, at);
         self.class = class;
+        self.figure = words::is_figure(&text[at..end.max(at)]);
         if class.declares() {
             self.pos = end;
             self.last_end = end;
@@ -225,7 +240,14 @@ impl Splitter {
                 Declare::Table => self.end_table(bytes, bytes.len()),
                 _ => {}
             }
-        } else if let Some(open) = self.opens.iter().rev().find(|o| o.block).or(self.opens.last()).copied() {
+        } else if let Some(open) = self
+            .opens
+            .iter()
+            .rev()
+            .find(|o| o.block)
+            .or(self.opens.last())
+            .copied()
+        {
             self.unclosed(open);
         }
     }
@@ -237,21 +259,29 @@ impl Splitter {
             _ => '}',
         };
         self.problems.push(
-            Diagnostic::error("E0202", span(open.at, open.at + 1), format!("this `{}` is never closed", open.byte as char))
-                .label(format!("its `{close}` is missing"))
-                .help(if open.block {
-                    format!("close the block with `{close};` before the next statement")
-                } else {
-                    format!("write `{close}` before the `;`")
-                }),
+            Diagnostic::error(
+                "E0202",
+                span(open.at, open.at + 1),
+                format!("this `{}` is never closed", open.byte as char),
+            )
+            .label(format!("its `{close}` is missing"))
+            .help(if open.block {
+                format!("close the block with `{close};` before the next statement")
+            } else {
+                format!("write `{close}` before the `;`")
+            }),
         );
     }
 
     fn unclosed_body(&mut self, at: usize, end: usize) {
         self.problems.push(
-            Diagnostic::error("E0203", span(at.saturating_sub(1), at), "the data that begin here are never closed by `/`")
-                .label("opened here")
-                .help("data stand between two slashes: `/ a 1, b 2 /`"),
+            Diagnostic::error(
+                "E0203",
+                span(at.saturating_sub(1), at),
+                "the data that begin here are never closed by `/`",
+            )
+            .label("opened here")
+            .help("data stand between two slashes: `/ a 1, b 2 /`"),
         );
         self.last_end = end;
     }
@@ -281,13 +311,24 @@ impl Splitter {
                     let end = words::word_end(bytes, i);
                     let boundary = i > start && !self.after_dot;
                     if let Some(word) = words::statement_word(text, i, end) {
-                        if boundary && self.opens.is_empty() && self.blocks == 0 && !word.inside_blocks_only() {
+                        if boundary
+                            && self.opens.is_empty()
+                            && self.blocks == 0
+                            && !word.inside_blocks_only()
+                        {
                             self.pos = i;
                             return true;
                         }
                         if boundary && word == Word::Declaration {
                             // No block and no parenthesis holds a declaration.
-                            if let Some(open) = self.opens.iter().rev().find(|o| o.block).or(self.opens.last()).copied() {
+                            if let Some(open) = self
+                                .opens
+                                .iter()
+                                .rev()
+                                .find(|o| o.block)
+                                .or(self.opens.last())
+                                .copied()
+                            {
                                 self.unclosed(open);
                             }
                             self.pos = i;
@@ -307,19 +348,26 @@ impl Splitter {
                             }
                         }
                     } else {
-                        self.control = i == start && words::is_figure(&text[i..end]);
+                        self.control = false;
                     }
                     i = end;
                 }
                 b'0'..=b'9' => {
                     i += 1;
-                    while i < bytes.len() && bytes[i].is_ascii_alphanumeric() {
+                    while i < bytes.len()
+                        && (bytes[i].is_ascii_alphanumeric()
+                            || bytes[i] == b'.' && bytes.get(i + 1) != Some(&b'.'))
+                    {
                         i += 1;
                     }
                 }
                 b'(' | b'[' | b'{' => {
-                    let block = self.control && (b == b'{' || !self.figure_at(text, start));
-                    self.opens.push(Open { at: i, byte: b, block });
+                    let block = self.control || self.figure && b == b'{' && self.opens.is_empty();
+                    self.opens.push(Open {
+                        at: i,
+                        byte: b,
+                        block,
+                    });
                     self.control = false;
                     i += 1;
                     if self.opens.len() > DEEPEST {
@@ -337,7 +385,11 @@ impl Splitter {
                     }
                     Some(open) if !open.block => {
                         // The `;` ends what is inside, closed or not.
-                        let first = self.opens.iter().rposition(|o| o.block).map_or(0, |n| n + 1);
+                        let first = self
+                            .opens
+                            .iter()
+                            .rposition(|o| o.block)
+                            .map_or(0, |n| n + 1);
                         let open = self.opens[first];
                         self.unclosed(open);
                         self.opens.truncate(first);
@@ -349,30 +401,33 @@ impl Splitter {
                     }
                     _ => i += 1,
                 },
-                b'$' if i > 0 && bytes[i - 1] == b'\n' && self.opens.is_empty() && self.blocks == 0 => {
+                b'$' if i > 0
+                    && bytes[i - 1] == b'\n'
+                    && self.opens.is_empty()
+                    && self.blocks == 0 =>
+                {
                     self.pos = i;
                     return true;
                 }
                 _ => i += 1,
             }
-            self.after_dot = b == b'.' && bytes.get(i) != Some(&b'.') && (i < 2 || bytes[i - 2] != b'.');
+            self.after_dot =
+                b == b'.' && bytes.get(i) != Some(&b'.') && (i < 2 || bytes[i - 2] != b'.');
             self.last_end = i;
         }
         self.pos = i;
         false
     }
 
-    /// The statement being read is a figure, whose block stands in braces.
-    fn figure_at(&self, text: &str, start: usize) -> bool {
-        let end = words::word_end(text.as_bytes(), start);
-        words::is_figure(&text[start..end])
-    }
-
     /// Nested too deeply: reports it and passes over the statement.
     fn too_deep(&mut self, bytes: &[u8], i: usize) -> bool {
         self.problems.push(
-            Diagnostic::error("E0204", span(i - 1, i), format!("parentheses are nested more than {DEEPEST} deep here"))
-                .help("split the expression: give its parts names of their own"),
+            Diagnostic::error(
+                "E0204",
+                span(i - 1, i),
+                format!("parentheses are nested more than {DEEPEST} deep here"),
+            )
+            .help("split the expression: give its parts names of their own"),
         );
         let end = memchr::memchr(b';', &bytes[i..]).map_or(bytes.len(), |n| i + n);
         self.last_end = end;
@@ -451,6 +506,7 @@ impl Splitter {
                 b'/' => {
                     self.declare = Declare::Body;
                     self.body_start = i + 1;
+                    self.searched = i + 1;
                     self.pos = i + 1;
                 }
                 b'(' | b'[' | b'{' if self.declare != Declare::Name && !self.has_domain(bytes) => {
@@ -472,7 +528,9 @@ impl Splitter {
                     }
                     None => self.unquoted_text(text, i),
                 },
-                _ if self.declare == Declare::AfterName && !text_cannot_start(bytes, i) => self.unquoted_text(text, i),
+                _ if self.declare == Declare::AfterName && !text_cannot_start(bytes, i) => {
+                    self.unquoted_text(text, i)
+                }
                 _ if words::is_letter(b) => {
                     let end = words::word_end(bytes, i);
                     if words::statement_word(text, i, end).is_some() {
@@ -481,7 +539,9 @@ impl Splitter {
                     }
                     self.name(bytes, i, end);
                 }
-                b'.' | b'=' | b'$' if self.declare == Declare::AfterText || self.declare == Declare::AfterName => {
+                b'.' | b'=' | b'$'
+                    if self.declare == Declare::AfterText || self.declare == Declare::AfterName =>
+                {
                     if self.missing_semicolon(text, i) {
                         return true;
                     }
@@ -498,13 +558,19 @@ impl Splitter {
 
     fn name(&mut self, bytes: &[u8], i: usize, end: usize) {
         self.last_name = i;
+        self.names += 1;
         self.declare = Declare::AfterName;
         self.pos = end;
         self.last_end = end;
         self.new_line = false;
         // `scalar x.l /1/`, `set i-j` and the like are left to the parser, in one piece.
         while let Some(&b) = bytes.get(self.pos) {
-            if words::is_blank(b) || matches!(b, b',' | b';' | b'/' | b'(' | b'[' | b'{' | b'\'' | b'"' | b'=' | b'.' | b'$') {
+            if words::is_blank(b)
+                || matches!(
+                    b,
+                    b',' | b';' | b'/' | b'(' | b'[' | b'{' | b'\'' | b'"' | b'=' | b'.' | b'$'
+                )
+            {
                 break;
             }
             self.pos += 1;
@@ -514,11 +580,18 @@ impl Splitter {
 
     /// Between the last name and here stands a closed domain already.
     fn has_domain(&self, bytes: &[u8]) -> bool {
-        matches!(bytes.get(self.last_end.wrapping_sub(1)), Some(b')' | b']' | b'}')) || self.declare == Declare::AfterText && !self.new_line
+        matches!(
+            bytes.get(self.last_end.wrapping_sub(1)),
+            Some(b')' | b']' | b'}')
+        ) || self.declare == Declare::AfterText && !self.new_line
     }
 
     fn hole(&mut self, kind: HoleKind, inside: Span, outside: Span) {
-        self.holes.push(Hole { kind, inside, outside });
+        self.holes.push(Hole {
+            kind,
+            inside,
+            outside,
+        });
     }
 
     /// A text without quotes: to the end of the line, `,`, `/` or `;`.
@@ -546,12 +619,16 @@ impl Splitter {
     fn missing_semicolon(&mut self, text: &str, i: usize) -> bool {
         let bytes = text.as_bytes();
         let definition = bytes[i..].starts_with(b"..");
-        let assignment = bytes[i] == b'=' || bytes[i] == b'$' || bytes[i] == b'.' && bytes.get(i + 1).is_some_and(|b| words::is_letter(*b));
-        if !definition && !assignment {
+        let assignment = bytes[i] == b'='
+            || bytes[i] == b'$'
+            || bytes[i] == b'.' && bytes.get(i + 1).is_some_and(|b| words::is_letter(*b));
+        if !definition && !assignment || self.names < 2 {
             return false;
         }
         let line_start = memchr::memrchr(b'\n', &bytes[..self.last_name]).map_or(0, |n| n + 1);
-        let first_on_line = bytes[line_start..self.last_name].iter().all(|b| words::is_blank(*b));
+        let first_on_line = bytes[line_start..self.last_name]
+            .iter()
+            .all(|b| words::is_blank(*b));
         let start = self.start.unwrap_or(0);
         if !first_on_line || line_start <= start {
             return false;
@@ -560,9 +637,16 @@ impl Splitter {
         let end = start + before.len();
         let name_end = words::word_end(bytes, self.last_name);
         self.problems.push(
-            Diagnostic::error("E0201", span(end.saturating_sub(1).max(start), end), "`;` is missing at the end of this declaration")
-                .label("missing `;`")
-                .other(span(self.last_name, name_end), "the next statement begins here"),
+            Diagnostic::error(
+                "E0201",
+                span(end.saturating_sub(1).max(start), end),
+                "`;` is missing at the end of this declaration",
+            )
+            .label("missing `;`")
+            .other(
+                span(self.last_name, name_end),
+                "the next statement begins here",
+            ),
         );
         self.pos = self.last_name;
         self.last_end = end;
@@ -581,7 +665,7 @@ impl Splitter {
             let at = i + n;
             if bytes[at] == b'/' {
                 // A `;` in numbers, or before a keyword: the slash was forgotten.
-                if let Some(stop) = self.forgotten_slash(text, self.body_start, at) {
+                if let Some(stop) = self.forgotten_slash(text, at) {
                     self.unclosed_body(self.body_start, stop);
                     self.pos = stop + 1;
                     return true;
@@ -600,7 +684,7 @@ impl Splitter {
             }
             i = quoted_end(bytes, at).unwrap_or(at + 1);
         }
-        if let Some(stop) = self.forgotten_slash(text, self.body_start, i) {
+        if let Some(stop) = self.forgotten_slash(text, i) {
             self.unclosed_body(self.body_start, stop);
             self.pos = stop + 1;
             return true;
@@ -610,13 +694,17 @@ impl Splitter {
     }
 
     /// The `;` that ends the statement inside data, if one does.
-    fn forgotten_slash(&self, text: &str, from: usize, to: usize) -> Option<usize> {
+    fn forgotten_slash(&mut self, text: &str, to: usize) -> Option<usize> {
         let bytes = text.as_bytes();
-        let mut i = from;
+        let from = self.body_start;
+        let mut i = self.searched;
+        self.searched = to;
         while let Some(n) = memchr::memchr(b';', &bytes[i..to]) {
             let at = i + n;
             i = at + 1;
-            let line = memchr::memrchr(b'\n', &bytes[..at]).map_or(0, |n| n + 1).max(from);
+            let line = memchr::memrchr(b'\n', &bytes[..at])
+                .map_or(0, |n| n + 1)
+                .max(from);
             let mut q = line;
             let mut quoted = false;
             while q < at {
@@ -637,6 +725,11 @@ impl Splitter {
             }
             // In a set it may belong to a text: only a statement after it tells.
             let rest = text[at + 1..to].trim_start();
+            if rest.is_empty() {
+                // More text may come.
+                self.searched = at;
+                return None;
+            }
             let word_at = to - rest.len();
             let end = words::word_end(bytes, word_at);
             if end > word_at && words::statement_word(text, word_at, end).is_some() {
@@ -654,7 +747,10 @@ impl Splitter {
 
     fn end_table(&mut self, bytes: &[u8], end: usize) {
         let end = end.max(self.body_start);
-        let trimmed = bytes[self.body_start..end].iter().rposition(|b| !words::is_blank(*b)).map_or(self.body_start, |n| self.body_start + n + 1);
+        let trimmed = bytes[self.body_start..end]
+            .iter()
+            .rposition(|b| !words::is_blank(*b))
+            .map_or(self.body_start, |n| self.body_start + n + 1);
         let body = span(self.body_start, trimmed);
         self.hole(HoleKind::Body, body, body);
         self.last_end = trimmed;
@@ -671,7 +767,11 @@ impl Splitter {
                     self.end_table(bytes, line);
                     return true;
                 }
-                let first = line + bytes[line..end].iter().take_while(|b| words::is_blank(**b)).count();
+                let first = line
+                    + bytes[line..end]
+                        .iter()
+                        .take_while(|b| words::is_blank(**b))
+                        .count();
                 if first < end && bytes[first].is_ascii_alphabetic() {
                     let word_end = words::word_end(bytes, first);
                     if words::begins_statement_in_table(text, first, word_end) {
@@ -716,7 +816,9 @@ fn line_quote(bytes: &[u8], i: usize) -> Option<usize> {
 fn text_cannot_start(bytes: &[u8], i: usize) -> bool {
     match bytes[i] {
         b'=' | b'$' => true,
-        b'.' => bytes.get(i + 1).is_some_and(|b| *b == b'.' || words::is_letter(*b)),
+        b'.' => bytes
+            .get(i + 1)
+            .is_some_and(|b| *b == b'.' || words::is_letter(*b)),
         _ => false,
     }
 }

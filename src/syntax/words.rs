@@ -23,7 +23,10 @@ pub(super) enum Class {
 impl Class {
     /// Statements with names, texts and data.
     pub(super) fn declares(self) -> bool {
-        !matches!(self, Class::Alias | Class::Directive | Class::Algebra | Class::Other)
+        !matches!(
+            self,
+            Class::Alias | Class::Directive | Class::Algebra | Class::Other
+        )
     }
 }
 
@@ -96,9 +99,10 @@ fn kind(word: &[u8]) -> Option<(Word, Class)> {
         b"loop" | b"while" | b"for" | b"if" | b"repeat" => (W::Control, C::Other),
         b"endloop" | b"endwhile" | b"endfor" | b"endif" => (W::EndControl, C::Other),
         b"else" | b"elseif" | b"until" => (W::Inner, C::Other),
-        b"display" | b"abort" | b"option" | b"options" | b"solve" | b"put" | b"putclose" | b"puttl" | b"puthd" | b"putpage"
-        | b"putclear" | b"execute" | b"execute_unload" | b"execute_load" | b"execute_unloaddi" | b"execute_loaddc"
-        | b"execute_loadpoint" | b"put_utility" | b"put_utilities" => (W::Action, C::Other),
+        b"display" | b"abort" | b"option" | b"options" | b"solve" | b"put" | b"putclose"
+        | b"puttl" | b"puthd" | b"putpage" | b"putclear" | b"execute" | b"execute_unload"
+        | b"execute_load" | b"execute_unloaddi" | b"execute_loaddc" | b"execute_loadpoint"
+        | b"put_utility" | b"put_utilities" => (W::Action, C::Other),
         _ => return None,
     })
 }
@@ -107,7 +111,16 @@ fn kind(word: &[u8]) -> Option<(Word, Class)> {
 fn is_variable_kind(word: &[u8]) -> bool {
     matches!(
         word,
-        b"free" | b"positive" | b"nonnegative" | b"negative" | b"binary" | b"integer" | b"semicont" | b"semiint" | b"sos1" | b"sos2"
+        b"free"
+            | b"positive"
+            | b"nonnegative"
+            | b"negative"
+            | b"binary"
+            | b"integer"
+            | b"semicont"
+            | b"semiint"
+            | b"sos1"
+            | b"sos2"
     )
 }
 
@@ -133,14 +146,17 @@ pub(super) fn statement_word(text: &str, at: usize, end: usize) -> Option<Word> 
         let next = next_word(text, end);
         wanted.iter().any(|w| next.eq_ignore_ascii_case(w))
     };
-    let declares = is_variable_kind(word) && next(&["variable", "variables"]) || word == b"singleton" && next(&["set", "sets"]);
+    let declares = is_variable_kind(word) && next(&["variable", "variables"])
+        || word == b"singleton" && next(&["set", "sets"]);
     declares.then_some(Word::Declaration)
 }
 
 /// Whether a line of a table that begins with this word is the next statement: a label may be spelled
 /// like a keyword, but then a number follows.
 pub(super) fn begins_statement_in_table(text: &str, at: usize, end: usize) -> bool {
-    let Some(word) = statement_word(text, at, end) else { return false };
+    let Some(word) = statement_word(text, at, end) else {
+        return false;
+    };
     if word.inside_blocks_only() {
         return false;
     }
@@ -176,8 +192,15 @@ pub(super) fn classify(text: &str, at: usize) -> (Class, usize) {
         _ => {}
     }
     match word {
-        b"figure" | b"draw" | b"break" | b"continue" | b"embeddedcode" | b"endembeddedcode" => (Class::Other, end),
-        _ if word.starts_with(b"execute") || word.starts_with(b"put") || word.starts_with(b"embeddedcode") => (Class::Other, end),
+        b"figure" | b"draw" | b"break" | b"continue" | b"embeddedcode" | b"endembeddedcode" => {
+            (Class::Other, end)
+        }
+        _ if word.starts_with(b"execute")
+            || word.starts_with(b"put")
+            || word.starts_with(b"embeddedcode") =>
+        {
+            (Class::Other, end)
+        }
         _ => (Class::Algebra, end),
     }
 }
