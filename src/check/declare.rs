@@ -10,8 +10,8 @@ use crate::source::{SourceMap, Span};
 use crate::syntax::ast::{
     DomainName, Ident, ModelDecl, ModelItem, ParameterDecl, SetDecl, SymbolDecl, TableDecl, VariableKind,
 };
-use crate::syntax::data::{DataReader, KeyPart, Tail};
-use crate::syntax::table::read_table;
+use crate::syntax::data::{DataKind, DataReader, KeyPart, Tail};
+use crate::syntax::table::TableReader;
 use std::rc::Rc;
 
 /// A range or a product of sets in data may not make more records than this.
@@ -368,10 +368,10 @@ impl Compiler {
         self.open_data(s, name)?;
         let symbol = self.symbols.get(s).clone();
         let (table, dim) = (symbol.table, symbol.dim());
-        let mut reader = DataReader::new(map.text(body), body.lo);
+        let mut reader = DataReader::new(map.text(body), body.lo, DataKind::Set, self.modes.undf);
         let mut last: Option<Label> = self.last_label(table, dim);
         let mut unordered = symbol.unordered;
-        while let Some(record) = reader.next_record() {
+        while let Some(record) = reader.next() {
             let record = match record {
                 Ok(r) => r,
                 Err(d) => {
@@ -379,14 +379,14 @@ impl Compiler {
                     break;
                 }
             };
-            let text: Option<Box<str>> = match &record.tail {
+            let text: Option<Box<str>> = match &record.value {
                 Tail::None => None,
-                Tail::Text(t) => Some((&**t).into()),
+                Tail::Text(t, _) => Some((&**t).into()),
                 Tail::Number(_, span) => Some(map.text(*span).into()),
                 Tail::Name(n, _) => Some((*n).into()),
             };
             let (mut keys, span) = (Vec::new(), record.span);
-            if self.expand(s, record.key, span, &[], &mut keys).is_err() {
+            if self.expand(s, record.key, record.matched, span, &[], &mut keys).is_err() {
                 continue;
             }
             for key in keys.chunks_exact(dim) {
@@ -438,13 +438,14 @@ impl Compiler {
         &mut self,
         s: SymbolId,
         parts: &[KeyPart],
+        matched: Option<&[KeyPart]>,
         span: Span,
         defines: &[bool],
         out: &mut Vec<Label>,
     ) -> Result<(), Failed> {
         let dim = self.symbols.get(s).dim();
         // One label per position is what data mostly are.
-        if parts.iter().all(|p| matches!(p, KeyPart::Label { .. })) {
+        if matched.is_none() && parts.iter().all(|p| matches!(p, KeyPart::Label { .. })) {
             if parts.len() != dim {
                 return self.wrong_dimension(s, span, parts.len());
             }
@@ -454,9 +455,42 @@ impl Compiler {
             }
             return Ok(());
         }
+        let mut rows = self.products(s, 0, parts, span, defines)?;
+        if let Some(other) = matched {
+            let at = rows.first().map_or(0, Vec::len);
+            let behind = self.products(s, at, other, span, defines)?;
+            if rows.len() != behind.len() {
+                return self.fail(
+                    Diagnostic::error("E0347", span, format!("`:` matches one by one, but there are {} on the left and {} on the right", rows.len(), behind.len()))
+                        .label("different numbers")
+                        .help("a dot instead of the colon makes all combinations"),
+                );
+            }
+            rows.iter_mut().zip(behind).for_each(|(a, b)| a.extend(b));
+        }
+        if rows.is_empty() {
+            return Ok(());
+        }
+        if rows[0].len() != dim {
+            return self.wrong_dimension(s, span, rows[0].len());
+        }
+        out.extend(rows.into_iter().flatten());
+        Ok(())
+    }
+
+    /// All combinations of the parts of a key that begins at a position.
+    fn products(
+        &mut self,
+        s: SymbolId,
+        position: usize,
+        parts: &[KeyPart],
+        span: Span,
+        defines: &[bool],
+    ) -> Result<Vec<Vec<Label>>, Failed> {
         let mut rows: Vec<Vec<Label>> = vec![Vec::new()];
         for part in parts {
-            let choices = self.choices(s, rows[0].len(), part, defines)?;
+            let at = position + rows.first().map_or(0, Vec::len);
+            let choices = self.choices(s, at, part, defines)?;
             if rows.len().saturating_mul(choices.len()) > MAX_EXPANSION {
                 return self.fail(
                     Diagnostic::error("E0343", span, format!("this stands for more than {MAX_EXPANSION} records"))
@@ -473,15 +507,8 @@ impl Compiler {
                 }
             }
             rows = next;
-            if rows.is_empty() {
-                return Ok(());
-            }
         }
-        if rows[0].len() != dim {
-            return self.wrong_dimension(s, span, rows[0].len());
-        }
-        out.extend(rows.into_iter().flatten());
-        Ok(())
+        Ok(rows)
     }
 
     /// The tuples one part of a key stands for.
@@ -518,7 +545,7 @@ impl Compiler {
                 let keys: Vec<Vec<Label>> = self.store.table(t).iter().map(|(k, _)| k.to_vec()).collect();
                 Ok(keys)
             }
-            KeyPart::Universe { .. } => {
+            KeyPart::Universe(_) => {
                 self.store.refresh_universe();
                 let t = match self.symbols.get(s).domain.get(position) {
                     Some(DomainPosition::Set(d)) => self.symbols.get(*d).table,
@@ -529,21 +556,7 @@ impl Compiler {
             KeyPart::Group(alternatives) => {
                 let mut out = Vec::new();
                 for alternative in alternatives {
-                    let mut rows: Vec<Vec<Label>> = vec![Vec::new()];
-                    for p in alternative {
-                        let at = position + rows.first().map_or(0, Vec::len);
-                        let choices = self.choices(s, at, p, defines)?;
-                        let mut next = Vec::with_capacity(rows.len() * choices.len());
-                        for r in &rows {
-                            for c in &choices {
-                                let mut k = r.clone();
-                                k.extend_from_slice(c);
-                                next.push(k);
-                            }
-                        }
-                        rows = next;
-                    }
-                    out.extend(rows);
+                    out.extend(self.products(s, position, alternative, Span::default(), defines)?);
                 }
                 Ok(out)
             }
@@ -594,9 +607,9 @@ impl Compiler {
         let symbol = self.symbols.get(s).clone();
         let (table, dim) = (symbol.table, symbol.dim());
         let text = map.text(body);
-        let mut reader = DataReader::new(text, body.lo);
+        let mut reader = DataReader::new(text, body.lo, DataKind::Values, self.modes.undf);
         let mut keys = Vec::new();
-        while let Some(record) = reader.next_record() {
+        while let Some(record) = reader.next() {
             let record = match record {
                 Ok(r) => r,
                 Err(d) => {
@@ -604,7 +617,7 @@ impl Compiler {
                     break;
                 }
             };
-            let v = match (&record.tail, record.key) {
+            let v = match (&record.value, record.key) {
                 (Tail::Number(v, _), _) => *v,
                 (Tail::Name(n, at), _) => match self.acronym(n, *at) {
                     Ok(v) => v,
@@ -625,7 +638,7 @@ impl Compiler {
                     },
                 },
                 (tail, _) => {
-                    let at = if let Tail::Text(_) = tail { "a text stands where a number is expected" } else { "no number follows the label" };
+                    let at = if let Tail::Text(..) = tail { "a text stands where a number is expected" } else { "no number follows the label" };
                     self.report(
                         Diagnostic::error("E0345", record.span, format!("the data of `{}` need a number for each record", symbol.name))
                             .label(at),
@@ -635,7 +648,7 @@ impl Compiler {
             };
             keys.clear();
             let (span, key) = (record.span, record.key);
-            if self.expand(s, key, span, defines, &mut keys).is_err() {
+            if self.expand(s, key, record.matched, span, defines, &mut keys).is_err() {
                 if self.error_count() >= super::MAX_ERRORS {
                     break;
                 }
@@ -692,25 +705,36 @@ impl Compiler {
             );
         }
         let defines: Vec<bool> = t.symbol.domain.iter().flatten().map(|d| d.defines).collect();
-        let mut errors = Vec::new();
-        let records = read_table(map.text(t.body), t.body.lo, &mut errors);
-        errors.into_iter().for_each(|d| self.report(d));
-        let mut keys = Vec::new();
-        for r in records {
-            let v = match r.value {
-                Tail::Number(v, _) => v,
-                Tail::Name(n, at) => match self.acronym(n, at) {
-                    Ok(v) => v,
-                    Err(Failed) => continue,
-                },
-                _ => continue,
+        let mut reader = TableReader::new(map.expanded(), t.body, self.modes.undf);
+        let (mut keys, mut parts) = (Vec::new(), Vec::new());
+        while let Some(cell) = reader.next() {
+            let (v, span) = match cell {
+                Ok(c) => {
+                    parts.clear();
+                    parts.extend_from_slice(c.row);
+                    parts.extend_from_slice(c.column);
+                    let v = match c.value {
+                        Tail::Number(v, _) => Ok(v),
+                        Tail::Name(n, at) => self.acronym(n, at),
+                        _ => continue,
+                    };
+                    let Ok(v) = v else { continue };
+                    (v, c.span)
+                }
+                Err(d) => {
+                    self.report(d);
+                    if self.error_count() >= super::MAX_ERRORS {
+                        break;
+                    }
+                    continue;
+                }
             };
             keys.clear();
-            if self.expand(s, &r.key, r.span, &defines, &mut keys).is_err() {
+            if self.expand(s, &parts, None, span, &defines, &mut keys).is_err() {
                 continue;
             }
             for k in keys.chunks_exact(symbol.dim()) {
-                self.put_value(s, symbol.table, k, v, r.span);
+                self.put_value(s, symbol.table, k, v, span);
             }
         }
         self.store.table_mut(symbol.table).tidy();
@@ -720,8 +744,8 @@ impl Compiler {
     /// `variable x(i) / a.lo 5 /`.
     fn record_data(&mut self, s: SymbolId, body: Span, map: &SourceMap) -> Result<(), Failed> {
         let symbol = self.symbols.get(s).clone();
-        let mut reader = DataReader::new(map.text(body), body.lo);
-        while let Some(record) = reader.next_record() {
+        let mut reader = DataReader::new(map.text(body), body.lo, DataKind::Values, self.modes.undf);
+        while let Some(record) = reader.next() {
             let record = match record {
                 Ok(r) => r,
                 Err(d) => {
@@ -733,12 +757,12 @@ impl Compiler {
                 continue;
             };
             let (attr, at) = (text.to_lowercase(), *span);
-            let Tail::Number(v, _) = record.tail else {
+            let Tail::Number(v, _) = record.value else {
                 self.report(Diagnostic::error("E0345", record.span, "a number is expected behind the attribute").label("no number"));
                 continue;
             };
             let (span, mut keys) = (record.span, Vec::new());
-            if symbol.dim() > 0 && self.expand(s, key, span, &[], &mut keys).is_err() {
+            if symbol.dim() > 0 && self.expand(s, key, None, span, &[], &mut keys).is_err() {
                 continue;
             }
             let offsets: &[u32] = match attr.as_str() {

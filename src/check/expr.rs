@@ -906,8 +906,11 @@ impl Compiler {
             _ => None,
         };
         let near = instead.map(str::to_string).or_else(|| {
-            let known = self.symbols.iter().skip(1).map(|(_, s)| &*s.name);
-            nearest(&name.name, known.chain(functions::names())).map(str::to_string)
+            let mut known: Vec<&str> = self.symbols.iter().skip(1).map(|(_, s)| &*s.name).collect();
+            for n in functions::names() {
+                known.push(n);
+            }
+            nearest(&name.name, known).map(str::to_string)
         });
         let what = if called { "symbol or function" } else { "symbol" };
         let mut d = Diagnostic::error("E0301", name.span, format!("`{}` is not known", name.name))

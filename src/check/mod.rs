@@ -16,10 +16,9 @@ mod statement;
 
 use crate::diag::{Diagnostic, Severity};
 use crate::host::Host;
-use crate::source::preprocess::{Known, PreprocessOptions};
-use crate::source::{SourceMap, Span};
+use crate::source::{Ending, Known, PreprocessOptions, SourceMap, Span};
 use crate::syntax::Parser;
-use crate::syntax::ast::{Modes, Stmt};
+use crate::syntax::ast::Modes;
 use node::{Code, EquationDef, Slot, SymbolId};
 use symbols::{DomainPosition, Store, Symbol, SymbolKind, Symbols, UNIVERSE};
 
@@ -75,7 +74,7 @@ pub(crate) struct Compiler {
 
 /// Compiles a file: parses, checks and carries out its data statements.
 pub fn compile(host: &mut dyn Host, path: &str, options: PreprocessOptions) -> Result<Program, (Diagnostic, SourceMap)> {
-    let mut parser = Parser::new(host, path, options)?;
+    let mut parser = Parser::new(host, path, options).map_err(|u| (u.diagnostic, u.map))?;
     let mut c = Compiler::new();
     let mut code = Vec::new();
     loop {
@@ -99,6 +98,10 @@ pub fn compile(host: &mut dyn Host, path: &str, options: PreprocessOptions) -> R
         }
     }
     c.store.refresh_universe();
+    // `$terminate`: nothing is run, which is no failure.
+    if parser.ending() != Ending::Regular {
+        code.clear();
+    }
     Ok(Program {
         symbols: c.symbols,
         store: c.store,

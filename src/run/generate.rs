@@ -84,6 +84,7 @@ struct Builder<'m, 'h> {
     columns: u32,
     instance: Instance,
     kernels: FxHashMap<Vec<Op>, usize>,
+    nonlinear_terms: usize,
     /// Position + 1 of a column in the row at hand.
     place: Vec<u32>,
     row: u32,
@@ -116,6 +117,7 @@ impl Machine<'_> {
             columns: 0,
             instance: Instance::default(),
             kernels: FxHashMap::default(),
+            nonlinear_terms: 0,
             place: Vec::new(),
             row: 0,
             failed: false,
@@ -232,16 +234,14 @@ impl Builder<'_, '_> {
         row.terms.clear();
         row.constant = 0.0;
         let errors = self.m.execution_error_count();
-        let terms_before: usize = self.instance.nonlinear.len();
-        let _ = terms_before;
-        let nonlinear_before = self.nonlinear_terms();
+        let nonlinear_before = self.nonlinear_terms;
         self.emit(&e.left, 1.0, frame, row);
         self.emit(&e.right, -1.0, frame, row);
         if self.m.execution_error_count() > errors {
             self.failed = true;
             return;
         }
-        let nonlinear = self.nonlinear_terms() > nonlinear_before;
+        let nonlinear = self.nonlinear_terms > nonlinear_before;
         for &(c, _) in &row.terms {
             self.place[c as usize] = 0;
         }
@@ -305,10 +305,6 @@ impl Builder<'_, '_> {
         rows.scale.push(scale);
         block.keys.extend_from_slice(key);
         self.row += 1;
-    }
-
-    fn nonlinear_terms(&self) -> usize {
-        self.instance.nonlinear.iter().map(|k| k.row.len()).sum()
     }
 
     /// Provisional number of a column.
@@ -473,7 +469,7 @@ impl Builder<'_, '_> {
         self.build(n, frame, &mut tape);
         if tape.columns.is_empty() {
             // All its variables are held fixed or its sums are empty: a number after all.
-            let v = crate::autodiff::evaluate_constant(&tape.ops, &tape.constants);
+            let v = super::constant::evaluate(&tape.ops, &tape.constants);
             match v {
                 Ok(v) => row.constant += coef * v,
                 Err(e) => {
@@ -498,6 +494,7 @@ impl Builder<'_, '_> {
                 k
             }
         };
+        self.nonlinear_terms += 1;
         let terms = &mut self.instance.nonlinear[k];
         terms.row.push(self.row);
         terms.coef.push(coef);

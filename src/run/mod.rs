@@ -9,12 +9,17 @@ pub mod plan;
 pub mod random;
 
 mod calendar;
+mod constant;
 mod eval;
 mod exec;
 mod options;
+mod generate;
 mod scan;
+mod solve;
+mod stubs;
 
 pub use eval::Frame;
+pub use generate::{GenerateOptions, Generated};
 pub use options::{ModelState, Options};
 
 use crate::check::Program;
@@ -63,6 +68,8 @@ pub struct Machine<'h> {
     pub formats: FxHashMap<SymbolId, Vec<i64>>,
     /// What is reported: solves, displays.
     pub report: crate::report::json::Report,
+    /// JSON of each solve for `--solution`.
+    pub solutions: Vec<serde_json::Value>,
     /// Files of `put`.
     pub put: super::run::options::PutState,
     host: RefCell<&'h mut dyn Host>,
@@ -105,6 +112,7 @@ impl<'h> Machine<'h> {
             models: FxHashMap::default(),
             formats: FxHashMap::default(),
             report: crate::report::json::Report::default(),
+            solutions: Vec::new(),
             put: options::PutState::default(),
             host: RefCell::new(host),
             random: RefCell::new(Random::default()),

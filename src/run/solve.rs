@@ -1,0 +1,272 @@
+//! The `solve` statement: generate, solve, certify, store, report.
+
+use super::generate::{GenerateOptions, Generated};
+use super::{Flow, Frame, Machine, ModelState};
+use crate::check::node::*;
+use crate::check::symbols::attribute;
+use crate::data::universe::Label;
+use crate::diag::Diagnostic;
+use crate::model::instance::{Instance, Relation};
+use crate::model::origin::{Blocks, Origin};
+use crate::report::json;
+use crate::solve::answer::{Answer, answer};
+use crate::solve::{Monitor, Settings};
+use crate::source::Span;
+
+/// A solver's line to the run.
+struct RunMonitor<'a, 'h> {
+    machine: &'a Machine<'h>,
+    origin: &'a Origin,
+    log: Vec<String>,
+}
+
+impl Monitor for RunMonitor<'_, '_> {
+    fn log(&mut self, line: &str) {
+        self.log.push(line.to_string());
+    }
+
+    fn interrupted(&mut self) -> bool {
+        self.machine.host().interrupted()
+    }
+
+    fn row_name(&self, row: usize) -> String {
+        self.machine.origin_name(&self.origin.rows, row)
+    }
+
+    fn column_name(&self, column: usize) -> String {
+        self.machine.origin_name(&self.origin.columns, column)
+    }
+}
+
+impl Machine<'_> {
+    /// `equil('b3','x')`
+    pub fn origin_name(&self, blocks: &Blocks, i: usize) -> String {
+        let b = blocks.of(i as u32);
+        self.record_name(b.symbol, b.key(i as u32))
+    }
+
+    /// A model option: the model's own attribute, the `option` statement, or the default.
+    fn model_option(&self, model: SymbolId, name: &'static str, default: f64) -> f64 {
+        self.models
+            .get(&model)
+            .and_then(|m| m.get(name))
+            .or_else(|| self.options.number(name))
+            .unwrap_or(default)
+    }
+
+    pub(super) fn solve(&mut self, s: &SolveCode, span: Span, frame: &mut Frame) -> Flow {
+        if self.execution_error_count() > 0 {
+            self.note(
+                Diagnostic::execution("E0420", span, "the solve is refused because of an error before")
+                    .label("not solved")
+                    .help("mend the execution errors above; the run ends here"),
+            );
+            return Flow::Stop;
+        }
+        let begin = self.elapsed();
+        let options = GenerateOptions {
+            hold_fixed: self.model_option(s.model, "holdfixed", 0.0) != 0.0,
+            scale: self.model_option(s.model, "scaleopt", 0.0) != 0.0,
+            keep_paired: matches!(s.using, "mcp" | "mpec" | "rmpec"),
+        };
+        let name = self.symbols.get(s.model).name.to_string();
+        self.host().progress(&format!("generating {name}"));
+        let Some(generated) = self.generate(s, options, frame) else {
+            if !self.stopped() {
+                self.note(
+                    Diagnostic::execution("E0421", span, format!("the model `{name}` could not be generated"))
+                        .label("not solved")
+                        .help("mend the errors in its data or equations; the run ends here"),
+                );
+            }
+            return Flow::Stop;
+        };
+        let generated_at = self.elapsed();
+        if let Some(list) = self.options.list.clone() {
+            self.print_listing(&name, &generated, &list);
+            return Flow::Next;
+        }
+        let settings = self.settings(s.model);
+        self.host().progress(&format!(
+            "solving {name}: {} rows, {} columns",
+            generated.instance.row_count(),
+            generated.instance.column_count()
+        ));
+        let choice = self.options.texts.get(s.using).cloned();
+        let mut monitor = RunMonitor { machine: self, origin: &generated.origin, log: Vec::new() };
+        let result = answer(s.using, choice.as_deref(), &generated.instance, &settings, &mut monitor);
+        let log = monitor.log;
+        for line in log {
+            self.print(&line);
+            self.print("\n");
+        }
+        match result {
+            Ok(a) => {
+                let end = self.elapsed();
+                let seconds = json::Seconds { generate: generated_at - begin, solve: end - generated_at, total: end - begin };
+                self.store(s, &generated, &a);
+                self.remember(s, &generated, &a, seconds);
+                self.report_solve(s, span, &generated, &a, seconds);
+                if self.options.keep_solutions {
+                    self.keep_solution(s, generated, a);
+                }
+                if self.host().interrupted() { Flow::Stop } else { Flow::Next }
+            }
+            Err(e) => {
+                let mut message = format!("the model `{name}` was not solved: {}", e.message);
+                if let Some(r) = e.row {
+                    message.push_str(&format!(" (row {})", self.origin_name(&generated.origin.rows, r)));
+                }
+                if let Some(c) = e.column {
+                    message.push_str(&format!(" (column {})", self.origin_name(&generated.origin.columns, c)));
+                }
+                self.note(Diagnostic::execution("E0422", span, message).label("at this solve"));
+                Flow::Stop
+            }
+        }
+    }
+
+    fn settings(&self, model: SymbolId) -> Settings {
+        let left = (self.options.time_limit - self.elapsed()).max(0.0);
+        Settings {
+            time_limit: self.model_option(model, "reslim", 1e10).min(left),
+            iteration_limit: self.model_option(model, "iterlim", 2_147_483_647.0).clamp(0.0, 1e18) as u64,
+            evaluation_error_limit: self.model_option(model, "domlim", 0.0).clamp(0.0, 1e18) as u64,
+            options: self.options.solver_options.clone(),
+            log: self.options.solver_options.iter().any(|(k, v)| k == "log" && v != "0"),
+        }
+    }
+
+    /// Writes levels, marginals and bounds of rows back.
+    fn store(&mut self, s: &SolveCode, g: &Generated, a: &Answer) {
+        let mut write = |blocks: &Blocks, offset: u32, values: &[f64]| {
+            for b in &blocks.list {
+                let t = self.symbols.get(b.symbol).table + offset;
+                let r = b.start as usize..(b.start + b.len) as usize;
+                let values: Vec<f64> = values[r].iter().map(|v| v + 0.0).collect();
+                let t = self.store.table_mut(t);
+                // Zeros are set too: what the last solve left must go.
+                t.merge(&b.keys, &values);
+                t.tidy();
+            }
+        };
+        write(&g.origin.columns, attribute::L, &a.outcome.level);
+        write(&g.origin.columns, attribute::M, &a.outcome.column_marginal);
+        write(&g.origin.rows, attribute::L, &a.activity);
+        write(&g.origin.rows, attribute::M, &a.outcome.row_marginal);
+        let rows = &g.instance.rows;
+        let lower: Vec<f64> = rows
+            .relation
+            .iter()
+            .zip(&rows.rhs)
+            .map(|(r, &b)| if matches!(r, Relation::Equal | Relation::Greater) { b } else { f64::NEG_INFINITY })
+            .collect();
+        let upper: Vec<f64> = rows
+            .relation
+            .iter()
+            .zip(&rows.rhs)
+            .map(|(r, &b)| if matches!(r, Relation::Equal | Relation::Less) { b } else { f64::INFINITY })
+            .collect();
+        write(&g.origin.rows, attribute::LO, &lower);
+        write(&g.origin.rows, attribute::UP, &upper);
+        let _ = s;
+    }
+
+    /// Model attributes after a solve.
+    fn remember(&mut self, s: &SolveCode, g: &Generated, a: &Answer, seconds: json::Seconds) {
+        let r = &a.residuals;
+        let instance: &Instance = &g.instance;
+        let objective = instance.objective.map_or(0.0, |o| a.outcome.level[o.column as usize]);
+        let infeasible = !r.is_feasible(crate::model::certificate::TOLERANCE);
+        let count = if infeasible { r.infeasible_count as f64 } else { 0.0 };
+        let sum = if infeasible { r.primal_sum.unwrap_or(0.0) } else { 0.0 };
+        let values = [
+            ("modelstat", f64::from(a.status as u8)),
+            ("solvestat", f64::from(a.outcome.status as u8)),
+            ("objval", objective),
+            ("objest", objective),
+            ("iterusd", a.outcome.iterations as f64),
+            ("resusd", seconds.solve),
+            ("etsolve", seconds.total),
+            ("etsolver", seconds.solve),
+            ("resgen", seconds.generate),
+            ("numequ", instance.row_count() as f64),
+            ("numvar", instance.column_count() as f64),
+            ("numnz", g.origin.nonzeros as f64),
+            ("numnlnz", g.origin.nonlinear_nonzeros as f64),
+            ("numnlins", g.origin.nonlinear_nonzeros as f64),
+            ("numinfes", count),
+            ("suminfes", sum),
+            ("maxinfes", if infeasible { r.primal.unwrap_or(0.0) } else { 0.0 }),
+            ("meaninfes", if count > 0.0 { sum / count } else { 0.0 }),
+            ("numnopt", 0.0),
+            ("numdepnd", 0.0),
+            ("numdvar", instance.columns.kind.iter().filter(|k| **k != crate::model::instance::ColumnKind::Continuous).count() as f64),
+            ("domusd", 0.0),
+            ("marginals", 1.0),
+            ("number", f64::from(self.report.solves.len() as u32 + 1)),
+            ("line", self.map.line(self.options.at.get()) as f64),
+            ("linkused", 0.0),
+        ];
+        let state: &mut ModelState = self.models.entry(s.model).or_default();
+        for (k, v) in values {
+            state.attributes.insert(k, v);
+        }
+    }
+
+    fn report_solve(&mut self, s: &SolveCode, span: Span, g: &Generated, a: &Answer, seconds: json::Seconds) {
+        use crate::syntax::ast::Sense;
+        let r = &a.residuals;
+        let worst = match (r.worst_row, r.worst_column) {
+            (Some(i), _) => Some(self.origin_name(&g.origin.rows, i)),
+            (_, Some(j)) => Some(self.origin_name(&g.origin.columns, j)),
+            _ => None,
+        };
+        let solve = json::Solve {
+            model: self.symbols.get(s.model).name.to_string(),
+            using: s.using,
+            sense: s.objective.map(|(sense, _)| if sense == Sense::Minimize { "min" } else { "max" }),
+            solver: a.outcome.solver.to_string(),
+            model_status: json::Status { code: a.status as u8, name: a.status.name() },
+            solver_status: json::Status { code: a.outcome.status as u8, name: a.outcome.status.name() },
+            objective: g.instance.objective.map(|o| a.outcome.level[o.column as usize]),
+            rows: g.instance.row_count(),
+            columns: g.instance.column_count(),
+            nonzeros: g.origin.nonzeros,
+            nonlinear_nonzeros: g.origin.nonlinear_nonzeros,
+            iterations: a.outcome.iterations,
+            seconds,
+            residual: json::Residual {
+                primal: r.primal,
+                dual: r.dual,
+                complementarity: r.complementarity,
+                natural: r.natural,
+            },
+            complementarity_sum: if matches!(s.using, "mpec" | "rmpec") { r.complementarity_sum } else { None },
+            bounds: None,
+            stationarity: None,
+            message: a.outcome.message.clone(),
+            line: self.map.line(span),
+            worst,
+        };
+        if !self.options.quiet {
+            self.host().solved(&solve);
+        }
+        self.report.solves.push(solve);
+    }
+}
+
+/// Names of rows and columns of a generated instance.
+pub struct RunNames<'a, 'h> {
+    /// The run.
+    pub machine: &'a Machine<'h>,
+    /// Where rows and columns come from.
+    pub origin: &'a Origin,
+}
+
+impl RunNames<'_, '_> {
+    /// Labels of a key as text.
+    pub fn labels(&self, key: &[Label]) -> Vec<String> {
+        key.iter().map(|&l| self.machine.store.universe.name(l).to_string()).collect()
+    }
+}
