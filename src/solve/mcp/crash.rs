@@ -91,7 +91,7 @@ fn direction(
     for _ in 0..6 {
         run.check()?;
         run.factorisations += 1;
-        let found = Factor::new(submatrix(jacobian, basic, &position, *prox))
+        let found = Factor::new(submatrix(jacobian, basic, &position, *prox), run.fill)
             .and_then(|mut a| a.solve(&right));
         if let Some(d) = found
             && d.iter().all(|v| v.abs() <= DIRECTION_MAX)
