@@ -185,8 +185,10 @@ impl Majors {
     ) -> Result<(Option<Candidate>, usize), Stop> {
         let r = (2.0 * self.point.merit).sqrt();
         let mut prox = vec![self.prox];
+        // Where one linearisation is exact, a small term saves the iterations that remove it again.
+        let small = if run.problem.is_linear() { 1e-5 } else { 1e-3 };
         for v in [
-            (1e-3 * r.min(1.0)).max(10.0 * self.prox),
+            (small * r.min(1.0)).max(10.0 * self.prox),
             (0.1 * r.min(1.0)).max(100.0 * self.prox),
             1.0,
             10.0,
