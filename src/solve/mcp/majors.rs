@@ -27,6 +27,8 @@ use super::run::{End, Point, Run, Stop};
 const ARMIJO: f64 = 1e-4;
 /// A ray is worth a step if t got this far.
 const RAY_MIN: f64 = 1e-2;
+/// Major iterations without a notable fall of the residual before the run is called stuck.
+const STAGNATION: usize = 60;
 /// Gradient steps before the run is called stuck.
 const GRADIENT_LIMIT: usize = 6;
 
@@ -103,7 +105,15 @@ impl Majors {
         log::major_header(run, &self.point);
         // One more iteration after convergence: Newton's method doubles the digits.
         let mut polish = false;
+        let (mut least, mut idle) = (f64::INFINITY, 0);
         for _ in 0..run.settings.major_iteration_limit {
+            idle += 1;
+            if self.best.residual < 0.9 * least {
+                (least, idle) = (self.best.residual, 0);
+            }
+            if idle > STAGNATION {
+                return Ok(End::Stuck);
+            }
             if run.converged(self.point.residual) {
                 if polish
                     || self.point.residual <= 1e-12 * run.settings.convergence_tolerance / 1e-8
@@ -198,7 +208,7 @@ impl Majors {
             }
         }
         let limit = match run.settings.minor_iteration_limit {
-            0 => (3 * run.n).clamp(100, 1500).max(run.n),
+            0 => pivot_limit(run.n),
             given => given,
         };
         let (mut reserve, mut ray): (Option<Candidate>, Option<Candidate>) = (None, None);
@@ -498,6 +508,11 @@ impl Majors {
         }
         Ok(false)
     }
+}
+
+/// Pivots allowed on one path.
+pub(super) fn pivot_limit(n: usize) -> usize {
+    n.max(1000)
 }
 
 /// Gradient of ½‖Φ‖²: DaΦ + Jᵀ(DbΦ).
