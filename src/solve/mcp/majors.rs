@@ -29,6 +29,8 @@ const ARMIJO: f64 = 1e-4;
 const RAY_MIN: f64 = 1e-2;
 /// Major iterations without a notable fall of the residual before the run is called stuck.
 const STAGNATION: usize = 60;
+/// Steps in a row to solutions ~ 1/v before the run is called stuck: it follows a ray.
+const DOUBTFUL_LIMIT: usize = 8;
 /// Gradient steps before the run is called stuck.
 const GRADIENT_LIMIT: usize = 6;
 
@@ -60,6 +62,8 @@ struct Candidate {
     /// Final state of the path, a warm start if it was solved.
     kind: Option<Vec<Kind>>,
     prox: f64,
+    /// A solution for v > 0 that may stand for a ray.
+    doubtful: bool,
 }
 
 struct Majors {
@@ -71,6 +75,8 @@ struct Majors {
     warm: Option<Vec<Kind>>,
     untested: usize,
     gradient_steps: usize,
+    /// Steps in a row to solutions that may stand for rays.
+    doubtful: usize,
     seed: u64,
 }
 
@@ -88,6 +94,7 @@ impl Majors {
             warm: None,
             untested: 0,
             gradient_steps: 0,
+            doubtful: 0,
             seed: 1,
         }
     }
@@ -176,6 +183,14 @@ impl Majors {
                 }
                 continue;
             };
+            self.doubtful = if candidate.doubtful {
+                self.doubtful + 1
+            } else {
+                0
+            };
+            if self.doubtful > DOUBTFUL_LIMIT {
+                return Ok(End::Stuck);
+            }
             if !self.accept(run, candidate, &jacobian, run.pivots - pivots, tries)? {
                 return Ok(End::Stuck);
             }
@@ -262,8 +277,9 @@ impl Majors {
                             t: 1.0,
                             kind: Some(kind),
                             prox: v,
+                            doubtful: v > 0.0 && v * length > 0.7 * r,
                         };
-                        if v == 0.0 || v * length <= 0.7 * r {
+                        if !found.doubtful {
                             return Ok((Some(found), tries));
                         }
                         if reserve.is_none() {
@@ -280,6 +296,7 @@ impl Majors {
                                 t,
                                 kind: None,
                                 prox: v,
+                                doubtful: false,
                             });
                         }
                     }
