@@ -125,7 +125,7 @@ fn values_and_derivatives_agree_with_high_precision() {
     worst.sort_by(|a, b| b.0.total_cmp(&a.0));
     let bad: Vec<_> = worst
         .iter()
-        .filter(|w| !(w.0 <= 1e-12))
+        .filter(|w| w.0.is_nan() || w.0 > 1e-12)
         .map(|w| format!("{:.1e} {}", w.0, w.1))
         .collect();
     assert!(
@@ -165,7 +165,7 @@ fn values_agree_with_gams() {
         (F::NcpVuSin, &[1.0, 1.2, 1.0], 0.9027306914562628), (F::NcpVuPow, &[1.0, 0.5, 2.0], 0.32861328125),
         (F::LseMax, &[1.0, 2.0, 3.0], 3.4076059644443806), (F::LseMin, &[1.0, 2.0, 3.0], 0.5923940355556196),
         (F::LseMaxSc, &[2.0, 1.0, 2.0, 3.0], 3.0714658142499496), (F::LseMinSc, &[2.0, 1.0, 2.0, 3.0], 0.9285341857500504),
-        (F::LseMax, &[-2000.0, -2000.0], -1999.3068528194400547), (F::IfThen, &[0.1, 2.0, 3.0], 2.0), (F::Sign, &[-3.0], -1.0),
+        (F::LseMax, &[-2000.0, -2000.0], -1999.30685281944), (F::IfThen, &[0.1, 2.0, 3.0], 2.0), (F::Sign, &[-3.0], -1.0),
         (F::BoolImp, &[0.0, 0.0], 1.0), (F::BoolXor, &[2.0, 3.0], 0.0), (F::RelLe, &[1.0, 2.0], 1.0),
         (F::Exp, &[f64::INFINITY], f64::INFINITY), (F::Tanh, &[f64::INFINITY], 1.0), (F::Max, &[1.0, f64::INFINITY], f64::INFINITY),
     ];

@@ -16,6 +16,8 @@ use super::run::{Point, Run, Stop};
 const STEP_MIN: f64 = 1e-5;
 /// A step shorter than this ends the crash: the direction is no good.
 const STEP_STOP: f64 = 1e-2;
+/// A short step must change a share 1/this of the active set: the path makes so few changes sooner.
+const PIVOTS_PER_FACTORISATION: usize = 500;
 /// Directions longer than this come from a singular matrix.
 const DIRECTION_MAX: f64 = 1e10;
 /// Armijo constant of the crash.
@@ -65,7 +67,10 @@ pub(super) fn crash(run: &mut Run, start: Point, history: &mut Vec<f64>) -> Resu
         log::crash_line(run, iteration + 1, &next, basic.len(), changes, prox, step);
         point = next;
         sets = new_sets;
-        if changes == 0 || step < STEP_STOP {
+        if changes == 0
+            || step < STEP_STOP
+            || step < 0.3 && changes * PIVOTS_PER_FACTORISATION <= run.n
+        {
             break;
         }
     }
@@ -91,7 +96,7 @@ fn direction(
     for _ in 0..6 {
         run.check()?;
         run.factorisations += 1;
-        let found = Factor::new(submatrix(jacobian, basic, &position, *prox))
+        let found = Factor::new(submatrix(jacobian, basic, &position, *prox), run.fill)
             .and_then(|mut a| a.solve(&right));
         if let Some(d) = found
             && d.iter().all(|v| v.abs() <= DIRECTION_MAX)

@@ -1,19 +1,81 @@
 //! Sparse LU factorisations of Newton systems, each checked by its residual.
 //!
-//! `faer`'s LU (COLAMD ordering, partial pivoting, supernodal where that pays) reports structural
-//! singularity only; a numerically singular matrix gives factors full of infinities, or of
-//! rounding errors. So every solution is refined, and one whose residual is not small against
-//! the right-hand side counts as a singular matrix.
+//! `faer`'s LU (COLAMD ordering, partial pivoting, supernodal) reports structural singularity
+//! only; a numerically singular matrix gives factors full of infinities, or of rounding errors. So
+//! every solution is refined, and one whose residual is not small against the right-hand side
+//! counts as a singular matrix. Where little fill is to be expected ([`Fill`]), `feral`'s Markowitz
+//! LU is used instead: it peels singletons, and a dense row does no harm.
 
+use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::solvers::Solve;
+use faer::sparse::linalg::amd;
 use faer::sparse::linalg::solvers::Lu;
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use feral::SparseColMatrix;
+use feral::{LuParams, LuScaling, SparseColMatrix, SparseLu, SparseLuSymbolic};
+
+/// How much the factors of a problem's matrices will fill up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Fill {
+    /// Factors about as sparse as the matrix.
+    Light,
+    /// Factors with dense blocks.
+    Heavy,
+}
+
+/// Operations per nonzero of the factors from which dense blocks pay.
+const HEAVY_RATIO: f64 = 6.0;
+/// Bound on the nonzeros of AᵀA, which bound the memory of the supernodal LU.
+const HEAVY_MEMORY: f64 = 2e8;
+
+impl Fill {
+    /// Judges a pattern by the operations a minimum degree ordering of A + Aᵀ leads to.
+    pub(super) fn of(n: usize, col_ptr: &[usize], row_idx: &[usize]) -> Fill {
+        let mut row_count = vec![0usize; n];
+        row_idx.iter().for_each(|&i| row_count[i] += 1);
+        let product: f64 = row_count.iter().map(|&r| (r as f64).powi(2)).sum();
+        if n == 0 || product > HEAVY_MEMORY {
+            return Fill::Light;
+        }
+        let pattern = SymbolicSparseColMatRef::new_checked(n, n, col_ptr, None, row_idx);
+        let (mut order, mut inverse) = (vec![0usize; n], vec![0usize; n]);
+        let mut memory = MemBuffer::new(amd::order_scratch::<usize>(n, row_idx.len()));
+        match amd::order(
+            &mut order,
+            &mut inverse,
+            pattern,
+            amd::Control::default(),
+            MemStack::new(&mut memory),
+        ) {
+            Ok(count) if count.n_mult_subs_lu > HEAVY_RATIO * (count.n_div + n as f64) => {
+                Fill::Heavy
+            }
+            _ => Fill::Light,
+        }
+    }
+}
+
+/// `faer`'s factors of a finite matrix; None if it is structurally singular.
+pub(super) fn faer_lu(matrix: &SparseColMatrix) -> Option<Lu<usize, f64>> {
+    let m = matrix.m;
+    let pattern =
+        SymbolicSparseColMatRef::new_checked(m, m, &matrix.col_ptr, None, &matrix.row_idx);
+    SparseColMatRef::new(pattern, &matrix.values).sp_lu().ok()
+}
+
+/// x ← A⁻¹x.
+pub(super) fn faer_solve(lu: &Lu<usize, f64>, x: &mut [f64]) {
+    lu.solve_in_place(faer::ColMut::from_slice_mut(x));
+}
 
 /// A matrix and its LU factors.
 pub(super) struct Factor {
     matrix: SparseColMatrix,
-    lu: Lu<usize, f64>,
+    lu: Engine,
+}
+
+enum Engine {
+    Markowitz(Box<SparseLu>),
+    Supernodal(Lu<usize, f64>),
 }
 
 /// Residual, relative to the right-hand side, above which a solution is not one.
@@ -21,28 +83,41 @@ const RESIDUAL_TOLERANCE: f64 = 1e-6;
 
 impl Factor {
     /// Factorises; None if singular or not finite.
-    pub(super) fn new(matrix: SparseColMatrix) -> Option<Factor> {
+    pub(super) fn new(matrix: SparseColMatrix, fill: Fill) -> Option<Factor> {
         // A non-finite entry must not reach the factorisation, which compares magnitudes.
         if matrix.m == 0 || matrix.values.iter().any(|v| !v.is_finite()) {
             return None;
         }
-        let lu = {
-            let m = matrix.m;
-            let pattern =
-                SymbolicSparseColMatRef::new_checked(m, m, &matrix.col_ptr, None, &matrix.row_idx);
-            SparseColMatRef::new(pattern, &matrix.values).sp_lu().ok()?
+        let lu = match fill {
+            Fill::Heavy => Engine::Supernodal(faer_lu(&matrix)?),
+            Fill::Light => {
+                let params = LuParams {
+                    scaling: LuScaling::InfNorm,
+                    zero_pivot_tol: 1e-14,
+                    ..LuParams::default()
+                };
+                let lu =
+                    SparseLu::factor(&matrix, &SparseLuSymbolic::natural(matrix.m), params).ok()?;
+                Engine::Markowitz(Box::new(lu))
+            }
         };
         Some(Factor { matrix, lu })
     }
 
-    fn solve_once(&self, b: &mut [f64]) {
-        self.lu.solve_in_place(faer::ColMut::from_slice_mut(b));
+    fn solve_once(&mut self, b: &mut [f64]) -> Option<()> {
+        match &mut self.lu {
+            Engine::Markowitz(lu) => lu.ftran(b).ok(),
+            Engine::Supernodal(lu) => {
+                faer_solve(lu, b);
+                Some(())
+            }
+        }
     }
 
     /// Solves A x = b; None if the solution does not satisfy the system.
     pub(super) fn solve(&mut self, b: &[f64]) -> Option<Vec<f64>> {
         let mut x = b.to_vec();
-        self.solve_once(&mut x);
+        self.solve_once(&mut x)?;
         let mut residual = vec![0.0; b.len()];
         let norm = b.iter().fold(0.0f64, |a, v| a.max(v.abs()));
         for step in 0..3 {
@@ -65,7 +140,7 @@ impl Factor {
             if step == 2 {
                 return (worst <= RESIDUAL_TOLERANCE * norm).then_some(x);
             }
-            self.solve_once(&mut residual);
+            self.solve_once(&mut residual)?;
             x.iter_mut().zip(&residual).for_each(|(x, d)| *x += d);
         }
         unreachable!("the loop returns in its last step")
@@ -174,8 +249,10 @@ mod tests {
                 row_idx: vec![0, 1, 0, 1],
                 values: vec![1.0, 2.0, 2.0, 4.0 + epsilon],
             };
-            let solved = Factor::new(a).and_then(|mut f| f.solve(&[1.0, 0.0]));
-            assert!(solved.is_none());
+            for fill in [Fill::Light, Fill::Heavy] {
+                let solved = Factor::new(a.clone(), fill).and_then(|mut f| f.solve(&[1.0, 0.0]));
+                assert!(solved.is_none());
+            }
         }
         let nan = SparseColMatrix {
             m: 1,
@@ -183,6 +260,6 @@ mod tests {
             row_idx: vec![0],
             values: vec![f64::NAN],
         };
-        assert!(Factor::new(nan).is_none());
+        assert!(Factor::new(nan, Fill::Light).is_none());
     }
 }

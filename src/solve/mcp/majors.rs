@@ -27,6 +27,10 @@ use super::run::{End, Point, Run, Stop};
 const ARMIJO: f64 = 1e-4;
 /// A ray is worth a step if t got this far.
 const RAY_MIN: f64 = 1e-2;
+/// Major iterations without a notable fall of the residual before the run is called stuck.
+const STAGNATION: usize = 60;
+/// Steps in a row to solutions ~ 1/v before the run is called stuck: it follows a ray.
+const DOUBTFUL_LIMIT: usize = 8;
 /// Gradient steps before the run is called stuck.
 const GRADIENT_LIMIT: usize = 6;
 
@@ -58,6 +62,8 @@ struct Candidate {
     /// Final state of the path, a warm start if it was solved.
     kind: Option<Vec<Kind>>,
     prox: f64,
+    /// A solution for v > 0 that may stand for a ray.
+    doubtful: bool,
 }
 
 struct Majors {
@@ -69,6 +75,8 @@ struct Majors {
     warm: Option<Vec<Kind>>,
     untested: usize,
     gradient_steps: usize,
+    /// Steps in a row to solutions that may stand for rays.
+    doubtful: usize,
     seed: u64,
 }
 
@@ -86,6 +94,7 @@ impl Majors {
             warm: None,
             untested: 0,
             gradient_steps: 0,
+            doubtful: 0,
             seed: 1,
         }
     }
@@ -103,7 +112,15 @@ impl Majors {
         log::major_header(run, &self.point);
         // One more iteration after convergence: Newton's method doubles the digits.
         let mut polish = false;
+        let (mut least, mut idle) = (f64::INFINITY, 0);
         for _ in 0..run.settings.major_iteration_limit {
+            idle += 1;
+            if self.best.residual < 0.9 * least {
+                (least, idle) = (self.best.residual, 0);
+            }
+            if idle > STAGNATION {
+                return Ok(End::Stuck);
+            }
             if run.converged(self.point.residual) {
                 if polish
                     || self.point.residual <= 1e-12 * run.settings.convergence_tolerance / 1e-8
@@ -166,6 +183,14 @@ impl Majors {
                 }
                 continue;
             };
+            self.doubtful = if candidate.doubtful {
+                self.doubtful + 1
+            } else {
+                0
+            };
+            if self.doubtful > DOUBTFUL_LIMIT {
+                return Ok(End::Stuck);
+            }
             if !self.accept(run, candidate, &jacobian, run.pivots - pivots, tries)? {
                 return Ok(End::Stuck);
             }
@@ -185,8 +210,10 @@ impl Majors {
     ) -> Result<(Option<Candidate>, usize), Stop> {
         let r = (2.0 * self.point.merit).sqrt();
         let mut prox = vec![self.prox];
+        // Where one linearisation is exact, a small term saves the iterations that remove it again.
+        let small = if run.problem.is_linear() { 1e-5 } else { 1e-3 };
         for v in [
-            (1e-3 * r.min(1.0)).max(10.0 * self.prox),
+            (small * r.min(1.0)).max(10.0 * self.prox),
             (0.1 * r.min(1.0)).max(100.0 * self.prox),
             1.0,
             10.0,
@@ -196,7 +223,7 @@ impl Majors {
             }
         }
         let limit = match run.settings.minor_iteration_limit {
-            0 => (3 * run.n).clamp(100, 1500).max(run.n),
+            0 => pivot_limit(run.n),
             given => given,
         };
         let (mut reserve, mut ray): (Option<Candidate>, Option<Candidate>) = (None, None);
@@ -250,8 +277,9 @@ impl Majors {
                             t: 1.0,
                             kind: Some(kind),
                             prox: v,
+                            doubtful: v > 0.0 && v * length > 0.7 * r,
                         };
-                        if v == 0.0 || v * length <= 0.7 * r {
+                        if !found.doubtful {
                             return Ok((Some(found), tries));
                         }
                         if reserve.is_none() {
@@ -268,6 +296,7 @@ impl Majors {
                                 t,
                                 kind: None,
                                 prox: v,
+                                doubtful: false,
                             });
                         }
                     }
@@ -496,6 +525,11 @@ impl Majors {
         }
         Ok(false)
     }
+}
+
+/// Pivots allowed on one path.
+pub(super) fn pivot_limit(n: usize) -> usize {
+    n.max(1000)
 }
 
 /// Gradient of ½‖Φ‖²: DaΦ + Jᵀ(DbΦ).

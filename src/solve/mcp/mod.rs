@@ -43,6 +43,7 @@ mod random;
 mod run;
 mod semismooth;
 mod smoothing;
+mod starts;
 
 pub use merit::natural_residual;
 

@@ -607,7 +607,7 @@ impl<'a> Path<'a> {
         self.slot[place] = entering;
         self.set_bounds(place);
         if let Some(basis) = self.basis.as_mut()
-            && !basis.replace(place, column)
+            && !basis.replace(place, column, direction)
         {
             self.basis = None;
         }
@@ -672,7 +672,7 @@ fn factorise(run: &mut Run, problem: &LinearProblem, slot: &[Variable]) -> Optio
         }
         b.end_column();
     }
-    Basis::new(&b.finish())
+    Basis::new(&b.finish(), run.fill)
 }
 
 /// Solves with the basis, refines once, and checks the residual.

@@ -2,7 +2,9 @@
 //!
 //! The main method first; the others fail on other problems than it does, which is what makes them
 //! good company: smoothing where the merit function has local minima, the semismooth method with
-//! two penalties, the main method without crash, and all of it again from random starts.
+//! two penalties, the main method without crash, and all of it again from random starts. Problems
+//! that are linear and not monotone (bimatrix games) often yield to one path from the right start,
+//! so many are tried ([`starts`]).
 
 use std::time::{Duration, Instant};
 
@@ -14,6 +16,7 @@ use super::random::Random;
 use super::run::{End, Point, Run, Stop, bound};
 use super::semismooth::semismooth;
 use super::smoothing::smoothing;
+use super::starts::starts;
 use super::{Monitor, Outcome, Problem, Settings, Status};
 
 /// A method of the portfolio.
@@ -22,6 +25,7 @@ enum Method {
     Path { crash: bool },
     Smoothing,
     Semismooth { lambda: f64, memory: usize },
+    Starts,
 }
 
 impl Method {
@@ -31,6 +35,7 @@ impl Method {
             Method::Path { crash: false } => "path without crash",
             Method::Smoothing => "smoothing",
             Method::Semismooth { .. } => "semismooth",
+            Method::Starts => "path from random starts",
         }
     }
 
@@ -40,6 +45,7 @@ impl Method {
             Method::Path { crash } => majors(run, start, crash),
             Method::Smoothing => smoothing(run, start),
             Method::Semismooth { lambda, memory } => semismooth(run, start, lambda, memory),
+            Method::Starts => starts(run, start),
         }
     }
 }
@@ -161,30 +167,27 @@ fn attempt(run: &mut Run, restarts: &mut usize) -> Result<(), Stop> {
     }
     run.check()?;
     if let Some(start) = first_point(run) {
-        let methods = [
-            Method::Path {
-                crash: run.settings.crash_method,
-            },
-            Method::Smoothing,
-            Method::Semismooth {
-                lambda: 0.95,
-                memory: 8,
-            },
-            Method::Path {
-                crash: !run.settings.crash_method,
-            },
-            Method::Semismooth {
-                lambda: 0.8,
-                memory: 1,
-            },
-        ];
-        let count = if run.settings.fallbacks {
-            methods.len()
-        } else {
-            1
-        };
-        for method in &methods[..count] {
-            if succeeds(run, *method, start.clone())? {
+        let crash = run.settings.crash_method;
+        let mut methods = vec![Method::Path { crash }];
+        if run.settings.fallbacks {
+            if run.problem.is_linear() {
+                methods.push(Method::Starts);
+            }
+            methods.extend([
+                Method::Smoothing,
+                Method::Semismooth {
+                    lambda: 0.95,
+                    memory: 8,
+                },
+                Method::Path { crash: !crash },
+                Method::Semismooth {
+                    lambda: 0.8,
+                    memory: 1,
+                },
+            ]);
+        }
+        for method in methods {
+            if succeeds(run, method, start.clone())? {
                 return Ok(());
             }
         }
@@ -224,7 +227,7 @@ fn succeeds(run: &mut Run, method: Method, start: Point) -> Result<bool, Stop> {
     if !run.converged(best.residual) {
         return Ok(false);
     }
-    if !matches!(method, Method::Path { .. }) {
+    if !matches!(method, Method::Path { .. } | Method::Starts) {
         let mut x = best.x;
         run.clip(&mut x);
         if let Some(point) = run.point(x)

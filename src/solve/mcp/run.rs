@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use feral::SparseColMatrix;
 
+use super::factor::Fill;
 use super::merit::natural_residual;
 use super::{EvalError, INFINITY, Monitor, Problem, Settings};
 
@@ -61,6 +62,8 @@ pub(super) struct Run<'a> {
     pub(super) method: &'static str,
     /// The last failure to evaluate, for the message.
     pub(super) last_error: Option<EvalError>,
+    /// What to expect of factorisations.
+    pub(super) fill: Fill,
     /// Index of variable k in the problem as given, for names in the log.
     pub(super) original: Vec<usize>,
     deadline: Option<Instant>,
@@ -85,6 +88,10 @@ impl<'a> Run<'a> {
         deadline: Option<Instant>,
     ) -> Self {
         let n = problem.n();
+        let fill = {
+            let (start, rows) = problem.pattern();
+            Fill::of(n, start, rows)
+        };
         let lower = problem.lower().iter().map(|&b| bound(b)).collect();
         let upper = problem.upper().iter().map(|&b| bound(b)).collect();
         Run {
@@ -103,6 +110,7 @@ impl<'a> Run<'a> {
             best_method: "none",
             method: "none",
             last_error: None,
+            fill,
             original: (0..n).collect(),
             deadline,
         }

@@ -6,7 +6,7 @@
 
 use feral::SparseColMatrix;
 
-use super::factor::{Builder, Factor, combine};
+use super::factor::{Builder, Factor, Fill, combine};
 use super::log;
 use super::majors::merit_gradient;
 use super::merit::Phi;
@@ -45,7 +45,7 @@ pub(super) fn semismooth(
         let gradient = merit_gradient(run, phi, &point, &jacobian);
         let (h, right) = newton_system(run, phi, &point, &jacobian);
         run.factorisations += 1;
-        let newton = Factor::new(h.clone())
+        let newton = Factor::new(h.clone(), run.fill)
             .and_then(|mut a| a.solve(&right))
             .filter(|d| {
                 let length = d.iter().map(|d| d * d).sum::<f64>().sqrt();
@@ -56,7 +56,7 @@ pub(super) fn semismooth(
             None => {
                 let nu = (1e-2 * (2.0 * merit).sqrt()).clamp(1e-8, 1.0);
                 run.factorisations += 1;
-                match levenberg_marquardt(&h, &right, nu) {
+                match levenberg_marquardt(&h, &right, nu, run.fill) {
                     Some(d) => (d, nu),
                     None => (gradient.iter().map(|g| -g).collect(), f64::INFINITY),
                 }
@@ -109,7 +109,12 @@ pub(super) fn newton_system(
 }
 
 /// d from (HᵀH + νI) d = −HᵀΦ, as the sparse system s + Hd = −Φ, Hᵀs − νd = 0.
-pub(super) fn levenberg_marquardt(h: &SparseColMatrix, right: &[f64], nu: f64) -> Option<Vec<f64>> {
+pub(super) fn levenberg_marquardt(
+    h: &SparseColMatrix,
+    right: &[f64],
+    nu: f64,
+    fill: Fill,
+) -> Option<Vec<f64>> {
     let n = h.m;
     // Column i of the upper half needs row i of H.
     let mut rows: Vec<Vec<(usize, f64)>> = vec![Vec::new(); n];
@@ -133,7 +138,7 @@ pub(super) fn levenberg_marquardt(h: &SparseColMatrix, right: &[f64], nu: f64) -
     }
     let mut long = right.to_vec();
     long.resize(2 * n, 0.0);
-    let solution = Factor::new(b.finish())?.solve(&long)?;
+    let solution = Factor::new(b.finish(), fill)?.solve(&long)?;
     Some(solution[n..].to_vec())
 }
 

@@ -44,13 +44,13 @@ pub(super) fn smoothing(run: &mut Run, start: Point) -> Result<End, Stop> {
         let gradient = merit_gradient(run, phi, &point, &jacobian);
         let (h, right) = newton_system(run, phi, &point, &jacobian);
         run.factorisations += 1;
-        let newton = Factor::new(h.clone()).and_then(|mut a| a.solve(&right));
+        let newton = Factor::new(h.clone(), run.fill).and_then(|mut a| a.solve(&right));
         let (direction, kind) = match newton {
             Some(d) => (d, 'N'),
             None => {
                 run.factorisations += 1;
                 let nu = (1e-2 * (2.0 * merit).sqrt()).clamp(1e-8, 1.0);
-                match levenberg_marquardt(&h, &right, nu) {
+                match levenberg_marquardt(&h, &right, nu, run.fill) {
                     Some(d) => (d, 'L'),
                     None => (gradient.iter().map(|g| -g).collect(), 'G'),
                 }

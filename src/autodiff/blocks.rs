@@ -1,0 +1,284 @@
+//! Kernels made ready: compiled once per structure, their terms stored slot by slot.
+//!
+//! Kernel terms with equal programs are merged, whatever equation they come from. A constant slot on
+//! which all terms agree becomes a number of the program (so `x ** c` with c = 2 everywhere is a
+//! square). Long sums at the root of a kernel with few terms are taken apart into terms of their own:
+//! the addends usually have few shapes.
+
+use super::derive;
+use super::graph::Graph;
+use super::program::{Operands, Program};
+use crate::model::instance::{Instance, Kernel, KernelTerms, Op};
+use rustc_hash::{FxHashMap, FxHasher};
+use std::hash::{Hash, Hasher};
+
+/// A compiled kernel and its terms.
+#[derive(Debug)]
+pub struct Block {
+    /// The expression.
+    pub graph: Graph,
+    /// Code for the value.
+    pub value: Program,
+    /// Code for the gradient.
+    pub gradient: Program,
+    /// Code for the Hessian.
+    pub hessian: Program,
+    /// Variable slots of the entries of the gradient.
+    pub gradient_slots: Vec<u32>,
+    /// Variable slots of the entries of the Hessian.
+    pub hessian_slots: Vec<[u32; 2]>,
+    /// Whether all second derivatives are numbers or constants, and nothing has a domain.
+    pub quadratic: bool,
+    /// Whether all first derivatives are numbers or constants, and nothing has a domain.
+    pub linear: bool,
+    /// Row of each term.
+    pub row: Vec<u32>,
+    /// Coefficient of each term.
+    pub coef: Vec<f64>,
+    /// Columns, slot by slot.
+    pub columns: Vec<u32>,
+    /// Constants, slot by slot.
+    pub constants: Vec<f64>,
+}
+
+impl Block {
+    /// Number of terms.
+    pub fn terms(&self) -> usize {
+        self.row.len()
+    }
+
+    /// The operands of the programs at x.
+    pub fn operands<'a>(&'a self, x: &'a [f64]) -> Operands<'a> {
+        Operands {
+            x,
+            columns: &self.columns,
+            constants: &self.constants,
+            terms: self.terms(),
+        }
+    }
+
+    /// Column in a slot of a term.
+    pub fn column(&self, slot: u32, term: usize) -> u32 {
+        self.columns[slot as usize * self.terms() + term]
+    }
+
+    /// Constant in a slot of a term.
+    pub fn constant(&self, slot: u32, term: usize) -> f64 {
+        self.constants[slot as usize * self.terms() + term]
+    }
+
+    fn new(kernel: &Kernel, parts: &[KernelTerms]) -> Self {
+        let (v, c) = (kernel.variables as usize, kernel.constants as usize);
+        let terms: usize = parts.iter().map(|p| p.row.len()).sum();
+        let mut row = Vec::with_capacity(terms);
+        let mut coef = Vec::with_capacity(terms);
+        let mut columns = vec![0; v * terms];
+        let mut constants = vec![0.0; c * terms];
+        for part in parts {
+            for t in 0..part.row.len() {
+                let at = row.len();
+                for k in 0..v {
+                    columns[k * terms + at] = part.columns[t * v + k];
+                }
+                for k in 0..c {
+                    constants[k * terms + at] = part.constants[t * c + k];
+                }
+                row.push(part.row[t]);
+                coef.push(part.coef[t]);
+            }
+        }
+        let uniform: Vec<Option<f64>> = (0..c)
+            .map(|k| {
+                let values = &constants[k * terms..(k + 1) * terms];
+                let first = *values.first()?;
+                values
+                    .iter()
+                    .all(|v| v.to_bits() == first.to_bits())
+                    .then_some(first)
+            })
+            .collect();
+        let graph = Graph::new(kernel, &uniform);
+        let (value, gradient, hessian) = (
+            derive::value(&graph),
+            derive::gradient(&graph),
+            derive::hessian(&graph),
+        );
+        let constant = |code: &derive::Code| {
+            let inactive = |o: &derive::Output| !code.steps.list[o.step as usize].active;
+            code.checks.is_empty() && code.outputs.iter().all(inactive)
+        };
+        Self {
+            value: Program::new(&value),
+            gradient: Program::new(&gradient),
+            hessian: Program::new(&hessian),
+            gradient_slots: gradient.outputs.iter().map(|o| o.slots[0]).collect(),
+            hessian_slots: hessian.outputs.iter().map(|o| o.slots).collect(),
+            quadratic: constant(&hessian),
+            linear: constant(&gradient),
+            graph,
+            row,
+            coef,
+            columns,
+            constants,
+        }
+    }
+}
+
+/// Compiles the nonlinear part of an instance.
+pub fn compile(instance: &Instance) -> Vec<Block> {
+    let mut groups: Vec<(Kernel, Vec<KernelTerms>)> = Vec::new();
+    let mut known: FxHashMap<u64, Vec<usize>> = FxHashMap::default();
+    for terms in instance.nonlinear.iter().filter(|t| !t.row.is_empty()) {
+        for part in split_sum(terms).unwrap_or_else(|| vec![terms.clone()]) {
+            let candidates = known.entry(hash(&part.kernel)).or_default();
+            match candidates.iter().find(|&&g| groups[g].0 == part.kernel) {
+                Some(&g) => groups[g].1.push(part),
+                None => {
+                    candidates.push(groups.len());
+                    groups.push((part.kernel.clone(), vec![part]));
+                }
+            }
+        }
+    }
+    groups
+        .into_iter()
+        .map(|(kernel, parts)| Block::new(&kernel, &parts))
+        .collect()
+}
+
+/// Operations of one addend: a range of the program.
+type Addend = std::ops::Range<usize>;
+
+/// Takes a kernel that is a long sum apart; None where that does not pay.
+fn split_sum(terms: &KernelTerms) -> Option<Vec<KernelTerms>> {
+    const LONG: usize = 16;
+    let kernel = &terms.kernel;
+    let Some(&Op::AddN(n)) = kernel.ops.last() else {
+        return None;
+    };
+    if (n as usize) < LONG || terms.row.len() > LONG {
+        return None;
+    }
+    let addends = addends(&kernel.ops[..kernel.ops.len() - 1], n as usize)?;
+    let mut out: Vec<KernelTerms> = Vec::with_capacity(addends.len());
+    for range in addends {
+        let (piece, variables, constants) = renumber(&kernel.ops[range]);
+        let mut part = KernelTerms {
+            kernel: piece,
+            row: terms.row.clone(),
+            coef: terms.coef.clone(),
+            ..KernelTerms::default()
+        };
+        let (v, c) = (kernel.variables as usize, kernel.constants as usize);
+        for t in 0..terms.row.len() {
+            let slots = |s: &u32| terms.columns[t * v + *s as usize];
+            part.columns.extend(variables.iter().map(slots));
+            let slots = |s: &u32| terms.constants[t * c + *s as usize];
+            part.constants.extend(constants.iter().map(slots));
+        }
+        out.push(part);
+    }
+    Some(out)
+}
+
+/// The n subprograms that a sequence of operations leaves on the stack.
+fn addends(ops: &[Op], n: usize) -> Option<Vec<Addend>> {
+    let mut starts: Vec<usize> = Vec::new();
+    for (i, op) in ops.iter().enumerate() {
+        let takes = match *op {
+            Op::Var(_) | Op::Const(_) | Op::Affine { .. } => 0,
+            Op::Negate | Op::PowerInt(_) => 1,
+            Op::Add | Op::Subtract | Op::Multiply | Op::Divide | Op::Power => 2,
+            Op::AddN(k) | Op::MultiplyN(k) | Op::Call(_, k) => k as usize,
+        };
+        let keep = starts.len().checked_sub(takes)?;
+        let start = starts.get(keep).copied().unwrap_or(i);
+        starts.truncate(keep);
+        starts.push(start);
+    }
+    if starts.len() != n {
+        return None;
+    }
+    let ends = starts.iter().skip(1).copied().chain([ops.len()]);
+    Some(
+        starts
+            .iter()
+            .copied()
+            .zip(ends)
+            .map(|(a, b)| a..b)
+            .collect(),
+    )
+}
+
+/// A subprogram with slots numbered by first occurrence, and the old slots in the new order.
+fn renumber(ops: &[Op]) -> (Kernel, Vec<u32>, Vec<u32>) {
+    let (mut variables, mut constants) = (Slots::default(), Slots::default());
+    let ops: Vec<Op> = ops
+        .iter()
+        .map(|op| match *op {
+            Op::Var(k) => Op::Var(variables.place(k)),
+            Op::Const(k) => Op::Const(constants.place(k)),
+            Op::Affine {
+                constant,
+                variable,
+                terms,
+            } => Op::Affine {
+                // an affine form needs its slots in sequence
+                constant: constants.sequence(constant, terms + 1),
+                variable: variables.sequence(variable, terms),
+                terms,
+            },
+            other => other,
+        })
+        .collect();
+    let kernel = Kernel {
+        ops,
+        variables: variables.old.len() as u32,
+        constants: constants.old.len() as u32,
+    };
+    (kernel, variables.old, constants.old)
+}
+
+#[derive(Default)]
+struct Slots {
+    old: Vec<u32>,
+    new: FxHashMap<u32, u32>,
+}
+
+impl Slots {
+    fn place(&mut self, k: u32) -> u32 {
+        *self.new.entry(k).or_insert_with(|| {
+            self.old.push(k);
+            self.old.len() as u32 - 1
+        })
+    }
+
+    fn sequence(&mut self, first: u32, count: u32) -> u32 {
+        let start = self.old.len() as u32;
+        for k in first..first + count {
+            self.new.insert(k, self.old.len() as u32);
+            self.old.push(k);
+        }
+        start
+    }
+}
+
+fn hash(kernel: &Kernel) -> u64 {
+    let mut h = FxHasher::default();
+    (kernel.variables, kernel.constants).hash(&mut h);
+    for op in &kernel.ops {
+        std::mem::discriminant(op).hash(&mut h);
+        match *op {
+            Op::Var(k) | Op::Const(k) | Op::AddN(k) | Op::MultiplyN(k) => k.hash(&mut h),
+            Op::Affine {
+                constant,
+                variable,
+                terms,
+            } => (constant, variable, terms).hash(&mut h),
+            Op::PowerInt(n) => n.hash(&mut h),
+            Op::Call(f, n) => (f, n).hash(&mut h),
+            Op::Add | Op::Subtract | Op::Multiply | Op::Divide | Op::Negate | Op::Power => {}
+        }
+    }
+    h.finish()
+}

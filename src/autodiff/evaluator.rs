@@ -1,0 +1,463 @@
+//! Row activities, Jacobian and Hessian of the Lagrangian of an instance.
+//!
+//! Both patterns are found once: the Jacobian by rows, linear coefficients included, columns
+//! increasing; the Hessian as the lower triangle of Σ λ_i ∇²row_i, by rows, columns increasing, no
+//! entry twice. Each entry of each term knows its place, so an evaluation is a run of the programs
+//! with one addition per nonzero.
+//!
+//! Invariant: a pattern depends on the instance alone, never on the point.
+
+use super::blocks::{Block, compile};
+use super::functions::{DomainError, ErrorKind, Operation};
+use super::program::{Sink, Workspace};
+use super::scalar;
+use crate::model::instance::Instance;
+use std::fmt;
+
+/// An evaluation that failed: where and why.
+#[derive(Clone, PartialEq, Debug)]
+pub struct EvalFailure {
+    /// The row that could not be evaluated.
+    pub row: u32,
+    /// The column whose level is the argument to blame, where the argument is a plain variable.
+    pub column: Option<u32>,
+    /// What failed.
+    pub error: DomainError,
+}
+
+impl fmt::Display for EvalFailure {
+    /// `log of -1`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.error.fmt(f)
+    }
+}
+
+impl std::error::Error for EvalFailure {}
+
+/// How a row depends on the columns.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub enum Degree {
+    /// Affine.
+    Linear,
+    /// A polynomial of degree two.
+    Quadratic,
+    /// Anything else, and anything whose domain is not the whole space.
+    Nonlinear,
+}
+
+/// Places of the entries of the terms of a block in a pattern: `place[entry · terms + term]`.
+#[derive(Default, Debug)]
+struct Places {
+    place: Vec<u32>,
+    /// Hessian only: (entry, term) where two different slots hold the same column, so that the entry
+    /// counts twice on the diagonal. Sorted.
+    twice: Vec<(u32, u32)>,
+}
+
+/// Values and exact derivatives of an instance.
+#[derive(Debug)]
+pub struct Evaluator<'a> {
+    instance: &'a Instance,
+    blocks: Vec<Block>,
+    work: Workspace,
+    jacobian_start: Vec<usize>,
+    jacobian_column: Vec<u32>,
+    /// Values of the linear part in the places of the Jacobian.
+    jacobian_linear: Vec<f64>,
+    jacobian_places: Vec<Places>,
+    hessian_row: Vec<u32>,
+    hessian_column: Vec<u32>,
+    hessian_places: Vec<Places>,
+}
+
+impl<'a> Evaluator<'a> {
+    /// Compiles the kernels and finds the patterns.
+    pub fn new(instance: &'a Instance) -> Self {
+        let blocks = compile(instance);
+        let mut e = Self {
+            instance,
+            blocks,
+            work: Workspace::default(),
+            jacobian_start: Vec::new(),
+            jacobian_column: Vec::new(),
+            jacobian_linear: Vec::new(),
+            jacobian_places: Vec::new(),
+            hessian_row: Vec::new(),
+            hessian_column: Vec::new(),
+            hessian_places: Vec::new(),
+        };
+        e.find_jacobian();
+        e.find_hessian();
+        e
+    }
+
+    /// Row activities, right-hand sides left out.
+    ///
+    /// Errors: a function that cannot be evaluated at x, or a value that is not finite.
+    pub fn rows(&mut self, x: &[f64], out: &mut [f64]) -> Result<(), EvalFailure> {
+        let matrix = &self.instance.matrix;
+        for (i, v) in out.iter_mut().enumerate() {
+            *v = 0.0;
+            if i < matrix.rows() {
+                *v = matrix.row(i).map(|(j, a)| a * x[j]).sum();
+            }
+        }
+        for b in &self.blocks {
+            let mut sink = RowSink {
+                out,
+                row: &b.row,
+                coef: &b.coef,
+            };
+            b.value
+                .run(b.operands(x), &mut self.work, &mut sink)
+                .map_err(|first| scalar::diagnose(b, first, x, 0))?;
+        }
+        Ok(())
+    }
+
+    /// Pattern of the Jacobian by rows: starts of the rows, columns.
+    pub fn jacobian_pattern(&self) -> (&[usize], &[u32]) {
+        (&self.jacobian_start, &self.jacobian_column)
+    }
+
+    /// Values of the Jacobian in the order of its pattern.
+    ///
+    /// Errors: as [`Self::rows`]; also a derivative that does not exist.
+    pub fn jacobian(&mut self, x: &[f64], values: &mut [f64]) -> Result<(), EvalFailure> {
+        values.copy_from_slice(&self.jacobian_linear);
+        for (b, places) in self.blocks.iter().zip(&self.jacobian_places) {
+            let mut sink = PlaceSink {
+                values,
+                place: &places.place,
+                weight: &b.coef,
+                terms: b.terms(),
+            };
+            b.gradient
+                .run(b.operands(x), &mut self.work, &mut sink)
+                .map_err(|first| scalar::diagnose(b, first, x, 1))?;
+        }
+        Ok(())
+    }
+
+    /// Pattern of the lower triangle of the Hessian: rows, columns (row ≥ column).
+    pub fn hessian_pattern(&self) -> (&[u32], &[u32]) {
+        (&self.hessian_row, &self.hessian_column)
+    }
+
+    /// Lower triangle of Σ λ_i ∇²row_i in the order of its pattern.
+    ///
+    /// Errors: as [`Self::jacobian`].
+    pub fn hessian(
+        &mut self,
+        x: &[f64],
+        lambda: &[f64],
+        values: &mut [f64],
+    ) -> Result<(), EvalFailure> {
+        values.fill(0.0);
+        let mut weight = Vec::new();
+        for (b, places) in self.blocks.iter().zip(&self.hessian_places) {
+            if b.hessian_slots.is_empty() {
+                continue;
+            }
+            weight.clear();
+            weight.extend(
+                b.coef
+                    .iter()
+                    .zip(&b.row)
+                    .map(|(c, &i)| c * lambda[i as usize]),
+            );
+            if weight.iter().all(|&w| w == 0.0) {
+                continue;
+            }
+            let terms = b.terms();
+            let operands = b.operands(x);
+            let result = if places.twice.is_empty() {
+                let mut sink = PlaceSink {
+                    values,
+                    place: &places.place,
+                    weight: &weight,
+                    terms,
+                };
+                b.hessian.run(operands, &mut self.work, &mut sink)
+            } else {
+                let mut sink = TwiceSink {
+                    plain: PlaceSink {
+                        values,
+                        place: &places.place,
+                        weight: &weight,
+                        terms,
+                    },
+                    twice: &places.twice,
+                };
+                b.hessian.run(operands, &mut self.work, &mut sink)
+            };
+            result.map_err(|first| scalar::diagnose(b, first, x, 2))?;
+        }
+        Ok(())
+    }
+
+    /// How each row depends on the columns.
+    pub fn degrees(&self) -> Vec<Degree> {
+        let mut degree = vec![Degree::Linear; self.instance.row_count()];
+        for b in &self.blocks {
+            let d = if b.linear {
+                Degree::Linear
+            } else if b.quadratic {
+                Degree::Quadratic
+            } else {
+                Degree::Nonlinear
+            };
+            for &i in &b.row {
+                let old = &mut degree[i as usize];
+                *old = d.max(*old);
+            }
+        }
+        degree
+    }
+
+    /// Number of entries of the Jacobian that depend on the point or belong to a nonlinear term: one per
+    /// row and column, as GAMS counts nonlinear nonzeros.
+    pub fn nonlinear_nonzeros(&self) -> usize {
+        let mut nonlinear = vec![false; self.jacobian_column.len()];
+        for p in &self.jacobian_places {
+            for &k in &p.place {
+                nonlinear[k as usize] = true;
+            }
+        }
+        nonlinear.into_iter().filter(|&b| b).count()
+    }
+
+    fn find_jacobian(&mut self) {
+        let instance = self.instance;
+        let (m, n) = (instance.row_count(), instance.column_count());
+        let mut finder = PatternFinder::new(m, n);
+        for i in 0..instance.matrix.rows().min(m) {
+            finder.count(i, instance.matrix.start[i + 1] - instance.matrix.start[i]);
+        }
+        for b in &self.blocks {
+            for &i in &b.row {
+                finder.count(i as usize, b.gradient_slots.len());
+            }
+        }
+        finder.ready();
+        let mut linear = Vec::with_capacity(instance.matrix.column.len());
+        for i in 0..instance.matrix.rows().min(m) {
+            for (j, a) in instance.matrix.row(i) {
+                linear.push((finder.enter(i, j), a));
+            }
+        }
+        let first_nonlinear = linear.len();
+        for b in &self.blocks {
+            for &slot in &b.gradient_slots {
+                for (t, &i) in b.row.iter().enumerate() {
+                    finder.enter(i as usize, b.column(slot, t) as usize);
+                }
+            }
+        }
+        let (start, column, place) = finder.finish();
+        self.jacobian_linear = vec![0.0; column.len()];
+        for (contribution, a) in linear {
+            self.jacobian_linear[place[contribution] as usize] += a;
+        }
+        let mut rest = &place[first_nonlinear..];
+        for b in &self.blocks {
+            let (mine, others) = rest.split_at(b.gradient_slots.len() * b.terms());
+            self.jacobian_places.push(Places {
+                place: mine.to_vec(),
+                twice: Vec::new(),
+            });
+            rest = others;
+        }
+        self.jacobian_start = start;
+        self.jacobian_column = column;
+    }
+
+    fn find_hessian(&mut self) {
+        let n = self.instance.column_count();
+        let mut finder = PatternFinder::new(n, n);
+        let ends = |b: &Block, [p, q]: [u32; 2], t: usize| {
+            let (i, j) = (b.column(p, t) as usize, b.column(q, t) as usize);
+            (i.max(j), i.min(j))
+        };
+        for b in &self.blocks {
+            for &slots in &b.hessian_slots {
+                for t in 0..b.terms() {
+                    finder.count(ends(b, slots, t).0, 1);
+                }
+            }
+        }
+        finder.ready();
+        for b in &self.blocks {
+            for &slots in &b.hessian_slots {
+                for t in 0..b.terms() {
+                    let (i, j) = ends(b, slots, t);
+                    finder.enter(i, j);
+                }
+            }
+        }
+        let (start, column, place) = finder.finish();
+        let mut rest = &place[..];
+        for b in &self.blocks {
+            let (mine, others) = rest.split_at(b.hessian_slots.len() * b.terms());
+            let mut twice = Vec::new();
+            for (k, &slots) in b.hessian_slots.iter().enumerate() {
+                for t in 0..b.terms() {
+                    let (i, j) = ends(b, slots, t);
+                    if i == j && slots[0] != slots[1] {
+                        twice.push((k as u32, t as u32));
+                    }
+                }
+            }
+            self.hessian_places.push(Places {
+                place: mine.to_vec(),
+                twice,
+            });
+            rest = others;
+        }
+        for i in 0..n {
+            self.hessian_row
+                .extend(std::iter::repeat_n(i as u32, start[i + 1] - start[i]));
+        }
+        self.hessian_column = column;
+    }
+}
+
+/// Merges contributions (row, column) into a pattern by rows, in linear time: contributions are put
+/// into buckets by row, and a mark per column finds the repeated ones.
+struct PatternFinder {
+    start: Vec<usize>,
+    next: Vec<usize>,
+    /// (column, number of the contribution), bucket by bucket.
+    bucket: Vec<(u32, u32)>,
+    entered: u32,
+    columns: usize,
+}
+
+impl PatternFinder {
+    fn new(rows: usize, columns: usize) -> Self {
+        Self {
+            start: vec![0; rows + 1],
+            next: Vec::new(),
+            bucket: Vec::new(),
+            entered: 0,
+            columns,
+        }
+    }
+
+    /// First pass: `more` contributions to a row.
+    fn count(&mut self, row: usize, more: usize) {
+        self.start[row + 1] += more;
+    }
+
+    fn ready(&mut self) {
+        for i in 1..self.start.len() {
+            self.start[i] += self.start[i - 1];
+        }
+        self.next = self.start.clone();
+        let total = self.start.last().copied().unwrap_or(0);
+        self.bucket = vec![(0, 0); total];
+    }
+
+    /// Second pass: a contribution. Its number.
+    fn enter(&mut self, row: usize, column: usize) -> usize {
+        let at = self.next[row];
+        self.next[row] += 1;
+        self.bucket[at] = (column as u32, self.entered);
+        self.entered += 1;
+        self.entered as usize - 1
+    }
+
+    /// Starts of the rows, columns, place of each contribution.
+    fn finish(self) -> (Vec<usize>, Vec<u32>, Vec<u32>) {
+        let rows = self.start.len() - 1;
+        let mut start = Vec::with_capacity(rows + 1);
+        start.push(0);
+        let mut column: Vec<u32> = Vec::with_capacity(self.bucket.len());
+        let mut place = vec![0_u32; self.bucket.len()];
+        let mut mark = vec![u32::MAX; self.columns];
+        for i in 0..rows {
+            let bucket = &self.bucket[self.start[i]..self.start[i + 1]];
+            let first = column.len();
+            for &(j, _) in bucket {
+                // a mark below `first` belongs to an earlier row
+                let m = mark[j as usize];
+                if m == u32::MAX || (m as usize) < first {
+                    mark[j as usize] = column.len() as u32;
+                    column.push(j);
+                }
+            }
+            column[first..].sort_unstable();
+            for (k, &j) in column[first..].iter().enumerate() {
+                mark[j as usize] = (first + k) as u32;
+            }
+            for &(j, contribution) in bucket {
+                place[contribution as usize] = mark[j as usize];
+            }
+            start.push(column.len());
+        }
+        column.shrink_to_fit();
+        (start, column, place)
+    }
+}
+
+struct RowSink<'s> {
+    out: &'s mut [f64],
+    row: &'s [u32],
+    coef: &'s [f64],
+}
+
+impl Sink for RowSink<'_> {
+    fn store(&mut self, _entry: usize, first: usize, values: &[f64]) {
+        let (row, coef) = (&self.row[first..], &self.coef[first..]);
+        for ((v, &i), c) in values.iter().zip(row).zip(coef) {
+            self.out[i as usize] += c * v;
+        }
+    }
+}
+
+struct PlaceSink<'s> {
+    values: &'s mut [f64],
+    place: &'s [u32],
+    weight: &'s [f64],
+    terms: usize,
+}
+
+impl Sink for PlaceSink<'_> {
+    fn store(&mut self, entry: usize, first: usize, values: &[f64]) {
+        let place = &self.place[entry * self.terms + first..];
+        let weight = &self.weight[first..];
+        for ((v, &k), w) in values.iter().zip(place).zip(weight) {
+            self.values[k as usize] += w * v;
+        }
+    }
+}
+
+struct TwiceSink<'s> {
+    plain: PlaceSink<'s>,
+    twice: &'s [(u32, u32)],
+}
+
+impl Sink for TwiceSink<'_> {
+    fn store(&mut self, entry: usize, first: usize, values: &[f64]) {
+        self.plain.store(entry, first, values);
+        let p = &mut self.plain;
+        let (low, high) = (first as u32, (first + values.len()) as u32);
+        let at = self.twice.partition_point(|&e| e < (entry as u32, low));
+        for &(k, t) in &self.twice[at..] {
+            if k != entry as u32 || t >= high {
+                break;
+            }
+            let place = p.place[entry * p.terms + t as usize] as usize;
+            p.values[place] += p.weight[t as usize] * values[(t - low) as usize];
+        }
+    }
+}
+
+/// A term overflowed although no function of it failed.
+pub(super) fn overflow(row: u32) -> EvalFailure {
+    EvalFailure {
+        row,
+        column: None,
+        error: DomainError::new(Operation::Term, &[], 0, ErrorKind::Overflow),
+    }
+}

@@ -1,0 +1,450 @@
+//! A kernel as a graph of elementary operations, equal subexpressions shared.
+//!
+//! The program of a kernel is a tree in postfix order. Building the graph
+//!
+//! * gives every distinct subexpression one number (children before parents),
+//! * gathers sums, differences, negations and multiples by constants into n-ary [`Element::Linear`]
+//!   nodes in linear time, however long the chain,
+//! * folds numbers and tells which nodes depend on a variable (*active* nodes).
+
+use super::functions::{divide, function_value, real_power, whole_power};
+use crate::model::instance::{Function, Kernel, Op};
+use rustc_hash::FxHashMap;
+
+/// Number of a node.
+pub type Id = u32;
+
+/// An elementary operation. Operands have smaller numbers.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Element {
+    /// The variable in a slot.
+    Var(u32),
+    /// The constant in a slot.
+    Const(u32),
+    /// A number that is the same in all terms.
+    Number(f64),
+    /// Σ coefficient · node + constant; coefficients and constant are inactive nodes, the others active
+    /// and distinct.
+    Linear {
+        /// Constant term.
+        constant: Id,
+        /// (coefficient, node).
+        terms: Vec<(Id, Id)>,
+    },
+    /// a + b of inactive nodes.
+    Add(Id, Id),
+    /// a · b; both active or both inactive.
+    Multiply(Id, Id),
+    /// a / b.
+    Divide(Id, Id),
+    /// a to a whole power.
+    PowerInt(Id, i32),
+    /// a ** b.
+    Power(Id, Id),
+    /// A function.
+    Call(Function, Vec<Id>),
+}
+
+/// The graph of a kernel.
+#[derive(Clone, Debug)]
+pub struct Graph {
+    /// Nodes, operands first.
+    pub elements: Vec<Element>,
+    /// Whether a node depends on a variable.
+    pub active: Vec<bool>,
+    /// The node of the kernel's value.
+    pub root: Id,
+}
+
+/// What lies on the stack while the postfix program is read: a node, or a sum still growing.
+enum Item {
+    Node(Id),
+    Sum { terms: Vec<(Id, Id)>, constant: Id },
+}
+
+struct Builder<'a> {
+    elements: Vec<Element>,
+    active: Vec<bool>,
+    known: FxHashMap<Box<[u32]>, Id>,
+    uniform: &'a [Option<f64>],
+}
+
+impl Graph {
+    /// Builds the graph. `uniform[k]` is the value of constant slot k where all terms agree on it.
+    ///
+    /// A kernel that is no well-formed program (the stack runs empty) gives a graph whose value is
+    /// undefined (NaN), so that its evaluation fails instead of the process.
+    pub fn new(kernel: &Kernel, uniform: &[Option<f64>]) -> Self {
+        let mut b = Builder {
+            elements: Vec::new(),
+            active: Vec::new(),
+            known: FxHashMap::default(),
+            uniform,
+        };
+        let root = b.read(&kernel.ops).unwrap_or_else(|| b.number(f64::NAN));
+        Self {
+            elements: b.elements,
+            active: b.active,
+            root,
+        }
+    }
+}
+
+impl Builder<'_> {
+    fn read(&mut self, ops: &[Op]) -> Option<Id> {
+        let mut stack: Vec<Item> = Vec::new();
+        for op in ops {
+            let item = match *op {
+                Op::Var(k) => Item::Node(self.node(Element::Var(k))),
+                Op::Const(k) => Item::Node(self.constant(k)),
+                Op::Affine {
+                    constant,
+                    variable,
+                    terms,
+                } => {
+                    let base = self.constant(constant);
+                    let mut sum = Vec::with_capacity(terms as usize);
+                    for m in 0..terms {
+                        let coefficient = self.constant(constant + 1 + m);
+                        let var = self.node(Element::Var(variable + m));
+                        sum.push((coefficient, var));
+                    }
+                    Item::Sum {
+                        terms: sum,
+                        constant: base,
+                    }
+                }
+                Op::Add => {
+                    let (b, a) = (stack.pop()?, stack.pop()?);
+                    self.sum(a, b)
+                }
+                Op::Subtract => {
+                    let (b, a) = (stack.pop()?, stack.pop()?);
+                    let b = self.multiple(b, -1.0);
+                    self.sum(a, b)
+                }
+                Op::AddN(n) => {
+                    let at = stack.len().checked_sub(n as usize)?;
+                    let items = stack.split_off(at);
+                    let mut total = Item::Node(self.number(0.0));
+                    for item in items {
+                        total = self.sum(total, item);
+                    }
+                    total
+                }
+                Op::Negate => {
+                    let a = stack.pop()?;
+                    self.multiple(a, -1.0)
+                }
+                Op::Multiply => {
+                    let (b, a) = (stack.pop()?, stack.pop()?);
+                    let (a, b) = (self.settle(a), self.settle(b));
+                    self.product(a, b)
+                }
+                Op::MultiplyN(n) => {
+                    let at = stack.len().checked_sub(n as usize)?;
+                    let items = stack.split_off(at);
+                    let mut total = Item::Node(self.number(1.0));
+                    for item in items {
+                        let (a, b) = (self.settle(total), self.settle(item));
+                        total = self.product(a, b);
+                    }
+                    total
+                }
+                Op::Divide => {
+                    let (b, a) = (stack.pop()?, stack.pop()?);
+                    let (a, b) = (self.settle(a), self.settle(b));
+                    Item::Node(self.quotient(a, b))
+                }
+                Op::Power => {
+                    let (b, a) = (stack.pop()?, stack.pop()?);
+                    let (a, b) = (self.settle(a), self.settle(b));
+                    Item::Node(self.power(a, b))
+                }
+                Op::PowerInt(n) => {
+                    let a = stack.pop()?;
+                    let a = self.settle(a);
+                    Item::Node(self.power_int(a, n))
+                }
+                Op::Call(f, n) => {
+                    let at = stack.len().checked_sub(n as usize)?;
+                    let items = stack.split_off(at);
+                    let args = items.into_iter().map(|i| self.settle(i)).collect();
+                    Item::Node(self.call(f, args))
+                }
+            };
+            stack.push(item);
+        }
+        let last = stack.pop()?;
+        Some(self.settle(last))
+    }
+
+    fn node(&mut self, e: Element) -> Id {
+        let key = key(&e);
+        if let Some(&id) = self.known.get(&key) {
+            return id;
+        }
+        let active = match &e {
+            Element::Var(_) => true,
+            Element::Const(_) | Element::Number(_) => false,
+            Element::Linear { .. } => true,
+            Element::Add(a, b)
+            | Element::Multiply(a, b)
+            | Element::Divide(a, b)
+            | Element::Power(a, b) => self.active[*a as usize] || self.active[*b as usize],
+            Element::PowerInt(a, _) => self.active[*a as usize],
+            Element::Call(_, args) => args.iter().any(|&a| self.active[a as usize]),
+        };
+        let id = self.elements.len() as Id;
+        self.elements.push(e);
+        self.active.push(active);
+        self.known.insert(key, id);
+        id
+    }
+
+    fn number(&mut self, v: f64) -> Id {
+        self.node(Element::Number(v))
+    }
+
+    fn constant(&mut self, slot: u32) -> Id {
+        match self.uniform.get(slot as usize) {
+            Some(Some(v)) => self.number(*v),
+            _ => self.node(Element::Const(slot)),
+        }
+    }
+
+    fn as_number(&self, id: Id) -> Option<f64> {
+        match self.elements[id as usize] {
+            Element::Number(v) => Some(v),
+            _ => None,
+        }
+    }
+
+    fn is_active(&self, id: Id) -> bool {
+        self.active[id as usize]
+    }
+
+    /// a + b of inactive nodes.
+    fn add_inactive(&mut self, a: Id, b: Id) -> Id {
+        match (self.as_number(a), self.as_number(b)) {
+            (Some(x), Some(y)) => self.number(x + y),
+            (Some(0.0), _) => b,
+            (_, Some(0.0)) => a,
+            _ => self.node(Element::Add(a, b)),
+        }
+    }
+
+    fn multiply_inactive(&mut self, a: Id, b: Id) -> Id {
+        match (self.as_number(a), self.as_number(b)) {
+            (Some(x), Some(y)) => self.number(x * y),
+            (Some(1.0), _) => b,
+            (_, Some(1.0)) => a,
+            _ => self.node(Element::Multiply(a, b)),
+        }
+    }
+
+    fn parts(&mut self, item: Item) -> (Vec<(Id, Id)>, Id) {
+        match item {
+            Item::Sum { terms, constant } => (terms, constant),
+            Item::Node(id) if self.is_active(id) => {
+                let (one, zero) = (self.number(1.0), self.number(0.0));
+                (vec![(one, id)], zero)
+            }
+            Item::Node(id) => (Vec::new(), id),
+        }
+    }
+
+    /// a + b; the shorter list is appended to the longer, so a chain of n costs O(n log n).
+    fn sum(&mut self, a: Item, b: Item) -> Item {
+        let (mut p, c) = self.parts(a);
+        let (mut q, d) = self.parts(b);
+        if p.len() < q.len() {
+            std::mem::swap(&mut p, &mut q);
+        }
+        p.append(&mut q);
+        Item::Sum {
+            terms: p,
+            constant: self.add_inactive(c, d),
+        }
+    }
+
+    fn multiple(&mut self, item: Item, factor: f64) -> Item {
+        let factor = self.number(factor);
+        self.scaled(item, factor)
+    }
+
+    /// factor · item, factor inactive.
+    fn scaled(&mut self, item: Item, factor: Id) -> Item {
+        // a long sum is settled first: scaling it term by term again and again would be quadratic
+        let item = match item {
+            Item::Sum { ref terms, .. } if terms.len() > 8 => Item::Node(self.settle(item)),
+            other => other,
+        };
+        let (mut terms, constant) = self.parts(item);
+        for t in &mut terms {
+            t.0 = self.multiply_inactive(factor, t.0);
+        }
+        Item::Sum {
+            terms,
+            constant: self.multiply_inactive(factor, constant),
+        }
+    }
+
+    /// Turns an item into a node: merges equal terms of a sum.
+    fn settle(&mut self, item: Item) -> Id {
+        let (mut terms, constant) = match item {
+            Item::Node(id) => return id,
+            Item::Sum { terms, constant } => (terms, constant),
+        };
+        terms.sort_by_key(|t| t.1);
+        let mut merged: Vec<(Id, Id)> = Vec::with_capacity(terms.len());
+        for (c, n) in terms {
+            match merged.last_mut() {
+                Some(last) if last.1 == n => last.0 = self.add_inactive(last.0, c),
+                _ => merged.push((c, n)),
+            }
+        }
+        merged.retain(|t| self.as_number(t.0) != Some(0.0));
+        if merged.is_empty() {
+            return constant;
+        }
+        if let [(c, n)] = merged[..]
+            && self.as_number(c) == Some(1.0)
+            && self.as_number(constant) == Some(0.0)
+        {
+            return n;
+        }
+        self.node(Element::Linear {
+            constant,
+            terms: merged,
+        })
+    }
+
+    fn product(&mut self, a: Id, b: Id) -> Item {
+        match (self.is_active(a), self.is_active(b)) {
+            (false, false) => Item::Node(self.multiply_inactive(a, b)),
+            (false, true) => self.scaled(Item::Node(b), a),
+            (true, false) => self.scaled(Item::Node(a), b),
+            (true, true) => {
+                let ((p, a), (q, b)) = (self.factor(a), self.factor(b));
+                let node = if a == b {
+                    self.node(Element::PowerInt(a, 2))
+                } else {
+                    self.node(Element::Multiply(a.min(b), a.max(b)))
+                };
+                let factor = self.multiply_inactive(p, q);
+                match self.as_number(factor) {
+                    Some(1.0) => Item::Node(node),
+                    _ => self.scaled(Item::Node(node), factor),
+                }
+            }
+        }
+    }
+
+    /// A node as (inactive factor, node).
+    fn factor(&mut self, a: Id) -> (Id, Id) {
+        if let Element::Linear { constant, terms } = &self.elements[a as usize]
+            && let [(c, n)] = terms[..]
+            && self.as_number(*constant) == Some(0.0)
+        {
+            return (c, n);
+        }
+        (self.number(1.0), a)
+    }
+
+    fn quotient(&mut self, a: Id, b: Id) -> Id {
+        if let (Some(x), Some(y)) = (self.as_number(a), self.as_number(b))
+            && let Ok(v) = divide(x, y)
+        {
+            return self.number(v);
+        }
+        if self.as_number(b) == Some(1.0) {
+            return a;
+        }
+        self.node(Element::Divide(a, b))
+    }
+
+    fn power_int(&mut self, a: Id, n: i32) -> Id {
+        if let Some(x) = self.as_number(a)
+            && let Ok(v) = whole_power(x, n)
+        {
+            return self.number(v);
+        }
+        match n {
+            0 => self.number(1.0),
+            1 => a,
+            _ => self.node(Element::PowerInt(a, n)),
+        }
+    }
+
+    fn power(&mut self, a: Id, b: Id) -> Id {
+        if let (Some(x), Some(y)) = (self.as_number(a), self.as_number(b))
+            && let Ok(v) = real_power(x, y)
+        {
+            return self.number(v);
+        }
+        self.node(Element::Power(a, b))
+    }
+
+    fn call(&mut self, f: Function, args: Vec<Id>) -> Id {
+        match (f, &args[..]) {
+            (Function::Sqr, &[a]) => return self.power_int(a, 2),
+            (Function::RPower | Function::VcPower, &[a, b]) => return self.power(a, b),
+            (Function::Power, &[a, b]) => {
+                if let Some(n) = self.as_number(b)
+                    && (n - n.round()).abs() <= 1e-5
+                    && n.abs() <= 2e9
+                {
+                    return self.power_int(a, n.round() as i32);
+                }
+            }
+            (Function::Div, &[a, b]) if self.as_number(b).is_some_and(|v| v != 0.0) => {
+                return self.quotient(a, b);
+            }
+            (Function::IfThen, &[c, a, b]) => match self.as_number(c) {
+                Some(0.0) => return b,
+                Some(_) => return a,
+                None => {}
+            },
+            _ => {}
+        }
+        let numbers: Option<Vec<f64>> = args.iter().map(|&a| self.as_number(a)).collect();
+        if let Some(numbers) = numbers
+            && let Ok(v) = function_value(f, &numbers)
+        {
+            return self.number(v);
+        }
+        self.node(Element::Call(f, args))
+    }
+}
+
+/// An element as a sequence of words, to find equal ones.
+fn key(e: &Element) -> Box<[u32]> {
+    let bits = |v: f64| {
+        let b = v.to_bits();
+        [b as u32, (b >> 32) as u32]
+    };
+    match e {
+        Element::Var(k) => Box::new([0, *k]),
+        Element::Const(k) => Box::new([1, *k]),
+        Element::Number(v) => {
+            let [lo, hi] = bits(*v);
+            Box::new([2, lo, hi])
+        }
+        Element::Linear { constant, terms } => {
+            let mut w = vec![3, *constant];
+            w.extend(terms.iter().flat_map(|t| [t.0, t.1]));
+            w.into()
+        }
+        Element::Add(a, b) => Box::new([4, *a, *b]),
+        Element::Multiply(a, b) => Box::new([5, *a, *b]),
+        Element::Divide(a, b) => Box::new([6, *a, *b]),
+        Element::PowerInt(a, n) => Box::new([7, *a, *n as u32]),
+        Element::Power(a, b) => Box::new([8, *a, *b]),
+        Element::Call(f, args) => {
+            let mut w = vec![9, *f as u32];
+            w.extend(args);
+            w.into()
+        }
+    }
+}
