@@ -6,6 +6,7 @@
 #![warn(missing_docs)]
 
 pub mod autodiff;
+pub mod cli;
 pub mod data;
 pub mod diag;
 pub mod host;
