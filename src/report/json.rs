@@ -1,9 +1,91 @@
-//! The report of a run, as `--json` writes it. Documented in `docs/json.md`.
+//! The report of a run as JSON (`--json`). The shape is documented in `docs/json.md`; a change of
+//! it that can break a reader changes [`FORMAT`].
+//!
+//! JSON has no infinities and no special values: they are written as the texts `"+INF"`, `"-INF"`,
+//! `"EPS"`, `"NA"`, `"UNDF"`.
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
-/// A code of GAMS's and its name.
-#[derive(Clone, Serialize, Debug)]
+use super::diagnostics::JsonDiagnostic;
+use crate::data::value;
+use crate::model::certificate::Residuals;
+use crate::solve::{ModelStatus, SolverStatus};
+
+/// Number of the report's format.
+pub const FORMAT: u32 = 1;
+
+/// A number as the language has them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Number(pub f64);
+
+impl Serialize for Number {
+    fn serialize<S: Serializer>(&self, s: S) -> Result<S::Ok, S::Error> {
+        let v = self.0;
+        if v.is_finite() {
+            s.serialize_f64(v + 0.0)
+        } else if v == f64::INFINITY {
+            s.serialize_str("+INF")
+        } else if v == f64::NEG_INFINITY {
+            s.serialize_str("-INF")
+        } else if value::is_eps(v) {
+            s.serialize_str("EPS")
+        } else if value::is_na(v) {
+            s.serialize_str("NA")
+        } else {
+            s.serialize_str("UNDF")
+        }
+    }
+}
+
+/// The whole report.
+#[derive(Clone, Debug, Serialize, Default)]
+pub struct Report {
+    /// Version of bmod.
+    pub bmod: String,
+    /// Number of the format: [`FORMAT`].
+    pub format: u32,
+    /// The model, as it was given.
+    pub file: String,
+    /// How the run ended.
+    pub status: RunStatus,
+    /// The solves, in order.
+    pub solves: Vec<SolveReport>,
+    /// What `display` showed, in order.
+    pub displays: Vec<Display>,
+    /// Files written: figures, put files, data.
+    pub files: Vec<String>,
+    /// What was wrong.
+    pub diagnostics: Vec<JsonDiagnostic>,
+}
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, Serialize, Default, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum RunStatus {
+    /// Exit status 0.
+    #[default]
+    Ok,
+    /// Exit status 2: the text does not compile.
+    CompilationError,
+    /// Exit status 3: an execution error.
+    ExecutionError,
+    /// Exit status 3: an `abort` statement.
+    Aborted,
+}
+
+impl RunStatus {
+    /// The exit status of the program.
+    pub fn exit(self) -> u8 {
+        match self {
+            Self::Ok => 0,
+            Self::CompilationError => 2,
+            Self::ExecutionError | Self::Aborted => 3,
+        }
+    }
+}
+
+/// A status with GAMS's code.
+#[derive(Clone, Debug, Serialize, PartialEq)]
 pub struct Status {
     /// GAMS's number.
     pub code: u8,
@@ -11,115 +93,226 @@ pub struct Status {
     pub name: &'static str,
 }
 
-/// Wall-clock seconds of a solve.
-#[derive(Clone, Copy, Default, Serialize, Debug)]
-pub struct Seconds {
-    /// Generating the instance.
-    pub generate: f64,
-    /// In the solver.
-    pub solve: f64,
-    /// Both, and the certificate.
-    pub total: f64,
+impl From<ModelStatus> for Status {
+    fn from(s: ModelStatus) -> Self {
+        Self {
+            code: s as u8,
+            name: s.name(),
+        }
+    }
 }
 
-/// Largest violations on the unscaled model; null where one does not apply.
-#[derive(Clone, Copy, Default, Serialize, Debug)]
-pub struct Residual {
-    /// Of a row or bound.
-    pub primal: Option<f64>,
-    /// Of stationarity and the signs of marginals.
-    pub dual: Option<f64>,
-    /// max |yᵢzᵢ|; for mpec over the pairs.
-    pub complementarity: Option<f64>,
-    /// max |x − mid(l, u, x − F)|, for mcp.
-    pub natural: Option<f64>,
+impl From<SolverStatus> for Status {
+    fn from(s: SolverStatus) -> Self {
+        Self {
+            code: s as u8,
+            name: s.name(),
+        }
+    }
 }
 
 /// One solve.
-#[derive(Clone, Serialize, Debug)]
-pub struct Solve {
-    /// Name of the model.
+#[derive(Clone, Debug, Serialize)]
+pub struct SolveReport {
+    /// The model.
     pub model: String,
-    /// Problem type.
-    pub using: &'static str,
-    /// `min`, `max`, or null for mcp and cns.
+    /// `lp`, `mcp` …
+    pub using: String,
+    /// `min`, `max`, or null for a model without objective.
     pub sense: Option<&'static str>,
+    /// The objective variable, null for a model without one. Not in the JSON.
+    #[serde(skip)]
+    pub objective_name: Option<String>,
     /// The solver that ran.
     pub solver: String,
-    /// What is known of the answer.
+    /// What the point and the rays prove.
     pub model_status: Status,
     /// How the solver ended.
     pub solver_status: Status,
-    /// Level of the objective variable; null for mcp and cns.
-    pub objective: Option<f64>,
-    /// As GAMS counts, the objective's row and column included.
+    /// Level of the objective variable.
+    pub objective: Option<Number>,
+    /// Rows, the objective's included.
     pub rows: usize,
-    /// Columns.
+    /// Columns, the objective variable included.
     pub columns: usize,
-    /// Nonzeros.
+    /// Entries of the rows.
     pub nonzeros: usize,
-    /// Nonzeros whose column stands in a nonlinear term of the row.
+    /// Nonlinear ones among them.
     pub nonlinear_nonzeros: usize,
-    /// Iterations of the solver.
+    /// Iterations.
     pub iterations: u64,
     /// Times.
     pub seconds: Seconds,
-    /// The certificate.
+    /// Largest violations on the unscaled model.
     pub residual: Residual,
-    /// Σ |yᵢzᵢ| over the pairs, for mpec.
+    /// Sum of the violations of complementarity (mpec).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub complementarity_sum: Option<f64>,
-    /// Proved interval of the optimal value.
+    /// A proved interval for the optimal value.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub bounds: Option<[f64; 2]>,
-    /// B-stationarity of an mpec: `proved`, `refuted`, `not proved`.
+    pub bounds: Option<[Number; 2]>,
+    /// `proved`, `refuted` or `not proved` (mpec).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stationarity: Option<&'static str>,
-    /// More for the person, where there is more to say.
+    /// One more line from the solver.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub message: Option<String>,
-    /// Line of the solve statement.
-    pub line: usize,
-    /// Name of the row or column with the largest violation, where it matters.
-    #[serde(skip)]
-    pub worst: Option<String>,
 }
 
-/// A number, or the name of a special value.
-#[derive(Clone, Serialize, Debug, PartialEq)]
+/// Times of a solve, in seconds.
+#[derive(Clone, Copy, Debug, Serialize, Default)]
+pub struct Seconds {
+    /// Generating the rows and columns.
+    pub generate: f64,
+    /// Solving.
+    pub solve: f64,
+    /// Everything.
+    pub total: f64,
+}
+
+/// Largest violations, null where one does not apply.
+#[derive(Clone, Copy, Debug, Serialize, Default)]
+pub struct Residual {
+    /// Of a row or a bound.
+    pub primal: Option<f64>,
+    /// Wrong-signed multipliers.
+    pub dual: Option<f64>,
+    /// max |yᵢzᵢ|
+    pub complementarity: Option<f64>,
+    /// max |x − mid(l, u, x − F)|
+    pub natural: Option<f64>,
+}
+
+impl From<&Residuals> for Residual {
+    fn from(r: &Residuals) -> Self {
+        let finite = |v: Option<f64>| v.filter(|v| v.is_finite());
+        Self {
+            primal: finite(r.primal),
+            dual: finite(r.dual),
+            complementarity: finite(r.complementarity),
+            natural: finite(r.natural),
+        }
+    }
+}
+
+/// One item of a `display`.
+#[derive(Clone, Debug, Serialize, PartialEq)]
 #[serde(untagged)]
-pub enum Value {
-    /// An ordinary number.
-    Number(f64),
-    /// `eps`, `na`, `inf`, `-inf`, `undf`, or an acronym.
-    Special(String),
+pub enum Display {
+    /// A text.
+    Text {
+        /// Line of the statement.
+        line: usize,
+        /// The text.
+        text: String,
+    },
+    /// A symbol without indices.
+    Scalar {
+        /// Line of the statement.
+        line: usize,
+        /// The symbol, perhaps with its attribute: `alpha.l`.
+        symbol: String,
+        /// Its value.
+        value: Number,
+    },
+    /// A symbol with indices.
+    Indexed {
+        /// Line of the statement.
+        line: usize,
+        /// The symbol, perhaps with its attribute: `x.l`.
+        symbol: String,
+        /// Its index sets.
+        domain: Vec<String>,
+        /// Labels and value of each record; for a set the value is 1.
+        records: Vec<(Vec<String>, Number)>,
+    },
 }
 
-/// One displayed symbol.
-#[derive(Clone, Serialize, Debug)]
-pub struct Display {
-    /// Line of the display statement.
-    pub line: usize,
-    /// Symbol with attribute, `x.l`.
-    pub symbol: String,
-    /// Value of a scalar.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub value: Option<Value>,
-    /// Index sets.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub domain: Option<Vec<String>>,
-    /// Labels and value of each record.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub records: Option<Vec<(Vec<String>, Value)>>,
+impl Report {
+    /// An empty report.
+    pub fn new(file: &str) -> Self {
+        Self {
+            bmod: env!("CARGO_PKG_VERSION").into(),
+            format: FORMAT,
+            file: file.into(),
+            ..Self::default()
+        }
+    }
+
+    /// The report as indented JSON with a line end.
+    pub fn to_json(&self) -> String {
+        // Texts and numbers only: this cannot fail.
+        let mut text = serde_json::to_string_pretty(self).unwrap_or_default();
+        text.push('\n');
+        text
+    }
 }
 
-/// What a run reports while it runs; the command line adds file, status and diagnostics.
-#[derive(Clone, Default, Serialize, Debug)]
-pub struct Report {
-    /// Solves in order.
-    pub solves: Vec<Solve>,
-    /// Displays in order.
-    pub displays: Vec<Display>,
-    /// Files written, in order.
-    pub files: Vec<String>,
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn has_the_documented_shape() {
+        let mut report = Report::new("wall.blk");
+        report.solves.push(SolveReport {
+            model: "static".into(),
+            using: "lp".into(),
+            sense: Some("max"),
+            objective_name: Some("alpha".into()),
+            solver: "clarabel".into(),
+            model_status: ModelStatus::Optimal.into(),
+            solver_status: SolverStatus::NormalCompletion.into(),
+            objective: Some(Number(0.642859003)),
+            rows: 431,
+            columns: 250,
+            nonzeros: 1500,
+            nonlinear_nonzeros: 0,
+            iterations: 14,
+            seconds: Seconds::default(),
+            residual: Residual {
+                primal: Some(1e-12),
+                ..Residual::default()
+            },
+            complementarity_sum: None,
+            bounds: None,
+            stationarity: None,
+            message: None,
+        });
+        report.displays = vec![
+            Display::Scalar {
+                line: 80,
+                symbol: "alpha.l".into(),
+                value: Number(0.642859),
+            },
+            Display::Indexed {
+                line: 81,
+                symbol: "x.up".into(),
+                domain: vec!["c".into(), "k".into()],
+                records: vec![
+                    (vec!["c1".into(), "n".into()], Number(1.25)),
+                    (vec!["c1".into(), "t".into()], Number(f64::INFINITY)),
+                    (vec!["c2".into(), "t".into()], Number(value::EPS)),
+                ],
+            },
+        ];
+        let v: serde_json::Value = serde_json::from_str(&report.to_json()).expect("JSON");
+        assert_eq!(v["status"], "ok");
+        let s = &v["solves"][0];
+        assert_eq!(s["model_status"]["code"], 1);
+        assert_eq!(s["model_status"]["name"], "optimal");
+        assert_eq!(s["solver_status"]["name"], "normal completion");
+        assert_eq!(s["objective"], 0.642859003);
+        assert_eq!(s["residual"]["primal"], 1e-12);
+        assert!(s["residual"]["natural"].is_null());
+        assert!(s.get("bounds").is_none());
+        assert_eq!(v["displays"][0]["value"], 0.642859);
+        assert_eq!(
+            v["displays"][1]["records"][0],
+            serde_json::json!([["c1", "n"], 1.25])
+        );
+        assert_eq!(v["displays"][1]["records"][1][1], "+INF");
+        assert_eq!(v["displays"][1]["records"][2][1], "EPS");
+        assert!(v["diagnostics"].as_array().is_some_and(Vec::is_empty));
+    }
 }

@@ -3,3 +3,7 @@
 pub mod diagnostics;
 pub mod figure;
 pub mod json;
+pub mod listing;
+pub mod names;
+pub mod solution;
+pub mod summary;

@@ -4,7 +4,6 @@ use super::generate::{GenerateOptions, Generated};
 use super::{Flow, Frame, Machine, ModelState};
 use crate::check::node::*;
 use crate::check::symbols::attribute;
-use crate::data::universe::Label;
 use crate::diag::Diagnostic;
 use crate::model::instance::{Instance, Relation};
 use crate::model::origin::{Blocks, Origin};
@@ -253,20 +252,5 @@ impl Machine<'_> {
             self.host().solved(&solve);
         }
         self.report.solves.push(solve);
-    }
-}
-
-/// Names of rows and columns of a generated instance.
-pub struct RunNames<'a, 'h> {
-    /// The run.
-    pub machine: &'a Machine<'h>,
-    /// Where rows and columns come from.
-    pub origin: &'a Origin,
-}
-
-impl RunNames<'_, '_> {
-    /// Labels of a key as text.
-    pub fn labels(&self, key: &[Label]) -> Vec<String> {
-        key.iter().map(|&l| self.machine.store.universe.name(l).to_string()).collect()
     }
 }

@@ -1,0 +1,302 @@
+//! The arguments of the command line, and what `clap` does not do by itself: GAMS's
+//! `--NAME=VALUE`, and exit status 1 for a wrong command line.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+use std::sync::LazyLock;
+
+use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum, ValueHint};
+
+/// Exit status: the command line is wrong.
+pub const USAGE: u8 = 1;
+/// Exit status: the text does not compile.
+pub const COMPILE: u8 = 2;
+/// Exit status: an execution error or an abort.
+pub const EXECUTION: u8 = 3;
+
+/// Solve algebraic models written in the GAMS tradition.
+#[derive(Parser, Debug, Clone)]
+#[command(
+    name = "bmod",
+    version,
+    long_version = LONG_VERSION.as_str(),
+    subcommand_required = true,
+    arg_required_else_help = true,
+    after_help = "Exit status: 0 it ran; 1 the command line is wrong; 2 the text does not compile; \
+                  3 an execution error or an abort.\nA model that is solved to \"infeasible\" is an \
+                  answer, not a failure: 0."
+)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// What to do.
+#[derive(Subcommand, Debug, Clone)]
+pub enum Command {
+    /// Runs a model: its assignments, solves, displays and figures.
+    Run(RunArgs),
+    /// Reports everything that is wrong with a model, without running it.
+    Check(CheckArgs),
+    /// Shows the generated rows and columns as readable algebra, with names and numbers.
+    List(ListArgs),
+    /// Prints a script that completes bmod's commands in a shell.
+    Completions {
+        /// The shell.
+        shell: clap_complete::Shell,
+    },
+}
+
+/// How diagnostics are written.
+#[derive(ValueEnum, Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum MessageFormat {
+    /// For people: the text with the place marked.
+    #[default]
+    Human,
+    /// For programs: one JSON object per line.
+    Json,
+}
+
+/// The model and what all commands share.
+#[derive(Args, Debug, Clone)]
+pub struct ModelArgs {
+    /// The model.
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// Sets %NAME% to VALUE, as GAMS's --NAME=VALUE (accepted as well).
+    #[arg(short = 'D', value_name = "NAME=VALUE", value_parser = pair)]
+    pub define: Vec<(String, String)>,
+    /// A further folder that the model may read; its own and the current one always.
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub allow_read: Vec<PathBuf>,
+    /// How diagnostics are written.
+    #[arg(long, value_enum, default_value_t)]
+    pub message_format: MessageFormat,
+}
+
+/// Arguments of `bmod run`.
+#[derive(Args, Debug, Clone)]
+pub struct RunArgs {
+    /// The model and what all commands share.
+    #[command(flatten)]
+    pub model: ModelArgs,
+    /// Folder for the files that the model writes; nothing is written elsewhere.
+    #[arg(long, value_name = "DIR", default_value = ".", value_hint = ValueHint::DirPath)]
+    pub out: PathBuf,
+    /// Writes the report as JSON; - is standard output, and everything else then goes to standard error.
+    #[arg(long, value_name = "FILE|-", value_hint = ValueHint::FilePath)]
+    pub json: Option<PathBuf>,
+    /// Writes all rows and columns of every solve as JSON, with all digits.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub solution: Option<PathBuf>,
+    /// No summaries and no displays; diagnostics only.
+    #[arg(long, short)]
+    pub quiet: bool,
+    /// Sets an option before the first statement, as the statement `option K = V`.
+    #[arg(long, value_name = "K=V", value_parser = pair)]
+    pub option: Vec<(String, String)>,
+    /// Seconds that one solve may take.
+    #[arg(long, value_name = "S", value_parser = positive)]
+    pub time_limit: Option<f64>,
+    /// Memory that the run may take.
+    #[arg(long, value_name = "MB", value_parser = positive)]
+    pub max_memory: Option<f64>,
+    /// Proves an interval for the objective of every lp.
+    #[arg(long)]
+    pub certify: bool,
+}
+
+/// Arguments of `bmod check`.
+#[derive(Args, Debug, Clone)]
+pub struct CheckArgs {
+    /// The model and what all commands share.
+    #[command(flatten)]
+    pub model: ModelArgs,
+}
+
+/// Arguments of `bmod list`.
+#[derive(Args, Debug, Clone)]
+pub struct ListArgs {
+    /// The model and what all commands share.
+    #[command(flatten)]
+    pub model: ModelArgs,
+    /// Rows or columns to show: a symbol, or one of its members as it is listed. Without, the first
+    /// few of every block.
+    #[arg(value_name = "NAME")]
+    pub names: Vec<String>,
+    /// How many of each block are shown.
+    #[arg(long, value_name = "N", default_value_t = 3)]
+    pub limit: usize,
+}
+
+fn pair(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.trim().is_empty() => {
+            Ok((name.trim().to_string(), value.to_string()))
+        }
+        _ => Err("write NAME=VALUE".into()),
+    }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(v) if v > 0.0 && v.is_finite() => Ok(v),
+        _ => Err("write a positive number".into()),
+    }
+}
+
+/// The version, and the solvers inside with theirs.
+static LONG_VERSION: LazyLock<String> = LazyLock::new(|| {
+    let mut text = env!("CARGO_PKG_VERSION").to_string();
+    text.push_str("\nsolvers:");
+    for (name, what) in SOLVERS {
+        text.push_str(&format!("\n  {name:<10} {what}"));
+    }
+    text
+});
+
+/// The solvers inside, with the versions of what they are made of.
+pub const SOLVERS: &[(&str, &str)] = &[
+    (
+        "clarabel",
+        "lp: interior point, Clarabel 0.11.1, with a simplex finish on feral 0.22.0",
+    ),
+    (
+        "bmcp",
+        "mcp, cns: bmod's own, on feral 0.22.0 and faer 0.24",
+    ),
+];
+
+/// What became of the arguments.
+#[derive(Debug)]
+pub enum Parsed {
+    /// A command.
+    Run(Box<Cli>),
+    /// Nothing to do but to end with this status: help was printed, or what is wrong.
+    Exit(u8),
+}
+
+/// Reads the arguments (the program's name first) and prints help or usage errors itself.
+pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Parsed {
+    match try_parse(arguments) {
+        Ok(cli) => Parsed::Run(Box::new(cli)),
+        Err(e) => {
+            // A reader that has gone away is no error of ours.
+            let _ = e.print();
+            Parsed::Exit(if e.use_stderr() { USAGE } else { 0 })
+        }
+    }
+}
+
+/// Reads the arguments (the program's name first).
+pub fn try_parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Cli, clap::Error> {
+    Cli::try_parse_from(accept_gams(arguments))
+}
+
+/// Turns GAMS's `--NAME=VALUE` into `-D NAME=VALUE` wherever NAME is no option of the command.
+fn accept_gams(arguments: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
+    let mut arguments: Vec<OsString> = arguments.into_iter().collect();
+    let command = Cli::command();
+    let chosen = arguments.get(1).and_then(|a| a.to_str());
+    let Some(sub) = chosen.and_then(|name| command.find_subcommand(name)) else {
+        return arguments;
+    };
+    let known: Vec<&str> = sub.get_arguments().filter_map(|a| a.get_long()).collect();
+    let mut k = 2;
+    while k < arguments.len() && arguments[k] != "--" {
+        let text = arguments[k].to_str().and_then(|t| t.strip_prefix("--"));
+        if let Some((name, _)) = text.and_then(|t| t.split_once('='))
+            && !name.is_empty()
+            && !known.contains(&name)
+            && name != "help"
+        {
+            let value = OsString::from(text.unwrap_or_default());
+            arguments.splice(k..=k, ["-D".into(), value]);
+            k += 1;
+        }
+        k += 1;
+    }
+    arguments
+}
+
+/// The completion script for a shell.
+pub fn completions(shell: clap_complete::Shell) -> Vec<u8> {
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut Cli::command(), "bmod", &mut script);
+    script
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(line: &str) -> Result<Cli, clap::Error> {
+        try_parse(line.split(' ').map(OsString::from))
+    }
+
+    #[test]
+    fn the_definition_is_sound() {
+        Cli::command().debug_assert();
+        assert!(!completions(clap_complete::Shell::Bash).is_empty());
+    }
+
+    #[test]
+    fn reads_a_run() {
+        let line = "bmod run w.blk -D mu=0.5 --n=3 -D s=a=b --out figs --json - --quiet \
+                    --option lp=clarabel --time-limit 5 --certify --message-format json \
+                    --solution s.json";
+        let Command::Run(run) = read(line).expect("a right command line").command else {
+            panic!("not a run");
+        };
+        let pair = |a: &str, b: &str| (a.to_string(), b.to_string());
+        assert_eq!(
+            run.model.define,
+            [pair("mu", "0.5"), pair("n", "3"), pair("s", "a=b")]
+        );
+        assert_eq!(run.json, Some(PathBuf::from("-")));
+        assert_eq!(run.option, [pair("lp", "clarabel")]);
+        assert_eq!(run.time_limit, Some(5.0));
+        assert!(run.quiet && run.certify);
+        assert_eq!(run.model.message_format, MessageFormat::Json);
+    }
+
+    #[test]
+    fn known_options_with_equals_stay_options() {
+        let Command::Run(run) = read("bmod run w.blk --out=figs --phi=0.4")
+            .expect("right")
+            .command
+        else {
+            panic!("not a run");
+        };
+        assert_eq!(run.out, PathBuf::from("figs"));
+        assert_eq!(run.model.define.len(), 1);
+    }
+
+    #[test]
+    fn wrong_command_lines_end_with_1() {
+        for line in [
+            "bmod",
+            "bmod walk w.blk",
+            "bmod run",
+            "bmod run w.blk --nonsense",
+            "bmod run w.blk -D x",
+            "bmod run w.blk --time-limit -3",
+            "bmod run w.blk --time-limit x",
+            "bmod check w.blk --out x",
+            "bmod completions fishy",
+        ] {
+            let parsed = parse(line.split(' ').map(OsString::from));
+            assert!(matches!(parsed, Parsed::Exit(USAGE)), "{line}: {parsed:?}");
+        }
+        for line in [
+            "bmod --help",
+            "bmod help run",
+            "bmod --version",
+            "bmod run --help",
+        ] {
+            let parsed = parse(line.split(' ').map(OsString::from));
+            assert!(matches!(parsed, Parsed::Exit(0)), "{line}: {parsed:?}");
+        }
+    }
+}

@@ -1,0 +1,369 @@
+//! The real world behind [`Host`]: files, clock, terminal, Ctrl-C.
+//!
+//! Invariants:
+//! * A model reads only inside its own folder, the current folder, and folders that the person
+//!   allowed; symbolic links and `..` are resolved before that is decided.
+//! * A model writes only inside the output folder, whole files or nothing: a file is written under
+//!   a temporary name in the same folder and then renamed.
+//! * Progress is shown only on a terminal and only after a second.
+
+use std::io::{IsTerminal, Write};
+use std::path::{Component, Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant, SystemTime};
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::host::{Host, HostError};
+
+/// Set by the first Ctrl-C.
+static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+
+/// Where text for people goes.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum Output {
+    /// Standard output.
+    #[default]
+    Standard,
+    /// Standard error, because standard output belongs to a program.
+    Error,
+    /// Nowhere.
+    Quiet,
+}
+
+/// Files of this machine, this terminal, this clock.
+pub struct SystemHost {
+    model: Option<PathBuf>,
+    model_folder: PathBuf,
+    current: PathBuf,
+    allowed: Vec<PathBuf>,
+    out: PathBuf,
+    output: Output,
+    start: Instant,
+    bar: Option<ProgressBar>,
+    last_progress: Option<Instant>,
+    terminal: bool,
+}
+
+/// From the first Ctrl-C on [`Host::interrupted`] is true; the second ends the process.
+pub fn watch_ctrl_c() {
+    // A second handler cannot be set; the first one does the same.
+    let _ = ctrlc::set_handler(|| {
+        if INTERRUPTED.swap(true, Ordering::SeqCst) {
+            std::process::exit(130);
+        }
+    });
+}
+
+impl SystemHost {
+    /// For a model file, an output folder (made when something is written), and further folders
+    /// that may be read.
+    pub fn new(model: &Path, out: &Path, allow_read: &[PathBuf], output: Output) -> Self {
+        let current = std::env::current_dir()
+            .and_then(|d| d.canonicalize())
+            .unwrap_or_else(|_| PathBuf::from("."));
+        let folder = match model.parent() {
+            Some(p) if !p.as_os_str().is_empty() => p.to_path_buf(),
+            _ => PathBuf::from("."),
+        };
+        Self {
+            model: model.canonicalize().ok(),
+            model_folder: folder,
+            out: current.join(out),
+            allowed: allow_read
+                .iter()
+                .filter_map(|d| d.canonicalize().ok())
+                .collect(),
+            current,
+            output,
+            start: Instant::now(),
+            bar: None,
+            last_progress: None,
+            terminal: std::io::stderr().is_terminal(),
+        }
+    }
+
+    fn may_read(&self, real: &Path) -> bool {
+        let folder = self.model_folder.canonicalize();
+        self.model.as_deref() == Some(real)
+            || folder.is_ok_and(|f| real.starts_with(f))
+            || real.starts_with(&self.current)
+            || self.allowed.iter().any(|d| real.starts_with(d))
+    }
+
+    /// The file that `path` means: relative to the asking file, the model, the current folder, or
+    /// an allowed folder, whichever has it first.
+    fn find(&self, path: &str, from: Option<&Path>) -> Result<(PathBuf, PathBuf), HostError> {
+        let mut outside = None;
+        let folders = [from.and_then(Path::parent), Some(&*self.model_folder)];
+        let folders = folders.into_iter().flatten();
+        let folders = folders
+            .chain([Path::new("")])
+            .chain(self.allowed.iter().map(|d| &**d));
+        for folder in folders {
+            let known = tidy(&folder.join(path));
+            let Ok(real) = known.canonicalize() else {
+                continue;
+            };
+            if !self.may_read(&real) {
+                outside.get_or_insert(known);
+                continue;
+            }
+            if real.is_file() {
+                return Ok((known, real));
+            }
+            if real.is_dir() {
+                return Err(HostError::Other("it is a folder".into()));
+            }
+        }
+        Err(outside.map_or(HostError::NotFound, HostError::Outside))
+    }
+
+    fn clear_progress(&mut self) {
+        if let Some(bar) = self.bar.take() {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+/// Without `.` parts, which say nothing.
+fn tidy(path: &Path) -> PathBuf {
+    let parts = path.components().filter(|c| *c != Component::CurDir);
+    let tidy: PathBuf = parts.collect();
+    if tidy.as_os_str().is_empty() {
+        PathBuf::from(".")
+    } else {
+        tidy
+    }
+}
+
+fn other(e: std::io::Error) -> HostError {
+    match e.kind() {
+        std::io::ErrorKind::NotFound => HostError::NotFound,
+        std::io::ErrorKind::PermissionDenied => {
+            HostError::Other("you do not have the right to do that".into())
+        }
+        _ => HostError::Other(e.to_string()),
+    }
+}
+
+impl Host for SystemHost {
+    fn read(&mut self, path: &str, from: Option<&Path>) -> Result<(PathBuf, String), HostError> {
+        let (known, real) = self.find(path, from)?;
+        let size = real.metadata().map_err(other)?.len();
+        if size > u64::from(u32::MAX / 2) {
+            return Err(HostError::Other("it is larger than 2 GB".into()));
+        }
+        let bytes = std::fs::read(&real).map_err(other)?;
+        match String::from_utf8(bytes) {
+            Ok(text) => {
+                // A byte order mark is no part of the text.
+                let text = match text.strip_prefix('\u{feff}') {
+                    Some(rest) => rest.to_string(),
+                    None => text,
+                };
+                Ok((known, text))
+            }
+            Err(e) => Err(HostError::NotUtf8(e.utf8_error().valid_up_to())),
+        }
+    }
+
+    fn exists(&mut self, path: &str, from: Option<&Path>) -> bool {
+        self.find(path, from).is_ok()
+    }
+
+    fn write(&mut self, path: &str, bytes: &[u8]) -> Result<PathBuf, HostError> {
+        let wanted = tidy(Path::new(path));
+        let outside = || HostError::Outside(PathBuf::from(path));
+        std::fs::create_dir_all(&self.out).map_err(other)?;
+        let root = self.out.canonicalize().map_err(other)?;
+        let target = root.join(&wanted);
+        let goes_up = |c: Component| matches!(c, Component::ParentDir);
+        if wanted.components().any(goes_up) || !target.starts_with(&root) {
+            // `a/../b` would be harmless, but no model needs it.
+            return Err(outside());
+        }
+        let folder = target.parent().ok_or_else(outside)?;
+        // A link on the way may lead out: ask before making folders behind it.
+        let there = folder
+            .ancestors()
+            .find(|a| a.exists())
+            .ok_or_else(outside)?;
+        if !there.canonicalize().map_err(other)?.starts_with(&root) {
+            return Err(outside());
+        }
+        std::fs::create_dir_all(folder).map_err(other)?;
+        if target.is_dir() {
+            return Err(HostError::Other("there is a folder of that name".into()));
+        }
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(".bmod-");
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt;
+            builder.permissions(std::fs::Permissions::from_mode(0o666));
+        }
+        let mut file = builder.tempfile_in(folder).map_err(other)?;
+        file.write_all(bytes).map_err(other)?;
+        file.persist(&target).map_err(|e| other(e.error))?;
+        Ok(target
+            .strip_prefix(&self.current)
+            .map_or(target.clone(), Path::to_path_buf))
+    }
+
+    fn print(&mut self, text: &str) {
+        self.clear_progress();
+        // A reader that has gone away (`| head`) is no error of ours.
+        let _ = match self.output {
+            Output::Standard => std::io::stdout().write_all(text.as_bytes()),
+            Output::Error => std::io::stderr().write_all(text.as_bytes()),
+            Output::Quiet => Ok(()),
+        };
+    }
+
+    fn elapsed(&self) -> f64 {
+        self.start.elapsed().as_secs_f64()
+    }
+
+    fn now(&self) -> f64 {
+        // 1970-01-01 is day 25568; the time is UTC.
+        let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
+        25568.0 + since.map_or(0.0, |d| d.as_secs_f64() / 86400.0)
+    }
+
+    fn interrupted(&self) -> bool {
+        INTERRUPTED.load(Ordering::Relaxed)
+    }
+
+    fn progress(&mut self, message: &str) {
+        let now = Instant::now();
+        let soon = self
+            .last_progress
+            .is_some_and(|t| now - t < Duration::from_millis(150));
+        if !self.terminal || soon || self.start.elapsed() < Duration::from_secs(1) {
+            return;
+        }
+        self.last_progress = Some(now);
+        let bar = self.bar.get_or_insert_with(|| {
+            let bar = ProgressBar::new_spinner();
+            if let Ok(style) = ProgressStyle::with_template("{spinner} {elapsed:>4}  {wide_msg}") {
+                bar.set_style(style);
+            }
+            bar
+        });
+        bar.set_message(message.to_string());
+        bar.tick();
+    }
+}
+
+impl Drop for SystemHost {
+    fn drop(&mut self) {
+        self.clear_progress();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    /// root/model/m.blk, root/model/lib/a.blk, root/secret.blk, root/out
+    fn scene() -> (tempfile::TempDir, SystemHost) {
+        let root = tempfile::tempdir().expect("a folder");
+        let p = root.path();
+        fs::create_dir_all(p.join("model/lib")).expect("made");
+        fs::write(p.join("model/m.blk"), "set i;").expect("written");
+        fs::write(p.join("model/lib/a.blk"), "\u{feff}set a;").expect("written");
+        fs::write(p.join("model/bad.blk"), b"ab\xff").expect("written");
+        fs::write(p.join("secret.blk"), "secret").expect("written");
+        let model = p.join("model/m.blk");
+        let host = SystemHost::new(&model, &p.join("out"), &[], Output::Quiet);
+        (root, host)
+    }
+
+    #[test]
+    fn reads_inside_only() {
+        let (root, mut host) = scene();
+        let main = root.path().join("model/m.blk");
+        let (known, text) = host
+            .read(main.to_str().expect("UTF-8"), None)
+            .expect("the model");
+        assert_eq!(text, "set i;");
+        let (lib, text) = host.read("lib/a.blk", Some(&known)).expect("an include");
+        assert_eq!(text, "set a;");
+        assert_eq!(
+            host.read("a.blk", Some(&lib)).expect("beside it").1,
+            "set a;"
+        );
+        assert_eq!(
+            host.read("none.blk", Some(&known)),
+            Err(HostError::NotFound)
+        );
+        assert!(matches!(
+            host.read("../secret.blk", Some(&known)),
+            Err(HostError::Outside(_))
+        ));
+        assert!(matches!(
+            host.read("lib", Some(&known)),
+            Err(HostError::Other(_))
+        ));
+        assert_eq!(host.read("bad.blk", None), Err(HostError::NotUtf8(2)));
+        assert!(host.exists("./lib/a.blk", None) && !host.exists("../secret.blk", None));
+        #[cfg(unix)]
+        {
+            let link = root.path().join("model/link.blk");
+            std::os::unix::fs::symlink(root.path().join("secret.blk"), link).expect("a link");
+            assert!(matches!(
+                host.read("link.blk", None),
+                Err(HostError::Outside(_))
+            ));
+        }
+        let allow = [root.path().to_path_buf()];
+        let mut open = SystemHost::new(&main, Path::new("."), &allow, Output::Quiet);
+        assert_eq!(
+            open.read("../secret.blk", Some(&known)).expect("allowed").1,
+            "secret"
+        );
+        assert_eq!(
+            open.read("secret.blk", None).expect("found there").1,
+            "secret"
+        );
+    }
+
+    #[test]
+    fn writes_inside_only_and_whole() {
+        let (root, mut host) = scene();
+        let out = root.path().join("out");
+        host.write("fig/a.svg", b"one").expect("written");
+        host.write("fig/a.svg", b"two").expect("written again");
+        assert_eq!(fs::read(out.join("fig/a.svg")).expect("read"), b"two");
+        assert_eq!(fs::read_dir(out.join("fig")).expect("listed").count(), 1);
+        for path in ["../x", "fig/../../x", "/etc/x", "a/../../x"] {
+            assert!(
+                matches!(host.write(path, b""), Err(HostError::Outside(_))),
+                "{path}"
+            );
+        }
+        assert!(matches!(host.write("fig", b""), Err(HostError::Other(_))));
+        let inside = out.join("b.txt");
+        host.write(inside.to_str().expect("UTF-8"), b"x")
+            .expect("an absolute path inside");
+        #[cfg(unix)]
+        {
+            std::os::unix::fs::symlink(root.path(), out.join("way")).expect("a link");
+            assert!(matches!(
+                host.write("way/x", b""),
+                Err(HostError::Outside(_))
+            ));
+            assert!(matches!(
+                host.write("way/new/x", b""),
+                Err(HostError::Outside(_))
+            ));
+            std::os::unix::fs::symlink(root.path().join("secret.blk"), out.join("s"))
+                .expect("a link");
+            host.write("s", b"mine").expect("replaces the link");
+            let secret = fs::read(root.path().join("secret.blk")).expect("read");
+            assert_eq!(secret, b"secret");
+        }
+    }
+}

@@ -1,0 +1,22 @@
+//! The edge of the program: arguments, files, terminal.
+
+pub mod args;
+pub mod host;
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// Runs `work`; a panic in it becomes an honest message on standard error and `status`.
+///
+/// Nothing a person writes should lead here: it is a bug of bmod, and says so.
+pub fn guarded(status: u8, work: impl FnOnce() -> u8) -> u8 {
+    std::panic::set_hook(Box::new(|info| {
+        let place = info
+            .location()
+            .map_or(String::new(), |l| format!(" ({}:{})", l.file(), l.line()));
+        eprintln!(
+            "bmod: something went wrong inside bmod{place}. This is a bug in bmod, not in your \
+             model.\nPlease report it with the model that caused it."
+        );
+    }));
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or(status)
+}

@@ -1,0 +1,229 @@
+//! The summary of a solve on the terminal: short, aligned, coloured only where the reader's
+//! terminal shows colours.
+
+use std::fmt::Write;
+
+use super::json::{Number, SolveReport};
+
+const GREEN: &str = "\x1b[32m";
+const YELLOW: &str = "\x1b[33m";
+const RED: &str = "\x1b[31m";
+const BOLD: &str = "\x1b[1m";
+const DIM: &str = "\x1b[2m";
+const RESET: &str = "\x1b[0m";
+
+/// One solve, in two or three lines.
+pub fn solve(s: &SolveReport, color: bool) -> String {
+    let paint = |code: &'static str| if color { code } else { "" };
+    let reset = paint(RESET);
+    let status = match s.model_status.code {
+        1 | 2 | 15 | 16 => GREEN,
+        3 | 4 | 5 | 18 | 19 => YELLOW,
+        _ => RED,
+    };
+    let mut what = format!("{}{}{reset} using {}", paint(BOLD), s.model, s.using);
+    match (s.sense, &s.objective_name) {
+        (Some(sense), Some(name)) => {
+            let _ = write!(what, " {sense}imizing {name}");
+        }
+        (Some(sense), None) => {
+            let _ = write!(what, " {sense}imizing");
+        }
+        _ => {}
+    }
+    let mut out = format!("  {what}: {}{}{reset}", paint(status), s.model_status.name);
+    if let Some(Number(v)) = s.objective {
+        let name = s.objective_name.as_deref().unwrap_or("objective");
+        let _ = write!(out, ", {name} = {}{}{reset}", paint(BOLD), digits(v));
+    }
+    out.push('\n');
+    if let Some([Number(lo), Number(hi)]) = s.bounds {
+        let _ = writeln!(out, "    proved: between {lo:.13} and {hi:.13}");
+    }
+    if s.solver_status.code != 1 {
+        let _ = writeln!(
+            out,
+            "    {}solver: {}{reset}",
+            paint(RED),
+            s.solver_status.name
+        );
+    }
+    let _ = writeln!(
+        out,
+        "    {}{} rows, {} columns, {} nonzeros{} · {}, {} iterations, {}{reset}",
+        paint(DIM),
+        grouped(s.rows),
+        grouped(s.columns),
+        grouped(s.nonzeros),
+        match s.nonlinear_nonzeros {
+            0 => String::new(),
+            n => format!(" ({} nonlinear)", grouped(n)),
+        },
+        s.solver,
+        grouped(s.iterations as usize),
+        time(s.seconds.total),
+    );
+    let residuals = [
+        ("primal", s.residual.primal),
+        ("dual", s.residual.dual),
+        ("complementarity", s.residual.complementarity),
+        ("natural", s.residual.natural),
+    ];
+    let shown: Vec<String> = residuals
+        .iter()
+        .filter_map(|(name, v)| v.map(|v| format!("{name} {}", small(v))))
+        .collect();
+    if !shown.is_empty() {
+        let list = shown.join(", ");
+        let _ = writeln!(out, "    {}largest residuals: {list}{reset}", paint(DIM));
+    }
+    if let Some(message) = &s.message {
+        let _ = writeln!(out, "    {message}");
+    }
+    if let Some(stationarity) = s.stationarity {
+        let _ = writeln!(out, "    stationarity: {stationarity}");
+    }
+    out
+}
+
+/// Ten significant digits, without trailing zeros.
+pub fn digits(v: f64) -> String {
+    if !v.is_finite() {
+        return Number(v).text();
+    }
+    let size = v.abs();
+    if size != 0.0 && !(1e-5..1e10).contains(&size) {
+        return format!("{v:.9e}");
+    }
+    let decimals = if size < 1.0 {
+        10
+    } else {
+        (9 - size.log10().floor() as i32).clamp(0, 10) as usize
+    };
+    let text = format!("{v:.decimals$}");
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_string()
+    } else {
+        text
+    }
+}
+
+impl Number {
+    /// As `display` shows it.
+    pub fn text(self) -> String {
+        match serde_json::to_value(self) {
+            Ok(serde_json::Value::String(s)) => s,
+            _ => self.0.to_string(),
+        }
+    }
+}
+
+/// A residual: one digit is enough.
+fn small(v: f64) -> String {
+    if v == 0.0 {
+        "0".into()
+    } else {
+        format!("{v:.0e}")
+    }
+}
+
+/// `12 345`
+fn grouped(n: usize) -> String {
+    let digits = n.to_string();
+    let mut out = String::new();
+    for (k, c) in digits.chars().enumerate() {
+        if k > 0 && (digits.len() - k).is_multiple_of(3) && digits.len() > 4 {
+            out.push(' ');
+        }
+        out.push(c);
+    }
+    out
+}
+
+/// A duration in the unit in which it reads best.
+fn time(seconds: f64) -> String {
+    if seconds < 0.0995 {
+        format!("{:.1} ms", 1000.0 * seconds)
+    } else if seconds < 100.0 {
+        format!("{seconds:.2} s")
+    } else {
+        format!("{seconds:.0} s")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::json::{Residual, Seconds};
+    use super::*;
+    use crate::solve::{ModelStatus, SolverStatus};
+
+    fn report() -> SolveReport {
+        SolveReport {
+            model: "static".into(),
+            using: "lp".into(),
+            sense: Some("max"),
+            objective_name: Some("alpha".into()),
+            solver: "clarabel".into(),
+            model_status: ModelStatus::Optimal.into(),
+            solver_status: SolverStatus::NormalCompletion.into(),
+            objective: Some(Number(0.642_859_003_3)),
+            rows: 431,
+            columns: 250,
+            nonzeros: 15_002,
+            nonlinear_nonzeros: 0,
+            iterations: 14,
+            seconds: Seconds {
+                generate: 0.001,
+                solve: 0.004,
+                total: 0.0062,
+            },
+            residual: Residual {
+                primal: Some(1.4e-12),
+                dual: Some(0.0),
+                complementarity: Some(2e-14),
+                natural: None,
+            },
+            complementarity_sum: None,
+            bounds: None,
+            stationarity: None,
+            message: None,
+        }
+    }
+
+    #[test]
+    fn reads_well() {
+        insta::assert_snapshot!(solve(&report(), false), @r"
+          static using lp maximizing alpha: optimal, alpha = 0.6428590033
+            431 rows, 250 columns, 15 002 nonzeros · clarabel, 14 iterations, 6.2 ms
+            largest residuals: primal 1e-12, dual 0, complementarity 2e-14
+        ");
+        let mut r = report();
+        r.model_status = ModelStatus::Infeasible.into();
+        r.solver_status = SolverStatus::ResourceInterrupt.into();
+        r.objective = None;
+        r.seconds.total = 12.345;
+        insta::assert_snapshot!(solve(&r, false), @r"
+          static using lp maximizing alpha: infeasible
+            solver: resource interrupt
+            431 rows, 250 columns, 15 002 nonzeros · clarabel, 14 iterations, 12.35 s
+            largest residuals: primal 1e-12, dual 0, complementarity 2e-14
+        ");
+        assert!(solve(&r, true).contains(YELLOW));
+    }
+
+    #[test]
+    fn digits_are_ten() {
+        for (v, text) in [
+            (0.0, "0"),
+            (153.675, "153.675"),
+            (-0.642_859_003_312, "-0.6428590033"),
+            (1234.5, "1234.5"),
+            (1e12 / 3.0, "3.333333333e11"),
+            (1e-7, "1.000000000e-7"),
+            (100.0, "100"),
+            (f64::INFINITY, "+INF"),
+        ] {
+            assert_eq!(digits(v), text);
+        }
+    }
+}
