@@ -6,11 +6,8 @@
 #![warn(missing_docs)]
 
 pub mod autodiff;
-<<<<<<< HEAD
 pub mod check;
-=======
 pub mod cli;
->>>>>>> main
 pub mod data;
 pub mod diag;
 pub mod host;

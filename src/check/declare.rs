@@ -8,7 +8,8 @@ use crate::data::value::{self, EPS};
 use crate::diag::{Diagnostic, nearest};
 use crate::source::{SourceMap, Span};
 use crate::syntax::ast::{
-    DomainName, Ident, ModelDecl, ModelItem, ParameterDecl, SetDecl, SymbolDecl, TableDecl, VariableKind,
+    DomainName, Ident, ModelDecl, ModelItem, ParameterDecl, SetDecl, SymbolDecl, TableDecl,
+    VariableKind,
 };
 use crate::syntax::data::{DataKind, DataReader, KeyPart, Tail};
 use crate::syntax::table::TableReader;
@@ -31,9 +32,16 @@ impl Compiler {
             if symbol.dim() != 1 {
                 let declared = symbol.declared;
                 return self.fail(
-                    Diagnostic::error("E0334", d.name.span, format!("`{}` has several positions; a domain is one-dimensional", d.name.name))
-                        .label("not one-dimensional")
-                        .other(declared, "declared here"),
+                    Diagnostic::error(
+                        "E0334",
+                        d.name.span,
+                        format!(
+                            "`{}` has several positions; a domain is one-dimensional",
+                            d.name.name
+                        ),
+                    )
+                    .label("not one-dimensional")
+                    .other(declared, "declared here"),
                 );
             }
             if root == UNIVERSE {
@@ -57,25 +65,42 @@ impl Compiler {
             let old = self.symbols.get(s).clone();
             if std::mem::discriminant(&old.kind) != std::mem::discriminant(&kind) || s == UNIVERSE {
                 return self.fail(
-                    Diagnostic::error("E0333", d.name.span, format!("`{}` is declared already, as a {}", d.name.name, old.kind_name()))
-                        .label("declared again")
-                        .other(old.declared, "first declared here")
-                        .help("choose another name"),
+                    Diagnostic::error(
+                        "E0333",
+                        d.name.span,
+                        format!(
+                            "`{}` is declared already, as a {}",
+                            d.name.name,
+                            old.kind_name()
+                        ),
+                    )
+                    .label("declared again")
+                    .other(old.declared, "first declared here")
+                    .help("choose another name"),
                 );
             }
             if d.domain.is_some() && domain.len() != old.dim() {
                 return self.wrong_dimension(s, d.name.span, domain.len());
             }
-            if d.domain.is_some() && domain != old.domain && !matches!(old.kind, SymbolKind::Equation(Some(_))) {
+            if d.domain.is_some()
+                && domain != old.domain
+                && !matches!(old.kind, SymbolKind::Equation(Some(_)))
+            {
                 let compatible = domain.iter().zip(&old.domain).all(|(a, b)| match (a, b) {
-                    (DomainPosition::Set(a), DomainPosition::Set(b)) => self.symbols.root(*a) == self.symbols.root(*b),
+                    (DomainPosition::Set(a), DomainPosition::Set(b)) => {
+                        self.symbols.root(*a) == self.symbols.root(*b)
+                    }
                     _ => true,
                 });
                 if !compatible {
                     return self.fail(
-                        Diagnostic::error("E0335", d.name.span, format!("`{}` is declared already over other sets", d.name.name))
-                            .label("declared again")
-                            .other(old.declared, "first declared here"),
+                        Diagnostic::error(
+                            "E0335",
+                            d.name.span,
+                            format!("`{}` is declared already over other sets", d.name.name),
+                        )
+                        .label("declared again")
+                        .other(old.declared, "first declared here"),
                     );
                 }
             }
@@ -89,9 +114,14 @@ impl Compiler {
         }
         let dim = domain.len();
         if dim > 20 {
-            return self.fail(
-                Diagnostic::error("E0336", d.name.span, format!("`{}` has {dim} index positions; there may be 20", d.name.name)),
-            );
+            return self.fail(Diagnostic::error(
+                "E0336",
+                d.name.span,
+                format!(
+                    "`{}` has {dim} index positions; there may be 20",
+                    d.name.name
+                ),
+            ));
         }
         let table = tables(self, dim);
         Ok(self.symbols.add(Symbol {
@@ -108,8 +138,18 @@ impl Compiler {
         }))
     }
 
-    pub(super) fn declare_plain(&mut self, name: &Ident, kind: SymbolKind, text: Option<&str>) -> Result<SymbolId, Failed> {
-        let d = SymbolDecl { name: name.clone(), domain: None, text: text.map(Into::into), data: None };
+    pub(super) fn declare_plain(
+        &mut self,
+        name: &Ident,
+        kind: SymbolKind,
+        text: Option<&str>,
+    ) -> Result<SymbolId, Failed> {
+        let d = SymbolDecl {
+            name: name.clone(),
+            domain: None,
+            text: text.map(Into::into),
+            data: None,
+        };
         let s = self.declare(&d, kind.clone(), |_, _| 0)?;
         self.symbols.get_mut(s).kind = kind;
         Ok(s)
@@ -119,9 +159,21 @@ impl Compiler {
         for set in list {
             let mut d = set.symbol.clone();
             if d.domain.is_none() && self.symbols.find(&d.name.name).is_none() {
-                d.domain = Some(vec![DomainName { name: Ident { name: "*".into(), span: d.name.span }, defines: false }]);
+                d.domain = Some(vec![DomainName {
+                    name: Ident {
+                        name: "*".into(),
+                        span: d.name.span,
+                    },
+                    defines: false,
+                }]);
             }
-            let Ok(s) = self.declare(&d, SymbolKind::Set { singleton: set.singleton }, |c, n| c.store.add_table(n, 0.0)) else {
+            let Ok(s) = self.declare(
+                &d,
+                SymbolKind::Set {
+                    singleton: set.singleton,
+                },
+                |c, n| c.store.add_table(n, 0.0),
+            ) else {
                 continue;
             };
             if let Some(body) = d.data {
@@ -134,7 +186,13 @@ impl Compiler {
     pub(super) fn declare_aliases(&mut self, groups: &[Vec<Ident>]) -> Result<(), Failed> {
         for group in groups {
             let known = group.iter().find_map(|n| {
-                if &*n.name == "*" { Some(UNIVERSE) } else { self.symbols.find(&n.name).filter(|&s| self.symbols.get(s).is_set()) }
+                if &*n.name == "*" {
+                    Some(UNIVERSE)
+                } else {
+                    self.symbols
+                        .find(&n.name)
+                        .filter(|&s| self.symbols.get(s).is_set())
+                }
             });
             let Some(root) = known.map(|s| self.symbols.root(s)) else {
                 let span = group[0].span.to(group[group.len() - 1].span);
@@ -153,9 +211,13 @@ impl Compiler {
                     Some(s) => {
                         let declared = self.symbols.get(s).declared;
                         let _ = self.fail::<()>(
-                            Diagnostic::error("E0333", n.span, format!("`{}` is declared already", n.name))
-                                .label("declared again")
-                                .other(declared, "first declared here"),
+                            Diagnostic::error(
+                                "E0333",
+                                n.span,
+                                format!("`{}` is declared already", n.name),
+                            )
+                            .label("declared again")
+                            .other(declared, "first declared here"),
                         );
                     }
                     None => {
@@ -173,12 +235,24 @@ impl Compiler {
         Ok(())
     }
 
-    pub(super) fn declare_parameters(&mut self, list: &[ParameterDecl], map: &SourceMap) -> Result<(), Failed> {
+    pub(super) fn declare_parameters(
+        &mut self,
+        list: &[ParameterDecl],
+        map: &SourceMap,
+    ) -> Result<(), Failed> {
         for p in list {
             let kind = SymbolKind::Parameter { scalar: p.scalar };
-            let Ok(s) = self.declare(&p.symbol, kind, |c, n| c.store.add_table(n, 0.0)) else { continue };
+            let Ok(s) = self.declare(&p.symbol, kind, |c, n| c.store.add_table(n, 0.0)) else {
+                continue;
+            };
             if let Some(body) = p.symbol.data {
-                let defines: Vec<bool> = p.symbol.domain.iter().flatten().map(|d| d.defines).collect();
+                let defines: Vec<bool> = p
+                    .symbol
+                    .domain
+                    .iter()
+                    .flatten()
+                    .map(|d| d.defines)
+                    .collect();
                 let _ = self.parameter_data(s, body, p.symbol.name.span, &defines, map);
             }
         }
@@ -192,14 +266,22 @@ impl Compiler {
         map: &SourceMap,
     ) -> Result<(), Failed> {
         for d in list {
-            let Ok(s) = self.declare(d, SymbolKind::Variable(VariableKind::Free), |c, n| c.record_tables(n)) else { continue };
+            let Ok(s) = self.declare(d, SymbolKind::Variable(VariableKind::Free), |c, n| {
+                c.record_tables(n)
+            }) else {
+                continue;
+            };
             if kind != VariableKind::Unstated {
                 self.symbols.get_mut(s).kind = SymbolKind::Variable(kind);
                 let (lo, up) = match kind {
-                    VariableKind::Unstated | VariableKind::Free => (f64::NEG_INFINITY, f64::INFINITY),
+                    VariableKind::Unstated | VariableKind::Free => {
+                        (f64::NEG_INFINITY, f64::INFINITY)
+                    }
                     VariableKind::Negative => (f64::NEG_INFINITY, 0.0),
                     VariableKind::Binary => (0.0, 1.0),
-                    VariableKind::SemiContinuous | VariableKind::SemiInteger => (1.0, f64::INFINITY),
+                    VariableKind::SemiContinuous | VariableKind::SemiInteger => {
+                        (1.0, f64::INFINITY)
+                    }
                     _ => (0.0, f64::INFINITY),
                 };
                 let t = self.symbols.get(s).table;
@@ -224,9 +306,16 @@ impl Compiler {
         t
     }
 
-    pub(super) fn declare_equations(&mut self, list: &[SymbolDecl], map: &SourceMap) -> Result<(), Failed> {
+    pub(super) fn declare_equations(
+        &mut self,
+        list: &[SymbolDecl],
+        map: &SourceMap,
+    ) -> Result<(), Failed> {
         for d in list {
-            let Ok(s) = self.declare(d, SymbolKind::Equation(None), |c, n| c.record_tables(n)) else { continue };
+            let Ok(s) = self.declare(d, SymbolKind::Equation(None), |c, n| c.record_tables(n))
+            else {
+                continue;
+            };
             if let Some(body) = d.data {
                 let _ = self.record_data(s, body, map);
             }
@@ -243,14 +332,21 @@ impl Compiler {
                 }
                 if failed {
                     // Known all the same, so that its solve is not a second error.
-                    let _ = self.declare_plain(&m.name, SymbolKind::Model(Rc::new(ModelInfo::default())), m.text.as_deref());
+                    let _ = self.declare_plain(
+                        &m.name,
+                        SymbolKind::Model(Rc::new(ModelInfo::default())),
+                        m.text.as_deref(),
+                    );
                     continue;
                 }
             }
-            let old = self.symbols.find(&m.name.name).and_then(|s| match &self.symbols.get(s).kind {
-                SymbolKind::Model(info) => Some(info.items.clone()),
-                _ => None,
-            });
+            let old =
+                self.symbols
+                    .find(&m.name.name)
+                    .and_then(|s| match &self.symbols.get(s).kind {
+                        SymbolKind::Model(info) => Some(info.items.clone()),
+                        _ => None,
+                    });
             let given = m.items.as_ref().map(|i| self.expand_all(i));
             let items = match (&given, old.flatten()) {
                 (Some(new), Some(mut old)) if self.modes.multi => {
@@ -260,7 +356,11 @@ impl Compiler {
                 (Some(new), _) => Some(new.clone()),
                 (None, old) => old,
             };
-            let _ = self.declare_plain(&m.name, SymbolKind::Model(Rc::new(ModelInfo { items })), m.text.as_deref());
+            let _ = self.declare_plain(
+                &m.name,
+                SymbolKind::Model(Rc::new(ModelInfo { items })),
+                m.text.as_deref(),
+            );
         }
         Ok(())
     }
@@ -274,7 +374,15 @@ impl Compiler {
                     self.symbols
                         .iter()
                         .filter(|(_, s)| matches!(s.kind, SymbolKind::Equation(_)))
-                        .map(|(_, s)| ModelItem::Add(Ident { name: s.name.clone(), span: *span }, None)),
+                        .map(|(_, s)| {
+                            ModelItem::Add(
+                                Ident {
+                                    name: s.name.clone(),
+                                    span: *span,
+                                },
+                                None,
+                            )
+                        }),
                 ),
                 other => out.push(other.clone()),
             }
@@ -290,9 +398,17 @@ impl Compiler {
                 SymbolKind::Equation(_) => Ok(()),
                 SymbolKind::Model(_) if model_too => Ok(()),
                 _ => c.fail(
-                    Diagnostic::error("E0338", n.span, format!("`{}` is a {}; a model is made of equations", n.name, symbol.kind_name()))
-                        .label("not an equation")
-                        .other(symbol.declared, "declared here"),
+                    Diagnostic::error(
+                        "E0338",
+                        n.span,
+                        format!(
+                            "`{}` is a {}; a model is made of equations",
+                            n.name,
+                            symbol.kind_name()
+                        ),
+                    )
+                    .label("not an equation")
+                    .other(symbol.declared, "declared here"),
                 ),
             }
         };
@@ -314,9 +430,17 @@ impl Compiler {
                 let symbol = self.symbols.get(v).clone();
                 if !matches!(symbol.kind, SymbolKind::Variable(_)) {
                     return self.fail(
-                        Diagnostic::error("E0338", column.span, format!("`{}` is a {}; an equation is paired with a variable", column.name, symbol.kind_name()))
-                            .label("not a variable")
-                            .other(symbol.declared, "declared here"),
+                        Diagnostic::error(
+                            "E0338",
+                            column.span,
+                            format!(
+                                "`{}` is a {}; an equation is paired with a variable",
+                                column.name,
+                                symbol.kind_name()
+                            ),
+                        )
+                        .label("not a variable")
+                        .other(symbol.declared, "declared here"),
                     );
                 }
                 Ok(())
@@ -326,7 +450,11 @@ impl Compiler {
 
     pub(super) fn declare_acronyms(&mut self, list: &[SymbolDecl]) -> Result<(), Failed> {
         for d in list {
-            if self.symbols.find(&d.name.name).is_some_and(|s| matches!(self.symbols.get(s).kind, SymbolKind::Acronym(_))) {
+            if self
+                .symbols
+                .find(&d.name.name)
+                .is_some_and(|s| matches!(self.symbols.get(s).kind, SymbolKind::Acronym(_)))
+            {
                 continue;
             }
             let n = self.store.acronyms.len() as u32;
@@ -336,9 +464,14 @@ impl Compiler {
         Ok(())
     }
 
-    pub(super) fn declare_files(&mut self, list: &[(Ident, Option<Box<str>>)]) -> Result<(), Failed> {
+    pub(super) fn declare_files(
+        &mut self,
+        list: &[(Ident, Option<Box<str>>)],
+    ) -> Result<(), Failed> {
         for (name, outside) in list {
-            let outside = outside.clone().unwrap_or_else(|| format!("{}.put", name.name).into());
+            let outside = outside
+                .clone()
+                .unwrap_or_else(|| format!("{}.put", name.name).into());
             let _ = self.declare_plain(name, SymbolKind::File(outside), None);
         }
         Ok(())
@@ -347,7 +480,12 @@ impl Compiler {
     /// Whether a symbol may get data now; clears it for `$onMultiR`.
     fn open_data(&mut self, s: SymbolId, span: Span) -> Result<(), Failed> {
         let symbol = self.symbols.get(s);
-        let (had, declared, name, table) = (symbol.has_data, symbol.declared, symbol.name.clone(), symbol.table);
+        let (had, declared, name, table) = (
+            symbol.has_data,
+            symbol.declared,
+            symbol.name.clone(),
+            symbol.table,
+        );
         if had && !self.modes.multi && !self.modes.multi_replace {
             return self.fail(
                 Diagnostic::error("E0340", span, format!("`{name}` has data already"))
@@ -364,7 +502,13 @@ impl Compiler {
         Ok(())
     }
 
-    fn set_data(&mut self, s: SymbolId, body: Span, name: Span, map: &SourceMap) -> Result<(), Failed> {
+    fn set_data(
+        &mut self,
+        s: SymbolId,
+        body: Span,
+        name: Span,
+        map: &SourceMap,
+    ) -> Result<(), Failed> {
         self.open_data(s, name)?;
         let symbol = self.symbols.get(s).clone();
         let (table, dim) = (symbol.table, symbol.dim());
@@ -386,7 +530,10 @@ impl Compiler {
                 Tail::Name(n, _) => Some((*n).into()),
             };
             let (mut keys, span) = (Vec::new(), record.span);
-            if self.expand(s, record.key, record.matched, span, &[], &mut keys).is_err() {
+            if self
+                .expand(s, record.key, record.matched, span, &[], &mut keys)
+                .is_err()
+            {
                 continue;
             }
             for key in keys.chunks_exact(dim) {
@@ -394,16 +541,26 @@ impl Compiler {
                     if !self.modes.multi {
                         let label = self.key_text(key);
                         self.report(
-                            Diagnostic::error("E0341", span, format!("the element {label} of `{}` appears twice", symbol.name))
-                                .label("second time"),
+                            Diagnostic::error(
+                                "E0341",
+                                span,
+                                format!("the element {label} of `{}` appears twice", symbol.name),
+                            )
+                            .label("second time"),
                         );
                     }
                     continue;
                 }
-                if matches!(symbol.kind, SymbolKind::Set { singleton: true }) && !self.store.table(table).is_empty() {
+                if matches!(symbol.kind, SymbolKind::Set { singleton: true })
+                    && !self.store.table(table).is_empty()
+                {
                     self.report(
-                        Diagnostic::error("E0342", span, format!("`{}` is a singleton: it has one element", symbol.name))
-                            .label("second element"),
+                        Diagnostic::error(
+                            "E0342",
+                            span,
+                            format!("`{}` is a singleton: it has one element", symbol.name),
+                        )
+                        .label("second element"),
                     );
                     continue;
                 }
@@ -413,7 +570,11 @@ impl Compiler {
                 }
                 self.store.table_mut(table).set(key, 1.0);
                 if let Some(t) = &text {
-                    self.store.texts.entry(table).or_default().insert(key.into(), t.clone());
+                    self.store
+                        .texts
+                        .entry(table)
+                        .or_default()
+                        .insert(key.into(), t.clone());
                 }
             }
         }
@@ -429,7 +590,10 @@ impl Compiler {
 
     /// `'a'.'x'`, for messages.
     fn key_text(&self, key: &[Label]) -> String {
-        let names: Vec<String> = key.iter().map(|&l| format!("'{}'", self.store.universe.name(l))).collect();
+        let names: Vec<String> = key
+            .iter()
+            .map(|&l| format!("'{}'", self.store.universe.name(l)))
+            .collect();
         names.join(".")
     }
 
@@ -450,7 +614,9 @@ impl Compiler {
                 return self.wrong_dimension(s, span, parts.len());
             }
             for (p, part) in parts.iter().enumerate() {
-                let KeyPart::Label { text, span, .. } = part else { unreachable!("tested above") };
+                let KeyPart::Label { text, span, .. } = part else {
+                    unreachable!("tested above")
+                };
                 out.push(self.data_label(s, p, text, *span, defines)?);
             }
             return Ok(());
@@ -493,9 +659,13 @@ impl Compiler {
             let choices = self.choices(s, at, part, defines)?;
             if rows.len().saturating_mul(choices.len()) > MAX_EXPANSION {
                 return self.fail(
-                    Diagnostic::error("E0343", span, format!("this stands for more than {MAX_EXPANSION} records"))
-                        .label("too many")
-                        .help("make the set by an assignment with a condition"),
+                    Diagnostic::error(
+                        "E0343",
+                        span,
+                        format!("this stands for more than {MAX_EXPANSION} records"),
+                    )
+                    .label("too many")
+                    .help("make the set by an assignment with a condition"),
                 );
             }
             let mut next = Vec::with_capacity(rows.len() * choices.len());
@@ -520,7 +690,9 @@ impl Compiler {
         defines: &[bool],
     ) -> Result<Vec<Vec<Label>>, Failed> {
         match part {
-            KeyPart::Label { text, span, .. } => Ok(vec![vec![self.data_label(s, position, text, *span, defines)?]]),
+            KeyPart::Label { text, span, .. } => Ok(vec![vec![
+                self.data_label(s, position, text, *span, defines)?,
+            ]]),
             KeyPart::Range { from, to, span } => {
                 let Some(labels) = range(from, to) else {
                     return self.fail(
@@ -531,18 +703,34 @@ impl Compiler {
                 };
                 if labels.len() > MAX_EXPANSION {
                     return self.fail(
-                        Diagnostic::error("E0343", *span, format!("this range has {} labels", labels.len())).label("too many"),
+                        Diagnostic::error(
+                            "E0343",
+                            *span,
+                            format!("this range has {} labels", labels.len()),
+                        )
+                        .label("too many"),
                     );
                 }
-                labels.iter().map(|l| Ok(vec![self.data_label(s, position, l, *span, defines)?])).collect()
+                labels
+                    .iter()
+                    .map(|l| Ok(vec![self.data_label(s, position, l, *span, defines)?]))
+                    .collect()
             }
             KeyPart::AllOf { set, span } => {
-                let id = self.lookup_set(&Ident { name: (*set).into(), span: *span })?;
+                let id = self.lookup_set(&Ident {
+                    name: (*set).into(),
+                    span: *span,
+                })?;
                 let t = self.symbols.get(id).table;
                 if id == UNIVERSE {
                     self.store.refresh_universe();
                 }
-                let keys: Vec<Vec<Label>> = self.store.table(t).iter().map(|(k, _)| k.to_vec()).collect();
+                let keys: Vec<Vec<Label>> = self
+                    .store
+                    .table(t)
+                    .iter()
+                    .map(|(k, _)| k.to_vec())
+                    .collect();
                 Ok(keys)
             }
             KeyPart::Universe(_) => {
@@ -551,12 +739,23 @@ impl Compiler {
                     Some(DomainPosition::Set(d)) => self.symbols.get(*d).table,
                     _ => UNIVERSE,
                 };
-                Ok(self.store.table(t).iter().map(|(k, _)| k.to_vec()).collect())
+                Ok(self
+                    .store
+                    .table(t)
+                    .iter()
+                    .map(|(k, _)| k.to_vec())
+                    .collect())
             }
             KeyPart::Group(alternatives) => {
                 let mut out = Vec::new();
                 for alternative in alternatives {
-                    out.extend(self.products(s, position, alternative, Span::default(), defines)?);
+                    out.extend(self.products(
+                        s,
+                        position,
+                        alternative,
+                        Span::default(),
+                        defines,
+                    )?);
                 }
                 Ok(out)
             }
@@ -564,7 +763,14 @@ impl Compiler {
     }
 
     /// A label in data at a position of a symbol; checked against the domain.
-    fn data_label(&mut self, s: SymbolId, position: usize, text: &str, span: Span, defines: &[bool]) -> Result<Label, Failed> {
+    fn data_label(
+        &mut self,
+        s: SymbolId,
+        position: usize,
+        text: &str,
+        span: Span,
+        defines: &[bool],
+    ) -> Result<Label, Failed> {
         let symbol = self.symbols.get(s);
         let Some(DomainPosition::Set(d)) = symbol.domain.get(position) else {
             return Ok(self.store.universe.intern(text));
@@ -585,13 +791,26 @@ impl Compiler {
         }
         let (name, set_name, declared) = (symbol.name.clone(), set.name.clone(), set.declared);
         let t = self.store.table(table);
-        let near = nearest(text, (0..t.len().min(10_000) as u32).map(|r| self.store.universe.name(t.key(r)[0]))).map(str::to_string);
-        let d = Diagnostic::error("E0308", span, format!("`{text}` is not a member of the set `{set_name}`"))
-            .label(format!("position {} of `{name}` runs over `{set_name}`", position + 1))
-            .other(declared, format!("`{set_name}` is declared here"));
+        let near = nearest(
+            text,
+            (0..t.len().min(10_000) as u32).map(|r| self.store.universe.name(t.key(r)[0])),
+        )
+        .map(str::to_string);
+        let d = Diagnostic::error(
+            "E0308",
+            span,
+            format!("`{text}` is not a member of the set `{set_name}`"),
+        )
+        .label(format!(
+            "position {} of `{name}` runs over `{set_name}`",
+            position + 1
+        ))
+        .other(declared, format!("`{set_name}` is declared here"));
         self.fail(match near {
             Some(n) => d.help(format!("did you mean `{n}`?")),
-            None => d.help(format!("add `{text}` to `{set_name}`, or correct the label")),
+            None => d.help(format!(
+                "add `{text}` to `{set_name}`, or correct the label"
+            )),
         })
     }
 
@@ -624,7 +843,8 @@ impl Compiler {
                     Err(Failed) => continue,
                 },
                 // `/ 5 /` of a scalar comes as a lone label.
-                (Tail::None, [KeyPart::Label { text, span, .. }]) if dim == 0 => match number(text) {
+                (Tail::None, [KeyPart::Label { text, span, .. }]) if dim == 0 => match number(text)
+                {
                     Some(v) => {
                         self.put_value(s, table, &[], v, *span);
                         continue;
@@ -638,17 +858,31 @@ impl Compiler {
                     },
                 },
                 (tail, _) => {
-                    let at = if let Tail::Text(..) = tail { "a text stands where a number is expected" } else { "no number follows the label" };
+                    let at = if let Tail::Text(..) = tail {
+                        "a text stands where a number is expected"
+                    } else {
+                        "no number follows the label"
+                    };
                     self.report(
-                        Diagnostic::error("E0345", record.span, format!("the data of `{}` need a number for each record", symbol.name))
-                            .label(at),
+                        Diagnostic::error(
+                            "E0345",
+                            record.span,
+                            format!(
+                                "the data of `{}` need a number for each record",
+                                symbol.name
+                            ),
+                        )
+                        .label(at),
                     );
                     continue;
                 }
             };
             keys.clear();
             let (span, key) = (record.span, record.key);
-            if self.expand(s, key, record.matched, span, defines, &mut keys).is_err() {
+            if self
+                .expand(s, key, record.matched, span, defines, &mut keys)
+                .is_err()
+            {
                 if self.error_count() >= super::MAX_ERRORS {
                     break;
                 }
@@ -686,7 +920,11 @@ impl Compiler {
         if !self.modes.multi && !t.is_after_last(key) && t.find(key).is_some() {
             let label = self.key_text(key);
             let name = self.symbols.get(s).name.clone();
-            let what = if key.is_empty() { format!("`{name}` gets two values") } else { format!("the record {label} of `{name}` appears twice") };
+            let what = if key.is_empty() {
+                format!("`{name}` gets two values")
+            } else {
+                format!("the record {label} of `{name}` appears twice")
+            };
             self.report(Diagnostic::error("E0341", span, what).label("second time"));
             return;
         }
@@ -694,17 +932,35 @@ impl Compiler {
     }
 
     pub(super) fn declare_table(&mut self, t: &TableDecl, map: &SourceMap) -> Result<(), Failed> {
-        let s = self.declare(&t.symbol, SymbolKind::Parameter { scalar: false }, |c, n| c.store.add_table(n, 0.0))?;
+        let s = self.declare(
+            &t.symbol,
+            SymbolKind::Parameter { scalar: false },
+            |c, n| c.store.add_table(n, 0.0),
+        )?;
         self.open_data(s, t.symbol.name.span)?;
         let symbol = self.symbols.get(s).clone();
         if symbol.dim() < 2 {
             return self.fail(
-                Diagnostic::error("E0346", t.symbol.name.span, format!("a table has rows and columns; `{}` has {} index", symbol.name, symbol.dim()))
-                    .label("at least two index positions are needed")
-                    .help("use a `parameter` with a list instead"),
+                Diagnostic::error(
+                    "E0346",
+                    t.symbol.name.span,
+                    format!(
+                        "a table has rows and columns; `{}` has {} index",
+                        symbol.name,
+                        symbol.dim()
+                    ),
+                )
+                .label("at least two index positions are needed")
+                .help("use a `parameter` with a list instead"),
             );
         }
-        let defines: Vec<bool> = t.symbol.domain.iter().flatten().map(|d| d.defines).collect();
+        let defines: Vec<bool> = t
+            .symbol
+            .domain
+            .iter()
+            .flatten()
+            .map(|d| d.defines)
+            .collect();
         let mut reader = TableReader::new(map.expanded(), t.body, self.modes.undf);
         let (mut keys, mut parts) = (Vec::new(), Vec::new());
         while let Some(cell) = reader.next() {
@@ -730,7 +986,10 @@ impl Compiler {
                 }
             };
             keys.clear();
-            if self.expand(s, &parts, None, span, &defines, &mut keys).is_err() {
+            if self
+                .expand(s, &parts, None, span, &defines, &mut keys)
+                .is_err()
+            {
                 continue;
             }
             for k in keys.chunks_exact(symbol.dim()) {
@@ -744,7 +1003,8 @@ impl Compiler {
     /// `variable x(i) / a.lo 5 /`.
     fn record_data(&mut self, s: SymbolId, body: Span, map: &SourceMap) -> Result<(), Failed> {
         let symbol = self.symbols.get(s).clone();
-        let mut reader = DataReader::new(map.text(body), body.lo, DataKind::Values, self.modes.undf);
+        let mut reader =
+            DataReader::new(map.text(body), body.lo, DataKind::Values, self.modes.undf);
         while let Some(record) = reader.next() {
             let record = match record {
                 Ok(r) => r,
@@ -758,7 +1018,14 @@ impl Compiler {
             };
             let (attr, at) = (text.to_lowercase(), *span);
             let Tail::Number(v, _) = record.value else {
-                self.report(Diagnostic::error("E0345", record.span, "a number is expected behind the attribute").label("no number"));
+                self.report(
+                    Diagnostic::error(
+                        "E0345",
+                        record.span,
+                        "a number is expected behind the attribute",
+                    )
+                    .label("no number"),
+                );
                 continue;
             };
             let (span, mut keys) = (record.span, Vec::new());
@@ -775,7 +1042,10 @@ impl Compiler {
                 "prior" => &[attribute::PRIOR],
                 _ => {
                     let _ = self.unknown_attribute::<()>(
-                        &Ident { name: attr.into(), span: at },
+                        &Ident {
+                            name: attr.into(),
+                            span: at,
+                        },
                         &symbol.name,
                         symbol.kind_name(),
                         "l, m, lo, up, fx, scale, prior",
@@ -822,11 +1092,20 @@ fn range(from: &str, to: &str) -> Option<Vec<String>> {
     if from.eq_ignore_ascii_case(to) {
         return Some(vec![from.to_string()]);
     }
-    let mut prefix = a.iter().zip(b).take_while(|(x, y)| x.eq_ignore_ascii_case(y)).count();
+    let mut prefix = a
+        .iter()
+        .zip(b)
+        .take_while(|(x, y)| x.eq_ignore_ascii_case(y))
+        .count();
     while prefix > 0 && a[prefix - 1].is_ascii_digit() {
         prefix -= 1;
     }
-    let digits = |s: &[u8]| s[prefix..].iter().take_while(|c| c.is_ascii_digit()).count();
+    let digits = |s: &[u8]| {
+        s[prefix..]
+            .iter()
+            .take_while(|c| c.is_ascii_digit())
+            .count()
+    };
     let (da, db) = (digits(a), digits(b));
     if da == 0 || db == 0 || !a[prefix + da..].eq_ignore_ascii_case(&b[prefix + db..]) {
         return None;
@@ -837,9 +1116,17 @@ fn range(from: &str, to: &str) -> Option<Vec<String>> {
         return None;
     }
     // A leading zero, or equal lengths, fixes the width.
-    let width = if na.starts_with('0') || da == db { da } else { 0 };
+    let width = if na.starts_with('0') || da == db {
+        da
+    } else {
+        0
+    };
     let (head, tail) = (&from[..prefix], &from[prefix + da..]);
-    Some((lo..=hi).map(|k| format!("{head}{k:0width$}{tail}")).collect())
+    Some(
+        (lo..=hi)
+            .map(|k| format!("{head}{k:0width$}{tail}"))
+            .collect(),
+    )
 }
 
 #[cfg(test)]

@@ -13,7 +13,12 @@ use std::rc::Rc;
 impl Node {
     /// A node without variables.
     pub fn data(kind: NodeKind, span: Span) -> Node {
-        Node { kind, span, has_var: false, linear: true }
+        Node {
+            kind,
+            span,
+            has_var: false,
+            linear: true,
+        }
     }
 
     /// A number.
@@ -24,7 +29,12 @@ impl Node {
 
 /// Builds a node of children: whether variables stand in it, and whether it is linear if they do.
 fn combine(kind: NodeKind, span: Span, has_var: bool, linear: bool) -> Node {
-    Node { kind, span, has_var, linear: linear || !has_var }
+    Node {
+        kind,
+        span,
+        has_var,
+        linear: linear || !has_var,
+    }
 }
 
 impl Compiler {
@@ -38,11 +48,15 @@ impl Compiler {
         if let Some(s) = self.symbols.find(&id.name) {
             return Ok(s);
         }
-        let near = nearest(&id.name, self.symbols.iter().skip(1).map(|(_, s)| &*s.name)).map(str::to_string);
-        let d = Diagnostic::error("E0301", id.span, format!("`{}` is not known", id.name)).label("unknown symbol");
+        let near = nearest(&id.name, self.symbols.iter().skip(1).map(|(_, s)| &*s.name))
+            .map(str::to_string);
+        let d = Diagnostic::error("E0301", id.span, format!("`{}` is not known", id.name))
+            .label("unknown symbol");
         self.fail(match near {
             Some(n) => d.help(format!("did you mean `{n}`?")),
-            None => d.help("declare it first: names must be declared above the place where they are used"),
+            None => d.help(
+                "declare it first: names must be declared above the place where they are used",
+            ),
         })
     }
 
@@ -55,7 +69,10 @@ impl Compiler {
         if self.symbols.get(s).is_set() {
             return Ok(s);
         }
-        let (kind, declared) = (self.symbols.get(s).kind_name(), self.symbols.get(s).declared);
+        let (kind, declared) = (
+            self.symbols.get(s).kind_name(),
+            self.symbols.get(s).declared,
+        );
         self.fail(
             Diagnostic::error("E0302", id.span, format!("`{}` is a {kind}; a set is expected here", id.name))
                 .label("not a set")
@@ -66,7 +83,11 @@ impl Compiler {
 
     /// Slots of a set that is under control.
     pub(super) fn controlled(&self, set: SymbolId) -> Option<&[Slot]> {
-        self.scope.iter().rev().find(|(s, _)| *s == set).map(|(_, slots)| slots.as_slice())
+        self.scope
+            .iter()
+            .rev()
+            .find(|(s, _)| *s == set)
+            .map(|(_, slots)| slots.as_slice())
     }
 
     pub(super) fn new_slot(&mut self) -> Slot {
@@ -114,9 +135,13 @@ impl Compiler {
             return Ok(());
         }
         self.fail(
-            Diagnostic::error("E0311", node.span, format!("{place} may not depend on a variable"))
-                .label("a variable stands in it")
-                .help("use the level of the last solve (`x.l`), a parameter, or a binary formulation"),
+            Diagnostic::error(
+                "E0311",
+                node.span,
+                format!("{place} may not depend on a variable"),
+            )
+            .label("a variable stands in it")
+            .help("use the level of the last solve (`x.l`), a parameter, or a binary formulation"),
         )
     }
 
@@ -156,7 +181,12 @@ impl Compiler {
                 });
             }
             let parts: Vec<Part> = slots.iter().map(|&s| Part::Slot(s)).collect();
-            out.members.push(Driver { table: symbol.table, key: Key { parts: parts.clone() } });
+            out.members.push(Driver {
+                table: symbol.table,
+                key: Key {
+                    parts: parts.clone(),
+                },
+            });
             self.scope.push((id, slots));
             return Ok(parts);
         };
@@ -167,10 +197,23 @@ impl Compiler {
         if parts.len() != dim {
             return self.wrong_dimension(id, span, parts.len());
         }
-        out.members.push(Driver { table: symbol.table, key: Key { parts: parts.clone() } });
+        out.members.push(Driver {
+            table: symbol.table,
+            key: Key {
+                parts: parts.clone(),
+            },
+        });
         if self.controlled(id).is_none() {
-            let slots: Option<Vec<Slot>> =
-                parts.iter().map(|p| if let Part::Slot(s) = p { Some(*s) } else { None }).collect();
+            let slots: Option<Vec<Slot>> = parts
+                .iter()
+                .map(|p| {
+                    if let Part::Slot(s) = p {
+                        Some(*s)
+                    } else {
+                        None
+                    }
+                })
+                .collect();
             if let Some(slots) = slots {
                 self.scope.push((id, slots));
             }
@@ -187,9 +230,16 @@ impl Compiler {
         out: &mut Domain,
     ) -> Result<Vec<Part>, Failed> {
         match &index.kind {
-            ExprKind::Apply { name, attribute: None, arguments: None } => {
+            ExprKind::Apply {
+                name,
+                attribute: None,
+                arguments: None,
+            } => {
                 let free = self.symbols.find(&name.name).filter(|&s| {
-                    let singleton = matches!(self.symbols.get(self.symbols.root(s)).kind, SymbolKind::Set { singleton: true });
+                    let singleton = matches!(
+                        self.symbols.get(self.symbols.root(s)).kind,
+                        SymbolKind::Set { singleton: true }
+                    );
                     self.symbols.get(s).is_set() && !singleton && self.controlled(s).is_none()
                 });
                 match free {
@@ -200,8 +250,14 @@ impl Compiler {
                     None => self.index(index, of, position),
                 }
             }
-            ExprKind::Apply { name, attribute: None, arguments: Some(inner) }
-                if self.symbols.find(&name.name).is_some_and(|s| self.symbols.get(s).is_set()) =>
+            ExprKind::Apply {
+                name,
+                attribute: None,
+                arguments: Some(inner),
+            } if self
+                .symbols
+                .find(&name.name)
+                .is_some_and(|s| self.symbols.get(s).is_set()) =>
             {
                 let s = self.lookup_set(name)?;
                 if self.symbols.get(s).dim() == 1 {
@@ -225,7 +281,12 @@ impl Compiler {
     }
 
     fn control_lag_base(&mut self, base: &Expr, out: &mut Domain) -> Result<(), Failed> {
-        if let ExprKind::Apply { name, attribute: None, arguments: None } = &base.kind {
+        if let ExprKind::Apply {
+            name,
+            attribute: None,
+            arguments: None,
+        } = &base.kind
+        {
             let free = self
                 .symbols
                 .find(&name.name)
@@ -238,27 +299,46 @@ impl Compiler {
     }
 
     /// Whether set `a` may stand at a position of symbol `of`.
-    fn fits(&mut self, a: SymbolId, of: SymbolId, position: usize, span: Span) -> Result<(), Failed> {
+    fn fits(
+        &mut self,
+        a: SymbolId,
+        of: SymbolId,
+        position: usize,
+        span: Span,
+    ) -> Result<(), Failed> {
         let DomainPosition::Set(d) = self.symbols.get(of).domain[position] else {
             return Ok(());
         };
         if self.symbols.is_subset(a, d) || self.symbols.get(a).dim() > 1 {
             return Ok(());
         }
-        let (an, dn) = (self.symbols.get(a).name.clone(), self.symbols.get(d).name.clone());
-        let (on, declared) = (self.symbols.get(of).name.clone(), self.symbols.get(of).declared);
+        let (an, dn) = (
+            self.symbols.get(a).name.clone(),
+            self.symbols.get(d).name.clone(),
+        );
+        let (on, declared) = (
+            self.symbols.get(of).name.clone(),
+            self.symbols.get(of).declared,
+        );
         let a_root = self.symbols.get(self.symbols.root(a)).declared;
         let same = self.symbols.is_subset(d, a);
         let help = if same {
-            format!("`{dn}` is the smaller set: use an index that runs over `{dn}`, or declare `{on}` over `{an}`")
+            format!(
+                "`{dn}` is the smaller set: use an index that runs over `{dn}`, or declare `{on}` over `{an}`"
+            )
         } else {
-            format!("declare `{an}` as a subset (`set {an}({dn})`) or as an alias of `{dn}`; equal labels alone do not make it one")
+            format!(
+                "declare `{an}` as a subset (`set {an}({dn})`) or as an alias of `{dn}`; equal labels alone do not make it one"
+            )
         };
         self.fail(
             Diagnostic::error(
                 "E0306",
                 span,
-                format!("`{an}` may not stand at position {} of `{on}`, which runs over `{dn}`", position + 1),
+                format!(
+                    "`{an}` may not stand at position {} of `{on}`, which runs over `{dn}`",
+                    position + 1
+                ),
             )
             .label(format!("`{an}` is not a subset of `{dn}`"))
             .other(declared, format!("`{on}` is declared here"))
@@ -267,7 +347,12 @@ impl Compiler {
         )
     }
 
-    pub(super) fn wrong_dimension<T>(&mut self, of: SymbolId, span: Span, given: usize) -> Result<T, Failed> {
+    pub(super) fn wrong_dimension<T>(
+        &mut self,
+        of: SymbolId,
+        span: Span,
+        given: usize,
+    ) -> Result<T, Failed> {
         let s = self.symbols.get(of).clone();
         let plural = |n: usize| match n {
             0 => "no index".to_string(),
@@ -283,25 +368,42 @@ impl Compiler {
                 DomainPosition::Relaxed(n) => n.to_string(),
             })
             .collect();
-        let shape = if names.is_empty() { s.name.to_string() } else { format!("{}({})", s.name, names.join(",")) };
+        let shape = if names.is_empty() {
+            s.name.to_string()
+        } else {
+            format!("{}({})", s.name, names.join(","))
+        };
         self.fail(
             Diagnostic::error(
                 "E0304",
                 span,
-                format!("`{}` has {}, but {} given here", s.name, plural(s.dim()), match given {
-                    0 => "none is".to_string(),
-                    1 => "1 is".to_string(),
-                    n => format!("{n} are"),
-                }),
+                format!(
+                    "`{}` has {}, but {} given here",
+                    s.name,
+                    plural(s.dim()),
+                    match given {
+                        0 => "none is".to_string(),
+                        1 => "1 is".to_string(),
+                        n => format!("{n} are"),
+                    }
+                ),
             )
             .label(format!("{} here", plural(given)))
-            .other(s.declared, format!("declared with {} here", plural(s.dim())))
+            .other(
+                s.declared,
+                format!("declared with {} here", plural(s.dim())),
+            )
             .help(format!("write `{shape}`")),
         )
     }
 
     /// Key of a symbol from its indices, all of which are under control.
-    pub(super) fn key(&mut self, of: SymbolId, indices: &[Expr], span: Span) -> Result<Key, Failed> {
+    pub(super) fn key(
+        &mut self,
+        of: SymbolId,
+        indices: &[Expr],
+        span: Span,
+    ) -> Result<Key, Failed> {
         let dim = self.symbols.get(of).dim();
         // A tuple set under control stands for all its positions: `p(arc)`.
         let mut parts = Vec::with_capacity(dim);
@@ -319,7 +421,12 @@ impl Compiler {
     }
 
     /// One index expression at a position of a symbol.
-    pub(super) fn index(&mut self, e: &Expr, of: SymbolId, position: usize) -> Result<Vec<Part>, Failed> {
+    pub(super) fn index(
+        &mut self,
+        e: &Expr,
+        of: SymbolId,
+        position: usize,
+    ) -> Result<Vec<Part>, Failed> {
         match &e.kind {
             ExprKind::Text(label) => Ok(vec![Part::Label(self.label(label, of, position, e.span)?)]),
             ExprKind::Apply { name, attribute: None, arguments: None } => {
@@ -370,9 +477,13 @@ impl Compiler {
     fn unknown_index<T>(&mut self, name: &Ident) -> Result<T, Failed> {
         if self.store.universe.get(&name.name).is_some() {
             return self.fail(
-                Diagnostic::error("E0301", name.span, format!("`{}` is not a set, but it is a label", name.name))
-                    .label("unknown set")
-                    .help(format!("quote labels in expressions: `'{}'`", name.name)),
+                Diagnostic::error(
+                    "E0301",
+                    name.span,
+                    format!("`{}` is not a set, but it is a label", name.name),
+                )
+                .label("unknown set")
+                .help(format!("quote labels in expressions: `'{}'`", name.name)),
             );
         }
         self.lookup(name).and(Err(Failed))
@@ -397,17 +508,32 @@ impl Compiler {
             help.push_str(&format!("; a label is quoted: `'{}'`", name.name));
         }
         self.fail(
-            Diagnostic::error("E0303", name.span, format!("the index `{}` is not under control here", name.name))
-                .label("nothing lets it run")
-                .other(declared, "the set is declared here")
-                .help(help),
+            Diagnostic::error(
+                "E0303",
+                name.span,
+                format!("the index `{}` is not under control here", name.name),
+            )
+            .label("nothing lets it run")
+            .other(declared, "the set is declared here")
+            .help(help),
         )
     }
 
     /// A quoted label at a position of a symbol.
-    pub(super) fn label(&mut self, text: &str, of: SymbolId, position: usize, span: Span) -> Result<u32, Failed> {
+    pub(super) fn label(
+        &mut self,
+        text: &str,
+        of: SymbolId,
+        position: usize,
+        span: Span,
+    ) -> Result<u32, Failed> {
         let symbol = self.symbols.get(of);
-        let DomainPosition::Set(d) = symbol.domain.get(position).cloned().unwrap_or(DomainPosition::Universe) else {
+        let DomainPosition::Set(d) = symbol
+            .domain
+            .get(position)
+            .cloned()
+            .unwrap_or(DomainPosition::Universe)
+        else {
             return Ok(self.store.universe.intern(text));
         };
         let set = self.symbols.get(self.symbols.root(d));
@@ -421,20 +547,42 @@ impl Compiler {
         let table = self.store.table(set.table);
         let near = {
             let all = table.len().min(10_000) as u32;
-            nearest(text, (0..all).map(|r| self.store.universe.name(table.key(r)[0]))).map(str::to_string)
+            nearest(
+                text,
+                (0..all).map(|r| self.store.universe.name(table.key(r)[0])),
+            )
+            .map(str::to_string)
         };
-        let d = Diagnostic::error("E0308", span, format!("`'{text}'` is not a member of the set `{set_name}`"))
-            .label(format!("position {} of `{name}` runs over `{set_name}`", position + 1))
-            .other(declared, format!("`{set_name}` is declared here"));
+        let d = Diagnostic::error(
+            "E0308",
+            span,
+            format!("`'{text}'` is not a member of the set `{set_name}`"),
+        )
+        .label(format!(
+            "position {} of `{name}` runs over `{set_name}`",
+            position + 1
+        ))
+        .other(declared, format!("`{set_name}` is declared here"));
         self.fail(match near {
             Some(n) => d.help(format!("did you mean `'{n}'`?")),
-            None => d.help(format!("add it to the set, or use a label that `{set_name}` has")),
+            None => d.help(format!(
+                "add it to the set, or use a label that `{set_name}` has"
+            )),
         })
     }
 
-    fn lag_base(&mut self, base: &Expr, of: SymbolId, position: usize) -> Result<(Part, TableId), Failed> {
+    fn lag_base(
+        &mut self,
+        base: &Expr,
+        of: SymbolId,
+        position: usize,
+    ) -> Result<(Part, TableId), Failed> {
         match &base.kind {
-            ExprKind::Apply { name, attribute: None, arguments: None } => {
+            ExprKind::Apply {
+                name,
+                attribute: None,
+                arguments: None,
+            } => {
                 let Some(s) = self.symbols.find(&name.name) else {
                     return self.unknown_index(name);
                 };
@@ -448,7 +596,8 @@ impl Compiler {
                 match part.len() {
                     1 => Ok((part.remove(0), table)),
                     _ => self.fail(
-                        Diagnostic::error("E0307", base.span, "a lag needs a one-dimensional set").label("several indices"),
+                        Diagnostic::error("E0307", base.span, "a lag needs a one-dimensional set")
+                            .label("several indices"),
                     ),
                 }
             }
@@ -469,7 +618,13 @@ impl Compiler {
     }
 
     /// `t-1`, `t+k`.
-    fn lag(&mut self, e: &Expr, terms: &[(Sign, Expr)], of: SymbolId, position: usize) -> Result<Vec<Part>, Failed> {
+    fn lag(
+        &mut self,
+        e: &Expr,
+        terms: &[(Sign, Expr)],
+        of: SymbolId,
+        position: usize,
+    ) -> Result<Vec<Part>, Failed> {
         let (base, set) = self.lag_base(&terms[0].1, of, position)?;
         let mut offset = Vec::new();
         for (sign, t) in &terms[1..] {
@@ -480,7 +635,12 @@ impl Compiler {
             _ => Node::data(NodeKind::Sum(offset), e.span),
         };
         self.no_variable(&offset, "a lag")?;
-        Ok(vec![Part::Lag(Rc::new(Lag { base, set, offset, circular: false }))])
+        Ok(vec![Part::Lag(Rc::new(Lag {
+            base,
+            set,
+            offset,
+            circular: false,
+        }))])
     }
 
     /// An error unless the set has an order.
@@ -492,16 +652,24 @@ impl Compiler {
         let (declared, name) = (root.declared, root.name.clone());
         if matches!(root.kind, SymbolKind::Set { singleton: true }) {
             return self.fail(
-                Diagnostic::error("E0309", span, format!("{what} needs an ordered set; `{name}` is a singleton"))
-                    .other(declared, "declared here"),
+                Diagnostic::error(
+                    "E0309",
+                    span,
+                    format!("{what} needs an ordered set; `{name}` is a singleton"),
+                )
+                .other(declared, "declared here"),
             );
         }
         if root.dynamic {
             return self.fail(
-                Diagnostic::error("E0309", span, format!("{what} needs an ordered set; `{name}` is changed by an assignment"))
-                    .label("a dynamic set has no order")
-                    .other(declared, "declared here")
-                    .help("use the set that it is a subset of, or `$offOrder`"),
+                Diagnostic::error(
+                    "E0309",
+                    span,
+                    format!("{what} needs an ordered set; `{name}` is changed by an assignment"),
+                )
+                .label("a dynamic set has no order")
+                .other(declared, "declared here")
+                .help("use the set that it is a subset of, or `$offOrder`"),
             );
         }
         if root.unordered {
@@ -534,9 +702,11 @@ impl Compiler {
                 }
                 Ok(Node::data(NodeKind::Text(t.clone()), span))
             }
-            ExprKind::Apply { name, attribute, arguments } => {
-                self.apply(name, attribute.as_ref(), arguments.as_deref(), span)
-            }
+            ExprKind::Apply {
+                name,
+                attribute,
+                arguments,
+            } => self.apply(name, attribute.as_ref(), arguments.as_deref(), span),
             ExprKind::Unary(op, a) => {
                 let a = self.expr(a)?;
                 Ok(match (op, &a.kind) {
@@ -583,20 +753,34 @@ impl Compiler {
                 Ok(match op {
                     BinaryOp::Add | BinaryOp::Subtract => {
                         let (v, l) = (a.has_var || b.has_var, a.linear && b.linear);
-                        combine(NodeKind::Sum(vec![(false, a), (*op == BinaryOp::Subtract, b)]), span, v, l)
+                        combine(
+                            NodeKind::Sum(vec![(false, a), (*op == BinaryOp::Subtract, b)]),
+                            span,
+                            v,
+                            l,
+                        )
                     }
                     BinaryOp::Multiply => product(vec![(false, a), (false, b)], span),
                     BinaryOp::Divide => product(vec![(false, a), (true, b)], span),
                     BinaryOp::CircularPlus | BinaryOp::CircularMinus => {
                         return self.fail(
-                            Diagnostic::error("E0313", span, "`++` and `--` stand between an index and a number only")
-                                .label("not in an index position")
-                                .help("two operators in a row need parentheses: `a - (-b)`"),
+                            Diagnostic::error(
+                                "E0313",
+                                span,
+                                "`++` and `--` stand between an index and a number only",
+                            )
+                            .label("not in an index position")
+                            .help("two operators in a row need parentheses: `a - (-b)`"),
                         );
                     }
                     _ => {
                         let v = a.has_var || b.has_var;
-                        combine(NodeKind::Binary(*op, Box::new(a), Box::new(b)), span, v, false)
+                        combine(
+                            NodeKind::Binary(*op, Box::new(a), Box::new(b)),
+                            span,
+                            v,
+                            false,
+                        )
                     }
                 })
             }
@@ -605,13 +789,23 @@ impl Compiler {
                 self.no_variable(&c, "a `$` condition")?;
                 let a = self.expr(a)?;
                 let (v, l) = (a.has_var, a.linear);
-                Ok(combine(NodeKind::Dollar(Box::new(a), Box::new(c)), span, v, l))
+                Ok(combine(
+                    NodeKind::Dollar(Box::new(a), Box::new(c)),
+                    span,
+                    v,
+                    l,
+                ))
             }
             ExprKind::Aggregate(op, d, body) => self.scoped(|c| {
                 let domain = c.domain(d)?;
                 let body = c.expr(body)?;
                 let (v, l) = (body.has_var, body.linear && *op == AggregateOp::Sum);
-                Ok(combine(NodeKind::Aggregate(*op, Box::new(domain), Box::new(body)), span, v, l))
+                Ok(combine(
+                    NodeKind::Aggregate(*op, Box::new(domain), Box::new(body)),
+                    span,
+                    v,
+                    l,
+                ))
             }),
         }
     }
@@ -650,9 +844,16 @@ impl Compiler {
                         return Ok(Node::data(NodeKind::SymbolText(s), span));
                     }
                     return self.fail(
-                        Diagnostic::error("E0314", attr.span, format!("a parameter has no attribute `.{}`", attr.name))
-                            .label("not there")
-                            .other(symbol.declared, format!("`{}` is a {}", symbol.name, symbol.kind_name())),
+                        Diagnostic::error(
+                            "E0314",
+                            attr.span,
+                            format!("a parameter has no attribute `.{}`", attr.name),
+                        )
+                        .label("not there")
+                        .other(
+                            symbol.declared,
+                            format!("`{}` is a {}", symbol.name, symbol.kind_name()),
+                        ),
                     );
                 }
                 self.used(s, span);
@@ -665,31 +866,50 @@ impl Compiler {
                     Some(a) => self.record_attribute(s, a, indices, span),
                     None if is_variable && self.in_equation => {
                         let key = self.key(s, indices, span)?;
-                        Ok(Node { kind: NodeKind::Var(s, key), span, has_var: true, linear: true })
+                        Ok(Node {
+                            kind: NodeKind::Var(s, key),
+                            span,
+                            has_var: true,
+                            linear: true,
+                        })
                     }
                     None if is_variable && self.modes.dot_l => {
                         let key = self.key(s, indices, span)?;
-                        Ok(Node::data(NodeKind::Data(symbol.table + attribute::L, key), span))
+                        Ok(Node::data(
+                            NodeKind::Data(symbol.table + attribute::L, key),
+                            span,
+                        ))
                     }
                     None => self.fail(
                         Diagnostic::error(
                             "E0310",
                             name.span,
-                            format!("`{}` is a {}; outside equations it needs an attribute", symbol.name, symbol.kind_name()),
+                            format!(
+                                "`{}` is a {}; outside equations it needs an attribute",
+                                symbol.name,
+                                symbol.kind_name()
+                            ),
                         )
                         .label("which of its numbers?")
                         .other(symbol.declared, "declared here")
-                        .help(format!("its level is `{0}.l`, its marginal `{0}.m`", name.name)),
+                        .help(format!(
+                            "its level is `{0}.l`, its marginal `{0}.m`",
+                            name.name
+                        )),
                     ),
                 }
             }
             SymbolKind::Model(_) | SymbolKind::File(_) => {
                 let Some(a) = attr else {
                     return self.fail(
-                        Diagnostic::error("E0315", name.span, format!("a {} is not a number", symbol.kind_name()))
-                            .label("an attribute is expected")
-                            .other(symbol.declared, "declared here")
-                            .help(format!("for instance `{}.modelstat`", name.name)),
+                        Diagnostic::error(
+                            "E0315",
+                            name.span,
+                            format!("a {} is not a number", symbol.kind_name()),
+                        )
+                        .label("an attribute is expected")
+                        .other(symbol.declared, "declared here")
+                        .help(format!("for instance `{}.modelstat`", name.name)),
                     );
                 };
                 let attribute = self.object_attribute(s, a)?;
@@ -700,19 +920,31 @@ impl Compiler {
             }
             SymbolKind::Acronym(n) => Ok(Node::number(value::acronym(*n), span)),
             SymbolKind::Figure(_) => self.fail(
-                Diagnostic::error("E0315", name.span, "a figure is not a number").other(symbol.declared, "declared here"),
+                Diagnostic::error("E0315", name.span, "a figure is not a number")
+                    .other(symbol.declared, "declared here"),
             ),
         }
     }
 
     /// `x.l(i)` of a variable or equation.
-    fn record_attribute(&mut self, s: SymbolId, a: &Ident, indices: &[Expr], span: Span) -> Result<Node, Failed> {
+    fn record_attribute(
+        &mut self,
+        s: SymbolId,
+        a: &Ident,
+        indices: &[Expr],
+        span: Span,
+    ) -> Result<Node, Failed> {
         let symbol = self.symbols.get(s).clone();
         if self.texts_allowed && a.name.eq_ignore_ascii_case("ts") {
             return Ok(Node::data(NodeKind::SymbolText(s), span));
         }
         let Some(which) = functions::record_attribute(&a.name) else {
-            return self.unknown_attribute(a, &symbol.name, symbol.kind_name(), "l, m, lo, up, fx, scale, prior, slack, range");
+            return self.unknown_attribute(
+                a,
+                &symbol.name,
+                symbol.kind_name(),
+                "l, m, lo, up, fx, scale, prior, slack, range",
+            );
         };
         let key = self.key(s, indices, span)?;
         match which {
@@ -722,7 +954,9 @@ impl Compiler {
                 }
                 Ok(Node::data(NodeKind::Data(symbol.table + offset, key), span))
             }
-            functions::RecordAttribute::Derived(d) => Ok(Node::data(NodeKind::Derived(d, s, key), span)),
+            functions::RecordAttribute::Derived(d) => {
+                Ok(Node::data(NodeKind::Derived(d, s, key), span))
+            }
             functions::RecordAttribute::Fix => self.fail(
                 Diagnostic::error("E0314", a.span, "`.fx` can be assigned, not read")
                     .label("write only")
@@ -731,17 +965,31 @@ impl Compiler {
         }
     }
 
-    pub(super) fn unknown_attribute<T>(&mut self, a: &Ident, name: &str, kind: &str, known: &str) -> Result<T, Failed> {
+    pub(super) fn unknown_attribute<T>(
+        &mut self,
+        a: &Ident,
+        name: &str,
+        kind: &str,
+        known: &str,
+    ) -> Result<T, Failed> {
         let near = nearest(&a.name, known.split(", ")).map(str::to_string);
-        let d = Diagnostic::error("E0314", a.span, format!("the {kind} `{name}` has no attribute `.{}`", a.name))
-            .label("not an attribute");
+        let d = Diagnostic::error(
+            "E0314",
+            a.span,
+            format!("the {kind} `{name}` has no attribute `.{}`", a.name),
+        )
+        .label("not an attribute");
         self.fail(match near {
             Some(n) => d.help(format!("did you mean `.{n}`?")),
             None => d.help(format!("there are: {known}")),
         })
     }
 
-    pub(super) fn object_attribute(&mut self, s: SymbolId, a: &Ident) -> Result<&'static str, Failed> {
+    pub(super) fn object_attribute(
+        &mut self,
+        s: SymbolId,
+        a: &Ident,
+    ) -> Result<&'static str, Failed> {
         let symbol = self.symbols.get(s).clone();
         let known = match symbol.kind {
             SymbolKind::Model(_) => functions::MODEL_ATTRIBUTES,
@@ -765,7 +1013,9 @@ impl Compiler {
         let symbol = self.symbols.get(s).clone();
         let lower = attr.name.to_lowercase();
         match lower.as_str() {
-            "ts" | "tn" if self.texts_allowed => return Ok(Node::data(NodeKind::SymbolText(s), span)),
+            "ts" | "tn" if self.texts_allowed => {
+                return Ok(Node::data(NodeKind::SymbolText(s), span));
+            }
             "te" if self.texts_allowed && !indices.is_empty() => {
                 let key = self.key(s, indices, span)?;
                 return Ok(Node::data(NodeKind::ElementText(symbol.table, key), span));
@@ -788,11 +1038,18 @@ impl Compiler {
             return self.unknown_attribute(attr, &symbol.name, "set", known);
         };
         self.used(s, span);
-        let mut parts = if indices.is_empty() { self.set_index(s, name)? } else { self.key(s, indices, span)?.parts };
+        let mut parts = if indices.is_empty() {
+            self.set_index(s, name)?
+        } else {
+            self.key(s, indices, span)?.parts
+        };
         if parts.len() != 1 {
             return self.wrong_dimension(s, span, parts.len());
         }
-        Ok(Node::data(NodeKind::LabelAttribute(which, symbol.table, parts.remove(0)), span))
+        Ok(Node::data(
+            NodeKind::LabelAttribute(which, symbol.table, parts.remove(0)),
+            span,
+        ))
     }
 
     /// A function call.
@@ -809,31 +1066,56 @@ impl Compiler {
             return self.unknown_name(name, arguments.is_some());
         };
         if args.len() < low || args.len() > high {
-            let count = |n: usize| if n == 1 { "1 argument".to_string() } else { format!("{n} arguments") };
+            let count = |n: usize| {
+                if n == 1 {
+                    "1 argument".to_string()
+                } else {
+                    format!("{n} arguments")
+                }
+            };
             let wanted = match (low, high) {
                 (l, h) if l == h => count(l),
                 (l, usize::MAX) => format!("{l} or more arguments"),
                 (l, h) => format!("{l} to {}", count(h)),
             };
             return self.fail(
-                Diagnostic::error("E0316", span, format!("`{lower}` takes {wanted}, not {}", args.len()))
-                    .label("wrong number of arguments"),
+                Diagnostic::error(
+                    "E0316",
+                    span,
+                    format!("`{lower}` takes {wanted}, not {}", args.len()),
+                )
+                .label("wrong number of arguments"),
             );
         }
         match callee {
             Callee::Ord | Callee::Card => {
-                let ExprKind::Apply { name: n, attribute: None, arguments: None } = &args[0].kind else {
+                let ExprKind::Apply {
+                    name: n,
+                    attribute: None,
+                    arguments: None,
+                } = &args[0].kind
+                else {
                     return self.fail(
-                        Diagnostic::error("E0317", args[0].span, format!("`{lower}` takes the name of a set"))
-                            .label("not a name")
-                            .help(format!("for instance `{lower}(i)`")),
+                        Diagnostic::error(
+                            "E0317",
+                            args[0].span,
+                            format!("`{lower}` takes the name of a set"),
+                        )
+                        .label("not a name")
+                        .help(format!("for instance `{lower}(i)`")),
                     );
                 };
                 let s = self.lookup(n)?;
                 if callee == Callee::Card {
                     self.used(s, n.span);
                     let symbol = self.symbols.get(s);
-                    if matches!(symbol.kind, SymbolKind::Model(_) | SymbolKind::File(_) | SymbolKind::Acronym(_) | SymbolKind::Figure(_)) {
+                    if matches!(
+                        symbol.kind,
+                        SymbolKind::Model(_)
+                            | SymbolKind::File(_)
+                            | SymbolKind::Acronym(_)
+                            | SymbolKind::Figure(_)
+                    ) {
                         return self.lookup_set(n).and(Err(Failed));
                     }
                     return Ok(Node::data(NodeKind::Card(symbol.table), span));
@@ -845,7 +1127,10 @@ impl Compiler {
                 if parts.len() != 1 {
                     return self.wrong_dimension(s, n.span, 1);
                 }
-                Ok(Node::data(NodeKind::Ord(self.symbols.get(s).table, parts.remove(0)), span))
+                Ok(Node::data(
+                    NodeKind::Ord(self.symbols.get(s).table, parts.remove(0)),
+                    span,
+                ))
             }
             Callee::SameAs => {
                 let mut parts = Vec::new();
@@ -856,7 +1141,11 @@ impl Compiler {
                     });
                 }
                 if parts.len() != 2 {
-                    return self.fail(Diagnostic::error("E0317", span, "`sameas` compares two single indices"));
+                    return self.fail(Diagnostic::error(
+                        "E0317",
+                        span,
+                        "`sameas` compares two single indices",
+                    ));
                 }
                 let b = parts.remove(1);
                 Ok(Node::data(NodeKind::SameAs(parts.remove(0), b), span))
@@ -868,9 +1157,11 @@ impl Compiler {
                 }
                 let v = nodes.iter().any(|n| n.has_var);
                 if v && functions::first_argument_must_be_data(f) && nodes[0].has_var {
-                    return self.fail(
-                        Diagnostic::error("E0318", nodes[0].span, format!("the first argument of `{lower}` may not depend on a variable")),
-                    );
+                    return self.fail(Diagnostic::error(
+                        "E0318",
+                        nodes[0].span,
+                        format!("the first argument of `{lower}` may not depend on a variable"),
+                    ));
                 }
                 Ok(combine(NodeKind::Call(f, nodes), span, v, false))
             }
@@ -880,8 +1171,12 @@ impl Compiler {
                     let n = self.expr(a)?;
                     if n.has_var {
                         return self.fail(
-                            Diagnostic::error("E0318", n.span, format!("`{lower}` may not depend on a variable"))
-                                .label("a variable stands in it"),
+                            Diagnostic::error(
+                                "E0318",
+                                n.span,
+                                format!("`{lower}` may not depend on a variable"),
+                            )
+                            .label("a variable stands in it"),
                         );
                     }
                     nodes.push(n);
@@ -912,7 +1207,11 @@ impl Compiler {
             }
             nearest(&name.name, known).map(str::to_string)
         });
-        let what = if called { "symbol or function" } else { "symbol" };
+        let what = if called {
+            "symbol or function"
+        } else {
+            "symbol"
+        };
         let mut d = Diagnostic::error("E0301", name.span, format!("`{}` is not known", name.name))
             .label(format!("unknown {what}"));
         d = match near {
@@ -920,7 +1219,9 @@ impl Compiler {
             None if self.store.universe.get(&name.name).is_some() => {
                 d.help(format!("`{0}` is a label: quote it, `'{0}'`", name.name))
             }
-            None => d.help("declare it first: names must be declared above the place where they are used"),
+            None => d.help(
+                "declare it first: names must be declared above the place where they are used",
+            ),
         };
         self.fail(d)
     }
@@ -943,26 +1244,46 @@ fn set_algebra(node: Node) -> Node {
                 acc = Some(match (acc, minus) {
                     (None, false) => t,
                     (None, true) => Node::data(NodeKind::Not(Box::new(t)), span),
-                    (Some(a), false) => Node::data(NodeKind::Binary(BinaryOp::Or, Box::new(a), Box::new(t)), span),
+                    (Some(a), false) => Node::data(
+                        NodeKind::Binary(BinaryOp::Or, Box::new(a), Box::new(t)),
+                        span,
+                    ),
                     (Some(a), true) => {
                         let no = Node::data(NodeKind::Not(Box::new(t)), span);
-                        Node::data(NodeKind::Binary(BinaryOp::And, Box::new(a), Box::new(no)), span)
+                        Node::data(
+                            NodeKind::Binary(BinaryOp::And, Box::new(a), Box::new(no)),
+                            span,
+                        )
                     }
                 });
             }
             acc.unwrap_or_else(|| Node::number(0.0, span))
         }
-        NodeKind::Product(factors) => {
-            Node::data(NodeKind::Product(factors.into_iter().map(|(d, f)| (d, set_algebra(f))).collect()), span)
-        }
+        NodeKind::Product(factors) => Node::data(
+            NodeKind::Product(
+                factors
+                    .into_iter()
+                    .map(|(d, f)| (d, set_algebra(f)))
+                    .collect(),
+            ),
+            span,
+        ),
         NodeKind::Dollar(a, c) => Node::data(NodeKind::Dollar(Box::new(set_algebra(*a)), c), span),
-        kind => Node { kind, span, has_var: node.has_var, linear: node.linear },
+        kind => Node {
+            kind,
+            span,
+            has_var: node.has_var,
+            linear: node.linear,
+        },
     }
 }
 
 /// A product; flattened one level so that `a*b*c` and `a*b` are alike.
 fn product(factors: Vec<(bool, Node)>, span: Span) -> Node {
     let v = factors.iter().filter(|(_, n)| n.has_var).count();
-    let l = v <= 1 && factors.iter().all(|(div, n)| n.linear && !(*div && n.has_var));
+    let l = v <= 1
+        && factors
+            .iter()
+            .all(|(div, n)| n.linear && !(*div && n.has_var));
     combine(NodeKind::Product(factors), span, v > 0, l)
 }

@@ -156,7 +156,10 @@ const FUNCTIONS: &[(&str, Callee, usize, usize)] = {
 
 /// The function of this name (lower case), with least and greatest number of arguments.
 pub fn callee(name: &str) -> Option<(Callee, usize, usize)> {
-    FUNCTIONS.iter().find(|f| f.0 == name).map(|f| (f.1, f.2, f.3))
+    FUNCTIONS
+        .iter()
+        .find(|f| f.0 == name)
+        .map(|f| (f.1, f.2, f.3))
 }
 
 /// All function names.
@@ -166,12 +169,18 @@ pub fn names() -> impl Iterator<Item = &'static str> {
 
 /// The name of a function.
 pub fn name_of(f: Function) -> &'static str {
-    FUNCTIONS.iter().find(|x| x.1 == Callee::Math(f)).map_or("function", |x| x.0)
+    FUNCTIONS
+        .iter()
+        .find(|x| x.1 == Callee::Math(f))
+        .map_or("function", |x| x.0)
 }
 
 /// Whether the first argument is a constant of the formula (`cvpower(a,x)`, scale of `lsemaxsc`).
 pub fn first_argument_must_be_data(f: Function) -> bool {
-    matches!(f, Function::CvPower | Function::LseMaxSc | Function::LseMinSc)
+    matches!(
+        f,
+        Function::CvPower | Function::LseMaxSc | Function::LseMinSc
+    )
 }
 
 /// Whether a function of variables needs a `dnlp` model.
@@ -179,9 +188,29 @@ pub fn is_nonsmooth(f: Function) -> bool {
     use Function as F;
     matches!(
         f,
-        F::Abs | F::Sign | F::Min | F::Max | F::Floor | F::Ceil | F::Round | F::Trunc | F::Frac | F::Mod | F::IfThen
-            | F::BoolAnd | F::BoolOr | F::BoolNot | F::BoolXor | F::BoolEqv | F::BoolImp
-            | F::RelEq | F::RelNe | F::RelLt | F::RelLe | F::RelGt | F::RelGe
+        F::Abs
+            | F::Sign
+            | F::Min
+            | F::Max
+            | F::Floor
+            | F::Ceil
+            | F::Round
+            | F::Trunc
+            | F::Frac
+            | F::Mod
+            | F::IfThen
+            | F::BoolAnd
+            | F::BoolOr
+            | F::BoolNot
+            | F::BoolXor
+            | F::BoolEqv
+            | F::BoolImp
+            | F::RelEq
+            | F::RelNe
+            | F::RelLt
+            | F::RelLe
+            | F::RelGt
+            | F::RelGe
     )
 }
 
@@ -236,25 +265,114 @@ pub fn label_attribute(name: &str) -> Option<LabelAttribute> {
 
 /// Attributes of models, lower case.
 pub const MODEL_ATTRIBUTES: &[&str] = &[
-    "modelstat", "solvestat", "objval", "objest", "iterusd", "resusd", "numequ", "numvar", "numnz", "numnlnz", "numnlins",
-    "numinfes", "suminfes", "maxinfes", "meaninfes", "numdepnd", "numdvar", "numnopt", "numredef", "domusd", "line", "number",
-    "marginals", "limrow", "limcol", "optfile", "holdfixed", "iterlim", "reslim", "scaleopt", "optcr", "optca", "tolinfeas",
-    "tolinfrep", "linkused", "domlim", "bratio", "nodlim", "workspace", "workfactor", "cheat", "cutoff", "tryint", "prioropt",
-    "sysout", "solprint", "solveopt", "solvelink", "savepoint", "threads", "dictfile", "dictmap", "etsolve", "etsolver",
-    "resgen", "resin", "resderiv", "resout", "resderiv", "rngbndmax", "rngbndmin", "rngmatmax", "rngmatmin", "rngrhsmax",
-    "rngrhsmin", "nodusd", "procused", "rocp", "tolproj", "forcework", "defpoint", "integer1", "integer2", "integer3",
-    "integer4", "integer5", "real1", "real2", "real3", "real4", "real5", "handle", "mcprholdfx", "pricesolve", "ts", "tn", "fdopt",
-    "fddelta", "hessscale", "clearmodel", "justscrdir", "trylinear", "tryInt", "reform", "sumdom", "numunbnd",
+    "modelstat",
+    "solvestat",
+    "objval",
+    "objest",
+    "iterusd",
+    "resusd",
+    "numequ",
+    "numvar",
+    "numnz",
+    "numnlnz",
+    "numnlins",
+    "numinfes",
+    "suminfes",
+    "maxinfes",
+    "meaninfes",
+    "numdepnd",
+    "numdvar",
+    "numnopt",
+    "numredef",
+    "domusd",
+    "line",
+    "number",
+    "marginals",
+    "limrow",
+    "limcol",
+    "optfile",
+    "holdfixed",
+    "iterlim",
+    "reslim",
+    "scaleopt",
+    "optcr",
+    "optca",
+    "tolinfeas",
+    "tolinfrep",
+    "linkused",
+    "domlim",
+    "bratio",
+    "nodlim",
+    "workspace",
+    "workfactor",
+    "cheat",
+    "cutoff",
+    "tryint",
+    "prioropt",
+    "sysout",
+    "solprint",
+    "solveopt",
+    "solvelink",
+    "savepoint",
+    "threads",
+    "dictfile",
+    "dictmap",
+    "etsolve",
+    "etsolver",
+    "resgen",
+    "resin",
+    "resderiv",
+    "resout",
+    "resderiv",
+    "rngbndmax",
+    "rngbndmin",
+    "rngmatmax",
+    "rngmatmin",
+    "rngrhsmax",
+    "rngrhsmin",
+    "nodusd",
+    "procused",
+    "rocp",
+    "tolproj",
+    "forcework",
+    "defpoint",
+    "integer1",
+    "integer2",
+    "integer3",
+    "integer4",
+    "integer5",
+    "real1",
+    "real2",
+    "real3",
+    "real4",
+    "real5",
+    "handle",
+    "mcprholdfx",
+    "pricesolve",
+    "ts",
+    "tn",
+    "fdopt",
+    "fddelta",
+    "hessscale",
+    "clearmodel",
+    "justscrdir",
+    "trylinear",
+    "tryInt",
+    "reform",
+    "sumdom",
+    "numunbnd",
 ];
 
 /// Attributes of files, lower case.
 pub const FILE_ATTRIBUTES: &[&str] = &[
-    "ap", "bm", "case", "cc", "cr", "errors", "hdcc", "hdcr", "hdll", "lcase", "lj", "ll", "lm", "lp", "lw", "nd", "nj", "nr",
-    "nw", "nz", "pc", "pdir", "print", "ps", "pw", "sj", "sw", "tf", "tj", "tlcc", "tlcr", "tlll", "tm", "tw", "ws", "ts", "tn",
-    "recurse", "title1", "date", "time",
+    "ap", "bm", "case", "cc", "cr", "errors", "hdcc", "hdcr", "hdll", "lcase", "lj", "ll", "lm",
+    "lp", "lw", "nd", "nj", "nr", "nw", "nz", "pc", "pdir", "print", "ps", "pw", "sj", "sw", "tf",
+    "tj", "tlcc", "tlcr", "tlll", "tm", "tw", "ws", "ts", "tn", "recurse", "title1", "date",
+    "time",
 ];
 
 /// Problem types.
 pub const PROBLEM_TYPES: &[&str] = &[
-    "lp", "rmip", "mip", "nlp", "dnlp", "rminlp", "minlp", "qcp", "rmiqcp", "miqcp", "cns", "mcp", "mpec", "rmpec", "emp",
+    "lp", "rmip", "mip", "nlp", "dnlp", "rminlp", "minlp", "qcp", "rmiqcp", "miqcp", "cns", "mcp",
+    "mpec", "rmpec", "emp",
 ];

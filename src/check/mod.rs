@@ -51,7 +51,9 @@ pub struct Program {
 impl Program {
     /// Whether it may run.
     pub fn has_errors(&self) -> bool {
-        self.diagnostics.iter().any(|d| d.severity == Severity::Error)
+        self.diagnostics
+            .iter()
+            .any(|d| d.severity == Severity::Error)
     }
 }
 
@@ -73,7 +75,11 @@ pub(crate) struct Compiler {
 }
 
 /// Compiles a file: parses, checks and carries out its data statements.
-pub fn compile(host: &mut dyn Host, path: &str, options: PreprocessOptions) -> Result<Program, (Diagnostic, SourceMap)> {
+pub fn compile(
+    host: &mut dyn Host,
+    path: &str,
+    options: PreprocessOptions,
+) -> Result<Program, (Diagnostic, SourceMap)> {
     let mut parser = Parser::new(host, path, options).map_err(|u| (u.diagnostic, u.map))?;
     let mut c = Compiler::new();
     let mut code = Vec::new();
@@ -91,9 +97,11 @@ pub fn compile(host: &mut dyn Host, path: &str, options: PreprocessOptions) -> R
         }
         if c.error_count() >= MAX_ERRORS {
             let at = c.diagnostics.last().map_or_else(Span::default, |d| d.span);
-            c.diagnostics.push(
-                Diagnostic::error("E0300", at, format!("more than {MAX_ERRORS} errors; the rest of the text was not checked")),
-            );
+            c.diagnostics.push(Diagnostic::error(
+                "E0300",
+                at,
+                format!("more than {MAX_ERRORS} errors; the rest of the text was not checked"),
+            ));
             break;
         }
     }
@@ -155,7 +163,10 @@ impl Compiler {
     }
 
     fn error_count(&self) -> usize {
-        self.diagnostics.iter().filter(|d| d.severity == Severity::Error).count()
+        self.diagnostics
+            .iter()
+            .filter(|d| d.severity == Severity::Error)
+            .count()
     }
 
     /// Notes that a symbol's data are read; an error if it never got any.
@@ -167,17 +178,23 @@ impl Compiler {
         }
         let (name, kind, declared) = (s.name.clone(), s.kind_name(), s.declared);
         let d = match s.kind {
-            SymbolKind::Variable(_) | SymbolKind::Equation(_) => {
-                Diagnostic::error("E0319", span, format!("the {kind} `{name}` has no level yet"))
-                    .label("nothing was solved or assigned above")
-                    .other(declared, "declared here")
-                    .help(format!("solve a model with `{name}` first, or assign `{name}.l`"))
-            }
+            SymbolKind::Variable(_) | SymbolKind::Equation(_) => Diagnostic::error(
+                "E0319",
+                span,
+                format!("the {kind} `{name}` has no level yet"),
+            )
+            .label("nothing was solved or assigned above")
+            .other(declared, "declared here")
+            .help(format!(
+                "solve a model with `{name}` first, or assign `{name}.l`"
+            )),
             _ => Diagnostic::error("E0319", span, format!("the {kind} `{name}` has no values"))
                 .label("never assigned above")
                 .other(declared, "declared without data here")
                 .help(match s.kind {
-                    SymbolKind::Set { .. } => format!("give it elements: `{name} / a, b /`, or `{name}(…) = yes;`"),
+                    SymbolKind::Set { .. } => {
+                        format!("give it elements: `{name} / a, b /`, or `{name}(…) = yes;`")
+                    }
                     _ => format!("give it data: `{name} / … /`, or assign it before"),
                 }),
         };
@@ -189,13 +206,17 @@ impl Compiler {
 
 impl Known for Compiler {
     fn kind(&self, name: &str) -> Option<&'static str> {
-        self.symbols.find(name).map(|s| self.symbols.get(s).kind_name())
+        self.symbols
+            .find(name)
+            .map(|s| self.symbols.get(s).kind_name())
     }
 
     fn is_defined(&self, name: &str) -> bool {
         self.symbols.find(name).is_some_and(|s| {
             let s = self.symbols.get(s);
-            s.has_data || s.assigned || matches!(s.kind, SymbolKind::Equation(Some(_)) | SymbolKind::Alias(_))
+            s.has_data
+                || s.assigned
+                || matches!(s.kind, SymbolKind::Equation(Some(_)) | SymbolKind::Alias(_))
         })
     }
 
@@ -216,7 +237,9 @@ impl Known for Compiler {
     fn scalar_value(&self, name: &str) -> Option<f64> {
         let s = self.symbols.get(self.symbols.find(name)?);
         match s.kind {
-            SymbolKind::Parameter { .. } if s.dim() == 0 => Some(self.store.table(s.table).get(&[])),
+            SymbolKind::Parameter { .. } if s.dim() == 0 => {
+                Some(self.store.table(s.table).get(&[]))
+            }
             _ => None,
         }
     }

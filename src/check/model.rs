@@ -14,24 +14,41 @@ impl Compiler {
         let symbol = self.symbols.get(model).clone();
         let SymbolKind::Model(info) = &symbol.kind else {
             return self.fail(
-                Diagnostic::error("E0350", s.model.span, format!("`{}` is a {}, not a model", symbol.name, symbol.kind_name()))
-                    .label("a model is expected")
-                    .other(symbol.declared, "declared here")
-                    .help("declare one: `model m / all /;`"),
+                Diagnostic::error(
+                    "E0350",
+                    s.model.span,
+                    format!("`{}` is a {}, not a model", symbol.name, symbol.kind_name()),
+                )
+                .label("a model is expected")
+                .other(symbol.declared, "declared here")
+                .help("declare one: `model m / all /;`"),
             );
         };
         let using = s.using.name.to_lowercase();
-        let Some(using) = functions::PROBLEM_TYPES.iter().find(|t| **t == using).copied() else {
+        let Some(using) = functions::PROBLEM_TYPES
+            .iter()
+            .find(|t| **t == using)
+            .copied()
+        else {
             let near = nearest(&using, functions::PROBLEM_TYPES.iter().copied()).unwrap_or("lp");
             return self.fail(
-                Diagnostic::error("E0351", s.using.span, format!("there is no problem type `{}`", s.using.name))
-                    .label("unknown problem type")
-                    .help(format!("did you mean `{near}`? there are: {}", functions::PROBLEM_TYPES.join(", "))),
+                Diagnostic::error(
+                    "E0351",
+                    s.using.span,
+                    format!("there is no problem type `{}`", s.using.name),
+                )
+                .label("unknown problem type")
+                .help(format!(
+                    "did you mean `{near}`? there are: {}",
+                    functions::PROBLEM_TYPES.join(", ")
+                )),
             );
         };
         if using == "emp" {
             return self.fail(
-                Diagnostic::error("E0352", s.using.span, "`emp` is not there").label("not supported").help("state the optimality conditions as an `mcp`"),
+                Diagnostic::error("E0352", s.using.span, "`emp` is not there")
+                    .label("not supported")
+                    .help("state the optimality conditions as an `mcp`"),
             );
         }
         let items = info.items.clone().unwrap_or_default();
@@ -41,10 +58,14 @@ impl Compiler {
         rows.sort_by_key(|r| self.equations[r.definition].symbol);
         if rows.is_empty() {
             return self.fail(
-                Diagnostic::error("E0353", s.model.span, format!("the model `{}` has no equations", symbol.name))
-                    .label("nothing to solve")
-                    .other(symbol.declared, "declared here")
-                    .help("list equations in it: `model m / all /;`"),
+                Diagnostic::error(
+                    "E0353",
+                    s.model.span,
+                    format!("the model `{}` has no equations", symbol.name),
+                )
+                .label("nothing to solve")
+                .other(symbol.declared, "declared here")
+                .help("list equations in it: `model m / all /;`"),
             );
         }
         let has_objective = !matches!(using, "mcp" | "cns");
@@ -52,9 +73,13 @@ impl Compiler {
             Some((sense, name)) if has_objective => Some((*sense, self.objective(name, &rows)?)),
             Some((_, name)) => {
                 return self.fail(
-                    Diagnostic::error("E0354", name.span, format!("a model of type `{using}` has no objective"))
-                        .label("not expected here")
-                        .help(format!("write `solve {} using {using};`", symbol.name)),
+                    Diagnostic::error(
+                        "E0354",
+                        name.span,
+                        format!("a model of type `{using}` has no objective"),
+                    )
+                    .label("not expected here")
+                    .help(format!("write `solve {} using {using};`", symbol.name)),
                 );
             }
             None if has_objective => {
@@ -87,7 +112,12 @@ impl Compiler {
         for i in ids {
             self.symbols.get_mut(i).assigned = true;
         }
-        Ok(CodeKind::Solve(Box::new(SolveCode { model, equations: rows, using, objective })))
+        Ok(CodeKind::Solve(Box::new(SolveCode {
+            model,
+            equations: rows,
+            using,
+            objective,
+        })))
     }
 
     /// Rows of a list of model items, in order.
@@ -102,22 +132,46 @@ impl Compiler {
         if depth > 50 {
             return Ok(());
         }
-        let add = |c: &mut Self, e: SymbolId, pair: Option<SymbolId>, restrict: Option<SymbolId>, at: Span, rows: &mut Vec<ModelRow>| {
-            let SymbolKind::Equation(defined) = c.symbols.get(e).kind else { return Ok(()) };
+        let add = |c: &mut Self,
+                   e: SymbolId,
+                   pair: Option<SymbolId>,
+                   restrict: Option<SymbolId>,
+                   at: Span,
+                   rows: &mut Vec<ModelRow>| {
+            let SymbolKind::Equation(defined) = c.symbols.get(e).kind else {
+                return Ok(());
+            };
             let Some(definition) = defined else {
                 let (name, declared) = (c.symbols.get(e).name.clone(), c.symbols.get(e).declared);
                 return c.fail(
-                    Diagnostic::error("E0356", at, format!("the equation `{name}` is in the model but is not defined"))
-                        .label("in this model")
-                        .other(declared, "declared here, and defined nowhere")
-                        .help(format!("define it: `{name}.. left =e= right;`, or take it out of the model")),
+                    Diagnostic::error(
+                        "E0356",
+                        at,
+                        format!("the equation `{name}` is in the model but is not defined"),
+                    )
+                    .label("in this model")
+                    .other(declared, "declared here, and defined nowhere")
+                    .help(format!(
+                        "define it: `{name}.. left =e= right;`, or take it out of the model"
+                    )),
                 );
             };
-            match rows.iter().position(|r| r.definition == definition && r.pair == pair) {
+            match rows
+                .iter()
+                .position(|r| r.definition == definition && r.pair == pair)
+            {
                 Some(_) => {}
-                None => match rows.iter_mut().find(|r| r.definition == definition && (r.pair.is_none() || pair.is_none())) {
+                None => match rows
+                    .iter_mut()
+                    .find(|r| r.definition == definition && (r.pair.is_none() || pair.is_none()))
+                {
                     Some(r) => r.pair = r.pair.or(pair),
-                    None => rows.push(ModelRow { definition, pair, restrict, span: at }),
+                    None => rows.push(ModelRow {
+                        definition,
+                        pair,
+                        restrict,
+                        span: at,
+                    }),
                 },
             }
             Ok(())
@@ -157,11 +211,15 @@ impl Compiler {
                         _ => {}
                     }
                 }
-                ModelItem::Pair { rows: names, column } => {
+                ModelItem::Pair {
+                    rows: names,
+                    column,
+                } => {
                     let v = self.lookup(column)?;
                     for n in names {
                         let e = self.lookup(n)?;
-                        failed |= add(self, e, Some(v), None, n.span.to(column.span), rows).is_err();
+                        failed |=
+                            add(self, e, Some(v), None, n.span.to(column.span), rows).is_err();
                     }
                 }
             }
@@ -169,7 +227,11 @@ impl Compiler {
         if failed { Err(Failed) } else { Ok(()) }
     }
 
-    fn objective(&mut self, name: &crate::syntax::ast::Ident, rows: &[ModelRow]) -> Result<SymbolId, Failed> {
+    fn objective(
+        &mut self,
+        name: &crate::syntax::ast::Ident,
+        rows: &[ModelRow],
+    ) -> Result<SymbolId, Failed> {
         let v = self.lookup(name)?;
         let symbol = self.symbols.get(v).clone();
         let SymbolKind::Variable(kind) = symbol.kind else {
@@ -182,18 +244,35 @@ impl Compiler {
         };
         if symbol.dim() > 0 {
             return self.fail(
-                Diagnostic::error("E0358", name.span, format!("the objective must be a single number; `{}` is indexed", symbol.name))
-                    .label("indexed")
-                    .other(symbol.declared, format!("declared with {} indices here", symbol.dim()))
-                    .help("declare a free scalar variable and define it in an equation"),
+                Diagnostic::error(
+                    "E0358",
+                    name.span,
+                    format!(
+                        "the objective must be a single number; `{}` is indexed",
+                        symbol.name
+                    ),
+                )
+                .label("indexed")
+                .other(
+                    symbol.declared,
+                    format!("declared with {} indices here", symbol.dim()),
+                )
+                .help("declare a free scalar variable and define it in an equation"),
             );
         }
         if !matches!(kind, VariableKind::Free | VariableKind::Unstated) {
             return self.fail(
-                Diagnostic::error("E0359", name.span, format!("the objective `{}` must be a free variable", symbol.name))
-                    .label("restricted in sign")
-                    .other(symbol.declared, "declared here")
-                    .help(format!("declare it by `free variable {0};`, and bound it by an equation if it must be", symbol.name)),
+                Diagnostic::error(
+                    "E0359",
+                    name.span,
+                    format!("the objective `{}` must be a free variable", symbol.name),
+                )
+                .label("restricted in sign")
+                .other(symbol.declared, "declared here")
+                .help(format!(
+                    "declare it by `free variable {0};`, and bound it by an equation if it must be",
+                    symbol.name
+                )),
             );
         }
         let mentioned = rows.iter().any(|r| {
@@ -202,10 +281,20 @@ impl Compiler {
         });
         if !mentioned {
             return self.fail(
-                Diagnostic::error("E0360", name.span, format!("the objective `{}` stands in no equation of the model", symbol.name))
-                    .label("in no equation")
-                    .other(symbol.declared, "declared here")
-                    .help(format!("define it in an equation of the model: `cost.. {} =e= …;`", symbol.name)),
+                Diagnostic::error(
+                    "E0360",
+                    name.span,
+                    format!(
+                        "the objective `{}` stands in no equation of the model",
+                        symbol.name
+                    ),
+                )
+                .label("in no equation")
+                .other(symbol.declared, "declared here")
+                .help(format!(
+                    "define it in an equation of the model: `cost.. {} =e= …;`",
+                    symbol.name
+                )),
             );
         }
         Ok(v)
@@ -227,20 +316,42 @@ impl Compiler {
                     && *op != BinaryOp::Power
                 {
                     if using != "dnlp" {
-                        found = Some((n.span, "a relation between variables has no derivative".into(), "E0362", "use `dnlp`, or a formulation with additional variables and equations".into()));
+                        found = Some((
+                            n.span,
+                            "a relation between variables has no derivative".into(),
+                            "E0362",
+                            "use `dnlp`, or a formulation with additional variables and equations"
+                                .into(),
+                        ));
                     }
                 } else if let NodeKind::Not(_) = &n.kind
                     && using != "dnlp"
                 {
-                    found = Some((n.span, "`not` of a variable has no derivative".into(), "E0362", "use `dnlp`".into()));
+                    found = Some((
+                        n.span,
+                        "`not` of a variable has no derivative".into(),
+                        "E0362",
+                        "use `dnlp`".into(),
+                    ));
                 } else if linear_only && !n.linear && children_linear(n) {
                     let what = match &n.kind {
-                        NodeKind::Product(_) => "variables are multiplied or divided here".to_string(),
+                        NodeKind::Product(_) => {
+                            "variables are multiplied or divided here".to_string()
+                        }
                         NodeKind::Binary(..) => "a variable is raised to a power here".to_string(),
-                        NodeKind::Call(f, _) => format!("`{}` of a variable is not linear", functions::name_of(*f)),
+                        NodeKind::Call(f, _) => {
+                            format!("`{}` of a variable is not linear", functions::name_of(*f))
+                        }
                         _ => "this is not linear in the variables".to_string(),
                     };
-                    found = Some((n.span, what, "E0361", format!("solve it `using nlp`, or reformulate the equation `{name}`; a level (`x.l`) is data and may be multiplied")));
+                    found = Some((
+                        n.span,
+                        what,
+                        "E0361",
+                        format!(
+                            "solve it `using nlp`, or reformulate the equation `{name}`; a level (`x.l`) is data and may be multiplied"
+                        ),
+                    ));
                 } else if smooth_only {
                     match &n.kind {
                         NodeKind::Call(f, _) if is_nonsmooth(*f) => {
@@ -257,14 +368,34 @@ impl Compiler {
         match found {
             None => Ok(()),
             Some((span, what, code, help)) => {
-                let kind = if linear_only { format!("the equation `{name}` is not linear, but the model is solved as `{using}`") } else { format!("the equation `{name}` may not stand in a model solved as `{using}`") };
-                self.fail(Diagnostic::error(code, span, kind).label(what).other(solve, "solved here").help(help))
+                let kind = if linear_only {
+                    format!(
+                        "the equation `{name}` is not linear, but the model is solved as `{using}`"
+                    )
+                } else {
+                    format!("the equation `{name}` may not stand in a model solved as `{using}`")
+                };
+                self.fail(
+                    Diagnostic::error(code, span, kind)
+                        .label(what)
+                        .other(solve, "solved here")
+                        .help(help),
+                )
             }
         }
     }
 
-    fn check_discrete(&mut self, rows: &[ModelRow], using: &str, solve: Span) -> Result<(), Failed> {
-        if !matches!(using, "lp" | "nlp" | "dnlp" | "qcp" | "mcp" | "cns" | "mpec") && !matches!(using, "mip" | "minlp" | "miqcp") {
+    fn check_discrete(
+        &mut self,
+        rows: &[ModelRow],
+        using: &str,
+        solve: Span,
+    ) -> Result<(), Failed> {
+        if !matches!(
+            using,
+            "lp" | "nlp" | "dnlp" | "qcp" | "mcp" | "cns" | "mpec"
+        ) && !matches!(using, "mip" | "minlp" | "miqcp")
+        {
             return Ok(());
         }
         let mut discrete = None;
@@ -274,15 +405,26 @@ impl Compiler {
                 walk(side, &mut |n| {
                     if let NodeKind::Var(v, _) = &n.kind
                         && let SymbolKind::Variable(k) = self.symbols.get(*v).kind
-                        && !matches!(k, VariableKind::Unstated | VariableKind::Free | VariableKind::Positive | VariableKind::Negative)
+                        && !matches!(
+                            k,
+                            VariableKind::Unstated
+                                | VariableKind::Free
+                                | VariableKind::Positive
+                                | VariableKind::Negative
+                        )
                     {
                         discrete = discrete.or(Some((*v, n.span)));
                     }
                 });
             }
         }
-        let Some((v, at)) = discrete else { return Ok(()) };
-        let (name, declared) = (self.symbols.get(v).name.clone(), self.symbols.get(v).declared);
+        let Some((v, at)) = discrete else {
+            return Ok(());
+        };
+        let (name, declared) = (
+            self.symbols.get(v).name.clone(),
+            self.symbols.get(v).declared,
+        );
         if matches!(using, "mip" | "minlp" | "miqcp") {
             let relaxed = match using {
                 "mip" => "rmip",
@@ -290,10 +432,14 @@ impl Compiler {
                 _ => "rmiqcp",
             };
             return self.fail(
-                Diagnostic::error("E0363", solve, format!("there is no solver for `{using}` with discrete variables"))
-                    .label("not there")
-                    .other(declared, format!("`{name}` is discrete"))
-                    .help(format!("`solve … using {relaxed}` solves the relaxation")),
+                Diagnostic::error(
+                    "E0363",
+                    solve,
+                    format!("there is no solver for `{using}` with discrete variables"),
+                )
+                .label("not there")
+                .other(declared, format!("`{name}` is discrete"))
+                .help(format!("`solve … using {relaxed}` solves the relaxation")),
             );
         }
         let relaxed = match using {
@@ -302,11 +448,15 @@ impl Compiler {
             _ => "rminlp",
         };
         self.fail(
-            Diagnostic::error("E0363", at, format!("`{name}` is a discrete variable, but the model is solved as `{using}`"))
-                .label("discrete")
-                .other(declared, "declared here")
-                .other(solve, "solved here")
-                .help(format!("`solve … using {relaxed}` solves the relaxation")),
+            Diagnostic::error(
+                "E0363",
+                at,
+                format!("`{name}` is a discrete variable, but the model is solved as `{using}`"),
+            )
+            .label("discrete")
+            .other(declared, "declared here")
+            .other(solve, "solved here")
+            .help(format!("`solve … using {relaxed}` solves the relaxation")),
         )
     }
 
@@ -333,18 +483,34 @@ impl Compiler {
             if eq.dim() != var.dim() {
                 failed |= self
                     .fail::<()>(
-                        Diagnostic::error("E0365", r.span, format!("`{}` has {} indices and `{}` has {}: they cannot be paired", eq.name, eq.dim(), var.name, var.dim()))
-                            .label("different dimensions")
-                            .other(eq.declared, "the equation")
-                            .other(var.declared, "the variable"),
+                        Diagnostic::error(
+                            "E0365",
+                            r.span,
+                            format!(
+                                "`{}` has {} indices and `{}` has {}: they cannot be paired",
+                                eq.name,
+                                eq.dim(),
+                                var.name,
+                                var.dim()
+                            ),
+                        )
+                        .label("different dimensions")
+                        .other(eq.declared, "the equation")
+                        .other(var.declared, "the variable"),
                     )
                     .is_err();
                 continue;
             }
-            let same = eq.domain.iter().zip(&var.domain).all(|(a, b)| match (a, b) {
-                (DomainPosition::Set(a), DomainPosition::Set(b)) => self.symbols.is_subset(*a, *b) || self.symbols.is_subset(*b, *a),
-                _ => true,
-            });
+            let same = eq
+                .domain
+                .iter()
+                .zip(&var.domain)
+                .all(|(a, b)| match (a, b) {
+                    (DomainPosition::Set(a), DomainPosition::Set(b)) => {
+                        self.symbols.is_subset(*a, *b) || self.symbols.is_subset(*b, *a)
+                    }
+                    _ => true,
+                });
             if !same {
                 failed |= self
                     .fail::<()>(
@@ -355,14 +521,20 @@ impl Compiler {
                     )
                     .is_err();
             }
-            if let Some(other) = rows.iter().find(|o| o.definition == r.definition && o.pair.is_some() && o.pair != r.pair)
+            if let Some(other) = rows
+                .iter()
+                .find(|o| o.definition == r.definition && o.pair.is_some() && o.pair != r.pair)
                 && r.span.lo > other.span.lo
             {
                 failed |= self
                     .fail::<()>(
-                        Diagnostic::error("E0367", r.span, format!("the equation `{}` is paired twice", eq.name))
-                            .label("second pair")
-                            .other(other.span, "first pair"),
+                        Diagnostic::error(
+                            "E0367",
+                            r.span,
+                            format!("the equation `{}` is paired twice", eq.name),
+                        )
+                        .label("second pair")
+                        .other(other.span, "first pair"),
                     )
                     .is_err();
             }
@@ -402,6 +574,8 @@ pub fn walk<'a>(n: &'a Node, f: &mut dyn FnMut(&'a Node)) {
 
 fn mentions(n: &Node, v: SymbolId) -> bool {
     let mut hit = false;
-    walk(n, &mut |x| hit |= matches!(&x.kind, NodeKind::Var(s, _) if *s == v));
+    walk(n, &mut |x| {
+        hit |= matches!(&x.kind, NodeKind::Var(s, _) if *s == v)
+    });
     hit
 }

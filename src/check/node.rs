@@ -54,7 +54,9 @@ pub struct Key {
 impl Key {
     /// Whether all parts are slots and labels.
     pub fn is_plain(&self) -> bool {
-        self.parts.iter().all(|p| matches!(p, Part::Slot(_) | Part::Label(_)))
+        self.parts
+            .iter()
+            .all(|p| matches!(p, Part::Slot(_) | Part::Label(_)))
     }
 }
 
@@ -259,7 +261,11 @@ pub struct Code {
 impl Code {
     /// A statement.
     pub fn new(kind: CodeKind, span: Span) -> Self {
-        Self { kind, span, scans: std::cell::OnceCell::new() }
+        Self {
+            kind,
+            span,
+            scans: std::cell::OnceCell::new(),
+        }
     }
 }
 

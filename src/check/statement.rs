@@ -7,31 +7,109 @@ use super::{Compiler, Failed};
 use crate::diag::{Diagnostic, nearest};
 use crate::source::{SourceMap, Span};
 use crate::syntax::ast::{
-    self, Assign, DisplayItem, Equate, Expr, ExprKind, Ident, OptionForm, OptionItem, OptionValue, Put, PutItem, Stmt, StmtKind,
+    self, Assign, DisplayItem, Equate, Expr, ExprKind, Ident, OptionForm, OptionItem, OptionValue,
+    Put, PutItem, Stmt, StmtKind,
 };
 use std::rc::Rc;
 
 /// Options of the `option` statement that are numbers or switches, besides solver choices.
 const OPTIONS: &[&str] = &[
-    "limrow", "limcol", "iterlim", "reslim", "decimals", "optcr", "optca", "domlim", "bratio", "seed", "sysout", "solprint",
-    "solveopt", "solvelink", "savepoint", "threads", "profile", "profiletol", "eject", "dispwidth", "forcework", "measure",
-    "memorystat", "strictsingleton", "intvarup", "sys10", "sys11", "sys12", "dmpsym", "dmpopt", "dualcheck", "real1", "real2",
-    "real3", "real4", "real5", "integer1", "integer2", "integer3", "integer4", "integer5", "subsystems", "on115", "zerores",
-    "zeroresrep", "solslack", "cheat", "cutoff", "work", "oldname", "solver", "asyncsollst", "fddelta", "fdopt", "threadsasync",
-    "bratio", "ejectx", "mcprholdfx", "gdxuels", "shuffle", "lp_accuracy", "certify", "mpec_method", "mpec_bound", "checkerrorlevel",
-    "dmpuserSym", "resLim", "holdfixedasync", "prefixloadpath", "debugtask", "validation", "format", "hessscale", "ecimplicitload",
+    "limrow",
+    "limcol",
+    "iterlim",
+    "reslim",
+    "decimals",
+    "optcr",
+    "optca",
+    "domlim",
+    "bratio",
+    "seed",
+    "sysout",
+    "solprint",
+    "solveopt",
+    "solvelink",
+    "savepoint",
+    "threads",
+    "profile",
+    "profiletol",
+    "eject",
+    "dispwidth",
+    "forcework",
+    "measure",
+    "memorystat",
+    "strictsingleton",
+    "intvarup",
+    "sys10",
+    "sys11",
+    "sys12",
+    "dmpsym",
+    "dmpopt",
+    "dualcheck",
+    "real1",
+    "real2",
+    "real3",
+    "real4",
+    "real5",
+    "integer1",
+    "integer2",
+    "integer3",
+    "integer4",
+    "integer5",
+    "subsystems",
+    "on115",
+    "zerores",
+    "zeroresrep",
+    "solslack",
+    "cheat",
+    "cutoff",
+    "work",
+    "oldname",
+    "solver",
+    "asyncsollst",
+    "fddelta",
+    "fdopt",
+    "threadsasync",
+    "bratio",
+    "ejectx",
+    "mcprholdfx",
+    "gdxuels",
+    "shuffle",
+    "lp_accuracy",
+    "certify",
+    "mpec_method",
+    "mpec_bound",
+    "checkerrorlevel",
+    "dmpuserSym",
+    "resLim",
+    "holdfixedasync",
+    "prefixloadpath",
+    "debugtask",
+    "validation",
+    "format",
+    "hessscale",
+    "ecimplicitload",
 ];
 
 impl Compiler {
     /// Checks a statement and appends its code.
-    pub(super) fn statement(&mut self, stmt: &Stmt, map: &SourceMap, out: &mut Vec<Code>) -> Result<(), Failed> {
+    pub(super) fn statement(
+        &mut self,
+        stmt: &Stmt,
+        map: &SourceMap,
+        out: &mut Vec<Code>,
+    ) -> Result<(), Failed> {
         let slot = self.next_slot;
         let r = self.one_statement(stmt, map, out);
         self.next_slot = slot;
         r
     }
 
-    fn one_statement(&mut self, stmt: &Stmt, map: &SourceMap, out: &mut Vec<Code>) -> Result<(), Failed> {
+    fn one_statement(
+        &mut self,
+        stmt: &Stmt,
+        map: &SourceMap,
+        out: &mut Vec<Code>,
+    ) -> Result<(), Failed> {
         self.modes = stmt.modes;
         let span = stmt.span;
         if self.nesting > 0 {
@@ -57,11 +135,23 @@ impl Compiler {
                 Ok(CodeKind::Loop(domain, c.body(body, map)?))
             })?,
             StmtKind::While(cond, body) => CodeKind::While(self.expr(cond)?, self.body(body, map)?),
-            StmtKind::Repeat(body, until) => CodeKind::Repeat(self.body(body, map)?, self.expr(until)?),
-            StmtKind::For { variable, from, down, to, by, body } => {
+            StmtKind::Repeat(body, until) => {
+                CodeKind::Repeat(self.body(body, map)?, self.expr(until)?)
+            }
+            StmtKind::For {
+                variable,
+                from,
+                down,
+                to,
+                by,
+                body,
+            } => {
                 let s = self.lookup(&variable.name)?;
                 let symbol = self.symbols.get(s);
-                if !matches!(symbol.kind, SymbolKind::Parameter { .. }) || symbol.dim() != 0 || variable.attribute.is_some() {
+                if !matches!(symbol.kind, SymbolKind::Parameter { .. })
+                    || symbol.dim() != 0
+                    || variable.attribute.is_some()
+                {
                     let (declared, kind) = (symbol.declared, symbol.kind_name());
                     return self.fail(
                         Diagnostic::error("E0321", variable.span, "`for` counts with a scalar")
@@ -74,7 +164,14 @@ impl Compiler {
                 let (from, to) = (self.expr(from)?, self.expr(to)?);
                 let by = by.as_ref().map(|b| self.expr(b)).transpose()?;
                 self.symbols.get_mut(s).assigned = true;
-                CodeKind::For { table, from, down: *down, to, by, body: self.body(body, map)? }
+                CodeKind::For {
+                    table,
+                    from,
+                    down: *down,
+                    to,
+                    by,
+                    body: self.body(body, map)?,
+                }
             }
             StmtKind::If(arms, otherwise) => {
                 let mut checked = Vec::new();
@@ -85,8 +182,14 @@ impl Compiler {
             }
             StmtKind::Break(c) => CodeKind::Break(self.optional(c.as_ref())?),
             StmtKind::Continue(c) => CodeKind::Continue(self.optional(c.as_ref())?),
-            StmtKind::Display(c, items) => CodeKind::Display(self.optional(c.as_ref())?, self.shown(items)?),
-            StmtKind::Abort { condition, items, no_error } => CodeKind::Abort {
+            StmtKind::Display(c, items) => {
+                CodeKind::Display(self.optional(c.as_ref())?, self.shown(items)?)
+            }
+            StmtKind::Abort {
+                condition,
+                items,
+                no_error,
+            } => CodeKind::Abort {
                 condition: self.optional(condition.as_ref())?,
                 items: self.shown(items)?,
                 no_error: *no_error,
@@ -103,7 +206,9 @@ impl Compiler {
             StmtKind::Exchange(x) => {
                 for (name, _) in &x.items {
                     let s = self.lookup(name)?;
-                    if x.keyword.name.to_lowercase().contains("load") && !x.keyword.name.to_lowercase().contains("unload") {
+                    if x.keyword.name.to_lowercase().contains("load")
+                        && !x.keyword.name.to_lowercase().contains("unload")
+                    {
                         self.symbols.get_mut(s).assigned = true;
                     }
                 }
@@ -121,16 +226,24 @@ impl Compiler {
                 if !matches!(self.symbols.get(s).kind, SymbolKind::Figure(_)) {
                     let declared = self.symbols.get(s).declared;
                     return self.fail(
-                        Diagnostic::error("E0323", name.span, format!("`{}` is not a figure", name.name))
-                            .label("a figure is expected")
-                            .other(declared, "declared here"),
+                        Diagnostic::error(
+                            "E0323",
+                            name.span,
+                            format!("`{}` is not a figure", name.name),
+                        )
+                        .label("a figure is expected")
+                        .other(declared, "declared here"),
                     );
                 }
                 let file = match file.as_ref().map(|f| (&f.kind, f.span)) {
                     None => None,
                     Some((ExprKind::Text(t), _)) => Some(t.clone()),
                     Some((_, span)) => {
-                        return self.fail(Diagnostic::error("E0323", span, "`draw` takes a file name in quotes"));
+                        return self.fail(Diagnostic::error(
+                            "E0323",
+                            span,
+                            "`draw` takes a file name in quotes",
+                        ));
                     }
                 };
                 CodeKind::Draw(s, file)
@@ -142,17 +255,27 @@ impl Compiler {
 
     fn no_declaration(&mut self, stmt: &Stmt) -> Result<(), Failed> {
         let what = match &stmt.kind {
-            StmtKind::Set(_) | StmtKind::Alias(_) | StmtKind::Parameter(_) | StmtKind::Table(_) | StmtKind::Variable(..)
-            | StmtKind::Equation(_) | StmtKind::Model(_) | StmtKind::Acronym(_) | StmtKind::File(_) | StmtKind::Figure(_) => {
-                "declaration"
-            }
+            StmtKind::Set(_)
+            | StmtKind::Alias(_)
+            | StmtKind::Parameter(_)
+            | StmtKind::Table(_)
+            | StmtKind::Variable(..)
+            | StmtKind::Equation(_)
+            | StmtKind::Model(_)
+            | StmtKind::Acronym(_)
+            | StmtKind::File(_)
+            | StmtKind::Figure(_) => "declaration",
             StmtKind::Equate(_) => "definition of an equation",
             _ => return Ok(()),
         };
         self.fail(
-            Diagnostic::error("E0324", stmt.span, format!("a {what} may not stand inside a loop or an if"))
-                .label("inside a loop or an if")
-                .help("move it before the loop"),
+            Diagnostic::error(
+                "E0324",
+                stmt.span,
+                format!("a {what} may not stand inside a loop or an if"),
+            )
+            .label("inside a loop or an if")
+            .help("move it before the loop"),
         )
     }
 
@@ -175,26 +298,51 @@ impl Compiler {
         let t = &a.target;
         if t.name.name.eq_ignore_ascii_case("execseed") && self.symbols.find("execseed").is_none() {
             let value = self.expr(&a.value)?;
-            return Ok(CodeKind::Assign { domain: Domain::default(), target: Target::Seed, key: Key::default(), value, covers: false });
+            return Ok(CodeKind::Assign {
+                domain: Domain::default(),
+                target: Target::Seed,
+                key: Key::default(),
+                value,
+                covers: false,
+            });
         }
         let s = self.lookup(&t.name)?;
         let symbol = self.symbols.get(s).clone();
         let target = match &symbol.kind {
             SymbolKind::Parameter { .. } if t.attribute.is_none() => Target::Table(symbol.table),
             SymbolKind::Set { singleton } if t.attribute.is_none() => {
-                if *singleton { Target::Singleton(symbol.table) } else { Target::Set(symbol.table) }
+                if *singleton {
+                    Target::Singleton(symbol.table)
+                } else {
+                    Target::Set(symbol.table)
+                }
             }
-            SymbolKind::Alias(root) if t.attribute.is_none() => Target::Set(self.symbols.get(*root).table),
+            SymbolKind::Alias(root) if t.attribute.is_none() => {
+                Target::Set(self.symbols.get(*root).table)
+            }
             SymbolKind::Variable(_) | SymbolKind::Equation(_) => {
                 let Some(attr) = &t.attribute else {
                     let what = symbol.kind_name();
-                    let d = Diagnostic::error("E0310", t.span, format!("`{}` is a {what}; it cannot be assigned itself", symbol.name))
-                        .label("which of its numbers?")
-                        .other(symbol.declared, "declared here");
+                    let d = Diagnostic::error(
+                        "E0310",
+                        t.span,
+                        format!(
+                            "`{}` is a {what}; it cannot be assigned itself",
+                            symbol.name
+                        ),
+                    )
+                    .label("which of its numbers?")
+                    .other(symbol.declared, "declared here");
                     return self.fail(if what == "equation" {
-                        d.help(format!("an equation is defined with two dots: `{}.. left =e= right;`", t.name.name))
+                        d.help(format!(
+                            "an equation is defined with two dots: `{}.. left =e= right;`",
+                            t.name.name
+                        ))
                     } else {
-                        d.help(format!("assign `{0}.l`, `{0}.lo`, `{0}.up` or `{0}.fx`", t.name.name))
+                        d.help(format!(
+                            "assign `{0}.l`, `{0}.lo`, `{0}.up` or `{0}.fx`",
+                            t.name.name
+                        ))
                     });
                 };
                 match functions::record_attribute(&attr.name) {
@@ -202,11 +350,22 @@ impl Compiler {
                     Some(functions::RecordAttribute::Fix) => Target::Fix(s),
                     Some(functions::RecordAttribute::Derived(_)) => {
                         return self.fail(
-                            Diagnostic::error("E0314", attr.span, format!("`.{}` is computed and cannot be assigned", attr.name))
-                                .label("read only"),
+                            Diagnostic::error(
+                                "E0314",
+                                attr.span,
+                                format!("`.{}` is computed and cannot be assigned", attr.name),
+                            )
+                            .label("read only"),
                         );
                     }
-                    None => return self.unknown_attribute(attr, &symbol.name, symbol.kind_name(), "l, m, lo, up, fx, scale, prior"),
+                    None => {
+                        return self.unknown_attribute(
+                            attr,
+                            &symbol.name,
+                            symbol.kind_name(),
+                            "l, m, lo, up, fx, scale, prior",
+                        );
+                    }
                 }
             }
             SymbolKind::Model(_) | SymbolKind::File(_) if t.attribute.is_some() => {
@@ -215,9 +374,17 @@ impl Compiler {
             }
             _ => {
                 return self.fail(
-                    Diagnostic::error("E0325", t.span, format!("`{}` is a {} and cannot be assigned", symbol.name, symbol.kind_name()))
-                        .label("not assignable")
-                        .other(symbol.declared, "declared here"),
+                    Diagnostic::error(
+                        "E0325",
+                        t.span,
+                        format!(
+                            "`{}` is a {} and cannot be assigned",
+                            symbol.name,
+                            symbol.kind_name()
+                        ),
+                    )
+                    .label("not assignable")
+                    .other(symbol.declared, "declared here"),
                 );
             }
         };
@@ -241,7 +408,11 @@ impl Compiler {
                 c.condition(cond, &mut domain)?;
             }
             c.texts_allowed = matches!(target, Target::Object(..));
-            let value = if is_set { c.set_expr(&a.value) } else { c.expr(&a.value) };
+            let value = if is_set {
+                c.set_expr(&a.value)
+            } else {
+                c.expr(&a.value)
+            };
             c.texts_allowed = false;
             let value = value?;
             let covers = domain.conditions.is_empty()
@@ -255,7 +426,13 @@ impl Compiler {
                             _ => false,
                         }
                 });
-            Ok(CodeKind::Assign { domain, target, key: Key { parts }, value, covers })
+            Ok(CodeKind::Assign {
+                domain,
+                target,
+                key: Key { parts },
+                value,
+                covers,
+            })
         })?;
         let root = self.symbols.root(s);
         let sym = self.symbols.get_mut(root);
@@ -271,20 +448,32 @@ impl Compiler {
         let symbol = self.symbols.get(s).clone();
         let SymbolKind::Equation(defined) = symbol.kind else {
             return self.fail(
-                Diagnostic::error("E0326", e.name.span, format!("`{}` is a {}, not an equation", symbol.name, symbol.kind_name()))
-                    .label("an equation is expected before `..`")
-                    .other(symbol.declared, "declared here")
-                    .help(format!("declare it: `equation {};`", e.name.name)),
+                Diagnostic::error(
+                    "E0326",
+                    e.name.span,
+                    format!(
+                        "`{}` is a {}, not an equation",
+                        symbol.name,
+                        symbol.kind_name()
+                    ),
+                )
+                .label("an equation is expected before `..`")
+                .other(symbol.declared, "declared here")
+                .help(format!("declare it: `equation {};`", e.name.name)),
             );
         };
         if let Some(d) = defined {
             let first = self.equations[d].span;
             if !self.modes.multi {
                 return self.fail(
-                    Diagnostic::error("E0327", e.name.span, format!("the equation `{}` is defined twice", symbol.name))
-                        .label("second definition")
-                        .other(first, "first definition")
-                        .help("give the second one another name"),
+                    Diagnostic::error(
+                        "E0327",
+                        e.name.span,
+                        format!("the equation `{}` is defined twice", symbol.name),
+                    )
+                    .label("second definition")
+                    .other(first, "first definition")
+                    .help("give the second one another name"),
                 );
             }
         }
@@ -309,7 +498,15 @@ impl Compiler {
                 (Ok(l), Ok(r)) => (l, r),
                 _ => return Err(Failed),
             };
-            Ok(EquationDef { symbol: s, domain, key: Key { parts }, left, relation: e.relation, right, span })
+            Ok(EquationDef {
+                symbol: s,
+                domain,
+                key: Key { parts },
+                left,
+                relation: e.relation,
+                right,
+                span,
+            })
         });
         self.in_equation = false;
         // Defined, even if wrongly: one mistake, one message.
@@ -347,9 +544,16 @@ impl Compiler {
                     let symbol = self.symbols.get(s).clone();
                     if !r.indices.is_empty() {
                         return self.fail(
-                            Diagnostic::error("E0328", r.span, "`display` takes whole symbols, without indices")
-                                .label("indices here")
-                                .help(format!("write `display {}`; or copy the part you want into a parameter", r.name.name)),
+                            Diagnostic::error(
+                                "E0328",
+                                r.span,
+                                "`display` takes whole symbols, without indices",
+                            )
+                            .label("indices here")
+                            .help(format!(
+                                "write `display {}`; or copy the part you want into a parameter",
+                                r.name.name
+                            )),
                         );
                     }
                     let attr = match (&symbol.kind, &r.attribute) {
@@ -357,20 +561,40 @@ impl Compiler {
                             match display_attribute(&a.name) {
                                 Some(a) => Some(a),
                                 None => {
-                                    return self.unknown_attribute(a, &symbol.name, symbol.kind_name(), "l, m, lo, up, scale, prior");
+                                    return self.unknown_attribute(
+                                        a,
+                                        &symbol.name,
+                                        symbol.kind_name(),
+                                        "l, m, lo, up, scale, prior",
+                                    );
                                 }
                             }
                         }
                         (SymbolKind::Variable(_) | SymbolKind::Equation(_), None) => {
                             return self.fail(
-                                Diagnostic::error("E0310", r.span, format!("`{}` is a {}; say which number to display", symbol.name, symbol.kind_name()))
-                                    .label("an attribute is expected")
-                                    .help(format!("for instance `{}.l`", r.name.name)),
+                                Diagnostic::error(
+                                    "E0310",
+                                    r.span,
+                                    format!(
+                                        "`{}` is a {}; say which number to display",
+                                        symbol.name,
+                                        symbol.kind_name()
+                                    ),
+                                )
+                                .label("an attribute is expected")
+                                .help(format!("for instance `{}.l`", r.name.name)),
                             );
                         }
-                        (SymbolKind::Model(_) | SymbolKind::File(_), Some(a)) => Some(self.object_attribute(s, a)?),
+                        (SymbolKind::Model(_) | SymbolKind::File(_), Some(a)) => {
+                            Some(self.object_attribute(s, a)?)
+                        }
                         (_, Some(a)) => {
-                            return self.unknown_attribute(a, &symbol.name, symbol.kind_name(), "none");
+                            return self.unknown_attribute(
+                                a,
+                                &symbol.name,
+                                symbol.kind_name(),
+                                "none",
+                            );
                         }
                         (_, None) => None,
                     };
@@ -391,9 +615,18 @@ impl Compiler {
                 let s = self.lookup(&item.name)?;
                 Ok(Some(CodeKind::Format(s, numbers.clone())))
             }
-            OptionForm::Project { last, source, indices } => self.project(item, *last, source, indices.as_deref()),
-            OptionForm::Assign(OptionValue::Text(t, span)) if lower == "clear" || lower == "kill" => {
-                let s = self.lookup(&Ident { name: t.clone(), span: *span })?;
+            OptionForm::Project {
+                last,
+                source,
+                indices,
+            } => self.project(item, *last, source, indices.as_deref()),
+            OptionForm::Assign(OptionValue::Text(t, span))
+                if lower == "clear" || lower == "kill" =>
+            {
+                let s = self.lookup(&Ident {
+                    name: t.clone(),
+                    span: *span,
+                })?;
                 Ok(Some(CodeKind::Clear(s)))
             }
             OptionForm::Assign(v) => {
@@ -408,7 +641,9 @@ impl Compiler {
                 Ok(Some(CodeKind::Option(lower.into(), value)))
             }
             OptionForm::Flag => {
-                if !OPTIONS.iter().any(|o| o.eq_ignore_ascii_case(&lower)) && !matches!(lower.as_str(), "dmpsym" | "eject" | "shut" | "stat") {
+                if !OPTIONS.iter().any(|o| o.eq_ignore_ascii_case(&lower))
+                    && !matches!(lower.as_str(), "dmpsym" | "eject" | "shut" | "stat")
+                {
                     return self.unknown_option(item);
                 }
                 Ok(None)
@@ -417,8 +652,20 @@ impl Compiler {
     }
 
     fn unknown_option<T>(&mut self, item: &OptionItem) -> Result<T, Failed> {
-        let near = nearest(&item.name.name, OPTIONS.iter().copied().chain(functions::PROBLEM_TYPES.iter().copied())).map(str::to_string);
-        let d = Diagnostic::error("E0329", item.name.span, format!("there is no option `{}`", item.name.name)).label("unknown option");
+        let near = nearest(
+            &item.name.name,
+            OPTIONS
+                .iter()
+                .copied()
+                .chain(functions::PROBLEM_TYPES.iter().copied()),
+        )
+        .map(str::to_string);
+        let d = Diagnostic::error(
+            "E0329",
+            item.name.span,
+            format!("there is no option `{}`", item.name.name),
+        )
+        .label("unknown option");
         self.fail(match near {
             Some(n) => d.help(format!("did you mean `{n}`?")),
             None => d,
@@ -439,10 +686,17 @@ impl Compiler {
             (Some(a), Some(b)) => {
                 let mut p = Vec::new();
                 for name in a {
-                    match b.iter().position(|x| x.name.eq_ignore_ascii_case(&name.name)) {
+                    match b
+                        .iter()
+                        .position(|x| x.name.eq_ignore_ascii_case(&name.name))
+                    {
                         Some(i) => p.push(i),
                         None => {
-                            return self.fail(Diagnostic::error("E0331", name.span, format!("`{}` is not an index of the right side", name.name)));
+                            return self.fail(Diagnostic::error(
+                                "E0331",
+                                name.span,
+                                format!("`{}` is not an index of the right side", name.name),
+                            ));
                         }
                     }
                 }
@@ -454,7 +708,9 @@ impl Compiler {
                 let mut taken = vec![false; from.dim()];
                 let mut p = Vec::new();
                 for d in &target.domain {
-                    let hit = (0..from.dim()).find(|&i| !taken[i] && from.domain[i] == *d && *d != DomainPosition::Universe);
+                    let hit = (0..from.dim()).find(|&i| {
+                        !taken[i] && from.domain[i] == *d && *d != DomainPosition::Universe
+                    });
                     match hit {
                         Some(i) => {
                             taken[i] = true;
@@ -475,9 +731,13 @@ impl Compiler {
         };
         if positions.len() != target.dim() || positions.iter().any(|&p| p >= from.dim()) {
             return self.fail(
-                Diagnostic::error("E0331", item.name.span, "the right side has fewer positions than the left")
-                    .other(target.declared, "left side declared here")
-                    .other(from.declared, "right side declared here"),
+                Diagnostic::error(
+                    "E0331",
+                    item.name.span,
+                    "the right side has fewer positions than the left",
+                )
+                .other(target.declared, "left side declared here")
+                .other(from.declared, "right side declared here"),
             );
         }
         let root = self.symbols.root(t);
@@ -486,7 +746,12 @@ impl Compiler {
         if symbol.is_set() {
             symbol.dynamic = true;
         }
-        Ok(Some(CodeKind::Project { target: root, source: s, positions, count: !last }))
+        Ok(Some(CodeKind::Project {
+            target: root,
+            source: s,
+            positions,
+            count: !last,
+        }))
     }
 
     fn put(&mut self, p: &Put) -> Result<CodeKind, Failed> {
@@ -504,12 +769,30 @@ impl Compiler {
                 PutItem::NewLine => PutCode::NewLine,
                 PutItem::Column(e) => PutCode::Column(self.expr(e)?),
                 PutItem::Row(e) => PutCode::Row(self.expr(e)?),
-                PutItem::Item { value, align, width, decimals } => {
-                    if let ExprKind::Apply { name, attribute, arguments: None } = &value.kind {
+                PutItem::Item {
+                    value,
+                    align,
+                    width,
+                    decimals,
+                } => {
+                    if let ExprKind::Apply {
+                        name,
+                        attribute,
+                        arguments: None,
+                    } = &value.kind
+                    {
                         if name.name.eq_ignore_ascii_case("system") {
                             let what = attribute.as_ref().map_or("", |a| &*a.name).to_lowercase();
-                            let value = Node::data(NodeKind::Text(format!("%system.{what}%").into()), value.span);
-                            out.push(PutCode::Item { value, align: *align, width: *width, decimals: *decimals });
+                            let value = Node::data(
+                                NodeKind::Text(format!("%system.{what}%").into()),
+                                value.span,
+                            );
+                            out.push(PutCode::Item {
+                                value,
+                                align: *align,
+                                width: *width,
+                                decimals: *decimals,
+                            });
                             continue;
                         }
                         if let Some(s) = self.symbols.find(&name.name) {
@@ -520,7 +803,12 @@ impl Compiler {
                             }
                         }
                     }
-                    PutCode::Item { value: self.expr(value)?, align: *align, width: *width, decimals: *decimals }
+                    PutCode::Item {
+                        value: self.expr(value)?,
+                        align: *align,
+                        width: *width,
+                        decimals: *decimals,
+                    }
                 }
             });
         }
@@ -538,16 +826,27 @@ impl Compiler {
             }
         }
         self.texts_allowed = false;
-        let kind = SymbolKind::Figure(Rc::new(FigureCode { title: f.title.clone(), elements }));
+        let kind = SymbolKind::Figure(Rc::new(FigureCode {
+            title: f.title.clone(),
+            elements,
+        }));
         self.declare_plain(&f.name, kind, f.title.as_deref())?;
         if failed { Err(Failed) } else { Ok(()) }
     }
 
     fn figure_element(&mut self, e: &ast::FigureElement) -> Result<FigureElementCode, Failed> {
-        const KINDS: &[&str] = &["polygon", "polyline", "points", "arrow", "text", "line", "bar", "title", "axes", "xaxis", "yaxis", "legend", "size"];
+        const KINDS: &[&str] = &[
+            "polygon", "polyline", "points", "arrow", "text", "line", "bar", "title", "axes",
+            "xaxis", "yaxis", "legend", "size",
+        ];
         let kind = e.kind.name.to_lowercase();
         if !KINDS.contains(&kind.as_str()) {
-            let d = Diagnostic::error("E0332", e.kind.span, format!("a figure has no element `{}`", e.kind.name)).label("unknown element");
+            let d = Diagnostic::error(
+                "E0332",
+                e.kind.span,
+                format!("a figure has no element `{}`", e.kind.name),
+            )
+            .label("unknown element");
             return self.fail(match nearest(&kind, KINDS.iter().copied()) {
                 Some(n) => d.help(format!("did you mean `{n}`?")),
                 None => d.help(format!("there are: {}", KINDS.join(", "))),
@@ -561,21 +860,34 @@ impl Compiler {
             for (name, value) in &e.arguments {
                 // A bare word that names nothing is a word: `fill = none`.
                 let node = match &value.kind {
-                    ExprKind::Apply { name: word, attribute: None, arguments: None } if self.symbols.find(&word.name).is_none() => {
+                    ExprKind::Apply {
+                        name: word,
+                        attribute: None,
+                        arguments: None,
+                    } if self.symbols.find(&word.name).is_none() => {
                         Node::data(NodeKind::Text(word.name.clone()), value.span)
                     }
                     _ => self.expr(value)?,
                 };
                 if node.has_var {
                     return self.fail(
-                        Diagnostic::error("E0310", node.span, "a variable is not a number; a figure shows its level")
-                            .label("which of its numbers?")
-                            .help("write `.l` behind the variable's name"),
+                        Diagnostic::error(
+                            "E0310",
+                            node.span,
+                            "a variable is not a number; a figure shows its level",
+                        )
+                        .label("which of its numbers?")
+                        .help("write `.l` behind the variable's name"),
                     );
                 }
                 arguments.push((name.as_ref().map(|n| n.name.to_lowercase().into()), node));
             }
-            Ok(FigureElementCode { kind: kind.into(), domain, arguments, span: e.span })
+            Ok(FigureElementCode {
+                kind: kind.into(),
+                domain,
+                arguments,
+                span: e.span,
+            })
         })();
         self.in_equation = false;
         r

@@ -212,7 +212,10 @@ impl Symbols {
 
     /// All symbols in order of declaration.
     pub fn iter(&self) -> impl Iterator<Item = (SymbolId, &Symbol)> {
-        self.list.iter().enumerate().map(|(i, s)| (i as SymbolId, s))
+        self.list
+            .iter()
+            .enumerate()
+            .map(|(i, s)| (i as SymbolId, s))
     }
 
     /// The set behind an alias.

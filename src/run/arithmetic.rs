@@ -53,7 +53,11 @@ pub fn negate(a: f64) -> f64 {
 #[inline]
 pub fn multiply(a: f64, b: f64) -> Result<f64, ArithmeticError> {
     let r = a * b;
-    if r.is_finite() { Ok(r) } else { multiply_special(a, b) }
+    if r.is_finite() {
+        Ok(r)
+    } else {
+        multiply_special(a, b)
+    }
 }
 
 #[cold]
@@ -71,14 +75,22 @@ fn multiply_special(a: f64, b: f64) -> Result<f64, ArithmeticError> {
     if za || zb {
         return Ok(if a == 0.0 || b == 0.0 { 0.0 } else { EPS });
     }
-    if a.is_infinite() || b.is_infinite() { Ok(a * b) } else { Err(ArithmeticError::Overflow) }
+    if a.is_infinite() || b.is_infinite() {
+        Ok(a * b)
+    } else {
+        Err(ArithmeticError::Overflow)
+    }
 }
 
 /// a / b
 #[inline]
 pub fn divide(a: f64, b: f64) -> Result<f64, ArithmeticError> {
     let r = a / b;
-    if r.is_finite() && b != 0.0 && b.is_finite() { Ok(r) } else { divide_special(a, b) }
+    if r.is_finite() && b != 0.0 && b.is_finite() {
+        Ok(r)
+    } else {
+        divide_special(a, b)
+    }
 }
 
 #[cold]

@@ -15,7 +15,9 @@ pub fn jdate(year: f64, month: f64, day: f64) -> Option<f64> {
 pub fn part(f: DataFunction, x: f64) -> Option<f64> {
     use DataFunction as D;
     let days = x.floor();
-    let d = EPOCH.checked_add(jiff::Span::new().try_days(days as i64).ok()?).ok()?;
+    let d = EPOCH
+        .checked_add(jiff::Span::new().try_days(days as i64).ok()?)
+        .ok()?;
     let milliseconds = ((x - days) * 86_400_000.0).round();
     Some(match f {
         D::GYear => f64::from(d.year()),

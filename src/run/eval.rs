@@ -40,7 +40,11 @@ impl Machine<'_> {
         let set = self.store.table(lag.set);
         let at = i64::from(set.find(&[base])?);
         let n = set.len() as i64;
-        let to = if lag.circular { (at + offset).rem_euclid(n.max(1)) } else { at + offset };
+        let to = if lag.circular {
+            (at + offset).rem_euclid(n.max(1))
+        } else {
+            at + offset
+        };
         (0..n).contains(&to).then(|| set.key(to as u32)[0])
     }
 
@@ -66,39 +70,68 @@ impl Machine<'_> {
             [Part::Slot(a), Part::Slot(b)] => t.get(&[frame[*a as usize], frame[*b as usize]]),
             parts => {
                 let mut k = [0; 20];
-                if self.key(key, frame, &mut k) { t.get(&k[..parts.len()]) } else { 0.0 }
+                if self.key(key, frame, &mut k) {
+                    t.get(&k[..parts.len()])
+                } else {
+                    0.0
+                }
             }
         }
     }
 
     pub(super) fn is_member(&self, table: TableId, key: &Key, frame: &mut Frame) -> bool {
         let mut k = [0; 20];
-        self.key(key, frame, &mut k) && self.store.table(table).find(&k[..key.parts.len()]).is_some()
+        self.key(key, frame, &mut k)
+            && self
+                .store
+                .table(table)
+                .find(&k[..key.parts.len()])
+                .is_some()
     }
 
     fn arithmetic(&self, r: Result<f64, ArithmeticError>, span: Span) -> f64 {
         match r {
             Ok(x) => x,
-            Err(ArithmeticError::DivisionByZero) => {
-                self.execution_error("E0401", span, "division by zero".into(), "guard it with a condition, `a / b $ b` or `(a/b)$b`")
-            }
+            Err(ArithmeticError::DivisionByZero) => self.execution_error(
+                "E0401",
+                span,
+                "division by zero".into(),
+                "guard it with a condition, `a / b $ b` or `(a/b)$b`",
+            ),
             Err(ArithmeticError::Indefinite) => self.execution_error(
                 "E0402",
                 span,
                 "infinity times zero has no value".into(),
                 "replace the infinite number, or guard the product with a condition",
             ),
-            Err(ArithmeticError::Overflow) => {
-                self.execution_error("E0404", span, "the result is too large for a number".into(), "rescale the data")
-            }
+            Err(ArithmeticError::Overflow) => self.execution_error(
+                "E0404",
+                span,
+                "the result is too large for a number".into(),
+                "rescale the data",
+            ),
         }
     }
 
     /// Reports an execution error; the value is `undf`.
-    pub(super) fn execution_error(&self, code: &'static str, span: Span, message: String, help: &str) -> f64 {
+    pub(super) fn execution_error(
+        &self,
+        code: &'static str,
+        span: Span,
+        message: String,
+        help: &str,
+    ) -> f64 {
         let at = self.current_record();
-        let message = if at.is_empty() { message } else { format!("{message} ({at})") };
-        self.note(Diagnostic::execution(code, span, message).label("here").help(help));
+        let message = if at.is_empty() {
+            message
+        } else {
+            format!("{message} ({at})")
+        };
+        self.note(
+            Diagnostic::execution(code, span, message)
+                .label("here")
+                .help(help),
+        );
         UNDF
     }
 
@@ -163,7 +196,11 @@ impl Machine<'_> {
                 self.data_call(*f, &values, n.span)
             }
             NodeKind::Ord(set, p) => match self.part(p, frame) {
-                Some(l) => self.store.table(*set).find(&[l]).map_or(0.0, |r| f64::from(r) + 1.0),
+                Some(l) => self
+                    .store
+                    .table(*set)
+                    .find(&[l])
+                    .map_or(0.0, |r| f64::from(r) + 1.0),
                 None => 0.0,
             },
             NodeKind::Card(t) => self.store.table(*t).len() as f64,
@@ -171,7 +208,9 @@ impl Machine<'_> {
                 let (a, b) = (self.part(a, frame), self.part(b, frame));
                 f64::from(u8::from(a.is_some() && a == b))
             }
-            NodeKind::LabelAttribute(which, set, p) => self.label_attribute(*which, *set, p, frame, n.span),
+            NodeKind::LabelAttribute(which, set, p) => {
+                self.label_attribute(*which, *set, p, frame, n.span)
+            }
             NodeKind::Derived(d, s, key) => self.derived(*d, *s, key, frame),
             NodeKind::ObjectAttribute(s, a) => self.object_attribute(*s, a),
             NodeKind::Var(s, key) => {
@@ -179,7 +218,10 @@ impl Machine<'_> {
                 let t = self.symbols.get(*s).table;
                 self.data(t + attribute::L, key, frame)
             }
-            NodeKind::Text(_) | NodeKind::LabelText(_) | NodeKind::ElementText(..) | NodeKind::SymbolText(_) => 0.0,
+            NodeKind::Text(_)
+            | NodeKind::LabelText(_)
+            | NodeKind::ElementText(..)
+            | NodeKind::SymbolText(_) => 0.0,
         }
     }
 
@@ -218,7 +260,9 @@ impl Machine<'_> {
         if args.iter().all(|x| x.is_finite()) {
             return match function_value(f, args) {
                 Ok(v) => v,
-                Err(e) => self.execution_error("E0403", span, e.to_string(), "guard it with a condition"),
+                Err(e) => {
+                    self.execution_error("E0403", span, e.to_string(), "guard it with a condition")
+                }
             };
         }
         if args.iter().any(|&x| is_undf(x)) {
@@ -229,8 +273,14 @@ impl Machine<'_> {
         }
         let eps = args.iter().any(|&x| is_eps(x));
         match f {
-            Function::Min => args.iter().copied().fold(f64::INFINITY, |a, b| extreme(a, b, |a, b| a < b)),
-            Function::Max => args.iter().copied().fold(f64::NEG_INFINITY, |a, b| extreme(a, b, |a, b| a > b)),
+            Function::Min => args
+                .iter()
+                .copied()
+                .fold(f64::INFINITY, |a, b| extreme(a, b, |a, b| a < b)),
+            Function::Max => args
+                .iter()
+                .copied()
+                .fold(f64::NEG_INFINITY, |a, b| extreme(a, b, |a, b| a > b)),
             Function::Abs | Function::Sqrt | Function::Sign | Function::Sqr if eps => EPS,
             Function::Abs | Function::Sqr => f64::INFINITY,
             Function::Sqrt | Function::Exp if args[0] == f64::INFINITY => f64::INFINITY,
@@ -257,7 +307,12 @@ impl Machine<'_> {
                 let plain: Vec<f64> = args.iter().map(|&x| number(x)).collect();
                 match function_value(f, &plain) {
                     Ok(v) => v,
-                    Err(e) => self.execution_error("E0403", span, e.to_string(), "guard it with a condition"),
+                    Err(e) => self.execution_error(
+                        "E0403",
+                        span,
+                        e.to_string(),
+                        "guard it with a condition",
+                    ),
                 }
             }
             _ => self.execution_error(
@@ -298,18 +353,32 @@ impl Machine<'_> {
             D::Fact => {
                 if a[0] < 0.0 || a[0].fract() != 0.0 {
                     drop(random);
-                    return self.execution_error("E0403", span, format!("fact({}) has no value", a[0]), "`fact` takes a whole number that is not negative");
+                    return self.execution_error(
+                        "E0403",
+                        span,
+                        format!("fact({}) has no value", a[0]),
+                        "`fact` takes a whole number that is not negative",
+                    );
                 }
-                (1..=a[0] as u64).take(400).fold(1.0, |p, k| p * k as f64).min(1e299)
+                (1..=a[0] as u64)
+                    .take(400)
+                    .fold(1.0, |p, k| p * k as f64)
+                    .min(1e299)
             }
             D::Pi => std::f64::consts::PI,
             D::JNow => self.now(),
             D::JStart => self.started,
             D::JDate => super::calendar::jdate(a[0], a[1], a[2]).unwrap_or(UNDF),
             D::JTime => (a[0] * 3600.0 + a[1] * 60.0 + a[2]) / 86400.0,
-            D::GYear | D::GMonth | D::GDay | D::GDow | D::GLeap | D::GHour | D::GMinute | D::GSecond | D::GMillisec => {
-                super::calendar::part(f, a[0]).unwrap_or(UNDF)
-            }
+            D::GYear
+            | D::GMonth
+            | D::GDay
+            | D::GDow
+            | D::GLeap
+            | D::GHour
+            | D::GMinute
+            | D::GSecond
+            | D::GMillisec => super::calendar::part(f, a[0]).unwrap_or(UNDF),
             D::TimeElapsed => self.elapsed(),
             D::ExecError => self.execution_error_count() as f64,
             D::ErrorLevel | D::Zero | D::Sleep => 0.0,
@@ -319,8 +388,17 @@ impl Machine<'_> {
         }
     }
 
-    fn label_attribute(&self, which: LabelAttribute, set: TableId, p: &Part, frame: &mut Frame, span: Span) -> f64 {
-        let Some(l) = self.part(p, frame) else { return 0.0 };
+    fn label_attribute(
+        &self,
+        which: LabelAttribute,
+        set: TableId,
+        p: &Part,
+        frame: &mut Frame,
+        span: Span,
+    ) -> f64 {
+        let Some(l) = self.part(p, frame) else {
+            return 0.0;
+        };
         let t = self.store.table(set);
         let Some(r) = t.find(&[l]) else { return 0.0 };
         let (r, n) = (f64::from(r), t.len() as f64);
@@ -331,7 +409,10 @@ impl Machine<'_> {
             LabelAttribute::Rev => n - 1.0 - r,
             LabelAttribute::Uel => f64::from(l) + 1.0,
             LabelAttribute::Len => self.store.universe.name(l).chars().count() as f64,
-            LabelAttribute::TextLen => self.store.element_text(set, &[l]).map_or(0.0, |t| t.chars().count() as f64),
+            LabelAttribute::TextLen => self
+                .store
+                .element_text(set, &[l])
+                .map_or(0.0, |t| t.chars().count() as f64),
             LabelAttribute::First => yes(r == 0.0),
             LabelAttribute::Last => yes(r + 1.0 == n),
             LabelAttribute::Val => {
@@ -347,7 +428,12 @@ impl Machine<'_> {
                 let plain = text.strip_prefix('+').unwrap_or(text);
                 match fast_float2::parse::<f64, _>(plain) {
                     Ok(v) if v.is_finite() => v,
-                    _ => self.execution_error("E0405", span, format!("the label `{text}` is not a number"), "`.val` needs labels that are numbers"),
+                    _ => self.execution_error(
+                        "E0405",
+                        span,
+                        format!("the label `{text}` is not a number"),
+                        "`.val` needs labels that are numbers",
+                    ),
                 }
             }
         }
@@ -362,8 +448,16 @@ impl Machine<'_> {
             self.data(t + attribute::UP, key, frame),
         );
         let (lo, up) = (number(lo), number(up));
-        let below = if lo == f64::NEG_INFINITY { f64::INFINITY } else { (l - lo).max(0.0) };
-        let above = if up == f64::INFINITY { f64::INFINITY } else { (up - l).max(0.0) };
+        let below = if lo == f64::NEG_INFINITY {
+            f64::INFINITY
+        } else {
+            (l - lo).max(0.0)
+        };
+        let above = if up == f64::INFINITY {
+            f64::INFINITY
+        } else {
+            (up - l).max(0.0)
+        };
         match d {
             Derived::SlackLo => below,
             Derived::SlackUp => above,

@@ -46,7 +46,13 @@ impl Machine<'_> {
         self.options.at.set(c.span);
         self.tidy(c);
         match &c.kind {
-            CodeKind::Assign { domain, target, key, value, covers } => {
+            CodeKind::Assign {
+                domain,
+                target,
+                key,
+                value,
+                covers,
+            } => {
                 self.assign(domain, *target, key, value, *covers, frame);
             }
             CodeKind::Loop(d, body) => return self.run_loop(d, body, frame),
@@ -71,7 +77,14 @@ impl Machine<'_> {
                     break;
                 }
             },
-            CodeKind::For { table, from, down, to, by, body } => {
+            CodeKind::For {
+                table,
+                from,
+                down,
+                to,
+                by,
+                body,
+            } => {
                 return self.run_for(c.span, *table, (from, *down, to, by.as_ref()), body, frame);
             }
             CodeKind::If(arms, otherwise) => {
@@ -97,7 +110,11 @@ impl Machine<'_> {
                     self.display(items, c.span);
                 }
             }
-            CodeKind::Abort { condition, items, no_error } => {
+            CodeKind::Abort {
+                condition,
+                items,
+                no_error,
+            } => {
                 if self.holds(condition.as_ref(), frame) {
                     return self.abort(items, *no_error, c.span);
                 }
@@ -108,7 +125,12 @@ impl Machine<'_> {
             CodeKind::Format(s, numbers) => {
                 self.formats.insert(*s, numbers.clone());
             }
-            CodeKind::Project { target, source, positions, count } => self.project(*target, *source, positions, *count),
+            CodeKind::Project {
+                target,
+                source,
+                positions,
+                count,
+            } => self.project(*target, *source, positions, *count),
             CodeKind::Put(keyword, cond, items) => {
                 if self.holds(cond.as_ref(), frame) {
                     self.put(keyword, items, frame, c.span);
@@ -117,7 +139,11 @@ impl Machine<'_> {
             CodeKind::Exchange(x) => self.exchange(x, c.span),
             CodeKind::Draw(s, file) => self.draw(*s, file.as_deref(), frame, c.span),
         }
-        if self.stopped() { Flow::Stop } else { Flow::Next }
+        if self.stopped() {
+            Flow::Stop
+        } else {
+            Flow::Next
+        }
     }
 
     /// One turn of a loop's body.
@@ -140,7 +166,11 @@ impl Machine<'_> {
                 once = true;
                 false
             });
-            return if once && self.turn(body, frame) == Flow::Stop { Flow::Stop } else { Flow::Next };
+            return if once && self.turn(body, frame) == Flow::Stop {
+                Flow::Stop
+            } else {
+                Flow::Next
+            };
         }
         let tuples = self.tuples(d, frame);
         for t in tuples.chunks_exact(d.slots.len()) {
@@ -167,7 +197,12 @@ impl Machine<'_> {
         let (from, to) = (number(self.eval(from, frame)), number(self.eval(to, frame)));
         let by = by.map_or(1.0, |b| number(self.eval(b, frame)));
         if by <= 0.0 || by.is_nan() || from.is_nan() || to.is_nan() {
-            self.execution_error("E0406", span, format!("the step of `for` is {by}; it must be positive"), "use `downto` to count down");
+            self.execution_error(
+                "E0406",
+                span,
+                format!("the step of `for` is {by}; it must be positive"),
+                "use `downto` to count down",
+            );
             return Flow::Next;
         }
         // The current value of the scalar counts, so that the body may change it.
@@ -184,7 +219,9 @@ impl Machine<'_> {
                 _ => {}
             }
             let k = number(self.store.table(table).get(&[]));
-            self.store.table_mut(table).set(&[], if down { k - by } else { k + by });
+            self.store
+                .table_mut(table)
+                .set(&[], if down { k - by } else { k + by });
         }
     }
 
@@ -196,7 +233,15 @@ impl Machine<'_> {
         }
     }
 
-    fn assign(&mut self, domain: &Domain, target: Target, key: &Key, value: &Node, covers: bool, frame: &mut Frame) {
+    fn assign(
+        &mut self,
+        domain: &Domain,
+        target: Target,
+        key: &Key,
+        value: &Node,
+        covers: bool,
+        frame: &mut Frame,
+    ) {
         let symbol = self.target_table(target).and_then(|t| self.table_symbol(t));
         if domain.slots.is_empty() {
             if let Some(s) = symbol {
@@ -206,7 +251,11 @@ impl Machine<'_> {
             if !domain.conditions.iter().all(|c| truth(self.eval(c, frame))) {
                 return;
             }
-            let text = if let NodeKind::Text(t) = &value.kind { Some(t.to_string()) } else { None };
+            let text = if let NodeKind::Text(t) = &value.kind {
+                Some(t.to_string())
+            } else {
+                None
+            };
             let v = self.eval(value, frame);
             match target {
                 Target::Seed => *self.random.borrow_mut() = Random::new(number(v) as i64),
@@ -217,8 +266,15 @@ impl Machine<'_> {
         }
         let Some(symbol) = symbol else { return };
         let impure = has_random(value) || domain.conditions.iter().any(has_random);
-        let alternatives = if impure { None } else { self.sparse_alternatives(domain, target, key, value, covers) };
-        let mut out = Records { keys: Vec::new(), values: Vec::new() };
+        let alternatives = if impure {
+            None
+        } else {
+            self.sparse_alternatives(domain, target, key, value, covers)
+        };
+        let mut out = Records {
+            keys: Vec::new(),
+            values: Vec::new(),
+        };
         match alternatives {
             Some(plans) => {
                 let d = domain.slots.len();
@@ -230,7 +286,11 @@ impl Machine<'_> {
                     });
                 }
                 let simple = plans.len() == 1 && plans[0].ordered;
-                let tuples = if simple { tuples } else { sort_tuples(tuples, d, true) };
+                let tuples = if simple {
+                    tuples
+                } else {
+                    sort_tuples(tuples, d, true)
+                };
                 for t in tuples.chunks_exact(d) {
                     for (&s, &l) in domain.slots.iter().zip(t) {
                         frame[s as usize] = l;
@@ -268,9 +328,20 @@ impl Machine<'_> {
         self.write(target, out, covers);
     }
 
-    fn assign_one(&mut self, s: SymbolId, domain: &Domain, target: Target, key: &Key, value: &Node, frame: &mut Frame) {
+    fn assign_one(
+        &mut self,
+        s: SymbolId,
+        domain: &Domain,
+        target: Target,
+        key: &Key,
+        value: &Node,
+        frame: &mut Frame,
+    ) {
         if !domain.conditions.iter().all(|c| truth(self.eval(c, frame)))
-            || !domain.members.iter().all(|m| self.is_member(m.table, &m.key, frame))
+            || !domain
+                .members
+                .iter()
+                .all(|m| self.is_member(m.table, &m.key, frame))
         {
             return;
         }
@@ -295,13 +366,28 @@ impl Machine<'_> {
         let v = self.eval(value, frame);
         match target {
             Target::Table(t) => self.store.table_mut(t).set(&k[..n], v),
-            _ => self.write(target, Records { keys: k[..n].to_vec(), values: vec![v] }, false),
+            _ => self.write(
+                target,
+                Records {
+                    keys: k[..n].to_vec(),
+                    values: vec![v],
+                },
+                false,
+            ),
         }
     }
 
     /// Evaluates the right side for the labels in the frame.
     #[inline]
-    fn evaluate(&self, symbol: SymbolId, _target: Target, key: &Key, value: &Node, frame: &mut Frame, out: &mut Records) {
+    fn evaluate(
+        &self,
+        symbol: SymbolId,
+        _target: Target,
+        key: &Key,
+        value: &Node,
+        frame: &mut Frame,
+        out: &mut Records,
+    ) {
         let mut k = [0; 20];
         let n = key.parts.len();
         if !self.key(key, frame, &mut k) {
@@ -325,7 +411,14 @@ impl Machine<'_> {
 
     /// Plans that together find every tuple for which the right side, or what is stored now, is not 0;
     /// None when running over the whole domain is as good.
-    fn sparse_alternatives(&self, domain: &Domain, target: Target, key: &Key, value: &Node, covers: bool) -> Option<Vec<Plan>> {
+    fn sparse_alternatives(
+        &self,
+        domain: &Domain,
+        target: Target,
+        key: &Key,
+        value: &Node,
+        covers: bool,
+    ) -> Option<Vec<Plan>> {
         let table = match target {
             Target::Table(t) if self.store.table(t).default_value() == 0.0 => t,
             Target::Set(t) => t,
@@ -341,18 +434,34 @@ impl Machine<'_> {
                 whole = whole.min(self.store.table(m.table).len() as f64);
             }
         }
-        let size = |conj: &[Driver]| conj.iter().map(|m| self.store.table(m.table).len()).max().unwrap_or(usize::MAX) as f64;
+        let size = |conj: &[Driver]| {
+            conj.iter()
+                .map(|m| self.store.table(m.table).len())
+                .max()
+                .unwrap_or(usize::MAX) as f64
+        };
         let stored = self.store.table(table).len() as f64;
-        let sparse: f64 = alternatives.iter().map(|a| size(a)).sum::<f64>() + if covers { 0.0 } else { stored };
+        let sparse: f64 =
+            alternatives.iter().map(|a| size(a)).sum::<f64>() + if covers { 0.0 } else { stored };
         if whole < 64.0 || sparse * 3.0 > whole {
             return None;
         }
-        let mut plans: Vec<Plan> = alternatives.iter().map(|a| self.make_plan(domain, None, a)).collect();
+        let mut plans: Vec<Plan> = alternatives
+            .iter()
+            .map(|a| self.make_plan(domain, None, a))
+            .collect();
         if !covers {
             if !key.is_plain() {
                 return None;
             }
-            plans.push(self.make_plan(domain, None, &[Driver { table, key: key.clone() }]));
+            plans.push(self.make_plan(
+                domain,
+                None,
+                &[Driver {
+                    table,
+                    key: key.clone(),
+                }],
+            ));
         }
         Some(plans)
     }
@@ -363,13 +472,22 @@ impl Machine<'_> {
             Target::Table(t) => {
                 let table = self.store.table_mut(t);
                 if covers {
-                    *table = Table::from_sorted(table.dim(), table.default_value(), out.keys, out.values);
+                    *table = Table::from_sorted(
+                        table.dim(),
+                        table.default_value(),
+                        out.keys,
+                        out.values,
+                    );
                 } else {
                     table.merge(&out.keys, &out.values);
                 }
             }
             Target::Set(t) => {
-                let values: Vec<f64> = out.values.iter().map(|&v| f64::from(u8::from(truth(v)))).collect();
+                let values: Vec<f64> = out
+                    .values
+                    .iter()
+                    .map(|&v| f64::from(u8::from(truth(v))))
+                    .collect();
                 self.store.table_mut(t).merge(&out.keys, &values);
             }
             Target::Singleton(t) => {
@@ -409,10 +527,19 @@ impl Machine<'_> {
     }
 
     fn abort(&mut self, items: &[Shown], no_error: bool, span: Span) -> Flow {
-        let text = items.iter().find_map(|i| if let Shown::Text(t) = i { Some(t.to_string()) } else { None });
+        let text = items.iter().find_map(|i| {
+            if let Shown::Text(t) = i {
+                Some(t.to_string())
+            } else {
+                None
+            }
+        });
         self.display(items, span);
         if !no_error {
-            let message = text.map_or_else(|| "the model stopped itself".to_string(), |t| format!("the model stopped itself: {t}"));
+            let message = text.map_or_else(
+                || "the model stopped itself".to_string(),
+                |t| format!("the model stopped itself: {t}"),
+            );
             self.note(Diagnostic::execution("E0480", span, message).label("`abort`"));
         }
         Flow::Stop
@@ -435,7 +562,9 @@ impl Machine<'_> {
                 if let Some(x) = on {
                     self.options.numbers.insert(name.to_string(), x);
                 }
-                self.options.texts.insert(name.to_string(), t.to_lowercase());
+                self.options
+                    .texts
+                    .insert(name.to_string(), t.to_lowercase());
             }
             OptionCode::Flag => {}
         }
@@ -445,7 +574,9 @@ impl Machine<'_> {
         let symbol = self.symbols.get(s);
         let (t, n) = match symbol.kind {
             SymbolKind::Variable(_) | SymbolKind::Equation(_) => (symbol.table, attribute::COUNT),
-            SymbolKind::Set { .. } | SymbolKind::Alias(_) | SymbolKind::Parameter { .. } => (symbol.table, 1),
+            SymbolKind::Set { .. } | SymbolKind::Alias(_) | SymbolKind::Parameter { .. } => {
+                (symbol.table, 1)
+            }
             _ => return,
         };
         for o in 0..n {
@@ -459,14 +590,24 @@ impl Machine<'_> {
         let (tt, st, to_set, from_set) = (t.table, s.table, t.is_set(), s.is_set());
         self.store.table_mut(st).tidy();
         let d = positions.len();
-        let mut rows: Vec<(Vec<Label>, f64)> =
-            self.store.table(st).iter().map(|(k, v)| (positions.iter().map(|&p| k[p]).collect(), v)).collect();
+        let mut rows: Vec<(Vec<Label>, f64)> = self
+            .store
+            .table(st)
+            .iter()
+            .map(|(k, v)| (positions.iter().map(|&p| k[p]).collect(), v))
+            .collect();
         rows.sort_by(|a, b| a.0.cmp(&b.0));
         let same_dim = d == self.store.table(st).dim();
         let (mut keys, mut values): (Vec<Label>, Vec<f64>) = (Vec::new(), Vec::new());
         for (i, (k, v)) in rows.iter().enumerate() {
             let repeated = i > 0 && rows[i - 1].0 == *k;
-            let v = if to_set || (from_set && same_dim) { 1.0 } else if count && !same_dim { 1.0 } else { *v };
+            let v = if to_set || (from_set && same_dim) {
+                1.0
+            } else if count && !same_dim {
+                1.0
+            } else {
+                *v
+            };
             match (repeated, values.last_mut()) {
                 (true, Some(last)) => *last = if count && !to_set { *last + 1.0 } else { v },
                 _ => {
@@ -487,7 +628,11 @@ impl Machine<'_> {
 
 /// Sorts records by key; of equal keys the last one written stays.
 fn sort_records(r: &mut Records, d: usize) {
-    let sorted = d == 0 || r.keys.chunks_exact(d).zip(r.keys.chunks_exact(d).skip(1)).all(|(a, b)| a < b);
+    let sorted = d == 0
+        || r.keys
+            .chunks_exact(d)
+            .zip(r.keys.chunks_exact(d).skip(1))
+            .all(|(a, b)| a < b);
     if sorted {
         return;
     }
@@ -518,7 +663,16 @@ fn has_random(n: &Node) -> bool {
     crate::check::walk_node(n, &mut |x| {
         hit |= matches!(
             &x.kind,
-            NodeKind::DataCall(D::Uniform | D::UniformInt | D::Normal | D::RandBinomial | D::RandLinear | D::RandTriangle | D::ExecSeed, _)
+            NodeKind::DataCall(
+                D::Uniform
+                    | D::UniformInt
+                    | D::Normal
+                    | D::RandBinomial
+                    | D::RandLinear
+                    | D::RandTriangle
+                    | D::ExecSeed,
+                _
+            )
         );
     });
     hit

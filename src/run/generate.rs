@@ -94,7 +94,12 @@ struct Builder<'m, 'h> {
 
 impl Machine<'_> {
     /// Generates the instance of a model; None after an execution error.
-    pub fn generate(&mut self, solve: &SolveCode, options: GenerateOptions, frame: &mut Frame) -> Option<Generated> {
+    pub fn generate(
+        &mut self,
+        solve: &SolveCode,
+        options: GenerateOptions,
+        frame: &mut Frame,
+    ) -> Option<Generated> {
         let equations = self.equations.clone();
         let mut scans = Vec::new();
         for r in &solve.equations {
@@ -150,7 +155,13 @@ impl Builder<'_, '_> {
         let dim = e.key.parts.len();
         let start = self.row;
         self.span = e.span;
-        let mut block = Block { symbol: e.symbol, start, len: 0, dim, keys: Vec::new() };
+        let mut block = Block {
+            symbol: e.symbol,
+            start,
+            len: 0,
+            dim,
+            keys: Vec::new(),
+        };
         let restrict = item.restrict.map(|s| self.m.symbols.get(s).table);
         // Tuples first (in label order), then rows: the order of rows is what a person sees.
         let d = e.domain.slots.len();
@@ -169,10 +180,25 @@ impl Builder<'_, '_> {
             self.m.tuples(&e.domain, frame)
         };
         let plain = e.key.is_plain() && {
-            let slots: Vec<Slot> = e.key.parts.iter().filter_map(|p| if let Part::Slot(s) = p { Some(*s) } else { None }).collect();
+            let slots: Vec<Slot> = e
+                .key
+                .parts
+                .iter()
+                .filter_map(|p| {
+                    if let Part::Slot(s) = p {
+                        Some(*s)
+                    } else {
+                        None
+                    }
+                })
+                .collect();
             slots == e.domain.slots
         };
-        let tuples = if plain || d == 0 { tuples } else { self.by_key(e, tuples, d, frame) };
+        let tuples = if plain || d == 0 {
+            tuples
+        } else {
+            self.by_key(e, tuples, d, frame)
+        };
         let relation = e.relation;
         let mut row = Row::default();
         for k in 0..if d == 0 { 1 } else { tuples.len() / d } {
@@ -190,7 +216,15 @@ impl Builder<'_, '_> {
                 continue;
             }
             *self.m.current.borrow_mut() = Some((e.symbol, key[..dim].to_vec()));
-            self.one_row(e, relation, item.pair.is_some(), frame, &mut row, &key[..dim], &mut block);
+            self.one_row(
+                e,
+                relation,
+                item.pair.is_some(),
+                frame,
+                &mut row,
+                &key[..dim],
+                &mut block,
+            );
             if self.failed || !self.m.keep_going() {
                 return;
             }
@@ -203,7 +237,13 @@ impl Builder<'_, '_> {
     }
 
     /// Tuples in the order of the row labels they make.
-    fn by_key(&self, e: &EquationDef, tuples: Vec<Label>, d: usize, frame: &mut Frame) -> Vec<Label> {
+    fn by_key(
+        &self,
+        e: &EquationDef,
+        tuples: Vec<Label>,
+        d: usize,
+        frame: &mut Frame,
+    ) -> Vec<Label> {
         let dim = e.key.parts.len();
         let mut flat = Vec::new();
         for t in tuples.chunks_exact(d) {
@@ -217,7 +257,10 @@ impl Builder<'_, '_> {
             }
         }
         let sorted = sort_tuples(flat, dim + d, false);
-        sorted.chunks_exact(dim + d).flat_map(|k| k[dim..].iter().copied()).collect()
+        sorted
+            .chunks_exact(dim + d)
+            .flat_map(|k| k[dim..].iter().copied())
+            .collect()
     }
 
     #[allow(clippy::too_many_arguments)]
@@ -245,7 +288,11 @@ impl Builder<'_, '_> {
         for &(c, _) in &row.terms {
             self.place[c as usize] = 0;
         }
-        let rhs = if row.constant == 0.0 { 0.0 } else { -row.constant };
+        let rhs = if row.constant == 0.0 {
+            0.0
+        } else {
+            -row.constant
+        };
         let empty = !nonlinear && row.terms.iter().all(|t| t.1 == 0.0);
         if empty && !(paired && self.options.keep_paired) {
             let violated = match relation {
@@ -273,9 +320,13 @@ impl Builder<'_, '_> {
         if !rhs.is_finite() {
             let name = self.m.record_name(e.symbol, key);
             self.m.note(
-                Diagnostic::execution("E0411", e.span, format!("the constant of the row {name} is not a finite number"))
-                    .label("not finite")
-                    .help("look for inf, na or undf in the data of this equation"),
+                Diagnostic::execution(
+                    "E0411",
+                    e.span,
+                    format!("the constant of the row {name} is not a finite number"),
+                )
+                .label("not finite")
+                .help("look for inf, na or undf in the data of this equation"),
             );
             self.failed = true;
             return;
@@ -285,9 +336,13 @@ impl Builder<'_, '_> {
             if !v.is_finite() {
                 let name = self.m.record_name(e.symbol, key);
                 self.m.note(
-                    Diagnostic::execution("E0411", e.span, format!("a coefficient of the row {name} is not a finite number"))
-                        .label("not finite")
-                        .help("look for inf, na or undf in the data of this equation"),
+                    Diagnostic::execution(
+                        "E0411",
+                        e.span,
+                        format!("a coefficient of the row {name} is not a finite number"),
+                    )
+                    .label("not finite")
+                    .help("look for inf, na or undf in the data of this equation"),
                 );
                 self.failed = true;
                 return;
@@ -300,8 +355,13 @@ impl Builder<'_, '_> {
         let rows = &mut self.instance.rows;
         rows.relation.push(relation);
         rows.rhs.push(rhs);
-        rows.marginal.push(number(self.m.store.table(t + attribute::M).get(key)));
-        let scale = if self.options.scale { number(self.m.store.table(t + attribute::SCALE).get(key)) } else { 1.0 };
+        rows.marginal
+            .push(number(self.m.store.table(t + attribute::M).get(key)));
+        let scale = if self.options.scale {
+            number(self.m.store.table(t + attribute::SCALE).get(key))
+        } else {
+            1.0
+        };
         rows.scale.push(scale);
         block.keys.extend_from_slice(key);
         self.row += 1;
@@ -327,8 +387,16 @@ impl Builder<'_, '_> {
         };
         let found = match m.dim {
             0 => m.numbers.first().copied(),
-            1 => m.by_label.get(key[0] as usize).copied().filter(|&n| n > 0).map(|n| n - 1),
-            d => m.index.find(hash_key(key), |&i| m.keys[i as usize * d..][..d] == *key).map(|&i| m.numbers[i as usize]),
+            1 => m
+                .by_label
+                .get(key[0] as usize)
+                .copied()
+                .filter(|&n| n > 0)
+                .map(|n| n - 1),
+            d => m
+                .index
+                .find(hash_key(key), |&i| m.keys[i as usize * d..][..d] == *key)
+                .map(|&i| m.numbers[i as usize]),
         };
         if let Some(n) = found {
             return n;
@@ -347,7 +415,9 @@ impl Builder<'_, '_> {
             }
             d => {
                 let keys = &m.keys;
-                m.index.insert_unique(hash_key(key), i, |&i| hash_key(&keys[i as usize * d..][..d]));
+                m.index.insert_unique(hash_key(key), i, |&i| {
+                    hash_key(&keys[i as usize * d..][..d])
+                });
             }
         }
         self.columns += 1;
@@ -365,7 +435,10 @@ impl Builder<'_, '_> {
         let k = &k[..key.parts.len()];
         if self.options.hold_fixed {
             let t = self.m.symbols.get(s).table;
-            let (lo, up) = (self.m.store.table(t + attribute::LO).get(k), self.m.store.table(t + attribute::UP).get(k));
+            let (lo, up) = (
+                self.m.store.table(t + attribute::LO).get(k),
+                self.m.store.table(t + attribute::UP).get(k),
+            );
             if number(lo) == number(up) {
                 return Some(Err(number(lo)));
             }
@@ -408,7 +481,9 @@ impl Builder<'_, '_> {
                 }
             }
             NodeKind::Product(factors) => {
-                let Some((c, var)) = self.split(factors, frame) else { return };
+                let Some((c, var)) = self.split(factors, frame) else {
+                    return;
+                };
                 let c = coef * c;
                 if c == 0.0 {
                     return;
@@ -437,7 +512,11 @@ impl Builder<'_, '_> {
 
     /// Splits a product into its data and the one linear factor with variables, if there is just one
     /// and it does not divide. None: the data part is not a number (an error was noted).
-    fn split<'n>(&self, factors: &'n [(bool, Node)], frame: &mut Frame) -> Option<(f64, Option<&'n Node>)> {
+    fn split<'n>(
+        &self,
+        factors: &'n [(bool, Node)],
+        frame: &mut Frame,
+    ) -> Option<(f64, Option<&'n Node>)> {
         let mut c = 1.0;
         let mut var = None;
         let mut several = false;
@@ -450,7 +529,12 @@ impl Builder<'_, '_> {
             let v = self.value(f, frame);
             if *divide {
                 if v == 0.0 {
-                    self.m.execution_error("E0401", f.span, "division by zero".into(), "guard it with a condition, `(x/b)$b`");
+                    self.m.execution_error(
+                        "E0401",
+                        f.span,
+                        "division by zero".into(),
+                        "guard it with a condition, `(x/b)$b`",
+                    );
                     return None;
                 }
                 c /= v;
@@ -473,7 +557,12 @@ impl Builder<'_, '_> {
             match v {
                 Ok(v) => row.constant += coef * v,
                 Err(e) => {
-                    self.m.execution_error("E0403", n.span, e.to_string(), "guard it with a condition");
+                    self.m.execution_error(
+                        "E0403",
+                        n.span,
+                        e.to_string(),
+                        "guard it with a condition",
+                    );
                 }
             }
             return;
@@ -638,7 +727,12 @@ impl Builder<'_, '_> {
                 (Function::Power, [a, b]) if !b.has_var => {
                     let p = self.value(b, frame);
                     if p.fract() != 0.0 || p.abs() > 1e6 {
-                        self.m.execution_error("E0403", b.span, format!("the exponent of `power` is {p}; it must be a whole number"), "use `**` or `rpower` for real exponents");
+                        self.m.execution_error(
+                            "E0403",
+                            b.span,
+                            format!("the exponent of `power` is {p}; it must be a whole number"),
+                            "use `**` or `rpower` for real exponents",
+                        );
                     }
                     self.build(a, frame, tape);
                     tape.ops.push(Op::PowerInt(p as i32));
@@ -685,7 +779,14 @@ impl Builder<'_, '_> {
         }
     }
 
-    fn build_binary(&mut self, op: BinaryOp, a: &Node, b: &Node, frame: &mut Frame, tape: &mut Tape) {
+    fn build_binary(
+        &mut self,
+        op: BinaryOp,
+        a: &Node,
+        b: &Node,
+        frame: &mut Frame,
+        tape: &mut Tape,
+    ) {
         self.build(a, frame, tape);
         self.build(b, frame, tape);
         tape.ops.push(match op {
@@ -705,7 +806,14 @@ impl Builder<'_, '_> {
         });
     }
 
-    fn build_aggregate(&mut self, op: AggregateOp, d: &Domain, body: &Node, frame: &mut Frame, tape: &mut Tape) {
+    fn build_aggregate(
+        &mut self,
+        op: AggregateOp,
+        d: &Domain,
+        body: &Node,
+        frame: &mut Frame,
+        tape: &mut Tape,
+    ) {
         let m = self.m;
         let sum = op == AggregateOp::Sum;
         let plan = m.plan(d, if sum { Some(body) } else { None });
@@ -729,7 +837,11 @@ impl Builder<'_, '_> {
                 multiply_n(count, tape);
             }
             AggregateOp::Smin | AggregateOp::Smax => {
-                let (f, none) = if op == AggregateOp::Smin { (Function::Min, f64::INFINITY) } else { (Function::Max, f64::NEG_INFINITY) };
+                let (f, none) = if op == AggregateOp::Smin {
+                    (Function::Min, f64::INFINITY)
+                } else {
+                    (Function::Max, f64::NEG_INFINITY)
+                };
                 match count {
                     0 => self.constant(none, tape),
                     1 => {}
@@ -737,7 +849,11 @@ impl Builder<'_, '_> {
                 }
             }
             AggregateOp::Sand | AggregateOp::Sor => {
-                let (f, none) = if op == AggregateOp::Sand { (Function::BoolAnd, 1.0) } else { (Function::BoolOr, 0.0) };
+                let (f, none) = if op == AggregateOp::Sand {
+                    (Function::BoolAnd, 1.0)
+                } else {
+                    (Function::BoolOr, 0.0)
+                };
                 if count == 0 {
                     self.constant(none, tape);
                 }
@@ -753,7 +869,9 @@ impl Builder<'_, '_> {
         // Columns of pairs belong to the model even where they stand in no row.
         let mut pairs: Vec<(SymbolId, u32, Vec<Label>)> = Vec::new();
         for item in &solve.equations {
-            let (Some(v), e) = (item.pair, self.m.equations[item.definition].symbol) else { continue };
+            let (Some(v), e) = (item.pair, self.m.equations[item.definition].symbol) else {
+                continue;
+            };
             if let Some(block) = rows.symbol(e) {
                 for r in block.start..block.start + block.len {
                     pairs.push((v, r, block.key(r).to_vec()));
@@ -785,17 +903,27 @@ impl Builder<'_, '_> {
         let mut next = 0u32;
         for m in &self.maps {
             let d = m.dim;
-            let mut order: Vec<u32> = (0..m.numbers.len() as u32).filter(|&i| used[m.numbers[i as usize] as usize]).collect();
+            let mut order: Vec<u32> = (0..m.numbers.len() as u32)
+                .filter(|&i| used[m.numbers[i as usize] as usize])
+                .collect();
             let key = |i: u32| &m.keys[i as usize * d..(i as usize + 1) * d];
             let sorted = order.windows(2).all(|w| key(w[0]) < key(w[1]));
             if !sorted {
                 match d {
                     1 => order.sort_unstable_by_key(|&i| key(i)[0]),
-                    2 => order.sort_unstable_by_key(|&i| u64::from(key(i)[0]) << 32 | u64::from(key(i)[1])),
+                    2 => order.sort_unstable_by_key(|&i| {
+                        u64::from(key(i)[0]) << 32 | u64::from(key(i)[1])
+                    }),
                     _ => order.sort_unstable_by(|&a, &b| key(a).cmp(key(b))),
                 }
             }
-            let mut block = Block { symbol: m.symbol, start: next, len: order.len() as u32, dim: d, keys: Vec::with_capacity(order.len() * d) };
+            let mut block = Block {
+                symbol: m.symbol,
+                start: next,
+                len: order.len() as u32,
+                dim: d,
+                keys: Vec::with_capacity(order.len() * d),
+            };
             for &i in &order {
                 new_number[m.numbers[i as usize] as usize] = next;
                 next += 1;
@@ -826,7 +954,9 @@ impl Builder<'_, '_> {
                 let slot = &mut matched[new_number[c as usize] as usize];
                 if let Some(other) = *slot {
                     let block = columns.of(new_number[c as usize]);
-                    let name = self.m.record_name(block.symbol, block.key(new_number[c as usize]));
+                    let name = self
+                        .m
+                        .record_name(block.symbol, block.key(new_number[c as usize]));
                     let row = |r: u32| self.m.record_name(rows.of(r).symbol, rows.of(r).key(r));
                     let (a, b) = (row(other), row(r));
                     self.m.note(
@@ -841,7 +971,12 @@ impl Builder<'_, '_> {
             self.instance.matched = Some(matched);
         }
         let (nonzeros, nonlinear_nonzeros) = self.count();
-        Origin { rows, columns, nonzeros, nonlinear_nonzeros }
+        Origin {
+            rows,
+            columns,
+            nonzeros,
+            nonlinear_nonzeros,
+        }
     }
 
     /// Columns increasing within each row.
@@ -854,7 +989,12 @@ impl Builder<'_, '_> {
                 continue;
             }
             scratch.clear();
-            scratch.extend(m.column[r.clone()].iter().copied().zip(m.value[r.clone()].iter().copied()));
+            scratch.extend(
+                m.column[r.clone()]
+                    .iter()
+                    .copied()
+                    .zip(m.value[r.clone()].iter().copied()),
+            );
             scratch.sort_unstable_by_key(|t| t.0);
             for (k, &(c, v)) in r.zip(&scratch) {
                 m.column[k] = c;
@@ -866,7 +1006,13 @@ impl Builder<'_, '_> {
     fn fill_columns(&mut self, blocks: &Blocks) {
         let n: usize = blocks.list.iter().map(|b| b.len as usize).sum();
         let c = &mut self.instance.columns;
-        for v in [&mut c.lower, &mut c.upper, &mut c.level, &mut c.marginal, &mut c.scale] {
+        for v in [
+            &mut c.lower,
+            &mut c.upper,
+            &mut c.level,
+            &mut c.marginal,
+            &mut c.scale,
+        ] {
             v.reserve_exact(n);
         }
         for b in &blocks.list {
@@ -874,11 +1020,17 @@ impl Builder<'_, '_> {
             let t = symbol.table;
             let kind = match symbol.kind {
                 SymbolKind::Variable(
-                    VariableKind::Free | VariableKind::Positive | VariableKind::Negative | VariableKind::Unstated,
+                    VariableKind::Free
+                    | VariableKind::Positive
+                    | VariableKind::Negative
+                    | VariableKind::Unstated,
                 ) => ColumnKind::Continuous,
                 _ => ColumnKind::Discrete,
             };
-            let semi = matches!(symbol.kind, SymbolKind::Variable(VariableKind::SemiContinuous | VariableKind::SemiInteger));
+            let semi = matches!(
+                symbol.kind,
+                SymbolKind::Variable(VariableKind::SemiContinuous | VariableKind::SemiInteger)
+            );
             let get = |o: u32, key: &[Label]| number(self.m.store.table(t + o).get(key));
             for i in b.start..b.start + b.len {
                 let key = b.key(i);
@@ -887,21 +1039,37 @@ impl Builder<'_, '_> {
                 c.upper.push(get(attribute::UP, key));
                 c.level.push(get(attribute::L, key));
                 c.marginal.push(get(attribute::M, key));
-                c.scale.push(if self.options.scale { get(attribute::SCALE, key) } else { 1.0 });
+                c.scale.push(if self.options.scale {
+                    get(attribute::SCALE, key)
+                } else {
+                    1.0
+                });
                 c.kind.push(kind);
             }
         }
         for i in 0..n {
-            let (lo, up) = (self.instance.columns.lower[i], self.instance.columns.upper[i]);
+            let (lo, up) = (
+                self.instance.columns.lower[i],
+                self.instance.columns.upper[i],
+            );
             let level = self.instance.columns.level[i];
             let block = || blocks.of(i as u32);
             let name = || self.m.record_name(block().symbol, block().key(i as u32));
             let problem = if lo.is_nan() || up.is_nan() || level.is_nan() || level.is_infinite() {
-                Some(format!("a bound or the level of {} is not a number", name()))
+                Some(format!(
+                    "a bound or the level of {} is not a number",
+                    name()
+                ))
             } else if lo > up {
-                Some(format!("the lower bound of {} is above its upper bound: {lo} > {up}", name()))
+                Some(format!(
+                    "the lower bound of {} is above its upper bound: {lo} > {up}",
+                    name()
+                ))
             } else if lo == f64::INFINITY || up == f64::NEG_INFINITY {
-                Some(format!("the bounds of {} leave nothing: {lo} … {up}", name()))
+                Some(format!(
+                    "the bounds of {} leave nothing: {lo} … {up}",
+                    name()
+                ))
             } else {
                 None
             };
@@ -923,7 +1091,11 @@ impl Builder<'_, '_> {
         for k in &self.instance.nonlinear {
             let v = k.kernel.variables as usize;
             for (t, &r) in k.row.iter().enumerate() {
-                pairs.extend(k.columns[t * v..(t + 1) * v].iter().map(|&c| u64::from(r) << 32 | u64::from(c)));
+                pairs.extend(
+                    k.columns[t * v..(t + 1) * v]
+                        .iter()
+                        .map(|&c| u64::from(r) << 32 | u64::from(c)),
+                );
             }
         }
         pairs.sort_unstable();
@@ -932,7 +1104,9 @@ impl Builder<'_, '_> {
             .iter()
             .filter(|&&p| {
                 let (r, c) = ((p >> 32) as usize, p as u32);
-                m.column[m.start[r]..m.start[r + 1]].binary_search(&c).is_ok()
+                m.column[m.start[r]..m.start[r + 1]]
+                    .binary_search(&c)
+                    .is_ok()
             })
             .count();
         (m.column.len() + pairs.len() - both, pairs.len())

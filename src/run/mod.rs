@@ -12,15 +12,15 @@ mod calendar;
 mod constant;
 mod eval;
 mod exec;
-mod options;
 mod generate;
+mod options;
 mod scan;
 mod solve;
 mod stubs;
 
 pub use eval::Frame;
 pub use generate::{GenerateOptions, Generated};
-pub use options::{ModelState, Options};
+pub use options::{ListOptions, ModelState, Options};
 
 use crate::check::Program;
 use crate::check::node::*;
@@ -68,8 +68,8 @@ pub struct Machine<'h> {
     pub formats: FxHashMap<SymbolId, Vec<i64>>,
     /// What is reported: solves, displays.
     pub report: crate::report::json::Report,
-    /// JSON of each solve for `--solution`.
-    pub solutions: Vec<serde_json::Value>,
+    /// Solves that are kept for `--solution`.
+    kept: Vec<solve::KeptSolve>,
     /// Files of `put`.
     pub put: super::run::options::PutState,
     host: RefCell<&'h mut dyn Host>,
@@ -94,7 +94,9 @@ impl<'h> Machine<'h> {
                 continue;
             }
             let count = match s.kind {
-                SymbolKind::Variable(_) | SymbolKind::Equation(_) => crate::check::symbols::attribute::COUNT,
+                SymbolKind::Variable(_) | SymbolKind::Equation(_) => {
+                    crate::check::symbols::attribute::COUNT
+                }
                 SymbolKind::Set { .. } | SymbolKind::Parameter { .. } => 1,
                 _ => 0,
             };
@@ -112,7 +114,7 @@ impl<'h> Machine<'h> {
             models: FxHashMap::default(),
             formats: FxHashMap::default(),
             report: crate::report::json::Report::default(),
-            solutions: Vec::new(),
+            kept: Vec::new(),
             put: options::PutState::default(),
             host: RefCell::new(host),
             random: RefCell::new(Random::default()),
@@ -147,9 +149,16 @@ impl<'h> Machine<'h> {
             self.errors.set(self.errors.get() + 1);
         }
         let mut list = self.diagnostics.borrow_mut();
-        if list.len() < MAX_KEPT_ERRORS && !list.iter().any(|e| e.code == d.code && e.span == d.span) {
+        if list.len() < MAX_KEPT_ERRORS
+            && !list.iter().any(|e| e.code == d.code && e.span == d.span)
+        {
             list.push(d);
         }
+    }
+
+    /// Whether an `abort` statement ended the run.
+    pub fn aborted(&self) -> bool {
+        self.diagnostics.borrow().iter().any(|d| d.code == "E0480")
     }
 
     /// Number of execution errors so far.
@@ -187,9 +196,13 @@ impl<'h> Machine<'h> {
             self.stop.set(true);
             drop(host);
             self.note(
-                Diagnostic::execution("E0490", self.options.at.get(), format!("the time limit of {} s is used up", self.options.time_limit))
-                    .label("stopped here")
-                    .help("raise it with `--time-limit`, or look for a loop that does not end"),
+                Diagnostic::execution(
+                    "E0490",
+                    self.options.at.get(),
+                    format!("the time limit of {} s is used up", self.options.time_limit),
+                )
+                .label("stopped here")
+                .help("raise it with `--time-limit`, or look for a loop that does not end"),
             );
             return false;
         }
@@ -199,9 +212,13 @@ impl<'h> Machine<'h> {
             self.stop.set(true);
             drop(host);
             self.note(
-                Diagnostic::execution("E0491", self.options.at.get(), format!("the memory limit of {} MB is used up", limit >> 20))
-                    .label("stopped here")
-                    .help("raise it with `--max-memory`, or add a condition that keeps the set sparse"),
+                Diagnostic::execution(
+                    "E0491",
+                    self.options.at.get(),
+                    format!("the memory limit of {} MB is used up", limit >> 20),
+                )
+                .label("stopped here")
+                .help("raise it with `--max-memory`, or add a condition that keeps the set sparse"),
             );
             return false;
         }
@@ -245,7 +262,10 @@ impl<'h> Machine<'h> {
         if key.is_empty() {
             return name.to_string();
         }
-        let labels: Vec<String> = key.iter().map(|&l| format!("'{}'", self.store.universe.name(l))).collect();
+        let labels: Vec<String> = key
+            .iter()
+            .map(|&l| format!("'{}'", self.store.universe.name(l)))
+            .collect();
         format!("{name}({})", labels.join(","))
     }
 }

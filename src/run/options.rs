@@ -25,6 +25,8 @@ pub struct Options {
     pub keep_solutions: bool,
     /// Do not print displays and summaries.
     pub quiet: bool,
+    /// Summaries in colour.
+    pub color: bool,
     /// `bmod list`: generate, print rows and columns, do not solve: how many per block.
     pub list: Option<ListOptions>,
     /// The statement that runs just now.
@@ -52,6 +54,7 @@ impl Default for Options {
             collect: true,
             keep_solutions: false,
             quiet: false,
+            color: false,
             list: None,
             at: Cell::default(),
         }

@@ -87,11 +87,21 @@ impl Machine<'_> {
         let mut candidates: Vec<Candidate> = d
             .members
             .iter()
-            .map(|m| Candidate { table: m.table, key: m.key.clone(), required: true, done: false })
+            .map(|m| Candidate {
+                table: m.table,
+                key: m.key.clone(),
+                required: true,
+                done: false,
+            })
             .collect();
         let soft = |candidates: &mut Vec<Candidate>, drivers: &[Driver]| {
             for m in drivers {
-                candidates.push(Candidate { table: m.table, key: m.key.clone(), required: false, done: false });
+                candidates.push(Candidate {
+                    table: m.table,
+                    key: m.key.clone(),
+                    required: false,
+                    done: false,
+                });
             }
         };
         for c in &d.conditions {
@@ -136,10 +146,10 @@ impl Machine<'_> {
             })
             .collect();
         let settle = |free: &[Slot],
-                          candidates: &mut Vec<Candidate>,
-                          filters: &mut Vec<(usize, Vec<Slot>)>,
-                          known: &[(Slot, TableId)],
-                          steps: &mut Vec<Step>| {
+                      candidates: &mut Vec<Candidate>,
+                      filters: &mut Vec<(usize, Vec<Slot>)>,
+                      known: &[(Slot, TableId)],
+                      steps: &mut Vec<Step>| {
             for c in candidates.iter_mut().filter(|c| !c.done && c.required) {
                 let mut used = Vec::new();
                 c.key.parts.iter().for_each(|p| slots_of_part(p, &mut used));
@@ -148,7 +158,9 @@ impl Machine<'_> {
                 }
                 c.done = true;
                 let implied = match c.key.parts.as_slice() {
-                    [Part::Slot(s)] => known.iter().any(|&(k, t)| k == *s && self.within(t, c.table)),
+                    [Part::Slot(s)] => known
+                        .iter()
+                        .any(|&(k, t)| k == *s && self.within(t, c.table)),
                     _ => false,
                 };
                 if !implied {
@@ -167,7 +179,14 @@ impl Machine<'_> {
         while !free.is_empty() {
             let mut best: Option<(f64, usize)> = None;
             for (i, c) in candidates.iter().enumerate() {
-                if c.done || !c.key.is_plain() || !c.key.parts.iter().any(|p| matches!(p, Part::Slot(s) if free.contains(s))) {
+                if c.done
+                    || !c.key.is_plain()
+                    || !c
+                        .key
+                        .parts
+                        .iter()
+                        .any(|p| matches!(p, Part::Slot(s) if free.contains(s)))
+                {
                     continue;
                 }
                 let t = self.store.table(c.table);
@@ -236,9 +255,16 @@ impl Machine<'_> {
             });
             settle(&free, &mut candidates, &mut filters, &known, &mut steps);
         }
-        let mut sizes: Vec<(TableId, usize)> = candidates.iter().map(|c| (c.table, self.store.table(c.table).len())).collect();
+        let mut sizes: Vec<(TableId, usize)> = candidates
+            .iter()
+            .map(|c| (c.table, self.store.table(c.table).len()))
+            .collect();
         sizes.dedup();
-        Plan { steps, ordered: order == d.slots, sizes }
+        Plan {
+            steps,
+            ordered: order == d.slots,
+            sizes,
+        }
     }
 
     /// Whether a slot belongs to a sum inside the expression, not to the statement around.
@@ -276,8 +302,14 @@ impl Machine<'_> {
             NodeKind::Const(x) if *x == 0.0 => Some(Vec::new()),
             NodeKind::Data(t, key) => {
                 let table = self.store.table(*t);
-                (table.default_value() == 0.0 && !key.parts.is_empty() && key.is_plain())
-                    .then(|| vec![vec![Driver { table: *t, key: key.clone() }]])
+                (table.default_value() == 0.0 && !key.parts.is_empty() && key.is_plain()).then(
+                    || {
+                        vec![vec![Driver {
+                            table: *t,
+                            key: key.clone(),
+                        }]]
+                    },
+                )
             }
             NodeKind::Negate(a) => self.support(a, symbolic),
             NodeKind::Sum(terms) => {
@@ -296,9 +328,18 @@ impl Machine<'_> {
                     if *divide {
                         continue;
                     }
-                    let Some(s) = self.support(f, symbolic) else { continue };
+                    let Some(s) = self.support(f, symbolic) else {
+                        continue;
+                    };
                     let others_safe = symbolic
-                        || factors.iter().enumerate().all(|(k, (d, g))| k == i || if *d { self.safe_divisor(g) } else { self.safe(g) });
+                        || factors.iter().enumerate().all(|(k, (d, g))| {
+                            k == i
+                                || if *d {
+                                    self.safe_divisor(g)
+                                } else {
+                                    self.safe(g)
+                                }
+                        });
                     if others_safe {
                         out = both(out, Some(s));
                     }
@@ -307,7 +348,12 @@ impl Machine<'_> {
             }
             NodeKind::Dollar(a, c) => both(self.support(c, false), self.support(a, symbolic)),
             NodeKind::Aggregate(AggregateOp::Sum | AggregateOp::Sor, d, body) => {
-                let members: Vec<Driver> = d.members.iter().filter(|m| m.key.is_plain()).cloned().collect();
+                let members: Vec<Driver> = d
+                    .members
+                    .iter()
+                    .filter(|m| m.key.is_plain())
+                    .cloned()
+                    .collect();
                 let mut out: Support = Some(vec![members]);
                 for c in &d.conditions {
                     out = both(out, self.support(c, false));
@@ -316,18 +362,34 @@ impl Machine<'_> {
                 // Members alone say nothing about the slots outside unless they mention one.
                 let outside = out.as_ref().is_some_and(|o| {
                     o.iter().all(|conj| {
-                        conj.iter().any(|m| m.key.parts.iter().any(|p| matches!(p, Part::Slot(s) if !d.slots.contains(s))))
+                        conj.iter().any(|m| {
+                            m.key
+                                .parts
+                                .iter()
+                                .any(|p| matches!(p, Part::Slot(s) if !d.slots.contains(s)))
+                        })
                     })
                 });
                 if outside { out } else { None }
             }
-            NodeKind::Binary(BinaryOp::And, a, b) => both(self.support(a, false), self.support(b, false)),
+            NodeKind::Binary(BinaryOp::And, a, b) => {
+                both(self.support(a, false), self.support(b, false))
+            }
             NodeKind::Binary(BinaryOp::Or, a, b) => {
                 let (mut a, b) = (self.support(a, false)?, self.support(b, false)?);
                 a.extend(b);
                 (a.len() <= MAX_ALTERNATIVES).then_some(a)
             }
-            NodeKind::Binary(op @ (BinaryOp::Gt | BinaryOp::Ge | BinaryOp::Lt | BinaryOp::Le | BinaryOp::Ne | BinaryOp::Eq), a, b) => {
+            NodeKind::Binary(
+                op @ (BinaryOp::Gt
+                | BinaryOp::Ge
+                | BinaryOp::Lt
+                | BinaryOp::Le
+                | BinaryOp::Ne
+                | BinaryOp::Eq),
+                a,
+                b,
+            ) => {
                 // Is the relation false when the data side is 0?
                 let (data, c, op) = match (&a.kind, &b.kind) {
                     (_, NodeKind::Const(c)) => (a, *c, *op),
@@ -343,10 +405,20 @@ impl Machine<'_> {
                     BinaryOp::Eq => c != 0.0,
                     _ => false,
                 };
-                if false_at_zero { self.support(data, false) } else { None }
+                if false_at_zero {
+                    self.support(data, false)
+                } else {
+                    None
+                }
             }
             NodeKind::Call(
-                Function::Abs | Function::Sqr | Function::Sign | Function::Floor | Function::Ceil | Function::Round | Function::Trunc,
+                Function::Abs
+                | Function::Sqr
+                | Function::Sign
+                | Function::Floor
+                | Function::Ceil
+                | Function::Round
+                | Function::Trunc,
                 a,
             ) if a.len() == 1 && !symbolic => self.support(&a[0], false),
             _ => None,
@@ -359,19 +431,36 @@ impl Machine<'_> {
             NodeKind::Const(x) => x.is_finite(),
             NodeKind::Data(t, key) => {
                 let t = self.store.table(*t);
-                !t.has_special() && t.default_value() == 0.0 && key.parts.iter().all(|p| !matches!(p, Part::Singleton(..)))
+                !t.has_special()
+                    && t.default_value() == 0.0
+                    && key.parts.iter().all(|p| !matches!(p, Part::Singleton(..)))
             }
             NodeKind::Ord(..) | NodeKind::Card(_) | NodeKind::SameAs(..) => true,
             NodeKind::Negate(a) => self.safe(a),
             NodeKind::Sum(t) => t.iter().all(|(_, x)| self.safe(x)),
-            NodeKind::Product(t) => t.iter().all(|(d, x)| if *d { self.safe_divisor(x) } else { self.safe(x) }),
+            NodeKind::Product(t) => t.iter().all(|(d, x)| {
+                if *d {
+                    self.safe_divisor(x)
+                } else {
+                    self.safe(x)
+                }
+            }),
             NodeKind::Dollar(a, c) => self.safe(a) && self.safe(c),
             NodeKind::Binary(op, a, b) => *op != BinaryOp::Power && self.safe(a) && self.safe(b),
             NodeKind::Not(a) => self.safe(a),
-            NodeKind::Aggregate(AggregateOp::Sum, d, b) => self.safe(b) && d.conditions.iter().all(|c| self.safe(c)),
-            NodeKind::Call(Function::Abs | Function::Sqr | Function::Sign | Function::Min | Function::Max | Function::Floor | Function::Ceil, a) => {
-                a.iter().all(|x| self.safe(x))
+            NodeKind::Aggregate(AggregateOp::Sum, d, b) => {
+                self.safe(b) && d.conditions.iter().all(|c| self.safe(c))
             }
+            NodeKind::Call(
+                Function::Abs
+                | Function::Sqr
+                | Function::Sign
+                | Function::Min
+                | Function::Max
+                | Function::Floor
+                | Function::Ceil,
+                a,
+            ) => a.iter().all(|x| self.safe(x)),
             _ => false,
         }
     }
@@ -423,7 +512,13 @@ impl Machine<'_> {
                 }
                 self.run_steps(d, rest, frame, f)
             }
-            Step::Scan { table, key, mask, bind, equal } => {
+            Step::Scan {
+                table,
+                key,
+                mask,
+                bind,
+                equal,
+            } => {
                 let t = self.store.table(*table);
                 let order;
                 let rows = if *mask == 0 {
@@ -446,10 +541,17 @@ impl Machine<'_> {
                     for &(p, s) in bind.iter() {
                         frame[s as usize] = record[p as usize];
                     }
-                    if !equal.iter().all(|&(p, s)| frame[s as usize] == record[p as usize]) {
+                    if !equal
+                        .iter()
+                        .all(|&(p, s)| frame[s as usize] == record[p as usize])
+                    {
                         continue;
                     }
-                    let go_on = if last { f(frame) } else { self.run_steps(d, rest, frame, f) };
+                    let go_on = if last {
+                        f(frame)
+                    } else {
+                        self.run_steps(d, rest, frame, f)
+                    };
                     if !go_on {
                         return false;
                     }
@@ -467,7 +569,11 @@ impl Machine<'_> {
             out.extend(d.slots.iter().map(|&s| f[s as usize]));
             self.keep_going()
         });
-        if plan.ordered { out } else { sort_tuples(out, d.slots.len(), false) }
+        if plan.ordered {
+            out
+        } else {
+            sort_tuples(out, d.slots.len(), false)
+        }
     }
 }
 
@@ -515,12 +621,17 @@ pub(super) fn sort_tuples(flat: Vec<Label>, d: usize, unique: bool) -> Vec<Label
             v
         }
         2 => {
-            let mut v: Vec<u64> = flat.chunks_exact(2).map(|k| u64::from(k[0]) << 32 | u64::from(k[1])).collect();
+            let mut v: Vec<u64> = flat
+                .chunks_exact(2)
+                .map(|k| u64::from(k[0]) << 32 | u64::from(k[1]))
+                .collect();
             v.sort_unstable();
             if unique {
                 v.dedup();
             }
-            v.into_iter().flat_map(|k| [(k >> 32) as u32, k as u32]).collect()
+            v.into_iter()
+                .flat_map(|k| [(k >> 32) as u32, k as u32])
+                .collect()
         }
         _ => {
             let mut v: Vec<&[Label]> = flat.chunks_exact(d).collect();
@@ -537,7 +648,10 @@ pub(super) fn sort_tuples(flat: Vec<Label>, d: usize, unique: bool) -> Vec<Label
 pub(super) fn slots_of(n: &Node, out: &mut Vec<Slot>) {
     let mut part = |p: &Part| slots_of_part(p, out);
     match &n.kind {
-        NodeKind::Data(_, k) | NodeKind::Var(_, k) | NodeKind::Derived(_, _, k) | NodeKind::ElementText(_, k) => {
+        NodeKind::Data(_, k)
+        | NodeKind::Var(_, k)
+        | NodeKind::Derived(_, _, k)
+        | NodeKind::ElementText(_, k) => {
             k.parts.iter().for_each(part);
         }
         NodeKind::Ord(_, p) | NodeKind::LabelAttribute(_, _, p) | NodeKind::LabelText(p) => part(p),

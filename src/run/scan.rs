@@ -7,7 +7,13 @@ pub fn scanned(kind: &CodeKind) -> Box<[TableId]> {
     let mut out = Vec::new();
     let o = &mut out;
     match kind {
-        CodeKind::Assign { domain, target, key, value, .. } => {
+        CodeKind::Assign {
+            domain,
+            target,
+            key,
+            value,
+            ..
+        } => {
             self::domain(domain, o);
             // A sparse right side drives the assignment.
             expr(value, !domain.slots.is_empty(), o);
@@ -28,13 +34,17 @@ pub fn scanned(kind: &CodeKind) -> Box<[TableId]> {
             by.iter().for_each(|b| expr(b, false, o));
         }
         CodeKind::If(arms, _) => arms.iter().for_each(|(c, _)| expr(c, false, o)),
-        CodeKind::Break(c) | CodeKind::Continue(c) | CodeKind::Display(c, _) => c.iter().for_each(|c| expr(c, false, o)),
+        CodeKind::Break(c) | CodeKind::Continue(c) | CodeKind::Display(c, _) => {
+            c.iter().for_each(|c| expr(c, false, o))
+        }
         CodeKind::Abort { condition, .. } => condition.iter().for_each(|c| expr(c, false, o)),
         CodeKind::Put(_, c, items) => {
             c.iter().for_each(|c| expr(c, false, o));
             for i in items {
                 match i {
-                    PutCode::Column(e) | PutCode::Row(e) | PutCode::Item { value: e, .. } => expr(e, false, o),
+                    PutCode::Column(e) | PutCode::Row(e) | PutCode::Item { value: e, .. } => {
+                        expr(e, false, o)
+                    }
                     _ => {}
                 }
             }
@@ -53,7 +63,9 @@ pub fn domain(d: &Domain, out: &mut Vec<TableId>) {
         key(&m.key, out);
     }
     out.extend(&d.sets);
-    d.conditions.iter().for_each(|c| expr(c, !d.slots.is_empty(), out));
+    d.conditions
+        .iter()
+        .for_each(|c| expr(c, !d.slots.is_empty(), out));
 }
 
 fn key(k: &Key, out: &mut Vec<TableId>) {
@@ -81,7 +93,9 @@ pub fn expr(n: &Node, driving: bool, out: &mut Vec<TableId>) {
             }
             key(k, out);
         }
-        NodeKind::Var(_, k) | NodeKind::Derived(_, _, k) | NodeKind::ElementText(_, k) => key(k, out),
+        NodeKind::Var(_, k) | NodeKind::Derived(_, _, k) | NodeKind::ElementText(_, k) => {
+            key(k, out)
+        }
         NodeKind::Ord(t, p) | NodeKind::LabelAttribute(_, t, p) => {
             out.push(*t);
             part(p, out);
@@ -92,12 +106,16 @@ pub fn expr(n: &Node, driving: bool, out: &mut Vec<TableId>) {
             part(b, out);
         }
         NodeKind::Negate(a) | NodeKind::Not(a) => expr(a, driving, out),
-        NodeKind::Sum(t) | NodeKind::Product(t) => t.iter().for_each(|(_, x)| expr(x, driving, out)),
+        NodeKind::Sum(t) | NodeKind::Product(t) => {
+            t.iter().for_each(|(_, x)| expr(x, driving, out))
+        }
         NodeKind::Binary(_, a, b) => {
             expr(a, driving, out);
             expr(b, driving, out);
         }
-        NodeKind::Call(_, a) | NodeKind::DataCall(_, a) => a.iter().for_each(|x| expr(x, driving, out)),
+        NodeKind::Call(_, a) | NodeKind::DataCall(_, a) => {
+            a.iter().for_each(|x| expr(x, driving, out))
+        }
         NodeKind::Dollar(a, c) => {
             expr(a, driving, out);
             expr(c, driving, out);

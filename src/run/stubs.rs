@@ -6,10 +6,23 @@ impl Machine<'_> {
     pub(super) fn put(&mut self, _: &str, _: &[PutCode], _: &mut Frame, _: crate::source::Span) {}
     pub(super) fn close_put_files(&mut self) {}
     pub(super) fn exchange(&mut self, _: &crate::syntax::ast::Exchange, _: crate::source::Span) {}
-    pub(super) fn draw(&mut self, _: SymbolId, _: Option<&str>, _: &mut Frame, _: crate::source::Span) {}
-    pub(super) fn object_attribute(&self, _: SymbolId, _: &'static str) -> f64 { 0.0 }
-    pub(super) fn set_object_attribute(&mut self, _: SymbolId, _: &'static str, _: f64, _: Option<String>) {}
-    pub(super) fn print_listing(&mut self, _: &str, _: &Generated, _: &ListOptions) {}
-    pub(super) fn keep_solution(&mut self, _: &SolveCode, _: Generated, _: crate::solve::answer::Answer) {}
+    pub(super) fn draw(
+        &mut self,
+        _: SymbolId,
+        _: Option<&str>,
+        _: &mut Frame,
+        _: crate::source::Span,
+    ) {
+    }
+    pub(super) fn object_attribute(&self, _: SymbolId, _: &'static str) -> f64 {
+        0.0
+    }
+    pub(super) fn set_object_attribute(
+        &mut self,
+        _: SymbolId,
+        _: &'static str,
+        _: f64,
+        _: Option<String>,
+    ) {
+    }
 }
-pub use super::options::ListOptions;

@@ -34,21 +34,37 @@ pub fn answer(
         "mcp" => complementary(instance, settings, monitor),
         "cns" => square(instance, settings, monitor),
         "mpec" | "rmpec" => missing(using),
-        _ if instance.is_linear() && instance.objective.is_some() => linear(&super::lp::Clarabel, instance, settings, monitor),
+        _ if instance.is_linear() && instance.objective.is_some() => {
+            linear(&super::lp::Clarabel, instance, settings, monitor)
+        }
         _ => missing(using),
     }
 }
 
 fn missing(using: &str) -> Result<Answer, SolveError> {
-    Err(SolveError { message: format!("there is no solver for `{using}` in this build"), row: None, column: None })
+    Err(SolveError {
+        message: format!("there is no solver for `{using}` in this build"),
+        row: None,
+        column: None,
+    })
 }
 
-fn linear(solver: &dyn Solver, instance: &Instance, settings: &Settings, monitor: &mut dyn Monitor) -> Result<Answer, SolveError> {
+fn linear(
+    solver: &dyn Solver,
+    instance: &Instance,
+    settings: &Settings,
+    monitor: &mut dyn Monitor,
+) -> Result<Answer, SolveError> {
     let outcome = solver.solve(instance, settings, monitor)?;
     let at = certificate::linearise(instance, &outcome);
     let residuals = certificate::residuals(instance, &outcome, &at);
     let status = certificate::linear_status(instance, &outcome, &residuals);
-    Ok(Answer { outcome, residuals, status, activity: at.activity })
+    Ok(Answer {
+        outcome,
+        residuals,
+        status,
+        activity: at.activity,
+    })
 }
 
 /// Levels of the rows; not a number where a function has no value.
@@ -60,20 +76,42 @@ fn activity(instance: &Instance, x: &[f64]) -> Vec<f64> {
     out
 }
 
-fn complementary(instance: &Instance, settings: &Settings, monitor: &mut dyn Monitor) -> Result<Answer, SolveError> {
+fn complementary(
+    instance: &Instance,
+    settings: &Settings,
+    monitor: &mut dyn Monitor,
+) -> Result<Answer, SolveError> {
     let outcome = complementarity::solve(instance, false, settings, monitor)?;
     let activity = activity(instance, &outcome.level);
-    let f: Vec<f64> = activity.iter().zip(&instance.rows.rhs).map(|(a, b)| a - b).collect();
+    let f: Vec<f64> = activity
+        .iter()
+        .zip(&instance.rows.rhs)
+        .map(|(a, b)| a - b)
+        .collect();
     let residuals = certificate::complementarity(instance, &outcome.level, &f);
     let status = certificate::complementarity_status(&residuals);
-    Ok(Answer { outcome, residuals, status, activity })
+    Ok(Answer {
+        outcome,
+        residuals,
+        status,
+        activity,
+    })
 }
 
-fn square(instance: &Instance, settings: &Settings, monitor: &mut dyn Monitor) -> Result<Answer, SolveError> {
+fn square(
+    instance: &Instance,
+    settings: &Settings,
+    monitor: &mut dyn Monitor,
+) -> Result<Answer, SolveError> {
     let outcome = complementarity::solve(instance, true, settings, monitor)?;
     let activity = activity(instance, &outcome.level);
     let size: Vec<f64> = activity.iter().map(|a| a.abs()).collect();
     let residuals = certificate::primal(instance, &outcome.level, &activity, &size);
     let status = certificate::square_status(&residuals);
-    Ok(Answer { outcome, residuals, status, activity })
+    Ok(Answer {
+        outcome,
+        residuals,
+        status,
+        activity,
+    })
 }

@@ -28,8 +28,16 @@ struct Square<'a> {
     constant: Vec<bool>,
 }
 
-fn refuse<T>(message: impl Into<String>, row: Option<usize>, column: Option<usize>) -> Result<T, SolveError> {
-    Err(SolveError { message: message.into(), row, column })
+fn refuse<T>(
+    message: impl Into<String>,
+    row: Option<usize>,
+    column: Option<usize>,
+) -> Result<T, SolveError> {
+    Err(SolveError {
+        message: message.into(),
+        row,
+        column,
+    })
 }
 
 /// Gives every column its row. `square`: a cns, where bounds do not count.
@@ -50,31 +58,57 @@ fn match_rows(instance: &Instance, square: bool) -> Result<Vec<Option<u32>>, Sol
         match row_of[j] {
             Some(i) => match instance.rows.relation[i as usize] {
                 Relation::Greater if l == f64::NEG_INFINITY && u < f64::INFINITY => {
-                    return refuse("a =g= row may not be paired with a variable that has an upper bound only", Some(i as usize), Some(j));
+                    return refuse(
+                        "a =g= row may not be paired with a variable that has an upper bound only",
+                        Some(i as usize),
+                        Some(j),
+                    );
                 }
                 Relation::Less if u == f64::INFINITY && l > f64::NEG_INFINITY => {
-                    return refuse("a =l= row may not be paired with a variable that has a lower bound only", Some(i as usize), Some(j));
+                    return refuse(
+                        "a =l= row may not be paired with a variable that has a lower bound only",
+                        Some(i as usize),
+                        Some(j),
+                    );
                 }
                 _ => {}
             },
             None if l == u => {}
             None if square || (l == f64::NEG_INFINITY && u == f64::INFINITY) => free.push(j),
-            None => return refuse("a variable without a row must be free or fixed", None, Some(j)),
+            None => {
+                return refuse(
+                    "a variable without a row must be free or fixed",
+                    None,
+                    Some(j),
+                );
+            }
         }
     }
     let mut left: Vec<usize> = (0..instance.row_count()).filter(|&i| !taken[i]).collect();
     for &i in &left {
         if instance.rows.relation[i] != Relation::Equal {
-            let what = if square { "a square system has equations (=e=) only" } else { "an inequality without a variable is left over" };
+            let what = if square {
+                "a square system has equations (=e=) only"
+            } else {
+                "an inequality without a variable is left over"
+            };
             return refuse(what, Some(i), None);
         }
     }
     if left.len() != free.len() {
-        let what = if square { "the system is not square" } else { "the counts do not match" };
+        let what = if square {
+            "the system is not square"
+        } else {
+            "the counts do not match"
+        };
         let (r, c) = (left.len(), free.len());
         let (row, column) = (left.get(c).copied(), free.get(r).copied());
         let which = if square { "" } else { "unmatched " };
-        return refuse(format!("{what}: {r} {which}equations, {c} {which}variables that are not fixed"), row, column);
+        return refuse(
+            format!("{what}: {r} {which}equations, {c} {which}variables that are not fixed"),
+            row,
+            column,
+        );
     }
     left.reverse();
     for j in free {
@@ -91,9 +125,20 @@ impl<'a> Square<'a> {
         let columns = &instance.columns;
         // A square system's bounds do not act; they are checked at the solution.
         let bounds = |b: &[f64], infinite: f64| -> Vec<f64> {
-            (0..n).map(|j| if square && columns.lower[j] < columns.upper[j] { infinite } else { b[j] }).collect()
+            (0..n)
+                .map(|j| {
+                    if square && columns.lower[j] < columns.upper[j] {
+                        infinite
+                    } else {
+                        b[j]
+                    }
+                })
+                .collect()
         };
-        let (lower, upper) = (bounds(&columns.lower, f64::NEG_INFINITY), bounds(&columns.upper, f64::INFINITY));
+        let (lower, upper) = (
+            bounds(&columns.lower, f64::NEG_INFINITY),
+            bounds(&columns.upper, f64::INFINITY),
+        );
         let mut at = vec![usize::MAX; instance.row_count()];
         for (j, r) in row_of.iter().enumerate() {
             if let Some(r) = r {
@@ -106,7 +151,11 @@ impl<'a> Square<'a> {
         for k in &instance.nonlinear {
             let v = k.kernel.variables as usize;
             for (t, &r) in k.row.iter().enumerate() {
-                nonlinear.extend(k.columns[t * v..(t + 1) * v].iter().map(|&c| u64::from(r) << 32 | u64::from(c)));
+                nonlinear.extend(
+                    k.columns[t * v..(t + 1) * v]
+                        .iter()
+                        .map(|&c| u64::from(r) << 32 | u64::from(c)),
+                );
             }
         }
         nonlinear.sort_unstable();
@@ -114,7 +163,9 @@ impl<'a> Square<'a> {
         let mut entries: Vec<(u32, u32, usize)> = Vec::with_capacity(row_column.len());
         for i in 0..instance.row_count() {
             if at[i] != usize::MAX {
-                entries.extend((row_start[i]..row_start[i + 1]).map(|k| (row_column[k], at[i] as u32, k)));
+                entries.extend(
+                    (row_start[i]..row_start[i + 1]).map(|k| (row_column[k], at[i] as u32, k)),
+                );
             }
         }
         entries.sort_unstable();
@@ -129,7 +180,9 @@ impl<'a> Square<'a> {
             .iter()
             .map(|e| {
                 let row = row_of[e.1 as usize].expect("an entry's row has a column");
-                nonlinear.binary_search(&(u64::from(row) << 32 | u64::from(e.0))).is_err()
+                nonlinear
+                    .binary_search(&(u64::from(row) << 32 | u64::from(e.0)))
+                    .is_err()
             })
             .collect();
         Ok(Self {
@@ -170,21 +223,27 @@ impl mcp::Problem for Square<'_> {
     }
 
     fn function(&mut self, x: &[f64], f: &mut [f64]) -> Result<(), mcp::EvalError> {
-        self.evaluator.rows(x, &mut self.activity).map_err(|e| mcp::EvalError {
-            row: Some(e.row as usize),
-            message: e.to_string(),
-        })?;
+        self.evaluator
+            .rows(x, &mut self.activity)
+            .map_err(|e| mcp::EvalError {
+                row: Some(e.row as usize),
+                message: e.to_string(),
+            })?;
         for (j, r) in self.row_of.iter().enumerate() {
-            f[j] = r.map_or(0.0, |r| self.activity[r as usize] - self.instance.rows.rhs[r as usize]);
+            f[j] = r.map_or(0.0, |r| {
+                self.activity[r as usize] - self.instance.rows.rhs[r as usize]
+            });
         }
         Ok(())
     }
 
     fn jacobian(&mut self, x: &[f64], values: &mut [f64]) -> Result<(), mcp::EvalError> {
-        self.evaluator.jacobian(x, &mut self.jacobian).map_err(|e| mcp::EvalError {
-            row: Some(e.row as usize),
-            message: e.to_string(),
-        })?;
+        self.evaluator
+            .jacobian(x, &mut self.jacobian)
+            .map_err(|e| mcp::EvalError {
+                row: Some(e.row as usize),
+                message: e.to_string(),
+            })?;
         for (v, &k) in values.iter_mut().zip(&self.from) {
             *v = self.jacobian[k];
         }
@@ -230,7 +289,9 @@ fn options(settings: &Settings) -> Result<mcp::Settings, SolveError> {
         time_limit: settings.time_limit,
         ..mcp::Settings::default()
     };
-    s.cumulative_iteration_limit = s.cumulative_iteration_limit.min(settings.iteration_limit as usize);
+    s.cumulative_iteration_limit = s
+        .cumulative_iteration_limit
+        .min(settings.iteration_limit as usize);
     for (name, value) in &settings.options {
         let number = value.parse::<f64>();
         let count = |limit: f64| limit.clamp(0.0, 1e15) as usize;
@@ -244,12 +305,26 @@ fn options(settings: &Settings) -> Result<mcp::Settings, SolveError> {
             ("proximal_perturbation", Ok(v)) => s.proximal_perturbation = v,
             ("nms_memory_size", Ok(v)) => s.nms_memory_size = count(v),
             ("restart_limit", Ok(v)) => s.restart_limit = count(v),
-            ("preprocess", _) => s.preprocess = !matches!(value.to_lowercase().as_str(), "no" | "0" | "off"),
+            ("preprocess", _) => {
+                s.preprocess = !matches!(value.to_lowercase().as_str(), "no" | "0" | "off")
+            }
             (
-                "convergence_tolerance" | "crash_iteration_limit" | "major_iteration_limit" | "cumulative_iteration_limit"
-                | "minor_iteration_limit" | "proximal_perturbation" | "nms_memory_size" | "restart_limit",
+                "convergence_tolerance"
+                | "crash_iteration_limit"
+                | "major_iteration_limit"
+                | "cumulative_iteration_limit"
+                | "minor_iteration_limit"
+                | "proximal_perturbation"
+                | "nms_memory_size"
+                | "restart_limit",
                 Err(_),
-            ) => return refuse(format!("the option `{name}` needs a number, not `{value}`"), None, None),
+            ) => {
+                return refuse(
+                    format!("the option `{name}` needs a number, not `{value}`"),
+                    None,
+                    None,
+                );
+            }
             _ => {}
         }
     }
@@ -267,7 +342,14 @@ pub fn solve(
     let begin = Instant::now();
     let mut problem = Square::new(instance, square)?;
     let limits = options(settings)?;
-    let out = mcp::solve(&mut problem, &limits, &mut Line { monitor, log: settings.log });
+    let out = mcp::solve(
+        &mut problem,
+        &limits,
+        &mut Line {
+            monitor,
+            log: settings.log,
+        },
+    );
     let _ = begin;
     if out.status == mcp::Status::EvaluationFailed {
         let mut f = vec![0.0; instance.column_count()];
@@ -287,16 +369,20 @@ pub fn solve(
         mcp::Status::TimeLimit => (Claim::Unfinished, SolverStatus::ResourceInterrupt),
         mcp::Status::Interrupted => (Claim::Unfinished, SolverStatus::UserInterrupt),
         mcp::Status::NoSolution => (Claim::Unfinished, SolverStatus::TerminatedBySolver),
-        mcp::Status::EvaluationFailed | mcp::Status::InvalidBounds | mcp::Status::InvalidProblem => {
-            (Claim::Unfinished, SolverStatus::InternalSolverFailure)
-        }
+        mcp::Status::EvaluationFailed
+        | mcp::Status::InvalidBounds
+        | mcp::Status::InvalidProblem => (Claim::Unfinished, SolverStatus::InternalSolverFailure),
     };
     if square {
         // The marginals of a square system have no meaning.
         row_marginal.iter_mut().for_each(|m| *m = 0.0);
     }
     Ok(Outcome {
-        column_marginal: if square { vec![0.0; out.x.len()] } else { out.f.clone() },
+        column_marginal: if square {
+            vec![0.0; out.x.len()]
+        } else {
+            out.f.clone()
+        },
         level: out.x,
         row_marginal,
         claim,

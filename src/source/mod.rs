@@ -6,9 +6,18 @@
 //!
 //! Invariant: a span that leaves this crate in a diagnostic is in the *original* text.
 
+mod conditions;
+mod directives;
+mod evaluate;
+mod line;
+mod macros;
 mod map;
+mod preprocess;
+mod variables;
 
 pub use map::{FileId, Place, SourceFile, SourceMap};
+pub use preprocess::{Ending, Known, NothingKnown, PreprocessOptions, SymbolKindName};
+pub(crate) use preprocess::{Preprocessor, quoted_end};
 
 /// A range of bytes in the expanded text. `lo <= hi`; an empty span is a point.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Default, Debug)]
