@@ -46,9 +46,26 @@ impl Compiler {
             }
             if root == UNIVERSE {
                 out.push(DomainPosition::Universe);
-            } else {
-                out.push(DomainPosition::Set(s));
+                continue;
             }
+            if symbol.dynamic {
+                let declared = symbol.declared;
+                return self.fail(
+                    Diagnostic::error(
+                        "E0339",
+                        d.name.span,
+                        format!(
+                            "`{}` is changed by an assignment; it cannot be a domain",
+                            d.name.name
+                        ),
+                    )
+                    .label("a domain must stay as it is")
+                    .other(declared, "declared here")
+                    .help("use the set that it is a subset of as the domain"),
+                );
+            }
+            self.symbols.get_mut(root).is_domain = true;
+            out.push(DomainPosition::Set(s));
         }
         Ok(out)
     }
@@ -134,6 +151,7 @@ impl Compiler {
             has_data: false,
             assigned: false,
             dynamic: false,
+            is_domain: false,
             unordered: false,
         }))
     }
@@ -608,6 +626,9 @@ impl Compiler {
         out: &mut Vec<Label>,
     ) -> Result<(), Failed> {
         let dim = self.symbols.get(s).dim();
+        // `set.i` stands for all elements of i.
+        let spelled_out = [parts].into_iter().find_map(set_prefix);
+        let parts = spelled_out.as_deref().unwrap_or(parts);
         // One label per position is what data mostly are.
         if matched.is_none() && parts.iter().all(|p| matches!(p, KeyPart::Label { .. })) {
             if parts.len() != dim {
@@ -697,7 +718,7 @@ impl Compiler {
                 let Some(labels) = range(from, to) else {
                     return self.fail(
                         Diagnostic::error("E0344", *span, format!("`{from}*{to}` is not a range"))
-                            .label("the labels must differ in one number, which grows")
+                            .label("the labels must differ in one number")
                             .help("for instance `i1*i10` or `1990*2000`"),
                     );
                 };
@@ -1071,6 +1092,29 @@ impl Compiler {
     }
 }
 
+/// Replaces `set` and the name behind it by all elements of that set.
+fn set_prefix<'a>(parts: &[KeyPart<'a>]) -> Option<Vec<KeyPart<'a>>> {
+    let is_set = |p: &KeyPart| matches!(p, KeyPart::Label { text, quoted: false, .. } if text.eq_ignore_ascii_case("set"));
+    if !parts.iter().any(is_set) {
+        return None;
+    }
+    let mut out = Vec::with_capacity(parts.len());
+    let mut rest = parts.iter();
+    while let Some(p) = rest.next() {
+        match (is_set(p), rest.clone().next()) {
+            (true, Some(KeyPart::Label { text, span, .. })) => {
+                out.push(KeyPart::AllOf {
+                    set: text,
+                    span: *span,
+                });
+                rest.next();
+            }
+            _ => out.push(p.clone()),
+        }
+    }
+    Some(out)
+}
+
 /// A number as it may stand in data.
 fn number(text: &str) -> Option<f64> {
     let t = text.to_lowercase();
@@ -1086,7 +1130,36 @@ fn number(text: &str) -> Option<f64> {
     })
 }
 
-/// `i1*i10`: labels that differ in one number, which grows; leading zeros are kept.
+/// `a*e`, `x*ab`: labels of letters count like the columns of a spreadsheet.
+fn letters(from: &str, to: &str) -> Option<Vec<String>> {
+    let value = |s: &str| {
+        s.bytes().try_fold(0u64, |v, c| {
+            v.checked_mul(26)?
+                .checked_add(u64::from(c.to_ascii_lowercase() - b'a') + 1)
+        })
+    };
+    let (lo, hi) = (value(from)?, value(to)?);
+    if lo > hi || hi - lo > 1_000_000 {
+        return None;
+    }
+    let first = if from.as_bytes()[0].is_ascii_uppercase() {
+        b'A'
+    } else {
+        b'a'
+    };
+    let spell = |mut k: u64| {
+        let mut s = Vec::new();
+        while k > 0 {
+            s.push(first + ((k - 1) % 26) as u8);
+            k = (k - 1) / 26;
+        }
+        s.reverse();
+        s.into_iter().map(char::from).collect()
+    };
+    Some((lo..=hi).map(spell).collect())
+}
+
+/// `i1*i10`: labels that differ in one number, up or down; leading zeros are kept.
 fn range(from: &str, to: &str) -> Option<Vec<String>> {
     let (a, b) = (from.as_bytes(), to.as_bytes());
     if from.eq_ignore_ascii_case(to) {
@@ -1106,13 +1179,16 @@ fn range(from: &str, to: &str) -> Option<Vec<String>> {
             .take_while(|c| c.is_ascii_digit())
             .count()
     };
+    if a.iter().chain(b).all(u8::is_ascii_alphabetic) {
+        return letters(from, to);
+    }
     let (da, db) = (digits(a), digits(b));
     if da == 0 || db == 0 || !a[prefix + da..].eq_ignore_ascii_case(&b[prefix + db..]) {
         return None;
     }
     let (na, nb) = (&from[prefix..prefix + da], &to[prefix..prefix + db]);
     let (lo, hi): (u64, u64) = (na.parse().ok()?, nb.parse().ok()?);
-    if lo > hi || hi - lo > 100_000_000 {
+    if lo.abs_diff(hi) > 100_000_000 {
         return None;
     }
     // A leading zero, or equal lengths, fixes the width.
@@ -1122,11 +1198,12 @@ fn range(from: &str, to: &str) -> Option<Vec<String>> {
         0
     };
     let (head, tail) = (&from[..prefix], &from[prefix + da..]);
-    Some(
-        (lo..=hi)
-            .map(|k| format!("{head}{k:0width$}{tail}"))
-            .collect(),
-    )
+    let label = |k: u64| format!("{head}{k:0width$}{tail}");
+    Some(if lo <= hi {
+        (lo..=hi).map(label).collect()
+    } else {
+        (hi..=lo).rev().map(label).collect()
+    })
 }
 
 #[cfg(test)]
@@ -1140,6 +1217,9 @@ mod tests {
         assert_eq!(range("s02s", "s04s").unwrap(), ["s02s", "s03s", "s04s"]);
         assert_eq!(range("1990", "1992").unwrap(), ["1990", "1991", "1992"]);
         assert_eq!(range("a1", "b3"), None);
-        assert_eq!(range("a3", "a1"), None);
+        assert_eq!(range("a3", "a1").unwrap(), ["a3", "a2", "a1"]);
+        assert_eq!(range("b", "d").unwrap(), ["b", "c", "d"]);
+        assert_eq!(range("y", "ab").unwrap(), ["y", "z", "aa", "ab"]);
+        assert_eq!(range("d", "a"), None);
     }
 }

@@ -601,14 +601,15 @@ impl Compiler {
                     ),
                 }
             }
-            ExprKind::Text(label) => {
-                // 'a'+1: within the domain set of the position.
-                let l = self.label(label, of, position, base.span)?;
-                let DomainPosition::Set(d) = self.symbols.get(of).domain[position] else {
-                    return Ok((Part::Label(l), self.symbols.get(UNIVERSE).table));
-                };
-                Ok((Part::Label(l), self.symbols.get(d).table))
-            }
+            ExprKind::Text(label) => self.fail(
+                Diagnostic::error(
+                    "E0309",
+                    base.span,
+                    format!("the label `'{label}'` takes no lag or lead"),
+                )
+                .label("a label is one element")
+                .help("write the label you mean, or use an index that runs"),
+            ),
             _ => self.fail(
                 Diagnostic::error("E0307", base.span, "this is not an index")
                     .label("an index is expected")
@@ -626,6 +627,13 @@ impl Compiler {
         position: usize,
     ) -> Result<Vec<Part>, Failed> {
         let (base, set) = self.lag_base(&terms[0].1, of, position)?;
+        if terms.len() > 2 {
+            return self.fail(
+                Diagnostic::error("E0309", e.span, "an index takes one lag or lead")
+                    .label("several")
+                    .help("put the sum into parentheses: `t+(k+1)`"),
+            );
+        }
         let mut offset = Vec::new();
         for (sign, t) in &terms[1..] {
             offset.push((*sign == Sign::Minus, self.expr(t)?));
@@ -1038,6 +1046,9 @@ impl Compiler {
             return self.unknown_attribute(attr, &symbol.name, "set", known);
         };
         self.used(s, span);
+        if which == LabelAttribute::Ord {
+            self.ordered(s, span, "`.ord`")?;
+        }
         let mut parts = if indices.is_empty() {
             self.set_index(s, name)?
         } else {

@@ -136,6 +136,7 @@ impl Compiler {
             has_data: true,
             assigned: true,
             dynamic: false,
+            is_domain: false,
             unordered: false,
         });
         debug_assert_eq!(universe, UNIVERSE);
@@ -173,7 +174,7 @@ impl Compiler {
     fn used(&mut self, id: SymbolId, span: Span) {
         let root = self.symbols.root(id);
         let s = self.symbols.get(root);
-        if self.in_equation || s.has_data || s.assigned {
+        if self.in_equation || self.modes.implicit_assign || s.has_data || s.assigned {
             return;
         }
         let (name, kind, declared) = (s.name.clone(), s.kind_name(), s.declared);

@@ -389,6 +389,25 @@ impl Compiler {
             }
         };
         let is_set = matches!(target, Target::Set(_) | Target::Singleton(_));
+        let root = self.symbols.root(s);
+        if is_set && (self.symbols.get(root).is_domain || root == super::symbols::UNIVERSE) {
+            return self.fail(
+                Diagnostic::error(
+                    "E0320",
+                    t.span,
+                    format!(
+                        "the set `{}` cannot be assigned: it is the domain of other symbols",
+                        symbol.name
+                    ),
+                )
+                .label("a domain must stay as it is")
+                .other(symbol.declared, "declared here")
+                .help(format!(
+                    "declare a subset, `set sub({});`, and assign that",
+                    symbol.name
+                )),
+            );
+        }
         let r = self.scoped(|c| {
             let mut domain = Domain::default();
             let mut parts = Vec::new();
@@ -434,7 +453,6 @@ impl Compiler {
                 covers,
             })
         })?;
-        let root = self.symbols.root(s);
         let sym = self.symbols.get_mut(root);
         sym.assigned = true;
         if is_set {
@@ -633,6 +651,18 @@ impl Compiler {
                 let is_type = functions::PROBLEM_TYPES.contains(&lower.as_str());
                 if !is_type && !OPTIONS.iter().any(|o| o.eq_ignore_ascii_case(&lower)) {
                     return self.unknown_option(item);
+                }
+                if let OptionValue::Text(t, span) = v
+                    && is_type
+                    && !functions::SOLVERS.iter().any(|s| s.eq_ignore_ascii_case(t))
+                {
+                    let near = nearest(t, functions::SOLVERS.iter().copied()).map(str::to_string);
+                    let d = Diagnostic::error("E0349", *span, format!("there is no solver `{t}`"))
+                        .label("unknown solver");
+                    return self.fail(match near {
+                        Some(n) => d.help(format!("did you mean `{n}`?")),
+                        None => d.help("bmod's own are clarabel (lp), pounce and ipopt (nlp), pathfinder (mcp)"),
+                    });
                 }
                 let value = match v {
                     OptionValue::Number(x) => OptionCode::Number(*x),

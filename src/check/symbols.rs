@@ -96,6 +96,8 @@ pub struct Symbol {
     pub assigned: bool,
     /// A set that an assignment changes: it may not be a domain, and has no fixed order.
     pub dynamic: bool,
+    /// A set that is the domain of a symbol: it may not be changed any more.
+    pub is_domain: bool,
     /// A set whose elements are not in the order of the universe.
     pub unordered: bool,
 }

@@ -14,11 +14,14 @@ pub enum ArithmeticError {
     Overflow,
 }
 
+/// Results of this size and more are not numbers any more.
+const HUGE: f64 = 1e300;
+
 /// a + b
 #[inline]
 pub fn add(a: f64, b: f64) -> f64 {
     let r = a + b;
-    if r.is_finite() { r } else { add_special(a, b) }
+    if r.abs() < HUGE { r } else { add_special(a, b) }
 }
 
 #[cold]
@@ -53,7 +56,7 @@ pub fn negate(a: f64) -> f64 {
 #[inline]
 pub fn multiply(a: f64, b: f64) -> Result<f64, ArithmeticError> {
     let r = a * b;
-    if r.is_finite() {
+    if r.abs() < HUGE {
         Ok(r)
     } else {
         multiply_special(a, b)
@@ -86,7 +89,7 @@ fn multiply_special(a: f64, b: f64) -> Result<f64, ArithmeticError> {
 #[inline]
 pub fn divide(a: f64, b: f64) -> Result<f64, ArithmeticError> {
     let r = a / b;
-    if r.is_finite() && b != 0.0 && b.is_finite() {
+    if r.abs() < HUGE && b != 0.0 && b.is_finite() {
         Ok(r)
     } else {
         divide_special(a, b)
@@ -111,7 +114,7 @@ fn divide_special(a: f64, b: f64) -> Result<f64, ArithmeticError> {
         (true, true) => Ok(1.0),
         (false, true) => Ok(0.0),
         (true, false) => Ok(if b > 0.0 { a } else { -a }),
-        _ if (a / b).is_finite() => Ok(a / b),
+        _ if (a / b).abs() < HUGE => Ok(a / b),
         _ => Err(ArithmeticError::Overflow),
     }
 }

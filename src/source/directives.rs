@@ -358,7 +358,8 @@ impl Preprocessor<'_> {
             "undf" => m.undf = on,
             "order" => m.off_order = !on,
             "dotl" => m.dot_l = on,
-            "implicitassign" | "strictsingleton" => {}
+            "implicitassign" => m.implicit_assign = on,
+            "strictsingleton" => {}
             "end" => self.on_end = on,
             "eolcom" => {
                 self.marks.eol_on = on;
