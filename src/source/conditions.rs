@@ -3,8 +3,7 @@
 use super::evaluate::evaluate;
 use super::preprocess::{Known, Preprocessor};
 use super::variables::Reach;
-use super::{Span, line::Line};
-use crate::diag::Diagnostic;
+use super::{Outcome, Span, line::Line};
 
 /// An open `$ifThen`.
 pub(super) struct If {
@@ -28,7 +27,7 @@ pub(super) enum Flavour {
 }
 
 /// A text in a condition: quoted, or up to a blank or an operator.
-fn term<'a>(text: &'a str, stop_at_equals: bool) -> (&'a str, usize) {
+fn term(text: &str, stop_at_equals: bool) -> (&str, usize) {
     let t = text.trim_start();
     let skipped = text.len() - t.len();
     if let Some(q) = t.chars().next().filter(|c| *c == '\'' || *c == '"')
@@ -162,7 +161,7 @@ impl Preprocessor<'_> {
         tag: String,
         truth: bool,
         known: &dyn Known,
-    ) -> Result<(), Diagnostic> {
+    ) -> Outcome<()> {
         let (lo, hi) = line.origin(0, line.text.len());
         let span = self.place(lo, hi);
         if let Some(frame) = self.frames.last_mut() {
@@ -177,7 +176,7 @@ impl Preprocessor<'_> {
 
     /// `$else` and `$elseIf` after a taken branch, `$ifThen` with a false condition: passes over the
     /// lines up to the next branch that is taken, or to `$endIf`.
-    pub(super) fn leave_out(&mut self, known: &dyn Known) -> Result<(), Diagnostic> {
+    pub(super) fn leave_out(&mut self, known: &dyn Known) -> Outcome<()> {
         let mut depth = 0usize;
         loop {
             let Some(frame) = self.frames.last() else {

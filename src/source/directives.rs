@@ -9,6 +9,7 @@ use super::evaluate::{evaluate, number_text};
 use super::line::Line;
 use super::preprocess::{Ending, Known, Preprocessor};
 use super::variables::Reach;
+use super::{Outcome, refuse};
 use crate::diag::{Diagnostic, nearest};
 
 /// Switches that change nothing here, as `$onX` and `$offX`.
@@ -204,7 +205,7 @@ const OTHERS: &[&str] = &[
 ];
 
 /// Length of the word at the start of a text.
-fn word_len(text: &str) -> usize {
+pub(super) fn word_len(text: &str) -> usize {
     text.bytes()
         .position(|c| !c.is_ascii_alphanumeric() && c != b'_')
         .unwrap_or(text.len())
@@ -223,7 +224,7 @@ fn argument(text: &str) -> (&str, &str) {
 }
 
 /// A text without the quotes around it.
-fn unquoted(text: &str) -> &str {
+pub(super) fn unquoted(text: &str) -> &str {
     let t = text.trim();
     for q in ['\'', '"'] {
         if t.len() >= 2 && t.starts_with(q) && t.ends_with(q) {
@@ -261,21 +262,12 @@ fn civil(now: f64) -> (i64, i64, i64) {
 
 impl Preprocessor<'_> {
     /// A line that begins with `$`.
-    pub(super) fn directive_line(
-        &mut self,
-        line: &Line,
-        known: &dyn Known,
-    ) -> Result<(), Diagnostic> {
+    pub(super) fn directive_line(&mut self, line: &Line, known: &dyn Known) -> Outcome<()> {
         self.directives(line, 1, known)
     }
 
     /// The directives from byte `at` on (behind the `$`).
-    fn directives(
-        &mut self,
-        line: &Line,
-        mut at: usize,
-        known: &dyn Known,
-    ) -> Result<(), Diagnostic> {
+    fn directives(&mut self, line: &Line, mut at: usize, known: &dyn Known) -> Outcome<()> {
         loop {
             let text = &line.text;
             at += text[at..].len() - text[at..].trim_start().len();
@@ -286,14 +278,16 @@ impl Preprocessor<'_> {
             if word.is_empty() {
                 let (lo, hi) = line.origin(0, text.len().max(1));
                 let span = self.place(lo, hi);
-                return Err(Diagnostic::error(
-                    "E0107",
-                    span,
-                    "a `$` in the first column begins a directive, but no name follows",
-                )
-                .help(
-                    "a `$` condition must not begin in the first column: put a blank before it",
-                ));
+                return refuse(
+                    Diagnostic::error(
+                        "E0107",
+                        span,
+                        "a `$` in the first column begins a directive, but no name follows",
+                    )
+                    .help(
+                        "a `$` condition must not begin in the first column: put a blank before it",
+                    ),
+                );
             }
             if self.switch(&word) || SILENT.contains(&word.as_str()) {
                 if SILENT.contains(&word.as_str()) {
@@ -385,7 +379,7 @@ impl Preprocessor<'_> {
         from: usize,
         mut at: usize,
         known: &dyn Known,
-    ) -> Result<(), Diagnostic> {
+    ) -> Outcome<()> {
         let text = line.text.as_str();
         // `$ifThen.tag`, `$abort.noError`
         let mut suffix = String::new();
@@ -418,12 +412,14 @@ impl Preprocessor<'_> {
                 }
                 let outcome = self.include(&name, Some(arguments), lo, hi);
                 return outcome.map_err(|d| match (word, d.code) {
-                    ("libinclude" | "sysinclude", "E0103") => Diagnostic::error(
-                        "E0112",
-                        d.span,
-                        format!("`{name}` belongs to the library of a GAMS installation, which is not there"),
-                    )
-                    .help("put the file beside the model, or do without it"),
+                    ("libinclude" | "sysinclude", "E0103") => Box::new(
+                        Diagnostic::error(
+                            "E0112",
+                            d.span,
+                            format!("`{name}` belongs to the library of a GAMS installation, which is not there"),
+                        )
+                        .help("put the file beside the model, or do without it"),
+                    ),
                     _ => d,
                 });
             }
@@ -473,7 +469,7 @@ impl Preprocessor<'_> {
             "if" | "ifi" | "ife" => {
                 let flavour = flavour(&word[2..]);
                 match self.condition(rest, flavour, known) {
-                    Err(why) => return Err(self.bad_condition(word, why, lo, hi)),
+                    Err(why) => return refuse(self.bad_condition(word, why, lo, hi)),
                     Ok((false, _)) => {}
                     Ok((true, len)) => return self.action(line, at + len, known),
                 }
@@ -481,7 +477,7 @@ impl Preprocessor<'_> {
             "ifthen" | "iftheni" | "ifthene" => {
                 let flavour = flavour(&word[6..]);
                 match self.condition(rest, flavour, known) {
-                    Err(why) => return Err(self.bad_condition(word, why, lo, hi)),
+                    Err(why) => return refuse(self.bad_condition(word, why, lo, hi)),
                     Ok((truth, len)) => {
                         self.if_then(line, suffix, truth, known)?;
                         if truth {
@@ -522,7 +518,7 @@ impl Preprocessor<'_> {
                 if word == "abort" {
                     self.stop(Ending::Aborted);
                 }
-                return Err(d);
+                return refuse(d);
             }
             "macro" => return self.define_macro(rest, lo, hi),
             "eolcom" | "inlinecom" | "comment" | "dollar" => {
@@ -551,19 +547,17 @@ impl Preprocessor<'_> {
             "onput" | "onputs" | "onputv" => return self.put_block(word, lo, hi),
             "call" | "hiddencall" | "execute" => {
                 let span = self.place(lo, hi);
-                return Err(Diagnostic::error("E0113", span, format!("`${word}` would start another program, which is refused"))
+                return refuse(Diagnostic::error("E0113", span, format!("`${word}` would start another program, which is refused"))
                     .label("not run")
                     .help("run it yourself before the model, and read what it writes with `$include` or `$load`"));
             }
             "onembeddedcode" | "onembeddedcodes" | "onembeddedcodev" => {
                 let span = self.place(lo, hi);
                 self.skip_to("offembeddedcode");
-                return Err(Diagnostic::error(
-                    "E0113",
-                    span,
-                    "embedded code of other languages is not run",
-                )
-                .help("write the computation in the language itself"));
+                return refuse(
+                    Diagnostic::error("E0113", span, "embedded code of other languages is not run")
+                        .help("write the computation in the language itself"),
+                );
             }
             "gdxin" | "gdxout" | "load" | "loaddc" | "loadm" | "loadr" | "loaddcm" | "loaddcr"
             | "loadfiltered" | "loadidx" | "unload" | "kill" | "clear" => {
@@ -592,12 +586,10 @@ impl Preprocessor<'_> {
                     "directives begin with `$` in the first column".into(),
                     |n| format!("did you mean `${n}`?"),
                 );
-                return Err(Diagnostic::error(
-                    "E0107",
-                    span,
-                    format!("there is no directive `${word}`"),
-                )
-                .help(help));
+                return refuse(
+                    Diagnostic::error("E0107", span, format!("there is no directive `${word}`"))
+                        .help(help),
+                );
             }
         }
         Ok(())
@@ -614,7 +606,7 @@ impl Preprocessor<'_> {
     }
 
     /// What follows a true condition: a directive, a text, or nothing.
-    fn action(&mut self, line: &Line, at: usize, known: &dyn Known) -> Result<(), Diagnostic> {
+    fn action(&mut self, line: &Line, at: usize, known: &dyn Known) -> Outcome<()> {
         let rest = &line.text[at..];
         let start = at + rest.len() - rest.trim_start().len();
         let Some(&first) = line.text.as_bytes().get(start) else {
@@ -624,12 +616,10 @@ impl Preprocessor<'_> {
             if self.conditions_on_line >= 50 {
                 let (lo, hi) = line.origin(0, line.text.len());
                 let span = self.place(lo, hi);
-                return Err(Diagnostic::error(
-                    "E0114",
-                    span,
-                    "more than 50 conditions on one line",
-                )
-                .help("use `$ifThen … $endIf` blocks"));
+                return refuse(
+                    Diagnostic::error("E0114", span, "more than 50 conditions on one line")
+                        .help("use `$ifThen … $endIf` blocks"),
+                );
             }
             self.conditions_on_line += 1;
             let outcome = self.directives(line, start + 1, known);
@@ -643,7 +633,7 @@ impl Preprocessor<'_> {
     }
 
     /// `$else`, `$elseIf`, `$endIf`: whether the lines that follow count.
-    pub(super) fn branch(&mut self, line: &Line, known: &dyn Known) -> Result<bool, Diagnostic> {
+    pub(super) fn branch(&mut self, line: &Line, known: &dyn Known) -> Outcome<bool> {
         let text = line.text.as_str();
         let len = word_len(&text[1..]);
         let word = text[1..1 + len].to_ascii_lowercase();
@@ -661,12 +651,14 @@ impl Preprocessor<'_> {
                 return Ok(true);
             }
             let span = self.place(lo, hi);
-            return Err(Diagnostic::error(
-                "E0106",
-                span,
-                format!("`${word}` without an `$ifThen` before it in this file"),
-            )
-            .help("`$if` on one line needs no `$endIf`; blocks begin with `$ifThen`"));
+            return refuse(
+                Diagnostic::error(
+                    "E0106",
+                    span,
+                    format!("`${word}` without an `$ifThen` before it in this file"),
+                )
+                .help("`$if` on one line needs no `$endIf`; blocks begin with `$ifThen`"),
+            );
         };
         if open.tag != tag {
             let (at, expected) = (open.span, open.tag.clone());
@@ -676,17 +668,19 @@ impl Preprocessor<'_> {
                 f.ifs.pop();
             }
             let span = self.place(lo, hi);
-            return Err(Diagnostic::error(
-                "E0106",
-                span,
-                format!("`${word}.{tag}` does not belong to the innermost open `$ifThen`"),
-            )
-            .other(at, "which is this one")
-            .help(if expected.is_empty() {
-                format!("write `${word}`")
-            } else {
-                format!("write `${word}.{expected}`")
-            }));
+            return refuse(
+                Diagnostic::error(
+                    "E0106",
+                    span,
+                    format!("`${word}.{tag}` does not belong to the innermost open `$ifThen`"),
+                )
+                .other(at, "which is this one")
+                .help(if expected.is_empty() {
+                    format!("write `${word}`")
+                } else {
+                    format!("write `${word}.{expected}`")
+                }),
+            );
         }
         match word.as_str() {
             "endif" => {
@@ -705,7 +699,7 @@ impl Preprocessor<'_> {
             _ => {
                 let flavour = flavour(&word[6..]);
                 match self.condition(&text[at..], flavour, known) {
-                    Err(why) => Err(self.bad_condition(&word, why, lo, hi)),
+                    Err(why) => refuse(self.bad_condition(&word, why, lo, hi)),
                     Ok((truth, len)) => {
                         if let Some(open) = self.frames.last_mut().and_then(|f| f.ifs.last_mut()) {
                             open.taken = truth;
@@ -720,51 +714,6 @@ impl Preprocessor<'_> {
         }
     }
 
-    /// `$onText … $offText`: what stands between is not read.
-    pub(super) fn comment_block(&mut self, line: &Line) -> Result<(), Diagnostic> {
-        if self.skip_to("offtext") {
-            return Ok(());
-        }
-        let (lo, hi) = line.origin(0, line.text.len());
-        let span = self.place(lo, hi);
-        Err(
-            Diagnostic::error("E0101", span, "`$onText` without its `$offText`").help(
-                "the rest of the file is a comment: close it with `$offText` in the first column",
-            ),
-        )
-    }
-
-    /// Passes over lines up to and with the one that begins with this directive.
-    fn skip_to(&mut self, word: &str) -> bool {
-        self.collect_to(word, &mut |_, _| {})
-    }
-
-    /// Passes over lines up to the one that begins with a directive, and shows each.
-    fn collect_to(&mut self, word: &str, each: &mut dyn FnMut(&str, u32)) -> bool {
-        loop {
-            let Some(frame) = self.frames.last() else {
-                return false;
-            };
-            let (pos, len) = (frame.pos, frame.len);
-            if pos >= len {
-                return false;
-            }
-            let end = self.line_end(pos);
-            let raw = self.raw(pos, end);
-            let found = raw.as_bytes()[0] == self.marks.dollar && {
-                let t = raw[1..].trim_start();
-                t[..word_len(t)].eq_ignore_ascii_case(word)
-            };
-            if !found {
-                each(raw.trim_end_matches(['\n', '\r']), pos as u32);
-            }
-            self.advance(end);
-            if found {
-                return true;
-            }
-        }
-    }
-
     /// `$set x value`, `$eval x expression` and their kin.
     fn define(
         &mut self,
@@ -773,7 +722,7 @@ impl Preprocessor<'_> {
         lo: u32,
         hi: u32,
         known: &dyn Known,
-    ) -> Result<(), Diagnostic> {
+    ) -> Outcome<()> {
         let rest = rest.trim_start();
         let len = rest
             .bytes()
@@ -782,7 +731,7 @@ impl Preprocessor<'_> {
         let (name, value) = (&rest[..len], rest[len..].trim());
         if name.is_empty() {
             let span = self.place(lo, hi);
-            return Err(
+            return refuse(
                 Diagnostic::error("E0107", span, format!("`${word}` needs a name")).help(format!(
                     "write `${word} name value`; then `%name%` stands for the value"
                 )),
@@ -802,13 +751,13 @@ impl Preprocessor<'_> {
                         value[n..].trim()
                     );
                     let span = self.place(lo, hi);
-                    return Err(
-                        Diagnostic::error("E0115", span, message).help("is an operator missing?")
+                    return refuse(
+                        Diagnostic::error("E0115", span, message).help("is an operator missing?"),
                     );
                 }
                 Err(why) => {
                     let span = self.place(lo, hi);
-                    return Err(Diagnostic::error("E0115", span, format!("`${word} {name}` cannot be evaluated: {why}"))
+                    return refuse(Diagnostic::error("E0115", span, format!("`${word} {name}` cannot be evaluated: {why}"))
                         .help("numbers, operators, functions, `card(set)` and scalars with data can stand here"));
                 }
             }
@@ -819,7 +768,7 @@ impl Preprocessor<'_> {
         Ok(())
     }
 
-    fn define_macro(&mut self, rest: &str, lo: u32, hi: u32) -> Result<(), Diagnostic> {
+    fn define_macro(&mut self, rest: &str, lo: u32, hi: u32) -> Outcome<()> {
         let mut text = rest.to_owned();
         let mut hi = hi;
         while text.trim_end().ends_with('\\') {
@@ -835,11 +784,13 @@ impl Preprocessor<'_> {
         }
         self.macros.define(&text).map_err(|why| {
             let span = self.place(lo, hi);
-            Diagnostic::error("E0111", span, why).help("`$macro name(a,b) text with a and b`")
+            Box::new(
+                Diagnostic::error("E0111", span, why).help("`$macro name(a,b) text with a and b`"),
+            )
         })
     }
 
-    fn set_mark(&mut self, word: &str, rest: &str, lo: u32, hi: u32) -> Result<(), Diagnostic> {
+    fn set_mark(&mut self, word: &str, rest: &str, lo: u32, hi: u32) -> Outcome<()> {
         let mut marks = rest.split_whitespace();
         let first = marks.next().unwrap_or("").as_bytes().to_vec();
         let second = marks.next().unwrap_or("").as_bytes().to_vec();
@@ -856,7 +807,7 @@ impl Preprocessor<'_> {
                 "comment" => "$comment *",
                 _ => "$dollar #",
             };
-            return Err(
+            return refuse(
                 Diagnostic::error("E0107", span, format!("`${word}` needs its mark"))
                     .help(format!("for example `{example}`")),
             );
@@ -875,143 +826,6 @@ impl Preprocessor<'_> {
         }
         self.marks_changed();
         Ok(())
-    }
-
-    fn goto(&mut self, rest: &str, lo: u32, hi: u32) -> Result<(), Diagnostic> {
-        let label = rest
-            .split_whitespace()
-            .next()
-            .unwrap_or("")
-            .to_ascii_lowercase();
-        let dollar = self.marks.dollar;
-        let limit = self.max_jumps;
-        let Some(frame) = self.frames.last_mut() else {
-            return Ok(());
-        };
-        let jumps = frame.jumps.entry(label.clone()).or_default();
-        *jumps += 1;
-        if *jumps > limit {
-            frame.pos = frame.len;
-            frame.ifs.clear();
-            let span = self.place(lo, hi);
-            return Err(Diagnostic::error(
-                "E0116",
-                span,
-                format!("`$goto {label}` was followed {limit} times: it does not end"),
-            )
-            .help("`$maxGoto n` allows more"));
-        }
-        let text = &self.map.file(frame.file).text;
-        let mut pos = 0;
-        while pos < text.len() {
-            let end =
-                memchr::memchr(b'\n', &text.as_bytes()[pos..]).map_or(text.len(), |n| pos + n + 1);
-            let line = &text[pos..end];
-            if line.as_bytes()[0] == dollar {
-                let t = line[1..].trim_start();
-                let n = word_len(t);
-                if t[..n].eq_ignore_ascii_case("label")
-                    && t[n..]
-                        .split_whitespace()
-                        .next()
-                        .is_some_and(|l| l.eq_ignore_ascii_case(&label))
-                {
-                    // A jump may leave open blocks.
-                    frame.ifs.clear();
-                    frame.pos = end;
-                    frame.forget_marks();
-                    return Ok(());
-                }
-            }
-            pos = end;
-        }
-        let span = self.place(lo, hi);
-        Err(Diagnostic::error(
-            "E0116",
-            span,
-            format!("there is no `$label {label}` in this file"),
-        )
-        .help("labels are looked for in the file of the `$goto` only"))
-    }
-
-    /// Remembers what `$echo` writes: a later `$include` may read it. Nothing is written to disk.
-    fn echo(&mut self, file: &str, text: &str, append: bool) {
-        let entry = self.echoed.entry(file.trim().to_lowercase()).or_default();
-        if !append {
-            entry.clear();
-        }
-        entry.push_str(text);
-    }
-
-    fn echo_block(
-        &mut self,
-        line: &Line,
-        word: &str,
-        rest: &str,
-        lo: u32,
-        hi: u32,
-    ) -> Result<(), Diagnostic> {
-        let append = rest.trim_start().starts_with(">>");
-        let file = unquoted(rest.trim_start().trim_start_matches('>')).to_owned();
-        let mut lines: Vec<(String, u32)> = Vec::new();
-        let closed = self.collect_to("offecho", &mut |t, at| lines.push((t.to_owned(), at)));
-        let mut text = String::new();
-        for (t, at) in lines {
-            if word == "onechov" {
-                text.push_str(&t);
-            } else {
-                let file = line.file();
-                text.push_str(&self.substituted(Line::new(file, at, &t))?.text);
-            }
-            text.push('\n');
-        }
-        self.echo(&file, &text, append);
-        if closed {
-            return Ok(());
-        }
-        let span = self.place(lo, hi);
-        Err(
-            Diagnostic::error("E0101", span, format!("`${word}` without its `$offEcho`"))
-                .help("close it with `$offEcho` in the first column"),
-        )
-    }
-
-    /// `$onPut … $offPut`: each line becomes a `put` of its text.
-    fn put_block(&mut self, word: &str, lo: u32, hi: u32) -> Result<(), Diagnostic> {
-        let mut lines: Vec<(String, u32)> = Vec::new();
-        let closed = self.collect_to("offput", &mut |t, at| lines.push((t.to_owned(), at)));
-        let file = self.frames.last().map_or(super::FileId(0), |f| f.file);
-        for (t, at) in lines {
-            let len = t.len() as u32;
-            let line = Line::new(file, at, &t);
-            let t = if word == "onputs" || word == "onput" {
-                self.substituted(line)?.text
-            } else {
-                t
-            };
-            let mut put = String::from("put ");
-            let mut rest = t.as_str();
-            while !rest.is_empty() {
-                // A text holds one kind of quote at most.
-                let q = if rest.starts_with('\'') { '"' } else { '\'' };
-                let n = rest.find(q).unwrap_or(rest.len());
-                put.push(q);
-                put.push_str(&rest[..n]);
-                put.push(q);
-                put.push(' ');
-                rest = &rest[n..];
-            }
-            put.push_str("/;\n");
-            self.map.push_substitute(&put, file, at, at + len);
-        }
-        if closed {
-            return Ok(());
-        }
-        let span = self.place(lo, hi);
-        Err(
-            Diagnostic::error("E0101", span, format!("`${word}` without its `$offPut`"))
-                .help("close it with `$offPut` in the first column"),
-        )
     }
 }
 

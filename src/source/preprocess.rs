@@ -19,7 +19,7 @@ use super::conditions::If;
 use super::line::Line;
 use super::macros::Macros;
 use super::variables::{self, Variables};
-use super::{FileId, SourceMap, Span};
+use super::{FileId, Outcome, SourceMap, Span, refuse};
 use crate::diag::Diagnostic;
 use crate::host::{Host, HostError};
 use crate::syntax::ast::Modes;
@@ -251,10 +251,10 @@ impl<'h> Preprocessor<'h> {
         arguments: Option<Vec<String>>,
         lo: u32,
         hi: u32,
-    ) -> Result<(), Diagnostic> {
+    ) -> Outcome<()> {
         let asked = self.place(lo, hi);
         if name.is_empty() {
-            return Err(
+            return refuse(
                 Diagnostic::error("E0103", asked, "the name of the file is missing")
                     .help("write `$include 'file.gms'`"),
             );
@@ -267,7 +267,7 @@ impl<'h> Preprocessor<'h> {
         let from = self.frames.last().map(|f| f.path.clone());
         let (path, text) = match self.host.read(name, from.as_deref()) {
             Ok(found) => found,
-            Err(e) => return Err(unreadable(name, &e, asked)),
+            Err(e) => return refuse(unreadable(name, &e, asked)),
         };
         // A batch file may call itself with other arguments: that is bounded by the depth.
         let itself = arguments.is_none()
@@ -286,7 +286,7 @@ impl<'h> Preprocessor<'h> {
             for frame in self.frames.iter().skip(1).take(3) {
                 d = d.other(frame.asked, "included from here");
             }
-            return Err(d);
+            return refuse(d);
         }
         self.open(path, name, text, arguments, asked);
         Ok(())
@@ -327,7 +327,7 @@ impl<'h> Preprocessor<'h> {
             }
             if frame.pos >= frame.len {
                 if let Err(d) = self.leave() {
-                    return Err(vec![d]);
+                    return Err(vec![*d]);
                 }
                 continue;
             }
@@ -349,7 +349,7 @@ impl<'h> Preprocessor<'h> {
                         .and_then(|l| self.directive_line(&l, known));
                     if let Err(d) = outcome {
                         self.had_errors = true;
-                        return Err(vec![d]);
+                        return Err(vec![*d]);
                     }
                     continue;
                 }
@@ -384,7 +384,7 @@ impl<'h> Preprocessor<'h> {
             };
             if let Err(d) = outcome {
                 self.had_errors = true;
-                return Err(vec![d]);
+                return Err(vec![*d]);
             }
         }
     }
@@ -406,6 +406,10 @@ impl<'h> Preprocessor<'h> {
 
     pub(crate) fn into_map(self) -> SourceMap {
         self.map
+    }
+
+    pub(crate) fn warn(&mut self, d: Diagnostic) {
+        self.warnings.push(d);
     }
 
     pub(crate) fn take_warnings(&mut self) -> Vec<Diagnostic> {
@@ -527,7 +531,7 @@ impl<'h> Preprocessor<'h> {
     }
 
     /// The present file ends.
-    fn leave(&mut self) -> Result<(), Diagnostic> {
+    fn leave(&mut self) -> Outcome<()> {
         let Some(frame) = self.frames.last() else {
             return Ok(());
         };
@@ -538,13 +542,13 @@ impl<'h> Preprocessor<'h> {
         self.frames.pop();
         self.names.leave();
         if let Some(open) = open {
-            return Err(
+            return refuse(
                 Diagnostic::error("E0106", open.span, "this `$ifThen` is never closed")
                     .help("every `$ifThen` needs its `$endIf` in the same file"),
             );
         }
         if let Some(span) = comment {
-            return Err(
+            return refuse(
                 Diagnostic::error("E0101", span, "this comment is never closed")
                     .help("close it with the mark that `$inlineCom` set"),
             );
@@ -561,7 +565,7 @@ impl<'h> Preprocessor<'h> {
     }
 
     /// Puts what they stand for in the place of `%name%` and `%1`.
-    pub(super) fn substituted(&mut self, mut line: Line) -> Result<Line, Diagnostic> {
+    pub(super) fn substituted(&mut self, mut line: Line) -> Outcome<Line> {
         if !line.text.contains('%') {
             return Ok(line);
         }
@@ -684,7 +688,7 @@ impl<'h> Preprocessor<'h> {
     }
 
     /// The rest of a line from `from` on: comments and macros, then into the expanded text.
-    pub(super) fn finish_text(&mut self, mut line: Line, from: usize) -> Result<(), Diagnostic> {
+    pub(super) fn finish_text(&mut self, mut line: Line, from: usize) -> Outcome<()> {
         let end = self.strip_comments(&mut line, from);
         let (first, last) = self.marks.columns;
         let mut end = end;
@@ -707,7 +711,7 @@ impl<'h> Preprocessor<'h> {
                 Err(e) => {
                     let (lo, hi) = line.origin(e.from, e.to);
                     let span = self.place(lo, hi);
-                    return Err(Diagnostic::error("E0111", span, e.message).help(e.help));
+                    return refuse(Diagnostic::error("E0111", span, e.message).help(e.help));
                 }
             }
         }

@@ -14,6 +14,7 @@ mod build;
 pub mod data;
 mod explain;
 mod grammar;
+mod neighbours;
 mod split;
 pub mod table;
 mod words;
@@ -25,6 +26,7 @@ use crate::host::Host;
 use crate::source::{Ending, Known, PreprocessOptions, Preprocessor, SourceMap, Span};
 use ast::{Modes, Stmt};
 use build::{Builder, Condensed};
+use explain::Explanation;
 use grammar::{Grammar, Rule};
 use split::{Cut, Raw, Splitter};
 use words::Class;
@@ -48,6 +50,8 @@ pub struct Parser<'h> {
     ended: bool,
     /// Errors so far.
     errors: usize,
+    /// Statements that were cut at a missing `;`.
+    pending: Option<(Raw, Modes)>,
 }
 
 /// Errors after which a text is given up: it is no model.
@@ -69,6 +73,7 @@ impl<'h> Parser<'h> {
                 modes: Modes::default(),
                 ended: false,
                 errors: 0,
+                pending: None,
             }),
             Err(e) => Err(Box::new(Unreadable {
                 map: e.0,
@@ -82,6 +87,10 @@ impl<'h> Parser<'h> {
         if self.errors > MOST_ERRORS {
             return Ok(None);
         }
+        if let Some((raw, modes)) = self.pending.take() {
+            self.modes = modes;
+            return self.take(raw).map(Some);
+        }
         loop {
             let was_inside = self.splitter.inside();
             let cut = self
@@ -91,13 +100,7 @@ impl<'h> Parser<'h> {
                 self.modes = self.text.modes();
             }
             match cut {
-                Cut::Statement(raw) => {
-                    let outcome = self.parse(&raw);
-                    if let Err(list) = &outcome {
-                        self.fail(list);
-                    }
-                    return outcome.map(Some);
-                }
+                Cut::Statement(raw) => return self.take(raw).map(Some),
                 Cut::More if self.ended => return Ok(None),
                 Cut::More => match self.text.fill(known) {
                     Ok(true) => {}
@@ -116,10 +119,52 @@ impl<'h> Parser<'h> {
         self.text.note_error();
     }
 
-    fn parse(&mut self, raw: &Raw) -> Result<Stmt, Vec<Diagnostic>> {
-        if !raw.problems.is_empty() {
-            return Err(raw.problems.clone());
+    /// Parses a statement; where a `;` is missing, the rest is kept for the next calls.
+    fn take(&mut self, mut raw: Raw) -> Result<Stmt, Vec<Diagnostic>> {
+        let problems = std::mem::take(&mut raw.problems);
+        let outcome = if problems.is_empty() {
+            self.parse(&raw).map_err(|e| {
+                if let Some((end, start)) = e.divide {
+                    raw.span.hi = end;
+                    self.splitter.back_to(start as usize);
+                    self.pending = Some((raw, self.modes));
+                }
+                if let Some(at) = e.resume {
+                    self.splitter.back_to(at as usize);
+                }
+                vec![e.diagnostic]
+            })
+        } else {
+            if problems.iter().all(|p| p.code == "E0201") {
+                self.pending = Some((raw, self.modes));
+            }
+            Err(problems)
+        };
+        if let Err(list) = &outcome {
+            self.fail(list);
         }
+        outcome
+    }
+
+    /// `variable x >= 0;` is legal, but the bound is a text.
+    fn suspicious_texts(&mut self, stmt: &Stmt) {
+        let ast::StmtKind::Variable(_, list) = &stmt.kind else {
+            return;
+        };
+        for d in list {
+            let Some(text) = d.text.as_deref().filter(|t| t.starts_with(['<', '>'])) else {
+                continue;
+            };
+            let name = &d.name.name;
+            let message =
+                format!("`{text}` behind `{name}` is read as an explanatory text, not as a bound");
+            self.text.warn(Diagnostic::warning("E0234", d.name.span, message).help(format!(
+                "declare `positive variable {name};`, or assign `{name}.lo = …;` after the declaration"
+            )));
+        }
+    }
+
+    fn parse(&mut self, raw: &Raw) -> Result<Stmt, Box<Explanation>> {
         let expanded = self.text.map.expanded();
         let condensed = Condensed::new(expanded, raw.span, &raw.holes);
         let text = condensed.text(expanded);
@@ -147,15 +192,27 @@ impl<'h> Parser<'h> {
                 Some(pair) => builder.statement(pair),
                 None => Ok(ast::StmtKind::Empty),
             },
-            Err(e) => return Err(explain::explain(&e, raw, &condensed, expanded)),
+            Err(e) => {
+                return Err(Box::new(explain::explain(
+                    &e, raw, &condensed, expanded, rule,
+                )));
+            }
         };
         match built {
-            Ok(kind) => Ok(Stmt {
-                kind,
-                span: raw.span,
-                modes: self.modes,
-            }),
-            Err(d) => Err(vec![*d]),
+            Ok(kind) => {
+                let stmt = Stmt {
+                    kind,
+                    span: raw.span,
+                    modes: self.modes,
+                };
+                self.suspicious_texts(&stmt);
+                Ok(stmt)
+            }
+            Err(d) => Err(Box::new(Explanation {
+                diagnostic: *d,
+                divide: None,
+                resume: None,
+            })),
         }
     }
 

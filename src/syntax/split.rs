@@ -146,6 +146,16 @@ impl Splitter {
         self.start.is_some()
     }
 
+    /// Goes on at a byte that was passed over: a `;` was missing before it.
+    pub(super) fn back_to(&mut self, at: usize) {
+        self.pos = at;
+        self.start = None;
+        self.opens.clear();
+        self.blocks = 0;
+        self.holes.clear();
+        self.problems.clear();
+    }
+
     /// Looks for the next statement. `last`: no more text will come.
     pub(super) fn next(&mut self, text: &str, on_end: bool, last: bool) -> Cut {
         let bytes = text.as_bytes();
@@ -343,7 +353,11 @@ impl Splitter {
                                         self.control = false;
                                     }
                                 }
-                                Word::EndControl if on_end && self.blocks > 0 => self.blocks -= 1,
+                                Word::EndControl | Word::Until
+                                    if on_end && self.blocks > 0 && self.opens.is_empty() =>
+                                {
+                                    self.blocks -= 1
+                                }
                                 _ => {}
                             }
                         }
@@ -539,7 +553,7 @@ impl Splitter {
                     }
                     self.name(bytes, i, end);
                 }
-                b'.' | b'=' | b'$'
+                b'.' | b'=' | b'$' | b':'
                     if self.declare == Declare::AfterText || self.declare == Declare::AfterName =>
                 {
                     if self.missing_semicolon(text, i) {
@@ -620,6 +634,7 @@ impl Splitter {
         let bytes = text.as_bytes();
         let definition = bytes[i..].starts_with(b"..");
         let assignment = bytes[i] == b'='
+            || bytes[i] == b':'
             || bytes[i] == b'$'
             || bytes[i] == b'.' && bytes.get(i + 1).is_some_and(|b| words::is_letter(*b));
         if !definition && !assignment || self.names < 2 {
@@ -816,6 +831,7 @@ fn line_quote(bytes: &[u8], i: usize) -> Option<usize> {
 fn text_cannot_start(bytes: &[u8], i: usize) -> bool {
     match bytes[i] {
         b'=' | b'$' => true,
+        b':' => bytes.get(i + 1) == Some(&b'='),
         b'.' => bytes
             .get(i + 1)
             .is_some_and(|b| *b == b'.' || words::is_letter(*b)),

@@ -39,8 +39,10 @@ pub(super) enum Word {
     Control,
     /// `endloop` … under `$onEnd`.
     EndControl,
-    /// `else`, `elseif`, `until`.
+    /// `else`, `elseif`.
     Inner,
+    /// `until`, which ends a `repeat` under `$onEnd`.
+    Until,
     /// `display`, `solve` …
     Action,
 }
@@ -48,7 +50,7 @@ pub(super) enum Word {
 impl Word {
     /// Words that do not end a statement at the outermost level.
     pub(super) fn inside_blocks_only(self) -> bool {
-        matches!(self, Word::EndControl | Word::Inner)
+        matches!(self, Word::EndControl | Word::Inner | Word::Until)
     }
 }
 
@@ -98,7 +100,8 @@ fn kind(word: &[u8]) -> Option<(Word, Class)> {
         b"alias" | b"aliases" => (W::Declaration, C::Alias),
         b"loop" | b"while" | b"for" | b"if" | b"repeat" => (W::Control, C::Other),
         b"endloop" | b"endwhile" | b"endfor" | b"endif" => (W::EndControl, C::Other),
-        b"else" | b"elseif" | b"until" => (W::Inner, C::Other),
+        b"else" | b"elseif" => (W::Inner, C::Other),
+        b"until" => (W::Until, C::Other),
         b"display" | b"abort" | b"option" | b"options" | b"solve" | b"put" | b"putclose"
         | b"puttl" | b"puthd" | b"putpage" | b"putclear" | b"execute" | b"execute_unload"
         | b"execute_load" | b"execute_unloaddi" | b"execute_loaddc" | b"execute_loadpoint"

@@ -447,11 +447,7 @@ impl Builder<'_> {
                 Rule::new_line => items.push(PutItem::NewLine),
                 Rule::put_column | Rule::put_row => {
                     let column = p.as_rule() == Rule::put_column;
-                    let mut e = None;
-                    for q in p.into_inner() {
-                        e = q.into_inner().next();
-                    }
-                    let Some(e) = e else { continue };
+                    let Some(e) = parts(p).next() else { continue };
                     let e = self.operand(e)?;
                     items.push(if column {
                         PutItem::Column(e)
