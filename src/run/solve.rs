@@ -11,7 +11,7 @@ use crate::model::origin::{Blocks, Origin};
 use crate::report::names::Names;
 use crate::report::{json, listing, solution, summary};
 use crate::solve::answer::{Answer, answer};
-use crate::solve::{ModelStatus, Monitor, Settings};
+use crate::solve::{ModelStatus, Monitor, Settings, SolverStatus};
 use crate::source::Span;
 
 /// A solver's line to the run.
@@ -93,6 +93,7 @@ impl Machine<'_> {
         let generated_at = self.elapsed();
         if let Some(list) = self.options.list.clone() {
             self.print_listing(&name, &generated, &list);
+            self.report.solves.push(self.not_solved(s, &generated));
             return Flow::Next;
         }
         let settings = self.settings(s.model);
@@ -340,6 +341,31 @@ impl Machine<'_> {
             self.print(&text);
         }
         self.report.solves.push(solve);
+    }
+
+    /// The report of a model that was generated only.
+    fn not_solved(&self, s: &SolveCode, g: &Generated) -> json::SolveReport {
+        json::SolveReport {
+            model: self.symbols.get(s.model).name.to_string(),
+            using: s.using.to_string(),
+            sense: None,
+            objective_name: None,
+            solver: String::new(),
+            model_status: ModelStatus::NoSolution.into(),
+            solver_status: SolverStatus::NormalCompletion.into(),
+            objective: None,
+            rows: g.instance.row_count(),
+            columns: g.instance.column_count(),
+            nonzeros: g.origin.nonzeros,
+            nonlinear_nonzeros: g.origin.nonlinear_nonzeros,
+            iterations: 0,
+            seconds: json::Seconds::default(),
+            residual: json::Residual::default(),
+            complementarity_sum: None,
+            bounds: None,
+            stationarity: None,
+            message: None,
+        }
     }
 
     /// What else there is to say: the solver's remark, and the worst row or column of a failure.
