@@ -1,6 +1,6 @@
 //! Statements.
 
-use super::plan::{Plan, sort_tuples};
+use super::plan::{Pick, Plan, sort_tuples};
 use super::random::Random;
 use super::{Flow, Frame, Machine, scan};
 use crate::check::node::*;
@@ -302,22 +302,11 @@ impl Machine<'_> {
                 }
             }
             None => {
-                let plan = self.plan(domain, None);
-                if plan.ordered || !impure {
-                    self.run_plan(domain, &plan, frame, &mut |f| {
-                        self.evaluate(symbol, target, key, value, f, &mut out);
-                        self.keep_going()
-                    });
-                } else {
-                    // The stream of random numbers runs in label order.
-                    let d = domain.slots.len();
-                    for t in self.tuples(domain, frame).chunks_exact(d) {
-                        for (&s, &l) in domain.slots.iter().zip(t) {
-                            frame[s as usize] = l;
-                        }
-                        self.evaluate(symbol, target, key, value, frame, &mut out);
-                    }
-                }
+                let plan = self.plan_for(domain, None, impure);
+                self.run_plan(domain, &plan, frame, &mut |f| {
+                    self.evaluate(symbol, target, key, value, f, &mut out);
+                    self.keep_going()
+                });
             }
         }
         *self.current.borrow_mut() = None;
@@ -448,7 +437,7 @@ impl Machine<'_> {
         }
         let mut plans: Vec<Plan> = alternatives
             .iter()
-            .map(|a| self.make_plan(domain, None, a))
+            .map(|a| self.make_plan(domain, None, a, Pick::Cheapest))
             .collect();
         if !covers {
             if !key.is_plain() {
@@ -461,6 +450,7 @@ impl Machine<'_> {
                     table,
                     key: key.clone(),
                 }],
+                Pick::Cheapest,
             ));
         }
         Some(plans)
@@ -657,7 +647,7 @@ fn sort_records(r: &mut Records, d: usize) {
 }
 
 /// Whether evaluating draws random numbers: then order and number of evaluations matter.
-fn has_random(n: &Node) -> bool {
+pub(super) fn has_random(n: &Node) -> bool {
     use DataFunction as D;
     let mut hit = false;
     crate::check::walk_node(n, &mut |x| {

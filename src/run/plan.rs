@@ -10,6 +10,7 @@
 //! label order ([`Plan::ordered`], or sorted after).
 
 use super::Machine;
+use super::exec::has_random;
 use crate::check::node::*;
 use crate::check::symbols::DomainPosition;
 use crate::data::universe::Label;
@@ -61,12 +62,26 @@ struct Candidate {
 /// Alternatives, each a conjunction of drivers; None: anything may be nonzero.
 pub type Support = Option<Vec<Vec<Driver>>>;
 
+/// Which table is scanned next.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Pick {
+    /// The one with the smallest fan-out.
+    Cheapest,
+    /// One that keeps the tuples in the order of the slots: where random numbers are drawn.
+    InOrder,
+}
+
 /// More alternatives than this are not followed.
 const MAX_ALTERNATIVES: usize = 8;
 
 impl Machine<'_> {
     /// The plan of a domain; `body` is what is summed, if a zero of it does not matter.
     pub(super) fn plan(&self, d: &Domain, body: Option<&Node>) -> Rc<Plan> {
+        self.plan_for(d, body, body.is_some_and(has_random))
+    }
+
+    /// The plan of a domain; `drawing`: what is done for each tuple draws random numbers.
+    pub(super) fn plan_for(&self, d: &Domain, body: Option<&Node>, drawing: bool) -> Rc<Plan> {
         if let Some(p) = &*d.plan.borrow() {
             let stale = p.sizes.iter().any(|&(t, n)| {
                 let now = self.store.table(t).len();
@@ -76,13 +91,24 @@ impl Machine<'_> {
                 return p.clone();
             }
         }
-        let p = Rc::new(self.make_plan(d, body, &[]));
+        let pick = if drawing || d.conditions.iter().any(has_random) {
+            Pick::InOrder
+        } else {
+            Pick::Cheapest
+        };
+        let p = Rc::new(self.make_plan(d, body, &[], pick));
         *d.plan.borrow_mut() = Some(p.clone());
         p
     }
 
     /// Plans a domain with additional drivers (and perhaps additional slots that those bind).
-    pub(super) fn make_plan(&self, d: &Domain, body: Option<&Node>, extra: &[Driver]) -> Plan {
+    pub(super) fn make_plan(
+        &self,
+        d: &Domain,
+        body: Option<&Node>,
+        extra: &[Driver],
+        pick: Pick,
+    ) -> Plan {
         let mut free: Vec<Slot> = d.slots.clone();
         let mut candidates: Vec<Candidate> = d
             .members
@@ -142,6 +168,10 @@ impl Machine<'_> {
                 let mut used = Vec::new();
                 slots_of(c, &mut used);
                 used.retain(|s| free.contains(s));
+                if has_random(c) {
+                    // Drawn once per tuple.
+                    used = free.clone();
+                }
                 (i, used)
             })
             .collect();
@@ -209,6 +239,9 @@ impl Machine<'_> {
                         new.push(*s);
                     }
                 });
+                if pick == Pick::InOrder && new != free[..new.len()] {
+                    continue;
+                }
                 // Fan-out per slot that it binds.
                 let fan = (rows / groups.clamp(1.0, rows.max(1.0))).max(1e-3);
                 let cost = fan.powf(1.0 / new.len() as f64);
