@@ -120,30 +120,34 @@ impl Machine<'_> {
                 done: false,
             })
             .collect();
-        let soft = |candidates: &mut Vec<Candidate>, drivers: &[Driver]| {
+        let soft = |candidates: &mut Vec<Candidate>, drivers: &[Driver], inner_too: bool| {
             for m in drivers {
-                candidates.push(Candidate {
-                    table: m.table,
-                    key: m.key.clone(),
-                    required: false,
-                    done: false,
-                });
+                // A driver that mentions an index of a sum inside cannot be scanned out here.
+                let inner = |p: &Part| matches!(p, Part::Slot(s) if self.is_inner(*s, d));
+                if inner_too || !m.key.parts.iter().any(inner) {
+                    candidates.push(Candidate {
+                        table: m.table,
+                        key: m.key.clone(),
+                        required: false,
+                        done: false,
+                    });
+                }
             }
         };
         for c in &d.conditions {
             if let Some(alternatives) = self.support(c, false)
                 && let [one] = alternatives.as_slice()
             {
-                soft(&mut candidates, one);
+                soft(&mut candidates, one, false);
             }
         }
         if let Some(b) = body
             && let Some(alternatives) = self.support(b, b.has_var)
             && let [one] = alternatives.as_slice()
         {
-            soft(&mut candidates, one);
+            soft(&mut candidates, one, false);
         }
-        soft(&mut candidates, extra);
+        soft(&mut candidates, extra, true);
         // Slots that only the extra drivers know are enumerated too.
         for m in extra {
             for p in &m.key.parts {
