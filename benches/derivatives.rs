@@ -74,7 +74,11 @@ fn chain(n: usize) -> Instance {
         Op::Add,
     ];
     let mut t = KernelTerms {
-        kernel: Kernel { ops, variables: 2, constants: 2 },
+        kernel: Kernel {
+            ops,
+            variables: 2,
+            constants: 2,
+        },
         ..KernelTerms::default()
     };
     for i in 0..n as u32 - 1 {
@@ -83,7 +87,13 @@ fn chain(n: usize) -> Instance {
         t.columns.extend([i, i + 1]);
         t.constants.extend([100.0, 1.0]);
     }
-    Builder { nonlinear: vec![t], matrix: vec![], columns: n, rows: 1 }.instance()
+    Builder {
+        nonlinear: vec![t],
+        matrix: vec![],
+        columns: n,
+        rows: 1,
+    }
+    .instance()
 }
 
 /// Columns: h, v, m, thrust per node; rows: h' = v, v' = (T − D)/m − 1/h², m' = −T/c.
@@ -118,7 +128,11 @@ fn rocket(nodes: usize) -> Instance {
         Op::Subtract,
     ]);
     let mut t = KernelTerms {
-        kernel: Kernel { ops, variables: 4, constants: 3 },
+        kernel: Kernel {
+            ops,
+            variables: 4,
+            constants: 3,
+        },
         ..KernelTerms::default()
     };
     let step = 1.0 / nodes as f64;
@@ -139,7 +153,13 @@ fn rocket(nodes: usize) -> Instance {
             matrix.push((row + 2, col(node, 3), step));
         }
     }
-    Builder { nonlinear: vec![t], matrix, columns: 4 * nodes, rows: 3 * (nodes - 1) }.instance()
+    Builder {
+        nonlinear: vec![t],
+        matrix,
+        columns: 4 * nodes,
+        rows: 3 * (nodes - 1),
+    }
+    .instance()
 }
 
 /// Every row a structure of its own: a random tree over a few columns.
@@ -147,7 +167,9 @@ fn scalar(rows: usize) -> Instance {
     let mut nonlinear = Vec::new();
     let mut seed = 1u64;
     let mut random = move |n: u64| {
-        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        seed = seed
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
         (seed >> 33) % n
     };
     for row in 0..rows {
@@ -168,14 +190,24 @@ fn scalar(rows: usize) -> Instance {
             }
         }
         nonlinear.push(KernelTerms {
-            kernel: Kernel { ops, variables: 8, constants: 0 },
+            kernel: Kernel {
+                ops,
+                variables: 8,
+                constants: 0,
+            },
             row: vec![row as u32],
             coef: vec![1.0],
             columns: (0..8).map(|k| (row + k) as u32).collect(),
             constants: vec![],
         });
     }
-    Builder { nonlinear, matrix: vec![], columns: rows + 8, rows }.instance()
+    Builder {
+        nonlinear,
+        matrix: vec![],
+        columns: rows + 8,
+        rows,
+    }
+    .instance()
 }
 
 /// Best of several runs, in seconds.
@@ -203,7 +235,10 @@ fn report(name: &str, instance: &Instance, start: f64) {
     let (mut j, mut h) = (vec![0.0; jacobian], vec![0.0; hessian]);
     let rows_time = time(|| e.rows(&x, &mut rows).expect("the start is in the domain"));
     let jacobian_time = time(|| e.jacobian(&x, &mut j).expect("the start is in the domain"));
-    let hessian_time = time(|| e.hessian(&x, &lambda, &mut h).expect("the start is in the domain"));
+    let hessian_time = time(|| {
+        e.hessian(&x, &lambda, &mut h)
+            .expect("the start is in the domain")
+    });
     println!(
         "{name:>8} {nonlinear:>9} {jacobian:>9} {hessian:>9}   {:>9.1} ms   {:>7.2} {:>7.2} {:>7.2}",
         setup * 1e3,
@@ -214,7 +249,9 @@ fn report(name: &str, instance: &Instance, start: f64) {
 }
 
 fn main() {
-    println!("   model nonlinear  jacobian   hessian       set-up        rows     jac    hess  (ns per nonzero)");
+    println!(
+        "   model nonlinear  jacobian   hessian       set-up        rows     jac    hess  (ns per nonzero)"
+    );
     for n in [10_000, 100_000, 1_000_000] {
         report("chain", &chain(n), 0.5);
         report("rocket", &rocket(n / 8), 1.01);

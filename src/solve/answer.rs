@@ -29,7 +29,6 @@ pub fn answer(
     settings: &Settings,
     monitor: &mut dyn Monitor,
 ) -> Result<Answer, SolveError> {
-    let _ = choice;
     match using {
         "mcp" => complementary(instance, settings, monitor),
         "cns" => square(instance, settings, monitor),
@@ -37,7 +36,8 @@ pub fn answer(
         _ if instance.is_linear() && instance.objective.is_some() => {
             linear(&super::lp::Clarabel, instance, settings, monitor)
         }
-        _ => missing(using),
+        "mip" | "minlp" | "miqcp" => missing(using),
+        _ => super::nlp::answer(choice, instance, settings, monitor),
     }
 }
 

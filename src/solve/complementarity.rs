@@ -13,7 +13,7 @@ use std::time::Instant;
 /// Rows and columns put side by side.
 struct Square<'a> {
     instance: &'a Instance,
-    evaluator: Evaluator<'a>,
+    evaluator: Evaluator,
     lower: Vec<f64>,
     upper: Vec<f64>,
     /// Row of each column; None for a fixed column without one.

@@ -9,6 +9,7 @@ pub mod complementarity;
 pub mod conformance;
 pub mod lp;
 pub mod mcp;
+pub mod nlp;
 
 use crate::model::instance::Instance;
 
