@@ -463,6 +463,35 @@ impl Compiler {
     /// The rules of matching that can be seen in the text.
     fn check_pairs(&mut self, rows: &[ModelRow], using: &str) -> Result<(), Failed> {
         let mut failed = false;
+        let paired: Vec<(SymbolId, Span)> = rows
+            .iter()
+            .filter_map(|r| Some((r.pair?, r.span)))
+            .collect();
+        for (v, span) in paired {
+            let appears = rows.iter().any(|r| {
+                let e = &self.equations[r.definition];
+                mentions(&e.left, v) || mentions(&e.right, v)
+            });
+            if !appears {
+                let (name, declared) = (
+                    self.symbols.get(v).name.clone(),
+                    self.symbols.get(v).declared,
+                );
+                failed |= self
+                    .fail::<()>(
+                        Diagnostic::error(
+                            "E0368",
+                            span,
+                            format!(
+                                "the variable `{name}` of a pair stands in no equation of the model"
+                            ),
+                        )
+                        .label("paired, but in no equation")
+                        .other(declared, "declared here"),
+                    )
+                    .is_err();
+            }
+        }
         for r in rows {
             let e = &self.equations[r.definition];
             let (eq, relation) = (self.symbols.get(e.symbol).clone(), e.relation);
