@@ -121,6 +121,29 @@ fn optimum(o: &Outcome, value: f64, tolerance: f64) {
 
 /// Runs all of it. `tolerance`: relative, on levels and marginals.
 pub fn suite(solver: &dyn Solver, tolerance: f64) {
+    suite_with(solver, &Settings::default(), tolerance);
+}
+
+/// A solver with settings of its own.
+struct With<'a>(&'a dyn Solver, &'a Settings);
+
+impl Solver for With<'_> {
+    fn name(&self) -> &'static str {
+        self.0.name()
+    }
+    fn solve(
+        &self,
+        instance: &Instance,
+        _: &Settings,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Outcome, SolveError> {
+        self.0.solve(instance, self.1, monitor)
+    }
+}
+
+/// Runs all of it with these settings.
+pub fn suite_with(solver: &dyn Solver, settings: &Settings, tolerance: f64) {
+    let solver: &dyn Solver = &With(solver, settings);
     textbook(solver, tolerance);
     signs(solver, tolerance);
     shapes(solver, tolerance);

@@ -1,11 +1,13 @@
-//! Linear programs: form, scaling, interior point, and the way back.
+//! Linear programs: form, scaling, interior point, simplex finish, and the way back.
 //!
 //! [`Form`] takes an instance apart, [`Scaling`] changes the units, Clarabel finds the optimum,
 //! and the point returns the same way. See the modules for the mathematics.
 
+pub mod crossover;
 pub mod form;
 pub mod interior;
 pub mod scale;
+pub mod simplex;
 
 use std::time::Instant;
 
@@ -13,6 +15,7 @@ use super::{Claim, Monitor, Outcome, Settings, SolveError, Solver, SolverStatus}
 use crate::model::instance::Instance;
 use form::{Form, Point, Problem};
 use scale::Scaling;
+use simplex::Simplex;
 
 /// How a method ended, in the units of the problem it was given.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,9 +54,25 @@ impl Limits {
     }
 }
 
-/// The solver of linear programs, `option lp = clarabel`.
+/// The solver of linear programs, `option lp = clarabel`: small programs by the simplex method,
+/// larger ones by Clarabel's interior-point method and a finish by the simplex method.
+///
+/// Options: `method` = `auto`, `interior`, `simplex`, `crossover`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Clarabel;
+
+/// The simplex method alone, `option lp = simplex`.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct DualSimplex;
+
+/// Which way to go.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Method {
+    Auto,
+    Interior,
+    Crossover,
+    Simplex,
+}
 
 impl Solver for Clarabel {
     fn name(&self) -> &'static str {
@@ -66,60 +85,179 @@ impl Solver for Clarabel {
         settings: &Settings,
         monitor: &mut dyn Monitor,
     ) -> Result<Outcome, SolveError> {
-        if !instance.is_linear() {
-            return Err(SolveError {
-                message: "the model has nonlinear terms; this solver takes linear models".into(),
-                row: None,
-                column: None,
-            });
-        }
-        let limits = Limits {
-            start: Instant::now(),
-            seconds: settings.time_limit,
-            iterations: settings.iteration_limit,
+        let asked = settings
+            .options
+            .iter()
+            .rev()
+            .find(|o| o.0.eq_ignore_ascii_case("method"));
+        let method = match asked.map(|o| o.1.to_lowercase()).as_deref() {
+            Some("interior") => Method::Interior,
+            Some("crossover") => Method::Crossover,
+            Some("simplex") => Method::Simplex,
+            _ => Method::Auto,
         };
-        let form = Form::new(instance)?;
-        let scaling = Scaling::new(&form.problem);
-        let scaled = scaling.apply(&form.problem);
-        let run = match trivial(&scaled) {
-            Some(run) => run,
-            None => interior::solve(&scaled, 1e-10, &limits, &mut || monitor.interrupted()),
-        };
-        let (claim, status) = match run.ended {
-            Ended::Solved if run.almost => (Claim::Unfinished, SolverStatus::TerminatedBySolver),
-            Ended::Solved => (Claim::Solved, SolverStatus::NormalCompletion),
-            Ended::Infeasible(_) => (Claim::Infeasible, SolverStatus::NormalCompletion),
-            Ended::Unbounded(_) => (Claim::Unbounded, SolverStatus::NormalCompletion),
-            Ended::Iterations => (Claim::Unfinished, SolverStatus::IterationInterrupt),
-            Ended::Time => (Claim::Unfinished, SolverStatus::ResourceInterrupt),
-            Ended::Interrupted => (Claim::Unfinished, SolverStatus::UserInterrupt),
-            Ended::Failed => (Claim::Unfinished, SolverStatus::TerminatedBySolver),
-        };
-        let ray = match run.ended {
-            Ended::Infeasible(mut y) => {
-                scaling.restore_multipliers(&mut y);
-                form.multipliers(&y)
-            }
-            Ended::Unbounded(mut x) => {
-                scaling.restore_direction(&mut x);
-                form.direction(instance, &x)
-            }
-            _ => Vec::new(),
-        };
-        let point = scaling.restore(run.point);
-        let (level, row_marginal, column_marginal) = form.point(instance, &point);
-        Ok(Outcome {
-            level,
-            row_marginal,
-            column_marginal,
-            claim,
-            status,
-            iterations: run.iterations,
-            solver: "clarabel",
-            ray,
-            message: None,
-        })
+        solve(instance, settings, monitor, method)
     }
+}
+
+impl Solver for DualSimplex {
+    fn name(&self) -> &'static str {
+        "simplex"
+    }
+
+    fn solve(
+        &self,
+        instance: &Instance,
+        settings: &Settings,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Outcome, SolveError> {
+        solve(instance, settings, monitor, Method::Simplex)
+    }
+}
+
+/// What a way gave, in the units of the scaled problem.
+struct Answer {
+    point: Point,
+    ended: Ended,
+    iterations: u64,
+    solver: &'static str,
+    almost: bool,
+}
+
+fn solve(
+    instance: &Instance,
+    settings: &Settings,
+    monitor: &mut dyn Monitor,
+    method: Method,
+) -> Result<Outcome, SolveError> {
+    if !instance.is_linear() {
+        return Err(SolveError {
+            message: "the model has nonlinear terms; this solver takes linear models".into(),
+            row: None,
+            column: None,
+        });
+    }
+    let limits = Limits {
+        start: Instant::now(),
+        seconds: settings.time_limit,
+        iterations: settings.iteration_limit,
+    };
+    let form = Form::new(instance)?;
+    let scaling = Scaling::new(&form.problem);
+    let scaled = scaling.apply(&form.problem);
+    let answer = match method {
+        Method::Interior => interior_only(&scaled, &limits, monitor),
+        Method::Crossover => finished(&scaled, &limits, monitor),
+        Method::Simplex => simplex_only(&scaled, &limits, monitor),
+        Method::Auto => finished(&scaled, &limits, monitor),
+    };
+    let (claim, status) = match answer.ended {
+        Ended::Solved if answer.almost => (Claim::Unfinished, SolverStatus::TerminatedBySolver),
+        Ended::Solved => (Claim::Solved, SolverStatus::NormalCompletion),
+        Ended::Infeasible(_) => (Claim::Infeasible, SolverStatus::NormalCompletion),
+        Ended::Unbounded(_) => (Claim::Unbounded, SolverStatus::NormalCompletion),
+        Ended::Iterations => (Claim::Unfinished, SolverStatus::IterationInterrupt),
+        Ended::Time => (Claim::Unfinished, SolverStatus::ResourceInterrupt),
+        Ended::Interrupted => (Claim::Unfinished, SolverStatus::UserInterrupt),
+        Ended::Failed => (Claim::Unfinished, SolverStatus::TerminatedBySolver),
+    };
+    let ray = match answer.ended {
+        Ended::Infeasible(mut y) => {
+            scaling.restore_multipliers(&mut y);
+            form.multipliers(&y)
+        }
+        Ended::Unbounded(mut x) => {
+            scaling.restore_direction(&mut x);
+            form.direction(instance, &x)
+        }
+        _ => Vec::new(),
+    };
+    let point = scaling.restore(answer.point);
+    let (level, row_marginal, column_marginal) = form.point(instance, &point);
+    Ok(Outcome {
+        level,
+        row_marginal,
+        column_marginal,
+        claim,
+        status,
+        iterations: answer.iterations,
+        solver: answer.solver,
+        ray,
+        message: None,
+    })
+}
+
+/// Whether the simplex method must stop.
+fn watch<'a>(
+    limits: &'a Limits,
+    monitor: &'a mut dyn Monitor,
+) -> impl FnMut(u64) -> Option<Ended> + 'a {
+    move |iterations| {
+        if monitor.interrupted() {
+            Some(Ended::Interrupted)
+        } else if iterations >= limits.iterations {
+            Some(Ended::Iterations)
+        } else if limits.seconds_left() <= 0.0 {
+            Some(Ended::Time)
+        } else {
+            None
+        }
+    }
+}
+
+fn simplex_only(p: &Problem, limits: &Limits, monitor: &mut dyn Monitor) -> Answer {
+    let mut simplex = Simplex::new(p);
+    let ended = simplex.solve(&mut watch(limits, monitor));
+    simplex_answer(simplex, ended)
+}
+
+fn simplex_answer(mut simplex: Simplex, ended: Ended) -> Answer {
+    let point = simplex.point();
+    Answer {
+        ended: if point.is_none() {
+            Ended::Failed
+        } else {
+            ended
+        },
+        point: point.unwrap_or_default(),
+        iterations: simplex.iterations,
+        solver: "simplex",
+        almost: false,
+    }
+}
+
+fn interior_only(p: &Problem, limits: &Limits, monitor: &mut dyn Monitor) -> Answer {
+    let run = match trivial(p) {
+        Some(run) => run,
+        None => interior::solve(p, 1e-10, limits, &mut || monitor.interrupted()),
+    };
+    Answer {
+        point: run.point,
+        ended: run.ended,
+        iterations: run.iterations,
+        solver: "clarabel",
+        almost: run.almost,
+    }
+}
+
+/// Interior point, then a basis from it, then the simplex method.
+fn finished(p: &Problem, limits: &Limits, monitor: &mut dyn Monitor) -> Answer {
+    let answer = interior_only(p, limits, monitor);
+    if !matches!(answer.ended, Ended::Solved | Ended::Failed) {
+        return answer;
+    }
+    let basis = crossover::basis(p, &answer.point);
+    let mut simplex = Simplex::new(p);
+    let ended = simplex.solve_from_basis(&basis, &mut watch(limits, monitor));
+    let pivots = simplex.iterations;
+    monitor.log(&format!("crossover: {ended:?} after {pivots} pivots"));
+    if ended != Ended::Solved {
+        return answer;
+    }
+    let mut done = simplex_answer(simplex, ended);
+    done.iterations += answer.iterations;
+    done.solver = "clarabel";
+    done
 }
 
 /// Problems without a free column or without a constraint, which Clarabel does not take.
@@ -171,6 +309,18 @@ mod tests {
 
     #[test]
     fn interior_point_conforms() {
-        conformance::suite(&Clarabel, 2e-7);
+        let mut settings = Settings::default();
+        settings.options.push(("method".into(), "interior".into()));
+        conformance::suite_with(&Clarabel, &settings, 2e-7);
+    }
+
+    #[test]
+    fn simplex_conforms() {
+        conformance::suite(&DualSimplex, 1e-12);
+    }
+
+    #[test]
+    fn default_conforms() {
+        conformance::suite(&Clarabel, 1e-12);
     }
 }

@@ -33,11 +33,9 @@ enum Engine {
         /// Work done by updates and the solves lengthened by them, against that of a factorisation.
         work: usize,
         budget: usize,
-        /// Updates at most.
-        limit: usize,
     },
     Product {
-        lu: Box<faer::sparse::linalg::solvers::Lu<usize, f64>>,
+        lu: faer::sparse::linalg::solvers::Lu<usize, f64>,
         etas: Vec<Eta>,
         work: Vec<f64>,
     },
@@ -70,18 +68,16 @@ impl Basis {
             return None;
         }
         if fill == Fill::Heavy {
-            let lu = Box::new(faer_lu(matrix)?);
+            let lu = faer_lu(matrix)?;
             return Some(Basis(Engine::Product {
                 lu,
                 etas: Vec::new(),
                 work: vec![0.0; matrix.m],
             }));
         }
-        // Where factors are sparse, updates are too, and a factorisation costs many of them.
-        let limit = (matrix.m / 20).clamp(UPDATE_LIMIT, 20 * UPDATE_LIMIT);
         let params = LuParams {
             zero_pivot_tol: 1e-13,
-            max_updates: limit + 1,
+            max_updates: 2 * UPDATE_LIMIT,
             sparse_rhs_max_density: 0.3,
             ..LuParams::default()
         };
@@ -93,7 +89,6 @@ impl Basis {
             lu,
             work: 0,
             budget,
-            limit,
         }))
     }
 
@@ -171,19 +166,13 @@ impl Basis {
 
     /// Whether a fresh factorisation is due.
     pub(super) fn is_old(&self) -> bool {
-        match &self.0 {
-            Engine::ForrestTomlin {
-                lu,
-                work,
-                budget,
-                limit,
-            } => {
-                self.updates() >= *limit
-                    || self.updates() >= 20 && *work >= *budget
-                    || lu.should_refactor_growth()
+        self.updates() >= UPDATE_LIMIT
+            || match &self.0 {
+                Engine::ForrestTomlin { lu, work, budget } => {
+                    self.updates() >= 20 && *work >= *budget || lu.should_refactor_growth()
+                }
+                Engine::Product { .. } => false,
             }
-            Engine::Product { etas, .. } => etas.len() >= UPDATE_LIMIT,
-        }
     }
 }
 

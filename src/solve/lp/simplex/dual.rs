@@ -1,0 +1,343 @@
+//! The dual simplex method: from a dual feasible basis to an optimal one.
+//!
+//! A basic variable outside its bounds leaves, at the bound it violates; of the nonbasic
+//! variables whose reduced cost would reach 0 first, the one with the largest pivot enters.
+//! Variables with two bounds whose reduced cost changes sign on the way change bounds instead
+//! (Maros 2003).
+
+use super::{NONBASIC, PIVOT, SAFE_PIVOT, Simplex, Stop, jitter};
+use crate::solve::lp::Ended;
+
+impl Simplex {
+    /// Makes the basis dual feasible by flipping bounds and shifting costs, then pivots until it is
+    /// primal feasible.
+    pub(super) fn dual(&mut self, stop: &mut dyn FnMut(u64) -> Option<Ended>) -> Stop {
+        self.make_dual_feasible();
+        let mut refused = vec![0u8; self.m];
+        loop {
+            if self.iterations.is_multiple_of(32)
+                && let Some(why) = stop(self.iterations)
+            {
+                return Stop::Ended(why);
+            }
+            let Some((slot, above)) = self.leaving(&refused) else {
+                let fresh = self.factor.as_ref().is_some_and(|f| f.updates() == 0);
+                if fresh {
+                    return Stop::Done;
+                }
+                if self.refresh().is_none() {
+                    return Stop::Ended(Ended::Failed);
+                }
+                if self.leaving(&refused).is_none() {
+                    return Stop::Done;
+                }
+                continue;
+            };
+            match self.dual_step(slot, above) {
+                Step::Done => refused.fill(0),
+                Step::Nothing(y) => {
+                    let fresh = self.factor.as_ref().is_some_and(|f| f.updates() == 0);
+                    if fresh {
+                        return Stop::Infeasible(y);
+                    }
+                    if self.refresh().is_none() {
+                        return Stop::Ended(Ended::Failed);
+                    }
+                }
+                Step::Unsafe => {
+                    let fresh = self.factor.as_ref().is_some_and(|f| f.updates() == 0);
+                    if fresh {
+                        // On a fresh factor the row itself is bad: look at the others first.
+                        refused[slot] += 1;
+                        if refused.iter().map(|&r| u32::from(r)).sum::<u32>() > 50 {
+                            return Stop::Ended(Ended::Failed);
+                        }
+                    } else if self.refresh().is_none() {
+                        return Stop::Ended(Ended::Failed);
+                    }
+                }
+                Step::Broken => {
+                    if self.refresh().is_none() {
+                        return Stop::Ended(Ended::Failed);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Factorises afresh, and shifts away what rounding did to dual feasibility.
+    fn refresh(&mut self) -> Option<()> {
+        self.refactor()?;
+        self.shift_costs(false);
+        Some(())
+    }
+
+    fn make_dual_feasible(&mut self) {
+        for j in 0..self.n + self.m {
+            let (l, u) = (self.work_lower[j], self.work_upper[j]);
+            if self.slot[j] == NONBASIC && l.is_finite() && u.is_finite() {
+                let target = if self.d[j] < 0.0 { u } else { l };
+                if self.d[j].abs() > self.tolerance {
+                    self.x[j] = target;
+                }
+            }
+        }
+        self.shift_costs(self.perturb);
+        // The flips change the basic values.
+        let _ = self.compute_values();
+    }
+
+    /// Moves costs so that no reduced cost has the wrong sign; with `perturb` a little further, by a
+    /// different amount for each variable, so that ties are rare.
+    fn shift_costs(&mut self, perturb: bool) {
+        let top = self
+            .cost
+            .iter()
+            .fold(0.0f64, |t, c| t.max(c.abs()))
+            .clamp(1e-3, 1e3);
+        for j in 0..self.n + self.m {
+            if self.slot[j] != NONBASIC || self.work_lower[j] == self.work_upper[j] {
+                continue;
+            }
+            let (l, u) = (self.work_lower[j], self.work_upper[j]);
+            let free = l.is_infinite() && u.is_infinite();
+            let wrong = self.dual_violation(j) > 0.0;
+            let at_lower = u.is_infinite() || (l.is_finite() && self.x[j] - l <= u - self.x[j]);
+            let target = if free || (wrong && !perturb) {
+                0.0
+            } else if perturb {
+                let size = jitter(j) * (5e-7 * top + 1e-6 * self.cost[j].abs());
+                let base = if wrong { 0.0 } else { self.d[j] };
+                if at_lower { base + size } else { base - size }
+            } else {
+                continue;
+            };
+            self.work_cost[j] += target - self.d[j];
+            self.d[j] = target;
+        }
+    }
+
+    /// The slot that leaves: largest violation relative to the steepest-edge weight; and whether it
+    /// is above its upper bound.
+    fn leaving(&self, refused: &[u8]) -> Option<(usize, bool)> {
+        let mut best = (0.0, None);
+        for (k, &j) in self.head.iter().enumerate() {
+            let j = j as usize;
+            let x = self.x[j];
+            let above = x - self.work_upper[j];
+            let violation = above.max(self.work_lower[j] - x);
+            if violation > self.tolerance && refused[k] == 0 {
+                let score = violation * violation / self.edge[k];
+                if score > best.0 {
+                    best = (score, Some((k, above > 0.0)));
+                }
+            }
+        }
+        best.1
+    }
+
+    fn dual_step(&mut self, slot: usize, above: bool) -> Step {
+        let leaving = self.head[slot] as usize;
+        let Some(factor) = self.factor.as_mut() else {
+            return Step::Broken;
+        };
+        let Some(rho) = factor.backward(&[(slot, 1.0)]).cloned() else {
+            return Step::Broken;
+        };
+        self.pivot_row(&rho);
+        let sign = if above { 1.0 } else { -1.0 };
+        let bound = if above {
+            self.work_upper[leaving]
+        } else {
+            self.work_lower[leaving]
+        };
+        let violation = (self.x[leaving] - bound).abs();
+        let Some((entering, flips)) = self.entering(sign, violation) else {
+            // ρᵀ(Ax − s) = 0 for every solution; within bounds its largest value (its smallest, if
+            // the variable is below its lower bound) has the wrong sign. So sup ±ρᵀAx < inf ±ρᵀs.
+            let mut y = vec![0.0; self.m];
+            rho.iter().for_each(|&(i, r)| y[i] = sign * r);
+            return Step::Nothing(y);
+        };
+        let pivot = self.row[entering];
+        let fresh = self.factor.as_ref().is_some_and(|f| f.updates() == 0);
+        if pivot.abs() < SAFE_PIVOT && !fresh {
+            return Step::Unsafe;
+        }
+        if pivot.abs() < PIVOT * 100.0 {
+            return Step::Unsafe;
+        }
+        let a_q = self.column(entering);
+        let Some(factor) = self.factor.as_mut() else {
+            return Step::Broken;
+        };
+        let Some(column) = factor.forward(&a_q).cloned() else {
+            return Step::Broken;
+        };
+        let alpha = column.iter().find(|e| e.0 == slot).map_or(0.0, |e| e.1);
+        if (alpha - pivot).abs() > 1e-7 * (1.0 + alpha.abs()) * if fresh { 100.0 } else { 1.0 } {
+            return Step::Unsafe;
+        }
+        // Steepest edge: τ = B⁻¹ρ.
+        let weight: f64 = rho.iter().map(|e| e.1 * e.1).sum();
+        let Some(tau) = factor.forward(&rho).cloned() else {
+            return Step::Broken;
+        };
+        // Flips change the basic values before the step is measured.
+        if !flips.is_empty() {
+            self.flip(&flips);
+        }
+        // Dual step: the entering reduced cost becomes 0; one of the wrong sign is shifted away.
+        let mut theta = self.d[entering] / alpha;
+        if theta * sign < 0.0 {
+            self.work_cost[entering] -= self.d[entering];
+            self.d[entering] = 0.0;
+            theta = 0.0;
+        }
+        if theta != 0.0 {
+            for k in 0..self.row_index.len() {
+                let j = self.row_index[k] as usize;
+                self.d[j] -= theta * self.row[j];
+                let wrong = self.dual_violation(j);
+                if wrong > 0.0 && j != entering {
+                    self.work_cost[j] -= self.d[j];
+                    self.d[j] = 0.0;
+                }
+            }
+        }
+        self.d[leaving] = -theta;
+        // Primal step: the leaving variable goes to its bound.
+        let step = (self.x[leaving] - bound) / alpha;
+        for &(k, a) in &column {
+            let j = self.head[k] as usize;
+            self.x[j] -= step * a;
+        }
+        self.x[entering] += step;
+        self.x[leaving] = bound;
+        // Weights.
+        let mut t = tau.iter().peekable();
+        for &(k, a) in &column {
+            if k == slot {
+                continue;
+            }
+            while t.peek().is_some_and(|e| e.0 < k) {
+                t.next();
+            }
+            let tau_k = t.peek().filter(|e| e.0 == k).map_or(0.0, |e| e.1);
+            let ratio = a / alpha;
+            let w = self.edge[k] - 2.0 * ratio * tau_k + ratio * ratio * weight;
+            self.edge[k] = w.max(1e-4).max(1e-3 * ratio * ratio * weight);
+        }
+        self.edge[slot] = (weight / (alpha * alpha)).max(1e-4);
+        self.iterations += 1;
+        let worn = self.exchange(slot, entering);
+        if worn.is_none() {
+            return Step::Broken;
+        }
+        if self.factor.as_ref().is_some_and(|f| f.updates() == 0) {
+            self.shift_costs(false);
+        }
+        Step::Done
+    }
+
+    /// The entering variable and the variables that change bounds. None: no variable can enter.
+    fn entering(&self, sign: f64, violation: f64) -> Option<(usize, Vec<u32>)> {
+        // Candidates with their pivots, oriented so that a ratio is d/α ≥ 0.
+        let mut candidates: Vec<(u32, f64, f64)> = Vec::new();
+        for &j in &self.row_index {
+            let k = j as usize;
+            let (l, u) = (self.work_lower[k], self.work_upper[k]);
+            let alpha = sign * self.row[k];
+            if l == u || alpha.abs() <= PIVOT {
+                continue;
+            }
+            let free = l.is_infinite() && u.is_infinite();
+            let at_lower = u.is_infinite() || (l.is_finite() && self.x[k] - l <= u - self.x[k]);
+            let may = free || (alpha > 0.0) == at_lower;
+            if may {
+                candidates.push((j, alpha.abs(), if free { 0.0 } else { self.d[k].abs() }));
+            }
+        }
+        let mut slope = violation;
+        let mut flips: Vec<u32> = Vec::new();
+        let mut reserve: Option<(usize, usize)> = None;
+        loop {
+            let slack = 0.5 * self.tolerance;
+            let limit = candidates
+                .iter()
+                .fold(f64::INFINITY, |t, c| t.min((c.2 + slack) / c.1));
+            if limit.is_infinite() {
+                break;
+            }
+            let group = candidates.iter().filter(|c| c.2 / c.1 <= limit);
+            let (mut drop, mut best) = (0.0, (0.0, 0u32));
+            for c in group {
+                let k = c.0 as usize;
+                drop += c.1 * (self.work_upper[k] - self.work_lower[k]);
+                if c.1 > best.0 {
+                    best = (c.1, c.0);
+                }
+            }
+            let enough = best.0 >= SAFE_PIVOT;
+            if slope - drop < 0.0 || drop.is_nan() {
+                if enough || reserve.is_none() {
+                    return Some((best.1 as usize, flips));
+                }
+                break;
+            }
+            // The violation outlasts the whole group: all of it changes bounds.
+            if enough {
+                reserve = Some((best.1 as usize, flips.len()));
+            }
+            slope -= drop;
+            candidates.retain(|c| {
+                let pass = c.2 / c.1 <= limit;
+                if pass {
+                    flips.push(c.0);
+                }
+                !pass
+            });
+        }
+        // Every candidate was passed, or only bad pivots were left: the last good one enters.
+        let (entering, flipped) = reserve?;
+        if candidates.is_empty() && slope > 0.0 {
+            // All can change bounds and the violation is still there: infeasible.
+            return None;
+        }
+        flips.truncate(flipped);
+        Some((entering, flips))
+    }
+
+    /// Moves variables to their other bounds and updates the basic values.
+    fn flip(&mut self, flips: &[u32]) {
+        let mut change: Vec<(usize, f64)> = Vec::new();
+        for &j in flips {
+            let j = j as usize;
+            let (l, u) = (self.work_lower[j], self.work_upper[j]);
+            let to = if self.x[j] - l <= u - self.x[j] { u } else { l };
+            let by = to - self.x[j];
+            self.x[j] = to;
+            change.extend(self.column(j).into_iter().map(|(i, a)| (i, a * by)));
+        }
+        if let Some(moved) = self
+            .factor
+            .as_mut()
+            .and_then(|f| f.forward(&change).cloned())
+        {
+            for (k, v) in moved {
+                self.x[self.head[k] as usize] -= v;
+            }
+        }
+    }
+}
+
+enum Step {
+    /// A pivot was made.
+    Done,
+    /// No variable can enter: these multipliers prove infeasibility.
+    Nothing(Vec<f64>),
+    /// The pivot is not to be trusted.
+    Unsafe,
+    /// The factor broke down.
+    Broken,
+}

@@ -1,0 +1,487 @@
+//! A bounded-variable revised simplex method, restartable from any basis.
+//!
+//! ```text
+//!     min cᵀx   subject to   A x − s = 0,   l ≤ (x, s) ≤ u
+//! ```
+//!
+//! Variables 0 … n−1 are the columns ("structurals"), n … n+m−1 the rows' activities s
+//! ("logicals", column −eᵢ). A basis names m of them; every other variable is at a bound, or at a
+//! given value if it is free.
+//!
+//! Two algorithms share the data: the **dual** simplex ([`dual`]) makes a dual feasible basis
+//! primal feasible, the **primal** simplex ([`primal`]) makes a primal feasible basis dual
+//! feasible. [`Simplex::solve`] alternates them: what a method needs is made true by shifting
+//! costs (dual) or is left by the other (primal); shifts and the perturbations against
+//! degeneracy are taken back, and the other method repairs what that breaks, until nothing is
+//! left to repair. Both use Harris's two-pass ratio test with the largest pivot (Harris 1973), the
+//! dual one steepest-edge pricing (Forrest & Goldfarb 1992) and bound flipping (Maros 2003), the
+//! primal one Devex pricing (Harris 1973).
+//!
+//! Accuracy: after every factorisation basic values and multipliers are computed afresh, with one
+//! step of iterative refinement whose residuals are summed in twice the working precision. What
+//! [`Simplex::point`] returns is refined until it stands still.
+
+mod dual;
+mod factor;
+mod primal;
+
+use super::Ended;
+use super::form::{Point, Problem, Sparse};
+use crate::model::sum::Sum;
+use factor::{Entries, Factor, Failure};
+
+/// Where a variable is in a basis.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum State {
+    /// In the basis.
+    Basic,
+    /// At its lower bound.
+    Lower,
+    /// At its upper bound.
+    Upper,
+    /// Without bounds, at 0.
+    Free,
+}
+
+/// A basis: one state per column, then one per row.
+pub type Basis = Vec<State>;
+
+/// Position in the basis of a variable that is in none.
+const NONBASIC: u32 = u32::MAX;
+
+/// Entries of the pivot row or column smaller than this are noise.
+const PIVOT: f64 = 1e-9;
+
+/// A pivot smaller than this is taken only on a fresh factor.
+const SAFE_PIVOT: f64 = 1e-6;
+
+/// How a method ended.
+#[derive(Clone, Debug, PartialEq)]
+enum Stop {
+    /// What it was to achieve is achieved.
+    Done,
+    /// Proved that no point satisfies the bounds: multipliers y.
+    Infeasible(Vec<f64>),
+    /// Proved unbounded: direction of all variables.
+    Unbounded(Vec<f64>),
+    /// A limit, or numbers broke down.
+    Ended(Ended),
+}
+
+/// The engine.
+pub struct Simplex {
+    m: usize,
+    n: usize,
+    columns: Sparse,
+    rows: Sparse,
+    cost: Vec<f64>,
+    lower: Vec<f64>,
+    upper: Vec<f64>,
+    /// Costs with shifts and perturbations.
+    work_cost: Vec<f64>,
+    /// Bounds with perturbations.
+    work_lower: Vec<f64>,
+    work_upper: Vec<f64>,
+    /// Values of all variables.
+    x: Vec<f64>,
+    /// Reduced costs of all variables for `work_cost`; 0 for basic ones.
+    d: Vec<f64>,
+    /// Variable in each slot of the basis.
+    head: Vec<u32>,
+    /// Slot of each variable, or [`NONBASIC`].
+    slot: Vec<u32>,
+    factor: Option<Factor>,
+    /// Steepest-edge weights of the slots.
+    edge: Vec<f64>,
+    /// Devex weights of the variables.
+    devex: Vec<f64>,
+    /// Pivot row, kept zero between uses.
+    row: Vec<f64>,
+    row_index: Vec<u32>,
+    row_mark: Vec<bool>,
+    /// Largest violation of a bound and of a reduced cost's sign that counts as none.
+    pub tolerance: f64,
+    /// Iterations so far.
+    pub iterations: u64,
+    perturb: bool,
+}
+
+impl Simplex {
+    /// For a problem, with the basis of all logicals.
+    pub fn new(p: &Problem) -> Self {
+        let (m, n) = (p.m(), p.n());
+        let total = m + n;
+        let mut cost = p.cost.clone();
+        cost.resize(total, 0.0);
+        let lower: Vec<f64> = p.lower.iter().chain(&p.row_lower).copied().collect();
+        let upper: Vec<f64> = p.upper.iter().chain(&p.row_upper).copied().collect();
+        let mut s = Self {
+            m,
+            n,
+            columns: p.columns.clone(),
+            rows: p.rows.clone(),
+            work_cost: cost.clone(),
+            work_lower: lower.clone(),
+            work_upper: upper.clone(),
+            cost,
+            lower,
+            upper,
+            x: vec![0.0; total],
+            d: vec![0.0; total],
+            head: (n as u32..total as u32).collect(),
+            slot: vec![NONBASIC; total],
+            factor: None,
+            edge: vec![1.0; m],
+            devex: vec![1.0; total],
+            row: vec![0.0; total],
+            row_index: Vec::new(),
+            row_mark: vec![false; total],
+            tolerance: 1e-9,
+            iterations: 0,
+            perturb: true,
+        };
+        for i in 0..m {
+            s.slot[n + i] = i as u32;
+        }
+        for j in 0..n {
+            s.x[j] = s.resting(j, 0.0);
+        }
+        s
+    }
+
+    /// Changes the bounds of a variable (a column, or n + row).
+    pub fn set_bounds(&mut self, variable: usize, lower: f64, upper: f64) {
+        self.lower[variable] = lower;
+        self.upper[variable] = upper;
+    }
+
+    /// Changes the cost of a column.
+    pub fn set_cost(&mut self, column: usize, cost: f64) {
+        self.cost[column] = cost;
+    }
+
+    /// The basis, to start from again.
+    pub fn basis(&self) -> Basis {
+        (0..self.n + self.m)
+            .map(|j| {
+                let (l, u) = (self.lower[j], self.upper[j]);
+                if self.slot[j] != NONBASIC {
+                    State::Basic
+                } else if l.is_infinite() && u.is_infinite() {
+                    State::Free
+                } else if u.is_infinite() || (self.x[j] - l).abs() <= (u - self.x[j]).abs() {
+                    State::Lower
+                } else {
+                    State::Upper
+                }
+            })
+            .collect()
+    }
+
+    /// Starts from a basis. Too few or too many basic variables are made up for with logicals, and
+    /// so are dependent columns.
+    pub fn set_basis(&mut self, basis: &[State]) {
+        self.slot.fill(NONBASIC);
+        self.head.clear();
+        let basic = |j: &usize| basis.get(*j) == Some(&State::Basic);
+        for j in (0..self.n + self.m).filter(basic).take(self.m) {
+            self.slot[j] = self.head.len() as u32;
+            self.head.push(j as u32);
+        }
+        for i in 0..self.m {
+            let logical = self.n + i;
+            if self.head.len() < self.m && self.slot[logical] == NONBASIC {
+                self.slot[logical] = self.head.len() as u32;
+                self.head.push(logical as u32);
+            }
+        }
+        for j in 0..self.n + self.m {
+            let at_upper = basis.get(j) == Some(&State::Upper) && self.upper[j].is_finite();
+            self.x[j] = match at_upper {
+                true => self.upper[j],
+                false => self.resting(j, 0.0),
+            };
+        }
+        self.edge.fill(1.0);
+        self.devex.fill(1.0);
+        self.factor = None;
+    }
+
+    /// Where a nonbasic variable rests that would like to be at `near`.
+    fn resting(&self, j: usize, near: f64) -> f64 {
+        let (l, u) = (self.work_lower[j], self.work_upper[j]);
+        match (l.is_finite(), u.is_finite()) {
+            (true, true) if (near - l).abs() <= (u - near).abs() => l,
+            (true, true) => u,
+            (true, false) => l,
+            (false, true) => u,
+            (false, false) => 0.0,
+        }
+    }
+
+    /// Column of a variable.
+    fn column(&self, j: usize) -> Entries {
+        if j < self.n {
+            self.columns.line(j).collect()
+        } else {
+            vec![(j - self.n, -1.0)]
+        }
+    }
+
+    /// Factorises the basis, replacing dependent columns by logicals, and computes values and
+    /// reduced costs afresh. None: numbers broke down.
+    fn refactor(&mut self) -> Option<()> {
+        for _ in 0..20 {
+            let columns: Vec<Entries> =
+                self.head.iter().map(|&j| self.column(j as usize)).collect();
+            match Factor::new(self.m, &columns) {
+                Ok(f) => {
+                    self.factor = Some(f);
+                    self.compute_values()?;
+                    return self.compute_reduced();
+                }
+                Err(Failure::Numbers) => return None,
+                Err(Failure::Dependent(list)) => {
+                    for (slot, row) in list {
+                        let out = self.head[slot] as usize;
+                        let logical = self.n + row;
+                        if self.slot[logical] != NONBASIC {
+                            return None;
+                        }
+                        self.slot[out] = NONBASIC;
+                        self.x[out] = self.resting(out, self.x[out]);
+                        self.slot[logical] = slot as u32;
+                        self.head[slot] = logical as u32;
+                        self.edge[slot] = 1.0;
+                    }
+                }
+            }
+        }
+        None
+    }
+
+    /// Rests of A x − s = 0, in twice the working precision.
+    fn rests(&self) -> Vec<f64> {
+        let mut rests = Vec::with_capacity(self.m);
+        for i in 0..self.m {
+            let mut sum = Sum::new(self.x[self.n + i]);
+            for (j, a) in self.rows.line(i) {
+                sum.add_product(-a, self.x[j]);
+            }
+            rests.push(sum.value());
+        }
+        rests
+    }
+
+    /// Values of the basic variables from those of the others.
+    fn compute_values(&mut self) -> Option<()> {
+        for _ in 0..2 {
+            let mut rests = self.rests();
+            let factor = self.factor.as_mut()?;
+            factor.forward_dense(&mut rests)?;
+            for (k, &j) in self.head.iter().enumerate() {
+                self.x[j as usize] += rests[k];
+            }
+        }
+        self.x.iter().all(|v| v.is_finite()).then_some(())
+    }
+
+    /// Multipliers y with Bᵀy = c_B.
+    fn multipliers(&mut self) -> Option<Vec<f64>> {
+        let mut y = vec![0.0; self.m];
+        for _ in 0..2 {
+            let mut rests: Vec<f64> = self
+                .head
+                .iter()
+                .map(|&j| self.price(j as usize, &y))
+                .collect();
+            self.factor.as_mut()?.backward_dense(&mut rests)?;
+            y.iter_mut().zip(&rests).for_each(|(y, r)| *y += r);
+        }
+        y.iter().all(|v| v.is_finite()).then_some(y)
+    }
+
+    /// c_j − a_jᵀy for the working costs, in twice the working precision.
+    fn price(&self, j: usize, y: &[f64]) -> f64 {
+        let mut sum = Sum::new(self.work_cost[j]);
+        if j < self.n {
+            for (i, a) in self.columns.line(j) {
+                sum.add_product(-a, y[i]);
+            }
+        } else {
+            sum.add(y[j - self.n]);
+        }
+        sum.value()
+    }
+
+    /// Reduced costs of all variables.
+    fn compute_reduced(&mut self) -> Option<()> {
+        let y = self.multipliers()?;
+        for j in 0..self.n + self.m {
+            self.d[j] = match self.slot[j] {
+                NONBASIC => self.price(j, &y),
+                _ => 0.0,
+            };
+        }
+        Some(())
+    }
+
+    /// By how much a reduced cost has the wrong sign for where its variable is.
+    fn dual_violation(&self, j: usize) -> f64 {
+        let (l, u, x, d) = (self.work_lower[j], self.work_upper[j], self.x[j], self.d[j]);
+        if l == u {
+            0.0
+        } else if l.is_infinite() && u.is_infinite() {
+            d.abs()
+        } else if u.is_infinite() || (l.is_finite() && x - l <= u - x) {
+            (-d).max(0.0)
+        } else {
+            d.max(0.0)
+        }
+    }
+
+    /// Largest violation of a bound by a basic variable.
+    fn primal_infeasibility(&self) -> f64 {
+        self.head.iter().fold(0.0, |worst: f64, &j| {
+            let (j, x) = (j as usize, self.x[j as usize]);
+            worst
+                .max(self.work_lower[j] - x)
+                .max(x - self.work_upper[j])
+        })
+    }
+
+    /// Largest wrong-signed reduced cost.
+    fn dual_infeasibility(&self) -> f64 {
+        (0..self.n + self.m)
+            .filter(|&j| self.slot[j] == NONBASIC)
+            .fold(0.0, |worst, j| self.dual_violation(j).max(worst))
+    }
+
+    /// Takes back shifts and perturbations; nonbasic variables return to their bounds.
+    fn restore(&mut self) -> Option<()> {
+        self.work_cost.copy_from_slice(&self.cost);
+        self.work_lower.copy_from_slice(&self.lower);
+        self.work_upper.copy_from_slice(&self.upper);
+        for j in 0..self.n + self.m {
+            if self.slot[j] == NONBASIC {
+                self.x[j] = self.resting(j, self.x[j]);
+            }
+        }
+        self.refactor()
+    }
+
+    /// Solves from a basis.
+    pub fn solve_from_basis(
+        &mut self,
+        basis: &[State],
+        stop: &mut dyn FnMut(u64) -> Option<Ended>,
+    ) -> Ended {
+        self.set_basis(basis);
+        self.solve(stop)
+    }
+
+    /// Solves from the present basis. `stop` is asked now and then, with the iterations so far.
+    pub fn solve(&mut self, stop: &mut dyn FnMut(u64) -> Option<Ended>) -> Ended {
+        for round in 0..12 {
+            self.perturb = round < 2;
+            if self.restore().is_none() {
+                return Ended::Failed;
+            }
+            let primal = self.primal_infeasibility() <= self.tolerance;
+            let end = if primal && self.dual_infeasibility() <= self.tolerance {
+                return Ended::Solved;
+            } else if primal {
+                self.primal(stop)
+            } else {
+                self.dual(stop)
+            };
+            match end {
+                Stop::Done => {}
+                Stop::Infeasible(y) => return Ended::Infeasible(y),
+                Stop::Unbounded(direction) => {
+                    return Ended::Unbounded(direction[..self.n].to_vec());
+                }
+                Stop::Ended(why) => {
+                    return match self.restore() {
+                        Some(()) => why,
+                        None => Ended::Failed,
+                    };
+                }
+            }
+        }
+        Ended::Failed
+    }
+
+    /// The point of the present basis for the true costs and bounds, refined.
+    pub fn point(&mut self) -> Option<Point> {
+        self.restore()?;
+        for _ in 0..3 {
+            self.compute_values()?;
+        }
+        let y = self.multipliers()?;
+        let d = (0..self.n)
+            .map(|j| match self.slot[j] {
+                NONBASIC => self.price(j, &y),
+                _ => 0.0,
+            })
+            .collect();
+        Some(Point {
+            x: self.x[..self.n].to_vec(),
+            y,
+            d,
+        })
+    }
+
+    /// Pivot row of a slot: `row[j]` = ρᵀa_j for all nonbasic j, with ρ the row of the inverse.
+    fn pivot_row(&mut self, rho: &[(usize, f64)]) {
+        for &j in &self.row_index {
+            self.row[j as usize] = 0.0;
+            self.row_mark[j as usize] = false;
+        }
+        self.row_index.clear();
+        for &(i, r) in rho {
+            for (j, a) in self.rows.line(i) {
+                if self.slot[j] == NONBASIC {
+                    if !self.row_mark[j] {
+                        self.row_mark[j] = true;
+                        self.row_index.push(j as u32);
+                    }
+                    self.row[j] += r * a;
+                }
+            }
+            let logical = self.n + i;
+            if self.slot[logical] == NONBASIC {
+                self.row_index.push(logical as u32);
+                self.row[logical] = -r;
+            }
+        }
+    }
+
+    /// Replaces the variable in a slot; `column` is the entering one's. Factorises afresh when that
+    /// is due. None: numbers broke down.
+    fn exchange(&mut self, slot: usize, entering: usize) -> Option<()> {
+        let leaving = self.head[slot] as usize;
+        self.slot[leaving] = NONBASIC;
+        self.slot[entering] = slot as u32;
+        self.head[slot] = entering as u32;
+        self.d[entering] = 0.0;
+        let column = self.column(entering);
+        let factor = self.factor.as_mut()?;
+        if !factor.replace(slot, &column) || factor.is_worn() {
+            return self.refactor();
+        }
+        Some(())
+    }
+}
+
+/// A fixed pseudo-random number in [0.5, 1) for each variable.
+fn jitter(j: usize) -> f64 {
+    let mut h = (j as u64).wrapping_add(0x9e37_79b9_7f4a_7c15);
+    h = (h ^ (h >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    h = (h ^ (h >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    h ^= h >> 31;
+    0.5 + (h >> 12) as f64 / (1u64 << 53) as f64
+}
+
+#[cfg(test)]
+mod tests;
