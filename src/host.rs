@@ -36,4 +36,8 @@ pub trait Host {
     fn interrupted(&self) -> bool;
     /// Tells what a long step is doing: for a terminal, at most a few times a second.
     fn progress(&mut self, _message: &str) {}
+    /// Bytes of memory in use, 0 where unknown.
+    fn memory(&self) -> usize {
+        0
+    }
 }

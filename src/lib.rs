@@ -6,12 +6,15 @@
 #![warn(missing_docs)]
 
 pub mod autodiff;
+pub mod check;
 pub mod cli;
 pub mod data;
 pub mod diag;
 pub mod host;
 pub mod model;
 pub mod report;
+pub mod run;
+pub mod session;
 pub mod solve;
 pub mod source;
 pub mod syntax;

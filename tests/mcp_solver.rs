@@ -113,9 +113,9 @@ impl Problem for Model {
         match &self.linear {
             Some((values, q)) => {
                 f.copy_from_slice(q);
-                for j in 0..x.len() {
+                for (j, x) in x.iter().enumerate() {
                     for k in self.col_start[j]..self.col_start[j + 1] {
-                        f[self.rows[k]] += values[k] * x[j];
+                        f[self.rows[k]] += values[k] * x;
                     }
                 }
                 Ok(())

@@ -54,10 +54,10 @@ struct Places {
     twice: Vec<(u32, u32)>,
 }
 
-/// Values and exact derivatives of an instance.
+/// Values and exact derivatives of an instance. It keeps what it needs of the instance.
 #[derive(Debug)]
-pub struct Evaluator<'a> {
-    instance: &'a Instance,
+pub struct Evaluator {
+    columns: usize,
     blocks: Vec<Block>,
     work: Workspace,
     jacobian_start: Vec<usize>,
@@ -70,12 +70,12 @@ pub struct Evaluator<'a> {
     hessian_places: Vec<Places>,
 }
 
-impl<'a> Evaluator<'a> {
+impl Evaluator {
     /// Compiles the kernels and finds the patterns.
-    pub fn new(instance: &'a Instance) -> Self {
+    pub fn new(instance: &Instance) -> Self {
         let blocks = compile(instance);
         let mut e = Self {
-            instance,
+            columns: instance.column_count(),
             blocks,
             work: Workspace::default(),
             jacobian_start: Vec::new(),
@@ -86,7 +86,7 @@ impl<'a> Evaluator<'a> {
             hessian_column: Vec::new(),
             hessian_places: Vec::new(),
         };
-        e.find_jacobian();
+        e.find_jacobian(instance);
         e.find_hessian();
         e
     }
@@ -95,12 +95,15 @@ impl<'a> Evaluator<'a> {
     ///
     /// Errors: a function that cannot be evaluated at x, or a value that is not finite.
     pub fn rows(&mut self, x: &[f64], out: &mut [f64]) -> Result<(), EvalFailure> {
-        let matrix = &self.instance.matrix;
         for (i, v) in out.iter_mut().enumerate() {
-            *v = 0.0;
-            if i < matrix.rows() {
-                *v = matrix.row(i).map(|(j, a)| a * x[j]).sum();
-            }
+            let range = self.jacobian_start[i]..self.jacobian_start[i + 1];
+            let columns = &self.jacobian_column[range.clone()];
+            let linear = &self.jacobian_linear[range];
+            *v = columns
+                .iter()
+                .zip(linear)
+                .map(|(&j, a)| a * x[j as usize])
+                .sum();
         }
         for b in &self.blocks {
             let mut sink = RowSink {
@@ -198,7 +201,7 @@ impl<'a> Evaluator<'a> {
 
     /// How each row depends on the columns.
     pub fn degrees(&self) -> Vec<Degree> {
-        let mut degree = vec![Degree::Linear; self.instance.row_count()];
+        let mut degree = vec![Degree::Linear; self.jacobian_start.len() - 1];
         for b in &self.blocks {
             let d = if b.linear {
                 Degree::Linear
@@ -227,8 +230,7 @@ impl<'a> Evaluator<'a> {
         nonlinear.into_iter().filter(|&b| b).count()
     }
 
-    fn find_jacobian(&mut self) {
-        let instance = self.instance;
+    fn find_jacobian(&mut self, instance: &Instance) {
         let (m, n) = (instance.row_count(), instance.column_count());
         let mut finder = PatternFinder::new(m, n);
         for i in 0..instance.matrix.rows().min(m) {
@@ -273,7 +275,7 @@ impl<'a> Evaluator<'a> {
     }
 
     fn find_hessian(&mut self) {
-        let n = self.instance.column_count();
+        let n = self.columns;
         let mut finder = PatternFinder::new(n, n);
         let ends = |b: &Block, [p, q]: [u32; 2], t: usize| {
             let (i, j) = (b.column(p, t) as usize, b.column(q, t) as usize);

@@ -147,7 +147,27 @@ fn other(e: std::io::Error) -> HostError {
     }
 }
 
+impl SystemHost {
+    /// Takes the progress line away.
+    pub fn finish(&mut self) {
+        if let Some(bar) = self.bar.take() {
+            bar.finish_and_clear();
+        }
+    }
+}
+
 impl Host for SystemHost {
+    fn memory(&self) -> usize {
+        // Resident pages, where the system tells.
+        let statm = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();
+        statm
+            .split(' ')
+            .nth(1)
+            .and_then(|p| p.parse::<usize>().ok())
+            .unwrap_or(0)
+            * 4096
+    }
+
     fn read(&mut self, path: &str, from: Option<&Path>) -> Result<(PathBuf, String), HostError> {
         let (known, real) = self.find(path, from)?;
         let size = real.metadata().map_err(other)?.len();

@@ -1,6 +1,7 @@
 //! The edge of the program: arguments, files, terminal.
 
 pub mod args;
+pub mod commands;
 pub mod host;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};

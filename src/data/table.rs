@@ -315,6 +315,20 @@ impl Table {
         }
     }
 
+    /// Changes the value of what is not stored (a variable that changes its kind).
+    pub fn set_default(&mut self, default: f64) {
+        self.default = default;
+        self.dead = self.values.iter().filter(|&&v| v == default).count();
+        self.index.take();
+        self.tidy();
+    }
+
+    /// Whether a key comes after all stored ones (and so is new).
+    pub fn is_after_last(&self, key: &[Label]) -> bool {
+        let n = self.values.len();
+        self.dim > 0 && self.sorted == n && (n == 0 || self.key(n as u32 - 1) < key)
+    }
+
     /// Appends a record whose key is known to be new, without keeping order (call [`Table::tidy`] after).
     pub fn append(&mut self, key: &[Label], value: f64) {
         let n = self.values.len();

@@ -31,7 +31,7 @@ pub fn is_na(x: f64) -> bool {
 /// Whether `x` is undefined: `undf`, or any NaN that is neither `eps` nor `na`.
 #[inline]
 pub fn is_undf(x: f64) -> bool {
-    x.is_nan() && !is_eps(x) && !is_na(x)
+    x.is_nan() && !is_eps(x) && !is_na(x) && as_acronym(x).is_none()
 }
 
 /// Numeric truth: everything but 0 is true, `eps` too.
@@ -44,4 +44,16 @@ pub fn truth(x: f64) -> bool {
 #[inline]
 pub fn number(x: f64) -> f64 {
     if is_eps(x) { 0.0 } else { x }
+}
+
+const ACRONYM_BITS: u64 = 0x7ff8_0001_0000_0000;
+
+/// The value of acronym number `n`.
+pub fn acronym(n: u32) -> f64 {
+    f64::from_bits(ACRONYM_BITS | u64::from(n))
+}
+
+/// The number of the acronym, if `x` is one.
+pub fn as_acronym(x: f64) -> Option<u32> {
+    (x.to_bits() & 0xffff_ffff_0000_0000 == ACRONYM_BITS).then_some(x.to_bits() as u32)
 }

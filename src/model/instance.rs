@@ -84,7 +84,7 @@ impl SparseRows {
 }
 
 /// One step of a kernel: a program in postfix order on a stack of numbers.
-#[derive(Clone, Copy, PartialEq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Op {
     /// Pushes the variable in slot k.
     Var(u32),

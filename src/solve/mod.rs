@@ -3,10 +3,13 @@
 //! A solver's word is not believed: [`crate::model::certificate`] recomputes the residuals of the
 //! point on the unscaled instance, and that decides the reported status.
 
+pub mod answer;
+pub mod complementarity;
 #[cfg(test)]
 pub mod conformance;
 pub mod lp;
 pub mod mcp;
+pub mod nlp;
 
 use crate::model::instance::Instance;
 

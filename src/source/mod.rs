@@ -6,9 +6,29 @@
 //!
 //! Invariant: a span that leaves this crate in a diagnostic is in the *original* text.
 
+use crate::diag::Diagnostic;
+
+mod blocks;
+mod conditions;
+mod directives;
+mod evaluate;
+mod line;
+mod macros;
 mod map;
+mod preprocess;
+mod variables;
 
 pub use map::{FileId, Place, SourceFile, SourceMap};
+pub use preprocess::{Ending, Known, NothingKnown, PreprocessOptions, SymbolKindName};
+pub(crate) use preprocess::{Preprocessor, quoted_end};
+
+/// What reading a line gives; a diagnostic is boxed because it is large and rare.
+pub(crate) type Outcome<T> = Result<T, Box<Diagnostic>>;
+
+/// A diagnostic as the outcome.
+pub(crate) fn refuse<T>(d: Diagnostic) -> Outcome<T> {
+    Err(Box::new(d))
+}
 
 /// A range of bytes in the expanded text. `lo <= hi`; an empty span is a point.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Default, Debug)]

@@ -29,6 +29,8 @@ pub struct Modes {
     pub undf: bool,
     /// `$offOrder`: lags and `ord` on unordered sets are allowed.
     pub off_order: bool,
+    /// `$onImplicitAssign`: a symbol may be read that was never assigned.
+    pub implicit_assign: bool,
     /// `$onDotL`: a variable in an assignment means its level.
     pub dot_l: bool,
 }

@@ -1,2 +1,258 @@
 //! From text to tree.
+//!
+//! [`Parser`] gives one statement at a time, because `$if declared x` and `$eval n card(i)` ask what
+//! the statements before them declared. The preprocessor (`source`) makes the expanded text, the
+//! splitter (`split`) cuts it into statements, pest parses each by `grammar/bmod.pest`, and `build`
+//! makes the tree. Data between slashes and the lines of tables stay text in the tree; [`data`] and
+//! [`table`] read them when they are wanted.
+//!
+//! Invariants: every span in a tree or diagnostic is a place in the expanded text of the parser's
+//! [`SourceMap`]; after an error the parser goes on with the next statement; no text makes it panic.
+
 pub mod ast;
+mod build;
+pub mod data;
+mod explain;
+mod grammar;
+mod neighbours;
+mod split;
+pub mod table;
+mod words;
+
+use pest::Parser as _;
+
+use crate::diag::Diagnostic;
+use crate::host::Host;
+use crate::source::{Ending, Known, PreprocessOptions, Preprocessor, SourceMap, Span};
+use ast::{Modes, Stmt};
+use build::{Builder, Condensed};
+use explain::Explanation;
+use grammar::{Grammar, Rule};
+use split::{Cut, Raw, Splitter};
+use words::Class;
+
+/// The text could not be read at all: why, and the map that says where.
+#[derive(Debug)]
+pub struct Unreadable {
+    /// The file that was asked for.
+    pub map: SourceMap,
+    /// What is wrong with it.
+    pub diagnostic: Diagnostic,
+}
+
+/// Reads a model statement by statement.
+pub struct Parser<'h> {
+    text: Preprocessor<'h>,
+    splitter: Splitter,
+    /// Switches as they stood when the present statement began.
+    modes: Modes,
+    /// No more text will come.
+    ended: bool,
+    /// Errors so far.
+    errors: usize,
+    /// Statements that were cut at a missing `;`.
+    pending: Option<(Raw, Modes)>,
+}
+
+/// Errors after which a text is given up: it is no model.
+const MOST_ERRORS: usize = 100;
+
+impl<'h> Parser<'h> {
+    /// Opens the main file.
+    pub fn new(
+        host: &'h mut dyn Host,
+        path: &str,
+        options: PreprocessOptions,
+    ) -> Result<Self, Box<Unreadable>> {
+        // Expected tokens are only collected when pest is told so.
+        pest::set_error_detail(true);
+        match Preprocessor::new(host, path, options) {
+            Ok(text) => Ok(Self {
+                text,
+                splitter: Splitter::new(),
+                modes: Modes::default(),
+                ended: false,
+                errors: 0,
+                pending: None,
+            }),
+            Err(e) => Err(Box::new(Unreadable {
+                map: e.0,
+                diagnostic: e.1,
+            })),
+        }
+    }
+
+    /// The next statement; `Ok(None)` at the end. After an error the next call goes on behind it.
+    pub fn next(&mut self, known: &dyn Known) -> Result<Option<Stmt>, Vec<Diagnostic>> {
+        if self.errors > MOST_ERRORS {
+            return Ok(None);
+        }
+        if let Some((raw, modes)) = self.pending.take() {
+            self.modes = modes;
+            return self.take(raw).map(Some);
+        }
+        loop {
+            let was_inside = self.splitter.inside();
+            let cut = self
+                .splitter
+                .next(self.text.map.expanded(), self.text.on_end(), self.ended);
+            if !was_inside {
+                self.modes = self.text.modes();
+            }
+            match cut {
+                Cut::Statement(raw) => return self.take(raw).map(Some),
+                Cut::More if self.ended => return Ok(None),
+                Cut::More => match self.text.fill(known) {
+                    Ok(true) => {}
+                    Ok(false) => self.ended = true,
+                    Err(list) => {
+                        self.fail(&list);
+                        return Err(list);
+                    }
+                },
+            }
+        }
+    }
+
+    fn fail(&mut self, list: &[Diagnostic]) {
+        self.errors += list.len();
+        self.text.note_error();
+    }
+
+    /// Parses a statement; where a `;` is missing, the rest is kept for the next calls.
+    fn take(&mut self, mut raw: Raw) -> Result<Stmt, Vec<Diagnostic>> {
+        let problems = std::mem::take(&mut raw.problems);
+        let outcome = if problems.is_empty() {
+            self.parse(&raw).map_err(|e| {
+                if let Some((end, start)) = e.divide {
+                    raw.span.hi = end;
+                    self.splitter.back_to(start as usize);
+                    self.pending = Some((raw, self.modes));
+                }
+                if let Some(at) = e.resume {
+                    self.splitter.back_to(at as usize);
+                }
+                vec![e.diagnostic]
+            })
+        } else {
+            if problems.iter().all(|p| p.code == "E0201") {
+                self.pending = Some((raw, self.modes));
+            }
+            Err(problems)
+        };
+        if let Err(list) = &outcome {
+            self.fail(list);
+        }
+        outcome
+    }
+
+    /// `variable x >= 0;` is legal, but the bound is a text.
+    fn suspicious_texts(&mut self, stmt: &Stmt) {
+        let ast::StmtKind::Variable(_, list) = &stmt.kind else {
+            return;
+        };
+        for d in list {
+            let Some(text) = d.text.as_deref().filter(|t| t.starts_with(['<', '>'])) else {
+                continue;
+            };
+            let name = &d.name.name;
+            let message =
+                format!("`{text}` behind `{name}` is read as an explanatory text, not as a bound");
+            self.text.warn(Diagnostic::warning("E0234", d.name.span, message).help(format!(
+                "declare `positive variable {name};`, or assign `{name}.lo = …;` after the declaration"
+            )));
+        }
+    }
+
+    fn parse(&mut self, raw: &Raw) -> Result<Stmt, Box<Explanation>> {
+        let expanded = self.text.map.expanded();
+        let condensed = Condensed::new(expanded, raw.span, &raw.holes);
+        let text = condensed.text(expanded);
+        let rule = match raw.class {
+            Class::Set => Rule::whole_set,
+            Class::Parameter => Rule::whole_parameter,
+            Class::Variable => Rule::whole_variable,
+            Class::Equation => Rule::whole_equation,
+            Class::Acronym => Rule::whole_acronym,
+            Class::File => Rule::whole_file,
+            Class::Model => Rule::whole_model,
+            Class::Table => Rule::whole_table,
+            Class::Alias => Rule::whole_alias,
+            Class::Algebra => Rule::whole_algebra,
+            Class::Directive | Class::Other => Rule::whole_other,
+        };
+        let builder = Builder {
+            condensed: &condensed,
+            expanded,
+            holes: &raw.holes,
+            undf: self.modes.undf,
+        };
+        let built = match Grammar::parse(rule, text) {
+            Ok(mut pairs) => match pairs.next() {
+                Some(pair) => builder.statement(pair),
+                None => Ok(ast::StmtKind::Empty),
+            },
+            Err(e) => {
+                return Err(Box::new(explain::explain(
+                    &e, raw, &condensed, expanded, rule,
+                )));
+            }
+        };
+        match built {
+            Ok(kind) => {
+                let stmt = Stmt {
+                    kind,
+                    span: raw.span,
+                    modes: self.modes,
+                };
+                self.suspicious_texts(&stmt);
+                Ok(stmt)
+            }
+            Err(d) => Err(Box::new(Explanation {
+                diagnostic: *d,
+                divide: None,
+                resume: None,
+            })),
+        }
+    }
+
+    /// The files and the expanded text so far.
+    pub fn map(&self) -> &SourceMap {
+        &self.text.map
+    }
+
+    /// The files and the expanded text, when parsing is done.
+    pub fn into_map(self) -> SourceMap {
+        self.text.into_map()
+    }
+
+    /// Warnings since the last call.
+    pub fn warnings(&mut self) -> Vec<Diagnostic> {
+        self.text.take_warnings()
+    }
+
+    /// Lines that `$log` wrote since the last call.
+    pub fn log(&mut self) -> Vec<String> {
+        self.text.take_log()
+    }
+
+    /// What `$title` said last.
+    pub fn title(&self) -> Option<&str> {
+        self.text.title()
+    }
+
+    /// How the text ended: whether it is to be run.
+    pub fn ending(&self) -> Ending {
+        self.text.ending()
+    }
+
+    /// What `%name%` stands for now (`put_utility` and the options of a run may ask).
+    pub fn value_of(&self, name: &str) -> Option<&str> {
+        self.text.value_of(name)
+    }
+
+    /// A statement's text, as expanded.
+    pub fn text(&self, span: Span) -> &str {
+        self.text.map.text(span)
+    }
+}

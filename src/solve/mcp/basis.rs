@@ -33,9 +33,11 @@ enum Engine {
         /// Work done by updates and the solves lengthened by them, against that of a factorisation.
         work: usize,
         budget: usize,
+        /// Updates at most.
+        limit: usize,
     },
     Product {
-        lu: faer::sparse::linalg::solvers::Lu<usize, f64>,
+        lu: Box<faer::sparse::linalg::solvers::Lu<usize, f64>>,
         etas: Vec<Eta>,
         work: Vec<f64>,
     },
@@ -68,16 +70,18 @@ impl Basis {
             return None;
         }
         if fill == Fill::Heavy {
-            let lu = faer_lu(matrix)?;
+            let lu = Box::new(faer_lu(matrix)?);
             return Some(Basis(Engine::Product {
                 lu,
                 etas: Vec::new(),
                 work: vec![0.0; matrix.m],
             }));
         }
+        // Where factors are sparse, updates are too, and a factorisation costs many of them.
+        let limit = (matrix.m / 20).clamp(UPDATE_LIMIT, 20 * UPDATE_LIMIT);
         let params = LuParams {
             zero_pivot_tol: 1e-13,
-            max_updates: 2 * UPDATE_LIMIT,
+            max_updates: limit + 1,
             sparse_rhs_max_density: 0.3,
             ..LuParams::default()
         };
@@ -89,6 +93,7 @@ impl Basis {
             lu,
             work: 0,
             budget,
+            limit,
         }))
     }
 
@@ -166,13 +171,19 @@ impl Basis {
 
     /// Whether a fresh factorisation is due.
     pub(super) fn is_old(&self) -> bool {
-        self.updates() >= UPDATE_LIMIT
-            || match &self.0 {
-                Engine::ForrestTomlin { lu, work, budget } => {
-                    self.updates() >= 20 && *work >= *budget || lu.should_refactor_growth()
-                }
-                Engine::Product { .. } => false,
+        match &self.0 {
+            Engine::ForrestTomlin {
+                lu,
+                work,
+                budget,
+                limit,
+            } => {
+                self.updates() >= *limit
+                    || self.updates() >= 20 && *work >= *budget
+                    || lu.should_refactor_growth()
             }
+            Engine::Product { etas, .. } => etas.len() >= UPDATE_LIMIT,
+        }
     }
 }
 

@@ -18,6 +18,8 @@ const STEP_MIN: f64 = 1e-5;
 const STEP_STOP: f64 = 1e-2;
 /// A short step must change a share 1/this of the active set: the path makes so few changes sooner.
 const PIVOTS_PER_FACTORISATION: usize = 500;
+/// Merit values a step is compared with: their largest.
+const MEMORY: usize = 5;
 /// Directions longer than this come from a singular matrix.
 const DIRECTION_MAX: f64 = 1e10;
 /// Armijo constant of the crash.
@@ -46,7 +48,7 @@ pub(super) fn crash(run: &mut Run, start: Point, history: &mut Vec<f64>) -> Resu
     for iteration in 0..run.settings.crash_iteration_limit {
         run.check()?;
         let norm = (2.0 * point.merit).sqrt();
-        if norm < 1e-9 {
+        if norm < 1e-15 {
             break;
         }
         let basic: Vec<usize> = (0..run.n).filter(|&i| sets[i] == 0).collect();
@@ -57,7 +59,12 @@ pub(super) fn crash(run: &mut Run, start: Point, history: &mut Vec<f64>) -> Resu
         let Some(direction) = direction(run, &jacobian, &basic, &point.f, &mut prox)? else {
             break;
         };
-        let Some((next, step)) = search(run, &point, &basic, &direction) else {
+        let reference = history
+            .iter()
+            .rev()
+            .take(MEMORY)
+            .fold(point.merit, |a, &b| f64::max(a, b));
+        let Some((next, step)) = search(run, &point, &basic, &direction, reference) else {
             break;
         };
         let new_sets = active_set(&next.x, &next.f, &run.lower, &run.upper);
@@ -148,6 +155,7 @@ fn search(
     point: &Point,
     basic: &[usize],
     direction: &[f64],
+    reference: f64,
 ) -> Option<(Point, f64)> {
     let mut step = 1.0;
     while step > STEP_MIN {
@@ -157,7 +165,7 @@ fn search(
         }
         run.clip(&mut x);
         if let Some(next) = run.point(x)
-            && next.merit <= (1.0 - ARMIJO * step) * point.merit
+            && next.merit <= (1.0 - ARMIJO * step) * reference
         {
             return Some((next, step));
         }

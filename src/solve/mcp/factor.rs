@@ -75,7 +75,7 @@ pub(super) struct Factor {
 
 enum Engine {
     Markowitz(Box<SparseLu>),
-    Supernodal(Lu<usize, f64>),
+    Supernodal(Box<Lu<usize, f64>>),
 }
 
 /// Residual, relative to the right-hand side, above which a solution is not one.
@@ -89,7 +89,7 @@ impl Factor {
             return None;
         }
         let lu = match fill {
-            Fill::Heavy => Engine::Supernodal(faer_lu(&matrix)?),
+            Fill::Heavy => Engine::Supernodal(Box::new(faer_lu(&matrix)?)),
             Fill::Light => {
                 let params = LuParams {
                     scaling: LuScaling::InfNorm,

@@ -19,12 +19,14 @@ use feral::SparseColMatrix;
 use super::crash::{active_set, crash};
 use super::factor::shifted;
 use super::log;
-use super::merit::{Phi, natural_residual};
+use super::merit::Phi;
 use super::path::{Kind, LinearProblem, PathEnd, PathResult, Start, follow};
 use super::run::{End, Point, Run, Stop};
 
 /// Armijo constant of the M test and of the line search.
 const ARMIJO: f64 = 1e-4;
+/// Number of variables up to which the slack start is tried early.
+const SLACK_START: usize = 1000;
 /// A ray is worth a step if t got this far.
 const RAY_MIN: f64 = 1e-2;
 /// Major iterations without a notable fall of the residual before the run is called stuck.
@@ -37,13 +39,13 @@ const GRADIENT_LIMIT: usize = 6;
 /// Runs crash (if `with_crash`) and major iterations from `start`.
 pub(super) fn majors(run: &mut Run, start: Point, with_crash: bool) -> Result<End, Stop> {
     let mut history = vec![start.merit];
-    let first = start.clone();
     let mut point = start;
-    if with_crash && !run.converged(point.residual) {
-        point = crash(run, point, &mut history)?;
-    }
-    if run.converged(first.residual) {
-        point = first;
+    if with_crash && !run.polished(point.residual) {
+        let crashed = crash(run, point.clone(), &mut history)?;
+        // A start that is good enough is left only for a better one.
+        if !run.converged(point.residual) || crashed.residual < point.residual {
+            point = crashed;
+        }
     }
     Majors::new(run, point, history).run(run)
 }
@@ -122,9 +124,7 @@ impl Majors {
                 return Ok(End::Stuck);
             }
             if run.converged(self.point.residual) {
-                if polish
-                    || self.point.residual <= 1e-12 * run.settings.convergence_tolerance / 1e-8
-                {
+                if polish || run.polished(self.point.residual) {
                     return Ok(End::Solved);
                 }
                 polish = true;
@@ -141,7 +141,7 @@ impl Majors {
             };
             run.majors += 1;
             let pivots = run.pivots;
-            let (candidate, tries) = self.linear_solution(run, &jacobian)?;
+            let (candidate, tries) = self.linear_solution(run, &jacobian, polish)?;
             if polish {
                 // The point is good already: keep the step only if it is better.
                 if let Some(candidate) = candidate
@@ -207,6 +207,7 @@ impl Majors {
         &mut self,
         run: &mut Run,
         jacobian: &SparseColMatrix,
+        polish: bool,
     ) -> Result<(Option<Candidate>, usize), Stop> {
         let r = (2.0 * self.point.merit).sqrt();
         let mut prox = vec![self.prox];
@@ -223,6 +224,8 @@ impl Majors {
             }
         }
         let limit = match run.settings.minor_iteration_limit {
+            // A solution is at hand: not worth many pivots.
+            0 if polish => pivot_limit(run.n) / 10,
             0 => pivot_limit(run.n),
             given => given,
         };
@@ -253,15 +256,12 @@ impl Majors {
                     upper: &upper,
                 };
                 let PathResult {
-                    mut end,
+                    end,
                     x,
                     t,
                     kind,
                     pivots,
                 } = follow(run, &linear, &start, limit, self.seed)?;
-                if end == PathEnd::Solved && !solves(&linear, &x) {
-                    end = PathEnd::Numerical;
-                }
                 log::try_line(run, end, t, v, pivots, start.cover);
                 match end {
                     PathEnd::Solved => {
@@ -349,7 +349,13 @@ impl Majors {
                 });
             }
         }
-        if level <= 1 {
+        // From the slacks the path is as long as the solution has variables off their bounds: the way
+        // out where n is small, and the last resort where it is large.
+        if if run.n <= SLACK_START {
+            level <= 1
+        } else {
+            level == 4
+        } {
             let kind = (0..run.n)
                 .map(|i| {
                     if run.lower[i].is_finite() {
@@ -529,7 +535,7 @@ impl Majors {
 
 /// Pivots allowed on one path.
 pub(super) fn pivot_limit(n: usize) -> usize {
-    n.max(1000)
+    (n / 4).max(1000)
 }
 
 /// Gradient of ½‖Φ‖²: DaΦ + Jᵀ(DbΦ).
@@ -551,13 +557,4 @@ pub(super) fn merit_gradient(
     jacobian.matvec_transpose(&along_f, &mut gradient);
     gradient.iter_mut().zip(&along_x).for_each(|(g, a)| *g += a);
     gradient
-}
-
-/// Whether y solves the linear problem, to a tolerance that says the path did not lie.
-fn solves(linear: &LinearProblem, y: &[f64]) -> bool {
-    let mut f = vec![0.0; y.len()];
-    linear.m.matvec(y, &mut f);
-    f.iter_mut().zip(linear.q).for_each(|(f, q)| *f += q);
-    let scale = y.iter().fold(1.0f64, |a, v| a.max(v.abs()));
-    natural_residual(y, &f, linear.lower, linear.upper).0 <= 1e-6 * scale
 }

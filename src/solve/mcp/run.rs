@@ -204,4 +204,9 @@ impl<'a> Run<'a> {
     pub(super) fn converged(&self, residual: f64) -> bool {
         residual <= self.settings.convergence_tolerance
     }
+
+    /// Whether a residual leaves nothing to gain from one more iteration.
+    pub(super) fn polished(&self, residual: f64) -> bool {
+        residual <= 1e-4 * self.settings.convergence_tolerance
+    }
 }

@@ -1,0 +1,247 @@
+//! From trees to a checked program: names resolved, dimensions, domains and index control checked,
+//! data statements carried out.
+//!
+//! Statements are taken one at a time, in the order of the text, so that what `$if declared` and
+//! `$eval card(i)` ask can be answered at their place. Several errors are reported per run.
+
+pub mod functions;
+pub mod node;
+pub mod symbols;
+
+mod declare;
+mod expr;
+mod model;
+pub use model::walk as walk_node;
+mod statement;
+
+use crate::diag::{Diagnostic, Severity};
+use crate::host::Host;
+use crate::source::{Ending, Known, PreprocessOptions, SourceMap, Span};
+use crate::syntax::Parser;
+use crate::syntax::ast::Modes;
+use node::{Code, EquationDef, Slot, SymbolId};
+use symbols::{DomainPosition, Store, Symbol, SymbolKind, Symbols, UNIVERSE};
+
+/// An error was reported; there is nothing more to say.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Failed;
+
+/// More errors than this are not reported.
+const MAX_ERRORS: usize = 30;
+
+/// A checked program, ready to run.
+#[derive(Debug)]
+pub struct Program {
+    /// All names.
+    pub symbols: Symbols,
+    /// Data as the data statements left it.
+    pub store: Store,
+    /// Definitions of equations.
+    pub equations: Vec<EquationDef>,
+    /// Statements.
+    pub code: Vec<Code>,
+    /// Number of slots the frame needs.
+    pub slots: usize,
+    /// Where everything stands.
+    pub map: SourceMap,
+    /// Errors and warnings, in the order of the text.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+impl Program {
+    /// Whether it may run.
+    pub fn has_errors(&self) -> bool {
+        self.diagnostics
+            .iter()
+            .any(|d| d.severity == Severity::Error)
+    }
+}
+
+/// The state of checking.
+pub(crate) struct Compiler {
+    symbols: Symbols,
+    store: Store,
+    equations: Vec<EquationDef>,
+    diagnostics: Vec<Diagnostic>,
+    /// Sets under control, innermost last.
+    scope: Vec<(SymbolId, Vec<Slot>)>,
+    next_slot: Slot,
+    slots: usize,
+    in_equation: bool,
+    texts_allowed: bool,
+    /// Depth of loops and ifs.
+    nesting: usize,
+    modes: Modes,
+}
+
+/// Compiles a file: parses, checks and carries out its data statements.
+pub fn compile(
+    host: &mut dyn Host,
+    path: &str,
+    options: PreprocessOptions,
+) -> Result<Program, (Diagnostic, SourceMap)> {
+    let mut parser = Parser::new(host, path, options).map_err(|u| (u.diagnostic, u.map))?;
+    let mut c = Compiler::new();
+    let mut code = Vec::new();
+    loop {
+        let next = parser.next(&c);
+        c.diagnostics.extend(parser.warnings());
+        match next {
+            Ok(None) => break,
+            Ok(Some(stmt)) => {
+                let mut one = Vec::new();
+                let _ = c.statement(&stmt, parser.map(), &mut one);
+                code.append(&mut one);
+            }
+            Err(errors) => errors.into_iter().for_each(|d| c.report(d)),
+        }
+        if c.error_count() >= MAX_ERRORS {
+            let at = c.diagnostics.last().map_or_else(Span::default, |d| d.span);
+            c.diagnostics.push(Diagnostic::error(
+                "E0300",
+                at,
+                format!("more than {MAX_ERRORS} errors; the rest of the text was not checked"),
+            ));
+            break;
+        }
+    }
+    c.store.refresh_universe();
+    // `$terminate`: nothing is run, which is no failure.
+    if parser.ending() != Ending::Regular {
+        code.clear();
+    }
+    Ok(Program {
+        symbols: c.symbols,
+        store: c.store,
+        equations: c.equations,
+        code,
+        slots: c.slots,
+        map: parser.into_map(),
+        diagnostics: c.diagnostics,
+    })
+}
+
+impl Compiler {
+    fn new() -> Self {
+        let mut store = Store::default();
+        let table = store.add_table(1, 0.0);
+        let mut symbols = Symbols::default();
+        let universe = symbols.add(Symbol {
+            name: "*".into(),
+            kind: SymbolKind::Set { singleton: false },
+            domain: vec![DomainPosition::Universe],
+            text: "Universe".into(),
+            declared: Span::default(),
+            table,
+            has_data: true,
+            assigned: true,
+            dynamic: false,
+            is_domain: false,
+            unordered: false,
+        });
+        debug_assert_eq!(universe, UNIVERSE);
+        Self {
+            symbols,
+            store,
+            equations: Vec::new(),
+            diagnostics: Vec::new(),
+            scope: Vec::new(),
+            next_slot: 0,
+            slots: 0,
+            in_equation: false,
+            texts_allowed: false,
+            nesting: 0,
+            modes: Modes::default(),
+        }
+    }
+}
+
+impl Compiler {
+    fn report(&mut self, d: Diagnostic) {
+        if self.diagnostics.last() != Some(&d) {
+            self.diagnostics.push(d);
+        }
+    }
+
+    fn error_count(&self) -> usize {
+        self.diagnostics
+            .iter()
+            .filter(|d| d.severity == Severity::Error)
+            .count()
+    }
+
+    /// Notes that a symbol's data are read; an error if it never got any.
+    fn used(&mut self, id: SymbolId, span: Span) {
+        let root = self.symbols.root(id);
+        let s = self.symbols.get(root);
+        if self.in_equation || self.modes.implicit_assign || s.has_data || s.assigned {
+            return;
+        }
+        let (name, kind, declared) = (s.name.clone(), s.kind_name(), s.declared);
+        let d = match s.kind {
+            SymbolKind::Variable(_) | SymbolKind::Equation(_) => Diagnostic::error(
+                "E0319",
+                span,
+                format!("the {kind} `{name}` has no level yet"),
+            )
+            .label("nothing was solved or assigned above")
+            .other(declared, "declared here")
+            .help(format!(
+                "solve a model with `{name}` first, or assign `{name}.l`"
+            )),
+            _ => Diagnostic::error("E0319", span, format!("the {kind} `{name}` has no values"))
+                .label("never assigned above")
+                .other(declared, "declared without data here")
+                .help(match s.kind {
+                    SymbolKind::Set { .. } => {
+                        format!("give it elements: `{name} / a, b /`, or `{name}(…) = yes;`")
+                    }
+                    _ => format!("give it data: `{name} / … /`, or assign it before"),
+                }),
+        };
+        self.report(d);
+        // One such message per symbol.
+        self.symbols.get_mut(root).assigned = true;
+    }
+}
+
+impl Known for Compiler {
+    fn kind(&self, name: &str) -> Option<&'static str> {
+        self.symbols
+            .find(name)
+            .map(|s| self.symbols.get(s).kind_name())
+    }
+
+    fn is_defined(&self, name: &str) -> bool {
+        self.symbols.find(name).is_some_and(|s| {
+            let s = self.symbols.get(s);
+            s.has_data
+                || s.assigned
+                || matches!(s.kind, SymbolKind::Equation(Some(_)) | SymbolKind::Alias(_))
+        })
+    }
+
+    fn dimension(&self, name: &str) -> Option<usize> {
+        self.symbols.find(name).map(|s| self.symbols.get(s).dim())
+    }
+
+    fn card(&self, name: &str) -> Option<usize> {
+        let s = self.symbols.get(self.symbols.find(name)?);
+        match s.kind {
+            SymbolKind::Set { .. } | SymbolKind::Alias(_) | SymbolKind::Parameter { .. } => {
+                Some(self.store.table(s.table).len())
+            }
+            _ => None,
+        }
+    }
+
+    fn scalar_value(&self, name: &str) -> Option<f64> {
+        let s = self.symbols.get(self.symbols.find(name)?);
+        match s.kind {
+            SymbolKind::Parameter { .. } if s.dim() == 0 => {
+                Some(self.store.table(s.table).get(&[]))
+            }
+            _ => None,
+        }
+    }
+}

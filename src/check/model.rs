@@ -1,0 +1,610 @@
+//! The `solve` statement: which equations, paired with what, of which class.
+
+use super::functions::{self, is_nonsmooth};
+use super::node::*;
+use super::symbols::{DomainPosition, SymbolKind};
+use super::{Compiler, Failed};
+use crate::diag::{Diagnostic, nearest};
+use crate::source::Span;
+use crate::syntax::ast::{ModelItem, Solve, VariableKind};
+
+impl Compiler {
+    pub(super) fn solve(&mut self, s: &Solve, span: Span) -> Result<CodeKind, Failed> {
+        let model = self.lookup(&s.model)?;
+        let symbol = self.symbols.get(model).clone();
+        let SymbolKind::Model(info) = &symbol.kind else {
+            return self.fail(
+                Diagnostic::error(
+                    "E0350",
+                    s.model.span,
+                    format!("`{}` is a {}, not a model", symbol.name, symbol.kind_name()),
+                )
+                .label("a model is expected")
+                .other(symbol.declared, "declared here")
+                .help("declare one: `model m / all /;`"),
+            );
+        };
+        let using = s.using.name.to_lowercase();
+        let Some(using) = functions::PROBLEM_TYPES
+            .iter()
+            .find(|t| **t == using)
+            .copied()
+        else {
+            let near = nearest(&using, functions::PROBLEM_TYPES.iter().copied()).unwrap_or("lp");
+            return self.fail(
+                Diagnostic::error(
+                    "E0351",
+                    s.using.span,
+                    format!("there is no problem type `{}`", s.using.name),
+                )
+                .label("unknown problem type")
+                .help(format!(
+                    "did you mean `{near}`? there are: {}",
+                    functions::PROBLEM_TYPES.join(", ")
+                )),
+            );
+        };
+        if using == "emp" {
+            return self.fail(
+                Diagnostic::error("E0352", s.using.span, "`emp` is not there")
+                    .label("not supported")
+                    .help("state the optimality conditions as an `mcp`"),
+            );
+        }
+        let items = info.items.clone().unwrap_or_default();
+        let mut rows: Vec<ModelRow> = Vec::new();
+        let mut seen = Vec::new();
+        self.collect(&items, span, &mut rows, &mut seen, 0)?;
+        rows.sort_by_key(|r| self.equations[r.definition].symbol);
+        if rows.is_empty() {
+            return self.fail(
+                Diagnostic::error(
+                    "E0353",
+                    s.model.span,
+                    format!("the model `{}` has no equations", symbol.name),
+                )
+                .label("nothing to solve")
+                .other(symbol.declared, "declared here")
+                .help("list equations in it: `model m / all /;`"),
+            );
+        }
+        let has_objective = !matches!(using, "mcp" | "cns");
+        let objective = match &s.objective {
+            Some((sense, name)) if has_objective => Some((*sense, self.objective(name, &rows)?)),
+            Some((_, name)) => {
+                return self.fail(
+                    Diagnostic::error(
+                        "E0354",
+                        name.span,
+                        format!("a model of type `{using}` has no objective"),
+                    )
+                    .label("not expected here")
+                    .help(format!("write `solve {} using {using};`", symbol.name)),
+                );
+            }
+            None if has_objective => {
+                return self.fail(
+                    Diagnostic::error("E0355", span, format!("a model of type `{using}` needs an objective variable"))
+                        .label("no `minimizing` or `maximizing`")
+                        .help(format!("write `solve {} using {using} minimizing z;` with a free scalar variable `z`", symbol.name)),
+                );
+            }
+            None => None,
+        };
+        let mut failed = false;
+        for r in &rows {
+            failed |= self.check_class(r.definition, using, s.using.span).is_err();
+        }
+        failed |= self.check_discrete(&rows, using, s.using.span).is_err();
+        if matches!(using, "mcp" | "mpec" | "rmpec") {
+            failed |= self.check_pairs(&rows, using).is_err();
+        }
+        if failed {
+            return Err(Failed);
+        }
+        // After a solve, levels and marginals are there.
+        let ids: Vec<SymbolId> = self
+            .symbols
+            .iter()
+            .filter(|(_, s)| matches!(s.kind, SymbolKind::Variable(_) | SymbolKind::Equation(_)))
+            .map(|(i, _)| i)
+            .collect();
+        for i in ids {
+            self.symbols.get_mut(i).assigned = true;
+        }
+        Ok(CodeKind::Solve(Box::new(SolveCode {
+            model,
+            equations: rows,
+            using,
+            objective,
+        })))
+    }
+
+    /// Rows of a list of model items, in order.
+    fn collect(
+        &mut self,
+        items: &[ModelItem],
+        span: Span,
+        rows: &mut Vec<ModelRow>,
+        seen: &mut Vec<SymbolId>,
+        depth: usize,
+    ) -> Result<(), Failed> {
+        if depth > 50 {
+            return Ok(());
+        }
+        let add = |c: &mut Self,
+                   e: SymbolId,
+                   pair: Option<SymbolId>,
+                   restrict: Option<SymbolId>,
+                   at: Span,
+                   rows: &mut Vec<ModelRow>| {
+            let SymbolKind::Equation(defined) = c.symbols.get(e).kind else {
+                return Ok(());
+            };
+            let Some(definition) = defined else {
+                let (name, declared) = (c.symbols.get(e).name.clone(), c.symbols.get(e).declared);
+                return c.fail(
+                    Diagnostic::error(
+                        "E0356",
+                        at,
+                        format!("the equation `{name}` is in the model but is not defined"),
+                    )
+                    .label("in this model")
+                    .other(declared, "declared here, and defined nowhere")
+                    .help(format!(
+                        "define it: `{name}.. left =e= right;`, or take it out of the model"
+                    )),
+                );
+            };
+            match rows
+                .iter()
+                .position(|r| r.definition == definition && r.pair == pair)
+            {
+                Some(_) => {}
+                None => match rows
+                    .iter_mut()
+                    .find(|r| r.definition == definition && (r.pair.is_none() || pair.is_none()))
+                {
+                    Some(r) => r.pair = r.pair.or(pair),
+                    None => rows.push(ModelRow {
+                        definition,
+                        pair,
+                        restrict,
+                        span: at,
+                    }),
+                },
+            }
+            Ok(())
+        };
+        let mut failed = false;
+        for item in items {
+            match item {
+                // Declarations have put the equations in its place.
+                ModelItem::All(_) => {}
+                ModelItem::Add(name, sub) => {
+                    let Ok(id) = self.lookup(name) else {
+                        failed = true;
+                        continue;
+                    };
+                    let restrict = match sub.as_deref() {
+                        Some([one]) => Some(self.lookup_set(one)?),
+                        _ => None,
+                    };
+                    match self.symbols.get(id).kind.clone() {
+                        SymbolKind::Model(m) => {
+                            let inner = m.items.clone().unwrap_or_default();
+                            failed |= self.collect(&inner, span, rows, seen, depth + 1).is_err();
+                        }
+                        _ => failed |= add(self, id, None, restrict, name.span, rows).is_err(),
+                    }
+                }
+                ModelItem::Remove(name) => {
+                    let id = self.lookup(name)?;
+                    match self.symbols.get(id).kind.clone() {
+                        SymbolKind::Model(m) => {
+                            let mut gone = Vec::new();
+                            let inner = m.items.clone().unwrap_or_default();
+                            self.collect(&inner, span, &mut gone, seen, depth + 1)?;
+                            rows.retain(|r| !gone.iter().any(|g| g.definition == r.definition));
+                        }
+                        SymbolKind::Equation(Some(d)) => rows.retain(|r| r.definition != d),
+                        _ => {}
+                    }
+                }
+                ModelItem::Pair {
+                    rows: names,
+                    column,
+                } => {
+                    let v = self.lookup(column)?;
+                    for n in names {
+                        let e = self.lookup(n)?;
+                        failed |=
+                            add(self, e, Some(v), None, n.span.to(column.span), rows).is_err();
+                    }
+                }
+            }
+        }
+        if failed { Err(Failed) } else { Ok(()) }
+    }
+
+    fn objective(
+        &mut self,
+        name: &crate::syntax::ast::Ident,
+        rows: &[ModelRow],
+    ) -> Result<SymbolId, Failed> {
+        let v = self.lookup(name)?;
+        let symbol = self.symbols.get(v).clone();
+        let SymbolKind::Variable(kind) = symbol.kind else {
+            return self.fail(
+                Diagnostic::error("E0357", name.span, format!("the objective must be a variable; `{}` is a {}", symbol.name, symbol.kind_name()))
+                    .label("not a variable")
+                    .other(symbol.declared, "declared here")
+                    .help("declare a free variable and an equation that defines it: `variable z; equation cost; cost.. z =e= …;`"),
+            );
+        };
+        if symbol.dim() > 0 {
+            return self.fail(
+                Diagnostic::error(
+                    "E0358",
+                    name.span,
+                    format!(
+                        "the objective must be a single number; `{}` is indexed",
+                        symbol.name
+                    ),
+                )
+                .label("indexed")
+                .other(
+                    symbol.declared,
+                    format!("declared with {} indices here", symbol.dim()),
+                )
+                .help("declare a free scalar variable and define it in an equation"),
+            );
+        }
+        if !matches!(kind, VariableKind::Free | VariableKind::Unstated) {
+            return self.fail(
+                Diagnostic::error(
+                    "E0359",
+                    name.span,
+                    format!("the objective `{}` must be a free variable", symbol.name),
+                )
+                .label("restricted in sign")
+                .other(symbol.declared, "declared here")
+                .help(format!(
+                    "declare it by `free variable {0};`, and bound it by an equation if it must be",
+                    symbol.name
+                )),
+            );
+        }
+        let mentioned = rows.iter().any(|r| {
+            let e = &self.equations[r.definition];
+            mentions(&e.left, v) || mentions(&e.right, v)
+        });
+        if !mentioned {
+            return self.fail(
+                Diagnostic::error(
+                    "E0360",
+                    name.span,
+                    format!(
+                        "the objective `{}` stands in no equation of the model",
+                        symbol.name
+                    ),
+                )
+                .label("in no equation")
+                .other(symbol.declared, "declared here")
+                .help(format!(
+                    "define it in an equation of the model: `cost.. {} =e= …;`",
+                    symbol.name
+                )),
+            );
+        }
+        Ok(v)
+    }
+
+    /// Whether an equation may stand in a model of this type.
+    fn check_class(&mut self, definition: usize, using: &str, solve: Span) -> Result<(), Failed> {
+        let e = &self.equations[definition];
+        let name = self.symbols.get(e.symbol).name.clone();
+        let linear_only = matches!(using, "lp" | "rmip" | "mip");
+        let smooth_only = !matches!(using, "dnlp" | "rminlp" | "minlp") && !linear_only;
+        let mut found: Option<(Span, String, &'static str, String)> = None;
+        for side in [&e.left, &e.right] {
+            walk(side, &mut |n| {
+                if found.is_some() || !n.has_var {
+                    return;
+                }
+                if let NodeKind::Binary(op, ..) = &n.kind
+                    && *op != BinaryOp::Power
+                {
+                    if using != "dnlp" {
+                        found = Some((
+                            n.span,
+                            "a relation between variables has no derivative".into(),
+                            "E0362",
+                            "use `dnlp`, or a formulation with additional variables and equations"
+                                .into(),
+                        ));
+                    }
+                } else if let NodeKind::Not(_) = &n.kind
+                    && using != "dnlp"
+                {
+                    found = Some((
+                        n.span,
+                        "`not` of a variable has no derivative".into(),
+                        "E0362",
+                        "use `dnlp`".into(),
+                    ));
+                } else if linear_only && !n.linear && children_linear(n) {
+                    let what = match &n.kind {
+                        NodeKind::Product(_) => {
+                            "variables are multiplied or divided here".to_string()
+                        }
+                        NodeKind::Binary(..) => "a variable is raised to a power here".to_string(),
+                        NodeKind::Call(f, _) => {
+                            format!("`{}` of a variable is not linear", functions::name_of(*f))
+                        }
+                        _ => "this is not linear in the variables".to_string(),
+                    };
+                    found = Some((
+                        n.span,
+                        what,
+                        "E0361",
+                        format!(
+                            "solve it `using nlp`, or reformulate the equation `{name}`; a level (`x.l`) is data and may be multiplied"
+                        ),
+                    ));
+                } else if smooth_only {
+                    match &n.kind {
+                        NodeKind::Call(f, _) if is_nonsmooth(*f) => {
+                            found = Some((n.span, format!("`{}` of a variable is not smooth", functions::name_of(*f)), "E0362", "solve it `using dnlp`, or reformulate with additional variables and inequalities".into()));
+                        }
+                        NodeKind::Aggregate(AggregateOp::Smin | AggregateOp::Smax, ..) => {
+                            found = Some((n.span, "`smin` and `smax` of variables are not smooth".into(), "E0362", "solve it `using dnlp`, or use a variable with one inequality per member".into()));
+                        }
+                        _ => {}
+                    }
+                }
+            });
+        }
+        match found {
+            None => Ok(()),
+            Some((span, what, code, help)) => {
+                let kind = if linear_only {
+                    format!(
+                        "the equation `{name}` is not linear, but the model is solved as `{using}`"
+                    )
+                } else {
+                    format!("the equation `{name}` may not stand in a model solved as `{using}`")
+                };
+                self.fail(
+                    Diagnostic::error(code, span, kind)
+                        .label(what)
+                        .other(solve, "solved here")
+                        .help(help),
+                )
+            }
+        }
+    }
+
+    fn check_discrete(
+        &mut self,
+        rows: &[ModelRow],
+        using: &str,
+        solve: Span,
+    ) -> Result<(), Failed> {
+        if !matches!(
+            using,
+            "lp" | "nlp" | "dnlp" | "qcp" | "mcp" | "cns" | "mpec"
+        ) && !matches!(using, "mip" | "minlp" | "miqcp")
+        {
+            return Ok(());
+        }
+        let mut discrete = None;
+        for r in rows {
+            let e = &self.equations[r.definition];
+            for side in [&e.left, &e.right] {
+                walk(side, &mut |n| {
+                    if let NodeKind::Var(v, _) = &n.kind
+                        && let SymbolKind::Variable(k) = self.symbols.get(*v).kind
+                        && !matches!(
+                            k,
+                            VariableKind::Unstated
+                                | VariableKind::Free
+                                | VariableKind::Positive
+                                | VariableKind::Negative
+                        )
+                    {
+                        discrete = discrete.or(Some((*v, n.span)));
+                    }
+                });
+            }
+        }
+        let Some((v, at)) = discrete else {
+            return Ok(());
+        };
+        let (name, declared) = (
+            self.symbols.get(v).name.clone(),
+            self.symbols.get(v).declared,
+        );
+        if matches!(using, "mip" | "minlp" | "miqcp") {
+            let relaxed = match using {
+                "mip" => "rmip",
+                "minlp" => "rminlp",
+                _ => "rmiqcp",
+            };
+            return self.fail(
+                Diagnostic::error(
+                    "E0363",
+                    solve,
+                    format!("there is no solver for `{using}` with discrete variables"),
+                )
+                .label("not there")
+                .other(declared, format!("`{name}` is discrete"))
+                .help(format!("`solve … using {relaxed}` solves the relaxation")),
+            );
+        }
+        let relaxed = match using {
+            "lp" => "rmip",
+            "qcp" => "rmiqcp",
+            _ => "rminlp",
+        };
+        self.fail(
+            Diagnostic::error(
+                "E0363",
+                at,
+                format!("`{name}` is a discrete variable, but the model is solved as `{using}`"),
+            )
+            .label("discrete")
+            .other(declared, "declared here")
+            .other(solve, "solved here")
+            .help(format!("`solve … using {relaxed}` solves the relaxation")),
+        )
+    }
+
+    /// The rules of matching that can be seen in the text.
+    fn check_pairs(&mut self, rows: &[ModelRow], using: &str) -> Result<(), Failed> {
+        let mut failed = false;
+        let paired: Vec<(SymbolId, Span)> = rows
+            .iter()
+            .filter_map(|r| Some((r.pair?, r.span)))
+            .collect();
+        for (v, span) in paired {
+            let appears = rows.iter().any(|r| {
+                let e = &self.equations[r.definition];
+                mentions(&e.left, v) || mentions(&e.right, v)
+            });
+            if !appears {
+                let (name, declared) = (
+                    self.symbols.get(v).name.clone(),
+                    self.symbols.get(v).declared,
+                );
+                failed |= self
+                    .fail::<()>(
+                        Diagnostic::error(
+                            "E0368",
+                            span,
+                            format!(
+                                "the variable `{name}` of a pair stands in no equation of the model"
+                            ),
+                        )
+                        .label("paired, but in no equation")
+                        .other(declared, "declared here"),
+                    )
+                    .is_err();
+            }
+        }
+        for r in rows {
+            let e = &self.equations[r.definition];
+            let (eq, relation) = (self.symbols.get(e.symbol).clone(), e.relation);
+            let Some(v) = r.pair else {
+                if using == "mcp" && relation != Relation::Equal {
+                    failed |= self
+                        .fail::<()>(
+                            Diagnostic::error("E0364", r.span, format!("the inequality `{}` has no partner", eq.name))
+                                .label("unmatched")
+                                .other(self.equations[r.definition].span, "defined here")
+                                .help(format!("pair it with a variable in the model: `{}.x`; only `=e=` rows may go without (with free variables)", eq.name)),
+                        )
+                        .is_err();
+                }
+                continue;
+            };
+            let var = self.symbols.get(v).clone();
+            if eq.dim() != var.dim() {
+                failed |= self
+                    .fail::<()>(
+                        Diagnostic::error(
+                            "E0365",
+                            r.span,
+                            format!(
+                                "`{}` has {} indices and `{}` has {}: they cannot be paired",
+                                eq.name,
+                                eq.dim(),
+                                var.name,
+                                var.dim()
+                            ),
+                        )
+                        .label("different dimensions")
+                        .other(eq.declared, "the equation")
+                        .other(var.declared, "the variable"),
+                    )
+                    .is_err();
+                continue;
+            }
+            let same = eq
+                .domain
+                .iter()
+                .zip(&var.domain)
+                .all(|(a, b)| match (a, b) {
+                    (DomainPosition::Set(a), DomainPosition::Set(b)) => {
+                        self.symbols.is_subset(*a, *b) || self.symbols.is_subset(*b, *a)
+                    }
+                    _ => true,
+                });
+            if !same {
+                failed |= self
+                    .fail::<()>(
+                        Diagnostic::error("E0366", r.span, format!("`{}` and `{}` run over different sets, or the same in another order", eq.name, var.name))
+                            .label("domains differ")
+                            .other(eq.declared, "the equation")
+                            .other(var.declared, "the variable"),
+                    )
+                    .is_err();
+            }
+            if let Some(other) = rows
+                .iter()
+                .find(|o| o.definition == r.definition && o.pair.is_some() && o.pair != r.pair)
+                && r.span.lo > other.span.lo
+            {
+                failed |= self
+                    .fail::<()>(
+                        Diagnostic::error(
+                            "E0367",
+                            r.span,
+                            format!("the equation `{}` is paired twice", eq.name),
+                        )
+                        .label("second pair")
+                        .other(other.span, "first pair"),
+                    )
+                    .is_err();
+            }
+        }
+        if failed { Err(Failed) } else { Ok(()) }
+    }
+}
+
+/// Whether all children that hold variables are linear: the node itself is where linearity ends.
+fn children_linear(n: &Node) -> bool {
+    let mut all = true;
+    each_child(n, &mut |c| all &= c.linear);
+    all
+}
+
+/// Calls `f` for each direct child (conditions of sums are data and are left out).
+pub fn each_child<'a>(n: &'a Node, f: &mut dyn FnMut(&'a Node)) {
+    match &n.kind {
+        NodeKind::Negate(a) | NodeKind::Not(a) => f(a),
+        NodeKind::Sum(t) | NodeKind::Product(t) => t.iter().for_each(|(_, x)| f(x)),
+        NodeKind::Binary(_, a, b) => {
+            f(a);
+            f(b);
+        }
+        NodeKind::Call(_, a) | NodeKind::DataCall(_, a) => a.iter().for_each(f),
+        NodeKind::Dollar(a, _) => f(a),
+        NodeKind::Aggregate(_, _, b) => f(b),
+        _ => {}
+    }
+}
+
+/// Calls `f` for a node and all below.
+pub fn walk<'a>(n: &'a Node, f: &mut dyn FnMut(&'a Node)) {
+    f(n);
+    each_child(n, &mut |c| walk(c, f));
+}
+
+fn mentions(n: &Node, v: SymbolId) -> bool {
+    let mut hit = false;
+    walk(n, &mut |x| {
+        hit |= matches!(&x.kind, NodeKind::Var(s, _) if *s == v)
+    });
+    hit
+}

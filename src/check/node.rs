@@ -1,0 +1,443 @@
+//! The checked program: names resolved, indices turned into slots, tables numbered.
+//!
+//! A controlled index is a *slot*: while a sum, assignment, loop or equation runs, slot k of the
+//! frame holds a label. A [`Key`] says how the labels of a record are made from slots.
+
+use crate::data::universe::Label;
+use crate::model::instance::Function;
+use crate::run::plan::Plan;
+use crate::source::Span;
+pub use crate::syntax::ast::{AggregateOp, BinaryOp, Relation, Sense};
+use std::cell::RefCell;
+use std::rc::Rc;
+
+/// Number of a symbol.
+pub type SymbolId = u32;
+/// Number of a table of the store.
+pub type TableId = u32;
+/// Number of a slot of the frame.
+pub type Slot = u32;
+
+/// How one label of a key is made.
+#[derive(Clone, Debug)]
+pub enum Part {
+    /// The label in a slot.
+    Slot(Slot),
+    /// A label of the text.
+    Label(Label),
+    /// The label `offset` places after another in a set.
+    Lag(Rc<Lag>),
+    /// The one element of a singleton set, at a position of it.
+    Singleton(TableId, u8),
+}
+
+/// `i+1`, `i--k`.
+#[derive(Debug)]
+pub struct Lag {
+    /// Where to start: a slot, a label or a singleton.
+    pub base: Part,
+    /// The ordered set.
+    pub set: TableId,
+    /// How far; negative for lags.
+    pub offset: Node,
+    /// `++`, `--`.
+    pub circular: bool,
+}
+
+/// How the labels of a record are made.
+#[derive(Clone, Default, Debug)]
+pub struct Key {
+    /// One part per position.
+    pub parts: Vec<Part>,
+}
+
+impl Key {
+    /// Whether all parts are slots and labels.
+    pub fn is_plain(&self) -> bool {
+        self.parts
+            .iter()
+            .all(|p| matches!(p, Part::Slot(_) | Part::Label(_)))
+    }
+}
+
+/// An expression.
+#[derive(Debug)]
+pub struct Node {
+    /// What it is.
+    pub kind: NodeKind,
+    /// Where it is.
+    pub span: Span,
+    /// Whether a variable (as an unknown) stands in it.
+    pub has_var: bool,
+    /// Whether it is at most linear in the variables.
+    pub linear: bool,
+}
+
+/// The kinds of expressions.
+#[derive(Debug)]
+pub enum NodeKind {
+    /// A number.
+    Const(f64),
+    /// A parameter, an attribute, or membership of a set (1 or 0).
+    Data(TableId, Key),
+    /// A variable as an unknown: the symbol and its key.
+    Var(SymbolId, Key),
+    /// `x.slack` and others that are computed from attributes.
+    Derived(Derived, SymbolId, Key),
+    /// `ord(i)`: position of a label in a set.
+    Ord(TableId, Part),
+    /// `card(s)`.
+    Card(TableId),
+    /// `sameas(i,j)`.
+    SameAs(Part, Part),
+    /// A property of a label within a set: `i.val`, `i.pos` …
+    LabelAttribute(LabelAttribute, TableId, Part),
+    /// `-a`
+    Negate(Box<Node>),
+    /// `not a`
+    Not(Box<Node>),
+    /// Terms; true for those that are subtracted.
+    Sum(Vec<(bool, Node)>),
+    /// Factors; true for those that divide.
+    Product(Vec<(bool, Node)>),
+    /// Relations, logic, `**`.
+    Binary(BinaryOp, Box<Node>, Box<Node>),
+    /// A mathematical function.
+    Call(Function, Vec<Node>),
+    /// A function of data only.
+    DataCall(DataFunction, Vec<Node>),
+    /// `e $ c`
+    Dollar(Box<Node>, Box<Node>),
+    /// `sum(d, e)` and its kin.
+    Aggregate(AggregateOp, Box<Domain>, Box<Node>),
+    /// `m.modelstat`, `f.pw` …: the symbol and the attribute in lower case.
+    ObjectAttribute(SymbolId, &'static str),
+    /// A text, in `put` and figures.
+    Text(Box<str>),
+    /// Label text of a key part, in `put` and figures.
+    LabelText(Part),
+    /// Element text of a set record, in `put` and figures.
+    ElementText(TableId, Key),
+    /// Explanatory text of a symbol.
+    SymbolText(SymbolId),
+}
+
+/// Attributes that are computed.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[allow(missing_docs)]
+pub enum Derived {
+    Slack,
+    SlackLo,
+    SlackUp,
+    Infeas,
+    Range,
+}
+
+/// Properties of a label within a set.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[allow(missing_docs)]
+pub enum LabelAttribute {
+    Val,
+    Pos,
+    Ord,
+    Off,
+    Rev,
+    Uel,
+    Len,
+    TextLen,
+    First,
+    Last,
+}
+
+/// Functions that never take a variable.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[allow(missing_docs)]
+pub enum DataFunction {
+    Uniform,
+    UniformInt,
+    Normal,
+    RandBinomial,
+    RandLinear,
+    RandTriangle,
+    Fact,
+    Mapval,
+    Pi,
+    ExecSeed,
+    JNow,
+    JStart,
+    JDate,
+    JTime,
+    GYear,
+    GMonth,
+    GDay,
+    GHour,
+    GMinute,
+    GSecond,
+    GMillisec,
+    GDow,
+    GLeap,
+    TimeElapsed,
+    ExecError,
+    ErrorLevel,
+    /// Machine and licence facts that have no meaning here: 0.
+    Zero,
+    /// `numcores`
+    One,
+    GamsVersion,
+    Sleep,
+}
+
+/// A record that must exist for a tuple to count: the table and the key.
+#[derive(Clone, Debug)]
+pub struct Driver {
+    /// Set or parameter.
+    pub table: TableId,
+    /// Its key.
+    pub key: Key,
+}
+
+/// What runs over tuples.
+#[derive(Debug, Default)]
+pub struct Domain {
+    /// Slots that this domain sets, in the order written.
+    pub slots: Vec<Slot>,
+    /// The set of each slot (what the label must be a member of).
+    pub sets: Vec<TableId>,
+    /// Tuple sets and the index sets: all must hold.
+    pub members: Vec<Driver>,
+    /// Conjuncts of the condition.
+    pub conditions: Vec<Node>,
+    /// How to enumerate, made when first run.
+    pub plan: RefCell<Option<Rc<Plan>>>,
+}
+
+/// The definition of an equation.
+#[derive(Debug)]
+pub struct EquationDef {
+    /// The equation.
+    pub symbol: SymbolId,
+    /// What it runs over.
+    pub domain: Domain,
+    /// Label of the row.
+    pub key: Key,
+    /// Left side.
+    pub left: Node,
+    /// Relation.
+    pub relation: Relation,
+    /// Right side.
+    pub right: Node,
+    /// Place.
+    pub span: Span,
+}
+
+/// What an assignment writes to.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Target {
+    /// A parameter or an attribute.
+    Table(TableId),
+    /// A set: true adds, false removes.
+    Set(TableId),
+    /// A singleton set.
+    Singleton(TableId),
+    /// `.fx` of a variable.
+    Fix(SymbolId),
+    /// A model or file attribute.
+    Object(SymbolId, &'static str),
+    /// `execseed = n`
+    Seed,
+}
+
+/// A statement.
+#[derive(Debug)]
+pub struct Code {
+    /// What it does.
+    pub kind: CodeKind,
+    /// Where it is.
+    pub span: Span,
+    /// Tables that it may scan, found when first run: they must be tidy before.
+    pub scans: std::cell::OnceCell<Box<[TableId]>>,
+}
+
+impl Code {
+    /// A statement.
+    pub fn new(kind: CodeKind, span: Span) -> Self {
+        Self {
+            kind,
+            span,
+            scans: std::cell::OnceCell::new(),
+        }
+    }
+}
+
+/// One thing to display.
+#[derive(Debug)]
+pub enum Shown {
+    /// A text.
+    Text(Box<str>),
+    /// A symbol with an attribute (as spelled for people, `L`, `Up`).
+    Symbol(SymbolId, Option<&'static str>),
+}
+
+/// A solve.
+#[derive(Debug)]
+pub struct SolveCode {
+    /// The model.
+    pub model: SymbolId,
+    /// Its equations at this place of the text, and pairs.
+    pub equations: Vec<ModelRow>,
+    /// Problem type, lower case.
+    pub using: &'static str,
+    /// Direction and objective variable.
+    pub objective: Option<(Sense, SymbolId)>,
+}
+
+/// One equation of a model.
+#[derive(Clone, Debug)]
+pub struct ModelRow {
+    /// Index into `Program::equations`.
+    pub definition: usize,
+    /// The variable it is paired with.
+    pub pair: Option<SymbolId>,
+    /// Only the rows whose label is in these sets.
+    pub restrict: Option<SymbolId>,
+    /// Where the model names it.
+    pub span: Span,
+}
+
+/// An item of `put`.
+#[derive(Debug)]
+pub enum PutCode {
+    /// `/`
+    NewLine,
+    /// `@n`
+    Column(Node),
+    /// `#n`
+    Row(Node),
+    /// Selects a file.
+    File(SymbolId),
+    /// Writes.
+    Item {
+        /// What.
+        value: Node,
+        /// Alignment.
+        align: Option<char>,
+        /// Width.
+        width: Option<i64>,
+        /// Decimals.
+        decimals: Option<i64>,
+    },
+}
+
+/// One element of a figure.
+#[derive(Debug)]
+pub struct FigureElementCode {
+    /// Kind, lower case.
+    pub kind: Box<str>,
+    /// What it runs over.
+    pub domain: Option<Domain>,
+    /// Arguments.
+    pub arguments: Vec<(Option<Box<str>>, Node)>,
+    /// Place.
+    pub span: Span,
+}
+
+/// A figure.
+#[derive(Debug)]
+pub struct FigureCode {
+    /// Title.
+    pub title: Option<Box<str>>,
+    /// Elements.
+    pub elements: Vec<FigureElementCode>,
+}
+
+/// The kinds of statements.
+#[derive(Debug)]
+pub enum CodeKind {
+    /// Assignment.
+    Assign {
+        /// What it runs over (slots not controlled outside).
+        domain: Domain,
+        /// What is written.
+        target: Target,
+        /// Key of the record.
+        key: Key,
+        /// Right side.
+        value: Node,
+        /// Whether the domain covers every record the target can have.
+        covers: bool,
+    },
+    /// `loop`
+    Loop(Domain, Vec<Code>),
+    /// `while`
+    While(Node, Vec<Code>),
+    /// `for`
+    For {
+        /// The scalar.
+        table: TableId,
+        /// First.
+        from: Node,
+        /// Down.
+        down: bool,
+        /// Limit.
+        to: Node,
+        /// Step.
+        by: Option<Node>,
+        /// Statements.
+        body: Vec<Code>,
+    },
+    /// `repeat`
+    Repeat(Vec<Code>, Node),
+    /// `if`
+    If(Vec<(Node, Vec<Code>)>, Vec<Code>),
+    /// `break`
+    Break(Option<Node>),
+    /// `continue`
+    Continue(Option<Node>),
+    /// `display`
+    Display(Option<Node>, Vec<Shown>),
+    /// `abort`
+    Abort {
+        /// Condition.
+        condition: Option<Node>,
+        /// What to show.
+        items: Vec<Shown>,
+        /// `abort.noError`
+        no_error: bool,
+    },
+    /// `solve`
+    Solve(Box<SolveCode>),
+    /// `option name = value`
+    Option(Box<str>, OptionCode),
+    /// `option clear = p`
+    Clear(SymbolId),
+    /// `option p:d:r:c`
+    Format(SymbolId, Vec<i64>),
+    /// `option p < q`
+    Project {
+        /// Left side.
+        target: SymbolId,
+        /// Right side.
+        source: SymbolId,
+        /// For each position of the target the position of the source.
+        positions: Vec<usize>,
+        /// Count (`<`) or keep the last (`<=`), where the source has more positions.
+        count: bool,
+    },
+    /// `put` and its kin: keyword, condition, items.
+    Put(Box<str>, Option<Node>, Vec<PutCode>),
+    /// Data exchange.
+    Exchange(crate::syntax::ast::Exchange),
+    /// `draw`
+    Draw(SymbolId, Option<Box<str>>),
+}
+
+/// Value of an option.
+#[derive(Clone, Debug, PartialEq)]
+pub enum OptionCode {
+    /// None.
+    Flag,
+    /// A number.
+    Number(f64),
+    /// A text.
+    Text(Box<str>),
+}

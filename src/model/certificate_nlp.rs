@@ -1,0 +1,210 @@
+//! The certificate of nonlinear instances: KKT residuals on the unscaled instance.
+//!
+//! With a(x) the activities, m the marginals of the rows, σ = +1 for min and −1 for max, z the
+//! objective column and r_j = \[j = z\] − Σ_i m_i ∂a_i/∂x_j the reduced costs, x is stationary when for
+//! every column σr_j ≥ 0 at the lower bound, ≤ 0 at the upper, 0 in between, and for every inequality
+//! its multiplier has the right sign and is 0 where the row is slack. Each of these is a pair "one of
+//! two numbers is 0, the other has a sign", and its residual is the natural one: the smaller of the
+//! two numbers (so a tiny reduced cost far from a bound is as tiny a residual, whatever the distance).
+//!
+//! * **dual** residual: the largest of these, in the model's units;
+//! * **complementarity**: the largest |multiplier · distance|;
+//! * **dual relative**: a reduced cost relative to max(1, max_i |m_i ∂a_i/∂x_j|), a distance relative
+//!   to max(1, |x_j|), a multiplier by the reduced costs it makes, a slack relative to its row's size.
+//!
+//! The primal residuals are those of [`super::certificate`], with |∂a_i/∂x_j · x_j| as the size of an
+//! entry.
+
+use super::certificate::{Linearised, Residuals, primal, units};
+use super::instance::{Instance, Relation, Sense};
+use super::sum::Sum;
+use crate::autodiff::{EvalFailure, Evaluator};
+
+/// Values, reduced costs and sizes at a point.
+///
+/// Errors: a function that has no value or no derivative there.
+pub fn linearise(
+    instance: &Instance,
+    evaluator: &mut Evaluator,
+    x: &[f64],
+    row_marginal: &[f64],
+) -> Result<Linearised, EvalFailure> {
+    let (m, n) = (instance.row_count(), instance.column_count());
+    let mut activity = vec![0.0; m];
+    evaluator.rows(x, &mut activity)?;
+    let mut value = vec![0.0; evaluator.jacobian_pattern().1.len()];
+    evaluator.jacobian(x, &mut value)?;
+    let (start, column) = evaluator.jacobian_pattern();
+    let (xi, eta) = units(instance);
+    let mut reduced = vec![Sum::default(); n];
+    let mut column_size = vec![0.0f64; n];
+    let mut row_size = vec![0.0f64; m];
+    if let Some(objective) = instance.objective {
+        reduced[objective.column as usize].add(1.0);
+        column_size[objective.column as usize] = 1.0;
+    }
+    for i in 0..m {
+        let multiplier = row_marginal[i];
+        for k in start[i]..start[i + 1] {
+            let (j, a) = (column[k] as usize, value[k]);
+            row_size[i] = row_size[i].max((a * x[j].abs().max(xi)).abs());
+            reduced[j].add_product(-multiplier, a);
+            column_size[j] = column_size[j].max((a * multiplier.abs().max(eta)).abs());
+        }
+    }
+    Ok(Linearised {
+        activity,
+        reduced: reduced.into_iter().map(Sum::value).collect(),
+        row_size,
+        column_size,
+    })
+}
+
+/// The worst of a kind of residual.
+#[derive(Default)]
+struct Worst {
+    value: f64,
+    relative: f64,
+    place: Option<usize>,
+}
+
+impl Worst {
+    fn see(&mut self, value: f64, relative: f64, place: usize) {
+        let relative = if relative.is_nan() {
+            f64::INFINITY
+        } else {
+            relative
+        };
+        self.value = self
+            .value
+            .max(if value.is_nan() { f64::INFINITY } else { value });
+        if relative > self.relative {
+            self.relative = relative;
+            self.place = Some(place);
+        }
+    }
+}
+
+/// All residuals of an instance with or without an objective, given its linearisation.
+pub fn residuals(
+    instance: &Instance,
+    x: &[f64],
+    row_marginal: &[f64],
+    at: &Linearised,
+) -> Residuals {
+    let mut out = primal(instance, x, &at.activity, &at.row_size);
+    let sigma = match instance.objective.map(|o| o.sense) {
+        Some(Sense::Maximize) => -1.0,
+        Some(Sense::Minimize) => 1.0,
+        // no objective: nothing to be stationary for
+        None => return out,
+    };
+    let (mut rows, mut columns) = (Worst::default(), Worst::default());
+    let (mut product, mut products) = (0.0f64, Sum::default());
+    let mut complement = |p: f64| {
+        product = product.max(p);
+        products.add(p);
+    };
+    let unit = at.column_size.iter().fold(1.0f64, |s, v| v.max(s));
+    for i in 0..instance.row_count() {
+        let (m, rhs) = (row_marginal[i], instance.rows.rhs[i]);
+        let size = at.row_size[i].max(rhs.abs()).max(1.0);
+        // multiplier in the direction the row may push, slack in the direction it may not go
+        let (push, slack) = match instance.rows.relation[i] {
+            Relation::Equal => continue,
+            Relation::Free => (-m.abs(), f64::INFINITY),
+            Relation::Greater => (sigma * m, at.activity[i] - rhs),
+            Relation::Less => (-sigma * m, rhs - at.activity[i]),
+        };
+        let effect = push.abs() * (at.row_size[i].max(1.0) / unit).min(1.0);
+        if push < 0.0 || push.is_nan() {
+            rows.see(push.abs(), effect, i);
+        } else {
+            let slack = slack.max(0.0);
+            rows.see(push.min(slack), effect.min(slack / size), i);
+            if push > 0.0 {
+                complement(push * slack);
+            }
+        }
+    }
+    for (j, &r) in at.reduced.iter().enumerate() {
+        let (l, u) = (instance.columns.lower[j], instance.columns.upper[j]);
+        if l == u {
+            continue;
+        }
+        let priced = sigma * r;
+        let side = if priced > 0.0 { x[j] - l } else { u - x[j] };
+        let distance = side.max(0.0);
+        let relative =
+            (priced.abs() / at.column_size[j].max(1.0)).min(distance / x[j].abs().max(1.0));
+        columns.see(priced.abs().min(distance), relative, j);
+        if r != 0.0 && distance.is_finite() {
+            complement(priced.abs() * distance);
+        }
+    }
+    out.dual = Some(rows.value.max(columns.value));
+    out.dual_relative = rows.relative.max(columns.relative);
+    out.worst_dual_row = rows.place.filter(|_| rows.relative >= columns.relative);
+    out.worst_dual_column = columns.place.filter(|_| columns.relative > rows.relative);
+    out.complementarity = Some(product);
+    out.complementarity_sum = Some(products.value());
+    out
+}
+
+/// KKT residuals at a point with marginals of the rows; the activities of the rows.
+///
+/// Errors: a function that has no value or no derivative there.
+pub fn kkt_residual(
+    instance: &Instance,
+    evaluator: &mut Evaluator,
+    x: &[f64],
+    row_marginal: &[f64],
+) -> Result<(Residuals, Linearised), EvalFailure> {
+    let at = linearise(instance, evaluator, x, row_marginal)?;
+    Ok((residuals(instance, x, row_marginal, &at), at))
+}
+
+/// Whether x is (nearly) a stationary point of ½ Σ violation²: a point of local infeasibility.
+///
+/// With v_i the signed violations, g = Jᵀv must vanish up to the bounds that hold a column; measured
+/// relative to max_i |v_i| · max |∂a_i/∂x_j|. Rows and columns in violation count.
+pub fn is_locally_infeasible(
+    instance: &Instance,
+    evaluator: &mut Evaluator,
+    x: &[f64],
+    tolerance: f64,
+) -> bool {
+    let m = instance.row_count();
+    let mut activity = vec![0.0; m];
+    let mut value = vec![0.0; evaluator.jacobian_pattern().1.len()];
+    if evaluator.rows(x, &mut activity).is_err() || evaluator.jacobian(x, &mut value).is_err() {
+        return false;
+    }
+    let (start, column) = evaluator.jacobian_pattern();
+    let mut gradient = vec![Sum::default(); x.len()];
+    let mut largest = vec![0.0f64; x.len()];
+    for i in 0..m {
+        let gap = activity[i] - instance.rows.rhs[i];
+        let v = match instance.rows.relation[i] {
+            Relation::Equal => gap,
+            Relation::Greater => gap.min(0.0),
+            Relation::Less => gap.max(0.0),
+            Relation::Free => 0.0,
+        };
+        if v == 0.0 {
+            continue;
+        }
+        for k in start[i]..start[i + 1] {
+            let j = column[k] as usize;
+            gradient[j].add_product(value[k], v);
+            largest[j] = largest[j].max((value[k] * v).abs());
+        }
+    }
+    let top = largest.iter().fold(0.0f64, |s, v| s.max(*v));
+    (0..x.len()).all(|j| {
+        let g = gradient[j].value();
+        let (l, u) = (instance.columns.lower[j], instance.columns.upper[j]);
+        let distance = if g > 0.0 { x[j] - l } else { u - x[j] };
+        g.abs() <= tolerance * top.max(1e-300) || distance <= tolerance * x[j].abs().max(1.0)
+    })
+}

@@ -1,0 +1,212 @@
+//! Arithmetic with GAMS's special values. Source: GAMS 54.6, observed.
+
+use crate::check::node::BinaryOp;
+use crate::data::value::{EPS, NA, UNDF, is_eps, is_na, is_undf, number, truth};
+
+/// Why an operation has no value.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum ArithmeticError {
+    /// Division by zero or eps.
+    DivisionByZero,
+    /// `inf*0` and the like.
+    Indefinite,
+    /// Ordinary numbers whose result is too large.
+    Overflow,
+}
+
+/// Results of this size and more are not numbers any more.
+const HUGE: f64 = 1e300;
+
+/// a + b
+#[inline]
+pub fn add(a: f64, b: f64) -> f64 {
+    let r = a + b;
+    if r.abs() < HUGE { r } else { add_special(a, b) }
+}
+
+#[cold]
+fn add_special(a: f64, b: f64) -> f64 {
+    if is_undf(a) || is_undf(b) {
+        return UNDF;
+    }
+    if is_na(a) || is_na(b) {
+        return NA;
+    }
+    match (is_eps(a), is_eps(b)) {
+        (true, true) => return EPS,
+        (true, false) => return if b == 0.0 { EPS } else { b },
+        (false, true) => return if a == 0.0 { EPS } else { a },
+        _ => {}
+    }
+    match (a.is_infinite(), b.is_infinite()) {
+        (true, true) if a != b => 0.0,
+        (true, _) => a,
+        (_, true) => b,
+        _ => UNDF,
+    }
+}
+
+/// −a
+#[inline]
+pub fn negate(a: f64) -> f64 {
+    if a.is_nan() { a } else { -a }
+}
+
+/// a · b
+#[inline]
+pub fn multiply(a: f64, b: f64) -> Result<f64, ArithmeticError> {
+    let r = a * b;
+    if r.abs() < HUGE {
+        Ok(r)
+    } else {
+        multiply_special(a, b)
+    }
+}
+
+#[cold]
+fn multiply_special(a: f64, b: f64) -> Result<f64, ArithmeticError> {
+    if is_undf(a) || is_undf(b) {
+        return Ok(UNDF);
+    }
+    if is_na(a) || is_na(b) {
+        return Ok(NA);
+    }
+    let (za, zb) = (a == 0.0 || is_eps(a), b == 0.0 || is_eps(b));
+    if (za && b.is_infinite()) || (zb && a.is_infinite()) {
+        return Err(ArithmeticError::Indefinite);
+    }
+    if za || zb {
+        return Ok(if a == 0.0 || b == 0.0 { 0.0 } else { EPS });
+    }
+    if a.is_infinite() || b.is_infinite() {
+        Ok(a * b)
+    } else {
+        Err(ArithmeticError::Overflow)
+    }
+}
+
+/// a / b
+#[inline]
+pub fn divide(a: f64, b: f64) -> Result<f64, ArithmeticError> {
+    let r = a / b;
+    if r.abs() < HUGE && b != 0.0 && b.is_finite() {
+        Ok(r)
+    } else {
+        divide_special(a, b)
+    }
+}
+
+#[cold]
+fn divide_special(a: f64, b: f64) -> Result<f64, ArithmeticError> {
+    if is_undf(a) || is_undf(b) {
+        return Ok(UNDF);
+    }
+    if is_na(a) || is_na(b) {
+        return Ok(NA);
+    }
+    if b == 0.0 || is_eps(b) {
+        return Err(ArithmeticError::DivisionByZero);
+    }
+    if is_eps(a) {
+        return Ok(EPS);
+    }
+    match (a.is_infinite(), b.is_infinite()) {
+        (true, true) => Ok(1.0),
+        (false, true) => Ok(0.0),
+        (true, false) => Ok(if b > 0.0 { a } else { -a }),
+        _ if (a / b).abs() < HUGE => Ok(a / b),
+        _ => Err(ArithmeticError::Overflow),
+    }
+}
+
+/// A relation or logical operation: 1, 0, or `na`.
+pub fn relate(op: BinaryOp, a: f64, b: f64) -> f64 {
+    let yes = |c: bool| f64::from(u8::from(c));
+    match op {
+        BinaryOp::And | BinaryOp::Or | BinaryOp::Xor | BinaryOp::Implies | BinaryOp::Equivalent => {
+            if is_na(a) || is_na(b) {
+                return NA;
+            }
+            let (x, y) = (truth(a), truth(b));
+            yes(match op {
+                BinaryOp::And => x && y,
+                BinaryOp::Or => x || y,
+                BinaryOp::Xor => x != y,
+                BinaryOp::Implies => !x || y,
+                _ => x == y,
+            })
+        }
+        _ => {
+            if a.is_nan() || b.is_nan() {
+                return relate_special(op, a, b);
+            }
+            yes(compare(op, a, b))
+        }
+    }
+}
+
+fn compare(op: BinaryOp, a: f64, b: f64) -> bool {
+    match op {
+        BinaryOp::Eq => a == b,
+        BinaryOp::Ne => a != b,
+        BinaryOp::Lt => a < b,
+        BinaryOp::Le => a <= b,
+        BinaryOp::Gt => a > b,
+        BinaryOp::Ge => a >= b,
+        _ => false,
+    }
+}
+
+#[cold]
+fn relate_special(op: BinaryOp, a: f64, b: f64) -> f64 {
+    let (a, b) = (number(a), number(b));
+    let yes = |c: bool| f64::from(u8::from(c));
+    if !a.is_nan() && !b.is_nan() {
+        return yes(compare(op, a, b));
+    }
+    // na, undf and acronyms are equal to themselves only.
+    let same = a.to_bits() == b.to_bits();
+    match op {
+        BinaryOp::Eq => yes(same),
+        BinaryOp::Ne => yes(!same),
+        _ if is_undf(a) || is_undf(b) => UNDF,
+        _ => NA,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The table of special values, section 3 of the facts.
+    #[test]
+    fn special_values() {
+        let same = |a: f64, b: f64| assert_eq!(a.to_bits(), b.to_bits());
+        same(add(EPS, 1.0), 1.0);
+        same(add(EPS, 0.0), EPS);
+        same(add(EPS, EPS), EPS);
+        same(multiply(EPS, 2.0).unwrap(), EPS);
+        same(multiply(EPS, EPS).unwrap(), EPS);
+        same(add(NA, 1.0), NA);
+        same(multiply(NA, 0.0).unwrap(), NA);
+        same(add(f64::INFINITY, f64::NEG_INFINITY), 0.0);
+        same(divide(f64::INFINITY, f64::INFINITY).unwrap(), 1.0);
+        same(divide(1.0, f64::INFINITY).unwrap(), 0.0);
+        assert!(multiply(f64::INFINITY, 0.0).is_err());
+        assert!(multiply(f64::INFINITY, EPS).is_err());
+        for a in [1.0, 0.0, EPS] {
+            assert_eq!(divide(a, EPS), Err(ArithmeticError::DivisionByZero));
+            assert_eq!(divide(a, 0.0), Err(ArithmeticError::DivisionByZero));
+        }
+        assert_eq!(multiply(1e299, 10e10), Err(ArithmeticError::Overflow));
+        same(multiply(1e-200, 1e-200).unwrap(), 0.0);
+        same(add(UNDF, 1.0), UNDF);
+        same(relate(BinaryOp::Eq, EPS, 0.0), 1.0);
+        same(relate(BinaryOp::Lt, EPS, 0.0), 0.0);
+        same(relate(BinaryOp::Eq, NA, NA), 1.0);
+        same(relate(BinaryOp::Eq, NA, 1.0), 0.0);
+        same(relate(BinaryOp::Gt, NA, 1.0), NA);
+        same(relate(BinaryOp::And, NA, 1.0), NA);
+        same(relate(BinaryOp::And, EPS, 1.0), 1.0);
+    }
+}

@@ -1,0 +1,493 @@
+//! Values of expressions.
+
+use super::Machine;
+use super::arithmetic::{self, ArithmeticError};
+use crate::autodiff::functions::function_value;
+use crate::check::functions::name_of;
+use crate::check::node::*;
+use crate::check::symbols::{SymbolKind, attribute};
+use crate::data::universe::Label;
+use crate::data::value::{self, EPS, NA, UNDF, is_eps, is_na, is_undf, number, truth};
+use crate::diag::Diagnostic;
+use crate::model::instance::Function;
+use crate::source::Span;
+
+/// Labels in the slots.
+pub type Frame = Vec<Label>;
+
+impl Machine<'_> {
+    /// The label a part stands for; None for a lag that leaves its set.
+    #[inline]
+    pub(super) fn part(&self, p: &Part, frame: &mut Frame) -> Option<Label> {
+        match p {
+            Part::Slot(s) => Some(frame[*s as usize]),
+            Part::Label(l) => Some(*l),
+            Part::Lag(lag) => self.lag(lag, frame),
+            Part::Singleton(t, p) => {
+                let t = self.store.table(*t);
+                (!t.is_empty() && t.is_tidy()).then(|| t.key(0)[*p as usize])
+            }
+        }
+    }
+
+    fn lag(&self, lag: &Lag, frame: &mut Frame) -> Option<Label> {
+        let base = self.part(&lag.base, frame)?;
+        let offset = number(self.eval(&lag.offset, frame));
+        if !offset.is_finite() {
+            return None;
+        }
+        let offset = offset.round() as i64;
+        let set = self.store.table(lag.set);
+        let at = i64::from(set.find(&[base])?);
+        let n = set.len() as i64;
+        let to = if lag.circular {
+            (at + offset).rem_euclid(n.max(1))
+        } else {
+            at + offset
+        };
+        (0..n).contains(&to).then(|| set.key(to as u32)[0])
+    }
+
+    /// Fills the labels of a key; false if a lag leaves its set.
+    #[inline]
+    pub(super) fn key(&self, key: &Key, frame: &mut Frame, out: &mut [Label; 20]) -> bool {
+        for (k, p) in key.parts.iter().enumerate() {
+            match self.part(p, frame) {
+                Some(l) => out[k] = l,
+                None => return false,
+            }
+        }
+        true
+    }
+
+    /// The value of a record.
+    #[inline]
+    fn data(&self, table: TableId, key: &Key, frame: &mut Frame) -> f64 {
+        let t = self.store.table(table);
+        match key.parts.as_slice() {
+            [] => t.get(&[]),
+            [Part::Slot(s)] => t.get(&[frame[*s as usize]]),
+            [Part::Slot(a), Part::Slot(b)] => t.get(&[frame[*a as usize], frame[*b as usize]]),
+            parts => {
+                let mut k = [0; 20];
+                if self.key(key, frame, &mut k) {
+                    t.get(&k[..parts.len()])
+                } else {
+                    0.0
+                }
+            }
+        }
+    }
+
+    pub(super) fn is_member(&self, table: TableId, key: &Key, frame: &mut Frame) -> bool {
+        let mut k = [0; 20];
+        self.key(key, frame, &mut k)
+            && self
+                .store
+                .table(table)
+                .find(&k[..key.parts.len()])
+                .is_some()
+    }
+
+    fn arithmetic(&self, r: Result<f64, ArithmeticError>, span: Span) -> f64 {
+        match r {
+            Ok(x) => x,
+            Err(ArithmeticError::DivisionByZero) => self.execution_error(
+                "E0401",
+                span,
+                "division by zero".into(),
+                "guard it with a condition, `a / b $ b` or `(a/b)$b`",
+            ),
+            Err(ArithmeticError::Indefinite) => self.execution_error(
+                "E0402",
+                span,
+                "infinity times zero has no value".into(),
+                "replace the infinite number, or guard the product with a condition",
+            ),
+            Err(ArithmeticError::Overflow) => self.execution_error(
+                "E0404",
+                span,
+                "the result is too large for a number".into(),
+                "rescale the data",
+            ),
+        }
+    }
+
+    /// Reports an execution error; the value is `undf`.
+    pub(super) fn execution_error(
+        &self,
+        code: &'static str,
+        span: Span,
+        message: String,
+        help: &str,
+    ) -> f64 {
+        let at = self.current_record();
+        let message = if at.is_empty() {
+            message
+        } else {
+            format!("{message} ({at})")
+        };
+        self.note(
+            Diagnostic::execution(code, span, message)
+                .label("here")
+                .help(help),
+        );
+        UNDF
+    }
+
+    /// The value of an expression without unknowns.
+    pub(super) fn eval(&self, n: &Node, frame: &mut Frame) -> f64 {
+        match &n.kind {
+            NodeKind::Const(x) => *x,
+            NodeKind::Data(t, key) => self.data(*t, key, frame),
+            NodeKind::Sum(terms) => {
+                let mut acc = 0.0;
+                for (k, (minus, t)) in terms.iter().enumerate() {
+                    let v = self.eval(t, frame);
+                    let v = if *minus { arithmetic::negate(v) } else { v };
+                    acc = if k == 0 { v } else { arithmetic::add(acc, v) };
+                }
+                acc
+            }
+            NodeKind::Product(factors) => {
+                let mut acc = 1.0;
+                for (k, (divide, f)) in factors.iter().enumerate() {
+                    let v = self.eval(f, frame);
+                    acc = match (k, divide) {
+                        (0, false) => v,
+                        (_, true) => self.arithmetic(arithmetic::divide(acc, v), f.span),
+                        (_, false) => self.arithmetic(arithmetic::multiply(acc, v), n.span),
+                    };
+                }
+                acc
+            }
+            NodeKind::Negate(a) => arithmetic::negate(self.eval(a, frame)),
+            NodeKind::Not(a) => f64::from(u8::from(!truth(self.eval(a, frame)))),
+            NodeKind::Binary(BinaryOp::Power, a, b) => {
+                let (a, b) = (self.eval(a, frame), self.eval(b, frame));
+                self.call(Function::RPower, &[a, b], n.span)
+            }
+            NodeKind::Binary(op, a, b) => {
+                let (a, b) = (self.eval(a, frame), self.eval(b, frame));
+                arithmetic::relate(*op, a, b)
+            }
+            NodeKind::Dollar(a, c) => {
+                if truth(self.eval(c, frame)) {
+                    self.eval(a, frame)
+                } else {
+                    0.0
+                }
+            }
+            NodeKind::Aggregate(op, d, body) => self.aggregate(*op, d, body, frame),
+            NodeKind::Call(f, args) => {
+                let mut buffer = [0.0; 4];
+                if args.len() <= 4 {
+                    for (b, a) in buffer.iter_mut().zip(args) {
+                        *b = self.eval(a, frame);
+                    }
+                    self.call(*f, &buffer[..args.len()], n.span)
+                } else {
+                    let values: Vec<f64> = args.iter().map(|a| self.eval(a, frame)).collect();
+                    self.call(*f, &values, n.span)
+                }
+            }
+            NodeKind::DataCall(f, args) => {
+                let values: Vec<f64> = args.iter().map(|a| self.eval(a, frame)).collect();
+                self.data_call(*f, &values, n.span)
+            }
+            NodeKind::Ord(set, p) => match self.part(p, frame) {
+                Some(l) => self
+                    .store
+                    .table(*set)
+                    .find(&[l])
+                    .map_or(0.0, |r| f64::from(r) + 1.0),
+                None => 0.0,
+            },
+            NodeKind::Card(t) => self.store.table(*t).len() as f64,
+            NodeKind::SameAs(a, b) => {
+                let (a, b) = (self.part(a, frame), self.part(b, frame));
+                f64::from(u8::from(a.is_some() && a == b))
+            }
+            NodeKind::LabelAttribute(which, set, p) => {
+                self.label_attribute(*which, *set, p, frame, n.span)
+            }
+            NodeKind::Derived(d, s, key) => self.derived(*d, *s, key, frame),
+            NodeKind::ObjectAttribute(s, a) => self.object_attribute(*s, a),
+            NodeKind::Var(s, key) => {
+                // Only where a level is asked for although unknowns stand there (start points).
+                let t = self.symbols.get(*s).table;
+                self.data(t + attribute::L, key, frame)
+            }
+            NodeKind::Text(_)
+            | NodeKind::LabelText(_)
+            | NodeKind::ElementText(..)
+            | NodeKind::SymbolText(_) => 0.0,
+        }
+    }
+
+    fn aggregate(&self, op: AggregateOp, d: &Domain, body: &Node, frame: &mut Frame) -> f64 {
+        let zero_matters = !matches!(op, AggregateOp::Sum | AggregateOp::Sor);
+        let plan = self.plan(d, if zero_matters { None } else { Some(body) });
+        let mut acc = match op {
+            AggregateOp::Sum | AggregateOp::Sor => 0.0,
+            AggregateOp::Prod | AggregateOp::Sand => 1.0,
+            AggregateOp::Smin => f64::INFINITY,
+            AggregateOp::Smax => f64::NEG_INFINITY,
+        };
+        self.run_plan(d, &plan, frame, &mut |frame| {
+            let v = self.eval(body, frame);
+            match op {
+                AggregateOp::Sum => acc = arithmetic::add(acc, v),
+                AggregateOp::Prod => acc = self.arithmetic(arithmetic::multiply(acc, v), body.span),
+                AggregateOp::Smin => acc = extreme(acc, v, |a, b| a < b),
+                AggregateOp::Smax => acc = extreme(acc, v, |a, b| a > b),
+                AggregateOp::Sand => {
+                    acc = f64::from(u8::from(truth(v)));
+                    return truth(v);
+                }
+                AggregateOp::Sor => {
+                    acc = f64::from(u8::from(truth(v)));
+                    return !truth(v);
+                }
+            }
+            self.keep_going()
+        });
+        acc
+    }
+
+    /// A mathematical function of values, with the special values' rules.
+    pub(super) fn call(&self, f: Function, args: &[f64], span: Span) -> f64 {
+        if args.iter().all(|x| x.is_finite()) {
+            return match function_value(f, args) {
+                Ok(v) => v,
+                Err(e) => {
+                    self.execution_error("E0403", span, e.to_string(), "guard it with a condition")
+                }
+            };
+        }
+        if args.iter().any(|&x| is_undf(x)) {
+            return UNDF;
+        }
+        if args.iter().any(|&x| is_na(x)) {
+            return NA;
+        }
+        let eps = args.iter().any(|&x| is_eps(x));
+        match f {
+            Function::Min => args
+                .iter()
+                .copied()
+                .fold(f64::INFINITY, |a, b| extreme(a, b, |a, b| a < b)),
+            Function::Max => args
+                .iter()
+                .copied()
+                .fold(f64::NEG_INFINITY, |a, b| extreme(a, b, |a, b| a > b)),
+            Function::Abs | Function::Sqrt | Function::Sign | Function::Sqr if eps => EPS,
+            Function::Abs | Function::Sqr => f64::INFINITY,
+            Function::Sqrt | Function::Exp if args[0] == f64::INFINITY => f64::INFINITY,
+            Function::Exp if args[0] == f64::NEG_INFINITY => 0.0,
+            Function::Sign => args[0].signum(),
+            Function::Floor | Function::Ceil | Function::Round | Function::Trunc => args[0],
+            Function::IfThen => {
+                if truth(args[0]) {
+                    args[1]
+                } else {
+                    args[2]
+                }
+            }
+            Function::RelEq => arithmetic::relate(BinaryOp::Eq, args[0], args[1]),
+            Function::RelNe => arithmetic::relate(BinaryOp::Ne, args[0], args[1]),
+            Function::RelLt => arithmetic::relate(BinaryOp::Lt, args[0], args[1]),
+            Function::RelLe => arithmetic::relate(BinaryOp::Le, args[0], args[1]),
+            Function::RelGt => arithmetic::relate(BinaryOp::Gt, args[0], args[1]),
+            Function::RelGe => arithmetic::relate(BinaryOp::Ge, args[0], args[1]),
+            Function::BoolAnd => arithmetic::relate(BinaryOp::And, args[0], args[1]),
+            Function::BoolOr => arithmetic::relate(BinaryOp::Or, args[0], args[1]),
+            Function::BoolNot => f64::from(u8::from(!truth(args[0]))),
+            _ if args.iter().all(|x| x.is_finite() || is_eps(*x)) => {
+                let plain: Vec<f64> = args.iter().map(|&x| number(x)).collect();
+                match function_value(f, &plain) {
+                    Ok(v) => v,
+                    Err(e) => self.execution_error(
+                        "E0403",
+                        span,
+                        e.to_string(),
+                        "guard it with a condition",
+                    ),
+                }
+            }
+            _ => self.execution_error(
+                "E0403",
+                span,
+                format!("`{}` of an infinite number has no value", name_of(f)),
+                "replace the infinite number, or guard the function with a condition",
+            ),
+        }
+    }
+
+    fn data_call(&self, f: DataFunction, a: &[f64], span: Span) -> f64 {
+        use DataFunction as D;
+        if f == D::Mapval {
+            return match a[0] {
+                x if is_undf(x) => 4.0,
+                x if is_na(x) => 5.0,
+                f64::INFINITY => 6.0,
+                f64::NEG_INFINITY => 7.0,
+                x if is_eps(x) => 8.0,
+                x if value::as_acronym(x).is_some() => 9.0,
+                _ => 0.0,
+            };
+        }
+        let a: Vec<f64> = a.iter().map(|&x| number(x)).collect();
+        if let Some(&bad) = a.iter().find(|x| !x.is_finite()) {
+            return if is_na(bad) { NA } else { UNDF };
+        }
+        let mut random = self.random.borrow_mut();
+        match f {
+            D::Uniform => random.uniform(a[0], a[1]),
+            D::UniformInt => random.uniform_int(a[0], a[1]),
+            D::Normal => random.normal(a[0], a[1]),
+            D::RandBinomial => random.binomial(a[0], a[1]),
+            D::RandLinear => random.linear(a[0], a[1], a[2]),
+            D::RandTriangle => random.triangle(a[0], a[1], a[2]),
+            D::ExecSeed => random.take_seed(),
+            D::Fact => {
+                if a[0] < 0.0 || a[0].fract() != 0.0 {
+                    drop(random);
+                    return self.execution_error(
+                        "E0403",
+                        span,
+                        format!("fact({}) has no value", a[0]),
+                        "`fact` takes a whole number that is not negative",
+                    );
+                }
+                (1..=a[0] as u64)
+                    .take(400)
+                    .fold(1.0, |p, k| p * k as f64)
+                    .min(1e299)
+            }
+            D::Pi => std::f64::consts::PI,
+            D::JNow => self.now(),
+            D::JStart => self.started,
+            D::JDate => super::calendar::jdate(a[0], a[1], a[2]).unwrap_or(UNDF),
+            D::JTime => (a[0] * 3600.0 + a[1] * 60.0 + a[2]) / 86400.0,
+            D::GYear
+            | D::GMonth
+            | D::GDay
+            | D::GDow
+            | D::GLeap
+            | D::GHour
+            | D::GMinute
+            | D::GSecond
+            | D::GMillisec => super::calendar::part(f, a[0]).unwrap_or(UNDF),
+            D::TimeElapsed => self.elapsed(),
+            D::ExecError => self.execution_error_count() as f64,
+            D::ErrorLevel | D::Zero | D::Sleep => 0.0,
+            D::One => 1.0,
+            D::GamsVersion => 54.0,
+            D::Mapval => unreachable!("handled above"),
+        }
+    }
+
+    fn label_attribute(
+        &self,
+        which: LabelAttribute,
+        set: TableId,
+        p: &Part,
+        frame: &mut Frame,
+        span: Span,
+    ) -> f64 {
+        let Some(l) = self.part(p, frame) else {
+            return 0.0;
+        };
+        let t = self.store.table(set);
+        let Some(r) = t.find(&[l]) else { return 0.0 };
+        let (r, n) = (f64::from(r), t.len() as f64);
+        let yes = |c: bool| f64::from(u8::from(c));
+        match which {
+            LabelAttribute::Pos | LabelAttribute::Ord => r + 1.0,
+            LabelAttribute::Off => r,
+            LabelAttribute::Rev => n - 1.0 - r,
+            LabelAttribute::Uel => f64::from(l) + 1.0,
+            LabelAttribute::Len => self.store.universe.name(l).chars().count() as f64,
+            LabelAttribute::TextLen => self
+                .store
+                .element_text(set, &[l])
+                .map_or(0.0, |t| t.chars().count() as f64),
+            LabelAttribute::First => yes(r == 0.0),
+            LabelAttribute::Last => yes(r + 1.0 == n),
+            LabelAttribute::Val => {
+                let text = self.store.universe.name(l);
+                let lower = text.to_lowercase();
+                match lower.as_str() {
+                    "inf" | "+inf" => return f64::INFINITY,
+                    "-inf" => return f64::NEG_INFINITY,
+                    "eps" => return EPS,
+                    "na" => return NA,
+                    _ => {}
+                }
+                let plain = text.strip_prefix('+').unwrap_or(text);
+                match fast_float2::parse::<f64, _>(plain) {
+                    Ok(v) if v.is_finite() => v,
+                    _ => self.execution_error(
+                        "E0405",
+                        span,
+                        format!("the label `{text}` is not a number"),
+                        "`.val` needs labels that are numbers",
+                    ),
+                }
+            }
+        }
+    }
+
+    fn derived(&self, d: Derived, s: SymbolId, key: &Key, frame: &mut Frame) -> f64 {
+        let symbol = self.symbols.get(s);
+        let t = symbol.table;
+        let (l, lo, up) = (
+            number(self.data(t + attribute::L, key, frame)),
+            self.data(t + attribute::LO, key, frame),
+            self.data(t + attribute::UP, key, frame),
+        );
+        let (lo, up) = (number(lo), number(up));
+        let below = if lo == f64::NEG_INFINITY {
+            f64::INFINITY
+        } else {
+            (l - lo).max(0.0)
+        };
+        let above = if up == f64::INFINITY {
+            f64::INFINITY
+        } else {
+            (up - l).max(0.0)
+        };
+        match d {
+            Derived::SlackLo => below,
+            Derived::SlackUp => above,
+            Derived::Slack => below.min(above),
+            Derived::Infeas => (lo - l).max(l - up).max(0.0),
+            Derived::Range => {
+                if matches!(symbol.kind, SymbolKind::Equation(_)) && lo == up {
+                    0.0
+                } else {
+                    arithmetic::add(up, arithmetic::negate(lo))
+                }
+            }
+        }
+    }
+}
+
+/// The smaller or larger of two values: na and undf win, eps counts as 0.
+fn extreme(a: f64, b: f64, better: fn(f64, f64) -> bool) -> f64 {
+    if a.is_nan() || b.is_nan() {
+        if is_undf(a) || is_undf(b) {
+            return UNDF;
+        }
+        if is_na(a) || is_na(b) {
+            return NA;
+        }
+        let (x, y) = (number(a), number(b));
+        if x == y {
+            return if is_eps(a) || is_eps(b) { EPS } else { a };
+        }
+        return if better(x, y) { a } else { b };
+    }
+    if better(b, a) { b } else { a }
+}

@@ -1,0 +1,669 @@
+//! Statements.
+
+use super::plan::{Pick, Plan, sort_tuples};
+use super::random::Random;
+use super::{Flow, Frame, Machine, scan};
+use crate::check::node::*;
+use crate::check::symbols::{SymbolKind, attribute};
+use crate::data::table::Table;
+use crate::data::universe::Label;
+use crate::data::value::{number, truth};
+use crate::diag::Diagnostic;
+use crate::source::Span;
+
+/// Sorted records to be written.
+struct Records {
+    keys: Vec<Label>,
+    values: Vec<f64>,
+}
+
+impl Machine<'_> {
+    pub(super) fn block(&mut self, code: &[Code], frame: &mut Frame) -> Flow {
+        for c in code {
+            match self.statement(c, frame) {
+                Flow::Next => {}
+                flow => return flow,
+            }
+        }
+        Flow::Next
+    }
+
+    /// Makes the tables that a statement scans tidy.
+    fn tidy(&mut self, c: &Code) {
+        for &t in c.scans.get_or_init(|| scan::scanned(&c.kind)).iter() {
+            let table = &mut self.store.tables[t as usize];
+            if !table.is_tidy() {
+                table.tidy();
+            }
+        }
+    }
+
+    fn holds(&self, c: Option<&Node>, frame: &mut Frame) -> bool {
+        c.is_none_or(|c| truth(self.eval(c, frame)))
+    }
+
+    fn statement(&mut self, c: &Code, frame: &mut Frame) -> Flow {
+        self.options.at.set(c.span);
+        self.tidy(c);
+        match &c.kind {
+            CodeKind::Assign {
+                domain,
+                target,
+                key,
+                value,
+                covers,
+            } => {
+                self.assign(domain, *target, key, value, *covers, frame);
+            }
+            CodeKind::Loop(d, body) => return self.run_loop(d, body, frame),
+            CodeKind::While(cond, body) => {
+                while truth(self.eval(cond, frame)) {
+                    match self.turn(body, frame) {
+                        Flow::Break => break,
+                        Flow::Stop => return Flow::Stop,
+                        _ => {}
+                    }
+                    self.tidy(c);
+                }
+            }
+            CodeKind::Repeat(body, until) => loop {
+                match self.turn(body, frame) {
+                    Flow::Break => break,
+                    Flow::Stop => return Flow::Stop,
+                    _ => {}
+                }
+                self.tidy(c);
+                if truth(self.eval(until, frame)) {
+                    break;
+                }
+            },
+            CodeKind::For {
+                table,
+                from,
+                down,
+                to,
+                by,
+                body,
+            } => {
+                return self.run_for(c.span, *table, (from, *down, to, by.as_ref()), body, frame);
+            }
+            CodeKind::If(arms, otherwise) => {
+                for (cond, body) in arms {
+                    if truth(self.eval(cond, frame)) {
+                        return self.block(body, frame);
+                    }
+                }
+                return self.block(otherwise, frame);
+            }
+            CodeKind::Break(cond) => {
+                if self.holds(cond.as_ref(), frame) {
+                    return Flow::Break;
+                }
+            }
+            CodeKind::Continue(cond) => {
+                if self.holds(cond.as_ref(), frame) {
+                    return Flow::Continue;
+                }
+            }
+            CodeKind::Display(cond, items) => {
+                if self.holds(cond.as_ref(), frame) {
+                    self.display(items, c.span);
+                }
+            }
+            CodeKind::Abort {
+                condition,
+                items,
+                no_error,
+            } => {
+                if self.holds(condition.as_ref(), frame) {
+                    return self.abort(items, *no_error, c.span);
+                }
+            }
+            CodeKind::Solve(s) => return self.solve(s, c.span, frame),
+            CodeKind::Option(name, value) => self.set_option(name, value),
+            CodeKind::Clear(s) => self.clear(*s),
+            CodeKind::Format(s, numbers) => {
+                self.formats.insert(*s, numbers.clone());
+            }
+            CodeKind::Project {
+                target,
+                source,
+                positions,
+                count,
+            } => self.project(*target, *source, positions, *count),
+            CodeKind::Put(keyword, cond, items) => {
+                if self.holds(cond.as_ref(), frame) {
+                    self.put(keyword, items, frame, c.span);
+                }
+            }
+            CodeKind::Exchange(x) => self.exchange(x, c.span),
+            CodeKind::Draw(s, file) => self.draw(*s, file.as_deref(), frame, c.span),
+        }
+        if self.stopped() {
+            Flow::Stop
+        } else {
+            Flow::Next
+        }
+    }
+
+    /// One turn of a loop's body.
+    fn turn(&mut self, body: &[Code], frame: &mut Frame) -> Flow {
+        if !self.keep_going() {
+            return Flow::Stop;
+        }
+        match self.block(body, frame) {
+            Flow::Continue => Flow::Next,
+            flow => flow,
+        }
+    }
+
+    fn run_loop(&mut self, d: &Domain, body: &[Code], frame: &mut Frame) -> Flow {
+        if d.slots.is_empty() {
+            // Everything is under control already: once, if the tuple is there.
+            let plan = self.plan(d, None);
+            let mut once = false;
+            self.run_plan(d, &plan, frame, &mut |_| {
+                once = true;
+                false
+            });
+            return if once && self.turn(body, frame) == Flow::Stop {
+                Flow::Stop
+            } else {
+                Flow::Next
+            };
+        }
+        let tuples = self.tuples(d, frame);
+        for t in tuples.chunks_exact(d.slots.len()) {
+            for (&s, &l) in d.slots.iter().zip(t) {
+                frame[s as usize] = l;
+            }
+            match self.turn(body, frame) {
+                Flow::Break => break,
+                Flow::Stop => return Flow::Stop,
+                _ => {}
+            }
+        }
+        Flow::Next
+    }
+
+    fn run_for(
+        &mut self,
+        span: Span,
+        table: TableId,
+        (from, down, to, by): (&Node, bool, &Node, Option<&Node>),
+        body: &[Code],
+        frame: &mut Frame,
+    ) -> Flow {
+        let (from, to) = (number(self.eval(from, frame)), number(self.eval(to, frame)));
+        let by = by.map_or(1.0, |b| number(self.eval(b, frame)));
+        if by <= 0.0 || by.is_nan() || from.is_nan() || to.is_nan() {
+            self.execution_error(
+                "E0406",
+                span,
+                format!("the step of `for` is {by}; it must be positive"),
+                "use `downto` to count down",
+            );
+            return Flow::Next;
+        }
+        // The current value of the scalar counts, so that the body may change it.
+        self.store.table_mut(table).set(&[], from);
+        let limit = to + if down { -1e-9 * by } else { 1e-9 * by };
+        loop {
+            let k = number(self.store.table(table).get(&[]));
+            if (down && k < limit) || (!down && k > limit) || k.is_nan() {
+                return Flow::Next;
+            }
+            match self.turn(body, frame) {
+                Flow::Break => return Flow::Next,
+                Flow::Stop => return Flow::Stop,
+                _ => {}
+            }
+            let k = number(self.store.table(table).get(&[]));
+            self.store
+                .table_mut(table)
+                .set(&[], if down { k - by } else { k + by });
+        }
+    }
+
+    fn target_table(&self, target: Target) -> Option<TableId> {
+        match target {
+            Target::Table(t) | Target::Set(t) | Target::Singleton(t) => Some(t),
+            Target::Fix(s) => Some(self.symbols.get(s).table + attribute::L),
+            Target::Object(..) | Target::Seed => None,
+        }
+    }
+
+    fn assign(
+        &mut self,
+        domain: &Domain,
+        target: Target,
+        key: &Key,
+        value: &Node,
+        covers: bool,
+        frame: &mut Frame,
+    ) {
+        let symbol = self.target_table(target).and_then(|t| self.table_symbol(t));
+        if domain.slots.is_empty() {
+            if let Some(s) = symbol {
+                self.assign_one(s, domain, target, key, value, frame);
+                return;
+            }
+            if !domain.conditions.iter().all(|c| truth(self.eval(c, frame))) {
+                return;
+            }
+            let text = if let NodeKind::Text(t) = &value.kind {
+                Some(t.to_string())
+            } else {
+                None
+            };
+            let v = self.eval(value, frame);
+            match target {
+                Target::Seed => *self.random.borrow_mut() = Random::new(number(v) as i64),
+                Target::Object(s, a) => self.set_object_attribute(s, a, v, text),
+                _ => {}
+            }
+            return;
+        }
+        let Some(symbol) = symbol else { return };
+        let impure = has_random(value) || domain.conditions.iter().any(has_random);
+        let alternatives = if impure {
+            None
+        } else {
+            self.sparse_alternatives(domain, target, key, value, covers)
+        };
+        let mut out = Records {
+            keys: Vec::new(),
+            values: Vec::new(),
+        };
+        match alternatives {
+            Some(plans) => {
+                let d = domain.slots.len();
+                let mut tuples = Vec::new();
+                for p in &plans {
+                    self.run_plan(domain, p, frame, &mut |f| {
+                        tuples.extend(domain.slots.iter().map(|&s| f[s as usize]));
+                        self.keep_going()
+                    });
+                }
+                let simple = plans.len() == 1 && plans[0].ordered;
+                let tuples = if simple {
+                    tuples
+                } else {
+                    sort_tuples(tuples, d, true)
+                };
+                for t in tuples.chunks_exact(d) {
+                    for (&s, &l) in domain.slots.iter().zip(t) {
+                        frame[s as usize] = l;
+                    }
+                    self.evaluate(symbol, target, key, value, frame, &mut out);
+                    if !self.keep_going() {
+                        return;
+                    }
+                }
+            }
+            None => {
+                let plan = self.plan_for(domain, None, impure);
+                self.run_plan(domain, &plan, frame, &mut |f| {
+                    self.evaluate(symbol, target, key, value, f, &mut out);
+                    self.keep_going()
+                });
+            }
+        }
+        *self.current.borrow_mut() = None;
+        if self.stopped() {
+            return;
+        }
+        sort_records(&mut out, key.parts.len());
+        self.write(target, out, covers);
+    }
+
+    fn assign_one(
+        &mut self,
+        s: SymbolId,
+        domain: &Domain,
+        target: Target,
+        key: &Key,
+        value: &Node,
+        frame: &mut Frame,
+    ) {
+        if !domain.conditions.iter().all(|c| truth(self.eval(c, frame)))
+            || !domain
+                .members
+                .iter()
+                .all(|m| self.is_member(m.table, &m.key, frame))
+        {
+            return;
+        }
+        let mut k = [0; 20];
+        let n = key.parts.len();
+        if !self.key(key, frame, &mut k) {
+            return;
+        }
+        if n > 0 {
+            let mut current = self.current.borrow_mut();
+            match &mut *current {
+                Some((cs, ck)) => {
+                    *cs = s;
+                    ck.clear();
+                    ck.extend_from_slice(&k[..n]);
+                }
+                none => *none = Some((s, k[..n].to_vec())),
+            }
+        } else {
+            *self.current.borrow_mut() = None;
+        }
+        let v = self.eval(value, frame);
+        match target {
+            Target::Table(t) => self.store.table_mut(t).set(&k[..n], v),
+            _ => self.write(
+                target,
+                Records {
+                    keys: k[..n].to_vec(),
+                    values: vec![v],
+                },
+                false,
+            ),
+        }
+    }
+
+    /// Evaluates the right side for the labels in the frame.
+    #[inline]
+    fn evaluate(
+        &self,
+        symbol: SymbolId,
+        _target: Target,
+        key: &Key,
+        value: &Node,
+        frame: &mut Frame,
+        out: &mut Records,
+    ) {
+        let mut k = [0; 20];
+        let n = key.parts.len();
+        if !self.key(key, frame, &mut k) {
+            return;
+        }
+        {
+            let mut current = self.current.borrow_mut();
+            match &mut *current {
+                Some((cs, ck)) => {
+                    *cs = symbol;
+                    ck.clear();
+                    ck.extend_from_slice(&k[..n]);
+                }
+                none => *none = Some((symbol, k[..n].to_vec())),
+            }
+        }
+        let v = self.eval(value, frame);
+        out.keys.extend_from_slice(&k[..n]);
+        out.values.push(v);
+    }
+
+    /// Plans that together find every tuple for which the right side, or what is stored now, is not 0;
+    /// None when running over the whole domain is as good.
+    fn sparse_alternatives(
+        &self,
+        domain: &Domain,
+        target: Target,
+        key: &Key,
+        value: &Node,
+        covers: bool,
+    ) -> Option<Vec<Plan>> {
+        let table = match target {
+            Target::Table(t) if self.store.table(t).default_value() == 0.0 => t,
+            Target::Set(t) => t,
+            _ => return None,
+        };
+        let alternatives = self.support(value, false)?;
+        let mut whole = 1.0;
+        for &s in &domain.sets {
+            whole *= self.store.table(s).len() as f64;
+        }
+        for m in &domain.members {
+            if m.key.parts.len() > 1 && m.key.is_plain() {
+                whole = whole.min(self.store.table(m.table).len() as f64);
+            }
+        }
+        let size = |conj: &[Driver]| {
+            conj.iter()
+                .map(|m| self.store.table(m.table).len())
+                .max()
+                .unwrap_or(usize::MAX) as f64
+        };
+        let stored = self.store.table(table).len() as f64;
+        let sparse: f64 =
+            alternatives.iter().map(|a| size(a)).sum::<f64>() + if covers { 0.0 } else { stored };
+        if whole < 64.0 || sparse * 3.0 > whole {
+            return None;
+        }
+        let mut plans: Vec<Plan> = alternatives
+            .iter()
+            .map(|a| self.make_plan(domain, None, a, Pick::Cheapest))
+            .collect();
+        if !covers {
+            if !key.is_plain() {
+                return None;
+            }
+            plans.push(self.make_plan(
+                domain,
+                None,
+                &[Driver {
+                    table,
+                    key: key.clone(),
+                }],
+                Pick::Cheapest,
+            ));
+        }
+        Some(plans)
+    }
+
+    /// Stores records; they are sorted.
+    fn write(&mut self, target: Target, out: Records, covers: bool) {
+        match target {
+            Target::Table(t) => {
+                let table = self.store.table_mut(t);
+                if covers {
+                    *table = Table::from_sorted(
+                        table.dim(),
+                        table.default_value(),
+                        out.keys,
+                        out.values,
+                    );
+                } else {
+                    table.merge(&out.keys, &out.values);
+                }
+            }
+            Target::Set(t) => {
+                let values: Vec<f64> = out
+                    .values
+                    .iter()
+                    .map(|&v| f64::from(u8::from(truth(v))))
+                    .collect();
+                self.store.table_mut(t).merge(&out.keys, &values);
+            }
+            Target::Singleton(t) => {
+                let dim = self.store.table(t).dim();
+                let mut chosen: Vec<&[Label]> = Vec::new();
+                for (k, &v) in out.keys.chunks_exact(dim).zip(&out.values) {
+                    if truth(v) {
+                        chosen.push(k);
+                    } else if self.store.table(t).find(k).is_some() {
+                        self.store.table_mut(t).clear();
+                    }
+                }
+                if let Some(first) = chosen.first() {
+                    let table = self.store.table_mut(t);
+                    table.clear();
+                    table.set(first, 1.0);
+                    if chosen.len() > 1 {
+                        let n = chosen.len();
+                        self.execution_error(
+                            "E0407",
+                            self.options.at.get(),
+                            format!("a singleton set has one element; {n} were assigned"),
+                            "the first one is kept",
+                        );
+                    }
+                }
+                self.store.table_mut(t).tidy();
+            }
+            Target::Fix(s) => {
+                let t = self.symbols.get(s).table;
+                for o in [attribute::L, attribute::LO, attribute::UP] {
+                    self.store.table_mut(t + o).merge(&out.keys, &out.values);
+                }
+            }
+            Target::Object(..) | Target::Seed => {}
+        }
+    }
+
+    fn abort(&mut self, items: &[Shown], no_error: bool, span: Span) -> Flow {
+        let text = items.iter().find_map(|i| {
+            if let Shown::Text(t) = i {
+                Some(t.to_string())
+            } else {
+                None
+            }
+        });
+        self.display(items, span);
+        if !no_error {
+            let message = text.map_or_else(
+                || "the model stopped itself".to_string(),
+                |t| format!("the model stopped itself: {t}"),
+            );
+            self.note(Diagnostic::execution("E0480", span, message).label("`abort`"));
+        }
+        Flow::Stop
+    }
+
+    fn set_option(&mut self, name: &str, value: &OptionCode) {
+        match value {
+            OptionCode::Number(x) => {
+                if name == "seed" {
+                    *self.random.borrow_mut() = Random::new(*x as i64);
+                }
+                self.options.numbers.insert(name.to_string(), *x);
+            }
+            OptionCode::Text(t) => {
+                let on = match t.to_lowercase().as_str() {
+                    "on" | "yes" => Some(1.0),
+                    "off" | "no" => Some(0.0),
+                    _ => None,
+                };
+                if let Some(x) = on {
+                    self.options.numbers.insert(name.to_string(), x);
+                }
+                self.options
+                    .texts
+                    .insert(name.to_string(), t.to_lowercase());
+            }
+            OptionCode::Flag => {}
+        }
+    }
+
+    fn clear(&mut self, s: SymbolId) {
+        let symbol = self.symbols.get(s);
+        let (t, n) = match symbol.kind {
+            SymbolKind::Variable(_) | SymbolKind::Equation(_) => (symbol.table, attribute::COUNT),
+            SymbolKind::Set { .. } | SymbolKind::Alias(_) | SymbolKind::Parameter { .. } => {
+                (symbol.table, 1)
+            }
+            _ => return,
+        };
+        for o in 0..n {
+            self.store.table_mut(t + o).clear();
+        }
+    }
+
+    /// `option p < q`: counts, or keeps the last; to a set: membership.
+    fn project(&mut self, target: SymbolId, source: SymbolId, positions: &[usize], count: bool) {
+        let (t, s) = (self.symbols.get(target), self.symbols.get(source));
+        let (tt, st, to_set, from_set) = (t.table, s.table, t.is_set(), s.is_set());
+        self.store.table_mut(st).tidy();
+        let d = positions.len();
+        let mut rows: Vec<(Vec<Label>, f64)> = self
+            .store
+            .table(st)
+            .iter()
+            .map(|(k, v)| (positions.iter().map(|&p| k[p]).collect(), v))
+            .collect();
+        rows.sort_by(|a, b| a.0.cmp(&b.0));
+        let same_dim = d == self.store.table(st).dim();
+        let (mut keys, mut values): (Vec<Label>, Vec<f64>) = (Vec::new(), Vec::new());
+        for (i, (k, v)) in rows.iter().enumerate() {
+            let repeated = i > 0 && rows[i - 1].0 == *k;
+            let v = if to_set || (from_set && same_dim) {
+                1.0
+            } else if count && !same_dim {
+                1.0
+            } else {
+                *v
+            };
+            match (repeated, values.last_mut()) {
+                (true, Some(last)) => *last = if count && !to_set { *last + 1.0 } else { v },
+                _ => {
+                    keys.extend_from_slice(k);
+                    values.push(v);
+                }
+            }
+        }
+        let table = self.store.table_mut(tt);
+        if d == 0 {
+            let v = values.last().copied().unwrap_or(0.0);
+            table.set(&[], v);
+        } else {
+            *table = Table::from_sorted(d, 0.0, keys, values);
+        }
+    }
+}
+
+/// Sorts records by key; of equal keys the last one written stays.
+fn sort_records(r: &mut Records, d: usize) {
+    let sorted = d == 0
+        || r.keys
+            .chunks_exact(d)
+            .zip(r.keys.chunks_exact(d).skip(1))
+            .all(|(a, b)| a < b);
+    if sorted {
+        return;
+    }
+    let mut order: Vec<u32> = (0..r.values.len() as u32).collect();
+    let key = |i: u32| &r.keys[i as usize * d..(i as usize + 1) * d];
+    if d == 2 {
+        order.sort_by_cached_key(|&i| u64::from(key(i)[0]) << 32 | u64::from(key(i)[1]));
+    } else {
+        order.sort_by(|&a, &b| key(a).cmp(key(b)));
+    }
+    let mut keys = Vec::with_capacity(r.keys.len());
+    let mut values: Vec<f64> = Vec::with_capacity(r.values.len());
+    for (n, &i) in order.iter().enumerate() {
+        if n > 0 && key(order[n - 1]) == key(i) {
+            *values.last_mut().expect("there is one before") = r.values[i as usize];
+        } else {
+            keys.extend_from_slice(key(i));
+            values.push(r.values[i as usize]);
+        }
+    }
+    *r = Records { keys, values };
+}
+
+/// Whether evaluating draws random numbers: then order and number of evaluations matter.
+pub(super) fn has_random(n: &Node) -> bool {
+    use DataFunction as D;
+    let mut hit = false;
+    crate::check::walk_node(n, &mut |x| {
+        hit |= matches!(
+            &x.kind,
+            NodeKind::DataCall(
+                D::Uniform
+                    | D::UniformInt
+                    | D::Normal
+                    | D::RandBinomial
+                    | D::RandLinear
+                    | D::RandTriangle
+                    | D::ExecSeed,
+                _
+            )
+        );
+    });
+    hit
+}

@@ -1,0 +1,271 @@
+//! Runs a checked program: statements in order, on sparse data; at `solve` it calls down and stores
+//! the answer.
+//!
+//! As in GAMS an execution error does not stop the run: the value is `undf`, the run goes on, and
+//! the next solve is refused and ends it.
+
+pub mod arithmetic;
+pub mod plan;
+pub mod random;
+
+mod calendar;
+mod constant;
+mod eval;
+mod exec;
+mod generate;
+mod options;
+mod scan;
+mod solve;
+mod stubs;
+
+pub use eval::Frame;
+pub use generate::{GenerateOptions, Generated};
+pub use options::{ListOptions, ModelState, Options};
+
+use crate::check::Program;
+use crate::check::node::*;
+use crate::check::symbols::{Store, SymbolKind, Symbols};
+use crate::data::universe::Label;
+use crate::diag::{Diagnostic, Severity};
+use crate::host::Host;
+use crate::source::SourceMap;
+use random::Random;
+use rustc_hash::FxHashMap;
+use std::cell::{Cell, RefCell};
+use std::rc::Rc;
+
+/// More execution errors than this are counted but not kept.
+const MAX_KEPT_ERRORS: usize = 30;
+
+/// What the rest of the run does after a statement.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Flow {
+    /// Goes on.
+    Next,
+    /// Leaves the innermost loop.
+    Break,
+    /// Next turn of the innermost loop.
+    Continue,
+    /// Ends the run.
+    Stop,
+}
+
+/// The state of a run.
+pub struct Machine<'h> {
+    /// All names.
+    pub symbols: Symbols,
+    /// All data.
+    pub store: Store,
+    /// Definitions of equations.
+    pub equations: Rc<Vec<EquationDef>>,
+    /// Where everything stands.
+    pub map: SourceMap,
+    /// Options in force.
+    pub options: Options,
+    /// State of each model.
+    pub models: FxHashMap<SymbolId, ModelState>,
+    /// `option p:d:r:c`
+    pub formats: FxHashMap<SymbolId, Vec<i64>>,
+    /// What is reported: solves, displays.
+    pub report: crate::report::json::Report,
+    /// Solves that are kept for `--solution`.
+    kept: Vec<solve::KeptSolve>,
+    /// Files of `put`.
+    pub put: super::run::options::PutState,
+    host: RefCell<&'h mut dyn Host>,
+    random: RefCell<Random>,
+    diagnostics: RefCell<Vec<Diagnostic>>,
+    errors: Cell<usize>,
+    /// What is assigned just now, for messages.
+    current: RefCell<Option<(SymbolId, Vec<Label>)>>,
+    ticks: Cell<u32>,
+    stop: Cell<bool>,
+    started: f64,
+    table_symbols: Vec<SymbolId>,
+    slots: usize,
+}
+
+impl<'h> Machine<'h> {
+    /// A machine for a program that compiled.
+    pub fn new(program: Program, host: &'h mut dyn Host, options: Options) -> (Self, Vec<Code>) {
+        let mut table_symbols = vec![0; program.store.tables.len()];
+        for (id, s) in program.symbols.iter() {
+            if matches!(s.kind, SymbolKind::Alias(_)) {
+                continue;
+            }
+            let count = match s.kind {
+                SymbolKind::Variable(_) | SymbolKind::Equation(_) => {
+                    crate::check::symbols::attribute::COUNT
+                }
+                SymbolKind::Set { .. } | SymbolKind::Parameter { .. } => 1,
+                _ => 0,
+            };
+            for t in s.table..s.table + count {
+                table_symbols[t as usize] = id;
+            }
+        }
+        let started = host.now();
+        let machine = Self {
+            symbols: program.symbols,
+            store: program.store,
+            equations: Rc::new(program.equations),
+            map: program.map,
+            options,
+            models: FxHashMap::default(),
+            formats: FxHashMap::default(),
+            report: crate::report::json::Report::default(),
+            kept: Vec::new(),
+            put: options::PutState::default(),
+            host: RefCell::new(host),
+            random: RefCell::new(Random::default()),
+            diagnostics: RefCell::new(Vec::new()),
+            errors: Cell::new(0),
+            current: RefCell::new(None),
+            ticks: Cell::new(0),
+            stop: Cell::new(false),
+            started,
+            table_symbols,
+            slots: program.slots,
+        };
+        (machine, program.code)
+    }
+
+    /// Runs all statements.
+    pub fn run(&mut self, code: &[Code]) -> Flow {
+        let mut frame = vec![0; self.slots];
+        let flow = self.block(code, &mut frame);
+        self.close_put_files();
+        flow
+    }
+
+    /// Warnings and errors so far.
+    pub fn take_diagnostics(&mut self) -> Vec<Diagnostic> {
+        std::mem::take(&mut self.diagnostics.borrow_mut())
+    }
+
+    /// Adds a diagnostic.
+    pub(crate) fn note(&self, d: Diagnostic) {
+        if d.severity == Severity::Execution {
+            self.errors.set(self.errors.get() + 1);
+        }
+        let mut list = self.diagnostics.borrow_mut();
+        if list.len() < MAX_KEPT_ERRORS
+            && !list.iter().any(|e| e.code == d.code && e.span == d.span)
+        {
+            list.push(d);
+        }
+    }
+
+    /// Whether an `abort` statement ended the run.
+    pub fn aborted(&self) -> bool {
+        self.diagnostics.borrow().iter().any(|d| d.code == "E0480")
+    }
+
+    /// Number of execution errors so far.
+    pub fn execution_error_count(&self) -> usize {
+        self.errors.get()
+    }
+
+    /// The symbol of a table.
+    pub(crate) fn table_symbol(&self, t: TableId) -> Option<SymbolId> {
+        self.table_symbols.get(t as usize).copied()
+    }
+
+    /// False once the run is to end: Ctrl-C, or a limit. Cheap enough for inner loops.
+    #[inline]
+    pub(crate) fn keep_going(&self) -> bool {
+        let t = self.ticks.get().wrapping_add(1);
+        self.ticks.set(t);
+        if t & 0xffff != 0 {
+            return !self.stop.get();
+        }
+        self.check_limits()
+    }
+
+    #[cold]
+    fn check_limits(&self) -> bool {
+        if self.stop.get() {
+            return false;
+        }
+        let host = self.host.borrow();
+        if host.interrupted() {
+            self.stop.set(true);
+            return false;
+        }
+        if host.elapsed() > self.options.time_limit {
+            self.stop.set(true);
+            drop(host);
+            self.note(
+                Diagnostic::execution(
+                    "E0490",
+                    self.options.at.get(),
+                    format!("the time limit of {} s is used up", self.options.time_limit),
+                )
+                .label("stopped here")
+                .help("raise it with `--time-limit`, or look for a loop that does not end"),
+            );
+            return false;
+        }
+        if let Some(limit) = self.options.max_memory
+            && host.memory() > limit
+        {
+            self.stop.set(true);
+            drop(host);
+            self.note(
+                Diagnostic::execution(
+                    "E0491",
+                    self.options.at.get(),
+                    format!("the memory limit of {} MB is used up", limit >> 20),
+                )
+                .label("stopped here")
+                .help("raise it with `--max-memory`, or add a condition that keeps the set sparse"),
+            );
+            return false;
+        }
+        true
+    }
+
+    /// Whether the run was stopped by a limit or by the person.
+    pub fn stopped(&self) -> bool {
+        self.stop.get()
+    }
+
+    pub(crate) fn now(&self) -> f64 {
+        self.host.borrow().now()
+    }
+
+    pub(crate) fn elapsed(&self) -> f64 {
+        self.host.borrow().elapsed()
+    }
+
+    /// Prints for the person.
+    pub(crate) fn print(&self, text: &str) {
+        self.host.borrow_mut().print(text);
+    }
+
+    /// The outside world.
+    pub(crate) fn host(&self) -> std::cell::RefMut<'_, &'h mut dyn Host> {
+        self.host.borrow_mut()
+    }
+
+    /// `p('a','x')` of what is assigned just now.
+    fn current_record(&self) -> String {
+        match &*self.current.borrow() {
+            Some((s, key)) if !key.is_empty() => format!("in {}", self.record_name(*s, key)),
+            _ => String::new(),
+        }
+    }
+
+    /// `x('a','b')`.
+    pub fn record_name(&self, s: SymbolId, key: &[Label]) -> String {
+        let name = &self.symbols.get(s).name;
+        if key.is_empty() {
+            return name.to_string();
+        }
+        let labels: Vec<String> = key
+            .iter()
+            .map(|&l| format!("'{}'", self.store.universe.name(l)))
+            .collect();
+        format!("{name}({})", labels.join(","))
+    }
+}

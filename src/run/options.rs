@@ -1,0 +1,105 @@
+//! Options of a run, and what models and files remember.
+
+use crate::source::Span;
+use rustc_hash::FxHashMap;
+use std::cell::Cell;
+
+/// Options of a run: from the command line, and from `option` statements.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Seconds for the whole run.
+    pub time_limit: f64,
+    /// Bytes for the whole run.
+    pub max_memory: Option<usize>,
+    /// Solver by problem type (`lp` → `clarabel`), and every other text option, lower case.
+    pub texts: FxHashMap<String, String>,
+    /// Numeric options, lower case.
+    pub numbers: FxHashMap<String, f64>,
+    /// `--option K=V`: solver options.
+    pub solver_options: Vec<(String, String)>,
+    /// `--certify`
+    pub certify: bool,
+    /// Keep displays for the JSON report.
+    pub collect: bool,
+    /// Keep instances and solutions for `--solution`.
+    pub keep_solutions: bool,
+    /// Do not print displays and summaries.
+    pub quiet: bool,
+    /// Summaries in colour.
+    pub color: bool,
+    /// `bmod list`: generate, print rows and columns, do not solve: how many per block.
+    pub list: Option<ListOptions>,
+    /// The statement that runs just now.
+    pub at: Cell<Span>,
+}
+
+/// What `bmod list` prints.
+#[derive(Clone, Debug)]
+pub struct ListOptions {
+    /// Rows and columns per block.
+    pub limit: usize,
+    /// Only these symbols or records (empty: all).
+    pub only: Vec<String>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            time_limit: f64::INFINITY,
+            max_memory: None,
+            texts: FxHashMap::default(),
+            numbers: FxHashMap::default(),
+            solver_options: Vec::new(),
+            certify: false,
+            collect: true,
+            keep_solutions: false,
+            quiet: false,
+            color: false,
+            list: None,
+            at: Cell::default(),
+        }
+    }
+}
+
+impl Options {
+    /// A numeric option.
+    pub fn number(&self, name: &str) -> Option<f64> {
+        self.numbers.get(name).copied()
+    }
+}
+
+/// What a model remembers.
+#[derive(Clone, Debug, Default)]
+pub struct ModelState {
+    /// Attributes that were assigned, and results of the last solve.
+    pub attributes: FxHashMap<&'static str, f64>,
+}
+
+impl ModelState {
+    /// An attribute, if it was set.
+    pub fn get(&self, name: &str) -> Option<f64> {
+        self.attributes.get(name).copied()
+    }
+}
+
+/// The files of `put`.
+#[derive(Clone, Debug, Default)]
+pub struct PutState {
+    /// Text of each file so far, by symbol.
+    pub files: FxHashMap<u32, PutFile>,
+    /// The file that `put` writes to.
+    pub current: Option<u32>,
+}
+
+/// A file of `put`.
+#[derive(Clone, Debug, Default)]
+pub struct PutFile {
+    /// Lines so far; the last one is open.
+    pub lines: Vec<String>,
+    /// Column of the next character in the open line, from 0.
+    pub column: usize,
+    /// Attributes that were assigned (`pw`, `nd`, `pc` …).
+    pub attributes: FxHashMap<&'static str, f64>,
+    /// Whether something was written.
+    pub used: bool,
+}

@@ -1,0 +1,195 @@
+//! GAMS's random stream: Knuth's subtractive lagged-Fibonacci generator (lags 55 and 24, modulus
+//! 10⁹; The Art of Computer Programming, vol. 2, section 3.6), and the distributions on top of it.
+
+const MODULUS: i64 = 1_000_000_000;
+
+/// The generator.
+#[derive(Clone, Debug)]
+pub struct Random {
+    a: [i64; 56],
+    next: usize,
+    last: i64,
+    /// The second normal of a pair.
+    kept: Option<f64>,
+}
+
+impl Default for Random {
+    fn default() -> Self {
+        Self::new(3141)
+    }
+}
+
+impl Random {
+    /// The stream of a seed (0 means the default, 3141).
+    pub fn new(seed: i64) -> Self {
+        let seed = if seed == 0 { 3141 } else { seed };
+        let mut a = [0; 56];
+        let modulo = |x: i64| x.rem_euclid(MODULUS);
+        a[55] = modulo(seed);
+        let (mut j, mut k) = (modulo(seed), 1);
+        for i in 1..=54 {
+            let ii = 21 * i % 55;
+            a[ii] = k;
+            k = modulo(j - k);
+            j = a[ii];
+        }
+        let mut r = Self {
+            a,
+            next: 0,
+            last: seed,
+            kept: None,
+        };
+        for _ in 0..3 {
+            r.batch();
+        }
+        r.next = 0;
+        r
+    }
+
+    fn batch(&mut self) {
+        for i in 1..=24 {
+            self.a[i] = (self.a[i] - self.a[i + 31]).rem_euclid(MODULUS);
+        }
+        for i in 25..=55 {
+            self.a[i] = (self.a[i] - self.a[i - 24]).rem_euclid(MODULUS);
+        }
+        self.next = 55;
+    }
+
+    fn integer(&mut self) -> i64 {
+        if self.next == 0 {
+            self.batch();
+        }
+        self.last = self.a[self.next];
+        self.next -= 1;
+        self.last
+    }
+
+    /// What `execseed` reads: the last integer, from which the stream starts anew.
+    pub fn take_seed(&mut self) -> f64 {
+        let last = self.last;
+        *self = Self::new(last);
+        last as f64
+    }
+
+    fn unit(&mut self) -> f64 {
+        self.integer() as f64 * 1e-9
+    }
+
+    /// Uniform on (a, b).
+    pub fn uniform(&mut self, a: f64, b: f64) -> f64 {
+        a + (b - a) * self.unit()
+    }
+
+    /// Uniform on the integers l … u.
+    pub fn uniform_int(&mut self, l: f64, u: f64) -> f64 {
+        l + ((u - l + 1.0) * self.unit()).floor()
+    }
+
+    /// Normal with mean and standard deviation: the polar method (Marsaglia).
+    pub fn normal(&mut self, mean: f64, deviation: f64) -> f64 {
+        if let Some(y) = self.kept.take() {
+            return mean + deviation * y;
+        }
+        loop {
+            let (x, y) = (2.0 * self.unit() - 1.0, 2.0 * self.unit() - 1.0);
+            let q = x * x + y * y;
+            if q > 0.0 && q < 1.0 {
+                let f = (-2.0 * q.ln() / q).sqrt();
+                self.kept = Some(y * f);
+                return mean + deviation * x * f;
+            }
+        }
+    }
+
+    /// Density falling linearly from `low` (slope from low to high).
+    pub fn linear(&mut self, low: f64, slope: f64, high: f64) -> f64 {
+        // Density c + slope·x with total 1 on [low, high], by inversion.
+        let w = high - low;
+        let c = 1.0 / w - slope * w / 2.0;
+        let u = self.unit();
+        if slope == 0.0 {
+            return low + w * u;
+        }
+        low + (-c + (c * c + 2.0 * slope * u).max(0.0).sqrt()) / slope
+    }
+
+    /// Triangular with mode `mid`.
+    pub fn triangle(&mut self, low: f64, mid: f64, high: f64) -> f64 {
+        let u = self.unit();
+        let split = (mid - low) / (high - low);
+        if u < split {
+            low + (u * (high - low) * (mid - low)).sqrt()
+        } else {
+            high - ((1.0 - u) * (high - low) * (high - mid)).sqrt()
+        }
+    }
+
+    /// Number of successes in `n` trials.
+    pub fn binomial(&mut self, n: f64, p: f64) -> f64 {
+        (0..n.max(0.0) as u64).filter(|_| self.unit() < p).count() as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_stream_is_that_of_gams() {
+        let draw = |seed: i64| {
+            let mut r = Random::new(seed);
+            (0..10).map(|_| r.uniform(0.0, 1.0)).collect::<Vec<_>>()
+        };
+        let near = |a: &[f64], b: &[f64]| {
+            a.iter()
+                .zip(b)
+                .for_each(|(x, y)| assert!((x - y).abs() < 1e-14, "{x} {y}"))
+        };
+        near(
+            &draw(3141),
+            &[
+                0.171747132,
+                0.843266708,
+                0.550375356,
+                0.301137904,
+                0.292212117,
+                0.224052867,
+                0.349830504,
+                0.856270347,
+                0.067113723,
+                0.500210669,
+            ],
+        );
+        near(
+            &draw(33),
+            &[
+                0.512919132,
+                0.193678212,
+                0.750116284,
+                0.765711412,
+                0.319794045,
+                0.999733843,
+                0.071938480,
+                0.314026939,
+                0.301471743,
+                0.396328265,
+            ],
+        );
+        assert!((Random::new(1).uniform(0.0, 1.0) - 0.806007132).abs() < 1e-14);
+        let mut r = Random::new(3141);
+        let n: Vec<f64> = (0..4).map(|_| r.normal(0.0, 1.0)).collect();
+        near(
+            &n,
+            &[
+                -0.313342928588555,
+                0.327674808226420,
+                0.463558782362701,
+                -1.829947783988951,
+            ],
+        );
+        let mut r = Random::new(33);
+        let k: Vec<f64> = (0..10).map(|_| r.uniform_int(1.0, 10.0)).collect();
+        assert_eq!(k, [6.0, 2.0, 8.0, 8.0, 4.0, 10.0, 1.0, 4.0, 4.0, 4.0]);
+    }
+}

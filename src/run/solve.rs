@@ -1,0 +1,484 @@
+//! The `solve` statement: generate, solve, certify, store, report.
+
+use super::generate::{GenerateOptions, Generated};
+use super::options::ListOptions;
+use super::{Flow, Frame, Machine, ModelState};
+use crate::check::node::*;
+use crate::check::symbols::attribute;
+use crate::diag::Diagnostic;
+use crate::model::instance::{Instance, Relation};
+use crate::model::origin::{Blocks, Origin};
+use crate::report::names::Names;
+use crate::report::{json, listing, solution, summary};
+use crate::solve::answer::{Answer, answer};
+use crate::solve::{ModelStatus, Monitor, Settings, SolverStatus};
+use crate::source::Span;
+
+/// A solver's line to the run.
+struct RunMonitor<'a, 'h> {
+    machine: &'a Machine<'h>,
+    origin: &'a Origin,
+    log: Vec<String>,
+}
+
+impl Monitor for RunMonitor<'_, '_> {
+    fn log(&mut self, line: &str) {
+        self.log.push(line.to_string());
+    }
+
+    fn interrupted(&mut self) -> bool {
+        self.machine.host().interrupted()
+    }
+
+    fn row_name(&self, row: usize) -> String {
+        self.machine.origin_name(&self.origin.rows, row)
+    }
+
+    fn column_name(&self, column: usize) -> String {
+        self.machine.origin_name(&self.origin.columns, column)
+    }
+}
+
+impl Machine<'_> {
+    /// `equil('b3','x')`
+    pub fn origin_name(&self, blocks: &Blocks, i: usize) -> String {
+        let b = blocks.of(i as u32);
+        self.record_name(b.symbol, b.key(i as u32))
+    }
+
+    /// A model option: the model's own attribute, the `option` statement, or the default.
+    fn model_option(&self, model: SymbolId, name: &'static str, default: f64) -> f64 {
+        self.models
+            .get(&model)
+            .and_then(|m| m.get(name))
+            .or_else(|| self.options.number(name))
+            .unwrap_or(default)
+    }
+
+    pub(super) fn solve(&mut self, s: &SolveCode, span: Span, frame: &mut Frame) -> Flow {
+        if self.execution_error_count() > 0 {
+            self.note(
+                Diagnostic::execution(
+                    "E0420",
+                    span,
+                    "the solve is refused because of an error before",
+                )
+                .label("not solved")
+                .help("mend the execution errors above; the run ends here"),
+            );
+            return Flow::Stop;
+        }
+        let begin = self.elapsed();
+        let options = GenerateOptions {
+            hold_fixed: self.model_option(s.model, "holdfixed", 0.0) != 0.0,
+            scale: self.model_option(s.model, "scaleopt", 0.0) != 0.0,
+            keep_paired: matches!(s.using, "mcp" | "mpec" | "rmpec"),
+        };
+        let name = self.symbols.get(s.model).name.to_string();
+        self.host().progress(&format!("generating {name}"));
+        let Some(generated) = self.generate(s, options, frame) else {
+            if !self.stopped() {
+                self.note(
+                    Diagnostic::execution(
+                        "E0421",
+                        span,
+                        format!("the model `{name}` could not be generated"),
+                    )
+                    .label("not solved")
+                    .help("mend the errors in its data or equations; the run ends here"),
+                );
+            }
+            return Flow::Stop;
+        };
+        let generated_at = self.elapsed();
+        if let Some(list) = self.options.list.clone() {
+            self.print_listing(&name, &generated, &list);
+            self.report.solves.push(self.not_solved(s, &generated));
+            return Flow::Next;
+        }
+        let settings = self.settings(s.model);
+        self.host().progress(&format!(
+            "solving {name}: {} rows, {} columns",
+            generated.instance.row_count(),
+            generated.instance.column_count()
+        ));
+        let choice = self.options.texts.get(s.using).cloned();
+        let mut monitor = RunMonitor {
+            machine: self,
+            origin: &generated.origin,
+            log: Vec::new(),
+        };
+        let result = answer(
+            s.using,
+            choice.as_deref(),
+            &generated.instance,
+            &settings,
+            &mut monitor,
+        );
+        let log = monitor.log;
+        for line in log {
+            self.print(&line);
+            self.print("\n");
+        }
+        match result {
+            Ok(a) => {
+                let end = self.elapsed();
+                let seconds = json::Seconds {
+                    generate: generated_at - begin,
+                    solve: end - generated_at,
+                    total: end - begin,
+                };
+                self.store(s, &generated, &a);
+                self.remember(s, &generated, &a, seconds);
+                self.report_solve(s, span, &generated, &a, seconds);
+                if self.options.keep_solutions {
+                    self.keep_solution(s, generated, a);
+                }
+                if self.host().interrupted() {
+                    Flow::Stop
+                } else {
+                    Flow::Next
+                }
+            }
+            Err(e) => {
+                let mut message = format!("the model `{name}` was not solved: {}", e.message);
+                if let Some(r) = e.row {
+                    message.push_str(&format!(
+                        " (row {})",
+                        self.origin_name(&generated.origin.rows, r)
+                    ));
+                }
+                if let Some(c) = e.column {
+                    message.push_str(&format!(
+                        " (column {})",
+                        self.origin_name(&generated.origin.columns, c)
+                    ));
+                }
+                self.note(Diagnostic::execution("E0422", span, message).label("at this solve"));
+                Flow::Stop
+            }
+        }
+    }
+
+    fn settings(&self, model: SymbolId) -> Settings {
+        let left = (self.options.time_limit - self.elapsed()).max(0.0);
+        Settings {
+            time_limit: self.model_option(model, "reslim", 1e10).min(left),
+            iteration_limit: self
+                .model_option(model, "iterlim", 2_147_483_647.0)
+                .clamp(0.0, 1e18) as u64,
+            evaluation_error_limit: self.model_option(model, "domlim", 0.0).clamp(0.0, 1e18) as u64,
+            options: self.options.solver_options.clone(),
+            log: self
+                .options
+                .solver_options
+                .iter()
+                .any(|(k, v)| k == "log" && v != "0"),
+        }
+    }
+
+    /// Writes levels, marginals and bounds of rows back.
+    fn store(&mut self, s: &SolveCode, g: &Generated, a: &Answer) {
+        let mut write = |blocks: &Blocks, offset: u32, values: &[f64]| {
+            for b in &blocks.list {
+                let t = self.symbols.get(b.symbol).table + offset;
+                let r = b.start as usize..(b.start + b.len) as usize;
+                let values: Vec<f64> = values[r].iter().map(|v| v + 0.0).collect();
+                let t = self.store.table_mut(t);
+                // Zeros are set too: what the last solve left must go.
+                t.merge(&b.keys, &values);
+                t.tidy();
+            }
+        };
+        write(&g.origin.columns, attribute::L, &a.outcome.level);
+        write(&g.origin.columns, attribute::M, &a.outcome.column_marginal);
+        write(&g.origin.rows, attribute::L, &a.activity);
+        write(&g.origin.rows, attribute::M, &a.outcome.row_marginal);
+        let rows = &g.instance.rows;
+        let lower: Vec<f64> = rows
+            .relation
+            .iter()
+            .zip(&rows.rhs)
+            .map(|(r, &b)| {
+                if matches!(r, Relation::Equal | Relation::Greater) {
+                    b
+                } else {
+                    f64::NEG_INFINITY
+                }
+            })
+            .collect();
+        let upper: Vec<f64> = rows
+            .relation
+            .iter()
+            .zip(&rows.rhs)
+            .map(|(r, &b)| {
+                if matches!(r, Relation::Equal | Relation::Less) {
+                    b
+                } else {
+                    f64::INFINITY
+                }
+            })
+            .collect();
+        write(&g.origin.rows, attribute::LO, &lower);
+        write(&g.origin.rows, attribute::UP, &upper);
+        let _ = s;
+    }
+
+    /// Model attributes after a solve.
+    fn remember(&mut self, s: &SolveCode, g: &Generated, a: &Answer, seconds: json::Seconds) {
+        let r = &a.residuals;
+        let instance: &Instance = &g.instance;
+        let objective = instance
+            .objective
+            .map_or(0.0, |o| a.outcome.level[o.column as usize]);
+        let infeasible = !r.is_feasible(crate::model::certificate::TOLERANCE);
+        let count = if infeasible {
+            r.infeasible_count as f64
+        } else {
+            0.0
+        };
+        let sum = if infeasible {
+            r.primal_sum.unwrap_or(0.0)
+        } else {
+            0.0
+        };
+        let values = [
+            ("modelstat", f64::from(a.status as u8)),
+            ("solvestat", f64::from(a.outcome.status as u8)),
+            ("objval", objective),
+            ("objest", objective),
+            ("iterusd", a.outcome.iterations as f64),
+            ("resusd", seconds.solve),
+            ("etsolve", seconds.total),
+            ("etsolver", seconds.solve),
+            ("resgen", seconds.generate),
+            ("numequ", instance.row_count() as f64),
+            ("numvar", instance.column_count() as f64),
+            ("numnz", g.origin.nonzeros as f64),
+            ("numnlnz", g.origin.nonlinear_nonzeros as f64),
+            ("numnlins", g.origin.nonlinear_nonzeros as f64),
+            ("numinfes", count),
+            ("suminfes", sum),
+            (
+                "maxinfes",
+                if infeasible {
+                    r.primal.unwrap_or(0.0)
+                } else {
+                    0.0
+                },
+            ),
+            ("meaninfes", if count > 0.0 { sum / count } else { 0.0 }),
+            ("numnopt", 0.0),
+            ("numdepnd", 0.0),
+            (
+                "numdvar",
+                instance
+                    .columns
+                    .kind
+                    .iter()
+                    .filter(|k| **k != crate::model::instance::ColumnKind::Continuous)
+                    .count() as f64,
+            ),
+            ("domusd", 0.0),
+            ("marginals", 1.0),
+            ("number", f64::from(self.report.solves.len() as u32 + 1)),
+            ("line", self.map.line(self.options.at.get()) as f64),
+            ("linkused", 0.0),
+        ];
+        let state: &mut ModelState = self.models.entry(s.model).or_default();
+        for (k, v) in values {
+            state.attributes.insert(k, v);
+        }
+    }
+
+    fn report_solve(
+        &mut self,
+        s: &SolveCode,
+        span: Span,
+        g: &Generated,
+        a: &Answer,
+        seconds: json::Seconds,
+    ) {
+        use crate::syntax::ast::Sense;
+        let r = &a.residuals;
+        let objective = g.instance.objective;
+        let solve = json::SolveReport {
+            model: self.symbols.get(s.model).name.to_string(),
+            using: s.using.to_string(),
+            sense: s.objective.map(|(sense, _)| {
+                if sense == Sense::Minimize {
+                    "min"
+                } else {
+                    "max"
+                }
+            }),
+            objective_name: s
+                .objective
+                .map(|(_, z)| self.symbols.get(z).name.to_string()),
+            solver: a.outcome.solver.to_string(),
+            model_status: a.status.into(),
+            solver_status: a.outcome.status.into(),
+            objective: objective.map(|o| json::Number(a.outcome.level[o.column as usize])),
+            rows: g.instance.row_count(),
+            columns: g.instance.column_count(),
+            nonzeros: g.origin.nonzeros,
+            nonlinear_nonzeros: g.origin.nonlinear_nonzeros,
+            iterations: a.outcome.iterations,
+            seconds,
+            residual: r.into(),
+            complementarity_sum: if matches!(s.using, "mpec" | "rmpec") {
+                r.complementarity_sum
+            } else {
+                None
+            },
+            bounds: None,
+            stationarity: None,
+            message: self.solve_message(g, a),
+        };
+        let _ = span;
+        if !self.options.quiet {
+            let text = summary::solve(&solve, self.options.color);
+            self.print(&text);
+        }
+        self.report.solves.push(solve);
+    }
+
+    /// The report of a model that was generated only.
+    fn not_solved(&self, s: &SolveCode, g: &Generated) -> json::SolveReport {
+        json::SolveReport {
+            model: self.symbols.get(s.model).name.to_string(),
+            using: s.using.to_string(),
+            sense: None,
+            objective_name: None,
+            solver: String::new(),
+            model_status: ModelStatus::NoSolution.into(),
+            solver_status: SolverStatus::NormalCompletion.into(),
+            objective: None,
+            rows: g.instance.row_count(),
+            columns: g.instance.column_count(),
+            nonzeros: g.origin.nonzeros,
+            nonlinear_nonzeros: g.origin.nonlinear_nonzeros,
+            iterations: 0,
+            seconds: json::Seconds::default(),
+            residual: json::Residual::default(),
+            complementarity_sum: None,
+            bounds: None,
+            stationarity: None,
+            message: None,
+        }
+    }
+
+    /// What else there is to say: the solver's remark, and the worst row or column of a failure.
+    fn solve_message(&self, g: &Generated, a: &Answer) -> Option<String> {
+        let r = &a.residuals;
+        let mut parts: Vec<String> = a.outcome.message.iter().cloned().collect();
+        if a.status == ModelStatus::IntermediateInfeasible {
+            let worst = match (r.worst_row, r.worst_column) {
+                (Some(i), _) => Some(self.origin_name(&g.origin.rows, i)),
+                (_, Some(j)) => Some(self.origin_name(&g.origin.columns, j)),
+                _ => None,
+            };
+            if let Some(w) = worst {
+                parts.push(format!("the largest residual is at {w}"));
+            }
+        }
+        (!parts.is_empty()).then(|| parts.join("; "))
+    }
+
+    pub(super) fn print_listing(&mut self, model: &str, g: &Generated, list: &ListOptions) {
+        let mut activity = vec![0.0; g.instance.row_count()];
+        if crate::autodiff::Evaluator::new(&g.instance)
+            .rows(&g.instance.columns.level, &mut activity)
+            .is_err()
+        {
+            activity.fill(f64::NAN);
+        }
+        let selection = listing::Selection {
+            names: list.only.clone(),
+            limit: list.limit,
+        };
+        let names = RunNames {
+            machine: self,
+            origin: &g.origin,
+        };
+        let text = listing::listing(&g.instance, &names, &activity, &selection);
+        self.print(&format!(
+            "model {model}: {} rows, {} columns, {} nonzeros\n\n{text}\n",
+            g.instance.row_count(),
+            g.instance.column_count(),
+            g.origin.nonzeros
+        ));
+    }
+
+    fn keep_solution(&mut self, s: &SolveCode, generated: Generated, answer: Answer) {
+        let model = self.symbols.get(s.model).name.to_string();
+        self.kept.push(KeptSolve {
+            model,
+            using: s.using,
+            generated,
+            answer,
+        });
+    }
+
+    /// Everything about the solves of the run, as JSON (`--solution`).
+    pub fn solutions(&self, file: &str) -> String {
+        let names: Vec<RunNames> = self
+            .kept
+            .iter()
+            .map(|k| RunNames {
+                machine: self,
+                origin: &k.generated.origin,
+            })
+            .collect();
+        let solved: Vec<solution::Solved> = self
+            .kept
+            .iter()
+            .zip(&names)
+            .map(|(k, names)| solution::Solved {
+                model: &k.model,
+                using: k.using,
+                instance: &k.generated.instance,
+                outcome: &k.answer.outcome,
+                activity: &k.answer.activity,
+                names,
+            })
+            .collect();
+        solution::to_json(file, &solved)
+    }
+}
+
+/// A solve that is kept for `--solution`.
+pub struct KeptSolve {
+    model: String,
+    using: &'static str,
+    generated: Generated,
+    answer: Answer,
+}
+
+/// Names of rows and columns, made when asked for.
+struct RunNames<'a, 'h> {
+    machine: &'a Machine<'h>,
+    origin: &'a Origin,
+}
+
+impl RunNames<'_, '_> {
+    fn parts(&self, blocks: &Blocks, i: usize) -> (String, Vec<String>) {
+        let b = blocks.of(i as u32);
+        let labels = b
+            .key(i as u32)
+            .iter()
+            .map(|&l| self.machine.store.universe.name(l).to_string())
+            .collect();
+        (self.machine.symbols.get(b.symbol).name.to_string(), labels)
+    }
+}
+
+impl Names for RunNames<'_, '_> {
+    fn row_parts(&self, row: usize) -> (String, Vec<String>) {
+        self.parts(&self.origin.rows, row)
+    }
+
+    fn column_parts(&self, column: usize) -> (String, Vec<String>) {
+        self.parts(&self.origin.columns, column)
+    }
+}

@@ -1,0 +1,117 @@
+//! Which solver for which problem, and what its answer is worth.
+//!
+//! The status that is reported follows from the residuals recomputed on the unscaled instance, not
+//! from the solver's word.
+
+use super::{ModelStatus, Monitor, Outcome, Settings, SolveError, Solver, complementarity};
+use crate::autodiff::Evaluator;
+use crate::model::certificate::{self, Residuals};
+use crate::model::instance::Instance;
+
+/// A solver's point with its certificate.
+#[derive(Clone, Debug)]
+pub struct Answer {
+    /// Point, marginals and how the solver ended.
+    pub outcome: Outcome,
+    /// Residuals on the unscaled instance.
+    pub residuals: Residuals,
+    /// What is known.
+    pub status: ModelStatus,
+    /// Level of each row: its left side.
+    pub activity: Vec<f64>,
+}
+
+/// Solves an instance of a problem type (`lp`, `mcp` …) with the solver chosen for it, if any.
+pub fn answer(
+    using: &str,
+    choice: Option<&str>,
+    instance: &Instance,
+    settings: &Settings,
+    monitor: &mut dyn Monitor,
+) -> Result<Answer, SolveError> {
+    match using {
+        "mcp" => complementary(instance, settings, monitor),
+        "cns" => square(instance, settings, monitor),
+        "mpec" | "rmpec" => missing(using),
+        _ if instance.is_linear() && instance.objective.is_some() => {
+            linear(&super::lp::Clarabel, instance, settings, monitor)
+        }
+        "mip" | "minlp" | "miqcp" => missing(using),
+        _ => super::nlp::answer(choice, instance, settings, monitor),
+    }
+}
+
+fn missing(using: &str) -> Result<Answer, SolveError> {
+    Err(SolveError {
+        message: format!("there is no solver for `{using}` in this build"),
+        row: None,
+        column: None,
+    })
+}
+
+fn linear(
+    solver: &dyn Solver,
+    instance: &Instance,
+    settings: &Settings,
+    monitor: &mut dyn Monitor,
+) -> Result<Answer, SolveError> {
+    let outcome = solver.solve(instance, settings, monitor)?;
+    let at = certificate::linearise(instance, &outcome);
+    let residuals = certificate::residuals(instance, &outcome, &at);
+    let status = certificate::linear_status(instance, &outcome, &residuals);
+    Ok(Answer {
+        outcome,
+        residuals,
+        status,
+        activity: at.activity,
+    })
+}
+
+/// Levels of the rows; not a number where a function has no value.
+fn activity(instance: &Instance, x: &[f64]) -> Vec<f64> {
+    let mut out = vec![0.0; instance.row_count()];
+    if Evaluator::new(instance).rows(x, &mut out).is_err() {
+        out.fill(f64::NAN);
+    }
+    out
+}
+
+fn complementary(
+    instance: &Instance,
+    settings: &Settings,
+    monitor: &mut dyn Monitor,
+) -> Result<Answer, SolveError> {
+    let outcome = complementarity::solve(instance, false, settings, monitor)?;
+    let activity = activity(instance, &outcome.level);
+    let f: Vec<f64> = activity
+        .iter()
+        .zip(&instance.rows.rhs)
+        .map(|(a, b)| a - b)
+        .collect();
+    let residuals = certificate::complementarity(instance, &outcome.level, &f);
+    let status = certificate::complementarity_status(&residuals);
+    Ok(Answer {
+        outcome,
+        residuals,
+        status,
+        activity,
+    })
+}
+
+fn square(
+    instance: &Instance,
+    settings: &Settings,
+    monitor: &mut dyn Monitor,
+) -> Result<Answer, SolveError> {
+    let outcome = complementarity::solve(instance, true, settings, monitor)?;
+    let activity = activity(instance, &outcome.level);
+    let size: Vec<f64> = activity.iter().map(|a| a.abs()).collect();
+    let residuals = certificate::primal(instance, &outcome.level, &activity, &size);
+    let status = certificate::square_status(&residuals);
+    Ok(Answer {
+        outcome,
+        residuals,
+        status,
+        activity,
+    })
+}

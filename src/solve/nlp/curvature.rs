@@ -1,0 +1,223 @@
+//! Is a stationary point a minimum? The necessary condition of second order.
+//!
+//! On the tangent space of the active constraints (equations, binding inequalities, variables at a
+//! bound) the Hessian of the Lagrangian must have no negative curvature; where it has, a direction of
+//! negative curvature leads to better points, and the point was a saddle: min x·y at 0.
+//!
+//! The smallest eigenvalue of P H P is found by Lanczos's method with full reorthogonalisation, P
+//! being the orthogonal projection onto the tangent space by the augmented system
+//! \[I Jᵀ; J −δI\]: one factorisation, then products only, so the cost is that of a few iterations of
+//! the solver at any size.
+
+use super::problem::Nlp;
+use faer::linalg::solvers::Solve;
+use faer::sparse::linalg::solvers::Lu;
+use faer::sparse::{SparseColMat, Triplet};
+
+/// Steps of Lanczos's method at most.
+const STEPS: usize = 60;
+
+/// A direction of negative curvature of the Lagrangian at x, tangent to what is active; None if there
+/// is none, or nothing could be computed. `active` tells the variables that stay where they are and
+/// the constraints that bind.
+pub fn negative_curvature(
+    nlp: &mut dyn Nlp,
+    x: &[f64],
+    lambda: &[f64],
+    fixed: &[bool],
+    binding: &[bool],
+) -> Option<Vec<f64>> {
+    let (n, m) = nlp.size();
+    let (hr, hc) = nlp.hessian_pattern();
+    let (hr, hc) = (hr.to_vec(), hc.to_vec());
+    if hr.is_empty() {
+        return None;
+    }
+    let mut h = vec![0.0; hr.len()];
+    nlp.hessian(x, 1.0, lambda, &mut h)?;
+    let size = h.iter().fold(0.0f64, |s, v| s.max(v.abs()));
+    if size == 0.0 || !size.is_finite() {
+        return None;
+    }
+    // free variables and binding constraints, renumbered
+    let number = |keep: &dyn Fn(usize) -> bool, count: usize| {
+        let mut next = 0;
+        let place: Vec<Option<usize>> = (0..count)
+            .map(|k| {
+                keep(k).then(|| {
+                    next += 1;
+                    next - 1
+                })
+            })
+            .collect();
+        (place, next)
+    };
+    let (variable, free) = number(&|j| !fixed[j], n);
+    let (row, bound) = number(&|i| binding[i], m);
+    if free == 0 {
+        return None;
+    }
+    let projection = {
+        let (jr, jc) = nlp.jacobian_pattern();
+        let (jr, jc) = (jr.to_vec(), jc.to_vec());
+        let mut j = vec![0.0; jr.len()];
+        nlp.jacobian(x, &mut j)?;
+        let entries = (0..jr.len()).filter_map(|k| {
+            let (i, v) = (row[jr[k] as usize]?, variable[jc[k] as usize]?);
+            Some((i, v, j[k]))
+        });
+        Projection::new(free, bound, entries)?
+    };
+    let entries: Vec<(usize, usize, f64)> = (0..hr.len())
+        .filter_map(|k| Some((variable[hr[k] as usize]?, variable[hc[k] as usize]?, h[k])))
+        .collect();
+    let (value, largest, direction) = lanczos(free, &projection, &entries)?;
+    if value > -1e-6 * largest || value > -1e-9 {
+        return None;
+    }
+    let mut out = vec![0.0; n];
+    for (j, place) in variable.iter().enumerate() {
+        if let Some(p) = place {
+            out[j] = direction[*p];
+        }
+    }
+    Some(out)
+}
+
+/// The orthogonal projection onto the null space of J.
+struct Projection {
+    n: usize,
+    total: usize,
+    lu: Option<Lu<usize, f64>>,
+}
+
+impl Projection {
+    fn new(n: usize, m: usize, entries: impl Iterator<Item = (usize, usize, f64)>) -> Option<Self> {
+        if m == 0 {
+            return Some(Self {
+                n,
+                total: n,
+                lu: None,
+            });
+        }
+        let entries: Vec<_> = entries.filter(|e| e.2 != 0.0).collect();
+        if entries.iter().any(|e| !e.2.is_finite()) {
+            return None;
+        }
+        // rows of unit size, so that δ means the same for all
+        let mut norm = vec![0.0f64; m];
+        for &(i, _, a) in &entries {
+            norm[i] = norm[i].max(a.abs());
+        }
+        let mut triplets = Vec::with_capacity(n + m + 2 * entries.len());
+        triplets.extend((0..n).map(|j| Triplet::new(j, j, 1.0)));
+        triplets.extend((0..m).map(|i| Triplet::new(n + i, n + i, -1e-12)));
+        for (i, j, a) in entries {
+            let a = a / norm[i];
+            triplets.push(Triplet::new(n + i, j, a));
+            triplets.push(Triplet::new(j, n + i, a));
+        }
+        let matrix = SparseColMat::try_new_from_triplets(n + m, n + m, &triplets).ok()?;
+        Some(Self {
+            n,
+            total: n + m,
+            lu: Some(matrix.sp_lu().ok()?),
+        })
+    }
+
+    fn apply(&self, v: &mut [f64]) {
+        let Some(lu) = &self.lu else { return };
+        // twice: the second pass removes what rounding left in the first
+        for _ in 0..2 {
+            let mut b = vec![0.0; self.total];
+            b[..self.n].copy_from_slice(v);
+            lu.solve_in_place(faer::ColMut::from_slice_mut(&mut b));
+            v.copy_from_slice(&b[..self.n]);
+        }
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+/// Smallest Ritz value, largest magnitude of a Ritz value, and the vector of the smallest.
+fn lanczos(
+    n: usize,
+    projection: &Projection,
+    entries: &[(usize, usize, f64)],
+) -> Option<(f64, f64, Vec<f64>)> {
+    // a fixed start without symmetry
+    let mut seed = 0x9e37_79b9_7f4a_7c15u64;
+    let mut q: Vec<f64> = (0..n)
+        .map(|_| {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (seed >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+        })
+        .collect();
+    projection.apply(&mut q);
+    let norm = dot(&q, &q).sqrt();
+    if norm.is_nan() || norm < 1e-8 {
+        return None;
+    }
+    q.iter_mut().for_each(|v| *v /= norm);
+    let (mut basis, mut alpha, mut beta): (Vec<Vec<f64>>, Vec<f64>, Vec<f64>) =
+        (vec![q], Vec::new(), Vec::new());
+    for k in 0..STEPS.min(n) {
+        let q = &basis[k];
+        let mut w = vec![0.0; n];
+        for &(i, j, a) in entries {
+            w[i] += a * q[j];
+            if i != j {
+                w[j] += a * q[i];
+            }
+        }
+        projection.apply(&mut w);
+        alpha.push(dot(q, &w));
+        for _ in 0..2 {
+            for b in &basis {
+                let c = dot(b, &w);
+                w.iter_mut().zip(b).for_each(|(v, b)| *v -= c * b);
+            }
+        }
+        let norm = dot(&w, &w).sqrt();
+        let scale = alpha
+            .iter()
+            .chain(&beta)
+            .fold(0.0f64, |s, v| s.max(v.abs()));
+        if !norm.is_finite() {
+            return None;
+        }
+        if norm <= 1e-10 * scale || norm == 0.0 {
+            break;
+        }
+        w.iter_mut().for_each(|v| *v /= norm);
+        beta.push(norm);
+        basis.push(w);
+    }
+    let k = alpha.len();
+    let mut t = faer::Mat::<f64>::zeros(k, k);
+    for i in 0..k {
+        t[(i, i)] = alpha[i];
+        if i + 1 < k {
+            t[(i + 1, i)] = beta[i];
+            t[(i, i + 1)] = beta[i];
+        }
+    }
+    let eigen = t.self_adjoint_eigen(faer::Side::Lower).ok()?;
+    let (values, vectors) = (eigen.S(), eigen.U());
+    let mut least = 0;
+    let mut largest = 0.0f64;
+    for i in 0..k {
+        largest = largest.max(values[i].abs());
+        if values[i] < values[least] {
+            least = i;
+        }
+    }
+    let mut direction = vec![0.0; n];
+    for (i, b) in basis.iter().take(k).enumerate() {
+        let c = vectors[(i, least)];
+        direction.iter_mut().zip(b).for_each(|(v, b)| *v += c * b);
+    }
+    Some((values[least], largest, direction))
+}

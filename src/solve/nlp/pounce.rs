@@ -1,0 +1,301 @@
+//! The embedded solver: pounce, a port of Ipopt to Rust on `feral`'s LDLᵀ.
+//!
+//! A. Wächter and L. T. Biegler, "On the implementation of an interior-point filter line-search
+//! algorithm for large-scale nonlinear programming", Mathematical Programming 106 (2006).
+//!
+//! pounce wants a problem it can own and may panic, so it runs on a thread of its own: the problem is
+//! shared, progress comes back through a channel, and a panic ends the thread, not the program.
+//! Without its restoration phase wired in, every hard case ends `RestorationFailed`.
+
+use super::provider::{Control, Ended, Progress, Provider, Shared, Solution, is_forbidden, lock};
+use pounce_algorithm::application::{
+    IpoptApplication, Ma57Config, default_backend_factory, feral_config_from_options,
+};
+use pounce_common::types::{Index, Number};
+use pounce_nlp::ApplicationReturnStatus as Status;
+use pounce_nlp::return_codes::AlgorithmMode;
+use pounce_nlp::tnlp::{
+    BoundsInfo, IndexStyle, IpoptCq, IpoptData, IterStats, NlpInfo, SparsityRequest, StartingPoint,
+    TNLP,
+};
+use pounce_restoration::resto_alg_builder::RestoAlgorithmBuilder;
+use pounce_restoration::resto_inner_solver::{
+    InnerBackendFactoryFactory, make_default_restoration_factory_provider,
+};
+use std::cell::RefCell;
+use std::rc::Rc;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::time::Duration;
+
+/// `option nlp = pounce`.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Pounce;
+
+impl Provider for Pounce {
+    fn name(&self) -> &'static str {
+        "pounce"
+    }
+
+    fn solve(&self, nlp: Shared, control: &mut Control<'_>) -> Result<Solution, String> {
+        let mut options = vec![
+            ("print_level".to_string(), "0".to_string()),
+            ("sb".to_string(), "yes".to_string()),
+            (
+                "max_iter".to_string(),
+                control.iterations.min(1_000_000_000).to_string(),
+            ),
+        ];
+        if let Some(s) = control.seconds() {
+            options.push(("max_wall_time".into(), format!("{s:.6}")));
+        }
+        for (k, v) in &control.options {
+            if is_forbidden(k) {
+                return Err(format!("the option `{k}` is not available here"));
+            }
+            options.push((k.clone(), v.clone()));
+        }
+        let (send, receive) = channel();
+        let stop = Arc::new(AtomicBool::new(false));
+        let thread = {
+            let (nlp, stop) = (nlp.clone(), stop.clone());
+            std::thread::Builder::new()
+                .name("pounce".into())
+                .stack_size(64 << 20)
+                .spawn(move || run(nlp, &options, send, stop))
+                .map_err(|e| format!("no thread could be started: {e}"))?
+        };
+        loop {
+            match receive.recv_timeout(Duration::from_millis(50)) {
+                Ok(progress) => {
+                    if !(control.watch)(&progress) {
+                        stop.store(true, Ordering::Relaxed);
+                    }
+                }
+                Err(RecvTimeoutError::Disconnected) => break,
+                Err(RecvTimeoutError::Timeout) => {}
+            }
+        }
+        match thread.join() {
+            Ok(result) => result,
+            Err(_) => {
+                let nlp = lock(&nlp);
+                Ok(Solution {
+                    ended: Ended::Broken,
+                    x: nlp.start().to_vec(),
+                    lambda: vec![0.0; nlp.size().1],
+                    objective: f64::NAN,
+                    iterations: 0,
+                })
+            }
+        }
+    }
+}
+
+/// What the thread does.
+fn run(
+    nlp: Shared,
+    options: &[(String, String)],
+    progress: Sender<Progress>,
+    stop: Arc<AtomicBool>,
+) -> Result<Solution, String> {
+    let mut app = IpoptApplication::new();
+    for (k, v) in options {
+        app.options_mut()
+            .read_from_str(&format!("{k} \"{v}\"\n"), true)
+            .map_err(|e| format!("pounce does not take the option `{k} {v}` ({e:?})"))?;
+    }
+    app.initialize().map_err(|e| format!("{e:?}"))?;
+    let configuration = feral_config_from_options(app.options());
+    let mint = move || -> InnerBackendFactoryFactory {
+        let configuration = configuration.clone();
+        Box::new(move || default_backend_factory(configuration.clone(), Ma57Config::default()))
+    };
+    app.set_restoration_factory_provider(make_default_restoration_factory_provider(
+        RestoAlgorithmBuilder::new(),
+        app.algorithm_builder_from_options(),
+        mint,
+    ));
+    let m = lock(&nlp).size().1;
+    let x = lock(&nlp).start().to_vec();
+    let adapter = Rc::new(RefCell::new(Adapter {
+        nlp,
+        progress,
+        stop,
+        lambda: vec![0.0; m],
+        solution: Solution {
+            ended: Ended::Broken,
+            x,
+            lambda: vec![0.0; m],
+            objective: f64::NAN,
+            iterations: 0,
+        },
+    }));
+    let status = app.optimize_tnlp(adapter.clone());
+    let mut solution = adapter.borrow().solution.clone();
+    solution.ended = ended(status);
+    solution.iterations = u64::try_from(app.statistics().iteration_count).unwrap_or(0);
+    Ok(solution)
+}
+
+fn ended(status: Status) -> Ended {
+    match status {
+        Status::SolveSucceeded => Ended::Solved,
+        Status::SolvedToAcceptableLevel | Status::FeasiblePointFound => Ended::Acceptable,
+        Status::InfeasibleProblemDetected => Ended::Infeasible,
+        Status::SearchDirectionBecomesTooSmall => Ended::SmallStep,
+        Status::DivergingIterates => Ended::Diverging,
+        Status::UserRequestedStop => Ended::Stopped,
+        Status::MaximumIterationsExceeded => Ended::Iterations,
+        Status::MaximumCpuTimeExceeded | Status::MaximumWallTimeExceeded => Ended::Time,
+        Status::RestorationFailed | Status::ErrorInStepComputation => Ended::Failed,
+        Status::NotEnoughDegreesOfFreedom => Ended::TooFewDegrees,
+        Status::InvalidNumberDetected => Ended::InvalidNumber,
+        Status::InvalidOption => Ended::InvalidOption,
+        _ => Ended::Broken,
+    }
+}
+
+/// The problem as pounce sees it.
+struct Adapter {
+    nlp: Shared,
+    progress: Sender<Progress>,
+    stop: Arc<AtomicBool>,
+    lambda: Vec<f64>,
+    solution: Solution,
+}
+
+/// A bound as pounce wants it: infinite ones beyond ±1e19.
+fn finite(bounds: &[f64], out: &mut [Number]) {
+    for (o, &b) in out.iter_mut().zip(bounds) {
+        *o = b.clamp(-1e20, 1e20);
+    }
+}
+
+fn pattern((rows, columns): (&[u32], &[u32]), irow: &mut [Index], jcol: &mut [Index]) {
+    for (o, &i) in irow.iter_mut().zip(rows) {
+        *o = i as Index;
+    }
+    for (o, &j) in jcol.iter_mut().zip(columns) {
+        *o = j as Index;
+    }
+}
+
+impl TNLP for Adapter {
+    fn get_nlp_info(&mut self) -> Option<NlpInfo> {
+        let nlp = lock(&self.nlp);
+        let (n, m) = nlp.size();
+        Some(NlpInfo {
+            n: Index::try_from(n).ok()?,
+            m: Index::try_from(m).ok()?,
+            nnz_jac_g: Index::try_from(nlp.jacobian_pattern().0.len()).ok()?,
+            nnz_h_lag: Index::try_from(nlp.hessian_pattern().0.len()).ok()?,
+            index_style: IndexStyle::C,
+        })
+    }
+
+    fn get_bounds_info(&mut self, b: BoundsInfo<'_>) -> bool {
+        let nlp = lock(&self.nlp);
+        finite(nlp.bounds().0, b.x_l);
+        finite(nlp.bounds().1, b.x_u);
+        finite(nlp.sides().0, b.g_l);
+        finite(nlp.sides().1, b.g_u);
+        true
+    }
+
+    fn get_starting_point(&mut self, sp: StartingPoint<'_>) -> bool {
+        let nlp = lock(&self.nlp);
+        if sp.init_x {
+            sp.x.copy_from_slice(nlp.start());
+        }
+        if sp.init_lambda {
+            match nlp.start_multipliers() {
+                Some(l) => sp.lambda.copy_from_slice(l),
+                None => sp.lambda.fill(0.0),
+            }
+        }
+        if sp.init_z {
+            sp.z_l.fill(1.0);
+            sp.z_u.fill(1.0);
+        }
+        true
+    }
+
+    fn eval_f(&mut self, x: &[Number], _new_x: bool) -> Option<Number> {
+        lock(&self.nlp).objective(x)
+    }
+
+    fn eval_grad_f(&mut self, x: &[Number], _new_x: bool, grad_f: &mut [Number]) -> bool {
+        lock(&self.nlp).gradient(x, grad_f).is_some()
+    }
+
+    fn eval_g(&mut self, x: &[Number], _new_x: bool, g: &mut [Number]) -> bool {
+        lock(&self.nlp).constraints(x, g).is_some()
+    }
+
+    fn eval_jac_g(
+        &mut self,
+        x: Option<&[Number]>,
+        _new_x: bool,
+        mode: SparsityRequest<'_>,
+    ) -> bool {
+        let mut nlp = lock(&self.nlp);
+        match mode {
+            SparsityRequest::Structure { irow, jcol } => {
+                pattern(nlp.jacobian_pattern(), irow, jcol);
+                true
+            }
+            SparsityRequest::Values { values } => {
+                x.is_some_and(|x| nlp.jacobian(x, values).is_some())
+            }
+        }
+    }
+
+    fn eval_h(
+        &mut self,
+        x: Option<&[Number]>,
+        _new_x: bool,
+        obj_factor: Number,
+        lambda: Option<&[Number]>,
+        _new_lambda: bool,
+        mode: SparsityRequest<'_>,
+    ) -> bool {
+        let mut nlp = lock(&self.nlp);
+        match mode {
+            SparsityRequest::Structure { irow, jcol } => {
+                pattern(nlp.hessian_pattern(), irow, jcol);
+                true
+            }
+            SparsityRequest::Values { values } => {
+                let lambda = lambda.unwrap_or(&self.lambda);
+                x.is_some_and(|x| nlp.hessian(x, obj_factor, lambda, values).is_some())
+            }
+        }
+    }
+
+    fn finalize_solution(
+        &mut self,
+        sol: pounce_nlp::tnlp::Solution<'_>,
+        _: &IpoptData,
+        _: &IpoptCq,
+    ) {
+        self.solution.x = sol.x.to_vec();
+        self.solution.lambda = sol.lambda.to_vec();
+        self.solution.objective = sol.obj_value;
+    }
+
+    fn intermediate_callback(&mut self, s: IterStats, _: &IpoptData, _: &IpoptCq) -> bool {
+        // a closed channel means that nobody waits any more
+        let sent = self.progress.send(Progress {
+            iteration: u64::try_from(s.iter).unwrap_or(0),
+            objective: s.obj_value,
+            primal: s.inf_pr,
+            dual: s.inf_du,
+            mu: s.mu,
+            step: s.alpha_pr,
+            restoration: s.mode == AlgorithmMode::RestorationPhaseMode,
+        });
+        sent.is_ok() && !self.stop.load(Ordering::Relaxed)
+    }
+}

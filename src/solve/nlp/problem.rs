@@ -1,0 +1,494 @@
+//! An instance as min f(x) subject to l ≤ x ≤ u, a ≤ g(x) ≤ b, and the way back.
+//!
+//! * The objective column z is eliminated when that is exact: z is free, occurs linearly with a
+//!   coefficient c ≠ 0 in exactly one row, and that row is an equation c z + h(x) = r. Then
+//!   f = ±(r − h(x))/c; the row's marginal is 1/c.
+//! * Fixed columns are numbers. Rows without a variable, and free rows, are left out.
+//! * A maximum is the minimum of −f.
+//!
+//! Marginals (d objective / d right-hand side, for min and max alike): with the multipliers λ of
+//! min f + λᵀg, the row's marginal is −λ for a minimum and +λ for a maximum; the marginals of all
+//! columns, fixed ones too, follow from stationarity: r = e_z − Jᵀm.
+
+use crate::autodiff::{EvalFailure, Evaluator};
+use crate::model::instance::{Instance, Relation, Sense};
+
+/// What a provider needs of a nonlinear program.
+pub trait Nlp {
+    /// Numbers of variables and constraints.
+    fn size(&self) -> (usize, usize);
+    /// Bounds of the variables.
+    fn bounds(&self) -> (&[f64], &[f64]);
+    /// Bounds of the constraints.
+    fn sides(&self) -> (&[f64], &[f64]);
+    /// Start point.
+    fn start(&self) -> &[f64];
+    /// Start multipliers λ of the constraints, if they are to be used.
+    fn start_multipliers(&self) -> Option<&[f64]>;
+    /// Pattern of the Jacobian of the constraints: rows and columns.
+    fn jacobian_pattern(&self) -> (&[u32], &[u32]);
+    /// Pattern of the lower triangle of the Hessian of the Lagrangian: rows and columns.
+    fn hessian_pattern(&self) -> (&[u32], &[u32]);
+    /// f(x); None where it cannot be evaluated.
+    fn objective(&mut self, x: &[f64]) -> Option<f64>;
+    /// ∇f(x), dense.
+    fn gradient(&mut self, x: &[f64], out: &mut [f64]) -> Option<()>;
+    /// g(x).
+    fn constraints(&mut self, x: &[f64], out: &mut [f64]) -> Option<()>;
+    /// Jacobian of g in the order of its pattern.
+    fn jacobian(&mut self, x: &[f64], out: &mut [f64]) -> Option<()>;
+    /// Lower triangle of σ ∇²f + Σ λ_i ∇²g_i in the order of its pattern.
+    fn hessian(&mut self, x: &[f64], sigma: f64, lambda: &[f64], out: &mut [f64]) -> Option<()>;
+    /// Number of evaluations that failed so far.
+    fn failures(&self) -> u64;
+}
+
+/// Where f comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ObjectiveForm {
+    /// There is none: any feasible point will do.
+    Nothing,
+    /// ± the value of a variable.
+    Variable {
+        /// Number of the variable.
+        variable: usize,
+    },
+    /// The objective column is fixed, or occurs nowhere: f is constant.
+    Constant,
+    /// ±(rhs − h(x))/c, h being the rest of the row.
+    Row {
+        /// The defining row.
+        row: usize,
+        /// The objective column.
+        column: usize,
+        /// c.
+        coefficient: f64,
+    },
+}
+
+/// An instance in the form that solvers take.
+pub struct Problem {
+    evaluator: Evaluator,
+    form: ObjectiveForm,
+    /// +1 for a minimum, −1 for a maximum.
+    sign: f64,
+    rhs: Vec<f64>,
+    /// Column of each variable.
+    pub columns: Vec<u32>,
+    /// Row of each constraint.
+    pub rows: Vec<u32>,
+    lower: Vec<f64>,
+    upper: Vec<f64>,
+    row_lower: Vec<f64>,
+    row_upper: Vec<f64>,
+    start: Vec<f64>,
+    start_multipliers: Option<Vec<f64>>,
+    jacobian_row: Vec<u32>,
+    jacobian_column: Vec<u32>,
+    jacobian_from: Vec<u32>,
+    gradient_column: Vec<u32>,
+    gradient_from: Vec<u32>,
+    hessian_row: Vec<u32>,
+    hessian_column: Vec<u32>,
+    hessian_from: Vec<u32>,
+    /// The full point: fixed columns filled in, the eliminated objective column 0.
+    full: Vec<f64>,
+    activity: Vec<f64>,
+    derivative: Vec<f64>,
+    second: Vec<f64>,
+    lambda: Vec<f64>,
+    activity_at: Option<Vec<f64>>,
+    derivative_at: Option<Vec<f64>>,
+    /// Evaluations that failed.
+    pub failure_count: u64,
+    /// The last of them.
+    pub last_failure: Option<EvalFailure>,
+}
+
+impl Problem {
+    /// Takes an instance apart.
+    pub fn new(instance: &Instance) -> Self {
+        let evaluator = Evaluator::new(instance);
+        let (m, n) = (instance.row_count(), instance.column_count());
+        let columns = &instance.columns;
+        let form = objective_form(instance, &evaluator);
+        let sign = match instance.objective.map(|o| o.sense) {
+            Some(Sense::Maximize) => -1.0,
+            _ => 1.0,
+        };
+        let (defining_row, eliminated) = match form {
+            ObjectiveForm::Row { row, column, .. } => (row, column),
+            _ => (usize::MAX, usize::MAX),
+        };
+        let mut full = vec![0.0; n];
+        let mut variable = vec![u32::MAX; n];
+        let mut kept: Vec<u32> = Vec::new();
+        for j in 0..n {
+            let (l, u) = (columns.lower[j], columns.upper[j]);
+            if l == u {
+                full[j] = l;
+            } else if j != eliminated {
+                variable[j] = kept.len() as u32;
+                kept.push(j as u32);
+            }
+        }
+        let (start, column) = evaluator.jacobian_pattern();
+        let mut rows: Vec<u32> = Vec::new();
+        let (mut jr, mut jc, mut jf) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut gc, mut gf) = (Vec::new(), Vec::new());
+        for i in 0..m {
+            let entries = (start[i]..start[i + 1])
+                .map(|k| (variable[column[k] as usize], k as u32))
+                .filter(|e| e.0 != u32::MAX);
+            if i == defining_row {
+                for (v, k) in entries {
+                    gc.push(v);
+                    gf.push(k);
+                }
+                continue;
+            }
+            let before = jr.len();
+            if instance.rows.relation[i] == Relation::Free {
+                continue;
+            }
+            for (v, k) in entries {
+                jr.push(rows.len() as u32);
+                jc.push(v);
+                jf.push(k);
+            }
+            if jr.len() > before {
+                rows.push(i as u32);
+            }
+        }
+        let (hr, hc) = evaluator.hessian_pattern();
+        let (mut sr, mut sc, mut sf) = (Vec::new(), Vec::new(), Vec::new());
+        for (k, (&i, &j)) in hr.iter().zip(hc).enumerate() {
+            let (p, q) = (variable[i as usize], variable[j as usize]);
+            if p != u32::MAX && q != u32::MAX {
+                sr.push(p.max(q));
+                sc.push(p.min(q));
+                sf.push(k as u32);
+            }
+        }
+        let pick = |v: &[f64]| -> Vec<f64> { kept.iter().map(|&j| v[j as usize]).collect() };
+        let (mut row_lower, mut row_upper) = (Vec::new(), Vec::new());
+        for &i in &rows {
+            let b = instance.rows.rhs[i as usize];
+            let (l, u) = match instance.rows.relation[i as usize] {
+                Relation::Equal => (b, b),
+                Relation::Greater => (b, f64::INFINITY),
+                Relation::Less => (f64::NEG_INFINITY, b),
+                Relation::Free => (f64::NEG_INFINITY, f64::INFINITY),
+            };
+            row_lower.push(l);
+            row_upper.push(u);
+        }
+        let (lower, upper) = (pick(&columns.lower), pick(&columns.upper));
+        let levels = pick(&columns.level);
+        let form = match (form, instance.objective) {
+            (ObjectiveForm::Variable { .. }, Some(o)) => match variable[o.column as usize] {
+                u32::MAX => ObjectiveForm::Constant,
+                v => ObjectiveForm::Variable {
+                    variable: v as usize,
+                },
+            },
+            (form, _) => form,
+        };
+        let start_point = levels
+            .iter()
+            .zip(lower.iter().zip(&upper))
+            .map(|(&x, (&l, &u))| {
+                if x.is_finite() {
+                    x.max(l).min(u)
+                } else {
+                    0.0_f64.max(l).min(u)
+                }
+            })
+            .collect();
+        let derivative = vec![0.0; column.len()];
+        let second = vec![0.0; hr.len()];
+        Self {
+            form,
+            sign,
+            rhs: instance.rows.rhs.clone(),
+            columns: kept,
+            rows,
+            lower,
+            upper,
+            row_lower,
+            row_upper,
+            start: start_point,
+            start_multipliers: None,
+            jacobian_row: jr,
+            jacobian_column: jc,
+            jacobian_from: jf,
+            gradient_column: gc,
+            gradient_from: gf,
+            hessian_row: sr,
+            hessian_column: sc,
+            hessian_from: sf,
+            full,
+            activity: vec![0.0; m],
+            derivative,
+            second,
+            lambda: vec![0.0; m],
+            activity_at: None,
+            derivative_at: None,
+            failure_count: 0,
+            last_failure: None,
+            evaluator,
+        }
+    }
+
+    /// Form of the objective.
+    pub fn form(&self) -> ObjectiveForm {
+        self.form
+    }
+
+    /// Sets the start point.
+    pub fn set_start(&mut self, x: Vec<f64>) {
+        self.start = x;
+    }
+
+    /// Uses the marginals of the instance's rows as start multipliers.
+    pub fn use_marginals(&mut self, instance: &Instance) {
+        let s = self.sign;
+        let lambda = self
+            .rows
+            .iter()
+            .map(|&i| -s * instance.rows.marginal[i as usize])
+            .collect();
+        self.start_multipliers = Some(lambda);
+    }
+
+    /// The full point of the instance: fixed columns filled in, the objective column computed.
+    pub fn levels(&mut self, x: &[f64]) -> Vec<f64> {
+        self.place(x);
+        let mut full = self.full.clone();
+        if let ObjectiveForm::Row { column, .. } = self.form
+            && let Some(f) = self.objective(x)
+        {
+            full[column] = self.sign * f;
+        }
+        full
+    }
+
+    /// Marginals of all rows from the multipliers of the constraints.
+    pub fn row_marginals(&self, lambda: &[f64]) -> Vec<f64> {
+        let mut out = vec![0.0; self.rhs.len()];
+        for (&i, &l) in self.rows.iter().zip(lambda) {
+            out[i as usize] = -self.sign * l;
+        }
+        if let ObjectiveForm::Row {
+            row, coefficient, ..
+        } = self.form
+        {
+            out[row] = 1.0 / coefficient;
+        }
+        out
+    }
+
+    /// The evaluator of the whole instance.
+    pub fn evaluator(&mut self) -> &mut Evaluator {
+        &mut self.evaluator
+    }
+
+    fn place(&mut self, x: &[f64]) {
+        for (&j, &v) in self.columns.iter().zip(x) {
+            self.full[j as usize] = v;
+        }
+    }
+
+    fn fail(&mut self, failure: EvalFailure) {
+        self.failure_count += 1;
+        self.last_failure = Some(failure);
+    }
+
+    /// Computes the activities of all rows at x, unless they are known.
+    fn need_activity(&mut self, x: &[f64]) -> Option<()> {
+        if self.activity_at.as_deref() == Some(x) {
+            return Some(());
+        }
+        self.activity_at = None;
+        self.place(x);
+        match self.evaluator.rows(&self.full, &mut self.activity) {
+            Ok(()) => {
+                self.activity_at = Some(x.to_vec());
+                Some(())
+            }
+            Err(e) => {
+                self.fail(e);
+                None
+            }
+        }
+    }
+
+    fn need_derivative(&mut self, x: &[f64]) -> Option<()> {
+        if self.derivative_at.as_deref() == Some(x) {
+            return Some(());
+        }
+        self.derivative_at = None;
+        self.place(x);
+        match self.evaluator.jacobian(&self.full, &mut self.derivative) {
+            Ok(()) => {
+                self.derivative_at = Some(x.to_vec());
+                Some(())
+            }
+            Err(e) => {
+                self.fail(e);
+                None
+            }
+        }
+    }
+}
+
+impl Nlp for Problem {
+    fn size(&self) -> (usize, usize) {
+        (self.columns.len(), self.rows.len())
+    }
+
+    fn bounds(&self) -> (&[f64], &[f64]) {
+        (&self.lower, &self.upper)
+    }
+
+    fn sides(&self) -> (&[f64], &[f64]) {
+        (&self.row_lower, &self.row_upper)
+    }
+
+    fn start(&self) -> &[f64] {
+        &self.start
+    }
+
+    fn start_multipliers(&self) -> Option<&[f64]> {
+        self.start_multipliers.as_deref()
+    }
+
+    fn jacobian_pattern(&self) -> (&[u32], &[u32]) {
+        (&self.jacobian_row, &self.jacobian_column)
+    }
+
+    fn hessian_pattern(&self) -> (&[u32], &[u32]) {
+        (&self.hessian_row, &self.hessian_column)
+    }
+
+    fn objective(&mut self, x: &[f64]) -> Option<f64> {
+        match self.form {
+            ObjectiveForm::Nothing | ObjectiveForm::Constant => Some(0.0),
+            ObjectiveForm::Variable { variable } => Some(self.sign * x[variable]),
+            ObjectiveForm::Row {
+                row, coefficient, ..
+            } => {
+                self.need_activity(x)?;
+                Some(self.sign * (self.rhs[row] - self.activity[row]) / coefficient)
+            }
+        }
+    }
+
+    fn gradient(&mut self, x: &[f64], out: &mut [f64]) -> Option<()> {
+        out.fill(0.0);
+        match self.form {
+            ObjectiveForm::Nothing | ObjectiveForm::Constant => {}
+            ObjectiveForm::Variable { variable } => out[variable] = self.sign,
+            ObjectiveForm::Row { coefficient, .. } => {
+                self.need_derivative(x)?;
+                for (&j, &k) in self.gradient_column.iter().zip(&self.gradient_from) {
+                    out[j as usize] -= self.sign * self.derivative[k as usize] / coefficient;
+                }
+            }
+        }
+        Some(())
+    }
+
+    fn constraints(&mut self, x: &[f64], out: &mut [f64]) -> Option<()> {
+        self.need_activity(x)?;
+        for (v, &i) in out.iter_mut().zip(&self.rows) {
+            *v = self.activity[i as usize];
+        }
+        Some(())
+    }
+
+    fn jacobian(&mut self, x: &[f64], out: &mut [f64]) -> Option<()> {
+        self.need_derivative(x)?;
+        for (v, &k) in out.iter_mut().zip(&self.jacobian_from) {
+            *v = self.derivative[k as usize];
+        }
+        Some(())
+    }
+
+    fn hessian(&mut self, x: &[f64], sigma: f64, lambda: &[f64], out: &mut [f64]) -> Option<()> {
+        self.place(x);
+        self.lambda.fill(0.0);
+        for (&i, &l) in self.rows.iter().zip(lambda) {
+            self.lambda[i as usize] = l;
+        }
+        if let ObjectiveForm::Row {
+            row, coefficient, ..
+        } = self.form
+        {
+            self.lambda[row] = -sigma * self.sign / coefficient;
+        }
+        let result = self
+            .evaluator
+            .hessian(&self.full, &self.lambda, &mut self.second);
+        if let Err(e) = result {
+            self.fail(e);
+            return None;
+        }
+        for (v, &k) in out.iter_mut().zip(&self.hessian_from) {
+            *v = self.second[k as usize];
+        }
+        Some(())
+    }
+
+    fn failures(&self) -> u64 {
+        self.failure_count
+    }
+}
+
+/// Finds out whether the objective column can be eliminated.
+fn objective_form(instance: &Instance, evaluator: &Evaluator) -> ObjectiveForm {
+    let Some(objective) = instance.objective else {
+        return ObjectiveForm::Nothing;
+    };
+    let z = objective.column as usize;
+    let columns = &instance.columns;
+    let variable = ObjectiveForm::Variable { variable: z };
+    if columns.lower[z] == columns.upper[z] {
+        return ObjectiveForm::Constant;
+    }
+    if columns.lower[z] != f64::NEG_INFINITY || columns.upper[z] != f64::INFINITY {
+        return variable;
+    }
+    let (start, column) = evaluator.jacobian_pattern();
+    let mut found = None;
+    for i in 0..instance.row_count() {
+        if column[start[i]..start[i + 1]]
+            .binary_search(&(z as u32))
+            .is_ok()
+        {
+            if found.is_some() {
+                return variable;
+            }
+            found = Some(i);
+        }
+    }
+    let Some(row) = found else {
+        return variable;
+    };
+    // z must not be in a nonlinear term
+    let nonlinear = instance
+        .nonlinear
+        .iter()
+        .any(|t| t.columns.contains(&(z as u32)));
+    let coefficient = instance.matrix.row(row).find(|&(j, _)| j == z);
+    match coefficient {
+        Some((_, c)) if !nonlinear && instance.rows.relation[row] == Relation::Equal => {
+            ObjectiveForm::Row {
+                row,
+                column: z,
+                coefficient: c,
+            }
+        }
+        _ => variable,
+    }
+}

@@ -1,0 +1,127 @@
+//! What the driver and the solvers of nonlinear programs say to each other.
+
+use super::problem::Nlp;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
+
+/// How a provider says it ended, in Ipopt's distinctions.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Ended {
+    /// Converged to its tolerance.
+    Solved,
+    /// Converged to its acceptable tolerance, or to a feasible point of a square system.
+    Acceptable,
+    /// Converged to a point of local infeasibility.
+    Infeasible,
+    /// The step became too small.
+    SmallStep,
+    /// The iterates diverge.
+    Diverging,
+    /// Stopped by the driver (Ctrl-C or time).
+    Stopped,
+    /// Iteration limit.
+    Iterations,
+    /// Time limit.
+    Time,
+    /// Restoration failed, or a step could not be computed.
+    Failed,
+    /// More equations than variables.
+    TooFewDegrees,
+    /// An evaluation gave an invalid number where that is fatal (at the start).
+    InvalidNumber,
+    /// An option was refused.
+    InvalidOption,
+    /// Anything else.
+    Broken,
+}
+
+/// A provider's answer, in the variables of the [`Nlp`].
+#[derive(Clone, Debug)]
+pub struct Solution {
+    /// How it ended.
+    pub ended: Ended,
+    /// Point.
+    pub x: Vec<f64>,
+    /// Multipliers λ of the constraints, L = f + λᵀg.
+    pub lambda: Vec<f64>,
+    /// Objective.
+    pub objective: f64,
+    /// Iterations.
+    pub iterations: u64,
+}
+
+/// Numbers of one iteration.
+#[derive(Clone, Copy, Debug)]
+pub struct Progress {
+    /// Number of the iteration.
+    pub iteration: u64,
+    /// Objective, minimised.
+    pub objective: f64,
+    /// Primal infeasibility.
+    pub primal: f64,
+    /// Dual infeasibility.
+    pub dual: f64,
+    /// Barrier parameter.
+    pub mu: f64,
+    /// Primal step length.
+    pub step: f64,
+    /// In the restoration phase.
+    pub restoration: bool,
+}
+
+/// Limits, and the driver's ear.
+pub struct Control<'c> {
+    /// Options by Ipopt's names, later ones overriding earlier ones.
+    pub options: Vec<(String, String)>,
+    /// Iterations.
+    pub iterations: u64,
+    /// When to stop.
+    pub deadline: Option<Instant>,
+    /// Called once per iteration; false stops.
+    pub watch: &'c mut dyn FnMut(&Progress) -> bool,
+}
+
+impl Control<'_> {
+    /// Seconds left.
+    pub fn seconds(&self) -> Option<f64> {
+        self.deadline.map(|d| {
+            d.saturating_duration_since(Instant::now())
+                .as_secs_f64()
+                .max(1e-3)
+        })
+    }
+}
+
+/// A problem that a provider may take to another thread.
+pub type Shared = Arc<Mutex<dyn Nlp + Send>>;
+
+/// Locks the problem, also after a panic of a provider: it holds numbers only.
+pub fn lock<T: ?Sized>(nlp: &Mutex<T>) -> MutexGuard<'_, T> {
+    nlp.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A solver of nonlinear programs.
+pub trait Provider {
+    /// Lower-case name.
+    fn name(&self) -> &'static str;
+
+    /// Solves. Err: an option that the provider does not take, in words.
+    fn solve(&self, nlp: Shared, control: &mut Control<'_>) -> Result<Solution, String>;
+}
+
+/// Options that would make a provider read or write files, or print.
+pub fn is_forbidden(option: &str) -> bool {
+    const FORBIDDEN: [&str; 10] = [
+        "output_file",
+        "option_file_name",
+        "file_print_level",
+        "file_append",
+        "print_level",
+        "hsllib",
+        "pardisolib",
+        "print_options_documentation",
+        "print_user_options",
+        "journal",
+    ];
+    FORBIDDEN.contains(&option.to_lowercase().as_str())
+}

@@ -1,0 +1,195 @@
+//! Directives that concern several lines: comments, `$goto`, `$onEcho`, `$onPut`.
+
+use super::directives::{unquoted, word_len};
+use super::line::Line;
+use super::preprocess::Preprocessor;
+use super::{FileId, Outcome, refuse};
+use crate::diag::Diagnostic;
+
+impl Preprocessor<'_> {
+    /// `$onText … $offText`: what stands between is not read.
+    pub(super) fn comment_block(&mut self, line: &Line) -> Outcome<()> {
+        if self.skip_to("offtext") {
+            return Ok(());
+        }
+        let (lo, hi) = line.origin(0, line.text.len());
+        let span = self.place(lo, hi);
+        refuse(
+            Diagnostic::error("E0101", span, "`$onText` without its `$offText`").help(
+                "the rest of the file is a comment: close it with `$offText` in the first column",
+            ),
+        )
+    }
+
+    /// Passes over lines up to and with the one that begins with this directive.
+    pub(super) fn skip_to(&mut self, word: &str) -> bool {
+        self.collect_to(word, &mut |_, _| {})
+    }
+
+    /// Passes over lines up to the one that begins with a directive, and shows each.
+    fn collect_to(&mut self, word: &str, each: &mut dyn FnMut(&str, u32)) -> bool {
+        loop {
+            let Some(frame) = self.frames.last() else {
+                return false;
+            };
+            let (pos, len) = (frame.pos, frame.len);
+            if pos >= len {
+                return false;
+            }
+            let end = self.line_end(pos);
+            let raw = self.raw(pos, end);
+            let found = raw.as_bytes()[0] == self.marks.dollar && {
+                let t = raw[1..].trim_start();
+                t[..word_len(t)].eq_ignore_ascii_case(word)
+            };
+            if !found {
+                each(raw.trim_end_matches(['\n', '\r']), pos as u32);
+            }
+            self.advance(end);
+            if found {
+                return true;
+            }
+        }
+    }
+
+    pub(super) fn goto(&mut self, rest: &str, lo: u32, hi: u32) -> Outcome<()> {
+        let label = rest
+            .split_whitespace()
+            .next()
+            .unwrap_or("")
+            .to_ascii_lowercase();
+        let dollar = self.marks.dollar;
+        let limit = self.max_jumps;
+        let Some(frame) = self.frames.last_mut() else {
+            return Ok(());
+        };
+        let jumps = frame.jumps.entry(label.clone()).or_default();
+        *jumps += 1;
+        if *jumps > limit {
+            frame.pos = frame.len;
+            frame.ifs.clear();
+            let span = self.place(lo, hi);
+            return refuse(
+                Diagnostic::error(
+                    "E0116",
+                    span,
+                    format!("`$goto {label}` was followed {limit} times: it does not end"),
+                )
+                .help("`$maxGoto n` allows more"),
+            );
+        }
+        let text = &self.map.file(frame.file).text;
+        let mut pos = 0;
+        while pos < text.len() {
+            let end =
+                memchr::memchr(b'\n', &text.as_bytes()[pos..]).map_or(text.len(), |n| pos + n + 1);
+            let line = &text[pos..end];
+            if line.as_bytes()[0] == dollar {
+                let t = line[1..].trim_start();
+                let n = word_len(t);
+                if t[..n].eq_ignore_ascii_case("label")
+                    && t[n..]
+                        .split_whitespace()
+                        .next()
+                        .is_some_and(|l| l.eq_ignore_ascii_case(&label))
+                {
+                    // A jump may leave open blocks.
+                    frame.ifs.clear();
+                    frame.pos = end;
+                    frame.forget_marks();
+                    return Ok(());
+                }
+            }
+            pos = end;
+        }
+        let span = self.place(lo, hi);
+        refuse(
+            Diagnostic::error(
+                "E0116",
+                span,
+                format!("there is no `$label {label}` in this file"),
+            )
+            .help("labels are looked for in the file of the `$goto` only"),
+        )
+    }
+
+    /// Remembers what `$echo` writes: a later `$include` may read it. Nothing is written to disk.
+    pub(super) fn echo(&mut self, file: &str, text: &str, append: bool) {
+        let entry = self.echoed.entry(file.trim().to_lowercase()).or_default();
+        if !append {
+            entry.clear();
+        }
+        entry.push_str(text);
+    }
+
+    pub(super) fn echo_block(
+        &mut self,
+        line: &Line,
+        word: &str,
+        rest: &str,
+        lo: u32,
+        hi: u32,
+    ) -> Outcome<()> {
+        let append = rest.trim_start().starts_with(">>");
+        let file = unquoted(rest.trim_start().trim_start_matches('>')).to_owned();
+        let mut lines: Vec<(String, u32)> = Vec::new();
+        let closed = self.collect_to("offecho", &mut |t, at| lines.push((t.to_owned(), at)));
+        let mut text = String::new();
+        for (t, at) in lines {
+            if word == "onechov" {
+                text.push_str(&t);
+            } else {
+                let file = line.file();
+                text.push_str(&self.substituted(Line::new(file, at, &t))?.text);
+            }
+            text.push('\n');
+        }
+        self.echo(&file, &text, append);
+        if closed {
+            return Ok(());
+        }
+        let span = self.place(lo, hi);
+        refuse(
+            Diagnostic::error("E0101", span, format!("`${word}` without its `$offEcho`"))
+                .help("close it with `$offEcho` in the first column"),
+        )
+    }
+
+    /// `$onPut … $offPut`: each line becomes a `put` of its text.
+    pub(super) fn put_block(&mut self, word: &str, lo: u32, hi: u32) -> Outcome<()> {
+        let mut lines: Vec<(String, u32)> = Vec::new();
+        let closed = self.collect_to("offput", &mut |t, at| lines.push((t.to_owned(), at)));
+        let file = self.frames.last().map_or(FileId(0), |f| f.file);
+        for (t, at) in lines {
+            let len = t.len() as u32;
+            let line = Line::new(file, at, &t);
+            let t = if word == "onputs" || word == "onput" {
+                self.substituted(line)?.text
+            } else {
+                t
+            };
+            let mut put = String::from("put ");
+            let mut rest = t.as_str();
+            while !rest.is_empty() {
+                // A text holds one kind of quote at most.
+                let q = if rest.starts_with('\'') { '"' } else { '\'' };
+                let n = rest.find(q).unwrap_or(rest.len());
+                put.push(q);
+                put.push_str(&rest[..n]);
+                put.push(q);
+                put.push(' ');
+                rest = &rest[n..];
+            }
+            put.push_str("/;\n");
+            self.map.push_substitute(&put, file, at, at + len);
+        }
+        if closed {
+            return Ok(());
+        }
+        let span = self.place(lo, hi);
+        refuse(
+            Diagnostic::error("E0101", span, format!("`${word}` without its `$offPut`"))
+                .help("close it with `$offPut` in the first column"),
+        )
+    }
+}

@@ -1,0 +1,258 @@
+//! `$if`, `$ifThen … $elseIf … $else … $endIf`: conditions and the lines they leave out.
+
+use super::evaluate::evaluate;
+use super::preprocess::{Known, Preprocessor};
+use super::variables::Reach;
+use super::{Outcome, Span, line::Line};
+
+/// An open `$ifThen`.
+pub(super) struct If {
+    /// Where it stands.
+    pub(super) span: Span,
+    /// `.tag` behind it, in lower case.
+    pub(super) tag: String,
+    /// A branch was taken.
+    pub(super) taken: bool,
+}
+
+/// How a condition is read.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Flavour {
+    /// `$if`: texts, with regard to case.
+    Exact,
+    /// `$ifI`: texts, without regard to case.
+    NoCase,
+    /// `$ifE`: numbers.
+    Numeric,
+}
+
+/// A text in a condition: quoted, or up to a blank or an operator.
+fn term(text: &str, stop_at_equals: bool) -> (&str, usize) {
+    let t = text.trim_start();
+    let skipped = text.len() - t.len();
+    if let Some(q) = t.chars().next().filter(|c| *c == '\'' || *c == '"')
+        && let Some(n) = t[1..].find(q)
+    {
+        return (&t[1..1 + n], skipped + n + 2);
+    }
+    let blank = t.find([' ', '\t']).unwrap_or(t.len());
+    let end = if stop_at_equals {
+        t.find("==").map_or(blank, |n| n.min(blank))
+    } else {
+        blank
+    };
+    (&t[..end], skipped + end)
+}
+
+impl Preprocessor<'_> {
+    /// Evaluates the condition at the start of `text`; gives its truth and its length.
+    pub(super) fn condition(
+        &mut self,
+        text: &str,
+        flavour: Flavour,
+        known: &dyn Known,
+    ) -> Result<(bool, usize), String> {
+        let mut at = text.len() - text.trim_start().len();
+        let mut negate = false;
+        while let Some(word) = text.get(at..at + 3)
+            && word.eq_ignore_ascii_case("not")
+            && text[at + 3..].starts_with([' ', '\t', '('])
+            && !(flavour == Flavour::Numeric)
+        {
+            negate = !negate;
+            at += 3;
+            at += text[at..].len() - text[at..].trim_start().len();
+        }
+        let rest = &text[at..];
+        let (truth, len) = match self.question(rest, known) {
+            Some(found) => found?,
+            None if flavour == Flavour::Numeric => {
+                let (x, len) = evaluate(rest, known)?;
+                (x != 0.0, len)
+            }
+            None => comparison(rest, flavour)?,
+        };
+        Ok((truth != negate, at + len))
+    }
+
+    /// `exist file`, `set name`, `declared x` …: None where the text is not such a question.
+    fn question(&mut self, text: &str, known: &dyn Known) -> Option<Result<(bool, usize), String>> {
+        let len = text
+            .find(|c: char| !c.is_ascii_alphanumeric() && c != '_')
+            .unwrap_or(text.len());
+        let word = text[..len].to_ascii_lowercase();
+        let after = &text[len..];
+        // A word directly followed by `==` is a text to compare.
+        if after.trim_start().starts_with("==")
+            || (!after.is_empty() && !after.starts_with([' ', '\t']))
+        {
+            return None;
+        }
+        let one = |f: &mut dyn FnMut(&str) -> bool| {
+            let (name, n) = term(after, false);
+            if name.is_empty() {
+                return Some(Err(format!("`$if {word}` needs a name")));
+            }
+            Some(Ok((f(name), len + n)))
+        };
+        let of_kind = |kinds: &[&str]| {
+            let (name, n) = term(after, false);
+            let kind = known.kind(name);
+            Some(Ok((kind.is_some_and(|k| kinds.contains(&k)), len + n)))
+        };
+        match word.as_str() {
+            "exist" | "dexist" | "readable" => {
+                let (name, n) = term(after, false);
+                let from = self.frames.last().map(|f| f.path.clone());
+                let found = self.echoed.contains_key(&name.to_lowercase())
+                    || !name.is_empty() && self.host.exists(name, from.as_deref());
+                Some(Ok((found, len + n)))
+            }
+            "set" => one(&mut |n| self.names.get(n).is_some()),
+            "setlocal" => one(&mut |n| self.names.has(Reach::Local, n)),
+            "setglobal" => one(&mut |n| self.names.has(Reach::Global, n)),
+            "setenv" => one(&mut |_| false),
+            "declared" => one(&mut |n| known.kind(n).is_some()),
+            "defined" => one(&mut |n| known.is_defined(n)),
+            "dimension" => {
+                let (number, n) = term(after, false);
+                let (name, m) = term(&after[n..], false);
+                let dimension = known.dimension(name);
+                let asked = number.parse::<usize>().ok();
+                Some(Ok((dimension.is_some() && dimension == asked, len + n + m)))
+            }
+            "settype" => of_kind(&["set", "alias"]),
+            "partype" => of_kind(&["parameter"]),
+            "vartype" => of_kind(&["variable"]),
+            "equtype" => of_kind(&["equation"]),
+            "modtype" => of_kind(&["model"]),
+            "filtype" => of_kind(&["file"]),
+            "acrtype" => of_kind(&["acronym"]),
+            "xxxtype" => of_kind(&[]),
+            "mactype" | "macro" => one(&mut |n| self.macros.contains(n)),
+            "funtype" | "pretype" => one(&mut |_| false),
+            "gamsversion" => {
+                let (number, n) = term(after, false);
+                let asked: f64 = number.parse().unwrap_or(f64::INFINITY);
+                Some(Ok((asked <= 540.0, len + n)))
+            }
+            "errorfree" => Some(Ok((!self.had_errors, len))),
+            "warnings" => Some(Ok((!self.warnings.is_empty(), len))),
+            "errorlevel" => {
+                let (_, n) = term(after, false);
+                Some(Ok((false, len + n)))
+            }
+            "putopen" | "uelexist" | "solver" => {
+                let n = if word == "putopen" {
+                    0
+                } else {
+                    term(after, false).1
+                };
+                Some(Ok((false, len + n)))
+            }
+            _ => None,
+        }
+    }
+
+    /// `$ifThen`: opens a branch or leaves it out.
+    pub(super) fn if_then(
+        &mut self,
+        line: &Line,
+        tag: String,
+        truth: bool,
+        known: &dyn Known,
+    ) -> Outcome<()> {
+        let (lo, hi) = line.origin(0, line.text.len());
+        let span = self.place(lo, hi);
+        if let Some(frame) = self.frames.last_mut() {
+            frame.ifs.push(If {
+                span,
+                tag,
+                taken: truth,
+            });
+        }
+        if truth { Ok(()) } else { self.leave_out(known) }
+    }
+
+    /// `$else` and `$elseIf` after a taken branch, `$ifThen` with a false condition: passes over the
+    /// lines up to the next branch that is taken, or to `$endIf`.
+    pub(super) fn leave_out(&mut self, known: &dyn Known) -> Outcome<()> {
+        let mut depth = 0usize;
+        loop {
+            let Some(frame) = self.frames.last() else {
+                return Ok(());
+            };
+            if frame.pos >= frame.len {
+                // `leave` reports the open `$ifThen`.
+                return Ok(());
+            }
+            let pos = frame.pos;
+            let end = self.line_end(pos);
+            let raw = self.raw(pos, end);
+            if raw.as_bytes().first() != Some(&self.marks.dollar) {
+                self.advance(end);
+                continue;
+            }
+            let word_end = raw[1..]
+                .find(|c: char| !c.is_ascii_alphanumeric())
+                .map_or(raw.len(), |n| n + 1);
+            let word = raw[1..word_end].to_ascii_lowercase();
+            match word.as_str() {
+                "ontext" => {
+                    let line = self.take_line();
+                    self.comment_block(&line)?;
+                }
+                "ifthen" | "ifthene" | "iftheni" => {
+                    depth += 1;
+                    self.advance(end);
+                }
+                "endif" if depth > 0 => {
+                    depth -= 1;
+                    self.advance(end);
+                }
+                "else" | "elseif" | "elseife" | "elseifi" | "endif" if depth == 0 => {
+                    let taken = self
+                        .frames
+                        .last()
+                        .and_then(|f| f.ifs.last())
+                        .is_none_or(|i| i.taken);
+                    if word != "endif" && taken {
+                        self.advance(end);
+                        continue;
+                    }
+                    // Let the directive itself decide.
+                    let line = self.take_line();
+                    let line = self.substituted(line)?;
+                    if self.branch(&line, known)? {
+                        return Ok(());
+                    }
+                }
+                _ => self.advance(end),
+            }
+        }
+    }
+}
+
+/// `a == b`, with quotes or without.
+fn comparison(text: &str, flavour: Flavour) -> Result<(bool, usize), String> {
+    let (left, n) = term(text, true);
+    let rest = &text[n..];
+    let blanks = rest.len() - rest.trim_start().len();
+    let Some(after) = rest.trim_start().strip_prefix("==") else {
+        return Err(format!(
+            "`{}` is no condition: `==` or a word like `set`, `exist`, `declared` was expected",
+            text.trim()
+        ));
+    };
+    // Nothing on the right, or blanks and then the action, is the empty text.
+    let (right, m) = if after.starts_with([' ', '\t']) && after.trim_start().starts_with('$') {
+        ("", 0)
+    } else {
+        term(after, false)
+    };
+    let same = match flavour {
+        Flavour::NoCase => left.eq_ignore_ascii_case(right),
+        _ => left == right,
+    };
+    Ok((same, n + blanks + 2 + m))
+}

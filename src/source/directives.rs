@@ -1,0 +1,848 @@
+//! Lines that begin with `$`.
+//!
+//! Three kinds: those that shape the text (`$include`, `$set`, `$if`, `$macro` …), those that belong
+//! to the program and are left in the text for the parser (`$load`, `$gdxin`, `$kill` …), and those
+//! that only shape a listing, which are accepted and do nothing.
+
+use super::conditions::Flavour;
+use super::evaluate::{evaluate, number_text};
+use super::line::Line;
+use super::preprocess::{Ending, Known, Preprocessor};
+use super::variables::Reach;
+use super::{Outcome, refuse};
+use crate::diag::{Diagnostic, nearest};
+
+/// Switches that change nothing here, as `$onX` and `$offX`.
+const SILENT_SWITCHES: &[&str] = &[
+    "listing",
+    "list",
+    "symlist",
+    "symxref",
+    "uellist",
+    "uelxref",
+    "upper",
+    "digit",
+    "include",
+    "warning",
+    "global",
+    "local",
+    "log",
+    "expand",
+    "macro",
+    "ident",
+    "recurse",
+    "delim",
+    "embedded",
+    "checkerrorlevel",
+    "filtered",
+    "suffixdlvars",
+    "suffixalgebravars",
+    "dollar",
+    "dotscale",
+    "hidden",
+    "external",
+    "save",
+    "uni",
+    "verbatim",
+    "strictdomain",
+    "case",
+    "localvars",
+    "nestcom",
+    "margin",
+    "float",
+    "textmode",
+    "prefix",
+];
+
+/// Directives that change nothing here, with nothing or one word behind them.
+const SILENT: &[&str] = &[
+    "double",
+    "single",
+    "eject",
+    "lines",
+    "stars",
+    "use205",
+    "use225",
+    "use999",
+    "clearerror",
+    "clearerrors",
+    "showvariables",
+    "splitoption",
+    "version",
+    "escape",
+    "warning",
+    "compress",
+    "decompress",
+    "encrypt",
+    "protect",
+    "expose",
+    "purge",
+    "hide",
+    "save",
+    "funclibin",
+    "prefixloadpath",
+    "scratchfilename",
+    "show",
+    "dimension",
+    "ident",
+];
+
+/// Directives with the rest of their line as argument, without effect here.
+const SILENT_LINES: &[&str] = &[
+    "stitle",
+    "subtitle",
+    "remark",
+    "hidden",
+    "comment_",
+    "setddlist",
+];
+
+/// Other directives, for "did you mean".
+const OTHERS: &[&str] = &[
+    "title",
+    "include",
+    "batinclude",
+    "libinclude",
+    "sysinclude",
+    "set",
+    "setlocal",
+    "setglobal",
+    "setenv",
+    "drop",
+    "droplocal",
+    "dropglobal",
+    "dropenv",
+    "eval",
+    "evallocal",
+    "evalglobal",
+    "if",
+    "ifi",
+    "ife",
+    "ifthen",
+    "iftheni",
+    "ifthene",
+    "elseif",
+    "elseifi",
+    "elseife",
+    "else",
+    "endif",
+    "goto",
+    "label",
+    "exit",
+    "stop",
+    "terminate",
+    "abort",
+    "error",
+    "macro",
+    "ontext",
+    "offtext",
+    "oneolcom",
+    "offeolcom",
+    "eolcom",
+    "oninline",
+    "offinline",
+    "inlinecom",
+    "comment",
+    "onmulti",
+    "offmulti",
+    "onmultir",
+    "onempty",
+    "offempty",
+    "oneps",
+    "offeps",
+    "onundf",
+    "offundf",
+    "onorder",
+    "offorder",
+    "ondotl",
+    "offdotl",
+    "log",
+    "echo",
+    "echon",
+    "onecho",
+    "offecho",
+    "call",
+    "execute",
+    "gdxin",
+    "gdxout",
+    "load",
+    "loaddc",
+    "loadm",
+    "loadr",
+    "unload",
+    "onput",
+    "onputs",
+    "onputv",
+    "offput",
+    "kill",
+    "clear",
+    "shift",
+    "prefixpath",
+    "dollar",
+    "maxcol",
+    "mincol",
+    "maxgoto",
+    "setargs",
+    "setnames",
+    "phantom",
+    "onend",
+    "offend",
+    "onlisting",
+    "offlisting",
+    "onsymxref",
+    "offsymxref",
+    "onsymlist",
+    "offsymlist",
+    "onuelxref",
+    "offuelxref",
+    "onuellist",
+    "offuellist",
+    "onupper",
+    "offupper",
+    "onimplicitassign",
+    "onstrictsingleton",
+    "onembeddedcode",
+];
+
+/// Length of the word at the start of a text.
+pub(super) fn word_len(text: &str) -> usize {
+    text.bytes()
+        .position(|c| !c.is_ascii_alphanumeric() && c != b'_')
+        .unwrap_or(text.len())
+}
+
+/// The next argument: quoted, or up to a blank; and what follows it.
+fn argument(text: &str) -> (&str, &str) {
+    let t = text.trim_start();
+    if let Some(q) = t.chars().next().filter(|c| *c == '\'' || *c == '"')
+        && let Some(n) = t[1..].find(q)
+    {
+        return (&t[1..1 + n], &t[n + 2..]);
+    }
+    let end = t.find([' ', '\t']).unwrap_or(t.len());
+    (&t[..end], &t[end..])
+}
+
+/// A text without the quotes around it.
+pub(super) fn unquoted(text: &str) -> &str {
+    let t = text.trim();
+    for q in ['\'', '"'] {
+        if t.len() >= 2 && t.starts_with(q) && t.ends_with(q) {
+            return &t[1..t.len() - 1];
+        }
+    }
+    t
+}
+
+/// `11/21/26` from days since 1899-12-31.
+pub(super) fn date_text(now: f64) -> String {
+    let (y, m, d) = civil(now);
+    format!("{m:02}/{d:02}/{:02}", y.rem_euclid(100))
+}
+
+/// `09:28:49` from days since 1899-12-31.
+pub(super) fn time_text(now: f64) -> String {
+    let s = (now.fract() * 86_400.0).max(0.0) as u32;
+    format!("{:02}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60)
+}
+
+/// Year, month, day of a day count (Howard Hinnant, "chrono-compatible low-level date algorithms").
+fn civil(now: f64) -> (i64, i64, i64) {
+    // 1899-12-31 is day -25568 of the Unix epoch.
+    let z = now.floor().clamp(-1e9, 1e9) as i64 - 25_568 + 719_468;
+    let era = z.div_euclid(146_097);
+    let doe = z.rem_euclid(146_097);
+    let yoe = (doe - doe / 1460 + doe / 36_524 - doe / 146_096) / 365;
+    let doy = doe - (365 * yoe + yoe / 4 - yoe / 100);
+    let mp = (5 * doy + 2) / 153;
+    let d = doy - (153 * mp + 2) / 5 + 1;
+    let m = if mp < 10 { mp + 3 } else { mp - 9 };
+    (yoe + era * 400 + i64::from(m <= 2), m, d)
+}
+
+impl Preprocessor<'_> {
+    /// A line that begins with `$`.
+    pub(super) fn directive_line(&mut self, line: &Line, known: &dyn Known) -> Outcome<()> {
+        self.directives(line, 1, known)
+    }
+
+    /// The directives from byte `at` on (behind the `$`).
+    fn directives(&mut self, line: &Line, mut at: usize, known: &dyn Known) -> Outcome<()> {
+        loop {
+            let text = &line.text;
+            at += text[at..].len() - text[at..].trim_start().len();
+            let from = at;
+            let len = word_len(&text[at..]);
+            let word = text[at..at + len].to_ascii_lowercase();
+            at += len;
+            if word.is_empty() {
+                let (lo, hi) = line.origin(0, text.len().max(1));
+                let span = self.place(lo, hi);
+                return refuse(
+                    Diagnostic::error(
+                        "E0107",
+                        span,
+                        "a `$` in the first column begins a directive, but no name follows",
+                    )
+                    .help(
+                        "a `$` condition must not begin in the first column: put a blank before it",
+                    ),
+                );
+            }
+            if self.switch(&word) || SILENT.contains(&word.as_str()) {
+                if SILENT.contains(&word.as_str()) {
+                    // A number or a mark may stand behind.
+                    let rest = text[at..].trim_start();
+                    if !rest.starts_with(|c: char| {
+                        c.is_ascii_alphabetic() || c == self.marks.dollar as char
+                    }) {
+                        let (_, after) = argument(&text[at..]);
+                        at = text.len() - after.len();
+                    } else if !self.is_directive(rest) {
+                        return Ok(());
+                    }
+                }
+                let rest = text[at..].trim_start();
+                if rest.is_empty() || self.starts_comment(rest) {
+                    return Ok(());
+                }
+                at = text.len() - rest.len();
+                if rest.as_bytes()[0] == self.marks.dollar {
+                    at += 1;
+                }
+                continue;
+            }
+            return self.directive(line, &word, from, at, known);
+        }
+    }
+
+    fn starts_comment(&self, rest: &str) -> bool {
+        let b = rest.as_bytes();
+        self.marks.eol_on && b.starts_with(&self.marks.eol)
+            || self.marks.slashes && b.starts_with(b"//")
+    }
+
+    /// Whether a text begins with the name of a directive.
+    fn is_directive(&self, text: &str) -> bool {
+        let t = text.strip_prefix(self.marks.dollar as char).unwrap_or(text);
+        let w = t[..word_len(t)].to_ascii_lowercase();
+        let switch = |w: &str| {
+            w.strip_prefix("on")
+                .or_else(|| w.strip_prefix("off"))
+                .is_some_and(|x| SILENT_SWITCHES.contains(&x))
+        };
+        SILENT.contains(&w.as_str()) || OTHERS.contains(&w.as_str()) || switch(&w)
+    }
+
+    /// Directives without argument that set something. True if it was one.
+    fn switch(&mut self, word: &str) -> bool {
+        let (on, what) = if let Some(w) = word.strip_prefix("on") {
+            (true, w)
+        } else if let Some(w) = word.strip_prefix("off") {
+            (false, w)
+        } else {
+            return false;
+        };
+        let m = &mut self.modes;
+        match what {
+            "multi" => (m.multi, m.multi_replace) = (on, false),
+            "multir" => (m.multi, m.multi_replace) = (on, on),
+            "empty" => m.empty = on,
+            "eps" => m.eps = on,
+            "undf" => m.undf = on,
+            "order" => m.off_order = !on,
+            "dotl" => m.dot_l = on,
+            "implicitassign" => m.implicit_assign = on,
+            "strictsingleton" => {}
+            "end" => self.on_end = on,
+            "eolcom" => {
+                self.marks.eol_on = on;
+                self.marks_changed();
+            }
+            "inline" => {
+                self.marks.inline_on = on;
+                self.marks_changed();
+            }
+            // `$offText` and its kin without their partner do nothing.
+            "text" | "echo" | "put" if !on => {}
+            w if SILENT_SWITCHES.contains(&w) => {}
+            _ => return false,
+        }
+        true
+    }
+
+    /// A directive with arguments. `from` is where its name begins, `at` where it ends.
+    fn directive(
+        &mut self,
+        line: &Line,
+        word: &str,
+        from: usize,
+        mut at: usize,
+        known: &dyn Known,
+    ) -> Outcome<()> {
+        let text = line.text.as_str();
+        // `$ifThen.tag`, `$abort.noError`
+        let mut suffix = String::new();
+        if text[at..].starts_with('.') {
+            let len = word_len(&text[at + 1..]);
+            suffix = text[at + 1..at + 1 + len].to_ascii_lowercase();
+            at += 1 + len;
+        }
+        let (lo, hi) = line.origin(from.saturating_sub(1), text.trim_end().len().max(from));
+        let rest = &text[at..];
+        match word {
+            "title" => self.title = Some(rest.trim().to_owned()),
+            "log" => self.log.push(rest.trim().to_owned()),
+            "ontext" => return self.comment_block(line),
+            "include" => {
+                let name = unquoted(rest).to_owned();
+                return self.include(&name, None, lo, hi);
+            }
+            "batinclude" | "libinclude" | "sysinclude" => {
+                let (name, mut tail) = argument(rest);
+                let mut arguments = Vec::new();
+                while !tail.trim().is_empty() {
+                    let (a, t) = argument(tail);
+                    arguments.push(a.to_owned());
+                    tail = t;
+                }
+                let mut name = name.to_owned();
+                if word != "batinclude" && !name.contains('.') {
+                    name += ".gms";
+                }
+                let outcome = self.include(&name, Some(arguments), lo, hi);
+                return outcome.map_err(|d| match (word, d.code) {
+                    ("libinclude" | "sysinclude", "E0103") => Box::new(
+                        Diagnostic::error(
+                            "E0112",
+                            d.span,
+                            format!("`{name}` belongs to the library of a GAMS installation, which is not there"),
+                        )
+                        .help("put the file beside the model, or do without it"),
+                    ),
+                    _ => d,
+                });
+            }
+            "set" | "setlocal" | "setglobal" | "eval" | "evallocal" | "evalglobal" => {
+                return self.define(word, rest, lo, hi, known);
+            }
+            "drop" | "droplocal" | "dropglobal" => {
+                let (name, _) = argument(rest);
+                self.names.drop(reach(word), name);
+            }
+            "setenv" | "dropenv" | "setcomps" | "prefixpath" | "phantom" => {}
+            "setargs" => {
+                let values = self
+                    .frames
+                    .last()
+                    .and_then(|f| f.arguments.clone())
+                    .unwrap_or_default();
+                for (i, name) in rest.split_whitespace().enumerate() {
+                    let value = values.get(i).cloned().unwrap_or_default();
+                    self.names.set(Reach::Local, name, value);
+                }
+            }
+            "setnames" => {
+                let (file, tail) = argument(rest);
+                let path = std::path::Path::new(file);
+                let dir = path
+                    .parent()
+                    .map_or(String::new(), |p| p.display().to_string());
+                let dir = if dir.is_empty() { dir } else { dir + "/" };
+                let stem = path
+                    .file_stem()
+                    .map_or(String::new(), |s| s.to_string_lossy().into_owned());
+                let ext = path
+                    .extension()
+                    .map_or(String::new(), |s| format!(".{}", s.to_string_lossy()));
+                for (name, value) in tail.split_whitespace().zip([dir, stem, ext]) {
+                    self.names.set(Reach::Local, name, value);
+                }
+            }
+            "shift" => {
+                if let Some(args) = self.frames.last_mut().and_then(|f| f.arguments.as_mut())
+                    && !args.is_empty()
+                {
+                    args.remove(0);
+                }
+            }
+            "if" | "ifi" | "ife" => {
+                let flavour = flavour(&word[2..]);
+                match self.condition(rest, flavour, known) {
+                    Err(why) => return refuse(self.bad_condition(word, why, lo, hi)),
+                    Ok((false, _)) => {}
+                    Ok((true, len)) => return self.action(line, at + len, known),
+                }
+            }
+            "ifthen" | "iftheni" | "ifthene" => {
+                let flavour = flavour(&word[6..]);
+                match self.condition(rest, flavour, known) {
+                    Err(why) => return refuse(self.bad_condition(word, why, lo, hi)),
+                    Ok((truth, len)) => {
+                        self.if_then(line, suffix, truth, known)?;
+                        if truth {
+                            return self.action(line, at + len, known);
+                        }
+                    }
+                }
+            }
+            "else" | "elseif" | "elseifi" | "elseife" | "endif" => {
+                if !self.branch(line, known)? {
+                    self.leave_out(known)?;
+                }
+            }
+            "goto" => return self.goto(rest, lo, hi),
+            "label" => {}
+            "exit" => {
+                // What is left of the present file is not read.
+                if let Some(frame) = self.frames.last_mut() {
+                    frame.pos = frame.len;
+                    frame.ifs.clear();
+                }
+            }
+            "stop" => self.stop(Ending::Regular),
+            "terminate" => self.stop(Ending::NoRun),
+            "abort" if suffix == "noerror" => {
+                self.log.push(rest.trim().to_owned());
+                self.stop(Ending::NoRun);
+            }
+            "abort" | "error" => {
+                let span = self.place(lo, hi);
+                let message = if rest.trim().is_empty() {
+                    "stopped here"
+                } else {
+                    unquoted(rest)
+                };
+                let d = Diagnostic::error("E0110", span, message)
+                    .label(format!("`${word}` stands here"));
+                if word == "abort" {
+                    self.stop(Ending::Aborted);
+                }
+                return refuse(d);
+            }
+            "macro" => return self.define_macro(rest, lo, hi),
+            "eolcom" | "inlinecom" | "comment" | "dollar" => {
+                return self.set_mark(word, rest, lo, hi);
+            }
+            "maxcol" | "mincol" => {
+                if let Ok(n) = rest.trim().parse::<usize>() {
+                    if word == "maxcol" {
+                        self.marks.columns.1 = n.max(1);
+                    } else {
+                        self.marks.columns.0 = n.max(1);
+                    }
+                }
+            }
+            "maxgoto" => {
+                self.max_jumps = rest.trim().parse().unwrap_or(self.max_jumps).min(1_000_000)
+            }
+            "echo" | "echon" => {
+                let (body, file) = rest.rsplit_once('>').unwrap_or((rest, ""));
+                let text = unquoted(body.trim_end_matches('>')).to_owned()
+                    + if word == "echo" { "\n" } else { "" };
+                let append = body.ends_with('>');
+                self.echo(unquoted(file), &text, append);
+            }
+            "onecho" | "onechos" | "onechov" => return self.echo_block(line, word, rest, lo, hi),
+            "onput" | "onputs" | "onputv" => return self.put_block(word, lo, hi),
+            "call" | "hiddencall" | "execute" => {
+                let span = self.place(lo, hi);
+                return refuse(Diagnostic::error("E0113", span, format!("`${word}` would start another program, which is refused"))
+                    .label("not run")
+                    .help("run it yourself before the model, and read what it writes with `$include` or `$load`"));
+            }
+            "onembeddedcode" | "onembeddedcodes" | "onembeddedcodev" => {
+                let span = self.place(lo, hi);
+                self.skip_to("offembeddedcode");
+                return refuse(
+                    Diagnostic::error("E0113", span, "embedded code of other languages is not run")
+                        .help("write the computation in the language itself"),
+                );
+            }
+            "gdxin" | "gdxout" | "load" | "loaddc" | "loadm" | "loadr" | "loaddcm" | "loaddcr"
+            | "loadfiltered" | "loadidx" | "unload" | "kill" | "clear" => {
+                // The parser reads these; the line goes into the text as a statement.
+                let line = line.clone();
+                let end = line.text.len();
+                line.emit(&mut self.map, from.saturating_sub(1), end);
+                let (_, hi) = line.origin(0, end);
+                let file = self.frames.last().map_or(super::FileId(0), |f| f.file);
+                self.map.push_substitute(";\n", file, hi, hi);
+            }
+            w if SILENT_LINES.contains(&w) => {}
+            _ => {
+                let span = self.place(lo, hi);
+                let mut all: Vec<String> = OTHERS
+                    .iter()
+                    .chain(SILENT)
+                    .map(|s| (*s).to_owned())
+                    .collect();
+                for s in SILENT_SWITCHES {
+                    all.push(format!("on{s}"));
+                    all.push(format!("off{s}"));
+                }
+                let near = nearest(word, all.iter().map(String::as_str));
+                let help = near.map_or(
+                    "directives begin with `$` in the first column".into(),
+                    |n| format!("did you mean `${n}`?"),
+                );
+                return refuse(
+                    Diagnostic::error("E0107", span, format!("there is no directive `${word}`"))
+                        .help(help),
+                );
+            }
+        }
+        Ok(())
+    }
+
+    fn bad_condition(&mut self, word: &str, why: String, lo: u32, hi: u32) -> Diagnostic {
+        let span = self.place(lo, hi);
+        Diagnostic::error(
+            "E0114",
+            span,
+            format!("the condition of `${word}` cannot be read: {why}"),
+        )
+        .help("for example `$if set x`, `$if not exist 'data.inc'`, `$if %n% == 3`, `$ifE %n% > 3`")
+    }
+
+    /// What follows a true condition: a directive, a text, or nothing.
+    fn action(&mut self, line: &Line, at: usize, known: &dyn Known) -> Outcome<()> {
+        let rest = &line.text[at..];
+        let start = at + rest.len() - rest.trim_start().len();
+        let Some(&first) = line.text.as_bytes().get(start) else {
+            return Ok(());
+        };
+        if first == self.marks.dollar {
+            if self.conditions_on_line >= 50 {
+                let (lo, hi) = line.origin(0, line.text.len());
+                let span = self.place(lo, hi);
+                return refuse(
+                    Diagnostic::error("E0114", span, "more than 50 conditions on one line")
+                        .help("use `$ifThen … $endIf` blocks"),
+                );
+            }
+            self.conditions_on_line += 1;
+            let outcome = self.directives(line, start + 1, known);
+            self.conditions_on_line -= 1;
+            return outcome;
+        }
+        if self.starts_comment(&line.text[start..]) {
+            return Ok(());
+        }
+        self.finish_text(line.clone(), start)
+    }
+
+    /// `$else`, `$elseIf`, `$endIf`: whether the lines that follow count.
+    pub(super) fn branch(&mut self, line: &Line, known: &dyn Known) -> Outcome<bool> {
+        let text = line.text.as_str();
+        let len = word_len(&text[1..]);
+        let word = text[1..1 + len].to_ascii_lowercase();
+        let mut at = 1 + len;
+        let mut tag = String::new();
+        if text[at..].starts_with('.') {
+            let n = word_len(&text[at + 1..]);
+            tag = text[at + 1..at + 1 + n].to_ascii_lowercase();
+            at += n + 1;
+        }
+        let (lo, hi) = line.origin(0, text.trim_end().len().max(1));
+        let Some(open) = self.frames.last_mut().and_then(|f| f.ifs.last_mut()) else {
+            // A jump may have led into the middle of a block.
+            if self.frames.last().is_some_and(|f| !f.jumps.is_empty()) {
+                return Ok(true);
+            }
+            let span = self.place(lo, hi);
+            return refuse(
+                Diagnostic::error(
+                    "E0106",
+                    span,
+                    format!("`${word}` without an `$ifThen` before it in this file"),
+                )
+                .help("`$if` on one line needs no `$endIf`; blocks begin with `$ifThen`"),
+            );
+        };
+        if open.tag != tag {
+            let (at, expected) = (open.span, open.tag.clone());
+            if let Some(f) = self.frames.last_mut()
+                && word == "endif"
+            {
+                f.ifs.pop();
+            }
+            let span = self.place(lo, hi);
+            return refuse(
+                Diagnostic::error(
+                    "E0106",
+                    span,
+                    format!("`${word}.{tag}` does not belong to the innermost open `$ifThen`"),
+                )
+                .other(at, "which is this one")
+                .help(if expected.is_empty() {
+                    format!("write `${word}`")
+                } else {
+                    format!("write `${word}.{expected}`")
+                }),
+            );
+        }
+        match word.as_str() {
+            "endif" => {
+                if let Some(f) = self.frames.last_mut() {
+                    f.ifs.pop();
+                }
+                self.action(line, at, known)?;
+                Ok(true)
+            }
+            _ if open.taken => Ok(false),
+            "else" => {
+                open.taken = true;
+                self.action(line, at, known)?;
+                Ok(true)
+            }
+            _ => {
+                let flavour = flavour(&word[6..]);
+                match self.condition(&text[at..], flavour, known) {
+                    Err(why) => refuse(self.bad_condition(&word, why, lo, hi)),
+                    Ok((truth, len)) => {
+                        if let Some(open) = self.frames.last_mut().and_then(|f| f.ifs.last_mut()) {
+                            open.taken = truth;
+                        }
+                        if truth {
+                            self.action(line, at + len, known)?;
+                        }
+                        Ok(truth)
+                    }
+                }
+            }
+        }
+    }
+
+    /// `$set x value`, `$eval x expression` and their kin.
+    fn define(
+        &mut self,
+        word: &str,
+        rest: &str,
+        lo: u32,
+        hi: u32,
+        known: &dyn Known,
+    ) -> Outcome<()> {
+        let rest = rest.trim_start();
+        let len = rest
+            .bytes()
+            .position(|c| !c.is_ascii_alphanumeric() && c != b'_' && c != b'.')
+            .unwrap_or(rest.len());
+        let (name, value) = (&rest[..len], rest[len..].trim());
+        if name.is_empty() {
+            let span = self.place(lo, hi);
+            return refuse(
+                Diagnostic::error("E0107", span, format!("`${word}` needs a name")).help(format!(
+                    "write `${word} name value`; then `%name%` stands for the value"
+                )),
+            );
+        }
+        let value = if word.starts_with("eval") {
+            match evaluate(value, known) {
+                Ok((x, n))
+                    if value[n..].trim().is_empty()
+                        || self.starts_comment(value[n..].trim_start()) =>
+                {
+                    number_text(x)
+                }
+                Ok((_, n)) => {
+                    let message = format!(
+                        "`${word} {name}`: the expression ends before `{}`",
+                        value[n..].trim()
+                    );
+                    let span = self.place(lo, hi);
+                    return refuse(
+                        Diagnostic::error("E0115", span, message).help("is an operator missing?"),
+                    );
+                }
+                Err(why) => {
+                    let span = self.place(lo, hi);
+                    return refuse(Diagnostic::error("E0115", span, format!("`${word} {name}` cannot be evaluated: {why}"))
+                        .help("numbers, operators, functions, `card(set)` and scalars with data can stand here"));
+                }
+            }
+        } else {
+            unquoted(value).to_owned()
+        };
+        self.names.set(reach(word), name, value);
+        Ok(())
+    }
+
+    fn define_macro(&mut self, rest: &str, lo: u32, hi: u32) -> Outcome<()> {
+        let mut text = rest.to_owned();
+        let mut hi = hi;
+        while text.trim_end().ends_with('\\') {
+            text.truncate(text.trim_end().len() - 1);
+            if self.frames.last().is_none_or(|f| f.pos >= f.len) {
+                break;
+            }
+            let next = self.take_line();
+            hi = next.origin(0, next.text.len()).1;
+            let next = self.substituted(next)?;
+            text.push(' ');
+            text.push_str(&next.text);
+        }
+        self.macros.define(&text).map_err(|why| {
+            let span = self.place(lo, hi);
+            Box::new(
+                Diagnostic::error("E0111", span, why).help("`$macro name(a,b) text with a and b`"),
+            )
+        })
+    }
+
+    fn set_mark(&mut self, word: &str, rest: &str, lo: u32, hi: u32) -> Outcome<()> {
+        let mut marks = rest.split_whitespace();
+        let first = marks.next().unwrap_or("").as_bytes().to_vec();
+        let second = marks.next().unwrap_or("").as_bytes().to_vec();
+        let good = match word {
+            "inlinecom" => !first.is_empty() && !second.is_empty(),
+            "eolcom" => !first.is_empty(),
+            _ => first.len() == 1 && !first[0].is_ascii_alphanumeric(),
+        };
+        if !good {
+            let span = self.place(lo, hi);
+            let example = match word {
+                "inlinecom" => "$inlineCom { }",
+                "eolcom" => "$eolCom !!",
+                "comment" => "$comment *",
+                _ => "$dollar #",
+            };
+            return refuse(
+                Diagnostic::error("E0107", span, format!("`${word}` needs its mark"))
+                    .help(format!("for example `{example}`")),
+            );
+        }
+        match word {
+            "inlinecom" => {
+                self.marks.inline = (first, second);
+                self.marks.inline_on = true;
+            }
+            "eolcom" => {
+                self.marks.eol = first;
+                self.marks.eol_on = true;
+            }
+            "comment" => self.marks.comment = first[0],
+            _ => self.marks.dollar = first[0],
+        }
+        self.marks_changed();
+        Ok(())
+    }
+}
+
+fn reach(word: &str) -> Reach {
+    if word.ends_with("local") {
+        Reach::Local
+    } else if word.ends_with("global") {
+        Reach::Global
+    } else {
+        Reach::Scoped
+    }
+}
+
+fn flavour(suffix: &str) -> Flavour {
+    match suffix {
+        "i" => Flavour::NoCase,
+        "e" => Flavour::Numeric,
+        _ => Flavour::Exact,
+    }
+}

@@ -1,0 +1,179 @@
+//! One line on its way into the expanded text.
+//!
+//! Most lines are copied in runs and never become a [`Line`]. A line with `%name%`, a macro or a
+//! comment in the middle is taken apart here: its text changes, and every piece remembers the bytes
+//! of the file that it stands for.
+//!
+//! Invariant: the pieces cover the text without gaps, in order.
+
+use super::map::{FileId, SourceMap};
+
+/// A piece of a line.
+#[derive(Clone, Copy, Debug)]
+struct Piece {
+    /// Where it begins in the line's text.
+    start: usize,
+    /// What it stands for in the file.
+    lo: u32,
+    hi: u32,
+    /// The text is the file's own.
+    copied: bool,
+}
+
+/// The text of a line with the origin of each piece.
+#[derive(Clone, Debug)]
+pub(super) struct Line {
+    /// The text as it stands now, without its line end.
+    pub(super) text: String,
+    file: FileId,
+    pieces: Vec<Piece>,
+}
+
+impl Line {
+    /// The bytes `lo..hi` of a file.
+    pub(super) fn new(file: FileId, lo: u32, text: &str) -> Self {
+        Self {
+            text: text.to_owned(),
+            file,
+            pieces: vec![Piece {
+                start: 0,
+                lo,
+                hi: lo + text.len() as u32,
+                copied: true,
+            }],
+        }
+    }
+
+    /// The file that it stands in.
+    pub(super) fn file(&self) -> FileId {
+        self.file
+    }
+
+    fn piece_at(&self, at: usize) -> Piece {
+        let i = self.pieces.partition_point(|p| p.start <= at);
+        self.pieces[i.saturating_sub(1)]
+    }
+
+    /// What `from..to` of the text stands for in the file.
+    pub(super) fn origin(&self, from: usize, to: usize) -> (u32, u32) {
+        let a = self.piece_at(from);
+        let b = self.piece_at(to.saturating_sub(1).max(from));
+        let lo = if a.copied {
+            a.lo + (from - a.start) as u32
+        } else {
+            a.lo
+        };
+        let hi = if b.copied {
+            b.lo + (to.max(b.start) - b.start) as u32
+        } else {
+            b.hi
+        };
+        (lo, hi.max(lo))
+    }
+
+    /// Puts other text in the place of several ranges, which are in order and do not overlap.
+    pub(super) fn replace(&mut self, changes: &[(usize, usize, String)]) {
+        if changes.is_empty() {
+            return;
+        }
+        let old = std::mem::take(&mut self.text);
+        let mut pieces = Vec::new();
+        let mut text = String::with_capacity(old.len());
+        let mut at = 0;
+        for (from, to, new) in changes {
+            self.keep(&old, at, *from, &mut text, &mut pieces);
+            let (lo, hi) = self.origin(*from, *to);
+            if !new.is_empty() {
+                pieces.push(Piece {
+                    start: text.len(),
+                    lo,
+                    hi,
+                    copied: false,
+                });
+                text.push_str(new);
+            }
+            at = *to;
+        }
+        self.keep(&old, at, old.len(), &mut text, &mut pieces);
+        if pieces.is_empty() {
+            let (lo, hi) = self.origin(0, old.len());
+            pieces.push(Piece {
+                start: 0,
+                lo,
+                hi,
+                copied: false,
+            });
+        }
+        self.text = text;
+        self.pieces = pieces;
+    }
+
+    fn keep(&self, old: &str, from: usize, to: usize, text: &mut String, out: &mut Vec<Piece>) {
+        let mut at = from;
+        while at < to {
+            let i = self.pieces.partition_point(|p| p.start <= at);
+            let piece = self.pieces[i.saturating_sub(1)];
+            let end = self.pieces.get(i).map_or(old.len(), |p| p.start).min(to);
+            let (lo, hi) = if piece.copied {
+                let lo = piece.lo + (at - piece.start) as u32;
+                (lo, lo + (end - at) as u32)
+            } else {
+                (piece.lo, piece.hi)
+            };
+            out.push(Piece {
+                start: text.len(),
+                lo,
+                hi,
+                copied: piece.copied,
+            });
+            text.push_str(&old[at..end]);
+            at = end;
+        }
+    }
+
+    /// Appends `from..to` to the expanded text.
+    pub(super) fn emit(&self, map: &mut SourceMap, from: usize, to: usize) {
+        let mut at = from;
+        while at < to {
+            let i = self.pieces.partition_point(|p| p.start <= at);
+            let piece = self.pieces[i.saturating_sub(1)];
+            let end = self
+                .pieces
+                .get(i)
+                .map_or(self.text.len(), |p| p.start)
+                .min(to);
+            if piece.copied {
+                let lo = piece.lo + (at - piece.start) as u32;
+                map.push_copy(self.file, lo, lo + (end - at) as u32);
+            } else {
+                map.push_substitute(&self.text[at..end], self.file, piece.lo, piece.hi);
+            }
+            at = end;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pieces_lead_back() {
+        let mut map = SourceMap::default();
+        let file = map.add_file("a", "xx abc %n% def\n".into());
+        let mut line = Line::new(file, 3, "abc %n% def");
+        line.replace(&[(4, 7, "long value".into())]);
+        assert_eq!(line.text, "abc long value def");
+        line.replace(&[(0, 3, "y".into())]);
+        assert_eq!(line.text, "y long value def");
+        line.emit(&mut map, 0, line.text.len());
+        assert_eq!(map.expanded(), "y long value def");
+        let place = |lo, hi| {
+            let p = map.place(crate::source::Span::new(lo, hi)).unwrap();
+            (p.lo, p.hi)
+        };
+        assert_eq!(place(0, 1), (3, 6));
+        assert_eq!(place(4, 6), (7, 10));
+        assert_eq!(place(13, 16), (11, 14));
+    }
+}

@@ -1,0 +1,841 @@
+//! From files to the expanded text: comments, `%name%`, macros, and the lines that begin with `$`.
+//!
+//! The text is made piece by piece, because directives may ask what the statements before them
+//! declared: [`Preprocessor::fill`] stops before every directive line, and the caller takes all
+//! finished statements out of the text before it fills again.
+//!
+//! Runs of plain lines are found with `memchr` and copied whole; only a line with a directive, a
+//! comment mark, `%` or a macro is looked at by itself (`line`).
+//!
+//! Invariants: the expanded text consists of whole lines; a `$` in its first column is a directive
+//! that is left to the parser (`$load …;`); every byte of it leads back to a file through the
+//! [`SourceMap`]; includes, macros and `$goto` are bounded.
+
+use std::path::PathBuf;
+
+use rustc_hash::FxHashMap;
+
+use super::conditions::If;
+use super::line::Line;
+use super::macros::Macros;
+use super::variables::{self, Variables};
+use super::{FileId, Outcome, SourceMap, Span, refuse};
+use crate::diag::Diagnostic;
+use crate::host::{Host, HostError};
+use crate::syntax::ast::Modes;
+
+/// Files included by files.
+const DEEPEST_INCLUDE: usize = 40;
+/// Bytes of expanded text: places are 32-bit numbers.
+const LONGEST: usize = 3 << 30;
+/// Bytes copied before the parser is asked to look.
+const CHUNK: usize = 4 << 20;
+
+/// Kind of a symbol, as `$if setType x` and its kin name it: `set`, `parameter`, `variable`,
+/// `equation`, `model`, `file`, `acronym`, `alias`, `macro`.
+pub type SymbolKindName = &'static str;
+
+/// Options from the command line.
+#[derive(Clone, Debug, Default)]
+pub struct PreprocessOptions {
+    /// `-D name=value`.
+    pub defines: Vec<(String, String)>,
+    /// The file is a `.blk`: `//` begins a comment.
+    pub slash_comments: bool,
+}
+
+/// What a directive may ask about the symbols known so far.
+pub trait Known {
+    /// The kind of a declared symbol.
+    fn kind(&self, name: &str) -> Option<SymbolKindName>;
+    /// Whether it has data.
+    fn is_defined(&self, name: &str) -> bool;
+    /// Its number of indices.
+    fn dimension(&self, name: &str) -> Option<usize>;
+    /// Number of elements of a set or of records of a parameter.
+    fn card(&self, name: &str) -> Option<usize>;
+    /// Value of a scalar.
+    fn scalar_value(&self, name: &str) -> Option<f64>;
+}
+
+/// For texts that stand alone: no symbol is known.
+pub struct NothingKnown;
+
+impl Known for NothingKnown {
+    fn kind(&self, _: &str) -> Option<SymbolKindName> {
+        None
+    }
+    fn is_defined(&self, _: &str) -> bool {
+        false
+    }
+    fn dimension(&self, _: &str) -> Option<usize> {
+        None
+    }
+    fn card(&self, _: &str) -> Option<usize> {
+        None
+    }
+    fn scalar_value(&self, _: &str) -> Option<f64> {
+        None
+    }
+}
+
+/// How the text ended.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum Ending {
+    /// At its end, or at `$exit`, `$stop`.
+    #[default]
+    Regular,
+    /// `$terminate`, `$abort.noError`: nothing is run, which is no failure.
+    NoRun,
+    /// `$abort`, `$error`: the diagnostic was given.
+    Aborted,
+}
+
+/// Marks of comments and directives, which directives change.
+#[derive(Clone, Debug)]
+pub(super) struct Marks {
+    /// First byte of a directive line.
+    pub(super) dollar: u8,
+    /// First byte of a comment line.
+    pub(super) comment: u8,
+    pub(super) eol: Vec<u8>,
+    pub(super) eol_on: bool,
+    pub(super) inline: (Vec<u8>, Vec<u8>),
+    pub(super) inline_on: bool,
+    pub(super) slashes: bool,
+    /// First and last column that count, from 1.
+    pub(super) columns: (usize, usize),
+}
+
+/// A file being read.
+pub(super) struct Frame {
+    pub(super) file: FileId,
+    pub(super) path: PathBuf,
+    pub(super) pos: usize,
+    pub(super) len: usize,
+    /// `$ifThen` not yet closed.
+    pub(super) ifs: Vec<If>,
+    /// Arguments of `$batInclude`, None for other files.
+    pub(super) arguments: Option<Vec<String>>,
+    /// Jumps to a label.
+    pub(super) jumps: FxHashMap<String, usize>,
+    /// Next `%`, end-of-line mark, inline mark, slash mark; as far as known.
+    ahead: [usize; 4],
+    /// Where the file was asked for.
+    pub(super) asked: Span,
+}
+
+impl Frame {
+    /// The next marks are looked for again: reading goes on elsewhere.
+    pub(super) fn forget_marks(&mut self) {
+        self.ahead = [0; 4];
+    }
+}
+
+/// See the module.
+pub(crate) struct Preprocessor<'h> {
+    pub(super) host: &'h mut dyn Host,
+    pub(crate) map: SourceMap,
+    pub(super) frames: Vec<Frame>,
+    pub(super) names: Variables,
+    pub(super) macros: Macros,
+    pub(super) marks: Marks,
+    pub(super) modes: Modes,
+    /// `$onEnd`: `endif`, `endloop` … close blocks.
+    pub(super) on_end: bool,
+    /// Inside an inline comment that runs over lines.
+    in_comment: Option<Span>,
+    pub(super) warnings: Vec<Diagnostic>,
+    pub(super) log: Vec<String>,
+    pub(super) title: Option<String>,
+    /// Files written by `$echo` and `$onEcho`, for a later `$include`.
+    pub(super) echoed: FxHashMap<String, String>,
+    pub(super) ending: Ending,
+    pub(super) max_jumps: usize,
+    pub(super) had_errors: bool,
+    /// `$if`s followed in the present line.
+    pub(super) conditions_on_line: usize,
+}
+
+impl<'h> Preprocessor<'h> {
+    /// Opens the main file.
+    pub(crate) fn new(
+        host: &'h mut dyn Host,
+        path: &str,
+        options: PreprocessOptions,
+    ) -> Result<Self, Box<(SourceMap, Diagnostic)>> {
+        let mut p = Self {
+            host,
+            map: SourceMap::default(),
+            frames: Vec::new(),
+            names: Variables::default(),
+            macros: Macros::default(),
+            marks: Marks {
+                dollar: b'$',
+                comment: b'*',
+                eol: b"!!".to_vec(),
+                eol_on: false,
+                inline: (b"/*".to_vec(), b"*/".to_vec()),
+                inline_on: false,
+                slashes: options.slash_comments,
+                columns: (1, usize::MAX),
+            },
+            modes: Modes::default(),
+            on_end: false,
+            in_comment: None,
+            warnings: Vec::new(),
+            log: Vec::new(),
+            title: None,
+            echoed: FxHashMap::default(),
+            ending: Ending::Regular,
+            max_jumps: 100,
+            had_errors: false,
+            conditions_on_line: 0,
+        };
+        p.names.set(variables::Reach::Global, "bmod", "1".into());
+        for (name, value) in &options.defines {
+            p.names.set(variables::Reach::Global, name, value.clone());
+        }
+        match p.host.read(path, None) {
+            Ok((known_as, text)) => {
+                let empty = text.trim().is_empty();
+                p.open(known_as, path, text, None, Span::default());
+                if empty {
+                    let span = p.map.push_substitute("\n", FileId(0), 0, 0);
+                    p.warnings.push(
+                        Diagnostic::warning("E0109", span, format!("the file `{path}` is empty"))
+                            .help("nothing is declared and nothing is solved"),
+                    );
+                }
+                Ok(p)
+            }
+            Err(e) => {
+                let file = p.map.add_file(path, String::new());
+                let span = p.map.push_substitute("\n", file, 0, 0);
+                let d = unreadable(path, &e, span);
+                Err(Box::new((p.map, d)))
+            }
+        }
+    }
+
+    /// Begins to read a text.
+    pub(super) fn open(
+        &mut self,
+        path: PathBuf,
+        name: &str,
+        text: String,
+        arguments: Option<Vec<String>>,
+        asked: Span,
+    ) {
+        let len = text.len();
+        let bom = if text.starts_with('\u{feff}') { 3 } else { 0 };
+        let file = self.map.add_file(name, text);
+        self.names.enter();
+        self.frames.push(Frame {
+            file,
+            path,
+            pos: bom,
+            len,
+            ifs: Vec::new(),
+            arguments,
+            jumps: FxHashMap::default(),
+            ahead: [0; 4],
+            asked,
+        });
+    }
+
+    /// `$include` and its kin: opens a file from the present one. `lo..hi` is the directive's place.
+    pub(super) fn include(
+        &mut self,
+        name: &str,
+        arguments: Option<Vec<String>>,
+        lo: u32,
+        hi: u32,
+    ) -> Outcome<()> {
+        let asked = self.place(lo, hi);
+        if name.is_empty() {
+            return refuse(
+                Diagnostic::error("E0103", asked, "the name of the file is missing")
+                    .help("write `$include 'file.gms'`"),
+            );
+        }
+        if let Some(text) = self.echoed.get(&name.to_lowercase()) {
+            let text = text.clone();
+            self.open(PathBuf::from(name), name, text, arguments, asked);
+            return Ok(());
+        }
+        let from = self.frames.last().map(|f| f.path.clone());
+        let (path, text) = match self.host.read(name, from.as_deref()) {
+            Ok(found) => found,
+            Err(e) => return refuse(unreadable(name, &e, asked)),
+        };
+        // A batch file may call itself with other arguments: that is bounded by the depth.
+        let itself = arguments.is_none()
+            && self
+                .frames
+                .iter()
+                .any(|f| f.path == path && f.arguments.is_none());
+        if itself || self.frames.len() >= DEEPEST_INCLUDE {
+            let message = if itself {
+                format!("the file `{name}` includes itself")
+            } else {
+                format!("files are included more than {DEEPEST_INCLUDE} deep")
+            };
+            let mut d = Diagnostic::error("E0105", asked, message)
+                .help("take the `$include` out, or guard it with `$if not set`");
+            for frame in self.frames.iter().skip(1).take(3) {
+                d = d.other(frame.asked, "included from here");
+            }
+            return refuse(d);
+        }
+        self.open(path, name, text, arguments, asked);
+        Ok(())
+    }
+
+    /// A place in the present file that is not copied, as a span: a blank line stands for it.
+    pub(super) fn place(&mut self, lo: u32, hi: u32) -> Span {
+        let file = self.frames.last().map_or(FileId(0), |f| f.file);
+        let span = self.map.push_substitute(" ", file, lo, hi);
+        self.map.push_substitute("\n", file, hi, hi);
+        span
+    }
+
+    /// Appends text to the expanded text, up to the next directive line. False at the end.
+    pub(crate) fn fill(&mut self, known: &dyn Known) -> Result<bool, Vec<Diagnostic>> {
+        let before = self.map.expanded().len();
+        if before > LONGEST {
+            let at = self.frames.last().map_or(0, |f| f.pos) as u32;
+            self.frames.clear();
+            let file = FileId(0);
+            let span = self.map.push_substitute("\n", file, at, at);
+            return Err(vec![
+                Diagnostic::error(
+                    "E0108",
+                    span,
+                    "the text is longer than 3 GB with all its includes",
+                )
+                .help("split the model, or read the data with `execute_load`"),
+            ]);
+        }
+        loop {
+            let grown = self.map.expanded().len() - before;
+            let Some(frame) = self.frames.last() else {
+                return Ok(grown > 0);
+            };
+            if grown > CHUNK {
+                return Ok(true);
+            }
+            if frame.pos >= frame.len {
+                if let Err(d) = self.leave() {
+                    return Err(vec![*d]);
+                }
+                continue;
+            }
+            let (file, pos) = (frame.file, frame.pos);
+            let first = self.map.file(file).text.as_bytes()[pos];
+            if self.in_comment.is_none() {
+                if first == self.marks.comment {
+                    let end = self.line_end(pos);
+                    self.advance(end);
+                    continue;
+                }
+                if first == self.marks.dollar {
+                    if grown > 0 {
+                        return Ok(true);
+                    }
+                    let line = self.take_line();
+                    let outcome = self
+                        .substituted(line)
+                        .and_then(|l| self.directive_line(&l, known));
+                    if let Err(d) = outcome {
+                        self.had_errors = true;
+                        return Err(vec![*d]);
+                    }
+                    continue;
+                }
+                let end = self.plain_end(pos);
+                if end > pos {
+                    self.map.push_copy(file, pos as u32, end as u32);
+                    self.advance(end);
+                    self.end_line(end);
+                    continue;
+                }
+            }
+            let line = self.take_line();
+            let outcome = match self.substituted(line) {
+                Err(d) => Err(d),
+                Ok(l) => {
+                    let first = l.text.as_bytes().first().copied();
+                    if self.in_comment.is_some() {
+                        self.finish_text(l, 0)
+                    } else if first == Some(self.marks.comment) {
+                        Ok(())
+                    } else if first == Some(self.marks.dollar) {
+                        if grown > 0 {
+                            // Statements before it come first.
+                            self.advance(pos);
+                            return Ok(true);
+                        }
+                        self.directive_line(&l, known)
+                    } else {
+                        self.finish_text(l, 0)
+                    }
+                }
+            };
+            if let Err(d) = outcome {
+                self.had_errors = true;
+                return Err(vec![*d]);
+            }
+        }
+    }
+
+    /// The switches in force.
+    pub(crate) fn modes(&self) -> Modes {
+        self.modes
+    }
+
+    /// `$onEnd` is in force.
+    pub(crate) fn on_end(&self) -> bool {
+        self.on_end
+    }
+
+    /// A statement did not parse (`$if errorFree`).
+    pub(crate) fn note_error(&mut self) {
+        self.had_errors = true;
+    }
+
+    pub(crate) fn into_map(self) -> SourceMap {
+        self.map
+    }
+
+    pub(crate) fn warn(&mut self, d: Diagnostic) {
+        self.warnings.push(d);
+    }
+
+    pub(crate) fn take_warnings(&mut self) -> Vec<Diagnostic> {
+        std::mem::take(&mut self.warnings)
+    }
+
+    pub(crate) fn take_log(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.log)
+    }
+
+    pub(crate) fn title(&self) -> Option<&str> {
+        self.title.as_deref()
+    }
+
+    pub(crate) fn ending(&self) -> Ending {
+        self.ending
+    }
+
+    pub(crate) fn value_of(&self, name: &str) -> Option<&str> {
+        self.names.get(name)
+    }
+
+    /// Goes on reading the present file at `pos`.
+    pub(super) fn advance(&mut self, pos: usize) {
+        if let Some(frame) = self.frames.last_mut() {
+            frame.pos = pos.min(frame.len);
+        }
+    }
+
+    /// The byte after the line end that follows `pos` in the present file.
+    pub(super) fn line_end(&self, pos: usize) -> usize {
+        let Some(frame) = self.frames.last() else {
+            return pos;
+        };
+        let bytes = self.map.file(frame.file).text.as_bytes();
+        memchr::memchr(b'\n', &bytes[pos..]).map_or(bytes.len(), |n| pos + n + 1)
+    }
+
+    /// The text of `from..to` of the present file.
+    pub(super) fn raw(&self, from: usize, to: usize) -> &str {
+        self.frames
+            .last()
+            .and_then(|f| self.map.file(f.file).text.get(from..to))
+            .unwrap_or("")
+    }
+
+    /// Makes sure that the expanded text ends with a line end.
+    fn end_line(&mut self, pos: usize) {
+        if !self.map.expanded().is_empty() && !self.map.expanded().ends_with('\n') {
+            let file = self.frames.last().map_or(FileId(0), |f| f.file);
+            self.map.push_substitute("\n", file, pos as u32, pos as u32);
+        }
+    }
+
+    /// Takes the next line of the present file, without its end.
+    pub(super) fn take_line(&mut self) -> Line {
+        let (file, pos) = match self.frames.last() {
+            Some(f) => (f.file, f.pos),
+            None => (FileId(0), 0),
+        };
+        let end = self.line_end(pos);
+        let text = self.raw(pos, end);
+        let text = text.strip_suffix('\n').unwrap_or(text);
+        let text = text.strip_suffix('\r').unwrap_or(text);
+        let line = Line::new(file, pos as u32, text);
+        self.advance(end);
+        line
+    }
+
+    /// End of the run of lines from `pos` on that can be copied as they are.
+    fn plain_end(&mut self, pos: usize) -> usize {
+        if !self.macros.is_empty() || self.marks.columns != (1, usize::MAX) {
+            return pos;
+        }
+        let Some(frame) = self.frames.last_mut() else {
+            return pos;
+        };
+        let bytes = self.map.file(frame.file).text.as_bytes();
+        let marks = &self.marks;
+        let find = |needle: &[u8]| {
+            memchr::memmem::find(&bytes[pos..], needle).map_or(usize::MAX, |n| pos + n)
+        };
+        for (i, at) in frame.ahead.iter_mut().enumerate() {
+            if *at >= pos && *at != 0 {
+                continue;
+            }
+            *at = match i {
+                0 => memchr::memchr(b'%', &bytes[pos..]).map_or(usize::MAX, |n| pos + n),
+                1 if marks.eol_on => find(&marks.eol),
+                2 if marks.inline_on => find(&marks.inline.0),
+                3 if marks.slashes => find(b"//"),
+                _ => usize::MAX,
+            };
+        }
+        let mark = frame.ahead.iter().copied().min().unwrap_or(usize::MAX);
+        let stop = if mark >= bytes.len() {
+            bytes.len()
+        } else {
+            memchr::memrchr(b'\n', &bytes[pos..mark]).map_or(pos, |n| pos + n + 1)
+        };
+        let stop = if stop - pos > CHUNK {
+            memchr::memchr(b'\n', &bytes[pos + CHUNK..stop]).map_or(stop, |n| pos + CHUNK + n + 1)
+        } else {
+            stop
+        };
+        for n in memchr::memchr_iter(b'\n', &bytes[pos..stop]) {
+            let next = pos + n + 1;
+            match bytes.get(next) {
+                Some(&c) if c == marks.dollar || c == marks.comment => return next.min(stop),
+                _ => {}
+            }
+        }
+        stop
+    }
+
+    /// Forgets where the next marks are: the marks have changed.
+    pub(super) fn marks_changed(&mut self) {
+        self.frames.iter_mut().for_each(Frame::forget_marks);
+    }
+
+    /// The present file ends.
+    fn leave(&mut self) -> Outcome<()> {
+        let Some(frame) = self.frames.last() else {
+            return Ok(());
+        };
+        let pos = frame.len;
+        self.end_line(pos);
+        let open = self.frames.last_mut().and_then(|f| f.ifs.drain(..).next());
+        let comment = self.in_comment.take();
+        self.frames.pop();
+        self.names.leave();
+        if let Some(open) = open {
+            return refuse(
+                Diagnostic::error("E0106", open.span, "this `$ifThen` is never closed")
+                    .help("every `$ifThen` needs its `$endIf` in the same file"),
+            );
+        }
+        if let Some(span) = comment {
+            return refuse(
+                Diagnostic::error("E0101", span, "this comment is never closed")
+                    .help("close it with the mark that `$inlineCom` set"),
+            );
+        }
+        Ok(())
+    }
+
+    /// Ends the text here, whatever files are open.
+    pub(super) fn stop(&mut self, ending: Ending) {
+        self.ending = ending;
+        while self.frames.pop().is_some() {
+            self.names.leave();
+        }
+    }
+
+    /// Puts what they stand for in the place of `%name%` and `%1`.
+    pub(super) fn substituted(&mut self, mut line: Line) -> Outcome<Line> {
+        if !line.text.contains('%') {
+            return Ok(line);
+        }
+        let mut changes = Vec::new();
+        let bytes = line.text.as_bytes();
+        let mut at = 0;
+        while let Some(n) = memchr::memchr(b'%', &bytes[at..]) {
+            let from = at + n;
+            let name_end = bytes[from + 1..]
+                .iter()
+                .position(|&c| !c.is_ascii_alphanumeric() && c != b'_' && c != b'.' && c != b' ')
+                .map_or(bytes.len(), |n| from + 1 + n);
+            if bytes.get(name_end) == Some(&b'%') && name_end > from + 1 {
+                let (lo, _) = line.origin(from, name_end);
+                if let Some(value) = self.value(&line.text[from + 1..name_end], lo) {
+                    changes.push((from, name_end + 1, value));
+                    at = name_end + 1;
+                    continue;
+                }
+            }
+            let digits = bytes[from + 1..]
+                .iter()
+                .take_while(|c| c.is_ascii_digit())
+                .count();
+            if digits > 0
+                && let Some(args) = self.frames.last().and_then(|f| f.arguments.as_ref())
+            {
+                let end = from + 1 + digits;
+                let number: usize = line.text[from + 1..end].parse().unwrap_or(usize::MAX);
+                let value = number.checked_sub(1).and_then(|n| args.get(n)).cloned();
+                changes.push((from, end, value.unwrap_or_default()));
+                at = end;
+                continue;
+            }
+            at = from + 1;
+        }
+        line.replace(&changes);
+        Ok(line)
+    }
+
+    /// What `%name%` stands for at byte `lo` of the present file.
+    fn value(&mut self, name: &str, lo: u32) -> Option<String> {
+        if name.contains(' ') {
+            return None;
+        }
+        if let Some(v) = self.names.get(name) {
+            return Some(v.to_owned());
+        }
+        if let Some(v) = variables::constant(name) {
+            return Some(v.to_owned());
+        }
+        let lower = name.to_ascii_lowercase();
+        if let Some(item) = lower.strip_prefix("system.") {
+            return self.system(item, lo);
+        }
+        if let Some(item) = lower.strip_prefix("gams.") {
+            return Some(match item {
+                "workdir" | "wdir" | "curdir" => "./".into(),
+                "ps" | "pagesize" => "60".into(),
+                "pw" | "pagewidth" => "255".into(),
+                "input" => self.system("fn", lo)? + &self.system("fe", lo)?,
+                "errmsg" | "error" | "limrow" | "limcol" | "optfile" | "logoption" | "lo" => {
+                    "0".into()
+                }
+                "reslim" => "10000000000".into(),
+                "iterlim" => "2147483647".into(),
+                _ => String::new(),
+            });
+        }
+        if lower.starts_with("sysenv.") {
+            return Some(String::new());
+        }
+        None
+    }
+
+    fn system(&mut self, item: &str, lo: u32) -> Option<String> {
+        let main = self.frames.first()?.path.clone();
+        let text = |p: Option<&std::ffi::OsStr>| {
+            p.map_or(String::new(), |s| s.to_string_lossy().into_owned())
+        };
+        let dotted = |p: Option<&std::ffi::OsStr>| {
+            p.map_or(String::new(), |s| format!(".{}", s.to_string_lossy()))
+        };
+        let now = self.host.now();
+        Some(match item {
+            "fn" => text(main.file_stem()),
+            "fe" => dotted(main.extension()),
+            "fp" => match main.parent() {
+                Some(p) if !p.as_os_str().is_empty() => format!("{}/", p.display()),
+                _ => "./".into(),
+            },
+            "ifile" | "sfile" | "incname" => self.frames.last()?.path.display().to_string(),
+            "incparent" => self
+                .frames
+                .iter()
+                .rev()
+                .nth(1)
+                .map_or(String::new(), |f| f.path.display().to_string()),
+            "line" | "incline" | "listline" | "prline" => {
+                self.map.file(self.frames.last()?.file).line(lo).to_string()
+            }
+            "date" | "rdate" => super::directives::date_text(now),
+            "date1" => super::directives::date_text(now),
+            "time" | "rtime" => super::directives::time_text(now),
+            "title" => self.title.clone().unwrap_or_default(),
+            "filesys" => "UNIX".into(),
+            "dirsep" => "/".into(),
+            "tab" => "\t".into(),
+            "nullfile" => "/dev/null".into(),
+            "platform" | "hostplatform" => "LEX".into(),
+            "version" | "gamsversion" | "gamsrelease" => "54".into(),
+            "errorlevel" | "page" | "redirlog" | "licenselevel" | "isalphabeta" => "0".into(),
+            "memory" | "tstart" | "tcomp" | "texec" | "tclose" | "elapsed" => "0".into(),
+            "username" | "computername" | "prpage" | "opage" | "verid" | "gstring" | "sstring"
+            | "pfile" => String::new(),
+            "lp" | "nlp" | "mcp" | "rmip" | "qcp" | "dnlp" | "cns" | "mpec" | "mip" | "minlp"
+            | "rminlp" | "rmiqcp" | "miqcp" => "bmod".into(),
+            _ => return None,
+        })
+    }
+
+    /// The rest of a line from `from` on: comments and macros, then into the expanded text.
+    pub(super) fn finish_text(&mut self, mut line: Line, from: usize) -> Outcome<()> {
+        let end = self.strip_comments(&mut line, from);
+        let (first, last) = self.marks.columns;
+        let mut end = end;
+        if (first, last) != (1, usize::MAX) {
+            end = end.min(byte_of_column(&line.text, last.saturating_add(1)));
+            let start = byte_of_column(&line.text, first).min(end);
+            if start > 0 {
+                line.replace(&[(0, start, " ".repeat(start))]);
+            }
+        }
+        if !self.macros.is_empty() {
+            match self.macros.calls(&line.text[..end]) {
+                Ok(calls) => {
+                    if !calls.is_empty() {
+                        let tail = line.text.len() - end;
+                        line.replace(&calls);
+                        end = line.text.len() - tail;
+                    }
+                }
+                Err(e) => {
+                    let (lo, hi) = line.origin(e.from, e.to);
+                    let span = self.place(lo, hi);
+                    return refuse(Diagnostic::error("E0111", span, e.message).help(e.help));
+                }
+            }
+        }
+        line.emit(&mut self.map, from, end);
+        let (_, hi) = line.origin(0, line.text.len());
+        let file = self.frames.last().map_or(FileId(0), |f| f.file);
+        self.map.push_substitute("\n", file, hi, hi);
+        Ok(())
+    }
+
+    /// Blanks comments out; gives the end of what counts.
+    fn strip_comments(&mut self, line: &mut Line, from: usize) -> usize {
+        let m = &self.marks;
+        if !m.eol_on && !m.inline_on && !m.slashes && self.in_comment.is_none() {
+            return line.text.len();
+        }
+        let bytes = line.text.as_bytes();
+        let mut blanks: Vec<(usize, usize)> = Vec::new();
+        let mut i = from;
+        let mut end = bytes.len();
+        let mut open = self.in_comment.map(|_| from);
+        let mut opened_at = None;
+        while i < bytes.len() {
+            if let Some(start) = open {
+                match memchr::memmem::find(&bytes[i..], &m.inline.1) {
+                    Some(n) => {
+                        i += n + m.inline.1.len();
+                        blanks.push((start, i));
+                        open = None;
+                        opened_at = None;
+                        self.in_comment = None;
+                    }
+                    None => {
+                        blanks.push((start, bytes.len()));
+                        i = bytes.len();
+                    }
+                }
+                continue;
+            }
+            let rest = &bytes[i..];
+            if m.eol_on && rest.starts_with(&m.eol) || m.slashes && rest.starts_with(b"//") {
+                end = i;
+                break;
+            }
+            if m.inline_on && rest.starts_with(&m.inline.0) {
+                open = Some(i);
+                opened_at = Some(i);
+                i += m.inline.0.len();
+                continue;
+            }
+            if let Some(close) = quoted_end(bytes, i) {
+                i = close;
+                continue;
+            }
+            i += 1;
+        }
+        if let (Some(_), Some(at)) = (open, opened_at) {
+            let (lo, hi) = line.origin(at, at + m.inline.0.len());
+            let file = self.frames.last().map_or(FileId(0), |f| f.file);
+            let span = self.map.push_substitute(" ", file, lo, hi);
+            self.map.push_substitute("\n", file, hi, hi);
+            self.in_comment = Some(span);
+        }
+        let changes: Vec<_> = blanks
+            .into_iter()
+            .map(|(a, b)| (a, b, " ".repeat(line.text[a..b].chars().count())))
+            .collect();
+        if !changes.is_empty() {
+            let tail = line.text.len() - end;
+            line.replace(&changes);
+            end = line.text.len() - tail;
+        }
+        end
+    }
+}
+
+/// If a quoted text begins at `i`, the byte after its end. An apostrophe inside a word and a quote
+/// without its partner on the line begin nothing.
+pub(crate) fn quoted_end(bytes: &[u8], i: usize) -> Option<usize> {
+    let q = bytes[i];
+    if q != b'\'' && q != b'"' {
+        return None;
+    }
+    if i > 0 && bytes[i - 1].is_ascii_alphanumeric() {
+        return None;
+    }
+    let rest = &bytes[i + 1..];
+    let n = memchr::memchr2(q, b'\n', rest)?;
+    (rest[n] == q).then_some(i + n + 2)
+}
+
+fn byte_of_column(text: &str, column: usize) -> usize {
+    text.char_indices()
+        .nth(column.saturating_sub(1))
+        .map_or(text.len(), |(i, _)| i)
+}
+
+/// The diagnostic for a file that cannot be read.
+fn unreadable(name: &str, e: &HostError, span: Span) -> Diagnostic {
+    match e {
+        HostError::NotFound => {
+            Diagnostic::error("E0103", span, format!("the file `{name}` is not there"))
+                .help("paths are relative to the file that asks, then to the current directory")
+        }
+        HostError::Outside(p) => Diagnostic::error(
+            "E0104",
+            span,
+            format!(
+                "the file `{name}` lies outside the folders that may be read ({})",
+                p.display()
+            ),
+        )
+        .help("put it beside the model, or allow its folder on the command line"),
+        HostError::NotUtf8(at) => Diagnostic::error(
+            "E0102",
+            span,
+            format!("the file `{name}` is not UTF-8 text: byte {at} is not part of a character"),
+        )
+        .help("save it as UTF-8, for example with `iconv -f LATIN1 -t UTF-8`"),
+        HostError::Other(why) => Diagnostic::error(
+            "E0103",
+            span,
+            format!("the file `{name}` cannot be read: {why}"),
+        )
+        .help("check the path and the permissions"),
+    }
+}

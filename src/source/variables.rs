@@ -1,0 +1,195 @@
+//! Compile-time variables: what `%name%` stands for.
+//!
+//! Three scopes, as in GAMS: `$setLocal` lives in its file, `$set` in its file and the files that it
+//! includes, `$setGlobal` everywhere. The innermost wins. Names are compared without regard to case.
+
+use rustc_hash::FxHashMap;
+
+/// One level of names.
+type Scope = FxHashMap<String, String>;
+
+/// All names, one pair of scopes per open file.
+#[derive(Default)]
+pub(super) struct Variables {
+    global: Scope,
+    /// `(scoped, local)` per open file, the innermost last.
+    files: Vec<(Scope, Scope)>,
+}
+
+/// The three ways of defining a name.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Reach {
+    /// `$setLocal`
+    Local,
+    /// `$set`
+    Scoped,
+    /// `$setGlobal`
+    Global,
+}
+
+impl Variables {
+    /// A file is opened.
+    pub(super) fn enter(&mut self) {
+        self.files.push(Default::default());
+    }
+
+    /// The innermost file ends: its names are forgotten.
+    pub(super) fn leave(&mut self) {
+        self.files.pop();
+    }
+
+    /// Defines a name.
+    pub(super) fn set(&mut self, reach: Reach, name: &str, value: String) {
+        let name = name.to_ascii_lowercase();
+        match (reach, self.files.last_mut()) {
+            (Reach::Local, Some((_, local))) => local.insert(name, value),
+            (Reach::Scoped, Some((scoped, _))) => scoped.insert(name, value),
+            _ => self.global.insert(name, value),
+        };
+    }
+
+    /// Forgets a name.
+    pub(super) fn drop(&mut self, reach: Reach, name: &str) {
+        let name = name.to_ascii_lowercase();
+        match (reach, self.files.last_mut()) {
+            (Reach::Local, Some((_, local))) => local.remove(&name),
+            (Reach::Scoped, Some(_)) => self
+                .files
+                .iter_mut()
+                .rev()
+                .find_map(|(scoped, _)| scoped.remove(&name)),
+            _ => self.global.remove(&name),
+        };
+    }
+
+    /// What a name stands for.
+    pub(super) fn get(&self, name: &str) -> Option<&str> {
+        let name = name.to_ascii_lowercase();
+        let local = self.files.last().and_then(|(_, local)| local.get(&name));
+        local
+            .or_else(|| self.files.iter().rev().find_map(|(s, _)| s.get(&name)))
+            .or_else(|| self.global.get(&name))
+            .map(String::as_str)
+    }
+
+    /// Whether a name is defined in one scope (`$if setLocal x`).
+    pub(super) fn has(&self, reach: Reach, name: &str) -> bool {
+        let name = name.to_ascii_lowercase();
+        match reach {
+            Reach::Local => self
+                .files
+                .last()
+                .is_some_and(|(_, l)| l.contains_key(&name)),
+            Reach::Scoped => self.files.iter().any(|(s, _)| s.contains_key(&name)),
+            Reach::Global => self.global.contains_key(&name),
+        }
+    }
+}
+
+/// The number behind a named constant such as `%modelStat.optimal%`.
+pub(super) fn constant(name: &str) -> Option<&'static str> {
+    const MODEL_STATUS: &[&str] = &[
+        "optimal",
+        "locallyoptimal",
+        "unbounded",
+        "infeasible",
+        "locallyinfeasible",
+        "intermediateinfeasible",
+        "feasiblesolution",
+        "integersolution",
+        "intermediatenoninteger",
+        "integerinfeasible",
+        "licensingproblem",
+        "errorunknown",
+        "errornosolution",
+        "nosolutionreturned",
+        "solvedunique",
+        "solved",
+        "solvedsingular",
+        "unboundednosolution",
+        "infeasiblenosolution",
+    ];
+    const SOLVE_STATUS: &[&str] = &[
+        "normalcompletion",
+        "iterationinterrupt",
+        "resourceinterrupt",
+        "terminatedbysolver",
+        "evaluationinterrupt",
+        "capabilityproblems",
+        "licensingproblems",
+        "userinterrupt",
+        "setuperr",
+        "solvererr",
+        "internalerr",
+        "skipped",
+        "systemerr",
+    ];
+    const SOLVE_PRINT: &[&str] = &["summary", "report", "quiet"];
+    const SOLVE_LINK: &[&str] = &[
+        "chainscript",
+        "callscript",
+        "callmodule",
+        "asyncgrid",
+        "asyncsimulate",
+        "loadlibrary",
+        "asyncthreads",
+        "threadssimulate",
+    ];
+    const SOLVE_OPT: &[&str] = &["replace", "merge", "clear"];
+    const HANDLE_STATUS: &[&str] = &["unknown", "running", "ready", "failure"];
+    const NUMBERS: [&str; 20] = [
+        "0", "1", "2", "3", "4", "5", "6", "7", "8", "9", "10", "11", "12", "13", "14", "15", "16",
+        "17", "18", "19",
+    ];
+    let name = name.to_ascii_lowercase();
+    let (group, member) = name.split_once('.')?;
+    let (list, first) = match group {
+        "modelstat" => (MODEL_STATUS, 1),
+        "solvestat" => (SOLVE_STATUS, 1),
+        "solprint" => (SOLVE_PRINT, 0),
+        "solvelink" => (SOLVE_LINK, 0),
+        "solveopt" => (SOLVE_OPT, 0),
+        "handlestatus" => (HANDLE_STATUS, 0),
+        _ => return None,
+    };
+    let member = match member {
+        "intermediatenonoptimal" => "feasiblesolution",
+        "evaluationerrorlimit" => "evaluationinterrupt",
+        "off" if group == "solprint" => "summary",
+        "on" if group == "solprint" => "report",
+        "silent" if group == "solprint" => "quiet",
+        m => m,
+    };
+    let i = list.iter().position(|&m| m == member)?;
+    NUMBERS.get(i + first).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_innermost_scope_wins() {
+        let mut v = Variables::default();
+        v.enter();
+        v.set(Reach::Global, "A", "1".into());
+        v.set(Reach::Scoped, "a", "2".into());
+        v.enter();
+        assert_eq!(v.get("a"), Some("2"));
+        v.set(Reach::Local, "a", "3".into());
+        assert_eq!(v.get("A"), Some("3"));
+        v.leave();
+        assert_eq!(v.get("a"), Some("2"));
+        v.drop(Reach::Scoped, "a");
+        assert_eq!(v.get("a"), Some("1"));
+    }
+
+    #[test]
+    fn statuses_have_their_numbers() {
+        assert_eq!(constant("modelStat.Optimal"), Some("1"));
+        assert_eq!(constant("solveStat.normalCompletion"), Some("1"));
+        assert_eq!(constant("solveLink.loadLibrary"), Some("5"));
+        assert_eq!(constant("solPrint.quiet"), Some("2"));
+        assert_eq!(constant("modelStat.nonsense"), None);
+    }
+}

@@ -1,0 +1,332 @@
+//! Declarations: names, domains, texts, data.
+
+use pest::iterators::Pair;
+
+use super::{Builder, Built, parts};
+use crate::diag::Diagnostic;
+use crate::syntax::ast::*;
+use crate::syntax::grammar::Rule;
+
+impl Builder<'_> {
+    /// A whole statement, given its top rule.
+    pub(crate) fn statement(&self, pair: Pair<'_, Rule>) -> Built<StmtKind> {
+        match pair.as_rule() {
+            Rule::set_statement => {
+                let mut singleton = false;
+                let mut list = Vec::new();
+                for p in parts(pair) {
+                    match p.as_rule() {
+                        Rule::set_word => {
+                            singleton = p.as_str().len() > 4
+                                && p.as_str()[..9.min(p.as_str().len())]
+                                    .eq_ignore_ascii_case("singleton")
+                        }
+                        _ => list.push(SetDecl {
+                            symbol: self.declaration(p)?,
+                            singleton,
+                        }),
+                    }
+                }
+                Ok(StmtKind::Set(list))
+            }
+            Rule::parameter_statement => {
+                let mut scalar = false;
+                let mut list = Vec::new();
+                for p in parts(pair) {
+                    match p.as_rule() {
+                        Rule::parameter_word => {
+                            scalar = p.as_str().as_bytes()[0].eq_ignore_ascii_case(&b's')
+                        }
+                        _ => list.push(ParameterDecl {
+                            symbol: self.declaration(p)?,
+                            scalar,
+                        }),
+                    }
+                }
+                Ok(StmtKind::Parameter(list))
+            }
+            Rule::variable_statement => {
+                let mut kind = VariableKind::Unstated;
+                let mut list = Vec::new();
+                for p in parts(pair) {
+                    match p.as_rule() {
+                        Rule::variable_kind => kind = variable_kind(p.as_str()),
+                        _ => list.push(self.declaration(p)?),
+                    }
+                }
+                Ok(StmtKind::Variable(kind, list))
+            }
+            Rule::equation_statement => Ok(StmtKind::Equation(self.declarations(pair)?)),
+            Rule::acronym_statement => Ok(StmtKind::Acronym(self.declarations(pair)?)),
+            Rule::file_statement => {
+                let mut list = Vec::new();
+                for p in parts(pair) {
+                    let d = self.declaration(p)?;
+                    let file = d.data.map(|s| {
+                        let t = self
+                            .expanded
+                            .get(s.lo as usize..s.hi as usize)
+                            .unwrap_or("")
+                            .trim();
+                        let t = ['\'', '"']
+                            .iter()
+                            .find_map(|q| t.strip_prefix(*q)?.strip_suffix(*q))
+                            .unwrap_or(t);
+                        t.trim().into()
+                    });
+                    list.push((d.name, file));
+                }
+                Ok(StmtKind::File(list))
+            }
+            Rule::table_statement => {
+                let span = self.span(&pair);
+                let symbol = match parts(pair).next() {
+                    Some(p) => self.declaration(p)?,
+                    None => {
+                        return Err(Box::new(Diagnostic::error(
+                            "E0210",
+                            span,
+                            "a name was expected after `table`",
+                        )));
+                    }
+                };
+                match symbol.data {
+                    Some(body) => Ok(StmtKind::Table(TableDecl { symbol: SymbolDecl { data: None, ..symbol }, body })),
+                    None => Err(Box::new(
+                        Diagnostic::error("E0210", symbol.name.span, format!("the table `{}` has no lines", symbol.name.name))
+                            .help("the line after the name holds the labels of the columns, each further line a row"),
+                    )),
+                }
+            }
+            Rule::alias_statement => {
+                let mut groups = Vec::new();
+                for group in parts(pair) {
+                    groups.push(group.into_inner().map(|n| self.ident(&n)).collect());
+                }
+                Ok(StmtKind::Alias(groups))
+            }
+            Rule::model_statement => {
+                let mut list = Vec::new();
+                for p in parts(pair) {
+                    list.push(self.model(p)?);
+                }
+                Ok(StmtKind::Model(list))
+            }
+            _ => self.action(pair),
+        }
+    }
+
+    fn declarations(&self, pair: Pair<'_, Rule>) -> Built<Vec<SymbolDecl>> {
+        parts(pair).map(|p| self.declaration(p)).collect()
+    }
+
+    fn declaration(&self, pair: Pair<'_, Rule>) -> Built<SymbolDecl> {
+        let span = self.span(&pair);
+        let mut inner = parts(pair);
+        let Some(name) = inner.next() else {
+            return Err(Box::new(Diagnostic::error(
+                "E0210",
+                span,
+                "a name was expected",
+            )));
+        };
+        let mut d = SymbolDecl {
+            name: self.ident(&name),
+            domain: None,
+            text: None,
+            data: None,
+        };
+        for p in inner {
+            match p.as_rule() {
+                Rule::declared_over => d.domain = Some(self.domain_names(p)),
+                Rule::text_mark => {
+                    let inside = self.hole(&p).map(|h| h.inside);
+                    d.text = inside
+                        .and_then(|s| self.expanded.get(s.lo as usize..s.hi as usize))
+                        .map(Into::into);
+                }
+                _ => d.data = self.hole(&p).map(|h| h.inside),
+            }
+        }
+        Ok(d)
+    }
+
+    fn domain_names(&self, pair: Pair<'_, Rule>) -> Vec<DomainName> {
+        parts(pair)
+            .map(|p| {
+                let place = self.span(&p);
+                let text = p.as_str();
+                let mut name = None;
+                let mut defines = false;
+                for q in p.into_inner() {
+                    match q.as_rule() {
+                        Rule::defines => defines = true,
+                        Rule::quoted => {
+                            name = Some(Ident {
+                                name: Self::unquote(&q),
+                                span: self.span(&q),
+                            })
+                        }
+                        _ => name = Some(self.ident(&q)),
+                    }
+                }
+                // `*` leaves no pair.
+                let star = Ident {
+                    name: "*".into(),
+                    span: place,
+                };
+                debug_assert!(name.is_some() || text.starts_with('*'));
+                DomainName {
+                    name: name.unwrap_or(star),
+                    defines,
+                }
+            })
+            .collect()
+    }
+
+    fn model(&self, pair: Pair<'_, Rule>) -> Built<ModelDecl> {
+        let span = self.span(&pair);
+        let mut inner = parts(pair);
+        let Some(name) = inner.next() else {
+            return Err(Box::new(Diagnostic::error(
+                "E0210",
+                span,
+                "a name was expected",
+            )));
+        };
+        let mut model = ModelDecl {
+            name: self.ident(&name),
+            text: None,
+            items: None,
+        };
+        for p in inner {
+            match p.as_rule() {
+                Rule::text_mark => {
+                    let inside = self.hole(&p).map(|h| h.inside);
+                    model.text = inside
+                        .and_then(|s| self.expanded.get(s.lo as usize..s.hi as usize))
+                        .map(Into::into);
+                }
+                Rule::model_items => {
+                    let mut items = Vec::new();
+                    for item in p.into_inner() {
+                        self.model_item(item, &mut items)?;
+                    }
+                    model.items = Some(items);
+                }
+                _ => {}
+            }
+        }
+        Ok(model)
+    }
+
+    fn model_item(&self, pair: Pair<'_, Rule>, items: &mut Vec<ModelItem>) -> Built<()> {
+        let mut minus = false;
+        for p in parts(pair) {
+            let place = self.span(&p);
+            match p.as_rule() {
+                Rule::model_sign => minus = p.as_str() == "-",
+                Rule::model_name => {
+                    let mut inner = p.into_inner();
+                    let Some(name) = inner.next() else { continue };
+                    let name = self.ident(&name);
+                    let over = inner.next().map(|a| self.plain_names(a)).transpose()?;
+                    items.push(if minus {
+                        ModelItem::Remove(name)
+                    } else if name.name.eq_ignore_ascii_case("all") && over.is_none() {
+                        ModelItem::All(name.span)
+                    } else {
+                        ModelItem::Add(name, over)
+                    });
+                }
+                Rule::model_group => {
+                    for rows in p.into_inner() {
+                        for n in rows.into_inner() {
+                            let n = self.ident(&n);
+                            items.push(if minus {
+                                ModelItem::Remove(n)
+                            } else {
+                                ModelItem::Add(n, None)
+                            });
+                        }
+                    }
+                }
+                _ => {
+                    let mut rows = Vec::new();
+                    let mut columns = Vec::new();
+                    for (n, q) in p.into_inner().enumerate() {
+                        let to = if n == 0 || q.as_rule() == Rule::arguments {
+                            &mut rows
+                        } else {
+                            &mut columns
+                        };
+                        match q.as_rule() {
+                            Rule::model_rows => to.extend(q.into_inner().map(|r| self.ident(&r))),
+                            Rule::name => to.push(self.ident(&q)),
+                            _ => {}
+                        }
+                    }
+                    if minus {
+                        return Err(Box::new(
+                            Diagnostic::error(
+                                "E0215",
+                                place,
+                                "a pair cannot be taken out of a model",
+                            )
+                            .help("write `- equation` to take an equation out"),
+                        ));
+                    }
+                    match <[Ident; 1]>::try_from(columns) {
+                        Ok([column]) => items.push(ModelItem::Pair { rows, column }),
+                        Err(columns) => {
+                            // `f.(x,y)`: each by itself; which is legal is decided later.
+                            for column in columns {
+                                items.push(ModelItem::Pair {
+                                    rows: rows.clone(),
+                                    column,
+                                });
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Arguments that are bare names.
+    pub(super) fn plain_names(&self, pair: Pair<'_, Rule>) -> Built<Vec<Ident>> {
+        let mut names = Vec::new();
+        for e in self.arguments(pair)? {
+            match e.kind {
+                ExprKind::Apply {
+                    name,
+                    attribute: None,
+                    arguments: None,
+                } => names.push(name),
+                _ => {
+                    return Err(Box::new(Diagnostic::error(
+                        "E0214",
+                        e.span,
+                        "a set was expected here",
+                    )));
+                }
+            }
+        }
+        Ok(names)
+    }
+}
+
+fn variable_kind(word: &str) -> VariableKind {
+    match word.to_ascii_lowercase().as_str() {
+        "positive" | "nonnegative" => VariableKind::Positive,
+        "negative" => VariableKind::Negative,
+        "binary" => VariableKind::Binary,
+        "integer" => VariableKind::Integer,
+        "semicont" => VariableKind::SemiContinuous,
+        "semiint" => VariableKind::SemiInteger,
+        "sos1" => VariableKind::Sos1,
+        "sos2" => VariableKind::Sos2,
+        _ => VariableKind::Free,
+    }
+}

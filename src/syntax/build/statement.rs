@@ -1,0 +1,706 @@
+//! Assignments, equations, and the statements that do something.
+
+use pest::iterators::Pair;
+
+use super::expression::number;
+use super::{Builder, Built, parts};
+use crate::diag::Diagnostic;
+use crate::source::Span;
+use crate::syntax::ast::*;
+use crate::syntax::grammar::Rule;
+
+/// The next pair, which the grammar promises.
+fn need<'i>(
+    pairs: &mut impl Iterator<Item = Pair<'i, Rule>>,
+    at: Span,
+    what: &str,
+) -> Built<Pair<'i, Rule>> {
+    pairs.next().ok_or_else(|| {
+        Box::new(Diagnostic::error(
+            "E0210",
+            at,
+            format!("{what} was expected"),
+        ))
+    })
+}
+
+impl Builder<'_> {
+    /// A statement that is no declaration.
+    pub(super) fn action(&self, pair: Pair<'_, Rule>) -> Built<StmtKind> {
+        let at = self.span(&pair);
+        match pair.as_rule() {
+            Rule::algebra => self.algebra(pair),
+            Rule::loop_statement => {
+                let mut inner = parts(pair);
+                let domain = self.domain(need(&mut inner, at, "an index")?)?;
+                Ok(StmtKind::Loop(
+                    domain,
+                    self.body(need(&mut inner, at, "a statement")?)?,
+                ))
+            }
+            Rule::while_statement => {
+                let mut inner = parts(pair);
+                let condition = self.expression(need(&mut inner, at, "a condition")?)?;
+                Ok(StmtKind::While(
+                    condition,
+                    self.body(need(&mut inner, at, "a statement")?)?,
+                ))
+            }
+            Rule::for_statement => self.for_statement(pair),
+            Rule::repeat_statement => {
+                let mut inner = parts(pair);
+                let body = self.body(need(&mut inner, at, "a statement")?)?;
+                Ok(StmtKind::Repeat(
+                    body,
+                    self.expression(need(&mut inner, at, "a condition")?)?,
+                ))
+            }
+            Rule::if_statement => {
+                let mut branches = Vec::new();
+                let mut otherwise = Vec::new();
+                let mut condition = None;
+                for p in parts(pair) {
+                    match p.as_rule() {
+                        Rule::expression => condition = Some(self.expression(p)?),
+                        Rule::else_body => {
+                            for b in p.into_inner() {
+                                otherwise = self.body(b)?;
+                            }
+                        }
+                        _ => {
+                            let body = self.body(p)?;
+                            if let Some(c) = condition.take() {
+                                branches.push((c, body));
+                            }
+                        }
+                    }
+                }
+                Ok(StmtKind::If(branches, otherwise))
+            }
+            Rule::break_statement => Ok(StmtKind::Break(self.only_condition(pair)?)),
+            Rule::continue_statement => Ok(StmtKind::Continue(self.only_condition(pair)?)),
+            Rule::display_statement => {
+                let (condition, items, _) = self.display(pair)?;
+                Ok(StmtKind::Display(condition, items))
+            }
+            Rule::abort_statement => {
+                let (condition, items, no_error) = self.display(pair)?;
+                Ok(StmtKind::Abort {
+                    condition,
+                    items,
+                    no_error,
+                })
+            }
+            Rule::option_statement => {
+                let items = parts(pair)
+                    .map(|p| self.option_item(p))
+                    .collect::<Built<_>>()?;
+                Ok(StmtKind::Option(items))
+            }
+            Rule::solve_statement => self.solve(pair),
+            Rule::put_statement => self.put(pair),
+            Rule::execute_statement => {
+                let mut inner = parts(pair);
+                let word = need(&mut inner, at, "a name")?;
+                Ok(StmtKind::Refused(self.ident(&word)))
+            }
+            Rule::exchange_statement => self.exchange(pair),
+            Rule::directive_statement => self.directive(pair),
+            Rule::figure_statement => self.figure(pair),
+            Rule::draw_statement => {
+                let mut inner = parts(pair);
+                let name = self.ident(&need(&mut inner, at, "a figure")?);
+                Ok(StmtKind::Draw(
+                    name,
+                    inner.next().map(|e| self.expression(e)).transpose()?,
+                ))
+            }
+            _ => Err(Box::new(
+                Diagnostic::error("E0210", at, "a declaration cannot stand here")
+                    .help("declare it before the block"),
+            )),
+        }
+    }
+
+    /// Statements inside a block.
+    fn body(&self, pair: Pair<'_, Rule>) -> Built<Vec<Stmt>> {
+        let mut list = Vec::new();
+        for p in parts(pair) {
+            let span = self.span(&p);
+            list.push(Stmt {
+                kind: self.action(p)?,
+                span,
+                modes: Modes::default(),
+            });
+        }
+        Ok(list)
+    }
+
+    pub(super) fn reference(&self, pair: Pair<'_, Rule>) -> Built<Reference> {
+        let span = self.span(&pair);
+        let mut inner = parts(pair);
+        let name = self.ident(&need(&mut inner, span, "a name")?);
+        let (mut attribute, mut indices) = (None, Vec::new());
+        for p in inner {
+            match p.as_rule() {
+                Rule::attribute => attribute = p.into_inner().next().map(|n| self.ident(&n)),
+                _ => indices = self.arguments(p)?,
+            }
+        }
+        Ok(Reference {
+            name,
+            attribute,
+            indices,
+            span,
+        })
+    }
+
+    fn algebra(&self, pair: Pair<'_, Rule>) -> Built<StmtKind> {
+        let at = self.span(&pair);
+        let mut inner = parts(pair);
+        let target = self.reference(need(&mut inner, at, "a name")?)?;
+        let mut conditions = Vec::new();
+        for p in inner {
+            match p.as_rule() {
+                Rule::condition => conditions.push(p),
+                Rule::definition => {
+                    let condition = self.conditions(conditions)?;
+                    let mut sides = parts(p);
+                    let left = self.expression(need(&mut sides, at, "an expression")?)?;
+                    let relation = self.relation(&need(&mut sides, at, "a relation")?)?;
+                    let right = self.expression(need(&mut sides, at, "an expression")?)?;
+                    if let Some(a) = target.attribute {
+                        return Err(Box::new(
+                            Diagnostic::error(
+                                "E0211",
+                                a.span,
+                                "an equation is defined by its name, without an attribute",
+                            )
+                            .help(format!("write `{}..`", target.name.name)),
+                        ));
+                    }
+                    return Ok(StmtKind::Equate(Equate {
+                        name: target.name,
+                        indices: target.indices,
+                        condition,
+                        left,
+                        relation,
+                        right,
+                    }));
+                }
+                _ => {
+                    let conditional = p.as_str().starts_with("$=");
+                    let value = match p.into_inner().next() {
+                        Some(e) => self.expression(e)?,
+                        None => break,
+                    };
+                    let mut condition = self.conditions(conditions)?;
+                    if conditional {
+                        // `a $= b` is `a$b = b`.
+                        let span = value.span;
+                        condition = Some(match condition {
+                            None => value.clone(),
+                            Some(c) => Expr {
+                                kind: ExprKind::Dollar(Box::new(value.clone()), Box::new(c)),
+                                span,
+                            },
+                        });
+                    }
+                    return Ok(StmtKind::Assign(Assign {
+                        target,
+                        condition,
+                        value,
+                    }));
+                }
+            }
+        }
+        Err(Box::new(Diagnostic::error(
+            "E0210",
+            at,
+            "`=` or `..` was expected",
+        )))
+    }
+
+    fn relation(&self, pair: &Pair<'_, Rule>) -> Built<Relation> {
+        let at = self.span(pair);
+        let refused = |what: &str, help: &str| {
+            Err(Box::new(
+                Diagnostic::error("E0216", at, what.to_owned()).help(help),
+            ))
+        };
+        match pair.as_str().as_bytes()[1].to_ascii_lowercase() {
+            b'e' => Ok(Relation::Equal),
+            b'g' => Ok(Relation::Greater),
+            b'l' => Ok(Relation::Less),
+            b'n' => Ok(Relation::Free),
+            b'x' => refused(
+                "`=x=` equations call functions of an external program, which is refused",
+                "write the function in the language",
+            ),
+            b'c' => refused(
+                "`=c=` (conic) equations are not supported",
+                "write the cone as a quadratic inequality",
+            ),
+            b'b' => refused(
+                "`=b=` (logic) equations are not supported",
+                "write the logic with binary variables",
+            ),
+            _ => refused(
+                &format!("`{}` is no relation", pair.as_str()),
+                "relations are `=e=`, `=g=`, `=l=`, `=n=`",
+            ),
+        }
+    }
+
+    fn for_statement(&self, pair: Pair<'_, Rule>) -> Built<StmtKind> {
+        let at = self.span(&pair);
+        let mut inner = parts(pair);
+        let variable = self.reference(need(&mut inner, at, "a scalar")?)?;
+        let from = self.expression(need(&mut inner, at, "a number")?)?;
+        let down = need(&mut inner, at, "`to`")?.as_str().len() > 2;
+        let to = self.expression(need(&mut inner, at, "a number")?)?;
+        let mut by = None;
+        let mut body = Vec::new();
+        for p in inner {
+            match p.as_rule() {
+                Rule::expression => by = Some(self.expression(p)?),
+                _ => body = self.body(p)?,
+            }
+        }
+        Ok(StmtKind::For {
+            variable,
+            from,
+            down,
+            to,
+            by,
+            body,
+        })
+    }
+
+    fn only_condition(&self, pair: Pair<'_, Rule>) -> Built<Option<Expr>> {
+        let mut conditions = Vec::new();
+        for p in parts(pair) {
+            match p.as_rule() {
+                Rule::condition => conditions.push(p),
+                _ => {
+                    return Err(Box::new(
+                        Diagnostic::error("E0217", self.span(&p), "`break` leaves one loop only")
+                            .help("put the outer loop's end into a condition"),
+                    ));
+                }
+            }
+        }
+        self.conditions(conditions)
+    }
+
+    fn display(&self, pair: Pair<'_, Rule>) -> Built<(Option<Expr>, Vec<DisplayItem>, bool)> {
+        let mut conditions = Vec::new();
+        let mut items = Vec::new();
+        let mut no_error = false;
+        for p in parts(pair) {
+            match p.as_rule() {
+                Rule::condition => conditions.push(p),
+                Rule::no_error => no_error = true,
+                Rule::quoted => items.push(DisplayItem::Text(Self::unquote(&p), self.span(&p))),
+                _ => items.push(DisplayItem::Symbol(self.reference(p)?)),
+            }
+        }
+        Ok((self.conditions(conditions)?, items, no_error))
+    }
+
+    fn option_item(&self, pair: Pair<'_, Rule>) -> Built<OptionItem> {
+        let at = self.span(&pair);
+        let mut inner = parts(pair);
+        let name = self.ident(&need(&mut inner, at, "an option")?);
+        let mut indices = None;
+        let form = match inner.next() {
+            None => OptionForm::Flag,
+            Some(p) => match p.as_rule() {
+                Rule::option_value => {
+                    let span = self.span(&p);
+                    match p.into_inner().next() {
+                        None => OptionForm::Flag,
+                        Some(v) => {
+                            let span = self.span(&v).to(Span::new(span.hi, span.hi));
+                            let text = v.as_str();
+                            OptionForm::Assign(match v.as_rule() {
+                                Rule::signed => OptionValue::Number(signed(text)),
+                                Rule::quoted => OptionValue::Text(Self::unquote(&v), span),
+                                _ => OptionValue::Text(text.into(), span),
+                            })
+                        }
+                    }
+                }
+                Rule::option_format => {
+                    OptionForm::Format(p.into_inner().map(|n| number(n.as_str()) as i64).collect())
+                }
+                _ => {
+                    let (mut last, mut source, mut from) = (false, None, None);
+                    for q in p.into_inner() {
+                        match q.as_rule() {
+                            Rule::option_names if source.is_none() => indices = Some(self.names(q)),
+                            Rule::option_names => from = Some(self.names(q)),
+                            Rule::kept_last => last = true,
+                            Rule::counted => {}
+                            _ => source = Some(self.ident(&q)),
+                        }
+                    }
+                    match source {
+                        Some(source) => OptionForm::Project {
+                            last,
+                            source,
+                            indices: from,
+                        },
+                        None => OptionForm::Flag,
+                    }
+                }
+            },
+        };
+        Ok(OptionItem {
+            name,
+            indices,
+            form,
+        })
+    }
+
+    fn names(&self, pair: Pair<'_, Rule>) -> Vec<Ident> {
+        parts(pair).map(|p| self.ident(&p)).collect()
+    }
+
+    fn solve(&self, pair: Pair<'_, Rule>) -> Built<StmtKind> {
+        let at = self.span(&pair);
+        let mut inner = parts(pair);
+        let model = self.ident(&need(&mut inner, at, "a model")?);
+        let (mut using, mut objective) = (None, None);
+        for p in inner {
+            let place = self.span(&p);
+            match p.as_rule() {
+                Rule::using => {
+                    let name = parts(p).next().map(|n| self.ident(&n));
+                    if using.is_some() {
+                        return Err(Box::new(Diagnostic::error(
+                            "E0218",
+                            place,
+                            "`using` stands here twice",
+                        )));
+                    }
+                    using = name;
+                }
+                _ => {
+                    let mut sides = parts(p);
+                    let word = need(&mut sides, place, "a direction")?;
+                    let sense = if word.as_str().as_bytes()[..3.min(word.as_str().len())]
+                        .eq_ignore_ascii_case(b"min")
+                    {
+                        Sense::Minimize
+                    } else {
+                        Sense::Maximize
+                    };
+                    let variable = self.ident(&need(&mut sides, place, "a variable")?);
+                    if objective.is_some() {
+                        return Err(Box::new(Diagnostic::error(
+                            "E0218",
+                            place,
+                            "a second direction stands here",
+                        )));
+                    }
+                    objective = Some((sense, variable));
+                }
+            }
+        }
+        match using {
+            Some(using) => Ok(StmtKind::Solve(Solve {
+                model,
+                using,
+                objective,
+            })),
+            None => Err(Box::new(
+                Diagnostic::error(
+                    "E0218",
+                    at,
+                    format!(
+                        "`solve {}` does not say which type of model it is",
+                        model.name
+                    ),
+                )
+                .help(format!(
+                    "write `solve {} using lp minimizing z;`",
+                    model.name
+                )),
+            )),
+        }
+    }
+
+    fn put(&self, pair: Pair<'_, Rule>) -> Built<StmtKind> {
+        let at = self.span(&pair);
+        let mut inner = parts(pair);
+        let keyword = need(&mut inner, at, "`put`")?
+            .as_str()
+            .to_ascii_lowercase()
+            .into();
+        let mut conditions = Vec::new();
+        let mut items = Vec::new();
+        for p in inner {
+            let place = self.span(&p);
+            match p.as_rule() {
+                Rule::condition => conditions.push(p),
+                Rule::new_line => items.push(PutItem::NewLine),
+                Rule::put_column | Rule::put_row => {
+                    let column = p.as_rule() == Rule::put_column;
+                    let Some(e) = parts(p).next() else { continue };
+                    let e = self.operand(e)?;
+                    items.push(if column {
+                        PutItem::Column(e)
+                    } else {
+                        PutItem::Row(e)
+                    });
+                }
+                _ => items.push(self.put_value(p, place)?),
+            }
+        }
+        Ok(StmtKind::Put(Put {
+            keyword,
+            condition: self.conditions(conditions)?,
+            items,
+        }))
+    }
+
+    fn put_value(&self, pair: Pair<'_, Rule>, at: Span) -> Built<PutItem> {
+        let mut inner = parts(pair);
+        let first = need(&mut inner, at, "something to write")?;
+        let mut value = match first.as_rule() {
+            Rule::signed => {
+                let span = self.span(&first);
+                Expr {
+                    kind: ExprKind::Number(signed(first.as_str())),
+                    span,
+                }
+            }
+            _ => self.operand(first)?,
+        };
+        let (mut align, mut width, mut decimals) = (None, None, None);
+        let mut conditions = Vec::new();
+        for p in inner {
+            match p.as_rule() {
+                Rule::condition => conditions.push(p),
+                Rule::align => {
+                    align = Some(if p.as_str() == "<>" {
+                        '='
+                    } else {
+                        p.as_str().chars().next().unwrap_or('>')
+                    })
+                }
+                Rule::width => width = Some(self.whole_number(p)?),
+                _ => decimals = decimals.or(Some(self.whole_number(p)?)),
+            }
+        }
+        if let Some(c) = self.conditions(conditions)? {
+            let span = value.span.to(c.span);
+            value = Expr {
+                kind: ExprKind::Dollar(Box::new(value), Box::new(c)),
+                span,
+            };
+        }
+        Ok(PutItem::Item {
+            value,
+            align,
+            width,
+            decimals,
+        })
+    }
+
+    fn whole_number(&self, pair: Pair<'_, Rule>) -> Built<i64> {
+        let at = self.span(&pair);
+        pair.as_str().trim().parse().map_err(|_| {
+            Box::new(
+                Diagnostic::error("E0219", at, "widths and decimals are whole numbers")
+                    .help("for example `x.l:10:4`"),
+            )
+        })
+    }
+
+    fn exchange(&self, pair: Pair<'_, Rule>) -> Built<StmtKind> {
+        let at = self.span(&pair);
+        let mut inner = parts(pair);
+        let word = need(&mut inner, at, "a keyword")?;
+        let keyword = Ident {
+            name: word.as_str().to_ascii_lowercase().into(),
+            span: self.span(&word),
+        };
+        let (mut file, mut items, mut conditions) = (None, Vec::new(), Vec::new());
+        for p in inner {
+            let span = self.span(&p);
+            match p.as_rule() {
+                Rule::condition => conditions.push(p),
+                Rule::exchange_file => {
+                    file = p.into_inner().next().map(|q| (Self::unquote(&q), span))
+                }
+                _ => {
+                    let mut names = p
+                        .into_inner()
+                        .filter(|q| q.as_rule() == Rule::name)
+                        .map(|q| self.ident(&q));
+                    if let Some(first) = names.next() {
+                        items.push((first, names.next()));
+                    }
+                }
+            }
+        }
+        let statement = StmtKind::Exchange(Exchange {
+            keyword,
+            file,
+            items,
+        });
+        Ok(match self.conditions(conditions)? {
+            None => statement,
+            Some(c) => StmtKind::If(
+                vec![(
+                    c,
+                    vec![Stmt {
+                        kind: statement,
+                        span: at,
+                        modes: Modes::default(),
+                    }],
+                )],
+                Vec::new(),
+            ),
+        })
+    }
+
+    fn directive(&self, pair: Pair<'_, Rule>) -> Built<StmtKind> {
+        let at = self.span(&pair);
+        let mut inner = parts(pair);
+        let word = need(&mut inner, at, "a directive")?;
+        let keyword = Ident {
+            name: word.as_str().to_ascii_lowercase().into(),
+            span: self.span(&word),
+        };
+        if word.as_rule() == Rule::clear_word {
+            let items = inner
+                .map(|p| {
+                    let span = self.span(&p);
+                    OptionItem {
+                        name: keyword.clone(),
+                        indices: None,
+                        form: OptionForm::Assign(OptionValue::Text(p.as_str().into(), span)),
+                    }
+                })
+                .collect();
+            return Ok(StmtKind::Option(items));
+        }
+        let (mut file, mut items) = (None, Vec::new());
+        for p in inner {
+            let span = self.span(&p);
+            match p.as_rule() {
+                Rule::gdx_file => {
+                    let t = p.as_str().trim();
+                    let t = ['\'', '"']
+                        .iter()
+                        .find_map(|q| t.strip_prefix(*q)?.strip_suffix(*q))
+                        .unwrap_or(t);
+                    if !t.is_empty() {
+                        file = Some((t.into(), span));
+                    }
+                }
+                _ => {
+                    let mut names = p
+                        .into_inner()
+                        .filter(|q| q.as_rule() == Rule::name)
+                        .map(|q| self.ident(&q));
+                    if let Some(first) = names.next() {
+                        items.push((first, names.next()));
+                    }
+                }
+            }
+        }
+        Ok(StmtKind::Exchange(Exchange {
+            keyword,
+            file,
+            items,
+        }))
+    }
+
+    fn figure(&self, pair: Pair<'_, Rule>) -> Built<StmtKind> {
+        let at = self.span(&pair);
+        let mut inner = parts(pair);
+        let name = self.ident(&need(&mut inner, at, "a name")?);
+        let (mut title, mut elements) = (None, Vec::new());
+        for p in inner {
+            match p.as_rule() {
+                Rule::quoted => title = Some(Self::unquote(&p)),
+                Rule::figure_element => elements.push(self.figure_element(p)?),
+                _ => {}
+            }
+        }
+        Ok(StmtKind::Figure(Figure {
+            name,
+            title,
+            elements,
+        }))
+    }
+
+    fn figure_element(&self, pair: Pair<'_, Rule>) -> Built<FigureElement> {
+        let span = self.span(&pair);
+        let mut inner = parts(pair);
+        let kind = self.ident(&need(&mut inner, span, "an element")?);
+        let (mut domain, mut conditions, mut arguments) = (None, Vec::new(), Vec::new());
+        for p in inner {
+            let place = self.span(&p);
+            match p.as_rule() {
+                Rule::domain_of_element => {
+                    let items = p
+                        .into_inner()
+                        .map(|i| self.domain_item(i))
+                        .collect::<Built<Vec<_>>>()?;
+                    domain = Some(Domain {
+                        items,
+                        condition: None,
+                        span: place,
+                    });
+                }
+                Rule::condition => conditions.push(p),
+                _ => {
+                    let mut name = None;
+                    for q in p.into_inner() {
+                        match q.as_rule() {
+                            Rule::name => name = Some(self.ident(&q)),
+                            _ => arguments.push((name.take(), self.expression(q)?)),
+                        }
+                    }
+                }
+            }
+        }
+        if let Some(c) = self.conditions(conditions)? {
+            match &mut domain {
+                Some(d) => {
+                    d.span = d.span.to(c.span);
+                    d.condition = Some(c);
+                }
+                None => {
+                    domain = Some(Domain {
+                        items: Vec::new(),
+                        span: c.span,
+                        condition: Some(c),
+                    })
+                }
+            }
+        }
+        Ok(FigureElement {
+            kind,
+            domain,
+            arguments,
+            span,
+        })
+    }
+}
+
+fn signed(text: &str) -> f64 {
+    match text.strip_prefix('-') {
+        Some(t) => match number(t.trim_start()) {
+            // `eps` and `undf` have no sign.
+            x if x.is_nan() => x,
+            x => -x,
+        },
+        None => number(text.trim_start_matches('+')),
+    }
+}

@@ -1,0 +1,733 @@
+//! Data between slashes: `/ a 1, (b,c).d -3.5, e*h inf, 'x y' some text /`.
+//!
+//! [`DataReader`] reads one record at a time and borrows from the text: on the simple path (labels,
+//! dots, a number) nothing is allocated. What a label means, and whether it is known, is for the
+//! caller to say.
+//!
+//! Invariants: every record has a key with at least one part, except a bare number (`/ 5 /`); the
+//! reader always advances, so it ends on any text.
+
+use std::borrow::Cow;
+
+use crate::data::value::{EPS, NA, UNDF};
+use crate::diag::Diagnostic;
+use crate::source::Span;
+
+/// What the data belong to: only texts of sets are read to the end of the line.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum DataKind {
+    /// Elements, perhaps with explanatory texts.
+    Set,
+    /// Keys with values; scalars; attributes of variables and equations.
+    Values,
+}
+
+/// One position of a key.
+#[derive(Clone, PartialEq, Debug)]
+pub enum KeyPart<'a> {
+    /// A label, or the attribute at the end of a variable's key.
+    Label {
+        /// Without quotes, as spelled.
+        text: &'a str,
+        /// Written in quotes.
+        quoted: bool,
+        /// Place.
+        span: Span,
+    },
+    /// `a1*a9`
+    Range {
+        /// First label.
+        from: &'a str,
+        /// Last label.
+        to: &'a str,
+        /// Place.
+        span: Span,
+    },
+    /// `#set` or `set.set`: all elements.
+    AllOf {
+        /// The set.
+        set: &'a str,
+        /// Place.
+        span: Span,
+    },
+    /// `(a,b*d,e.f)`: each alternative is itself a key.
+    Group(Vec<Vec<KeyPart<'a>>>),
+    /// `*`
+    Universe(Span),
+}
+
+/// What stands behind a key.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Tail<'a> {
+    /// Nothing.
+    None,
+    /// A number, with the special values of [`crate::data::value`]; `yes` is 1, `no` 0.
+    Number(f64, Span),
+    /// An explanatory text, quoted or not.
+    Text(Cow<'a, str>, Span),
+    /// Another word: an acronym.
+    Name(&'a str, Span),
+}
+
+/// One record.
+#[derive(Debug)]
+pub struct Record<'r, 'a> {
+    /// The parts between the dots; empty for a bare number.
+    pub key: &'r [KeyPart<'a>],
+    /// `key:key`: matched position by position instead of multiplied out; the parts behind the colon.
+    pub matched: Option<&'r [KeyPart<'a>]>,
+    /// What follows.
+    pub value: Tail<'a>,
+    /// From the key to the value.
+    pub span: Span,
+}
+
+/// Reads the records of one body.
+pub struct DataReader<'a> {
+    text: &'a str,
+    base: u32,
+    at: usize,
+    kind: DataKind,
+    /// `undf` may be written.
+    undf: bool,
+    key: Vec<KeyPart<'a>>,
+    matched: Vec<KeyPart<'a>>,
+}
+
+/// Groups inside groups.
+const DEEPEST: usize = 50;
+
+/// Bytes of unquoted labels.
+fn is_label(b: u8) -> bool {
+    b.is_ascii_alphanumeric() || matches!(b, b'_' | b'-' | b'+') || b >= 0x80
+}
+
+fn is_space(b: u8) -> bool {
+    matches!(b, b' ' | b'\t' | b'\r' | b'\n' | 0x0c | 0x0b | 0x1a)
+}
+
+impl<'a> DataReader<'a> {
+    /// `text` is the body, without its slashes, and begins at `base` in the expanded text.
+    pub fn new(text: &'a str, base: u32, kind: DataKind, undf: bool) -> Self {
+        Self {
+            text,
+            base,
+            at: 0,
+            kind,
+            undf,
+            key: Vec::with_capacity(8),
+            matched: Vec::new(),
+        }
+    }
+
+    /// Goes on with another text.
+    pub(super) fn restart(&mut self, text: &'a str, base: u32) {
+        self.text = text;
+        self.base = base;
+        self.at = 0;
+    }
+
+    /// Bytes read so far.
+    pub(super) fn position(&self) -> usize {
+        self.at
+    }
+
+    /// Passes over blanks; false at the end of the text.
+    pub(super) fn more(&mut self) -> bool {
+        self.blanks(true);
+        self.at < self.text.len()
+    }
+
+    fn span(&self, lo: usize, hi: usize) -> Span {
+        Span::new(self.base + lo as u32, self.base + hi as u32)
+    }
+
+    fn peek(&self) -> Option<u8> {
+        self.text.as_bytes().get(self.at).copied()
+    }
+
+    /// Passes over blanks; over line ends too if `lines`.
+    fn blanks(&mut self, lines: bool) {
+        let bytes = self.text.as_bytes();
+        while let Some(&b) = bytes.get(self.at) {
+            if is_space(b) && (lines || b != b'\n') {
+                self.at += 1;
+            } else {
+                break;
+            }
+        }
+    }
+
+    /// The next record. After an error, reading goes on behind the next comma or line end.
+    #[allow(clippy::should_implement_trait)]
+    pub fn next(&mut self) -> Option<Result<Record<'_, 'a>, Diagnostic>> {
+        loop {
+            self.blanks(true);
+            if self.peek() == Some(b',') {
+                self.at += 1;
+            } else {
+                break;
+            }
+        }
+        self.peek()?;
+        let start = self.at;
+        self.key.clear();
+        self.matched.clear();
+        match self.record(start) {
+            Ok(value) => {
+                let span = self.span(start, self.at);
+                Some(Ok(Record {
+                    key: &self.key,
+                    matched: if self.matched.is_empty() {
+                        None
+                    } else {
+                        Some(&self.matched)
+                    },
+                    value,
+                    span,
+                }))
+            }
+            Err(d) => {
+                let bytes = self.text.as_bytes();
+                let from = self.at.max(start + 1).min(bytes.len());
+                self.at =
+                    memchr::memchr2(b',', b'\n', &bytes[from..]).map_or(bytes.len(), |n| from + n);
+                Some(Err(*d))
+            }
+        }
+    }
+
+    fn record(&mut self, start: usize) -> Result<Tail<'a>, Box<Diagnostic>> {
+        if self.kind == DataKind::Values
+            && let Some(value) = self.bare_number(start)
+        {
+            return Ok(value);
+        }
+        let mut key = std::mem::take(&mut self.key);
+        let outcome = self.key_parts(&mut key, 0);
+        self.key = key;
+        outcome?;
+        self.blanks(false);
+        if self.peek() == Some(b':') {
+            self.at += 1;
+            self.blanks(false);
+            let mut matched = std::mem::take(&mut self.matched);
+            let outcome = self.key_parts(&mut matched, 0);
+            self.matched = matched;
+            outcome?;
+            self.blanks(false);
+        }
+        match self.kind {
+            DataKind::Set => self.element_text(),
+            DataKind::Values => self.value(),
+        }
+    }
+
+    /// `5` alone: a scalar's value. Numbers may be labels too, so nothing else may stand there.
+    fn bare_number(&mut self, start: usize) -> Option<Tail<'a>> {
+        let text = self.text[start..].trim_end_matches(|c: char| c.is_ascii() && is_space(c as u8));
+        if text.len() > 40 || !self.text.as_bytes()[..start].iter().all(|b| is_space(*b)) {
+            return None;
+        }
+        let x = match text
+            .strip_prefix(['-', '+'])
+            .filter(|t| t.starts_with([' ', '\t']))
+        {
+            // `- 5`
+            Some(unsigned) => {
+                self.number_of(&format!("{}{}", &text[..1], unsigned.trim_start()))?
+            }
+            None => self.number_of(text)?,
+        };
+        self.at = start + text.len();
+        Some(Tail::Number(x, self.span(start, self.at)))
+    }
+
+    /// The value of a text that is a number and nothing else.
+    fn number_of(&self, text: &str) -> Option<f64> {
+        let unsigned = text.strip_prefix(['-', '+']).unwrap_or(text);
+        let minus = text.starts_with('-');
+        let first = *unsigned.as_bytes().first()?;
+        if first.is_ascii_digit() || first == b'.' {
+            let x = fast_float2::parse::<f64, _>(unsigned).ok()?;
+            let x = if x.is_infinite() {
+                UNDF
+            } else if x == 0.0 && is_tiny(unsigned) {
+                EPS
+            } else {
+                x
+            };
+            return Some(if minus && !x.is_nan() { -x } else { x });
+        }
+        if unsigned.len() > 4 {
+            return None;
+        }
+        let x = match unsigned.to_ascii_lowercase().as_str() {
+            "inf" => {
+                return Some(if minus {
+                    f64::NEG_INFINITY
+                } else {
+                    f64::INFINITY
+                });
+            }
+            "eps" => EPS,
+            "na" => NA,
+            "undf" if self.undf => UNDF,
+            "yes" => 1.0,
+            "no" => 0.0,
+            _ => return None,
+        };
+        Some(x)
+    }
+
+    pub(super) fn key_parts(
+        &mut self,
+        key: &mut Vec<KeyPart<'a>>,
+        depth: usize,
+    ) -> Result<(), Box<Diagnostic>> {
+        loop {
+            let part = self.key_part(depth)?;
+            key.push(part);
+            // A dot, with blanks around it, goes on.
+            let before = self.at;
+            self.blanks(false);
+            if self.peek() != Some(b'.') {
+                self.at = before;
+                return Ok(());
+            }
+            self.at += 1;
+            self.blanks(true);
+        }
+    }
+
+    fn key_part(&mut self, depth: usize) -> Result<KeyPart<'a>, Box<Diagnostic>> {
+        let start = self.at;
+        match self.peek() {
+            Some(b'(') => self.group(depth),
+            Some(b'#') => {
+                self.at += 1;
+                self.blanks(false);
+                let from = self.at;
+                let set = self.word();
+                if set.is_empty() {
+                    return Err(self.expected("the name of a set", from));
+                }
+                Ok(KeyPart::AllOf {
+                    set,
+                    span: self.span(start, self.at),
+                })
+            }
+            Some(b'*') => {
+                self.at += 1;
+                Ok(KeyPart::Universe(self.span(start, self.at)))
+            }
+            _ => {
+                let (text, quoted) = self.label()?;
+                let end = self.at;
+                self.blanks(false);
+                if self.peek() == Some(b'*') {
+                    self.at += 1;
+                    self.blanks(false);
+                    let (to, _) = self.label()?;
+                    return Ok(KeyPart::Range {
+                        from: text,
+                        to,
+                        span: self.span(start, self.at),
+                    });
+                }
+                // `set.set` stands for all elements of the set.
+                self.at = end;
+                if !quoted && let Some(len) = set_suffix(&self.text.as_bytes()[end..]) {
+                    self.at = end + len;
+                    return Ok(KeyPart::AllOf {
+                        set: text,
+                        span: self.span(start, self.at),
+                    });
+                }
+                Ok(KeyPart::Label {
+                    text,
+                    quoted,
+                    span: self.span(start, end),
+                })
+            }
+        }
+    }
+
+    fn group(&mut self, depth: usize) -> Result<KeyPart<'a>, Box<Diagnostic>> {
+        let open = self.at;
+        if depth >= DEEPEST {
+            return Err(self.error(
+                "E0304",
+                open,
+                open + 1,
+                "groups of labels are nested too deeply",
+            ));
+        }
+        self.at += 1;
+        let mut list = Vec::new();
+        loop {
+            self.blanks(true);
+            match self.peek() {
+                Some(b')') => {
+                    self.at += 1;
+                    return Ok(KeyPart::Group(list));
+                }
+                Some(b',') => self.at += 1,
+                Some(_) => {
+                    let mut key = Vec::new();
+                    self.key_parts(&mut key, depth + 1)?;
+                    list.push(key);
+                }
+                None => {
+                    return Err(self.error(
+                        "E0301",
+                        open,
+                        open + 1,
+                        "this group of labels is not closed by `)`",
+                    ));
+                }
+            }
+        }
+    }
+
+    fn word(&mut self) -> &'a str {
+        let bytes = self.text.as_bytes();
+        let start = self.at;
+        while self.at < bytes.len()
+            && (bytes[self.at].is_ascii_alphanumeric() || bytes[self.at] == b'_')
+        {
+            self.at += 1;
+        }
+        &self.text[start..self.at]
+    }
+
+    fn label(&mut self) -> Result<(&'a str, bool), Box<Diagnostic>> {
+        let bytes = self.text.as_bytes();
+        let start = self.at;
+        match bytes.get(start) {
+            Some(&q @ (b'\'' | b'"')) => {
+                let rest = &bytes[start + 1..];
+                match memchr::memchr2(q, b'\n', rest) {
+                    Some(n) if rest[n] == q => {
+                        self.at = start + n + 2;
+                        Ok((&self.text[start + 1..start + 1 + n], true))
+                    }
+                    _ => Err(self.error(
+                        "E0302",
+                        start,
+                        start + 1,
+                        "this quote is not closed on its line",
+                    )),
+                }
+            }
+            _ => {
+                let mut i = start;
+                while i < bytes.len() && is_label(bytes[i]) {
+                    i += 1;
+                }
+                if i == start || matches!(bytes[start], b'-' | b'+') {
+                    return Err(self.expected("a label", start));
+                }
+                self.at = i;
+                Ok((&self.text[start..i], false))
+            }
+        }
+    }
+
+    /// An element's text: quoted, or to the comma or the end of the line.
+    fn element_text(&mut self) -> Result<Tail<'a>, Box<Diagnostic>> {
+        let bytes = self.text.as_bytes();
+        let start = self.at;
+        let mut from = start;
+        if bytes.get(from) == Some(&b'=') {
+            from += 1;
+            self.at = from;
+            self.blanks(false);
+            from = self.at;
+        }
+        match bytes.get(from) {
+            None | Some(b',' | b'\n') => Ok(Tail::None),
+            Some(&q @ (b'\'' | b'"')) => {
+                let rest = &bytes[from + 1..];
+                match memchr::memchr2(q, b'\n', rest) {
+                    Some(n) if rest[n] == q => {
+                        self.at = from + n + 2;
+                        let text = Cow::Borrowed(&self.text[from + 1..from + 1 + n]);
+                        Ok(Tail::Text(text, self.span(from, self.at)))
+                    }
+                    _ => Err(self.error(
+                        "E0302",
+                        from,
+                        from + 1,
+                        "this quote is not closed on its line",
+                    )),
+                }
+            }
+            Some(_) => {
+                if from == start && start > 0 && !is_space(bytes[start - 1]) {
+                    let len = self.text[start..].chars().next().map_or(1, char::len_utf8);
+                    let sign = &self.text[start..start + len];
+                    return Err(Box::new(
+                        Diagnostic::error(
+                            "E0303",
+                            self.span(start, start + len),
+                            format!("`{sign}` cannot stand in a label without quotes"),
+                        )
+                        .help("put the label in quotes, or a blank before the text"),
+                    ));
+                }
+                let end =
+                    memchr::memchr2(b',', b'\n', &bytes[from..]).map_or(bytes.len(), |n| from + n);
+                let text = self.text[from..end].trim_end();
+                self.at = from + text.len();
+                Ok(Tail::Text(Cow::Borrowed(text), self.span(from, self.at)))
+            }
+        }
+    }
+
+    pub(super) fn value(&mut self) -> Result<Tail<'a>, Box<Diagnostic>> {
+        // The value may stand on the next line.
+        self.blanks(true);
+        let bytes = self.text.as_bytes();
+        if self.peek() == Some(b'=') {
+            self.at += 1;
+            self.blanks(true);
+        }
+        let start = self.at;
+        let Some(&b) = bytes.get(start) else {
+            return Ok(Tail::None);
+        };
+        match b {
+            b',' => return Ok(Tail::None),
+            b'\'' | b'"' => {
+                let (text, _) = self.label()?;
+                return Ok(Tail::Text(Cow::Borrowed(text), self.span(start, self.at)));
+            }
+            _ => {}
+        }
+        let mut i = start;
+        if matches!(b, b'-' | b'+') {
+            i += 1;
+            while i < bytes.len() && matches!(bytes[i], b' ' | b'\t') {
+                i += 1;
+            }
+        }
+        let minus = b == b'-';
+        let first = bytes.get(i).copied().unwrap_or(0);
+        if first.is_ascii_digit() || first == b'.' {
+            let Ok((x, n)) = fast_float2::parse_partial::<f64, _>(&bytes[i..]) else {
+                return Err(self.expected("a number", start));
+            };
+            let end = i + n;
+            let after = bytes.get(end).copied().unwrap_or(b' ');
+            if n == 0 || is_label(after) && !matches!(after, b'+' | b'-') || after == b'.' {
+                let mut end = end.max(i + 1);
+                while end < bytes.len() && (is_label(bytes[end]) || bytes[end] == b'.') {
+                    end += 1;
+                }
+                return Err(Box::new(
+                    Diagnostic::error("E0305", self.span(start, end), format!("`{}` is not a number", &self.text[start..end]))
+                        .help("numbers look like `12`, `-3.5`, `1.5e-3`; a comma or a line end comes before the next record"),
+                ));
+            }
+            self.at = end;
+            let digits = &self.text[i..end];
+            let x = if x.is_infinite() {
+                UNDF
+            } else if x == 0.0 && is_tiny(digits) {
+                EPS
+            } else if minus {
+                -x
+            } else {
+                x
+            };
+            return Ok(Tail::Number(x, self.span(start, end)));
+        }
+        let word_start = i;
+        self.at = i;
+        let word = self.word();
+        if word.is_empty() {
+            self.at = start;
+            return Err(self.expected("a value", start));
+        }
+        let signed;
+        let spelled = if word_start > start {
+            signed = format!("{}{word}", b as char);
+            signed.as_str()
+        } else {
+            word
+        };
+        let span = self.span(start, self.at);
+        match self.number_of(spelled) {
+            Some(x) => Ok(Tail::Number(x, span)),
+            None if word.eq_ignore_ascii_case("undf") => Err(Box::new(
+                Diagnostic::error("E0306", span, "`undf` may be written only after `$onUndf`")
+                    .help("for a missing value write `na`"),
+            )),
+            None if word_start == start => Ok(Tail::Name(word, span)),
+            None => Err(self.expected("a number", start)),
+        }
+    }
+
+    fn error(
+        &self,
+        code: &'static str,
+        lo: usize,
+        hi: usize,
+        message: impl Into<String>,
+    ) -> Box<Diagnostic> {
+        Box::new(Diagnostic::error(
+            code,
+            self.span(lo, hi.min(self.text.len())),
+            message,
+        ))
+    }
+
+    fn expected(&self, what: &str, at: usize) -> Box<Diagnostic> {
+        let rest = self.text.get(at..).unwrap_or("");
+        let found = rest.chars().next();
+        let len = found.map_or(0, char::len_utf8);
+        let message = match found {
+            None => format!("{what} was expected before the closing `/`"),
+            Some('\n') => format!("{what} was expected before the end of the line"),
+            Some(';') => format!("{what} was expected here, not `;`"),
+            Some(c) => format!("{what} was expected here, not `{c}`"),
+        };
+        let d = Diagnostic::error("E0303", self.span(at, at + len), message);
+        Box::new(match found {
+            Some(';') => d.help("is the closing `/` of these data missing?"),
+            _ => d.help(
+                "labels with other signs than letters, digits, `_`, `-`, `+` stand in quotes",
+            ),
+        })
+    }
+}
+
+/// Whether a number's digits are not all zero: then 0 is too small a number.
+fn is_tiny(text: &str) -> bool {
+    text.bytes()
+        .take_while(|b| !matches!(b, b'e' | b'E'))
+        .any(|b| (b'1'..=b'9').contains(&b))
+}
+
+/// Length of `.set` at the start, if it stands there.
+fn set_suffix(bytes: &[u8]) -> Option<usize> {
+    let s = bytes.get(..4)?;
+    let ends = !bytes.get(4).is_some_and(|b| is_label(*b));
+    (s.eq_ignore_ascii_case(b".set") && ends).then_some(4)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn all(text: &str, kind: DataKind) -> Vec<String> {
+        fn part(p: &KeyPart<'_>) -> String {
+            match p {
+                KeyPart::Label {
+                    text, quoted: true, ..
+                } => format!("'{text}'"),
+                KeyPart::Label { text, .. } => (*text).to_owned(),
+                KeyPart::Range { from, to, .. } => format!("{from}*{to}"),
+                KeyPart::AllOf { set, .. } => format!("#{set}"),
+                KeyPart::Universe(_) => "*".into(),
+                KeyPart::Group(g) => format!(
+                    "({})",
+                    g.iter().map(|k| key(k)).collect::<Vec<_>>().join(",")
+                ),
+            }
+        }
+        fn key(k: &[KeyPart<'_>]) -> String {
+            k.iter().map(part).collect::<Vec<_>>().join(".")
+        }
+        let mut r = DataReader::new(text, 0, kind, false);
+        let mut out = Vec::new();
+        while let Some(x) = r.next() {
+            out.push(match x {
+                Ok(r) => {
+                    let colon = r.matched.map_or(String::new(), |m| format!(":{}", key(m)));
+                    let tail = match &r.value {
+                        Tail::None => String::new(),
+                        Tail::Number(x, _) => format!("={x}"),
+                        Tail::Text(t, _) => format!(" \"{t}\""),
+                        Tail::Name(n, _) => format!("~{n}"),
+                    };
+                    format!("{}{colon}{tail}", key(r.key))
+                }
+                Err(d) => format!("!{}", d.code),
+            });
+        }
+        out
+    }
+
+    #[test]
+    fn sets() {
+        let read = |t| all(t, DataKind::Set);
+        assert_eq!(read("a, b\nc  "), ["a", "b", "c"]);
+        assert_eq!(
+            read(" a  first one, b 'the second',\n'c d'   it's third\n"),
+            [
+                "a \"first one\"",
+                "b \"the second\"",
+                "'c d' \"it's third\""
+            ]
+        );
+        assert_eq!(
+            read("i1*i10, 1990*1992, 't 1'*'t 3'"),
+            ["i1*i10", "1990*1992", "t 1*t 3"]
+        );
+        assert_eq!(
+            read("a.b, c.(d,e) two, (f,g*h).(i.j,k), p . q"),
+            ["a.b", "c.(d,e) \"two\"", "(f,g*h).(i.j,k)", "p.q"]
+        );
+        assert_eq!(
+            read("#i.#j, set.set, k.set, a-1, b+2"),
+            ["#i.#j", "#set", "#k", "a-1", "b+2"]
+        );
+        assert_eq!(read("#a:#b, (x,y):(u,v)"), ["#a:#b", "(x,y):(u,v)"]);
+        assert_eq!(read("a (x=y) $ %;\nb"), ["a \"(x=y) $ %;\"", "b"]);
+        assert_eq!(read("a%b, c"), ["!E0303", "c"]);
+        assert_eq!(read(""), Vec::<String>::new());
+    }
+
+    #[test]
+    fn values() {
+        let read = |t| all(t, DataKind::Values);
+        assert_eq!(read("a 1, b 2.5\nc -3e2"), ["a=1", "b=2.5", "c=-300"]);
+        assert_eq!(
+            read("a.b = 3, (a,b).c 3.5, a.b.c -inf"),
+            ["a.b=3", "(a,b).c=3.5", "a.b.c=-inf"]
+        );
+        assert_eq!(read(" 5 "), ["=5"]);
+        assert_eq!(read("-.5e1"), ["=-5"]);
+        assert_eq!(read("- 5"), ["=-5"]);
+        assert_eq!(read("inf"), ["=inf"]);
+        assert_eq!(read("1 2, 2 3"), ["1=2", "2=3"]);
+        assert_eq!(read("1990 5\n1991 6.5"), ["1990=5", "1991=6.5"]);
+        assert_eq!(read("a.lo 5, b.l 3"), ["a.lo=5", "b.l=3"]);
+        assert_eq!(read("a mon, b +inf, c yes"), ["a~mon", "b=inf", "c=1"]);
+        assert_eq!(read("a 1x, b 2"), ["!E0305", "b=2"]);
+        assert_eq!(read("1.2.3 4"), ["1.2.3=4"]);
+        assert_eq!(read("a\n 7"), ["a=7"]);
+        assert_eq!(read("i1*i3 4"), ["i1*i3=4"]);
+        assert_eq!(read("(a,b 2"), ["!E0303"]);
+    }
+
+    #[test]
+    fn special_values() {
+        let value = |t: &str| {
+            let text = format!("a {t}");
+            let mut r = DataReader::new(&text, 0, DataKind::Values, true);
+            match r.next() {
+                Some(Ok(Record {
+                    value: Tail::Number(x, _),
+                    ..
+                })) => x,
+                other => panic!("{other:?}"),
+            }
+        };
+        use crate::data::value::*;
+        assert!(is_eps(value("eps")) && is_eps(value("1e-400")));
+        assert!(is_na(value("NA")) && is_undf(value("undf")) && is_undf(value("1e400")));
+    }
+}

@@ -1,0 +1,479 @@
+//! From pest's errors to diagnostics that say what is wrong and how to mend it.
+//!
+//! pest says how far it came and what it would have accepted there. That is the last resort: first
+//! the text is looked at for a missing `;`, for what other languages write in this place
+//! ([`super::neighbours`]), and for the common slips.
+
+use pest::Parser as _;
+use pest::error::{Error, ErrorVariant, InputLocation};
+
+use super::build::Condensed;
+use super::grammar::{Grammar, Rule};
+use super::neighbours;
+use super::split::Raw;
+use super::words::{self, Class};
+use crate::diag::Diagnostic;
+use crate::source::Span;
+
+/// What is wrong with a statement, and whether it is two.
+pub(super) struct Explanation {
+    pub(super) diagnostic: Diagnostic,
+    /// A `;` is missing: the first statement ends here, the second begins there (expanded text).
+    pub(super) divide: Option<(u32, u32)>,
+    /// Read on here instead of behind the statement.
+    pub(super) resume: Option<u32>,
+}
+
+/// A statement that the grammar did not accept.
+pub(super) struct Failure<'a> {
+    pub(super) raw: &'a Raw,
+    pub(super) condensed: &'a Condensed,
+    pub(super) expanded: &'a str,
+    pub(super) rule: Rule,
+    /// The text that the grammar saw.
+    pub(super) text: &'a str,
+    /// How far it came.
+    pub(super) at: usize,
+}
+
+impl<'a> Failure<'a> {
+    pub(super) fn span(&self, lo: usize, hi: usize) -> Span {
+        self.condensed.span(lo, hi.min(self.text.len()))
+    }
+
+    /// The token at a byte: a word, a number, or one sign.
+    pub(super) fn token(&self, at: usize) -> &'a str {
+        let rest = self.text.get(at..).unwrap_or("");
+        let bytes = rest.as_bytes();
+        match bytes.first() {
+            None => "",
+            Some(b) if b.is_ascii_alphanumeric() || *b == b'_' => {
+                &rest[..words::word_end(bytes, 0)]
+            }
+            Some(_) => &rest[..rest.chars().next().map_or(0, char::len_utf8)],
+        }
+    }
+
+    pub(super) fn error(
+        &self,
+        code: &'static str,
+        lo: usize,
+        len: usize,
+        message: impl Into<String>,
+    ) -> Diagnostic {
+        Diagnostic::error(code, self.span(lo, lo + len), message)
+    }
+}
+
+/// Explains an error of pest.
+pub(super) fn explain(
+    e: &Error<Rule>,
+    raw: &Raw,
+    condensed: &Condensed,
+    expanded: &str,
+    rule: Rule,
+) -> Explanation {
+    let text = condensed.text(expanded);
+    let at = match e.location {
+        InputLocation::Pos(p) | InputLocation::Span((p, _)) => p,
+    };
+    let at = at.min(text.len());
+    let f = Failure {
+        raw,
+        condensed,
+        expanded,
+        rule,
+        text,
+        at,
+    };
+    let only = |diagnostic: Diagnostic| {
+        // A comment mark of another language spoils its line; a keyword as a name, its statement.
+        let behind = |mark: u8| {
+            let from = diagnostic.span.lo as usize;
+            memchr::memchr(mark, &expanded.as_bytes()[from.min(expanded.len())..])
+                .map(|n| (from + n + 1) as u32)
+        };
+        let resume = match diagnostic.code {
+            "E0230" => behind(b'\n'),
+            "E0205" | "E0233" => behind(b';'),
+            _ => None,
+        };
+        Explanation {
+            diagnostic,
+            divide: None,
+            resume,
+        }
+    };
+    if let Some(d) = neighbours::whole_statement(&f) {
+        return only(d);
+    }
+    if let Some(found) = missing_semicolon(&f) {
+        return found;
+    }
+    if let Some(d) = neighbours::at_token(&f).or_else(|| slip(&f)) {
+        return only(d);
+    }
+    only(expected(&f, e))
+}
+
+/// Two statements with no `;` between them.
+fn missing_semicolon(f: &Failure<'_>) -> Option<Explanation> {
+    let bytes = f.text.as_bytes();
+    // Where the second statement begins: at the error, or at the word before `=`, `(`, `..`.
+    let mut second = f.at;
+    if !bytes.get(second).is_some_and(|b| words::is_letter(*b)) {
+        if !bytes
+            .get(f.at)
+            .is_some_and(|b| matches!(b, b'=' | b'.' | b'(' | b'$' | b':'))
+        {
+            return None;
+        }
+        let before = f.text[..f.at].trim_end();
+        let start = before
+            .rfind(|c: char| !c.is_ascii_alphanumeric() && c != '_')
+            .map_or(0, |n| n + 1);
+        second = start;
+        if second == 0 || !bytes.get(second).is_some_and(|b| words::is_letter(*b)) {
+            return None;
+        }
+    }
+    if second == 0 || !begins_statement(f.text, second) {
+        return None;
+    }
+    let first = f.text[..second].trim_end();
+    let line_start = first.len() < second && f.text[first.len()..second].contains('\n');
+    if !line_start && second != f.at {
+        return None;
+    }
+    let complete = Grammar::parse(f.rule, first).is_ok();
+    // In a block the first statement does not stand alone.
+    let in_block = f.raw.class == Class::Other
+        && line_start
+        && !first.ends_with([
+            '+', '-', '*', '/', '=', '<', '>', ',', '(', '[', '{', '$', ';', ':',
+        ]);
+    if !complete && !in_block {
+        return None;
+    }
+    let end = f.span(first.len().saturating_sub(1), first.len());
+    let start = f.span(second, second + f.token(second).len());
+    Some(Explanation {
+        diagnostic: Diagnostic::error("E0201", end, "`;` is missing at the end of this statement")
+            .label("missing `;`")
+            .other(start, "the next statement begins here"),
+        divide: complete.then_some((end.hi, start.lo)),
+        resume: None,
+    })
+}
+
+/// `x =`, `x(i) =`, `x.l(i)$c =`, `e(i)..` at a byte of a text.
+fn begins_statement(text: &str, at: usize) -> bool {
+    let bytes = text.as_bytes();
+    let mut i = words::word_end(bytes, at);
+    if i == at {
+        return false;
+    }
+    if words::statement_word(text, at, i).is_some_and(|w| !w.inside_blocks_only()) {
+        return true;
+    }
+    loop {
+        while i < bytes.len() && words::is_blank(bytes[i]) {
+            i += 1;
+        }
+        match bytes.get(i) {
+            Some(b'.') if bytes.get(i + 1) == Some(&b'.') => return true,
+            Some(b'.') => i = words::word_end(bytes, i + 1).max(i + 1),
+            Some(b'=') => return !is_relation(&bytes[i..]),
+            Some(b':') => return bytes.get(i + 1) == Some(&b'='),
+            Some(b'$') => {
+                i += 1;
+                while i < bytes.len() && words::is_blank(bytes[i]) {
+                    i += 1;
+                }
+                i = words::word_end(bytes, i);
+            }
+            Some(b'(') => match closing(bytes, i) {
+                Some(end) => i = end + 1,
+                None => return false,
+            },
+            _ => return false,
+        }
+    }
+}
+
+/// `=e=` and its kin at the start.
+pub(super) fn is_relation(bytes: &[u8]) -> bool {
+    bytes.len() >= 3 && bytes[0] == b'=' && bytes[1].is_ascii_alphabetic() && bytes[2] == b'='
+}
+
+/// The parenthesis that closes the one at `open`, quotes respected.
+pub(super) fn closing(bytes: &[u8], open: usize) -> Option<usize> {
+    let mut depth = 0usize;
+    let mut i = open;
+    while i < bytes.len() {
+        match bytes[i] {
+            b'(' | b'[' | b'{' => depth += 1,
+            b')' | b']' | b'}' => {
+                depth = depth.checked_sub(1)?;
+                if depth == 0 {
+                    return Some(i);
+                }
+            }
+            q @ (b'\'' | b'"') => i += memchr::memchr(q, &bytes[i + 1..]).map_or(0, |n| n + 1),
+            _ => {}
+        }
+        i += 1;
+    }
+    None
+}
+
+/// Slips of any writer.
+fn slip(f: &Failure<'_>) -> Option<Diagnostic> {
+    let bytes = f.text.as_bytes();
+    let token = f.token(f.at);
+    let first = token.chars().next();
+    match first {
+        Some('\'' | '"') => {
+            let line = f.text[f.at + 1..].split('\n').next().unwrap_or("");
+            if !line.contains(token) {
+                return Some(
+                    f.error("E0206", f.at, 1, "this quote is not closed on its line")
+                        .help("close it; a text that holds `'` goes in `\"…\"`, and the other way round"),
+                );
+            }
+            return Some(
+                f.error("E0210", f.at, 1, "a text in quotes cannot stand here")
+                    .help("is a comma, an operator or a `;` missing before it?"),
+            );
+        }
+        Some(')' | ']' | '}') if unmatched_close(bytes, f.at) => {
+            return Some(
+                f.error("E0207", f.at, 1, format!("this `{token}` closes nothing"))
+                    .help("take it out, or write the opening parenthesis"),
+            );
+        }
+        Some('%') => {
+            let rest = &f.text[f.at + 1..];
+            if let Some(n) = rest
+                .find('%')
+                .filter(|n| *n > 0 && !rest[..*n].contains(char::is_whitespace))
+            {
+                let name = &rest[..n];
+                return Some(
+                    f.error("E0208", f.at, n + 2, format!("`%{name}%` has no value"))
+                        .help(format!(
+                            "set it with `$set {name} …` before this line, or with `-D {name}=…`"
+                        )),
+                );
+            }
+        }
+        Some('$') if f.raw.class == Class::Directive => {}
+        Some(c) if !c.is_ascii() => {
+            let help = match c {
+                '\u{2018}' | '\u{2019}' | '\u{201c}' | '\u{201d}' => {
+                    "write the plain quotes `'` or `\"`"
+                }
+                '\u{2212}' | '\u{2013}' | '\u{2014}' => "write the plain minus sign `-`",
+                '\u{d7}' => "write `*`",
+                '\u{2264}' => "write `=l=` in an equation, `<=` in a condition",
+                '\u{2265}' => "write `=g=` in an equation, `>=` in a condition",
+                '\u{2260}' => "write `<>`",
+                _ => {
+                    "names consist of the letters a to z, digits and `_`; other signs may stand in texts and quoted labels"
+                }
+            };
+            return Some(
+                f.error(
+                    "E0209",
+                    f.at,
+                    c.len_utf8(),
+                    format!("`{c}` cannot stand here"),
+                )
+                .help(help),
+            );
+        }
+        Some(c) if c.is_ascii_digit() => {
+            // The point may belong to the number.
+            let end = words::word_end(bytes, f.at);
+            if bytes[f.at..end].iter().any(u8::is_ascii_alphabetic) {
+                let help = if token.bytes().any(|b| matches!(b, b'd' | b'D')) {
+                    "exponents are written with `e`: `1e3`"
+                } else {
+                    "names begin with a letter; between a number and a name an operator is missing"
+                };
+                return Some(
+                    f.error(
+                        "E0209",
+                        f.at,
+                        end - f.at,
+                        format!("`{token}` is neither a number nor a name"),
+                    )
+                    .help(help),
+                );
+            }
+        }
+        Some('_') => {
+            return Some(
+                f.error(
+                    "E0209",
+                    f.at,
+                    token.len(),
+                    format!("the name `{token}` begins with `_`"),
+                )
+                .help("names begin with a letter"),
+            );
+        }
+        _ => {}
+    }
+    if f.raw.class.declares() {
+        return in_declaration(f, token);
+    }
+    None
+}
+
+/// In the declarations: values without slashes, keywords as names.
+fn in_declaration(f: &Failure<'_>, token: &str) -> Option<Diagnostic> {
+    if matches!(token, "=" | ":") {
+        return Some(
+            f.error("E0220", f.at, 1, "a declaration gives values between slashes")
+                .label("`=` cannot stand here")
+                .help("write `scalar a / 5 /;`, or declare it first and assign in a statement of its own: `scalar a; a = 5;`"),
+        );
+    }
+    if matches!(token, "<" | ">") {
+        return Some(
+            f.error("E0220", f.at, 1, "a declaration gives no bounds")
+                .help("write `positive variable x;`, or set bounds after the declaration: `x.lo = 0;`"),
+        );
+    }
+    if token.is_empty() {
+        // The statement ended before a name: a keyword may stand there.
+        let after = f
+            .expanded
+            .get(f.raw.span.hi as usize..)
+            .unwrap_or("")
+            .trim_start();
+        let word = &after[..words::word_end(after.as_bytes(), 0)];
+        if !word.is_empty() && words::statement_word(after, 0, word.len()).is_some() {
+            let lo = f.expanded.len() - after.len();
+            return Some(
+                Diagnostic::error(
+                    "E0205",
+                    Span::new(lo as u32, (lo + word.len()) as u32),
+                    format!("`{word}` is a word of the language and cannot be a name"),
+                )
+                .help("choose another name; as a label it can stand in quotes"),
+            );
+        }
+    }
+    None
+}
+
+/// Whether the parenthesis at `at` closes none before it.
+fn unmatched_close(bytes: &[u8], at: usize) -> bool {
+    let mut depth = 0usize;
+    let mut i = 0;
+    while i < at {
+        match bytes[i] {
+            b'(' | b'[' | b'{' => depth += 1,
+            b')' | b']' | b'}' => depth = depth.saturating_sub(1),
+            q @ (b'\'' | b'"') => i += memchr::memchr(q, &bytes[i + 1..]).map_or(0, |n| n + 1),
+            _ => {}
+        }
+        i += 1;
+    }
+    depth == 0
+}
+
+/// What a rule is called.
+fn called(rule: Rule) -> Option<&'static str> {
+    Some(match rule {
+        Rule::expression
+        | Rule::apply
+        | Rule::number
+        | Rule::quoted
+        | Rule::group
+        | Rule::aggregate
+        | Rule::prefix => "an expression",
+        Rule::infix => "an operator",
+        Rule::relation => "a relation `=e=`, `=l=`, `=g=` or `=n=`",
+        Rule::definition => "`..`",
+        Rule::assignment => "`=`",
+        Rule::arguments | Rule::declared_over => "indices in parentheses",
+        Rule::name | Rule::reference | Rule::declaration | Rule::model | Rule::domain_item => {
+            "a name"
+        }
+        Rule::attribute => "an attribute",
+        Rule::domain => "a set or sets in parentheses",
+        Rule::body | Rule::algebra => "a statement",
+        Rule::using => "`using` and the type of the model",
+        Rule::objective | Rule::sense => "`minimizing` or `maximizing` and a variable",
+        Rule::model_items | Rule::model_item | Rule::model_name => "the name of an equation",
+        Rule::body_mark => "data between slashes",
+        Rule::text_mark => "a text",
+        Rule::alias_group => "names in parentheses",
+        Rule::direction => "`to` or `downto`",
+        _ => return None,
+    })
+}
+
+/// The last resort: what pest would have accepted.
+fn expected(f: &Failure<'_>, e: &Error<Rule>) -> Diagnostic {
+    let mut wanted: Vec<String> = Vec::new();
+    let mut add = |s: String| {
+        if !wanted.contains(&s) {
+            wanted.push(s);
+        }
+    };
+    if let ErrorVariant::ParsingError { positives, .. } = &e.variant {
+        for rule in positives {
+            if let Some(name) = called(*rule) {
+                add(name.into());
+            }
+        }
+    }
+    if let Some(attempts) = e.parse_attempts() {
+        for token in attempts.expected_tokens() {
+            let t = token.to_string();
+            let t = t.trim_matches('`');
+            if matches!(t, ")" | "]" | "}" | "," | "/" | "=" | "..") {
+                add(format!("`{t}`"));
+            }
+        }
+    }
+    let token = f.token(f.at);
+    let (span, message) = if token.is_empty() {
+        let end = f.text.trim_end().len();
+        (
+            f.span(end.saturating_sub(1), end),
+            "the statement ends too early".to_owned(),
+        )
+    } else {
+        let what = match token.as_bytes()[0] {
+            1 => "a text",
+            2 => "data",
+            _ => "",
+        };
+        let shown: String = token.chars().filter(|c| !c.is_control()).take(40).collect();
+        (
+            f.span(f.at, f.at + token.len()),
+            if what.is_empty() {
+                format!("`{shown}` cannot stand here")
+            } else {
+                format!("{what} cannot stand here")
+            },
+        )
+    };
+    let d = Diagnostic::error("E0210", span, message);
+    if wanted.is_empty() {
+        return d;
+    }
+    wanted.truncate(5);
+    let last = wanted.pop().unwrap_or_default();
+    let list = if wanted.is_empty() {
+        last
+    } else {
+        format!("{} or {last}", wanted.join(", "))
+    };
+    d.help(format!("expected {list}"))
+}

@@ -1,0 +1,840 @@
+//! Cuts the expanded text into statements.
+//!
+//! A statement ends at its `;`. It also ends before a word that always begins a statement
+//! (`display`, `set`, `solve` …), as GAMS has it. In declarations the splitter finds the explanatory
+//! texts and the data between slashes, which the grammar does not read, and remembers them as
+//! [`Hole`]s.
+//!
+//! The text arrives in pieces of whole lines, and quoted texts do not run over lines: between two
+//! pieces only [`Splitter`]'s few fields are remembered, and no byte is looked at twice.
+//!
+//! Invariant: spans of successive statements do not overlap, and every statement is finite: an
+//! unclosed parenthesis ends at the next `;` outside blocks, an unclosed block at the next
+//! declaration.
+
+use super::words::{self, Class, Word};
+use crate::diag::Diagnostic;
+use crate::source::{Span, quoted_end};
+
+/// Parentheses and blocks inside each other.
+pub(super) const DEEPEST: usize = 250;
+
+/// What the splitter takes out of a declaration.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum HoleKind {
+    /// An explanatory text.
+    Text,
+    /// Data between slashes, a table's lines, a file's name.
+    Body,
+}
+
+/// A part of a statement that the grammar does not read.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hole {
+    pub(super) kind: HoleKind,
+    /// What counts: the text without its quotes, the body without its slashes.
+    pub(super) inside: Span,
+    /// All that is taken out.
+    pub(super) outside: Span,
+}
+
+/// A statement as it was cut out.
+#[derive(Debug)]
+pub(super) struct Raw {
+    pub(super) class: Class,
+    pub(super) span: Span,
+    pub(super) holes: Vec<Hole>,
+    /// What is wrong already; then there is no use in parsing.
+    pub(super) problems: Vec<Diagnostic>,
+}
+
+/// What the splitter says.
+pub(super) enum Cut {
+    /// The text so far holds no complete statement.
+    More,
+    /// A statement.
+    Statement(Raw),
+}
+
+/// Position in a declaration.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Declare {
+    /// Before a name.
+    Name,
+    /// After a name or its domain, on the same line.
+    AfterName,
+    /// In the parentheses after a name.
+    Domain,
+    /// After the text, or on a new line.
+    AfterText,
+    /// Between slashes.
+    Body,
+    /// In the lines of a table.
+    Table,
+}
+
+/// An open parenthesis.
+#[derive(Clone, Copy, Debug)]
+struct Open {
+    at: usize,
+    byte: u8,
+    /// Statements stand inside.
+    block: bool,
+}
+
+/// See the module.
+pub(super) struct Splitter {
+    /// Everything before this has been looked at.
+    pos: usize,
+    /// Start of the statement being read.
+    start: Option<usize>,
+    class: Class,
+    declare: Declare,
+    opens: Vec<Open>,
+    /// `loop … endloop` under `$onEnd`.
+    blocks: usize,
+    holes: Vec<Hole>,
+    problems: Vec<Diagnostic>,
+    body_start: usize,
+    /// The line of the last name has ended.
+    new_line: bool,
+    /// The last name: for `e..` after a declaration without `;`.
+    last_name: usize,
+    /// Where the last thing that counts ended.
+    last_end: usize,
+    /// The keyword has been read (`positive variables`).
+    after_dot: bool,
+    /// A word was read whose parentheses hold statements.
+    control: bool,
+    /// The statement is a figure: its braces hold statements.
+    figure: bool,
+    /// Names declared so far in this statement.
+    names: usize,
+    /// Data up to here hold no `;` that could end the statement.
+    searched: usize,
+}
+
+fn span(lo: usize, hi: usize) -> Span {
+    Span::new(lo as u32, hi as u32)
+}
+
+impl Splitter {
+    pub(super) fn new() -> Self {
+        Self {
+            pos: 0,
+            start: None,
+            class: Class::Other,
+            declare: Declare::Name,
+            opens: Vec::new(),
+            blocks: 0,
+            holes: Vec::new(),
+            problems: Vec::new(),
+            body_start: 0,
+            new_line: false,
+            last_name: 0,
+            last_end: 0,
+            after_dot: false,
+            control: false,
+            figure: false,
+            names: 0,
+            searched: 0,
+        }
+    }
+
+    /// Whether a statement has begun.
+    pub(super) fn inside(&self) -> bool {
+        self.start.is_some()
+    }
+
+    /// Goes on at a byte that was passed over: a `;` was missing before it.
+    pub(super) fn back_to(&mut self, at: usize) {
+        self.pos = at;
+        self.start = None;
+        self.opens.clear();
+        self.blocks = 0;
+        self.holes.clear();
+        self.problems.clear();
+    }
+
+    /// Looks for the next statement. `last`: no more text will come.
+    pub(super) fn next(&mut self, text: &str, on_end: bool, last: bool) -> Cut {
+        let bytes = text.as_bytes();
+        if self.start.is_none() && !self.begin(text) {
+            return Cut::More;
+        }
+        let done = match self.class {
+            Class::Directive => self.directive(bytes),
+            c if c.declares() => self.declaration(text),
+            _ => self.code(text, on_end),
+        };
+        if done {
+            return Cut::Statement(self.finish());
+        }
+        if last && self.start.is_some() {
+            self.at_end(bytes);
+            return Cut::Statement(self.finish());
+        }
+        Cut::More
+    }
+
+    /// Skips to the first byte of a statement.
+    fn begin(&mut self, text: &str) -> bool {
+        let bytes = text.as_bytes();
+        while let Some(&b) = bytes.get(self.pos) {
+            if b == b';' || words::is_blank(b) {
+                self.pos += 1;
+            } else if text[self.pos..].starts_with(['\u{a0}', '\u{feff}']) {
+                self.pos += text[self.pos..].chars().next().map_or(1, char::len_utf8);
+            } else {
+                break;
+            }
+        }
+        let Some(&b) = bytes.get(self.pos) else {
+            return false;
+        };
+        let at = self.pos;
+        self.start = Some(at);
+        self.last_end = at;
+        self.declare = Declare::Name;
+        self.new_line = false;
+        self.after_dot = false;
+        self.control = false;
+        self.figure = false;
+        self.names = 0;
+        if b == b'$' && (at == 0 || bytes[at - 1] == b'\n') {
+            self.class = Class::Directive;
+            return true;
+        }
+        let (class, end) = words::classify(text, at);
+        self.class = class;
+        self.figure = words::is_figure(&text[at..end.max(at)]);
+        if class.declares() {
+            self.pos = end;
+            self.last_end = end;
+        }
+        true
+    }
+
+    fn finish(&mut self) -> Raw {
+        let start = self.start.take().unwrap_or(self.last_end);
+        self.opens.clear();
+        self.blocks = 0;
+        Raw {
+            class: self.class,
+            span: span(start, self.last_end.max(start)),
+            holes: std::mem::take(&mut self.holes),
+            problems: std::mem::take(&mut self.problems),
+        }
+    }
+
+    fn directive(&mut self, bytes: &[u8]) -> bool {
+        match memchr::memchr(b';', &bytes[self.pos..]) {
+            Some(n) => {
+                self.last_end = self.pos + n;
+                self.pos += n + 1;
+                true
+            }
+            None => {
+                self.pos = bytes.len();
+                self.last_end = bytes.len();
+                false
+            }
+        }
+    }
+
+    /// The text has ended inside a statement.
+    fn at_end(&mut self, bytes: &[u8]) {
+        if self.class.declares() {
+            match self.declare {
+                Declare::Body => self.unclosed_body(self.body_start, bytes.len()),
+                Declare::Table => self.end_table(bytes, bytes.len()),
+                _ => {}
+            }
+        } else if let Some(open) = self
+            .opens
+            .iter()
+            .rev()
+            .find(|o| o.block)
+            .or(self.opens.last())
+            .copied()
+        {
+            self.unclosed(open);
+        }
+    }
+
+    fn unclosed(&mut self, open: Open) {
+        let close = match open.byte {
+            b'(' => ')',
+            b'[' => ']',
+            _ => '}',
+        };
+        self.problems.push(
+            Diagnostic::error(
+                "E0202",
+                span(open.at, open.at + 1),
+                format!("this `{}` is never closed", open.byte as char),
+            )
+            .label(format!("its `{close}` is missing"))
+            .help(if open.block {
+                format!("close the block with `{close};` before the next statement")
+            } else {
+                format!("write `{close}` before the `;`")
+            }),
+        );
+    }
+
+    fn unclosed_body(&mut self, at: usize, end: usize) {
+        self.problems.push(
+            Diagnostic::error(
+                "E0203",
+                span(at.saturating_sub(1), at),
+                "the data that begin here are never closed by `/`",
+            )
+            .label("opened here")
+            .help("data stand between two slashes: `/ a 1, b 2 /`"),
+        );
+        self.last_end = end;
+    }
+
+    // ------------------------------------------------------------ everything but declarations
+
+    fn code(&mut self, text: &str, on_end: bool) -> bool {
+        let bytes = text.as_bytes();
+        let start = self.start.unwrap_or(0);
+        let mut i = self.pos;
+        while i < bytes.len() {
+            let b = bytes[i];
+            match b {
+                b' ' | b'\t' | b'\r' | b'\n' => {
+                    i += 1;
+                    continue;
+                }
+                b'\'' | b'"' => {
+                    // In code a quote always opens a text, if its partner stands on the line.
+                    let rest = &bytes[i + 1..];
+                    i = match memchr::memchr2(b, b'\n', rest) {
+                        Some(n) if rest[n] == b => i + n + 2,
+                        _ => i + 1,
+                    };
+                }
+                b'a'..=b'z' | b'A'..=b'Z' | b'_' => {
+                    let end = words::word_end(bytes, i);
+                    let boundary = i > start && !self.after_dot;
+                    if let Some(word) = words::statement_word(text, i, end) {
+                        if boundary
+                            && self.opens.is_empty()
+                            && self.blocks == 0
+                            && !word.inside_blocks_only()
+                        {
+                            self.pos = i;
+                            return true;
+                        }
+                        if boundary && word == Word::Declaration {
+                            // No block and no parenthesis holds a declaration.
+                            if let Some(open) = self
+                                .opens
+                                .iter()
+                                .rev()
+                                .find(|o| o.block)
+                                .or(self.opens.last())
+                                .copied()
+                            {
+                                self.unclosed(open);
+                            }
+                            self.pos = i;
+                            return true;
+                        }
+                        if !self.after_dot {
+                            match word {
+                                Word::Control => {
+                                    self.control = true;
+                                    if on_end && !opens_parenthesis(bytes, end) {
+                                        self.blocks += 1;
+                                        self.control = false;
+                                    }
+                                }
+                                Word::EndControl | Word::Until
+                                    if on_end && self.blocks > 0 && self.opens.is_empty() =>
+                                {
+                                    self.blocks -= 1
+                                }
+                                _ => {}
+                            }
+                        }
+                    } else {
+                        self.control = false;
+                    }
+                    i = end;
+                }
+                b'0'..=b'9' => {
+                    i += 1;
+                    while i < bytes.len()
+                        && (bytes[i].is_ascii_alphanumeric()
+                            || bytes[i] == b'.' && bytes.get(i + 1) != Some(&b'.'))
+                    {
+                        i += 1;
+                    }
+                }
+                b'(' | b'[' | b'{' => {
+                    let block = self.control || self.figure && b == b'{' && self.opens.is_empty();
+                    self.opens.push(Open {
+                        at: i,
+                        byte: b,
+                        block,
+                    });
+                    self.control = false;
+                    i += 1;
+                    if self.opens.len() > DEEPEST {
+                        return self.too_deep(bytes, i);
+                    }
+                }
+                b')' | b']' | b'}' => {
+                    self.opens.pop();
+                    i += 1;
+                }
+                b';' => match self.opens.last() {
+                    None if self.blocks == 0 => {
+                        self.pos = i + 1;
+                        return true;
+                    }
+                    Some(open) if !open.block => {
+                        // The `;` ends what is inside, closed or not.
+                        let first = self
+                            .opens
+                            .iter()
+                            .rposition(|o| o.block)
+                            .map_or(0, |n| n + 1);
+                        let open = self.opens[first];
+                        self.unclosed(open);
+                        self.opens.truncate(first);
+                        if first == 0 && self.blocks == 0 {
+                            self.pos = i + 1;
+                            return true;
+                        }
+                        i += 1;
+                    }
+                    _ => i += 1,
+                },
+                b'$' if i > 0
+                    && bytes[i - 1] == b'\n'
+                    && self.opens.is_empty()
+                    && self.blocks == 0 =>
+                {
+                    self.pos = i;
+                    return true;
+                }
+                _ => i += 1,
+            }
+            self.after_dot =
+                b == b'.' && bytes.get(i) != Some(&b'.') && (i < 2 || bytes[i - 2] != b'.');
+            self.last_end = i;
+        }
+        self.pos = i;
+        false
+    }
+
+    /// Nested too deeply: reports it and passes over the statement.
+    fn too_deep(&mut self, bytes: &[u8], i: usize) -> bool {
+        self.problems.push(
+            Diagnostic::error(
+                "E0204",
+                span(i - 1, i),
+                format!("parentheses are nested more than {DEEPEST} deep here"),
+            )
+            .help("split the expression: give its parts names of their own"),
+        );
+        let end = memchr::memchr(b';', &bytes[i..]).map_or(bytes.len(), |n| i + n);
+        self.last_end = end;
+        self.pos = (end + 1).min(bytes.len());
+        true
+    }
+
+    // ------------------------------------------------------------ declarations
+
+    fn declaration(&mut self, text: &str) -> bool {
+        let bytes = text.as_bytes();
+        loop {
+            match self.declare {
+                Declare::Body => {
+                    if !self.body(text) {
+                        return false;
+                    }
+                    if self.start.is_some() && self.problems.iter().any(|p| p.code == "E0203") {
+                        return true;
+                    }
+                    continue;
+                }
+                Declare::Table => return self.table(text),
+                _ => {}
+            }
+            let i = self.pos;
+            let Some(&b) = bytes.get(i) else { return false };
+            match b {
+                b' ' | b'\t' | b'\r' => {
+                    self.pos += 1;
+                    continue;
+                }
+                b'\n' => {
+                    self.pos += 1;
+                    self.new_line = true;
+                    if self.declare == Declare::AfterName {
+                        if self.class == Class::Table {
+                            self.begin_table(i);
+                        } else {
+                            self.declare = Declare::AfterText;
+                        }
+                    }
+                    continue;
+                }
+                b'$' if i > 0 && bytes[i - 1] == b'\n' => return true,
+                _ => {}
+            }
+            if self.declare == Declare::Domain {
+                match b {
+                    b')' | b']' | b'}' => self.declare = Declare::AfterName,
+                    b';' => {
+                        // The parser says what is missing.
+                        self.pos += 1;
+                        return true;
+                    }
+                    _ => {}
+                }
+                self.pos = quoted_end(bytes, i).unwrap_or(i + 1);
+                self.last_end = self.pos;
+                continue;
+            }
+            match b {
+                b';' => {
+                    self.pos += 1;
+                    return true;
+                }
+                b',' => {
+                    self.declare = Declare::Name;
+                    self.pos += 1;
+                    self.last_end = self.pos;
+                }
+                b'/' if self.class == Class::Acronym => {
+                    self.pos += 1;
+                    self.last_end = self.pos;
+                }
+                b'/' => {
+                    self.declare = Declare::Body;
+                    self.body_start = i + 1;
+                    self.searched = i + 1;
+                    self.pos = i + 1;
+                }
+                b'(' | b'[' | b'{' if self.declare != Declare::Name && !self.has_domain(bytes) => {
+                    self.declare = Declare::Domain;
+                    self.pos += 1;
+                    self.last_end = self.pos;
+                }
+                b'\'' | b'"' if self.declare != Declare::Name => match line_quote(bytes, i) {
+                    Some(end) => {
+                        self.hole(HoleKind::Text, span(i + 1, end - 1), span(i, end));
+                        self.pos = end;
+                        self.last_end = end;
+                        if self.class == Class::Table {
+                            self.begin_table(end);
+                        } else {
+                            self.declare = Declare::AfterText;
+                            self.new_line = false;
+                        }
+                    }
+                    None => self.unquoted_text(text, i),
+                },
+                _ if self.declare == Declare::AfterName && !text_cannot_start(bytes, i) => {
+                    self.unquoted_text(text, i)
+                }
+                _ if words::is_letter(b) => {
+                    let end = words::word_end(bytes, i);
+                    if words::statement_word(text, i, end).is_some() {
+                        // A keyword: the next statement.
+                        return true;
+                    }
+                    self.name(bytes, i, end);
+                }
+                b'.' | b'=' | b'$' | b':'
+                    if self.declare == Declare::AfterText || self.declare == Declare::AfterName =>
+                {
+                    if self.missing_semicolon(text, i) {
+                        return true;
+                    }
+                    self.pos += 1;
+                    self.last_end = self.pos;
+                }
+                _ => {
+                    self.pos += text[i..].chars().next().map_or(1, char::len_utf8);
+                    self.last_end = self.pos;
+                }
+            }
+        }
+    }
+
+    fn name(&mut self, bytes: &[u8], i: usize, end: usize) {
+        self.last_name = i;
+        self.names += 1;
+        self.declare = Declare::AfterName;
+        self.pos = end;
+        self.last_end = end;
+        self.new_line = false;
+        // `scalar x.l /1/`, `set i-j` and the like are left to the parser, in one piece.
+        while let Some(&b) = bytes.get(self.pos) {
+            if words::is_blank(b)
+                || matches!(
+                    b,
+                    b',' | b';' | b'/' | b'(' | b'[' | b'{' | b'\'' | b'"' | b'=' | b'.' | b'$'
+                )
+            {
+                break;
+            }
+            self.pos += 1;
+            self.last_end = self.pos;
+        }
+    }
+
+    /// Between the last name and here stands a closed domain already.
+    fn has_domain(&self, bytes: &[u8]) -> bool {
+        matches!(
+            bytes.get(self.last_end.wrapping_sub(1)),
+            Some(b')' | b']' | b'}')
+        ) || self.declare == Declare::AfterText && !self.new_line
+    }
+
+    fn hole(&mut self, kind: HoleKind, inside: Span, outside: Span) {
+        self.holes.push(Hole {
+            kind,
+            inside,
+            outside,
+        });
+    }
+
+    /// A text without quotes: to the end of the line, `,`, `/` or `;`.
+    fn unquoted_text(&mut self, text: &str, i: usize) {
+        let bytes = text.as_bytes();
+        let line = memchr::memchr(b'\n', &bytes[i..]).map_or(bytes.len(), |n| i + n);
+        let end = if self.class == Class::Table {
+            line
+        } else {
+            memchr::memchr3(b',', b'/', b';', &bytes[i..line]).map_or(line, |n| i + n)
+        };
+        let trimmed = i + text[i..end].trim_end().len();
+        self.hole(HoleKind::Text, span(i, trimmed), span(i, trimmed));
+        self.pos = end;
+        self.last_end = trimmed;
+        if self.class == Class::Table {
+            self.begin_table(end);
+        } else {
+            self.declare = Declare::AfterText;
+            self.new_line = false;
+        }
+    }
+
+    /// `e..` or `x =` on a new line after a declaration: the `;` before it is missing.
+    fn missing_semicolon(&mut self, text: &str, i: usize) -> bool {
+        let bytes = text.as_bytes();
+        let definition = bytes[i..].starts_with(b"..");
+        let assignment = bytes[i] == b'='
+            || bytes[i] == b':'
+            || bytes[i] == b'$'
+            || bytes[i] == b'.' && bytes.get(i + 1).is_some_and(|b| words::is_letter(*b));
+        if !definition && !assignment || self.names < 2 {
+            return false;
+        }
+        let line_start = memchr::memrchr(b'\n', &bytes[..self.last_name]).map_or(0, |n| n + 1);
+        let first_on_line = bytes[line_start..self.last_name]
+            .iter()
+            .all(|b| words::is_blank(*b));
+        let start = self.start.unwrap_or(0);
+        if !first_on_line || line_start <= start {
+            return false;
+        }
+        let before = text[start..self.last_name].trim_end_matches([' ', '\t', '\r', '\n']);
+        let end = start + before.len();
+        let name_end = words::word_end(bytes, self.last_name);
+        self.problems.push(
+            Diagnostic::error(
+                "E0201",
+                span(end.saturating_sub(1).max(start), end),
+                "`;` is missing at the end of this declaration",
+            )
+            .label("missing `;`")
+            .other(
+                span(self.last_name, name_end),
+                "the next statement begins here",
+            ),
+        );
+        self.pos = self.last_name;
+        self.last_end = end;
+        true
+    }
+
+    /// Inside `/ … /`. True once it is closed.
+    fn body(&mut self, text: &str) -> bool {
+        let bytes = text.as_bytes();
+        let mut i = self.pos;
+        loop {
+            let Some(n) = memchr::memchr3(b'/', b'\'', b'"', &bytes[i..]) else {
+                i = bytes.len();
+                break;
+            };
+            let at = i + n;
+            if bytes[at] == b'/' {
+                // A `;` in numbers, or before a keyword: the slash was forgotten.
+                if let Some(stop) = self.forgotten_slash(text, at) {
+                    self.unclosed_body(self.body_start, stop);
+                    self.pos = stop + 1;
+                    return true;
+                }
+                let body = span(self.body_start, at);
+                if self.class == Class::Model {
+                    // The grammar reads a model's list.
+                } else {
+                    self.hole(HoleKind::Body, body, span(self.body_start - 1, at + 1));
+                }
+                self.pos = at + 1;
+                self.last_end = at + 1;
+                self.declare = Declare::AfterText;
+                self.new_line = false;
+                return true;
+            }
+            i = quoted_end(bytes, at).unwrap_or(at + 1);
+        }
+        if let Some(stop) = self.forgotten_slash(text, i) {
+            self.unclosed_body(self.body_start, stop);
+            self.pos = stop + 1;
+            return true;
+        }
+        self.pos = i;
+        false
+    }
+
+    /// The `;` that ends the statement inside data, if one does.
+    fn forgotten_slash(&mut self, text: &str, to: usize) -> Option<usize> {
+        let bytes = text.as_bytes();
+        let from = self.body_start;
+        let mut i = self.searched;
+        self.searched = to;
+        while let Some(n) = memchr::memchr(b';', &bytes[i..to]) {
+            let at = i + n;
+            i = at + 1;
+            let line = memchr::memrchr(b'\n', &bytes[..at])
+                .map_or(0, |n| n + 1)
+                .max(from);
+            let mut q = line;
+            let mut quoted = false;
+            while q < at {
+                match quoted_end(bytes, q) {
+                    Some(end) if end > at => {
+                        quoted = true;
+                        break;
+                    }
+                    Some(end) => q = end,
+                    None => q += 1,
+                }
+            }
+            if quoted {
+                continue;
+            }
+            if self.class != Class::Set {
+                return Some(at);
+            }
+            // In a set it may belong to a text: only a statement after it tells.
+            let rest = text[at + 1..to].trim_start();
+            if rest.is_empty() {
+                // More text may come.
+                self.searched = at;
+                return None;
+            }
+            let word_at = to - rest.len();
+            let end = words::word_end(bytes, word_at);
+            if end > word_at && words::statement_word(text, word_at, end).is_some() {
+                return Some(at);
+            }
+        }
+        None
+    }
+
+    fn begin_table(&mut self, at: usize) {
+        self.declare = Declare::Table;
+        self.body_start = at;
+        self.pos = at;
+    }
+
+    fn end_table(&mut self, bytes: &[u8], end: usize) {
+        let end = end.max(self.body_start);
+        let trimmed = bytes[self.body_start..end]
+            .iter()
+            .rposition(|b| !words::is_blank(*b))
+            .map_or(self.body_start, |n| self.body_start + n + 1);
+        let body = span(self.body_start, trimmed);
+        self.hole(HoleKind::Body, body, body);
+        self.last_end = trimmed;
+    }
+
+    /// In the lines of a table, up to `;` or a line that begins with a statement's keyword.
+    fn table(&mut self, text: &str) -> bool {
+        let bytes = text.as_bytes();
+        while self.pos < bytes.len() {
+            let line = self.pos;
+            let end = memchr::memchr(b'\n', &bytes[line..]).map_or(bytes.len(), |n| line + n + 1);
+            if line > self.body_start {
+                if bytes[line] == b'$' {
+                    self.end_table(bytes, line);
+                    return true;
+                }
+                let first = line
+                    + bytes[line..end]
+                        .iter()
+                        .take_while(|b| words::is_blank(**b))
+                        .count();
+                if first < end && bytes[first].is_ascii_alphabetic() {
+                    let word_end = words::word_end(bytes, first);
+                    if words::begins_statement_in_table(text, first, word_end) {
+                        self.end_table(bytes, line);
+                        self.pos = first;
+                        return true;
+                    }
+                }
+            }
+            let mut i = line;
+            while let Some(n) = memchr::memchr3(b';', b'\'', b'"', &bytes[i..end]) {
+                let at = i + n;
+                if bytes[at] == b';' {
+                    self.end_table(bytes, at);
+                    self.pos = at + 1;
+                    return true;
+                }
+                i = quoted_end(bytes, at).unwrap_or(at + 1).min(end);
+            }
+            self.pos = end;
+        }
+        false
+    }
+}
+
+/// Whether the next byte that counts opens a parenthesis.
+fn opens_parenthesis(bytes: &[u8], mut i: usize) -> bool {
+    while i < bytes.len() && words::is_blank(bytes[i]) {
+        i += 1;
+    }
+    matches!(bytes.get(i), Some(b'(' | b'[' | b'{'))
+}
+
+/// The end of a quoted text that closes on its line.
+fn line_quote(bytes: &[u8], i: usize) -> Option<usize> {
+    let rest = &bytes[i + 1..];
+    let n = memchr::memchr2(bytes[i], b'\n', rest)?;
+    (rest[n] == bytes[i]).then_some(i + n + 2)
+}
+
+/// An explanatory text does not begin with `=`, `..` or `$`.
+fn text_cannot_start(bytes: &[u8], i: usize) -> bool {
+    match bytes[i] {
+        b'=' | b'$' => true,
+        b':' => bytes.get(i + 1) == Some(&b'='),
+        b'.' => bytes
+            .get(i + 1)
+            .is_some_and(|b| *b == b'.' || words::is_letter(*b)),
+        _ => false,
+    }
+}

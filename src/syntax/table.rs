@@ -1,0 +1,363 @@
+//! Tables: a value belongs to the column whose label it stands under.
+//!
+//! The first line holds the labels of the columns, each further line a row: its label, then values.
+//! A line that begins with `+` is a new line of column labels, and rows begin anew. As in GAMS a
+//! value must share a character position with one column label, and with one only; the label of a
+//! row must not reach under the first column. Tabs go to the next multiple of eight.
+//!
+//! Invariant: the reader always advances, so it ends on any text.
+
+use super::data::{DataKind, DataReader, KeyPart, Tail};
+use crate::diag::Diagnostic;
+use crate::source::Span;
+
+/// One value of a table.
+#[derive(Debug)]
+pub struct Cell<'r, 'a> {
+    /// Key of the row.
+    pub row: &'r [KeyPart<'a>],
+    /// Key of the column.
+    pub column: &'r [KeyPart<'a>],
+    /// The value: a number or an acronym.
+    pub value: Tail<'a>,
+    /// Place of the value.
+    pub span: Span,
+}
+
+/// A column: its key and the positions of its label.
+#[derive(Debug)]
+struct Column<'a> {
+    key: Vec<KeyPart<'a>>,
+    from: usize,
+    to: usize,
+    span: Span,
+}
+
+/// Reads the values of a table, row by row.
+pub struct TableReader<'a> {
+    text: &'a str,
+    /// Next byte to read as a line.
+    at: usize,
+    end: usize,
+    columns: Vec<Column<'a>>,
+    /// The next line that is not blank holds column labels.
+    header: bool,
+    row: Vec<KeyPart<'a>>,
+    row_span: Span,
+    /// Column position of the first byte of the present line.
+    offset: usize,
+    line: &'a str,
+    line_base: u32,
+    /// Byte and column position last computed in the present line.
+    known: (usize, usize),
+    reader: DataReader<'a>,
+    /// In a row, behind its label.
+    in_row: bool,
+}
+
+impl<'a> TableReader<'a> {
+    /// `expanded` is the whole expanded text, `body` the table's lines in it.
+    pub fn new(expanded: &'a str, body: Span, undf: bool) -> Self {
+        let (lo, hi) = (body.lo as usize, (body.hi as usize).min(expanded.len()));
+        Self {
+            text: expanded,
+            at: lo.min(hi),
+            end: hi,
+            columns: Vec::new(),
+            header: true,
+            row: Vec::new(),
+            row_span: body,
+            offset: 0,
+            line: "",
+            line_base: 0,
+            known: (0, 0),
+            reader: DataReader::new("", 0, DataKind::Values, undf),
+            in_row: false,
+        }
+    }
+
+    /// Keys of the columns of the present block, in order.
+    pub fn columns(&self) -> impl Iterator<Item = &[KeyPart<'a>]> {
+        self.columns.iter().map(|c| c.key.as_slice())
+    }
+
+    /// The next value. After an error, reading goes on with the next value or line.
+    #[allow(clippy::should_implement_trait)]
+    pub fn next(&mut self) -> Option<Result<Cell<'_, 'a>, Diagnostic>> {
+        loop {
+            if self.in_row && self.reader.more() {
+                return Some(match self.cell() {
+                    Ok((column, value, span)) => Ok(Cell {
+                        row: &self.row,
+                        column: &self.columns[column].key,
+                        value,
+                        span,
+                    }),
+                    Err(d) => Err(*d),
+                });
+            }
+            self.in_row = false;
+            if self.at >= self.end {
+                return None;
+            }
+            if let Err(d) = self.begin_line() {
+                return Some(Err(*d));
+            }
+        }
+    }
+
+    /// Takes the next line: column labels, or the label of a row.
+    fn begin_line(&mut self) -> Result<(), Box<Diagnostic>> {
+        let bytes = self.text.as_bytes();
+        let start = self.at;
+        let stop = memchr::memchr(b'\n', &bytes[start..self.end]).map_or(self.end, |n| start + n);
+        self.at = stop + 1;
+        // The first line may begin behind the table's text.
+        let line_start = memchr::memrchr(b'\n', &bytes[..start]).map_or(0, |n| n + 1);
+        self.offset = column_after(&self.text[line_start..start], 0);
+        let mut from = start;
+        let line = self.text[start..stop].trim_start();
+        if line.is_empty() {
+            return Ok(());
+        }
+        if line.starts_with('+') {
+            let plus = stop - line.len();
+            self.offset = column_after(&self.text[line_start..plus + 1], 0);
+            from = plus + 1;
+            self.header = true;
+            if self.text[from..stop].trim().is_empty() {
+                return Ok(());
+            }
+        }
+        self.line = &self.text[from..stop];
+        self.line_base = from as u32;
+        self.known = (0, self.offset);
+        self.reader.restart(self.line, self.line_base);
+        if self.header {
+            self.header = false;
+            self.read_header()
+        } else {
+            self.read_row_label()
+        }
+    }
+
+    fn read_header(&mut self) -> Result<(), Box<Diagnostic>> {
+        self.columns.clear();
+        while self.reader.more() {
+            let from = self.reader.position();
+            let mut key = Vec::new();
+            self.reader.key_parts(&mut key, 0)?;
+            let to = self.reader.position().max(from + 1);
+            let span = self.span(from, to);
+            let (from, to) = (self.column(from), self.column(to));
+            self.columns.push(Column {
+                key,
+                from,
+                to,
+                span,
+            });
+        }
+        Ok(())
+    }
+
+    fn read_row_label(&mut self) -> Result<(), Box<Diagnostic>> {
+        self.row.clear();
+        self.reader.more();
+        let from = self.reader.position();
+        self.reader.key_parts(&mut self.row, 0)?;
+        let to = self.reader.position();
+        self.row_span = self.span(from, to);
+        let reach = self.column(to);
+        if let Some(first) = self.columns.first()
+            && reach > first.from
+        {
+            let span = first.span;
+            return Err(Box::new(
+                Diagnostic::error("E0312", self.row_span, "the label of this row reaches under a column")
+                    .other(span, "the first column begins here")
+                    .help("move the columns to the right, or shorten the label; is a row's label missing?"),
+            ));
+        }
+        self.in_row = true;
+        Ok(())
+    }
+
+    fn cell(&mut self) -> Result<(usize, Tail<'a>, Span), Box<Diagnostic>> {
+        let from = self.reader.position();
+        let value = match self.reader.value() {
+            Ok(v) => v,
+            Err(d) => {
+                // Behind the word that is no value.
+                let rest = &self.line[from..];
+                let len = rest.find([' ', '\t']).unwrap_or(rest.len()).max(1);
+                self.skip(from + len);
+                return Err(d);
+            }
+        };
+        let to = self.reader.position();
+        let span = self.span(from, to);
+        if to == from {
+            self.skip(from + 1);
+            return Err(Box::new(Diagnostic::error(
+                "E0303",
+                span,
+                "a number was expected here",
+            )));
+        }
+        let (left, right) = (self.column(from), self.column(to));
+        let first = self.columns.partition_point(|c| c.to <= left);
+        let under = self.columns[first..]
+            .iter()
+            .take_while(|c| c.from < right)
+            .count();
+        match under {
+            1 => Ok((first, value, span)),
+            0 => {
+                let mut d = Diagnostic::error("E0310", span, "this value stands under no column")
+                    .help("a value must stand under a part of its column's label");
+                for near in [first.wrapping_sub(1), first] {
+                    if let Some(c) = self.columns.get(near) {
+                        d = d.other(c.span, "a column near it");
+                    }
+                }
+                Err(Box::new(d))
+            }
+            _ => {
+                let d = Diagnostic::error(
+                    "E0311",
+                    span,
+                    "this value stands under more than one column",
+                )
+                .other(self.columns[first].span, "one")
+                .other(self.columns[first + 1].span, "another")
+                .help("write the column labels further apart");
+                Err(Box::new(d))
+            }
+        }
+    }
+
+    /// Goes on at a byte of the present line.
+    fn skip(&mut self, to: usize) {
+        let mut to = to.min(self.line.len());
+        while !self.line.is_char_boundary(to) {
+            to += 1;
+        }
+        self.known = (0, self.column(to));
+        self.line = &self.line[to..];
+        self.line_base += to as u32;
+        self.reader.restart(self.line, self.line_base);
+    }
+
+    fn span(&self, from: usize, to: usize) -> Span {
+        Span::new(self.line_base + from as u32, self.line_base + to as u32)
+    }
+
+    /// Column position of a byte of the present line.
+    fn column(&mut self, byte: usize) -> usize {
+        let (at, column) = if self.known.0 <= byte {
+            self.known
+        } else {
+            (0, self.offset)
+        };
+        let column = column_after(self.line.get(at..byte).unwrap_or(""), column);
+        self.known = (byte, column);
+        column
+    }
+}
+
+/// The column position behind a text that begins at `column`.
+fn column_after(text: &str, column: usize) -> usize {
+    if text.is_ascii() && !text.as_bytes().contains(&b'\t') {
+        return column + text.len();
+    }
+    text.chars().fold(column, |c, ch| match ch {
+        '\t' => (c / 8 + 1) * 8,
+        _ => c + 1,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cells(text: &str) -> Vec<String> {
+        fn key(k: &[KeyPart<'_>]) -> String {
+            k.iter()
+                .map(|p| match p {
+                    KeyPart::Label { text, .. } => (*text).to_owned(),
+                    KeyPart::Range { from, to, .. } => format!("{from}*{to}"),
+                    KeyPart::AllOf { set, .. } => format!("#{set}"),
+                    KeyPart::Universe(_) => "*".into(),
+                    KeyPart::Group(g) => format!(
+                        "({})",
+                        g.iter().map(|k| key(k)).collect::<Vec<_>>().join(",")
+                    ),
+                })
+                .collect::<Vec<_>>()
+                .join(".")
+        }
+        let mut t = TableReader::new(text, Span::new(0, text.len() as u32), false);
+        let mut out = Vec::new();
+        while let Some(c) = t.next() {
+            out.push(match c {
+                Ok(c) => {
+                    let v = match c.value {
+                        Tail::Number(x, _) => x.to_string(),
+                        Tail::Name(n, _) => n.to_owned(),
+                        other => format!("{other:?}"),
+                    };
+                    format!("{}|{}={v}", key(c.row), key(c.column))
+                }
+                Err(d) => format!("!{}", d.code),
+            });
+        }
+        out
+    }
+
+    #[test]
+    fn values_go_under_labels() {
+        let t = "\n          new-york  chicago\nseattle        2.5      1.7\nsan-diego               1.8\n";
+        assert_eq!(
+            cells(t),
+            [
+                "seattle|new-york=2.5",
+                "seattle|chicago=1.7",
+                "san-diego|chicago=1.8"
+            ]
+        );
+    }
+
+    #[test]
+    fn continuation_and_tuples() {
+        let t = "       aa.x    bb . y\nr1      1         2\n+      cc.(x,y)\nr1      - 1\n  +\n      c1*c3\n(r,s).k  7";
+        assert_eq!(
+            cells(t),
+            ["r1|aa.x=1", "r1|bb.y=2", "r1|cc.(x,y)=-1", "!E0312"]
+        );
+    }
+
+    #[test]
+    fn misplaced_values() {
+        assert_eq!(
+            cells("\n       aa      bb\nr1    1\nr2         2\n"),
+            ["!E0310", "!E0310"]
+        );
+        assert_eq!(
+            cells("\n       aa      bb\nr1 1234567890123\nr2 x   3 "),
+            ["!E0311", "!E0310", "r2|aa=3"]
+        );
+        assert_eq!(cells("\n       aa\nr1 5x   3 "), ["!E0305", "r1|aa=3"]);
+    }
+
+    #[test]
+    fn tabs_and_wide_characters() {
+        assert_eq!(
+            cells("\n\ta\tb\tc\nr1\t1\t2\t3\nr2\t\t2\n"),
+            ["r1|a=1", "r1|b=2", "r1|c=3", "r2|b=2"]
+        );
+        assert_eq!(
+            cells("\n       ä  b\nzürich 1  2\n"),
+            ["zürich|ä=1", "zürich|b=2"]
+        );
+    }
+}

@@ -1,0 +1,214 @@
+//! The words that begin statements, and how the bytes of a text are classed.
+
+/// The kinds of statements that the splitter tells apart.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Class {
+    Set,
+    Parameter,
+    Variable,
+    Equation,
+    Acronym,
+    File,
+    Model,
+    Table,
+    Alias,
+    /// A directive left by the preprocessor.
+    Directive,
+    /// An assignment, an equation, or what cannot be told.
+    Algebra,
+    /// Any other keyword.
+    Other,
+}
+
+impl Class {
+    /// Statements with names, texts and data.
+    pub(super) fn declares(self) -> bool {
+        !matches!(
+            self,
+            Class::Alias | Class::Directive | Class::Algebra | Class::Other
+        )
+    }
+}
+
+/// A word that always begins a statement.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Word {
+    /// `set`, `parameter` … never inside a block.
+    Declaration,
+    /// `loop`, `if` …: a block follows.
+    Control,
+    /// `endloop` … under `$onEnd`.
+    EndControl,
+    /// `else`, `elseif`.
+    Inner,
+    /// `until`, which ends a `repeat` under `$onEnd`.
+    Until,
+    /// `display`, `solve` …
+    Action,
+}
+
+impl Word {
+    /// Words that do not end a statement at the outermost level.
+    pub(super) fn inside_blocks_only(self) -> bool {
+        matches!(self, Word::EndControl | Word::Inner | Word::Until)
+    }
+}
+
+/// Blanks, line ends and the marks that old files end with.
+pub(super) fn is_blank(b: u8) -> bool {
+    matches!(b, b' ' | b'\t' | b'\r' | b'\n' | 0x0c | 0x0b | 0x1a)
+}
+
+/// The first byte of a name.
+pub(super) fn is_letter(b: u8) -> bool {
+    b.is_ascii_alphabetic() || b == b'_'
+}
+
+/// The end of the word that begins at `i`.
+pub(super) fn word_end(bytes: &[u8], i: usize) -> usize {
+    let mut end = i;
+    while end < bytes.len() && (bytes[end].is_ascii_alphanumeric() || bytes[end] == b'_') {
+        end += 1;
+    }
+    end
+}
+
+/// The word in lower case, if it is short enough to be a keyword.
+fn lower(word: &str, buffer: &mut [u8; 20]) -> Option<usize> {
+    let b = word.as_bytes();
+    if b.len() > buffer.len() || b.len() < 2 {
+        return None;
+    }
+    for (to, from) in buffer.iter_mut().zip(b) {
+        *to = from.to_ascii_lowercase();
+    }
+    Some(b.len())
+}
+
+fn kind(word: &[u8]) -> Option<(Word, Class)> {
+    use Class as C;
+    use Word as W;
+    Some(match word {
+        b"set" | b"sets" => (W::Declaration, C::Set),
+        b"parameter" | b"parameters" | b"scalar" | b"scalars" => (W::Declaration, C::Parameter),
+        b"variable" | b"variables" => (W::Declaration, C::Variable),
+        b"equation" | b"equations" => (W::Declaration, C::Equation),
+        b"acronym" | b"acronyms" => (W::Declaration, C::Acronym),
+        b"file" | b"files" => (W::Declaration, C::File),
+        b"model" | b"models" => (W::Declaration, C::Model),
+        b"table" | b"tables" => (W::Declaration, C::Table),
+        b"alias" | b"aliases" => (W::Declaration, C::Alias),
+        b"loop" | b"while" | b"for" | b"if" | b"repeat" => (W::Control, C::Other),
+        b"endloop" | b"endwhile" | b"endfor" | b"endif" => (W::EndControl, C::Other),
+        b"else" | b"elseif" => (W::Inner, C::Other),
+        b"until" => (W::Until, C::Other),
+        b"display" | b"abort" | b"option" | b"options" | b"solve" | b"put" | b"putclose"
+        | b"puttl" | b"puthd" | b"putpage" | b"putclear" | b"execute" | b"execute_unload"
+        | b"execute_load" | b"execute_unloaddi" | b"execute_loaddc" | b"execute_loadpoint"
+        | b"put_utility" | b"put_utilities" => (W::Action, C::Other),
+        _ => return None,
+    })
+}
+
+/// Kinds of variables, which need the word `variable` behind them here.
+fn is_variable_kind(word: &[u8]) -> bool {
+    matches!(
+        word,
+        b"free"
+            | b"positive"
+            | b"nonnegative"
+            | b"negative"
+            | b"binary"
+            | b"integer"
+            | b"semicont"
+            | b"semiint"
+            | b"sos1"
+            | b"sos2"
+    )
+}
+
+/// The word after the blanks behind `end`.
+fn next_word(text: &str, end: usize) -> &str {
+    let bytes = text.as_bytes();
+    let mut i = end;
+    while i < bytes.len() && is_blank(bytes[i]) {
+        i += 1;
+    }
+    &text[i..word_end(bytes, i)]
+}
+
+/// Whether the word at `at..end` always begins a statement, and which kind.
+pub(super) fn statement_word(text: &str, at: usize, end: usize) -> Option<Word> {
+    let mut buffer = [0; 20];
+    let n = lower(&text[at..end], &mut buffer)?;
+    let word = &buffer[..n];
+    if let Some((kind, _)) = kind(word) {
+        return Some(kind);
+    }
+    let next = |wanted: &[&str]| {
+        let next = next_word(text, end);
+        wanted.iter().any(|w| next.eq_ignore_ascii_case(w))
+    };
+    let declares = is_variable_kind(word) && next(&["variable", "variables"])
+        || word == b"singleton" && next(&["set", "sets"]);
+    declares.then_some(Word::Declaration)
+}
+
+/// Whether a line of a table that begins with this word is the next statement: a label may be spelled
+/// like a keyword, but then a number follows.
+pub(super) fn begins_statement_in_table(text: &str, at: usize, end: usize) -> bool {
+    let Some(word) = statement_word(text, at, end) else {
+        return false;
+    };
+    if word.inside_blocks_only() {
+        return false;
+    }
+    // `set  3 4` is a row.
+    let rest = &text[end..];
+    let line = rest.lines().next().unwrap_or("").trim_start();
+    !line.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | '+'))
+}
+
+/// The class of the statement that begins at `at`, and the end of its keyword.
+pub(super) fn classify(text: &str, at: usize) -> (Class, usize) {
+    let bytes = text.as_bytes();
+    let end = word_end(bytes, at);
+    let mut buffer = [0; 20];
+    let Some(n) = lower(&text[at..end], &mut buffer) else {
+        return (Class::Algebra, end);
+    };
+    let word = &buffer[..n];
+    if let Some((_, class)) = kind(word) {
+        return (class, end);
+    }
+    let second_end = |class| {
+        let bytes = text.as_bytes();
+        let mut i = end;
+        while i < bytes.len() && is_blank(bytes[i]) {
+            i += 1;
+        }
+        (class, word_end(bytes, i))
+    };
+    match statement_word(text, at, end) {
+        Some(Word::Declaration) if word == b"singleton" => return second_end(Class::Set),
+        Some(Word::Declaration) => return second_end(Class::Variable),
+        _ => {}
+    }
+    match word {
+        b"figure" | b"draw" | b"break" | b"continue" | b"embeddedcode" | b"endembeddedcode" => {
+            (Class::Other, end)
+        }
+        _ if word.starts_with(b"execute")
+            || word.starts_with(b"put")
+            || word.starts_with(b"embeddedcode") =>
+        {
+            (Class::Other, end)
+        }
+        _ => (Class::Algebra, end),
+    }
+}
+
+/// `figure`, whose block stands in braces.
+pub(super) fn is_figure(word: &str) -> bool {
+    word.eq_ignore_ascii_case("figure")
+}

@@ -1,0 +1,174 @@
+//! Every model of the shared collection parses, data and tables included.
+//!
+//! The collection is not part of the project: it is looked for beside it (`../shared/corpus`) or where
+//! `BMOD_SHARED` says. Where it is not there, the test says so and passes.
+
+use std::path::{Path, PathBuf};
+
+use bmod::host::{Host, HostError};
+use bmod::source::{NothingKnown, PreprocessOptions, Span};
+use bmod::syntax::Parser;
+use bmod::syntax::ast::{Stmt, StmtKind, SymbolDecl};
+use bmod::syntax::data::{DataKind, DataReader};
+use bmod::syntax::table::TableReader;
+
+struct Disk;
+
+impl Host for Disk {
+    fn read(&mut self, path: &str, from: Option<&Path>) -> Result<(PathBuf, String), HostError> {
+        let beside = from
+            .and_then(Path::parent)
+            .map(|d| d.join(path))
+            .filter(|p| p.exists());
+        let path = beside.unwrap_or_else(|| PathBuf::from(path));
+        let text = std::fs::read_to_string(&path).map_err(|e| HostError::Other(e.to_string()))?;
+        Ok((path, text))
+    }
+    fn exists(&mut self, path: &str, _: Option<&Path>) -> bool {
+        Path::new(path).exists()
+    }
+    fn write(&mut self, _: &str, _: &[u8]) -> Result<PathBuf, HostError> {
+        Err(HostError::Other("not here".into()))
+    }
+    fn print(&mut self, _: &str) {}
+    fn elapsed(&self) -> f64 {
+        0.0
+    }
+    fn now(&self) -> f64 {
+        46_000.0
+    }
+    fn interrupted(&self) -> bool {
+        false
+    }
+}
+
+fn models(folder: &Path, found: &mut Vec<PathBuf>) {
+    let Ok(entries) = std::fs::read_dir(folder) else {
+        return;
+    };
+    for entry in entries.flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            models(&path, found);
+        } else if path.extension().is_some_and(|e| e == "gms" || e == "blk") {
+            found.push(path);
+        }
+    }
+}
+
+/// Reads the data of a statement; gives what is wrong with them.
+fn read_data(parser: &Parser<'_>, s: &Stmt) -> Vec<String> {
+    let mut wrong = Vec::new();
+    let mut body = |span: Span, kind| {
+        let mut reader = DataReader::new(parser.text(span), span.lo, kind, true);
+        while let Some(record) = reader.next() {
+            if let Err(d) = record {
+                wrong.push(d.message);
+            }
+        }
+    };
+    let mut symbols = |list: &[SymbolDecl], kind| {
+        list.iter()
+            .filter_map(|d| d.data)
+            .for_each(|s| body(s, kind));
+    };
+    match &s.kind {
+        StmtKind::Set(list) => list
+            .iter()
+            .for_each(|d| symbols(std::slice::from_ref(&d.symbol), DataKind::Set)),
+        StmtKind::Parameter(list) => list
+            .iter()
+            .for_each(|d| symbols(std::slice::from_ref(&d.symbol), DataKind::Values)),
+        StmtKind::Variable(_, list) | StmtKind::Equation(list) => symbols(list, DataKind::Values),
+        StmtKind::Table(t) => {
+            let mut reader = TableReader::new(parser.map().expanded(), t.body, true);
+            while let Some(cell) = reader.next() {
+                if let Err(d) = cell {
+                    wrong.push(d.message);
+                }
+            }
+        }
+        _ => {}
+    }
+    wrong
+}
+
+/// Parses a file; gives what is wrong with it, and the number of statements.
+fn parse(path: &Path) -> (Vec<String>, usize) {
+    let mut disk = Disk;
+    let options = PreprocessOptions {
+        defines: Vec::new(),
+        slash_comments: path.extension().is_some_and(|e| e == "blk"),
+    };
+    let mut parser = match Parser::new(&mut disk, &path.to_string_lossy(), options) {
+        Ok(p) => p,
+        Err(e) => return (vec![e.diagnostic.message], 0),
+    };
+    let mut wrong = Vec::new();
+    let mut statements = 0;
+    loop {
+        match parser.next(&NothingKnown) {
+            Ok(None) => return (wrong, statements),
+            Ok(Some(s)) => {
+                statements += 1;
+                wrong.extend(read_data(&parser, &s));
+            }
+            Err(list) => {
+                for d in list {
+                    wrong.push(format!(
+                        "line {}: {} {}",
+                        parser.map().line(d.span),
+                        d.code,
+                        d.message
+                    ));
+                }
+            }
+        }
+    }
+}
+
+fn all_parse(folder: &Path) -> usize {
+    let mut found = Vec::new();
+    models(folder, &mut found);
+    found.sort();
+    let mut failures = Vec::new();
+    for path in &found {
+        let (wrong, statements) = parse(path);
+        if !wrong.is_empty() || statements == 0 {
+            failures.push(format!(
+                "{}: {}",
+                path.display(),
+                wrong.first().map_or("no statements", String::as_str)
+            ));
+        }
+    }
+    assert!(
+        failures.is_empty(),
+        "{} of {} files do not parse:\n{}",
+        failures.len(),
+        found.len(),
+        failures.join("\n")
+    );
+    found.len()
+}
+
+#[test]
+fn the_shared_collection_parses() {
+    let home = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let shared =
+        std::env::var_os("BMOD_SHARED").map_or_else(|| home.join("../shared"), PathBuf::from);
+    let corpus = shared.join("corpus");
+    if !corpus.is_dir() {
+        eprintln!(
+            "SKIPPED: {} is not there (set BMOD_SHARED)",
+            corpus.display()
+        );
+        return;
+    }
+    assert!(all_parse(&corpus) > 0);
+}
+
+#[test]
+fn our_own_models_parse() {
+    assert!(all_parse(&Path::new(env!("CARGO_MANIFEST_DIR")).join("models")) > 0);
+}
