@@ -847,7 +847,8 @@ impl Compiler {
         let symbol = self.symbols.get(s).clone();
         let (table, dim) = (symbol.table, symbol.dim());
         let text = map.text(body);
-        let mut reader = DataReader::new(text, body.lo, DataKind::Values, self.modes.undf);
+        let mut reader =
+            DataReader::new(text, body.lo, DataKind::Values, self.modes.undf).with_arity(dim);
         let mut keys = Vec::new();
         while let Some(record) = reader.next() {
             let record = match record {
@@ -982,7 +983,7 @@ impl Compiler {
             .flatten()
             .map(|d| d.defines)
             .collect();
-        let mut reader = TableReader::new(map.expanded(), t.body, self.modes.undf);
+        let mut reader = TableReader::new(map.expanded(), t.body, symbol.dim(), self.modes.undf);
         let (mut keys, mut parts) = (Vec::new(), Vec::new());
         while let Some(cell) = reader.next() {
             let (v, span) = match cell {

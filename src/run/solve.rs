@@ -76,7 +76,9 @@ impl Machine<'_> {
         };
         let name = self.symbols.get(s.model).name.to_string();
         self.host().progress(&format!("generating {name}"));
-        let Some(generated) = self.generate(s, options, frame) else {
+        // Equations have slots of their own: the loop around the solve keeps its labels.
+        let mut own = frame.clone();
+        let Some(generated) = self.generate(s, options, &mut own) else {
             if !self.stopped() {
                 self.note(
                     Diagnostic::execution(
@@ -155,6 +157,8 @@ impl Machine<'_> {
                     ));
                 }
                 self.note(Diagnostic::execution("E0422", span, message).label("at this solve"));
+                let report = self.not_solved(s, &generated);
+                self.report.solves.push(report);
                 Flow::Stop
             }
         }

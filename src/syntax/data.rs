@@ -90,12 +90,24 @@ pub struct DataReader<'a> {
     kind: DataKind,
     /// `undf` may be written.
     undf: bool,
+    /// Positions of a key, if known: then in `a .5` the number is not taken for a label.
+    arity: usize,
     key: Vec<KeyPart<'a>>,
     matched: Vec<KeyPart<'a>>,
 }
 
 /// Groups inside groups.
 const DEEPEST: usize = 50;
+
+/// Positions that the parts of a key take.
+pub(super) fn width(key: &[KeyPart<'_>]) -> usize {
+    key.iter()
+        .map(|p| match p {
+            KeyPart::Group(g) => g.first().map_or(1, |k| width(k)),
+            _ => 1,
+        })
+        .sum()
+}
 
 /// Bytes of unquoted labels.
 fn is_label(b: u8) -> bool {
@@ -115,9 +127,20 @@ impl<'a> DataReader<'a> {
             at: 0,
             kind,
             undf,
+            arity: usize::MAX,
             key: Vec::with_capacity(8),
             matched: Vec::new(),
         }
+    }
+
+    /// Keys have this many positions: what follows them is a value, also if it begins with a dot.
+    pub fn with_arity(mut self, positions: usize) -> Self {
+        self.arity = positions;
+        self
+    }
+
+    pub(super) fn set_arity(&mut self, positions: usize) {
+        self.arity = positions;
     }
 
     /// Goes on with another text.
@@ -291,13 +314,24 @@ impl<'a> DataReader<'a> {
             // A dot, with blanks around it, goes on.
             let before = self.at;
             self.blanks(false);
-            if self.peek() != Some(b'.') {
+            if self.peek() != Some(b'.') || depth == 0 && self.is_fraction(before, key) {
                 self.at = before;
                 return Ok(());
             }
             self.at += 1;
             self.blanks(true);
         }
+    }
+
+    /// `r1 .5`: the dot begins a number when the key is complete.
+    fn is_fraction(&self, before: usize, key: &[KeyPart<'a>]) -> bool {
+        self.at > before
+            && self
+                .text
+                .as_bytes()
+                .get(self.at + 1)
+                .is_some_and(u8::is_ascii_digit)
+            && width(key) >= self.arity
     }
 
     fn key_part(&mut self, depth: usize) -> Result<KeyPart<'a>, Box<Diagnostic>> {

@@ -7,7 +7,7 @@
 //!
 //! Invariant: the reader always advances, so it ends on any text.
 
-use super::data::{DataKind, DataReader, KeyPart, Tail};
+use super::data::{DataKind, DataReader, KeyPart, Tail, width};
 use crate::diag::Diagnostic;
 use crate::source::Span;
 
@@ -53,11 +53,13 @@ pub struct TableReader<'a> {
     reader: DataReader<'a>,
     /// In a row, behind its label.
     in_row: bool,
+    /// Index positions of rows and columns together.
+    dim: usize,
 }
 
 impl<'a> TableReader<'a> {
-    /// `expanded` is the whole expanded text, `body` the table's lines in it.
-    pub fn new(expanded: &'a str, body: Span, undf: bool) -> Self {
+    /// `expanded` is the whole expanded text, `body` the table's lines in it, `dim` the number of indices.
+    pub fn new(expanded: &'a str, body: Span, dim: usize, undf: bool) -> Self {
         let (lo, hi) = (body.lo as usize, (body.hi as usize).min(expanded.len()));
         Self {
             text: expanded,
@@ -73,6 +75,7 @@ impl<'a> TableReader<'a> {
             known: (0, 0),
             reader: DataReader::new("", 0, DataKind::Values, undf),
             in_row: false,
+            dim,
         }
     }
 
@@ -143,6 +146,7 @@ impl<'a> TableReader<'a> {
 
     fn read_header(&mut self) -> Result<(), Box<Diagnostic>> {
         self.columns.clear();
+        self.reader.set_arity(usize::MAX);
         while self.reader.more() {
             let from = self.reader.position();
             let mut key = Vec::new();
@@ -163,6 +167,9 @@ impl<'a> TableReader<'a> {
     fn read_row_label(&mut self) -> Result<(), Box<Diagnostic>> {
         self.row.clear();
         self.reader.more();
+        let columns = self.columns.first().map_or(1, |c| width(&c.key));
+        self.reader
+            .set_arity(self.dim.saturating_sub(columns).max(1));
         let from = self.reader.position();
         self.reader.key_parts(&mut self.row, 0)?;
         let to = self.reader.position();
@@ -296,7 +303,7 @@ mod tests {
                 .collect::<Vec<_>>()
                 .join(".")
         }
-        let mut t = TableReader::new(text, Span::new(0, text.len() as u32), false);
+        let mut t = TableReader::new(text, Span::new(0, text.len() as u32), 2, false);
         let mut out = Vec::new();
         while let Some(c) = t.next() {
             out.push(match c {
@@ -333,6 +340,14 @@ mod tests {
         assert_eq!(
             cells(t),
             ["r1|aa.x=1", "r1|bb.y=2", "r1|cc.(x,y)=-1", "!E0312"]
+        );
+    }
+
+    #[test]
+    fn numbers_may_begin_with_a_dot() {
+        assert_eq!(
+            cells("\n      c1   c2\nr1    .5   1\n2         .25\n"),
+            ["r1|c1=0.5", "r1|c2=1", "2|c2=0.25"]
         );
     }
 
