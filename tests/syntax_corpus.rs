@@ -81,7 +81,12 @@ fn read_data(parser: &Parser<'_>, s: &Stmt) -> Vec<String> {
             .for_each(|d| symbols(std::slice::from_ref(&d.symbol), DataKind::Values)),
         StmtKind::Variable(_, list) | StmtKind::Equation(list) => symbols(list, DataKind::Values),
         StmtKind::Table(t) => {
-            let mut reader = TableReader::new(parser.map().expanded(), t.body, true);
+            let mut reader = TableReader::new(
+                parser.map().expanded(),
+                t.body,
+                t.symbol.domain.as_ref().map_or(2, Vec::len),
+                true,
+            );
             while let Some(cell) = reader.next() {
                 if let Err(d) = cell {
                     wrong.push(d.message);
