@@ -375,7 +375,7 @@ pub const FILE_ATTRIBUTES: &[&str] = &[
 pub const SOLVERS: &[&str] = &[
     "clarabel",
     "simplex",
-    "pathfinder",
+    "bmcp",
     "pounce",
     "ipopt",
     "mcp",

@@ -661,7 +661,9 @@ impl Compiler {
                         .label("unknown solver");
                     return self.fail(match near {
                         Some(n) => d.help(format!("did you mean `{n}`?")),
-                        None => d.help("bmod's own are clarabel (lp), pounce and ipopt (nlp), pathfinder (mcp)"),
+                        None => d.help(
+                            "bmod's own are clarabel (lp), pounce and ipopt (nlp), bmcp (mcp)",
+                        ),
                     });
                 }
                 let value = match v {

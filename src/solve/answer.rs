@@ -33,10 +33,10 @@ pub fn answer(
         "mcp" => complementary(instance, settings, monitor),
         "cns" => square(instance, settings, monitor),
         "mpec" | "rmpec" => missing(using),
-        _ if instance.is_linear() && instance.objective.is_some() => {
-            linear(&super::lp::Clarabel, instance, settings, monitor)
-        }
-        "mip" | "minlp" | "miqcp" => missing(using),
+        _ if instance.is_linear() && instance.objective.is_some() => match choice {
+            Some("mcp" | "bmcp") => linear(&super::kkt::Kkt, instance, settings, monitor),
+            _ => linear(&super::lp::Clarabel, instance, settings, monitor),
+        },
         _ => super::nlp::answer(choice, instance, settings, monitor),
     }
 }

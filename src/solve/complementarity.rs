@@ -260,9 +260,9 @@ impl mcp::Problem for Square<'_> {
 }
 
 /// The run's monitor, as the complementarity solver wants it.
-struct Line<'a> {
-    monitor: &'a mut dyn Monitor,
-    log: bool,
+pub(super) struct Line<'a> {
+    pub(super) monitor: &'a mut dyn Monitor,
+    pub(super) log: bool,
 }
 
 impl mcp::Monitor for Line<'_> {
@@ -284,7 +284,7 @@ impl mcp::Monitor for Line<'_> {
 }
 
 /// Options by PATH's names.
-fn options(settings: &Settings) -> Result<mcp::Settings, SolveError> {
+pub(super) fn options(settings: &Settings) -> Result<mcp::Settings, SolveError> {
     let mut s = mcp::Settings {
         time_limit: settings.time_limit,
         ..mcp::Settings::default()
@@ -388,7 +388,7 @@ pub fn solve(
         claim,
         status,
         iterations: (out.majors + out.pivots) as u64,
-        solver: "pathfinder",
+        solver: "bmcp",
         ray: Vec::new(),
         message: (!out.message.is_empty()).then_some(out.message),
     })

@@ -7,6 +7,7 @@ pub mod answer;
 pub mod complementarity;
 #[cfg(test)]
 pub mod conformance;
+pub mod kkt;
 pub mod lp;
 pub mod mcp;
 pub mod nlp;
