@@ -1,9 +1,12 @@
 //! What people see: figures, diagnostics, summaries, JSON, listings.
 
 pub mod diagnostics;
+pub mod display;
 pub mod figure;
 pub mod json;
 pub mod listing;
 pub mod names;
+pub mod number;
 pub mod solution;
 pub mod summary;
+pub mod textfile;

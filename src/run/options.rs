@@ -1,5 +1,7 @@
 //! Options of a run, and what models and files remember.
 
+use crate::check::node::SymbolId;
+use crate::report::textfile::TextFile;
 use crate::source::Span;
 use rustc_hash::FxHashMap;
 use std::cell::Cell;
@@ -85,21 +87,21 @@ impl ModelState {
 /// The files of `put`.
 #[derive(Clone, Debug, Default)]
 pub struct PutState {
-    /// Text of each file so far, by symbol.
-    pub files: FxHashMap<u32, PutFile>,
+    /// The files that were named so far, by symbol.
+    pub files: FxHashMap<SymbolId, PutFile>,
     /// The file that `put` writes to.
-    pub current: Option<u32>,
+    pub current: Option<SymbolId>,
 }
 
 /// A file of `put`.
 #[derive(Clone, Debug, Default)]
 pub struct PutFile {
-    /// Lines so far; the last one is open.
-    pub lines: Vec<String>,
-    /// Column of the next character in the open line, from 0.
-    pub column: usize,
-    /// Attributes that were assigned (`pw`, `nd`, `pc` …).
-    pub attributes: FxHashMap<&'static str, f64>,
-    /// Whether something was written.
-    pub used: bool,
+    /// What is being written, and the attributes.
+    pub text: TextFile,
+    /// What was written and closed before.
+    pub closed: String,
+    /// Selected since it was last closed.
+    pub open: bool,
+    /// The last statement that wrote to it.
+    pub span: Span,
 }

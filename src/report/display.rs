@@ -1,0 +1,506 @@
+//! The text of `display`, in GAMS's layout: numbers to eleven columns, lists, tables, planes.
+//!
+//! A number is shown with the wanted decimals if it fits in eleven columns and does not vanish, with an
+//! exponent otherwise. A list holds as many items of equal width as fit on the page; a table's columns
+//! are twelve wide, its row labels as wide as the longest of the plane. What is not stored is blank.
+//!
+//! Source of the layout: GAMS 54.6, observed. Invariant: time and text are proportional to the records
+//! and to the blanks between them.
+
+use crate::data::table::Table;
+use crate::data::universe::{Label, Universe};
+use crate::data::value::{as_acronym, is_eps, is_na};
+use rustc_hash::FxHashMap;
+use std::fmt::Write;
+
+/// Widest number.
+const NUMBER: usize = 11;
+/// Width of a table's column.
+const COLUMN: usize = 12;
+/// A column heading of one label is cut at this length.
+const HEADING: usize = 10;
+/// Characters on a line.
+pub const PAGE: usize = 32767;
+/// Items of a list on a line.
+const ITEMS: usize = 127;
+/// Between items of a list.
+const GAP: &str = ",    ";
+
+/// The places of a display that `option p:d:r:c` sets.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub struct Layout {
+    /// Index positions that label a row; 0: a list.
+    pub rows: usize,
+    /// Index positions that label a column; of a list the most items on a line.
+    pub columns: usize,
+}
+
+impl Layout {
+    /// The layout of what nothing was said about: a list for one index, else a table with two positions
+    /// for its rows (one, of two), and one plane per label of the others.
+    pub fn usual(dim: usize) -> Self {
+        match dim {
+            0 | 1 => Self { rows: 0, columns: usize::MAX },
+            2 => Self { rows: 1, columns: 1 },
+            _ => Self { rows: 2, columns: 1 },
+        }
+    }
+}
+
+/// What is shown of a record.
+#[derive(Clone, Copy)]
+pub enum Cells<'a> {
+    /// Numbers.
+    Numbers,
+    /// Membership; the text of an element where there is one.
+    Members(Option<&'a FxHashMap<Box<[Label]>, Box<str>>>),
+}
+
+/// An indexed symbol to be shown.
+pub struct Sheet<'a> {
+    /// Its records; tidy.
+    pub table: &'a Table,
+    /// Names of labels.
+    pub universe: &'a Universe,
+    /// Names of acronyms.
+    pub acronyms: &'a [Box<str>],
+    /// Numbers or members.
+    pub cells: Cells<'a>,
+    /// Digits after the point.
+    pub decimals: usize,
+    /// Rows and columns, if they were asked for.
+    pub layout: Option<Layout>,
+    /// Characters on a line.
+    pub page: usize,
+}
+
+/// A number in at most eleven columns (acronyms: as long as they are), not padded.
+pub fn number(x: f64, decimals: usize, acronyms: &[Box<str>]) -> String {
+    if !x.is_finite() {
+        return match x {
+            f64::INFINITY => "+INF".into(),
+            f64::NEG_INFINITY => "-INF".into(),
+            x if is_eps(x) => "EPS".into(),
+            x if is_na(x) => "NA".into(),
+            x => match as_acronym(x).and_then(|n| acronyms.get(n as usize)) {
+                Some(name) => name.to_string(),
+                None => "UNDF".into(),
+            },
+        };
+    }
+    // Longer than this it cannot fit; formatting 300 digits would only take time.
+    if x.abs() < 1e12 {
+        let fixed = format!("{:.decimals$}", x);
+        let vanishes = || x != 0.0 && !fixed.bytes().any(|b| matches!(b, b'1'..=b'9'));
+        if fixed.len() <= NUMBER && !vanishes() {
+            return if x == 0.0 { fixed.trim_start_matches('-').to_string() } else { fixed };
+        }
+    }
+    exponential(x)
+}
+
+/// A number with an exponent and as many digits as make eleven columns.
+fn exponential(x: f64) -> String {
+    let mut digits = 6;
+    loop {
+        let text = format!("{x:.digits$E}");
+        let (mantissa, exponent) = text.split_once('E').unwrap_or((&text, "0"));
+        let text = match exponent.strip_prefix('-') {
+            Some(e) => format!("{mantissa}E-{e}"),
+            None => format!("{mantissa}E+{exponent}"),
+        };
+        if text.len() <= NUMBER || digits == 0 {
+            return text;
+        }
+        digits -= 1;
+    }
+}
+
+/// The line of a scalar, from `PARAMETER` on.
+pub fn scalar(kind: &str, name: &str, value: f64, text: &str, decimals: usize, acronyms: &[Box<str>]) -> String {
+    let head = format!("{kind} {name}");
+    let line = format!("{head:30} ={:>13}  {text}", number(value, decimals, acronyms));
+    line.trim_end().to_string()
+}
+
+/// The line that stands for an indexed symbol whose records all have the default value.
+pub fn all_default(default: f64, decimals: usize, acronyms: &[Box<str>]) -> String {
+    format!("{:22}( ALL{:>12} )", "", number(default, decimals, acronyms))
+}
+
+/// The line that stands for an empty set.
+pub fn empty_set() -> String {
+    format!("{:55}( EMPTY )", "")
+}
+
+fn width(s: &str) -> usize {
+    if s.is_ascii() { s.len() } else { s.chars().count() }
+}
+
+fn pad(out: &mut String, blanks: usize) {
+    out.extend(std::iter::repeat_n(' ', blanks));
+}
+
+fn push_right(out: &mut String, text: &str, to: usize) {
+    pad(out, to.saturating_sub(width(text)));
+    out.push_str(text);
+}
+
+fn trim(out: &mut String) {
+    let end = out.trim_end_matches(' ').len();
+    out.truncate(end);
+}
+
+/// Texts one after another in one buffer.
+#[derive(Default)]
+struct Texts {
+    text: String,
+    ends: Vec<usize>,
+}
+
+impl Texts {
+    fn push(&mut self, s: &str) {
+        self.text.push_str(s);
+        self.ends.push(self.text.len());
+    }
+
+    fn get(&self, k: usize) -> &str {
+        let lo = if k == 0 { 0 } else { self.ends[k - 1] };
+        &self.text[lo..self.ends[k]]
+    }
+}
+
+impl Sheet<'_> {
+    /// The lines between the header and the blank line that follows; each ends with a line feed.
+    /// The table must have records.
+    pub fn write(&self, out: &mut String) {
+        let dim = self.table.dim();
+        let layout = self.layout.unwrap_or_else(|| Layout::usual(dim));
+        if layout.rows == 0 || dim < 2 {
+            return self.list(layout.columns.max(1), out);
+        }
+        let rows = layout.rows.min(dim - 1);
+        let columns = layout.columns.clamp(1, dim - rows);
+        self.planes(rows, columns, out);
+    }
+
+    fn name(&self, l: Label) -> &str {
+        self.universe.name(l)
+    }
+
+    fn cell(&self, v: f64) -> String {
+        match self.cells {
+            Cells::Numbers => number(v, self.decimals, self.acronyms),
+            Cells::Members(_) => "YES".into(),
+        }
+    }
+
+    /// The longest label at each of the positions.
+    fn widths<'k>(&self, keys: impl Iterator<Item = &'k [Label]>, n: usize) -> Vec<usize> {
+        let mut w = vec![0; n];
+        let mut last: Option<&[Label]> = None;
+        for k in keys {
+            for (p, w) in w.iter_mut().enumerate() {
+                if last.is_none_or(|l| l[p] != k[p]) {
+                    *w = (*w).max(width(self.name(k[p])));
+                }
+            }
+            last = Some(k);
+        }
+        w
+    }
+
+    /// `a .x  .long`: labels of equal width at each position.
+    fn push_labels(&self, key: &[Label], widths: &[usize], out: &mut String) {
+        for (p, (&l, &w)) in key.iter().zip(widths).enumerate() {
+            if p > 0 {
+                out.push('.');
+            }
+            let name = self.name(l);
+            out.push_str(name);
+            pad(out, w - width(name));
+        }
+    }
+
+    fn list(&self, most: usize, out: &mut String) {
+        let t = self.table;
+        let dim = t.dim();
+        let widths = self.widths(t.iter().map(|(k, _)| k), dim);
+        let label_width = widths.iter().sum::<usize>() + dim.saturating_sub(1);
+        if let (Cells::Members(texts), 1) = (self.cells, most) {
+            for (k, _) in t.iter() {
+                self.push_labels(k, &widths, out);
+                if let Some(text) = texts.and_then(|m| m.get(k)) {
+                    out.push_str("  ");
+                    out.push_str(text);
+                }
+                trim(out);
+                out.push('\n');
+            }
+            return;
+        }
+        let members = matches!(self.cells, Cells::Members(_));
+        let mut cells = Texts::default();
+        let mut cell_width = 0;
+        if !members {
+            for (_, v) in t.iter() {
+                let c = self.cell(v);
+                cell_width = cell_width.max(width(&c));
+                cells.push(&c);
+            }
+        }
+        let item = label_width + if members { 0 } else { 1 + cell_width };
+        let fitting = (self.page + GAP.len()) / (item + GAP.len());
+        let per_line = most.min(fitting).clamp(1, ITEMS);
+        for (n, (k, _)) in t.iter().enumerate() {
+            if n % per_line > 0 {
+                out.push_str(GAP);
+            }
+            self.push_labels(k, &widths, out);
+            if !members {
+                out.push(' ');
+                push_right(out, cells.get(n), cell_width);
+            }
+            if n % per_line == per_line - 1 || n + 1 == t.len() {
+                trim(out);
+                out.push('\n');
+            }
+        }
+    }
+
+    /// One table for each combination of the labels before the rows'.
+    fn planes(&self, rows: usize, columns: usize, out: &mut String) {
+        let records: Vec<(&[Label], f64)> = self.table.iter().collect();
+        let lead = self.table.dim() - rows - columns;
+        // Headings of several labels stand in one line if all of them fit.
+        let joined = columns > 1
+            && records.iter().all(|(k, _)| {
+                let labels = &k[lead + rows..];
+                labels.iter().map(|&l| width(self.name(l))).sum::<usize>() + labels.len() - 1 <= NUMBER
+            });
+        let mut from = 0;
+        while from < records.len() {
+            let plane = &records[from].0[..lead];
+            let to = from + records[from..].partition_point(|(k, _)| k[..lead] == *plane);
+            if from > 0 {
+                out.push('\n');
+            }
+            if lead > 0 {
+                for (p, &l) in plane.iter().enumerate() {
+                    let _ = write!(out, "{}INDEX {} = {}", if p > 0 { "  " } else { "" }, p + 1, self.name(l));
+                }
+                out.push_str("\n\n");
+            }
+            self.plane(&records[from..to], lead, rows, joined, out);
+            from = to;
+        }
+    }
+
+    fn plane(&self, records: &[(&[Label], f64)], lead: usize, rows: usize, joined: bool, out: &mut String) {
+        let row_of = |k: usize| &records[k].0[lead..lead + rows];
+        let column_of = |k: usize| &records[k].0[lead + rows..];
+        let widths = self.widths((0..records.len()).map(row_of), rows);
+        let label_width = widths.iter().sum::<usize>() + rows - 1;
+
+        let mut columns: Vec<&[Label]> = (0..records.len()).map(column_of).collect();
+        columns.sort_unstable();
+        columns.dedup();
+        let place: FxHashMap<&[Label], usize> = columns.iter().enumerate().map(|(i, &c)| (c, i)).collect();
+
+        // Records by the block of columns they fall in, otherwise in their order.
+        let per_block = (self.page.saturating_sub(label_width) / COLUMN).max(1);
+        let blocks = columns.len().div_ceil(per_block);
+        let places: Vec<usize> = (0..records.len()).map(|k| place[column_of(k)]).collect();
+        let mut start = vec![0usize; blocks + 1];
+        for p in &places {
+            start[p / per_block + 1] += 1;
+        }
+        for b in 0..blocks {
+            start[b + 1] += start[b];
+        }
+        let mut order = vec![0usize; records.len()];
+        let mut next = start.clone();
+        for (k, p) in places.iter().enumerate() {
+            order[next[p / per_block]] = k;
+            next[p / per_block] += 1;
+        }
+
+        for b in 0..blocks {
+            if b > 0 {
+                out.push('\n');
+            }
+            let first = b * per_block;
+            let shown = &columns[first..columns.len().min(first + per_block)];
+            self.headings(shown, joined, label_width, b > 0, out);
+            out.push('\n');
+            let block = &order[start[b]..start[b + 1]];
+            for (i, &k) in block.iter().enumerate() {
+                let new_row = i == 0 || row_of(block[i - 1]) != row_of(k);
+                let before = if new_row {
+                    if i > 0 {
+                        out.push('\n');
+                    }
+                    self.push_labels(row_of(k), &widths, out);
+                    0
+                } else {
+                    places[block[i - 1]] - first + 1
+                };
+                pad(out, COLUMN * (places[k] - first - before));
+                let cell = self.cell(records[k].1);
+                let length = width(&cell);
+                if length > COLUMN {
+                    // A long acronym is cut, and says so.
+                    out.push_str("****");
+                    out.extend(cell.chars().take(COLUMN).skip(4));
+                } else {
+                    push_right(out, &cell, COLUMN);
+                }
+            }
+            out.push('\n');
+        }
+    }
+
+    fn headings(&self, columns: &[&[Label]], joined: bool, label_width: usize, continued: bool, out: &mut String) {
+        let lines = if joined { 1 } else { columns[0].len() };
+        for line in 0..lines {
+            if line == 0 && continued {
+                push_right(out, "+", label_width);
+            } else {
+                pad(out, label_width);
+            }
+            for c in columns {
+                if joined {
+                    let names: Vec<&str> = c.iter().map(|&l| self.name(l)).collect();
+                    push_right(out, &names.join("."), COLUMN);
+                } else {
+                    let name = self.name(c[line]);
+                    if width(name) > HEADING {
+                        let mut cut: String = name.chars().take(HEADING - 1).collect();
+                        cut.push('~');
+                        push_right(out, &cut, COLUMN);
+                    } else {
+                        push_right(out, name, COLUMN);
+                    }
+                }
+            }
+            out.push('\n');
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::value::{EPS, NA, UNDF, acronym};
+
+    fn shown(x: f64, d: usize) -> String {
+        number(x, d, &["red".into()])
+    }
+
+    #[test]
+    fn numbers() {
+        for (x, d, text) in [
+            (0.0, 3, "0.000"),
+            (-0.0, 3, "0.000"),
+            (1234567.891, 3, "1234567.891"),
+            (12345678.9, 3, "1.234568E+7"),
+            (-1234567.8, 3, "-1.23457E+6"),
+            (-123456.789, 3, "-123456.789"),
+            (1e10, 3, "1.00000E+10"),
+            (-1.2346e10, 3, "-1.2346E+10"),
+            (0.0005, 3, "0.001"),
+            (0.00049999999999, 3, "5.000000E-4"),
+            (-0.0004999, 3, "-4.99900E-4"),
+            (9.99999999e-10, 3, "1.000000E-9"),
+            (9.99999999e9, 3, "1.00000E+10"),
+            (9.9999996e99, 3, "1.0000E+100"),
+            (-1e-100, 3, "-1.000E-100"),
+            (99999999.9996, 3, "1.000000E+8"),
+            (-99999.99951, 3, "-100000.000"),
+            (3.25, 1, "3.2"),
+            (2.0005, 3, "2.001"),
+            (0.5, 0, "5.000000E-1"),
+            (99999999999.0, 0, "99999999999"),
+            (999999999999.0, 0, "1.00000E+12"),
+            (1234567.891, 8, "1.234568E+6"),
+            (EPS, 3, "EPS"),
+            (NA, 3, "NA"),
+            (UNDF, 3, "UNDF"),
+            (f64::INFINITY, 3, "+INF"),
+            (f64::NEG_INFINITY, 3, "-INF"),
+            (acronym(0), 3, "red"),
+        ] {
+            assert_eq!(shown(x, d), text, "{x}");
+        }
+    }
+
+    #[test]
+    fn scalars() {
+        assert_eq!(
+            scalar("PARAMETER", "s", 3.14159, "a scalar", 3, &[]),
+            "PARAMETER s                    =        3.142  a scalar"
+        );
+        assert_eq!(
+            scalar("PARAMETER", "a_very_long_name_for_a_scal123", 4.0, "", 3, &[]),
+            "PARAMETER a_very_long_name_for_a_scal123 =        4.000"
+        );
+        assert_eq!(all_default(0.0, 3, &[]), "                      ( ALL       0.000 )");
+    }
+
+    fn text(dim: usize, records: &[(&[&str], f64)], layout: Option<Layout>, page: usize, set: bool) -> String {
+        let mut universe = Universe::default();
+        let mut table = Table::new(dim, 0.0);
+        for (k, v) in records {
+            let k: Vec<Label> = k.iter().map(|l| universe.intern(l)).collect();
+            table.set(&k, *v);
+        }
+        table.tidy();
+        let mut out = String::new();
+        let cells = if set { Cells::Members(None) } else { Cells::Numbers };
+        Sheet { table: &table, universe: &universe, acronyms: &[], cells, decimals: 3, layout, page }.write(&mut out);
+        out
+    }
+
+    #[test]
+    fn lists() {
+        let p: &[(&[&str], f64)] = &[(&["a"], 1.0), (&["b"], 22.5), (&["long"], -3.0)];
+        assert_eq!(text(1, p, None, PAGE, false), "a     1.000,    b    22.500,    long -3.000\n");
+        assert_eq!(text(1, p, None, PAGE, true), "a   ,    b   ,    long\n");
+        // Two items are 11 + 5 + 11 wide.
+        assert_eq!(text(1, p, None, 27, false), "a     1.000,    b    22.500\nlong -3.000\n");
+        assert_eq!(text(1, p, None, 26, false), "a     1.000\nb    22.500\nlong -3.000\n");
+        let q: &[(&[&str], f64)] = &[(&["aa", "x"], 1.0), (&["b", "yyy"], 2.0)];
+        let list = Some(Layout { rows: 0, columns: 2 });
+        assert_eq!(text(2, q, list, PAGE, false), "aa.x   1.000,    b .yyy 2.000\n");
+    }
+
+    #[test]
+    fn tables() {
+        let q: &[(&[&str], f64)] = &[(&["a", "x"], 1.0), (&["a", "heading too long"], 3.25), (&["bb", "x"], -200.5)];
+        assert_eq!(
+            text(2, q, None, PAGE, false),
+            "             x  heading t~\n\na        1.000       3.250\nbb    -200.500\n"
+        );
+        assert_eq!(
+            text(2, q, None, 20, false),
+            "             x\n\na        1.000\nbb    -200.500\n\n +  heading t~\n\na        3.250\n"
+        );
+        let r: &[(&[&str], f64)] = &[(&["a", "x", "u", "v"], 1.0), (&["x", "a", "u", "u"], 2.0)];
+        assert_eq!(
+            text(4, r, None, PAGE, false),
+            "INDEX 1 = a\n\n              v\n\nx.u       1.000\n\nINDEX 1 = x\n\n              u\n\na.u       2.000\n"
+        );
+        let wide = Some(Layout { rows: 1, columns: 3 });
+        assert_eq!(text(4, r, wide, PAGE, false), "        x.u.v       a.u.u\n\na       1.000\nx                   2.000\n");
+    }
+
+    #[test]
+    fn stacked_headings() {
+        let r: &[(&[&str], f64)] = &[(&["a", "aaaaaa", "bbbbbb"], 1.0), (&["a", "aaaaaa", "a"], 2.0)];
+        let wide = Some(Layout { rows: 1, columns: 2 });
+        assert_eq!(
+            text(3, r, wide, PAGE, true),
+            "       aaaaaa      aaaaaa\n            a      bbbbbb\n\na         YES         YES\n"
+        );
+    }
+}

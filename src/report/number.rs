@@ -1,0 +1,244 @@
+//! Numbers as `put` writes them: to a width, with decimals, in four forms.
+//!
+//! Source: GAMS 54.6, observed. A double is shown with at most sixteen significant digits; what is asked
+//! for beyond them is zeros.
+
+/// The forms of `.nr`.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Form {
+    /// 0: with an exponent where it would vanish or does not fit.
+    AsNeeded,
+    /// 1: rounded to the decimals; with an exponent where it does not fit.
+    Rounded,
+    /// 2: always with an exponent.
+    Scientific,
+    /// 3: as many digits as fit.
+    Widest,
+}
+
+impl Form {
+    /// The form of a value of `.nr`.
+    pub fn new(nr: f64) -> Self {
+        match nr as i64 {
+            0 => Self::AsNeeded,
+            2 => Self::Scientific,
+            3 => Self::Widest,
+            _ => Self::Rounded,
+        }
+    }
+}
+
+/// Widest number where the width is given as 0.
+const OPEN: usize = 24;
+/// Digits of which the last can be trusted.
+const DIGITS: usize = 16;
+/// Digits that `.nr = 3` shows.
+const WIDEST: usize = 17;
+
+/// A finite number in at most `width` characters (0: as many as it needs), not padded; asterisks where
+/// it cannot be shown.
+pub fn number(x: f64, width: usize, decimals: usize, form: Form) -> String {
+    let room = if width == 0 { OPEN } else { width };
+    let negative = usize::from(x.is_sign_negative() && x != 0.0);
+    let text = match form {
+        Form::Scientific => scientific(x, room, decimals),
+        Form::Widest => widest(x, room, negative).or_else(|| exponential(x, room)),
+        Form::AsNeeded | Form::Rounded => {
+            let decimals = decimals.min(room.saturating_sub(2 + negative));
+            let fixed = Some(fixed(x, decimals)).filter(|t| t.len() <= room);
+            let vanishes = |t: &String| x != 0.0 && !t.bytes().any(|b| matches!(b, b'1'..=b'9'));
+            match fixed {
+                Some(t) if form == Form::AsNeeded && vanishes(&t) => exponential(x, room).or(Some(t)),
+                Some(t) => Some(t),
+                None => exponential(x, room),
+            }
+        }
+    };
+    match text {
+        Some(t) => t,
+        None if form != Form::Scientific && x.abs() <= 0.5 => "0".into(),
+        None => "*".repeat(room),
+    }
+}
+
+/// With a fixed number of decimals.
+fn fixed(x: f64, decimals: usize) -> String {
+    // Digits before the point, of a number that is not 0.
+    let magnitude = if x == 0.0 { 0 } else { x.abs().log10().floor() as i64 + 1 };
+    if magnitude + decimals as i64 <= DIGITS as i64 || x == 0.0 {
+        let x = if x == 0.0 { 0.0 } else { x };
+        return format!("{x:.decimals$}");
+    }
+    // More digits than a double holds: sixteen of them, then zeros.
+    let text = format!("{:.*e}", DIGITS - 1, x);
+    let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+    let exponent: i64 = exponent.parse().unwrap_or(0);
+    let digits: String = mantissa.chars().filter(char::is_ascii_digit).collect();
+    let mut out = String::from(if x < 0.0 { "-" } else { "" });
+    let digit = |place: i64| match usize::try_from(exponent - place) {
+        Ok(k) => digits.as_bytes().get(k).map_or('0', |&b| b as char),
+        Err(_) => '0',
+    };
+    for place in (0..=exponent.max(0)).rev() {
+        out.push(digit(place));
+    }
+    if decimals > 0 {
+        out.push('.');
+        for place in 1..=decimals as i64 {
+            out.push(digit(-place));
+        }
+    }
+    out
+}
+
+/// Mantissa with `digits` decimals (−1: without a point), and the exponent after rounding.
+fn parts(x: f64, digits: i64) -> (String, i64) {
+    let shown = digits.clamp(0, DIGITS as i64 - 1) as usize;
+    let text = format!("{x:.shown$e}");
+    let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+    let mut mantissa = mantissa.to_string();
+    if digits == 0 {
+        mantissa.push('.');
+    }
+    for _ in shown as i64..digits {
+        mantissa.push('0');
+    }
+    (mantissa, exponent.parse().unwrap_or(0))
+}
+
+/// `1.235E+5`, `1.E+5`, `1E+5`, `1E5`: with as many digits as make the width.
+fn exponential(x: f64, width: usize) -> Option<String> {
+    let negative = i64::from(x < 0.0);
+    let mut digits = width as i64;
+    // Rounding may lengthen or shorten the exponent: the first that fits, from above.
+    let (_, e) = parts(x, 0);
+    let first = width as i64 - negative - 4 - e.abs().to_string().len() as i64;
+    digits = digits.min(first + 1);
+    while digits >= -2 {
+        let (mantissa, e) = parts(x, digits);
+        let sign = match e {
+            e if e < 0 => "-",
+            _ if digits == -2 => "",
+            _ => "+",
+        };
+        let text = format!("{mantissa}E{sign}{}", e.abs());
+        if text.len() <= width {
+            return Some(text);
+        }
+        digits -= 1;
+    }
+    None
+}
+
+/// ` 1.23E+05`: a place for the sign, two digits of exponent, no more decimals than asked for.
+fn scientific(x: f64, width: usize, decimals: usize) -> Option<String> {
+    let mut digits = decimals as i64;
+    while digits >= -1 {
+        let (mantissa, e) = parts(x, digits);
+        let sign = if e < 0 { '-' } else { '+' };
+        let blank = if mantissa.starts_with('-') { "" } else { " " };
+        let text = format!("{blank}{mantissa}E{sign}{:02}", e.abs());
+        if text.len() <= width {
+            return Some(text);
+        }
+        digits -= 1;
+    }
+    None
+}
+
+/// All digits that fit, at most seventeen.
+fn widest(x: f64, width: usize, negative: usize) -> Option<String> {
+    if x == 0.0 {
+        return Some("0".into());
+    }
+    let mut whole = format!("{:.0}", x.abs().trunc()).len();
+    loop {
+        let room = width.saturating_sub(negative + whole + 1);
+        let text = fixed(x, WIDEST.saturating_sub(whole).min(room));
+        let now = text.find('.').unwrap_or(text.len()) - negative;
+        if now > whole {
+            // Rounded up to one digit more.
+            whole = now;
+            continue;
+        }
+        return (text.len() <= width).then_some(text);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounded() {
+        for (x, w, d, text) in [
+            (0.0, 12, 2, "0.00"),
+            (-0.001, 12, 2, "-0.00"),
+            (123456.789, 12, 2, "123456.79"),
+            (123456.789, 8, 2, "1.235E+5"),
+            (123456.789, 5, 1, "1.E+5"),
+            (123456.789, 3, 0, "1E5"),
+            (1e12, 3, 0, "***"),
+            (1e12, 5, 1, "1E+12"),
+            (-123456789.25, 8, 2, "-1.23E+8"),
+            (1234567890.5, 12, 2, "1.2345679E+9"),
+            (1e12, 0, 3, "1000000000000.000"),
+            (1e20, 0, 3, "1.000000000000000000E+20"),
+            (1e21 / 3.0, 0, 2, "333333333333333300000.00"),
+            (1.0 / 3.0, 20, 18, "0.333333333333333300"),
+            (1.0 / 3.0, 0, 25, "0.3333333333333333000000"),
+            (1e10 / 3.0, 24, 15, "3.3333333333333330000E+9"),
+            (12.345, 1, 3, "*"),
+            (12.345, 2, 3, "12"),
+            (12.345, 3, 3, "1E1"),
+            (12.345, 4, 3, "1E+1"),
+            (12.345, 4, 1, "12.3"),
+            (9.96, 3, 3, "1E1"),
+            (9.96, 4, 3, "9.96"),
+            (99.996, 2, 3, "**"),
+            (99.996, 6, 5, "1.0E+2"),
+            (-0.5, 1, 3, "0"),
+            (-0.5, 2, 3, "-0"),
+            (-0.5, 5, 3, "-0.50"),
+            (0.012345, 3, 3, "0.0"),
+            (2.5, 12, 0, "2"),
+            (3.0, 1, 2, "3"),
+            (1.23e150, 8, 2, "1.2E+150"),
+        ] {
+            assert_eq!(number(x, w, d, Form::Rounded), text, "{x}:{w}:{d}");
+        }
+    }
+
+    #[test]
+    fn other_forms() {
+        for (x, w, d, form, text) in [
+            (0.004, 12, 2, Form::AsNeeded, "4.0000000E-3"),
+            (0.006, 12, 2, Form::AsNeeded, "0.01"),
+            (0.5, 12, 0, Form::AsNeeded, "5.0000000E-1"),
+            (0.5, 3, 0, Form::AsNeeded, "0"),
+            (-0.001, 12, 2, Form::AsNeeded, "-1.000000E-3"),
+            (1e-6, 0, 3, Form::AsNeeded, "1.0000000000000000000E-6"),
+            (12345.678, 14, 3, Form::Scientific, " 1.235E+04"),
+            (1.0, 8, 2, Form::Scientific, " 1.0E+00"),
+            (1.0, 7, 2, Form::Scientific, " 1.E+00"),
+            (1.0, 6, 2, Form::Scientific, " 1E+00"),
+            (1.0, 5, 2, Form::Scientific, "*****"),
+            (1.23e150, 8, 2, Form::Scientific, " 1.E+150"),
+            (0.0, 12, 2, Form::Scientific, " 0.00E+00"),
+            (-1.0, 0, 3, Form::Scientific, "-1.000E+00"),
+            (1.0, 12, 2, Form::Widest, "1.0000000000"),
+            (1.0, 20, 2, Form::Widest, "1.0000000000000000"),
+            (-1.0, 12, 2, Form::Widest, "-1.000000000"),
+            (12345678.125, 8, 2, Form::Widest, "12345678"),
+            (99.996, 5, 2, Form::Widest, "100.0"),
+            (9.96, 3, 2, Form::Widest, "10"),
+            (999999999.996, 12, 2, Form::Widest, "1000000000.0"),
+            (1e20, 0, 2, Form::Widest, "100000000000000000000"),
+            (1e20, 20, 2, Form::Widest, "1.00000000000000E+20"),
+            (123456.0, 5, 2, Form::Widest, "1.E+5"),
+            (0.0, 12, 2, Form::Widest, "0"),
+        ] {
+            assert_eq!(number(x, w, d, form), text, "{x}:{w}:{d} {form:?}");
+        }
+    }
+}

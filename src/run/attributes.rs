@@ -1,0 +1,100 @@
+//! Attributes of models and files: `m.modelstat`, `m.iterlim = 100`, `f.nd = 4`.
+//!
+//! What was never assigned and no solve has set reads as `na`, as in GAMS; the solver's defaults stand
+//! elsewhere. Files have defaults of their own.
+
+use super::Machine;
+use crate::check::node::SymbolId;
+use crate::check::symbols::SymbolKind;
+use crate::data::value::{NA, number};
+use crate::solve::{ModelStatus, SolverStatus};
+
+impl Machine<'_> {
+    /// The value of an attribute (its name in lower case).
+    pub(super) fn object_attribute(&self, s: SymbolId, a: &'static str) -> f64 {
+        if let SymbolKind::File(_) = self.symbols.get(s).kind {
+            return match self.put.files.get(&s) {
+                Some(f) => f.text.get(a),
+                None => crate::report::textfile::TextFile::default().get(a),
+            };
+        }
+        match self.models.get(&s).and_then(|m| m.get(a)) {
+            Some(v) => v,
+            None if matches!(a, "number" | "tolproj" | "handle") => 0.0,
+            None => NA,
+        }
+    }
+
+    /// Assigns an attribute; a text says nothing to those that are numbers.
+    pub(super) fn set_object_attribute(&mut self, s: SymbolId, a: &'static str, value: f64, text: Option<String>) {
+        if text.is_some() {
+            return;
+        }
+        match self.symbols.get(s).kind {
+            SymbolKind::File(_) => {
+                let file = self.put.files.entry(s).or_default();
+                if value.is_finite() || number(value) == 0.0 {
+                    file.text.set(a, number(value));
+                }
+            }
+            _ => {
+                self.models.entry(s).or_default().attributes.insert(a, value);
+            }
+        }
+    }
+
+    /// `m.tmodstat`, `m.tsolstat`: the status with its name.
+    pub(super) fn status_text(&self, s: SymbolId, a: &str) -> String {
+        let (code, name) = if a == "tmodstat" {
+            let code = self.object_attribute(s, "modelstat");
+            let all = [
+                ModelStatus::Optimal,
+                ModelStatus::LocallyOptimal,
+                ModelStatus::Unbounded,
+                ModelStatus::Infeasible,
+                ModelStatus::LocallyInfeasible,
+                ModelStatus::IntermediateInfeasible,
+                ModelStatus::Feasible,
+                ModelStatus::ErrorUnknown,
+                ModelStatus::ErrorNoSolution,
+                ModelStatus::NoSolution,
+                ModelStatus::SolvedUnique,
+                ModelStatus::Solved,
+                ModelStatus::UnboundedNoSolution,
+                ModelStatus::InfeasibleNoSolution,
+            ];
+            (code, all.iter().find(|m| f64::from(**m as u8) == code).map(|m| m.name()))
+        } else {
+            let code = self.object_attribute(s, "solvestat");
+            let all = [
+                SolverStatus::NormalCompletion,
+                SolverStatus::IterationInterrupt,
+                SolverStatus::ResourceInterrupt,
+                SolverStatus::TerminatedBySolver,
+                SolverStatus::EvaluationInterrupt,
+                SolverStatus::CapabilityProblems,
+                SolverStatus::UserInterrupt,
+                SolverStatus::InternalSolverFailure,
+            ];
+            (code, all.iter().find(|m| f64::from(**m as u8) == code).map(|m| m.name()))
+        };
+        match name {
+            Some(name) => format!("{code} {}", capitals(name)),
+            None => "No Status Available".into(),
+        }
+    }
+}
+
+/// Every word with a capital.
+fn capitals(words: &str) -> String {
+    let mut out = String::new();
+    for (k, w) in words.split(' ').enumerate() {
+        if k > 0 {
+            out.push(' ');
+        }
+        let mut chars = w.chars();
+        out.extend(chars.next().map(|c| c.to_ascii_uppercase()));
+        out.push_str(chars.as_str());
+    }
+    out
+}

@@ -1,0 +1,201 @@
+//! What a load collects before anything is changed.
+
+use super::{Wanted, parse_value};
+use crate::check::node::{SymbolId, TableId};
+use crate::check::symbols::{DomainPosition, Store, SymbolKind, Symbols, attribute};
+use crate::data::table::Table;
+use crate::data::universe::{Label, Universe};
+use crate::diag::{Diagnostic, nearest};
+use rustc_hash::{FxHashMap, FxHashSet};
+
+/// Texts of a set's elements.
+type Texts = FxHashMap<Box<[Label]>, Box<str>>;
+
+/// A diagnostic; boxed, because it is large and rare.
+pub(super) type Loaded<T> = Result<T, Box<Diagnostic>>;
+
+/// Symbols while they are read.
+pub(super) struct Loading<'a> {
+    pub symbols: &'a Symbols,
+    pub store: &'a Store,
+    /// Levels and marginals only.
+    pub point: bool,
+    /// Labels that the universe does not have yet: their numbers follow on its own.
+    new: Universe,
+    /// Members of sets that this load brings.
+    members: FxHashMap<SymbolId, FxHashSet<Label>>,
+    out: Finished,
+}
+
+/// What a load changes.
+#[derive(Default)]
+pub(super) struct Finished {
+    /// New labels, to be added in this order.
+    pub labels: Vec<String>,
+    pub tables: Vec<(TableId, Table)>,
+    pub texts: Vec<(TableId, Texts)>,
+    pub symbols: Vec<SymbolId>,
+}
+
+/// Records of one symbol.
+#[derive(Default)]
+pub(super) struct Records {
+    pub keys: Vec<Label>,
+    /// Per record and attribute that the file has.
+    pub values: Vec<f64>,
+    /// Line or number of each record in the file, for messages.
+    pub places: Vec<usize>,
+    pub texts: Texts,
+}
+
+impl<'a> Loading<'a> {
+    pub fn new(symbols: &'a Symbols, store: &'a Store, point: bool) -> Self {
+        Self { symbols, store, point, new: Universe::default(), members: FxHashMap::default(), out: Finished::default() }
+    }
+
+    /// Number of a label, new or not.
+    pub fn label(&mut self, text: &str) -> Label {
+        match self.store.universe.get(text) {
+            Some(l) => l,
+            None => self.store.universe.len() as Label + self.new.intern(text),
+        }
+    }
+
+    fn name(&self, l: Label) -> &str {
+        match (l as usize).checked_sub(self.store.universe.len()) {
+            Some(k) => self.new.name(k as Label),
+            None => self.store.universe.name(l),
+        }
+    }
+
+    /// A value, or a message about the place in the file.
+    pub fn value(&self, text: &str, file: &str, place: usize, w: &Wanted) -> Loaded<f64> {
+        parse_value(text, &self.store.acronyms).ok_or_else(|| {
+            Box::new(
+                Diagnostic::execution("E0478", w.span, format!("{file}:{place}: `{text}` is not a number"))
+                    .label(format!("while loading `{}`", w.name))
+                    .help("numbers, EPS, NA, INF, -INF, UNDF, yes and no are values"),
+            )
+        })
+    }
+
+    /// Whether a label belongs to the set of a position.
+    fn belongs(&self, set: SymbolId, l: Label) -> bool {
+        let root = self.symbols.root(set);
+        if root == crate::check::symbols::UNIVERSE {
+            return true;
+        }
+        match self.members.get(&root) {
+            Some(m) => m.contains(&l),
+            None => self.store.table(self.symbols.get(root).table).find(&[l]).is_some(),
+        }
+    }
+
+    /// Checks the labels of a symbol against its domain.
+    fn check_domain(&self, w: &Wanted, file: &str, r: &Records) -> Loaded<()> {
+        let symbol = self.symbols.get(w.symbol);
+        let dim = symbol.dim();
+        for (p, d) in symbol.domain.iter().enumerate() {
+            let DomainPosition::Set(set) = d else { continue };
+            let mut wrong: Vec<(Label, usize)> = Vec::new();
+            let mut seen = FxHashSet::default();
+            let mut last = None;
+            for (k, key) in r.keys.chunks_exact(dim).enumerate() {
+                if last == Some(key[p]) {
+                    continue;
+                }
+                last = Some(key[p]);
+                if !self.belongs(*set, key[p]) && seen.insert(key[p]) {
+                    wrong.push((key[p], r.places[k]));
+                }
+            }
+            let Some(&(first, place)) = wrong.first() else { continue };
+            let set_symbol = self.symbols.get(self.symbols.root(*set));
+            let others = match wrong.len() {
+                1 => String::new(),
+                n => format!(" (and {} more)", n - 1),
+            };
+            let table = self.store.table(set_symbol.table);
+            let near = nearest(self.name(first), (0..table.len().min(10_000) as u32).map(|row| self.store.universe.name(table.key(row)[0])))
+                .map(str::to_string);
+            let d = Diagnostic::execution(
+                "E0479",
+                w.span,
+                format!("{file}:{place}: `{}` is not a member of the set `{}`{others}", self.name(first), set_symbol.name),
+            )
+            .label(format!("position {} of `{}` runs over `{}`; nothing was loaded", p + 1, symbol.name, set_symbol.name))
+            .other(set_symbol.declared, format!("`{}` is declared here", set_symbol.name));
+            return Err(Box::new(match near {
+                Some(n) => d.help(format!("did you mean `{n}`?")),
+                None => d.help(format!("add the label to `{}`, or correct the file", set_symbol.name)),
+            }));
+        }
+        Ok(())
+    }
+
+    /// Takes the records of a symbol. `columns` says which tables the values of a record go to, counted
+    /// from the symbol's first.
+    pub fn take(&mut self, w: &Wanted, file: &str, mut r: Records, columns: &[u32]) -> Loaded<()> {
+        self.check_domain(w, file, &r)?;
+        let root = self.symbols.root(w.symbol);
+        let symbol = self.symbols.get(root);
+        let (dim, width) = (symbol.dim(), columns.len());
+        let count = r.places.len();
+        let key = |k: usize| &r.keys[k * dim..(k + 1) * dim];
+        let mut order: Vec<usize> = (0..count).collect();
+        order.sort_by(|&a, &b| key(a).cmp(key(b)));
+        for pair in order.windows(2) {
+            if key(pair[0]) == key(pair[1]) {
+                let labels: Vec<&str> = key(pair[0]).iter().map(|&l| self.name(l)).collect();
+                let what = if dim == 0 { "the value".to_string() } else { format!("the record `{}`", labels.join(".")) };
+                return Err(Box::new(
+                    Diagnostic::execution(
+                        "E0478",
+                        w.span,
+                        format!("{file}:{}: {what} of `{}` was given before, at {}", r.places[pair[1]], w.name, r.places[pair[0]]),
+                    )
+                    .label("given twice; nothing was loaded")
+                    .help("keep one of the two"),
+                ));
+            }
+        }
+        let keys: Vec<Label> = order.iter().flat_map(|&k| key(k).iter().copied()).collect();
+        let is_set = symbol.is_set();
+        if let SymbolKind::Set { singleton: true } = symbol.kind
+            && count > 1
+        {
+            return Err(Box::new(
+                Diagnostic::execution("E0478", w.span, format!("`{}` is a singleton; the file has {count} elements for it", w.name))
+                    .label("nothing was loaded"),
+            ));
+        }
+        for (c, &offset) in columns.iter().enumerate() {
+            if self.point && !matches!(offset, attribute::L | attribute::M) {
+                continue;
+            }
+            let values: Vec<f64> = order.iter().map(|&k| r.values[k * width + c]).collect();
+            let default = self.store.table(symbol.table + offset).default_value();
+            let table = if dim == 0 {
+                let mut t = Table::new(0, default);
+                t.set(&[], values.first().copied().unwrap_or(default));
+                t
+            } else {
+                Table::from_sorted(dim, default, keys.clone(), values)
+            };
+            if is_set && dim == 1 {
+                self.members.insert(root, table.iter().map(|(k, _)| k[0]).collect());
+            }
+            self.out.tables.push((symbol.table + offset, table));
+        }
+        if is_set {
+            self.out.texts.push((symbol.table, std::mem::take(&mut r.texts)));
+        }
+        self.out.symbols.push(root);
+        Ok(())
+    }
+
+    pub fn finish(mut self) -> Finished {
+        self.out.labels = (0..self.new.len() as Label).map(|l| self.new.name(l).to_string()).collect();
+        self.out
+    }
+}

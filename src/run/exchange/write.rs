@@ -1,0 +1,137 @@
+//! Writing CSV and JSON.
+
+use super::{ATTRIBUTES, Wanted, special_name};
+use crate::check::symbols::{Symbol, SymbolKind, attribute};
+use crate::data::universe::Label;
+use crate::run::Machine;
+use serde_json::{Map, Value, json};
+
+/// Tables of a symbol that a file holds: name of the attribute (none: the data itself) and table.
+fn parts(symbol: &Symbol) -> Vec<(&'static str, u32)> {
+    match symbol.kind {
+        SymbolKind::Variable(_) | SymbolKind::Equation(_) => {
+            ATTRIBUTES.iter().filter(|a| a.2 != attribute::SCALE).map(|a| (a.0, symbol.table + a.2)).collect()
+        }
+        _ => vec![("", symbol.table)],
+    }
+}
+
+impl Machine<'_> {
+    /// All keys that a symbol has records for, in label order.
+    fn keys(&self, symbol: &Symbol) -> Vec<Vec<Label>> {
+        let tables = parts(symbol);
+        let mut keys: Vec<Vec<Label>> =
+            tables.iter().flat_map(|(_, t)| self.store.table(*t).iter().map(|(k, _)| k.to_vec()).collect::<Vec<_>>()).collect();
+        if tables.len() > 1 {
+            keys.sort_unstable();
+            keys.dedup();
+        }
+        if symbol.dim() == 0 && keys.is_empty() {
+            keys.push(Vec::new());
+        }
+        keys
+    }
+
+    /// One symbol with its own columns, or several in one long table.
+    pub(super) fn csv_of(&self, items: &[Wanted]) -> String {
+        let mut out = csv::Writer::from_writer(Vec::new());
+        // A vector takes everything: writing cannot fail.
+        if let [one] = items {
+            let symbol = self.symbols.get(self.symbols.root(one.symbol));
+            let set = symbol.is_set();
+            let mut header = self.domain_names(symbol);
+            match parts(symbol).as_slice() {
+                [_] if set => header.push("text".into()),
+                [_] => header.push("value".into()),
+                many => header.extend(many.iter().map(|p| p.0.to_string())),
+            }
+            let _ = out.write_record(&header);
+            for key in self.keys(symbol) {
+                let mut row: Vec<String> = key.iter().map(|&l| self.store.universe.name(l).to_string()).collect();
+                if set {
+                    row.push(self.store.element_text(symbol.table, &key).unwrap_or("").to_string());
+                } else {
+                    row.extend(parts(symbol).iter().map(|(_, t)| self.value_text(self.store.table(*t).get(&key))));
+                }
+                let _ = out.write_record(&row);
+            }
+        } else {
+            let symbols = || items.iter().map(|w| (w, self.symbols.get(self.symbols.root(w.symbol))));
+            let dim = symbols().map(|(_, s)| s.dim()).max().unwrap_or(0);
+            let texts = symbols().any(|(_, s)| s.is_set() && self.store.texts.get(&s.table).is_some_and(|t| !t.is_empty()));
+            let mut header = vec!["symbol".to_string()];
+            header.extend((1..=dim).map(|p| format!("label{p}")));
+            header.push("value".into());
+            if texts {
+                header.push("text".into());
+            }
+            let _ = out.write_record(&header);
+            for (w, symbol) in symbols() {
+                for (attribute, table) in parts(symbol) {
+                    let short = ATTRIBUTES.iter().find(|a| a.0 == attribute).map(|a| a.1);
+                    let name = short.map_or_else(|| w.name.clone(), |a| format!("{}.{a}", w.name));
+                    let t = self.store.table(table);
+                    let mut row = |key: &[Label], v: f64| {
+                        let mut row = vec![name.clone()];
+                        row.extend(key.iter().map(|&l| self.store.universe.name(l).to_string()));
+                        row.resize(dim + 1, String::new());
+                        row.push(if symbol.is_set() { "yes".into() } else { self.value_text(v) });
+                        if texts {
+                            let text = if symbol.is_set() { self.store.element_text(table, key) } else { None };
+                            row.push(text.unwrap_or("").to_string());
+                        }
+                        let _ = out.write_record(&row);
+                    };
+                    if t.dim() == 0 {
+                        row(&[], t.get(&[]));
+                    } else {
+                        t.iter().for_each(|(k, v)| row(k, v));
+                    }
+                }
+            }
+        }
+        let bytes = out.into_inner().unwrap_or_default();
+        String::from_utf8(bytes).unwrap_or_default()
+    }
+
+    fn json_number(&self, v: f64) -> Value {
+        match special_name(v) {
+            Some(name) => Value::from(name),
+            None if v.is_finite() => Value::from(v),
+            None => Value::from(self.value_text(v)),
+        }
+    }
+
+    /// One object with a member per symbol, one record per line.
+    pub(super) fn json_of(&self, items: &[Wanted]) -> String {
+        let mut out = String::from("{");
+        for (n, w) in items.iter().enumerate() {
+            let symbol = self.symbols.get(self.symbols.root(w.symbol));
+            out.push_str(if n > 0 { ",\n" } else { "\n" });
+            out.push_str(&format!("  {}: ", Value::from(w.name.as_str())));
+            let parts = parts(symbol);
+            let value = |key: &[Label]| match parts.as_slice() {
+                [(_, t)] if symbol.is_set() => Value::from(self.store.element_text(*t, key).unwrap_or("")),
+                [(_, t)] => self.json_number(self.store.table(*t).get(key)),
+                many => {
+                    let m: Map<String, Value> =
+                        many.iter().map(|(a, t)| ((*a).to_string(), self.json_number(self.store.table(*t).get(key)))).collect();
+                    Value::Object(m)
+                }
+            };
+            if symbol.dim() == 0 {
+                out.push_str(&value(&[]).to_string());
+                continue;
+            }
+            out.push_str(&format!("{{\"domain\": {}, \"records\": [", json!(self.domain_names(symbol))));
+            for (k, key) in self.keys(symbol).iter().enumerate() {
+                let labels: Vec<&str> = key.iter().map(|&l| self.store.universe.name(l)).collect();
+                out.push_str(if k > 0 { ",\n    " } else { "\n    " });
+                out.push_str(&json!([labels, value(key)]).to_string());
+            }
+            out.push_str("]}");
+        }
+        out.push_str("\n}\n");
+        out
+    }
+}

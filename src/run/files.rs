@@ -1,0 +1,53 @@
+//! Files that a run writes and reads: through the host, with a diagnostic where that fails.
+
+use super::Machine;
+use crate::diag::Diagnostic;
+use crate::host::HostError;
+use crate::source::Span;
+
+impl Machine<'_> {
+    /// Writes a whole file; false, and a diagnostic, if that is not possible.
+    pub(super) fn write_file(&mut self, name: &str, bytes: &[u8], span: Span) -> bool {
+        let written = self.host().write(name, bytes);
+        match written {
+            Ok(path) => {
+                let path = path.display().to_string();
+                if !self.report.files.contains(&path) {
+                    self.report.files.push(path);
+                }
+                true
+            }
+            Err(e) => {
+                self.note(refused("E0470", "written", name, &e, span));
+                false
+            }
+        }
+    }
+
+    /// Reads a text; a diagnostic if that is not possible.
+    pub(super) fn read_file(&mut self, name: &str, span: Span) -> Option<String> {
+        let from = self.map.place(span).map(|p| self.map.file(p.file).name.clone());
+        let read = self.host().read(name, from.as_deref().map(std::path::Path::new));
+        match read {
+            Ok((_, text)) => Some(text),
+            Err(e) => {
+                self.note(refused("E0471", "read", name, &e, span));
+                None
+            }
+        }
+    }
+}
+
+fn refused(code: &'static str, what: &str, name: &str, e: &HostError, span: Span) -> Diagnostic {
+    let d = |why: String| Diagnostic::execution(code, span, format!("the file `{name}` cannot be {what}: {why}"));
+    match e {
+        HostError::NotFound => d("there is no such file".into()).help("names are relative to the model's folder"),
+        HostError::Outside(_) if what == "written" => {
+            d("it lies outside the output folder".into()).help("give a name without `..`, and the folder with `--out`")
+        }
+        HostError::Outside(_) => d("it lies outside the folders that may be read".into())
+            .help("put the file beside the model, or allow its folder on the command line"),
+        HostError::NotUtf8(at) => d(format!("byte {} is not UTF-8", at + 1)).help("save the file as UTF-8"),
+        HostError::Other(why) => d(why.clone()),
+    }
+}

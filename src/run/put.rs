@@ -1,0 +1,236 @@
+//! `put` and its kin: items are evaluated here; how they stand in the file is [`TextFile`]'s matter.
+//!
+//! A file is written whole when it is closed or when the run ends.
+//!
+//! [`TextFile`]: crate::report::textfile::TextFile
+
+use super::{Frame, Machine, calendar};
+use crate::check::node::{DataFunction, Node, NodeKind, PutCode, SymbolId};
+use crate::check::symbols::SymbolKind;
+use crate::data::value::{as_acronym, is_na, number, truth};
+use crate::diag::Diagnostic;
+use crate::report::textfile::{Format, Item, Overflow, Part};
+use crate::source::Span;
+
+const MONTHS: [&str; 12] = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"];
+
+impl Machine<'_> {
+    /// A statement.
+    pub(super) fn put(&mut self, keyword: &str, items: &[PutCode], frame: &mut Frame, span: Span) {
+        let part = match keyword {
+            "puttl" => Part::Title,
+            "puthd" => Part::Header,
+            _ => Part::Body,
+        };
+        // `putclose f` alone closes f; it does not open it.
+        if let ("putclose", [PutCode::File(s)]) = (keyword, items) {
+            self.close_put_file(*s, span);
+            return;
+        }
+        for item in items {
+            match item {
+                PutCode::File(s) => self.open_put_file(*s),
+                PutCode::NewLine => {
+                    let Some(f) = self.put_file(span) else { return };
+                    f.text.new_line(part);
+                }
+                PutCode::Column(n) => {
+                    let n = number(self.eval(n, frame));
+                    let Some(f) = self.put_file(span) else { return };
+                    f.text.column(part, n);
+                }
+                PutCode::Row(n) => {
+                    let row = number(self.eval(n, frame));
+                    let place = n.span;
+                    let Some(f) = self.put_file(span) else { return };
+                    let r = f.text.row(part, row);
+                    self.put_trouble(r, place);
+                }
+                PutCode::Item { value, align, width, decimals } => {
+                    let format = Format { align: *align, width: *width, decimals: *decimals };
+                    let Some(item) = self.put_item(value, frame) else { continue };
+                    let Some(f) = self.put_file(span) else { return };
+                    let r = f.text.item(part, &item, format);
+                    self.put_trouble(r, value.span);
+                }
+            }
+        }
+        match keyword {
+            "putclose" => {
+                if let Some(s) = self.put.current {
+                    self.close_put_file(s, span);
+                } else {
+                    self.put_file(span);
+                }
+            }
+            "putpage" => {
+                if let Some(f) = self.put_file(span) {
+                    f.text.end_page();
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Makes a file the current one; one that was closed begins again.
+    fn open_put_file(&mut self, s: SymbolId) {
+        self.put.current = Some(s);
+        let f = self.put.files.entry(s).or_default();
+        if !f.open {
+            if f.text.get("ap") == 0.0 {
+                f.closed.clear();
+            }
+            f.text.reopen();
+            f.open = true;
+        }
+    }
+
+    /// The current file; a diagnostic if there is none.
+    fn put_file(&mut self, span: Span) -> Option<&mut super::options::PutFile> {
+        let Some(s) = self.put.current else {
+            self.note(
+                Diagnostic::execution("E0472", span, "no file is open to write to")
+                    .label("which file?")
+                    .help("declare one, `file out / 'out.txt' /;`, and name it first: `put out 'text' /;`"),
+            );
+            return None;
+        };
+        self.open_put_file(s);
+        let f = self.put.files.get_mut(&s)?;
+        f.span = span;
+        Some(f)
+    }
+
+    fn put_trouble(&mut self, r: Result<(), Overflow>, span: Span) {
+        let d = match r {
+            Ok(()) => return,
+            Err(Overflow::Number) => Diagnostic::warning("E0473", span, "the number is too wide for its place; asterisks were written")
+                .help("give it a greater width, `x:12:2`, or width 0, `x:0:2`"),
+            Err(Overflow::Line) => Diagnostic::warning("E0473", span, "the line is longer than the file's `.pw`; the rest of it was lost")
+                .help("end the line with `/`, or assign a greater `.pw`"),
+            Err(Overflow::Row) => Diagnostic::warning("E0473", span, "the row lies below the page; the last row was taken")
+                .help("assign a greater `.ps`"),
+        };
+        self.note(d);
+    }
+
+    /// Writes a file, if anything was put into it, and forgets its cursor.
+    fn close_put_file(&mut self, s: SymbolId, span: Span) {
+        let SymbolKind::File(name) = &self.symbols.get(s).kind else { return };
+        let name = name.clone();
+        let Some(f) = self.put.files.get_mut(&s).filter(|f| f.open) else { return };
+        f.open = false;
+        if f.text.is_empty() {
+            return;
+        }
+        f.closed.push_str(f.text.finish());
+        f.text.reopen();
+        let text = std::mem::take(&mut f.closed);
+        self.write_file(&name, text.as_bytes(), span);
+        if let Some(f) = self.put.files.get_mut(&s) {
+            f.closed = text;
+        }
+    }
+
+    /// Writes what is still open, in the order of declaration.
+    pub(super) fn close_put_files(&mut self) {
+        let mut open: Vec<(SymbolId, Span)> = self.put.files.iter().filter(|(_, f)| f.open).map(|(&s, f)| (s, f.span)).collect();
+        open.sort_unstable_by_key(|(s, _)| *s);
+        for (s, span) in open {
+            self.close_put_file(s, span);
+        }
+    }
+
+    /// What an expression is to `put`; None for what a condition hides.
+    pub(super) fn put_item(&self, n: &Node, frame: &mut Frame) -> Option<Item> {
+        Some(match &n.kind {
+            NodeKind::Text(t) => match t.strip_prefix("%system.").and_then(|t| t.strip_suffix('%')) {
+                Some(what) => self.system_value(what),
+                None => Item::Text(t.to_string()),
+            },
+            NodeKind::LabelText(p) => {
+                let l = self.part(p, frame);
+                Item::Label(l.map_or_else(String::new, |l| self.store.universe.name(l).to_string()))
+            }
+            NodeKind::ElementText(t, key) => {
+                let mut k = [0; 20];
+                if !self.key(key, frame, &mut k) {
+                    return Some(Item::Text(String::new()));
+                }
+                let k = &k[..key.parts.len()];
+                match self.store.element_text(*t, k) {
+                    Some(text) => Item::Text(text.to_string()),
+                    None => {
+                        let names: Vec<&str> = k.iter().map(|&l| self.store.universe.name(l)).collect();
+                        Item::Text(names.join("."))
+                    }
+                }
+            }
+            NodeKind::SymbolText(s) => Item::Text(self.symbols.get(*s).text.to_string()),
+            NodeKind::ObjectAttribute(s, a @ ("tmodstat" | "tsolstat")) => Item::Text(self.status_text(*s, a)),
+            NodeKind::Data(t, _) if self.table_symbol(*t).is_some_and(|s| self.symbols.get(s).is_set()) => {
+                Item::Member(truth(self.eval(n, frame)))
+            }
+            NodeKind::Dollar(a, c) if is_text(a) => {
+                if !truth(self.eval(c, frame)) {
+                    return None;
+                }
+                self.put_item(a, frame)?
+            }
+            _ => {
+                let v = number(self.eval(n, frame));
+                match v {
+                    v if v.is_finite() => Item::Number(v),
+                    f64::INFINITY => Item::Special("+INF".into()),
+                    f64::NEG_INFINITY => Item::Special("-INF".into()),
+                    v if is_na(v) => Item::Special("NA".into()),
+                    v => match as_acronym(v).and_then(|a| self.store.acronyms.get(a as usize)) {
+                        Some(name) => Item::Special(name.to_string()),
+                        None => Item::Special("UNDF".into()),
+                    },
+                }
+            }
+        })
+    }
+
+    /// `system.date` and the like.
+    fn system_value(&self, what: &str) -> Item {
+        let now = self.now();
+        let part = |f| calendar::part(f, now).unwrap_or(0.0);
+        let (year, month, day) = (part(DataFunction::GYear), part(DataFunction::GMonth), part(DataFunction::GDay));
+        let source = || self.map.files().first().map_or("", |f| f.name.as_str());
+        let path = std::path::Path::new(source());
+        let name = |p: Option<&std::ffi::OsStr>| p.map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+        Item::Text(match what {
+            "date" => format!("{month:02}/{day:02}/{:02}", year % 100.0),
+            "date1" => format!("{} {day:02}, {year}", MONTHS[(month.max(1.0) as usize - 1).min(11)]),
+            "time" => {
+                let [h, m, s] = [DataFunction::GHour, DataFunction::GMinute, DataFunction::GSecond].map(part);
+                format!("{h:02}:{m:02}:{s:02}")
+            }
+            "title" => "bmod".into(),
+            "version" => format!("bmod {}", env!("CARGO_PKG_VERSION")),
+            "verid" | "gamsversion" | "gamsrelease" | "buildcode" => env!("CARGO_PKG_VERSION").into(),
+            "page" => return Item::Page,
+            "ifile" | "sfile" | "incname" => source().to_string(),
+            "fn" => name(path.file_stem()),
+            "fe" => path.extension().map_or_else(String::new, |e| format!(".{}", e.to_string_lossy())),
+            "fp" => path.parent().map_or_else(String::new, |p| format!("{}/", p.display())),
+            "tab" => "\t".into(),
+            "dirsep" => "/".into(),
+            "filesys" => "UNIX".into(),
+            "elapsed" => format!("{:.3}", self.elapsed()),
+            "line" | "incline" | "iline" => self.map.line(self.options.at.get()).to_string(),
+            "errorlevel" => "0".into(),
+            _ => String::new(),
+        })
+    }
+}
+
+fn is_text(n: &Node) -> bool {
+    match &n.kind {
+        NodeKind::Text(_) | NodeKind::LabelText(_) | NodeKind::ElementText(..) | NodeKind::SymbolText(_) => true,
+        NodeKind::ObjectAttribute(_, a) => matches!(*a, "tmodstat" | "tsolstat"),
+        _ => false,
+    }
+}
