@@ -8,13 +8,54 @@ use crate::syntax::ast::FigureElement;
 
 /// Kinds of elements, their arguments, those that must be there, and whether bare values may stand.
 const KINDS: &[(&str, &[&str], &[&str], bool)] = &[
-    ("polygon", &["x", "y", "fill", "stroke", "width", "opacity", "dash", "label"], &["x", "y"], false),
-    ("polyline", &["x", "y", "stroke", "width", "opacity", "dash", "label"], &["x", "y"], false),
-    ("points", &["x", "y", "fill", "stroke", "width", "size", "opacity", "label"], &["x", "y"], false),
-    ("arrow", &["x", "y", "dx", "dy", "stroke", "width", "opacity", "dash", "label"], &["x", "y", "dx", "dy"], false),
-    ("text", &["x", "y", "label", "fill", "size", "align", "opacity"], &["x", "y", "label"], true),
-    ("line", &["x", "y", "stroke", "width", "opacity", "dash", "label"], &["y"], false),
-    ("bar", &["x", "y", "fill", "stroke", "width", "opacity", "label"], &["y"], false),
+    (
+        "polygon",
+        &[
+            "x", "y", "fill", "stroke", "width", "opacity", "dash", "label",
+        ],
+        &["x", "y"],
+        false,
+    ),
+    (
+        "polyline",
+        &["x", "y", "stroke", "width", "opacity", "dash", "label"],
+        &["x", "y"],
+        false,
+    ),
+    (
+        "points",
+        &[
+            "x", "y", "fill", "stroke", "width", "size", "opacity", "label",
+        ],
+        &["x", "y"],
+        false,
+    ),
+    (
+        "arrow",
+        &[
+            "x", "y", "dx", "dy", "stroke", "width", "opacity", "dash", "label",
+        ],
+        &["x", "y", "dx", "dy"],
+        false,
+    ),
+    (
+        "text",
+        &["x", "y", "label", "fill", "size", "align", "opacity"],
+        &["x", "y", "label"],
+        true,
+    ),
+    (
+        "line",
+        &["x", "y", "stroke", "width", "opacity", "dash", "label"],
+        &["y"],
+        false,
+    ),
+    (
+        "bar",
+        &["x", "y", "fill", "stroke", "width", "opacity", "label"],
+        &["y"],
+        false,
+    ),
     ("title", &[], &[], true),
     ("axes", &["x", "y"], &[], true),
     ("xaxis", &["label"], &[], true),
@@ -37,13 +78,25 @@ pub fn kinds() -> impl Iterator<Item = &'static str> {
 }
 
 fn is_text(n: &Node) -> bool {
-    matches!(n.kind, NodeKind::Text(_) | NodeKind::LabelText(_) | NodeKind::ElementText(..) | NodeKind::SymbolText(_))
+    matches!(
+        n.kind,
+        NodeKind::Text(_)
+            | NodeKind::LabelText(_)
+            | NodeKind::ElementText(..)
+            | NodeKind::SymbolText(_)
+    )
 }
 
 impl Compiler {
     /// Checks names and types of an element's arguments.
-    pub(super) fn figure_arguments(&mut self, e: &FigureElement, code: &FigureElementCode) -> Result<(), Failed> {
-        let Some(&(kind, known, required, bare)) = KINDS.iter().find(|k| k.0 == &*code.kind) else { return Ok(()) };
+    pub(super) fn figure_arguments(
+        &mut self,
+        e: &FigureElement,
+        code: &FigureElementCode,
+    ) -> Result<(), Failed> {
+        let Some(&(kind, known, required, bare)) = KINDS.iter().find(|k| k.0 == &*code.kind) else {
+            return Ok(());
+        };
         for ((name, value), (ident, _)) in code.arguments.iter().zip(&e.arguments) {
             let Some(name) = name.as_deref() else {
                 self.bare_value(kind, bare, value)?;
@@ -51,31 +104,47 @@ impl Compiler {
             };
             if !known.contains(&name) {
                 let span = ident.as_ref().map_or(value.span, |i| i.span);
-                let d = Diagnostic::error("E0370", span, format!("`{kind}` has no argument `{name}`")).label("unknown argument");
+                let d =
+                    Diagnostic::error("E0370", span, format!("`{kind}` has no argument `{name}`"))
+                        .label("unknown argument");
                 let near = match name {
-                    "color" | "colour" => known.iter().copied().find(|k| matches!(*k, "fill" | "stroke")),
+                    "color" | "colour" => known
+                        .iter()
+                        .copied()
+                        .find(|k| matches!(*k, "fill" | "stroke")),
                     _ => nearest(name, known.iter().copied()),
                 };
                 return self.fail(match near {
                     Some(n) => d.help(format!("did you mean `{n}`?")),
-                    None if known.is_empty() => d.help(format!("`{kind}` takes values without names")),
+                    None if known.is_empty() => {
+                        d.help(format!("`{kind}` takes values without names"))
+                    }
                     None => d.help(format!("there are: {}", known.join(", "))),
                 });
             }
             if matches!(name, "x" | "y") && kind == "axes" {
                 continue;
             }
-            if matches!(name, "x" | "y" | "dx" | "dy" | "width" | "height" | "opacity" | "size") && is_text(value) {
+            if matches!(
+                name,
+                "x" | "y" | "dx" | "dy" | "width" | "height" | "opacity" | "size"
+            ) && is_text(value)
+            {
                 return self.fail(
-                    Diagnostic::error("E0371", value.span, format!("`{name}` of `{kind}` is a number"))
-                        .label("this is a text")
-                        .help(format!("give an expression, for instance `{name} = p(i)`")),
+                    Diagnostic::error(
+                        "E0371",
+                        value.span,
+                        format!("`{name}` of `{kind}` is a number"),
+                    )
+                    .label("this is a text")
+                    .help(format!("give an expression, for instance `{name} = p(i)`")),
                 );
             }
             if let ("fill" | "stroke", NodeKind::Text(t)) = (name, &value.kind)
                 && Paint::parse(t).is_none()
             {
-                let d = Diagnostic::error("E0372", value.span, format!("`{t}` is not a colour")).label("unknown colour");
+                let d = Diagnostic::error("E0372", value.span, format!("`{t}` is not a colour"))
+                    .label("unknown colour");
                 return self.fail(match nearest(t, Paint::names().iter().copied()) {
                     Some(n) => d.help(format!("did you mean `'{n}'`?")),
                     None => d.help("colours are CSS names (`'steelblue'`), `'#rrggbb'`, `none`, or a number for the colour scale"),
@@ -89,7 +158,11 @@ impl Compiler {
                         .label(format!("`{r} = …` is missing"))
                         .help(format!(
                             "write `{kind}(…) {};`",
-                            required.iter().map(|r| format!("{r} = …")).collect::<Vec<_>>().join(", ")
+                            required
+                                .iter()
+                                .map(|r| format!("{r} = …"))
+                                .collect::<Vec<_>>()
+                                .join(", ")
                         )),
                 );
             }
@@ -109,23 +182,42 @@ impl Compiler {
     fn bare_value(&mut self, kind: &str, bare: bool, value: &Node) -> Result<(), Failed> {
         if !bare {
             return self.fail(
-                Diagnostic::error("E0370", value.span, format!("`{kind}` takes values with names"))
-                    .label("which argument?")
-                    .help("for instance `x = p(i)`"),
+                Diagnostic::error(
+                    "E0370",
+                    value.span,
+                    format!("`{kind}` takes values with names"),
+                )
+                .label("which argument?")
+                .help("for instance `x = p(i)`"),
             );
         }
         let words = WORDS.iter().find(|w| w.0 == kind).map_or(&[][..], |w| w.1);
         if let ("axes", NodeKind::Text(t)) = (kind, &value.kind)
             && !words.contains(&t.to_lowercase().as_str())
         {
-            let d = Diagnostic::error("E0370", value.span, format!("`axes` does not know the word `{t}`")).label("unknown word");
+            let d = Diagnostic::error(
+                "E0370",
+                value.span,
+                format!("`axes` does not know the word `{t}`"),
+            )
+            .label("unknown word");
             return self.fail(match nearest(t, words.iter().copied()) {
                 Some(n) => d.help(format!("did you mean `{n}`?")),
-                None => d.help(format!("there are: {}; labels are written `x = 'text'`", words.join(", "))),
+                None => d.help(format!(
+                    "there are: {}; labels are written `x = 'text'`",
+                    words.join(", ")
+                )),
             });
         }
         if kind == "size" && is_text(value) {
-            return self.fail(Diagnostic::error("E0371", value.span, "`size` takes numbers: width and height in pixels").label("this is a text"));
+            return self.fail(
+                Diagnostic::error(
+                    "E0371",
+                    value.span,
+                    "`size` takes numbers: width and height in pixels",
+                )
+                .label("this is a text"),
+            );
         }
         Ok(())
     }

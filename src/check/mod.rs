@@ -10,9 +10,10 @@ pub mod symbols;
 
 mod declare;
 mod expr;
+mod figure;
 mod model;
 pub use model::walk as walk_node;
-mod statement;
+pub(crate) mod statement;
 
 use crate::diag::{Diagnostic, Severity};
 use crate::host::Host;

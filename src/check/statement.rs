@@ -867,21 +867,20 @@ impl Compiler {
     }
 
     fn figure_element(&mut self, e: &ast::FigureElement) -> Result<FigureElementCode, Failed> {
-        const KINDS: &[&str] = &[
-            "polygon", "polyline", "points", "arrow", "text", "line", "bar", "title", "axes",
-            "xaxis", "yaxis", "legend", "size",
-        ];
         let kind = e.kind.name.to_lowercase();
-        if !KINDS.contains(&kind.as_str()) {
+        if !super::figure::kinds().any(|k| k == kind) {
             let d = Diagnostic::error(
                 "E0332",
                 e.kind.span,
                 format!("a figure has no element `{}`", e.kind.name),
             )
             .label("unknown element");
-            return self.fail(match nearest(&kind, KINDS.iter().copied()) {
+            return self.fail(match nearest(&kind, super::figure::kinds()) {
                 Some(n) => d.help(format!("did you mean `{n}`?")),
-                None => d.help(format!("there are: {}", KINDS.join(", "))),
+                None => d.help(format!(
+                    "there are: {}",
+                    super::figure::kinds().collect::<Vec<_>>().join(", ")
+                )),
             });
         }
         // The levels and data that a figure shows need not be there when it is declared.
@@ -914,12 +913,14 @@ impl Compiler {
                 }
                 arguments.push((name.as_ref().map(|n| n.name.to_lowercase().into()), node));
             }
-            Ok(FigureElementCode {
+            let code = FigureElementCode {
                 kind: kind.into(),
                 domain,
                 arguments,
                 span: e.span,
-            })
+            };
+            self.figure_arguments(e, &code)?;
+            Ok(code)
         })();
         self.in_equation = false;
         r

@@ -40,9 +40,18 @@ impl Layout {
     /// for its rows (one, of two), and one plane per label of the others.
     pub fn usual(dim: usize) -> Self {
         match dim {
-            0 | 1 => Self { rows: 0, columns: usize::MAX },
-            2 => Self { rows: 1, columns: 1 },
-            _ => Self { rows: 2, columns: 1 },
+            0 | 1 => Self {
+                rows: 0,
+                columns: usize::MAX,
+            },
+            2 => Self {
+                rows: 1,
+                columns: 1,
+            },
+            _ => Self {
+                rows: 2,
+                columns: 1,
+            },
         }
     }
 }
@@ -93,7 +102,11 @@ pub fn number(x: f64, decimals: usize, acronyms: &[Box<str>]) -> String {
         let fixed = format!("{:.decimals$}", x);
         let vanishes = || x != 0.0 && !fixed.bytes().any(|b| matches!(b, b'1'..=b'9'));
         if fixed.len() <= NUMBER && !vanishes() {
-            return if x == 0.0 { fixed.trim_start_matches('-').to_string() } else { fixed };
+            return if x == 0.0 {
+                fixed.trim_start_matches('-').to_string()
+            } else {
+                fixed
+            };
         }
     }
     exponential(x)
@@ -117,15 +130,29 @@ fn exponential(x: f64) -> String {
 }
 
 /// The line of a scalar, from `PARAMETER` on.
-pub fn scalar(kind: &str, name: &str, value: f64, text: &str, decimals: usize, acronyms: &[Box<str>]) -> String {
+pub fn scalar(
+    kind: &str,
+    name: &str,
+    value: f64,
+    text: &str,
+    decimals: usize,
+    acronyms: &[Box<str>],
+) -> String {
     let head = format!("{kind} {name}");
-    let line = format!("{head:30} ={:>13}  {text}", number(value, decimals, acronyms));
+    let line = format!(
+        "{head:30} ={:>13}  {text}",
+        number(value, decimals, acronyms)
+    );
     line.trim_end().to_string()
 }
 
 /// The line that stands for an indexed symbol whose records all have the default value.
 pub fn all_default(default: f64, decimals: usize, acronyms: &[Box<str>]) -> String {
-    format!("{:22}( ALL{:>12} )", "", number(default, decimals, acronyms))
+    format!(
+        "{:22}( ALL{:>12} )",
+        "",
+        number(default, decimals, acronyms)
+    )
 }
 
 /// The line that stands for an empty set.
@@ -134,7 +161,11 @@ pub fn empty_set() -> String {
 }
 
 fn width(s: &str) -> usize {
-    if s.is_ascii() { s.len() } else { s.chars().count() }
+    if s.is_ascii() {
+        s.len()
+    } else {
+        s.chars().count()
+    }
 }
 
 fn pad(out: &mut String, blanks: usize) {
@@ -276,7 +307,8 @@ impl Sheet<'_> {
         let joined = columns > 1
             && records.iter().all(|(k, _)| {
                 let labels = &k[lead + rows..];
-                labels.iter().map(|&l| width(self.name(l))).sum::<usize>() + labels.len() - 1 <= NUMBER
+                labels.iter().map(|&l| width(self.name(l))).sum::<usize>() + labels.len() - 1
+                    <= NUMBER
             });
         let mut from = 0;
         while from < records.len() {
@@ -287,7 +319,13 @@ impl Sheet<'_> {
             }
             if lead > 0 {
                 for (p, &l) in plane.iter().enumerate() {
-                    let _ = write!(out, "{}INDEX {} = {}", if p > 0 { "  " } else { "" }, p + 1, self.name(l));
+                    let _ = write!(
+                        out,
+                        "{}INDEX {} = {}",
+                        if p > 0 { "  " } else { "" },
+                        p + 1,
+                        self.name(l)
+                    );
                 }
                 out.push_str("\n\n");
             }
@@ -296,7 +334,14 @@ impl Sheet<'_> {
         }
     }
 
-    fn plane(&self, records: &[(&[Label], f64)], lead: usize, rows: usize, joined: bool, out: &mut String) {
+    fn plane(
+        &self,
+        records: &[(&[Label], f64)],
+        lead: usize,
+        rows: usize,
+        joined: bool,
+        out: &mut String,
+    ) {
         let row_of = |k: usize| &records[k].0[lead..lead + rows];
         let column_of = |k: usize| &records[k].0[lead + rows..];
         let widths = self.widths((0..records.len()).map(row_of), rows);
@@ -305,7 +350,8 @@ impl Sheet<'_> {
         let mut columns: Vec<&[Label]> = (0..records.len()).map(column_of).collect();
         columns.sort_unstable();
         columns.dedup();
-        let place: FxHashMap<&[Label], usize> = columns.iter().enumerate().map(|(i, &c)| (c, i)).collect();
+        let place: FxHashMap<&[Label], usize> =
+            columns.iter().enumerate().map(|(i, &c)| (c, i)).collect();
 
         // Records by the block of columns they fall in, otherwise in their order.
         let per_block = (self.page.saturating_sub(label_width) / COLUMN).max(1);
@@ -360,7 +406,14 @@ impl Sheet<'_> {
         }
     }
 
-    fn headings(&self, columns: &[&[Label]], joined: bool, label_width: usize, continued: bool, out: &mut String) {
+    fn headings(
+        &self,
+        columns: &[&[Label]],
+        joined: bool,
+        label_width: usize,
+        continued: bool,
+        out: &mut String,
+    ) {
         let lines = if joined { 1 } else { columns[0].len() };
         for line in 0..lines {
             if line == 0 && continued {
@@ -441,13 +494,29 @@ mod tests {
             "PARAMETER s                    =        3.142  a scalar"
         );
         assert_eq!(
-            scalar("PARAMETER", "a_very_long_name_for_a_scal123", 4.0, "", 3, &[]),
+            scalar(
+                "PARAMETER",
+                "a_very_long_name_for_a_scal123",
+                4.0,
+                "",
+                3,
+                &[]
+            ),
             "PARAMETER a_very_long_name_for_a_scal123 =        4.000"
         );
-        assert_eq!(all_default(0.0, 3, &[]), "                      ( ALL       0.000 )");
+        assert_eq!(
+            all_default(0.0, 3, &[]),
+            "                      ( ALL       0.000 )"
+        );
     }
 
-    fn text(dim: usize, records: &[(&[&str], f64)], layout: Option<Layout>, page: usize, set: bool) -> String {
+    fn text(
+        dim: usize,
+        records: &[(&[&str], f64)],
+        layout: Option<Layout>,
+        page: usize,
+        set: bool,
+    ) -> String {
         let mut universe = Universe::default();
         let mut table = Table::new(dim, 0.0);
         for (k, v) in records {
@@ -456,27 +525,59 @@ mod tests {
         }
         table.tidy();
         let mut out = String::new();
-        let cells = if set { Cells::Members(None) } else { Cells::Numbers };
-        Sheet { table: &table, universe: &universe, acronyms: &[], cells, decimals: 3, layout, page }.write(&mut out);
+        let cells = if set {
+            Cells::Members(None)
+        } else {
+            Cells::Numbers
+        };
+        Sheet {
+            table: &table,
+            universe: &universe,
+            acronyms: &[],
+            cells,
+            decimals: 3,
+            layout,
+            page,
+        }
+        .write(&mut out);
         out
     }
 
     #[test]
     fn lists() {
         let p: &[(&[&str], f64)] = &[(&["a"], 1.0), (&["b"], 22.5), (&["long"], -3.0)];
-        assert_eq!(text(1, p, None, PAGE, false), "a     1.000,    b    22.500,    long -3.000\n");
+        assert_eq!(
+            text(1, p, None, PAGE, false),
+            "a     1.000,    b    22.500,    long -3.000\n"
+        );
         assert_eq!(text(1, p, None, PAGE, true), "a   ,    b   ,    long\n");
         // Two items are 11 + 5 + 11 wide.
-        assert_eq!(text(1, p, None, 27, false), "a     1.000,    b    22.500\nlong -3.000\n");
-        assert_eq!(text(1, p, None, 26, false), "a     1.000\nb    22.500\nlong -3.000\n");
+        assert_eq!(
+            text(1, p, None, 27, false),
+            "a     1.000,    b    22.500\nlong -3.000\n"
+        );
+        assert_eq!(
+            text(1, p, None, 26, false),
+            "a     1.000\nb    22.500\nlong -3.000\n"
+        );
         let q: &[(&[&str], f64)] = &[(&["aa", "x"], 1.0), (&["b", "yyy"], 2.0)];
-        let list = Some(Layout { rows: 0, columns: 2 });
-        assert_eq!(text(2, q, list, PAGE, false), "aa.x   1.000,    b .yyy 2.000\n");
+        let list = Some(Layout {
+            rows: 0,
+            columns: 2,
+        });
+        assert_eq!(
+            text(2, q, list, PAGE, false),
+            "aa.x   1.000,    b .yyy 2.000\n"
+        );
     }
 
     #[test]
     fn tables() {
-        let q: &[(&[&str], f64)] = &[(&["a", "x"], 1.0), (&["a", "heading too long"], 3.25), (&["bb", "x"], -200.5)];
+        let q: &[(&[&str], f64)] = &[
+            (&["a", "x"], 1.0),
+            (&["a", "heading too long"], 3.25),
+            (&["bb", "x"], -200.5),
+        ];
         assert_eq!(
             text(2, q, None, PAGE, false),
             "             x  heading t~\n\na        1.000       3.250\nbb    -200.500\n"
@@ -490,14 +591,26 @@ mod tests {
             text(4, r, None, PAGE, false),
             "INDEX 1 = a\n\n              v\n\nx.u       1.000\n\nINDEX 1 = x\n\n              u\n\na.u       2.000\n"
         );
-        let wide = Some(Layout { rows: 1, columns: 3 });
-        assert_eq!(text(4, r, wide, PAGE, false), "        x.u.v       a.u.u\n\na       1.000\nx                   2.000\n");
+        let wide = Some(Layout {
+            rows: 1,
+            columns: 3,
+        });
+        assert_eq!(
+            text(4, r, wide, PAGE, false),
+            "        x.u.v       a.u.u\n\na       1.000\nx                   2.000\n"
+        );
     }
 
     #[test]
     fn stacked_headings() {
-        let r: &[(&[&str], f64)] = &[(&["a", "aaaaaa", "bbbbbb"], 1.0), (&["a", "aaaaaa", "a"], 2.0)];
-        let wide = Some(Layout { rows: 1, columns: 2 });
+        let r: &[(&[&str], f64)] = &[
+            (&["a", "aaaaaa", "bbbbbb"], 1.0),
+            (&["a", "aaaaaa", "a"], 2.0),
+        ];
+        let wide = Some(Layout {
+            rows: 1,
+            columns: 2,
+        });
         assert_eq!(
             text(3, r, wide, PAGE, true),
             "       aaaaaa      aaaaaa\n            a      bbbbbb\n\na         YES         YES\n"

@@ -49,7 +49,8 @@ pub fn fill(template: &str, values: &[Value]) -> Result<String, String> {
             spelled.push(f);
             chars.next();
         }
-        let mut digits = |spelled: &mut String, chars: &mut std::iter::Peekable<std::str::Chars<'_>>| {
+        let digits = |spelled: &mut String,
+                      chars: &mut std::iter::Peekable<std::str::Chars<'_>>| {
             let mut n = 0;
             while let Some(d) = chars.peek().and_then(|d| d.to_digit(10)) {
                 n = (n * 10 + d as usize).min(200);
@@ -69,9 +70,15 @@ pub fn fill(template: &str, values: &[Value]) -> Result<String, String> {
                 let Some(v) = rest.next() else {
                     return Err(format!("there is no value for `{spelled}{letter}`"));
                 };
-                out.push_str(&p.show(v).map_err(|what| format!("`{spelled}{letter}` takes a number, not the text `{what}`"))?);
+                out.push_str(&p.show(v).map_err(|what| {
+                    format!("`{spelled}{letter}` takes a number, not the text `{what}`")
+                })?);
             }
-            Some(other) => return Err(format!("`{spelled}{other}` is not a format; `%8.5f`, `%g`, `%d`, `%s` and `%%` are")),
+            Some(other) => {
+                return Err(format!(
+                    "`{spelled}{other}` is not a format; `%8.5f`, `%g`, `%d`, `%s` and `%%` are"
+                ));
+            }
             None => return Err("a format ends after `%`; a percent sign is written `%%`".into()),
         }
     }
@@ -86,7 +93,12 @@ pub fn fill(template: &str, values: &[Value]) -> Result<String, String> {
 
 /// A value without a format.
 pub fn plain(v: &Value) -> String {
-    Place { letter: 'g', ..Place::default() }.show(v).unwrap_or_else(|t| t)
+    Place {
+        letter: 'g',
+        ..Place::default()
+    }
+    .show(v)
+    .unwrap_or_else(|t| t)
 }
 
 impl Place {
@@ -105,8 +117,16 @@ impl Place {
                     'd' | 'i' => format!("{:.0}", x.round()),
                     _ => general(*x, self.precision.unwrap_or(6)),
                 };
-                let t = if is_zero(&t) { t.replacen('-', "", 1) } else { t };
-                if self.plus && !t.starts_with('-') { format!("+{t}") } else { t }
+                let t = if is_zero(&t) {
+                    t.replacen('-', "", 1)
+                } else {
+                    t
+                };
+                if self.plus && !t.starts_with('-') {
+                    format!("+{t}")
+                } else {
+                    t
+                }
             }
         };
         let n = text.chars().count();
@@ -142,8 +162,17 @@ fn exponent(x: f64, digits: usize) -> String {
 fn general(x: f64, digits: usize) -> String {
     let digits = digits.max(1);
     let rounded = format!("{:.*e}", digits - 1, x);
-    let e: i32 = rounded.split_once('e').and_then(|(_, e)| e.parse().ok()).unwrap_or(0);
-    let strip = |t: &str| if t.contains('.') { t.trim_end_matches('0').trim_end_matches('.').to_string() } else { t.to_string() };
+    let e: i32 = rounded
+        .split_once('e')
+        .and_then(|(_, e)| e.parse().ok())
+        .unwrap_or(0);
+    let strip = |t: &str| {
+        if t.contains('.') {
+            t.trim_end_matches('0').trim_end_matches('.').to_string()
+        } else {
+            t.to_string()
+        }
+    };
     if e < -4 || e >= digits as i32 {
         let t = exponent(x, digits - 1);
         match t.split_once('e') {
@@ -151,7 +180,11 @@ fn general(x: f64, digits: usize) -> String {
             None => t,
         }
     } else {
-        strip(&format!("{:.*}", (digits as i32 - 1 - e).max(0) as usize, x))
+        strip(&format!(
+            "{:.*}",
+            (digits as i32 - 1 - e).max(0) as usize,
+            x
+        ))
     }
 }
 
@@ -167,9 +200,18 @@ mod tests {
     #[test]
     fn numbers() {
         assert_eq!(f("alpha = %8.5f", &[0.642859]), "alpha =  0.64286");
-        assert_eq!(f("%6.3f exp(-%7.5f t)", &[61.80268, 0.0338]), "61.803 exp(-0.03380 t)");
-        assert_eq!(f("%g %g %g %g", &[0.5, 1e-7, 1234567.0, 100000.0]), "0.5 1e-07 1.23457e+06 100000");
-        assert_eq!(f("%d|%5d|%-5d|%05d|%+d", &[2.6, -3.0, 4.0, -5.0, 6.0]), "3|   -3|4    |-0005|+6");
+        assert_eq!(
+            f("%6.3f exp(-%7.5f t)", &[61.80268, 0.0338]),
+            "61.803 exp(-0.03380 t)"
+        );
+        assert_eq!(
+            f("%g %g %g %g", &[0.5, 1e-7, 1234567.0, 100000.0]),
+            "0.5 1e-07 1.23457e+06 100000"
+        );
+        assert_eq!(
+            f("%d|%5d|%-5d|%05d|%+d", &[2.6, -3.0, 4.0, -5.0, 6.0]),
+            "3|   -3|4    |-0005|+6"
+        );
         assert_eq!(f("%.2e", &[12345.0]), "1.23e+04");
         assert_eq!(f("%.1f", &[-0.01]), "0.0");
         assert_eq!(f("50 %%", &[]), "50 %");
@@ -181,9 +223,18 @@ mod tests {
     fn texts_and_mistakes() {
         let t = [Value::Text("Kante".into())];
         assert_eq!(fill("%s!", &t), Ok("Kante!".into()));
-        assert_eq!(fill("%8s|%.2s", &[t[0].clone(), t[0].clone()]), Ok("   Kante|Ka".into()));
-        assert_eq!(fill("%f", &t), Err("`%f` takes a number, not the text `Kante`".into()));
-        assert_eq!(fill("%5.1f", &[]), Err("there is no value for `%5.1f`".into()));
+        assert_eq!(
+            fill("%8s|%.2s", &[t[0].clone(), t[0].clone()]),
+            Ok("   Kante|Ka".into())
+        );
+        assert_eq!(
+            fill("%f", &t),
+            Err("`%f` takes a number, not the text `Kante`".into())
+        );
+        assert_eq!(
+            fill("%5.1f", &[]),
+            Err("there is no value for `%5.1f`".into())
+        );
         assert!(fill("%q", &t).is_err() && fill("100%", &[]).is_err());
         let na = Value::Number(0.0, Some("NA".into()));
         assert_eq!(fill("%6.2f", &[na]), Ok("    NA".into()));

@@ -3,6 +3,7 @@
 pub mod diagnostics;
 pub mod display;
 pub mod figure;
+pub mod format;
 pub mod json;
 pub mod listing;
 pub mod names;

@@ -48,7 +48,9 @@ pub fn number(x: f64, width: usize, decimals: usize, form: Form) -> String {
             let fixed = Some(fixed(x, decimals)).filter(|t| t.len() <= room);
             let vanishes = |t: &String| x != 0.0 && !t.bytes().any(|b| matches!(b, b'1'..=b'9'));
             match fixed {
-                Some(t) if form == Form::AsNeeded && vanishes(&t) => exponential(x, room).or(Some(t)),
+                Some(t) if form == Form::AsNeeded && vanishes(&t) => {
+                    exponential(x, room).or(Some(t))
+                }
                 Some(t) => Some(t),
                 None => exponential(x, room),
             }
@@ -64,7 +66,11 @@ pub fn number(x: f64, width: usize, decimals: usize, form: Form) -> String {
 /// With a fixed number of decimals.
 fn fixed(x: f64, decimals: usize) -> String {
     // Digits before the point, of a number that is not 0.
-    let magnitude = if x == 0.0 { 0 } else { x.abs().log10().floor() as i64 + 1 };
+    let magnitude = if x == 0.0 {
+        0
+    } else {
+        x.abs().log10().floor() as i64 + 1
+    };
     if magnitude + decimals as i64 <= DIGITS as i64 || x == 0.0 {
         let x = if x == 0.0 { 0.0 } else { x };
         return format!("{x:.decimals$}");

@@ -213,7 +213,9 @@ impl TextFile {
             Some(lines) => lines.len(),
             None => self.title.lines.len() + self.header.lines.len(),
         };
-        (self.integer("ps").max(1) as usize).saturating_sub(above).max(1)
+        (self.integer("ps").max(1) as usize)
+            .saturating_sub(above)
+            .max(1)
     }
 
     /// Whether anything was written.
@@ -223,7 +225,10 @@ impl TextFile {
 
     /// Forgets text and pages, keeps the attributes (a file that is opened again).
     pub fn reopen(&mut self) {
-        *self = Self { attributes: std::mem::take(&mut self.attributes), ..Self::default() };
+        *self = Self {
+            attributes: std::mem::take(&mut self.attributes),
+            ..Self::default()
+        };
     }
 
     fn begin(&mut self, part: Part) {
@@ -257,12 +262,20 @@ impl TextFile {
     /// `#n`, from 1.
     pub fn row(&mut self, part: Part, n: f64) -> Result<(), Overflow> {
         self.begin(part);
-        let most = if part == Part::Body { self.capacity() } else { self.integer("ps").max(1) as usize };
+        let most = if part == Part::Body {
+            self.capacity()
+        } else {
+            self.integer("ps").max(1) as usize
+        };
         let row = n.round().clamp(1.0, 1e6) as usize;
         let b = self.block(part);
         b.row = row.min(most) - 1;
         b.full = false;
-        if row > most { Err(Overflow::Row) } else { Ok(()) }
+        if row > most {
+            Err(Overflow::Row)
+        } else {
+            Ok(())
+        }
     }
 
     /// Writes an item.
@@ -277,7 +290,10 @@ impl TextFile {
                     None if pc == 8 => 0,
                     None => self.integer("nw").max(0) as usize,
                 };
-                let decimals = format.decimals.unwrap_or_else(|| self.integer("nd")).clamp(0, 99) as usize;
+                let decimals = format
+                    .decimals
+                    .unwrap_or_else(|| self.integer("nd"))
+                    .clamp(0, 99) as usize;
                 let x = if x.abs() < self.get("nz") { 0.0 } else { *x };
                 let t = number(x, width, decimals, Form::new(self.get("nr")));
                 if t.starts_with('*') {
@@ -314,7 +330,9 @@ impl TextFile {
                 _ => " ",
             };
             if self.block(part).column > 0 {
-                let wraps = pc == 8 && self.block(part).column + 1 + text.chars().count() > self.integer("pw") as usize;
+                let wraps = pc == 8
+                    && self.block(part).column + 1 + text.chars().count()
+                        > self.integer("pw") as usize;
                 if wraps {
                     self.new_line(part);
                     self.begin(part);
@@ -375,7 +393,9 @@ impl TextFile {
     }
 
     fn finish_page(&mut self) {
-        let Some(above) = self.begun.take() else { return };
+        let Some(above) = self.begun.take() else {
+            return;
+        };
         let body = std::mem::take(&mut self.body);
         let (pc, width) = (self.integer("pc"), self.integer("pw").max(0) as usize);
         let top = self.integer("tm").max(0) as usize;
@@ -451,12 +471,27 @@ mod tests {
     #[test]
     fn items_in_their_widths() {
         let mut f = TextFile::default();
-        put(&mut f, &[text("a"), Item::Number(1.005), Item::Label("longlabelhere".into()), Item::Member(true)]);
+        put(
+            &mut f,
+            &[
+                text("a"),
+                Item::Number(1.005),
+                Item::Label("longlabelhere".into()),
+                Item::Member(true),
+            ],
+        );
         f.new_line(Part::Body);
-        let centred = Format { align: Some('='), width: Some(5), ..Format::default() };
+        let centred = Format {
+            align: Some('='),
+            width: Some(5),
+            ..Format::default()
+        };
         let _ = f.item(Part::Body, &text("ab"), centred);
         put(&mut f, &[text("|"), Item::Special("+INF".into())]);
-        assert_eq!(f.finish(), "a        1.00longlabelher         YES\n ab  |        +INF\n");
+        assert_eq!(
+            f.finish(),
+            "a        1.00longlabelher         YES\n ab  |        +INF\n"
+        );
     }
 
     #[test]
@@ -474,7 +509,14 @@ mod tests {
     fn separated_by_commas() {
         let mut f = TextFile::default();
         f.set("pc", 5.0);
-        put(&mut f, &[text("quo\"te"), Item::Number(-0.001), Item::Special("NA".into())]);
+        put(
+            &mut f,
+            &[
+                text("quo\"te"),
+                Item::Number(-0.001),
+                Item::Special("NA".into()),
+            ],
+        );
         f.column(Part::Body, 40.0);
         put(&mut f, &[text("")]);
         assert_eq!(f.finish(), "\"quo\"\"te\",-0.00,\"NA\",\"\"\n");

@@ -26,7 +26,13 @@ impl Machine<'_> {
     }
 
     /// Assigns an attribute; a text says nothing to those that are numbers.
-    pub(super) fn set_object_attribute(&mut self, s: SymbolId, a: &'static str, value: f64, text: Option<String>) {
+    pub(super) fn set_object_attribute(
+        &mut self,
+        s: SymbolId,
+        a: &'static str,
+        value: f64,
+        text: Option<String>,
+    ) {
         if text.is_some() {
             return;
         }
@@ -38,7 +44,11 @@ impl Machine<'_> {
                 }
             }
             _ => {
-                self.models.entry(s).or_default().attributes.insert(a, value);
+                self.models
+                    .entry(s)
+                    .or_default()
+                    .attributes
+                    .insert(a, value);
             }
         }
     }
@@ -63,7 +73,12 @@ impl Machine<'_> {
                 ModelStatus::UnboundedNoSolution,
                 ModelStatus::InfeasibleNoSolution,
             ];
-            (code, all.iter().find(|m| f64::from(**m as u8) == code).map(|m| m.name()))
+            (
+                code,
+                all.iter()
+                    .find(|m| f64::from(**m as u8) == code)
+                    .map(|m| m.name()),
+            )
         } else {
             let code = self.object_attribute(s, "solvestat");
             let all = [
@@ -76,7 +91,12 @@ impl Machine<'_> {
                 SolverStatus::UserInterrupt,
                 SolverStatus::InternalSolverFailure,
             ];
-            (code, all.iter().find(|m| f64::from(**m as u8) == code).map(|m| m.name()))
+            (
+                code,
+                all.iter()
+                    .find(|m| f64::from(**m as u8) == code)
+                    .map(|m| m.name()),
+            )
         };
         match name {
             Some(name) => format!("{code} {}", capitals(name)),

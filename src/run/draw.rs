@@ -36,9 +36,17 @@ struct Turns<'a> {
 
 impl Machine<'_> {
     /// Draws a figure into a file.
-    pub(super) fn draw(&mut self, figure: SymbolId, file: Option<&str>, frame: &mut Frame, span: Span) {
+    pub(super) fn draw(
+        &mut self,
+        figure: SymbolId,
+        file: Option<&str>,
+        frame: &mut Frame,
+        span: Span,
+    ) {
         let symbol = self.symbols.get(figure);
-        let SymbolKind::Figure(code) = &symbol.kind else { return };
+        let SymbolKind::Figure(code) = &symbol.kind else {
+            return;
+        };
         let code = Rc::clone(code);
         let file = file.map_or_else(|| format!("{}.svg", symbol.name), str::to_string);
         let lower = file.to_lowercase();
@@ -46,11 +54,16 @@ impl Machine<'_> {
             self.note(
                 Diagnostic::execution("E0481", span, format!("`draw` cannot write `{file}`"))
                     .label("a name that ends in .svg or .png is expected")
-                    .help(format!("write `draw {} '{}.svg';`", symbol.name, symbol.name)),
+                    .help(format!(
+                        "write `draw {} '{}.svg';`",
+                        symbol.name, symbol.name
+                    )),
             );
             return;
         }
-        let Ok(scene) = self.scene(&code, frame) else { return };
+        let Ok(scene) = self.scene(&code, frame) else {
+            return;
+        };
         let picture = svg(&scene);
         if lower.ends_with(".svg") {
             self.write_file(&file, picture.as_bytes(), span);
@@ -60,7 +73,11 @@ impl Machine<'_> {
             Ok(bytes) => {
                 self.write_file(&file, &bytes, span);
             }
-            Err(e) => self.note(Diagnostic::execution("E0481", span, format!("the figure cannot be drawn: {e}"))),
+            Err(e) => self.note(Diagnostic::execution(
+                "E0481",
+                span,
+                format!("the figure cannot be drawn: {e}"),
+            )),
         }
     }
 
@@ -68,12 +85,17 @@ impl Machine<'_> {
         let mut tables = Vec::new();
         for e in &code.elements {
             e.domain.iter().for_each(|d| scan::domain(d, &mut tables));
-            e.arguments.iter().for_each(|(_, n)| scan::expr(n, false, &mut tables));
+            e.arguments
+                .iter()
+                .for_each(|(_, n)| scan::expr(n, false, &mut tables));
         }
         for t in tables {
             self.store.table_mut(t).tidy();
         }
-        let mut scene = Scene { title: code.title.as_ref().map(|t| t.to_string()), ..Scene::default() };
+        let mut scene = Scene {
+            title: code.title.as_ref().map(|t| t.to_string()),
+            ..Scene::default()
+        };
         let mut legend = true;
         let all: Vec<Turns<'_>> = code.elements.iter().map(|e| self.turns(e, frame)).collect();
         let categories = self.categories(&all, &mut scene);
@@ -109,16 +131,33 @@ impl Machine<'_> {
 
     /// What an element runs over.
     fn turns<'a>(&self, element: &'a FigureElementCode, frame: &mut Frame) -> Turns<'a> {
-        let none = Turns { element, labels: Vec::new(), width: 0, count: 1 };
-        let Some(d) = &element.domain else { return none };
+        let none = Turns {
+            element,
+            labels: Vec::new(),
+            width: 0,
+            count: 1,
+        };
+        let Some(d) = &element.domain else {
+            return none;
+        };
         if d.slots.is_empty() {
             let there = d.conditions.iter().all(|c| truth(self.eval(c, frame)))
-                && d.members.iter().all(|m| self.is_member(m.table, &m.key, frame));
-            return Turns { count: usize::from(there), ..none };
+                && d.members
+                    .iter()
+                    .all(|m| self.is_member(m.table, &m.key, frame));
+            return Turns {
+                count: usize::from(there),
+                ..none
+            };
         }
         let labels = self.tuples(d, frame);
         let width = d.slots.len();
-        Turns { element, count: labels.len() / width, labels, width }
+        Turns {
+            element,
+            count: labels.len() / width,
+            labels,
+            width,
+        }
     }
 
     /// Puts the labels of a turn into the frame.
@@ -142,7 +181,13 @@ impl Machine<'_> {
     }
 
     /// A point; None, and a warning, if a coordinate is not a number.
-    fn point(&self, t: &Turns<'_>, k: usize, names: [&str; 2], frame: &mut Frame) -> Option<[f64; 2]> {
+    fn point(
+        &self,
+        t: &Turns<'_>,
+        k: usize,
+        names: [&str; 2],
+        frame: &mut Frame,
+    ) -> Option<[f64; 2]> {
         let mut out = [0.0; 2];
         for (v, name) in out.iter_mut().zip(names) {
             let Some(n) = t.argument(name) else { continue };
@@ -153,9 +198,13 @@ impl Machine<'_> {
                     key => format!(" at `{}`", self.turn_name(key)),
                 };
                 self.note(
-                    Diagnostic::warning("E0482", n.span, format!("`{name}` is {} {at}", self.shown(*v)).replace("  ", " "))
-                        .label("left out of the figure")
-                        .help("give it a value, or leave it out with a condition, `polygon(i,j)$c(i)`"),
+                    Diagnostic::warning(
+                        "E0482",
+                        n.span,
+                        format!("`{name}` is {} {at}", self.shown(*v)).replace("  ", " "),
+                    )
+                    .label("left out of the figure")
+                    .help("give it a value, or leave it out with a condition, `polygon(i,j)$c(i)`"),
                 );
                 return None;
             }
@@ -196,13 +245,17 @@ impl Machine<'_> {
 
     /// A colour: a text, or a number for the scale.
     fn paint(&self, t: &Turns<'_>, name: &str, frame: &mut Frame) -> Result<Option<Paint>, Failed> {
-        let Some(n) = t.argument(name) else { return Ok(None) };
+        let Some(n) = t.argument(name) else {
+            return Ok(None);
+        };
         match self.put_item(n, frame) {
             Some(Item::Number(x)) => Ok(Some(Paint::Value(x))),
             Some(Item::Label(word) | Item::Text(word)) => match Paint::parse(&word) {
                 Some(p) => Ok(Some(p)),
                 None => {
-                    let d = Diagnostic::execution("E0372", n.span, format!("`{word}` is not a colour")).label("unknown colour");
+                    let d =
+                        Diagnostic::execution("E0372", n.span, format!("`{word}` is not a colour"))
+                            .label("unknown colour");
                     self.note(match nearest(&word, Paint::names().iter().copied()) {
                         Some(near) => d.help(format!("did you mean `{near}`?")),
                         None => d.help("colours are CSS names, `#rrggbb`, `none`, or numbers for the colour scale"),
@@ -227,7 +280,11 @@ impl Machine<'_> {
                 "dashed" => vec![6.0, 4.0],
                 "dotted" => vec![1.5, 3.0],
                 list => {
-                    let lengths: Vec<Option<f64>> = list.split([' ', ',']).filter(|p| !p.is_empty()).map(|p| p.parse().ok()).collect();
+                    let lengths: Vec<Option<f64>> = list
+                        .split([' ', ','])
+                        .filter(|p| !p.is_empty())
+                        .map(|p| p.parse().ok())
+                        .collect();
                     match lengths.into_iter().collect::<Option<Vec<f64>>>() {
                         Some(l) if l.iter().all(|x| *x >= 0.0) => l,
                         _ => {
@@ -241,7 +298,14 @@ impl Machine<'_> {
                 }
             },
         };
-        Ok(Style { fill: self.paint(t, "fill", frame)?, stroke: self.paint(t, "stroke", frame)?, width, opacity, dash, size })
+        Ok(Style {
+            fill: self.paint(t, "fill", frame)?,
+            stroke: self.paint(t, "stroke", frame)?,
+            width,
+            opacity,
+            dash,
+            size,
+        })
     }
 
     /// Name in the legend.
@@ -263,7 +327,11 @@ impl Machine<'_> {
                 self.enter(t, k, frame);
                 points.extend(self.point(t, k, ["x", "y"], frame));
             }
-            let shape = if &*t.element.kind == "polygon" { Shape::Polygon(points) } else { Shape::Polyline(points) };
+            let shape = if &*t.element.kind == "polygon" {
+                Shape::Polygon(points)
+            } else {
+                Shape::Polyline(points)
+            };
             scene.elements.push(Element { shape, style, name });
             if !self.keep_going() {
                 return Err(Failed);
@@ -278,25 +346,47 @@ impl Machine<'_> {
         let first = scene.elements.len();
         for k in 0..t.count {
             self.enter(t, k, frame);
-            let Some(at) = self.point(t, k, ["x", "y"], frame) else { continue };
+            let Some(at) = self.point(t, k, ["x", "y"], frame) else {
+                continue;
+            };
             let style = self.style(t, frame)?;
             match kind {
                 "points" => {
                     let name = self.legend_name(t, frame)?;
                     // Points that look alike are one element.
                     match scene.elements[first..].last_mut() {
-                        Some(Element { shape: Shape::Points(list), style: s, name: n }) if *s == style && *n == name => list.push(at),
-                        _ => scene.elements.push(Element { shape: Shape::Points(vec![at]), style, name }),
+                        Some(Element {
+                            shape: Shape::Points(list),
+                            style: s,
+                            name: n,
+                        }) if *s == style && *n == name => list.push(at),
+                        _ => scene.elements.push(Element {
+                            shape: Shape::Points(vec![at]),
+                            style,
+                            name,
+                        }),
                     }
                 }
                 "arrow" => {
-                    let Some(by) = self.point(t, k, ["dx", "dy"], frame) else { continue };
+                    let Some(by) = self.point(t, k, ["dx", "dy"], frame) else {
+                        continue;
+                    };
                     let name = self.legend_name(t, frame)?;
-                    scene.elements.push(Element { shape: Shape::Arrow(at, by), style, name });
+                    scene.elements.push(Element {
+                        shape: Shape::Arrow(at, by),
+                        style,
+                        name,
+                    });
                 }
                 _ => {
                     let mut nodes: Vec<&Node> = t.argument("label").into_iter().collect();
-                    nodes.extend(t.element.arguments.iter().filter(|a| a.0.is_none()).map(|a| &a.1));
+                    nodes.extend(
+                        t.element
+                            .arguments
+                            .iter()
+                            .filter(|a| a.0.is_none())
+                            .map(|a| &a.1),
+                    );
                     let text = self.text(&nodes, t.element.span, frame)?;
                     let anchor = match t.argument("align") {
                         None => Anchor::default(),
@@ -306,14 +396,22 @@ impl Machine<'_> {
                             "middle" | "center" | "centre" => Anchor::Middle,
                             other => {
                                 self.note(
-                                    Diagnostic::execution("E0483", n.span, format!("`{other}` is not an alignment"))
-                                        .help("there are: start, middle, end"),
+                                    Diagnostic::execution(
+                                        "E0483",
+                                        n.span,
+                                        format!("`{other}` is not an alignment"),
+                                    )
+                                    .help("there are: start, middle, end"),
                                 );
                                 return Err(Failed);
                             }
                         },
                     };
-                    scene.elements.push(Element { shape: Shape::Text(at, text, anchor), style, name: None });
+                    scene.elements.push(Element {
+                        shape: Shape::Text(at, text, anchor),
+                        style,
+                        name: None,
+                    });
                 }
             }
             if !self.keep_going() {
@@ -326,16 +424,33 @@ impl Machine<'_> {
     /// The labels that charts stand against, all charts of the figure together: the axis, and the place of
     /// each.
     fn categories(&self, all: &[Turns<'_>], scene: &mut Scene) -> FxHashMap<Label, f64> {
-        let charts = all.iter().filter(|t| is_chart(t) && t.argument("x").is_none());
-        let mut labels: Vec<Label> = charts.flat_map(|t| (0..t.count).map(|k| t.key(k)[t.width - 1])).collect();
+        let charts = all
+            .iter()
+            .filter(|t| is_chart(t) && t.argument("x").is_none());
+        let mut labels: Vec<Label> = charts
+            .flat_map(|t| (0..t.count).map(|k| t.key(k)[t.width - 1]))
+            .collect();
         labels.sort_unstable();
         labels.dedup();
-        scene.categories = labels.iter().map(|&l| self.store.universe.name(l).to_string()).collect();
-        labels.iter().enumerate().map(|(k, &l)| (l, k as f64 + 1.0)).collect()
+        scene.categories = labels
+            .iter()
+            .map(|&l| self.store.universe.name(l).to_string())
+            .collect();
+        labels
+            .iter()
+            .enumerate()
+            .map(|(k, &l)| (l, k as f64 + 1.0))
+            .collect()
     }
 
     /// Series of lines or bars, against `x` or against the last index.
-    fn chart(&self, t: &Turns<'_>, categories: &FxHashMap<Label, f64>, scene: &mut Scene, frame: &mut Frame) -> Result<(), Failed> {
+    fn chart(
+        &self,
+        t: &Turns<'_>,
+        categories: &FxHashMap<Label, f64>,
+        scene: &mut Scene,
+        frame: &mut Frame,
+    ) -> Result<(), Failed> {
         let by_set = t.argument("x").is_none();
         for range in t.runs() {
             self.enter(t, range.start, frame);
@@ -349,13 +464,22 @@ impl Machine<'_> {
             let mut points = Vec::with_capacity(range.len());
             for k in range {
                 self.enter(t, k, frame);
-                let Some(mut p) = self.point(t, k, ["x", "y"], frame) else { continue };
+                let Some(mut p) = self.point(t, k, ["x", "y"], frame) else {
+                    continue;
+                };
                 if by_set {
-                    p[0] = categories.get(&t.key(k)[t.width - 1]).copied().unwrap_or(0.0);
+                    p[0] = categories
+                        .get(&t.key(k)[t.width - 1])
+                        .copied()
+                        .unwrap_or(0.0);
                 }
                 points.push(p);
             }
-            let shape = if &*t.element.kind == "bar" { Shape::Bars(points) } else { Shape::Line(points) };
+            let shape = if &*t.element.kind == "bar" {
+                Shape::Bars(points)
+            } else {
+                Shape::Line(points)
+            };
             scene.elements.push(Element { shape, style, name });
             if !self.keep_going() {
                 return Err(Failed);
@@ -365,13 +489,22 @@ impl Machine<'_> {
     }
 
     /// `axes`, `xaxis`, `yaxis`, `size`.
-    fn setting(&self, e: &FigureElementCode, scene: &mut Scene, frame: &mut Frame) -> Result<(), Failed> {
+    fn setting(
+        &self,
+        e: &FigureElementCode,
+        scene: &mut Scene,
+        frame: &mut Frame,
+    ) -> Result<(), Failed> {
         let mut numbers = Vec::new();
         for (name, n) in &e.arguments {
             if &*e.kind == "size" {
                 let v = self.number_of(n, frame);
                 let Some(v) = v.is_finite().then_some(v).filter(|v| *v > 0.0) else {
-                    self.note(Diagnostic::execution("E0483", n.span, format!("{} is not a size in pixels", self.shown(v))));
+                    self.note(Diagnostic::execution(
+                        "E0483",
+                        n.span,
+                        format!("{} is not a size in pixels", self.shown(v)),
+                    ));
                     return Err(Failed);
                 };
                 match name.as_deref() {
@@ -424,7 +557,11 @@ impl Turns<'_> {
     }
 
     fn argument(&self, name: &str) -> Option<&Node> {
-        self.element.arguments.iter().find(|a| a.0.as_deref() == Some(name)).map(|a| &a.1)
+        self.element
+            .arguments
+            .iter()
+            .find(|a| a.0.as_deref() == Some(name))
+            .map(|a| &a.1)
     }
 
     /// Turns that differ in the last index only.

@@ -443,32 +443,37 @@ impl Machine<'_> {
         let symbol = self.symbols.get(s);
         let t = symbol.table;
         let (l, lo, up) = (
-            number(self.data(t + attribute::L, key, frame)),
+            self.data(t + attribute::L, key, frame),
             self.data(t + attribute::LO, key, frame),
             self.data(t + attribute::UP, key, frame),
         );
-        let (lo, up) = (number(lo), number(up));
-        let below = if lo == f64::NEG_INFINITY {
-            f64::INFINITY
-        } else {
-            (l - lo).max(0.0)
-        };
-        let above = if up == f64::INFINITY {
-            f64::INFINITY
-        } else {
-            (up - l).max(0.0)
-        };
-        match d {
-            Derived::SlackLo => below,
-            Derived::SlackUp => above,
-            Derived::Slack => below.min(above),
-            Derived::Infeas => (lo - l).max(l - up).max(0.0),
-            Derived::Range => {
-                if matches!(symbol.kind, SymbolKind::Equation(_)) && lo == up {
-                    0.0
-                } else {
-                    arithmetic::add(up, arithmetic::negate(lo))
-                }
+        derived_value(d, matches!(symbol.kind, SymbolKind::Equation(_)), l, lo, up)
+    }
+}
+
+/// A computed attribute from level and bounds.
+pub(super) fn derived_value(d: Derived, is_equation: bool, l: f64, lo: f64, up: f64) -> f64 {
+    let (l, lo, up) = (number(l), number(lo), number(up));
+    let below = if lo == f64::NEG_INFINITY {
+        f64::INFINITY
+    } else {
+        (l - lo).max(0.0)
+    };
+    let above = if up == f64::INFINITY {
+        f64::INFINITY
+    } else {
+        (up - l).max(0.0)
+    };
+    match d {
+        Derived::SlackLo => below,
+        Derived::SlackUp => above,
+        Derived::Slack => below.min(above),
+        Derived::Infeas => (lo - l).max(l - up).max(0.0),
+        Derived::Range => {
+            if is_equation && lo == up {
+                0.0
+            } else {
+                arithmetic::add(up, arithmetic::negate(lo))
             }
         }
     }

@@ -26,8 +26,13 @@ impl Machine<'_> {
 
     /// Reads a text; a diagnostic if that is not possible.
     pub(super) fn read_file(&mut self, name: &str, span: Span) -> Option<String> {
-        let from = self.map.place(span).map(|p| self.map.file(p.file).name.clone());
-        let read = self.host().read(name, from.as_deref().map(std::path::Path::new));
+        let from = self
+            .map
+            .place(span)
+            .map(|p| self.map.file(p.file).name.clone());
+        let read = self
+            .host()
+            .read(name, from.as_deref().map(std::path::Path::new));
         match read {
             Ok((_, text)) => Some(text),
             Err(e) => {
@@ -39,15 +44,24 @@ impl Machine<'_> {
 }
 
 fn refused(code: &'static str, what: &str, name: &str, e: &HostError, span: Span) -> Diagnostic {
-    let d = |why: String| Diagnostic::execution(code, span, format!("the file `{name}` cannot be {what}: {why}"));
+    let d = |why: String| {
+        Diagnostic::execution(
+            code,
+            span,
+            format!("the file `{name}` cannot be {what}: {why}"),
+        )
+    };
     match e {
-        HostError::NotFound => d("there is no such file".into()).help("names are relative to the model's folder"),
-        HostError::Outside(_) if what == "written" => {
-            d("it lies outside the output folder".into()).help("give a name without `..`, and the folder with `--out`")
+        HostError::NotFound => {
+            d("there is no such file".into()).help("names are relative to the model's folder")
         }
+        HostError::Outside(_) if what == "written" => d("it lies outside the output folder".into())
+            .help("give a name without `..`, and the folder with `--out`"),
         HostError::Outside(_) => d("it lies outside the folders that may be read".into())
             .help("put the file beside the model, or allow its folder on the command line"),
-        HostError::NotUtf8(at) => d(format!("byte {} is not UTF-8", at + 1)).help("save the file as UTF-8"),
+        HostError::NotUtf8(at) => {
+            d(format!("byte {} is not UTF-8", at + 1)).help("save the file as UTF-8")
+        }
         HostError::Other(why) => d(why.clone()),
     }
 }

@@ -8,15 +8,20 @@ pub mod arithmetic;
 pub mod plan;
 pub mod random;
 
+mod attributes;
 mod calendar;
 mod constant;
+mod draw;
 mod eval;
+mod exchange;
 mod exec;
+mod files;
 mod generate;
 mod options;
+mod put;
 mod scan;
+mod show;
 mod solve;
-mod stubs;
 
 pub use eval::Frame;
 pub use generate::{GenerateOptions, Generated};
@@ -71,7 +76,9 @@ pub struct Machine<'h> {
     /// Solves that are kept for `--solution`.
     kept: Vec<solve::KeptSolve>,
     /// Files of `put`.
-    pub put: super::run::options::PutState,
+    pub put: options::PutState,
+    /// Files of `$load` and `$unload`.
+    transfer: exchange::ExchangeState,
     host: RefCell<&'h mut dyn Host>,
     random: RefCell<Random>,
     diagnostics: RefCell<Vec<Diagnostic>>,
@@ -116,6 +123,7 @@ impl<'h> Machine<'h> {
             report: crate::report::json::Report::default(),
             kept: Vec::new(),
             put: options::PutState::default(),
+            transfer: exchange::ExchangeState::default(),
             host: RefCell::new(host),
             random: RefCell::new(Random::default()),
             diagnostics: RefCell::new(Vec::new()),
@@ -135,6 +143,7 @@ impl<'h> Machine<'h> {
         let mut frame = vec![0; self.slots];
         let flow = self.block(code, &mut frame);
         self.close_put_files();
+        self.finish_unload();
         flow
     }
 

@@ -12,7 +12,9 @@ use crate::diag::Diagnostic;
 use crate::report::textfile::{Format, Item, Overflow, Part};
 use crate::source::Span;
 
-const MONTHS: [&str; 12] = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"];
+const MONTHS: [&str; 12] = [
+    "Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec",
+];
 
 impl Machine<'_> {
     /// A statement.
@@ -46,9 +48,20 @@ impl Machine<'_> {
                     let r = f.text.row(part, row);
                     self.put_trouble(r, place);
                 }
-                PutCode::Item { value, align, width, decimals } => {
-                    let format = Format { align: *align, width: *width, decimals: *decimals };
-                    let Some(item) = self.put_item(value, frame) else { continue };
+                PutCode::Item {
+                    value,
+                    align,
+                    width,
+                    decimals,
+                } => {
+                    let format = Format {
+                        align: *align,
+                        width: *width,
+                        decimals: *decimals,
+                    };
+                    let Some(item) = self.put_item(value, frame) else {
+                        continue;
+                    };
                     let Some(f) = self.put_file(span) else { return };
                     let r = f.text.item(part, &item, format);
                     self.put_trouble(r, value.span);
@@ -104,21 +117,37 @@ impl Machine<'_> {
     fn put_trouble(&mut self, r: Result<(), Overflow>, span: Span) {
         let d = match r {
             Ok(()) => return,
-            Err(Overflow::Number) => Diagnostic::warning("E0473", span, "the number is too wide for its place; asterisks were written")
-                .help("give it a greater width, `x:12:2`, or width 0, `x:0:2`"),
-            Err(Overflow::Line) => Diagnostic::warning("E0473", span, "the line is longer than the file's `.pw`; the rest of it was lost")
-                .help("end the line with `/`, or assign a greater `.pw`"),
-            Err(Overflow::Row) => Diagnostic::warning("E0473", span, "the row lies below the page; the last row was taken")
-                .help("assign a greater `.ps`"),
+            Err(Overflow::Number) => Diagnostic::warning(
+                "E0473",
+                span,
+                "the number is too wide for its place; asterisks were written",
+            )
+            .help("give it a greater width, `x:12:2`, or width 0, `x:0:2`"),
+            Err(Overflow::Line) => Diagnostic::warning(
+                "E0473",
+                span,
+                "the line is longer than the file's `.pw`; the rest of it was lost",
+            )
+            .help("end the line with `/`, or assign a greater `.pw`"),
+            Err(Overflow::Row) => Diagnostic::warning(
+                "E0473",
+                span,
+                "the row lies below the page; the last row was taken",
+            )
+            .help("assign a greater `.ps`"),
         };
         self.note(d);
     }
 
     /// Writes a file, if anything was put into it, and forgets its cursor.
     fn close_put_file(&mut self, s: SymbolId, span: Span) {
-        let SymbolKind::File(name) = &self.symbols.get(s).kind else { return };
+        let SymbolKind::File(name) = &self.symbols.get(s).kind else {
+            return;
+        };
         let name = name.clone();
-        let Some(f) = self.put.files.get_mut(&s).filter(|f| f.open) else { return };
+        let Some(f) = self.put.files.get_mut(&s).filter(|f| f.open) else {
+            return;
+        };
         f.open = false;
         if f.text.is_empty() {
             return;
@@ -134,7 +163,13 @@ impl Machine<'_> {
 
     /// Writes what is still open, in the order of declaration.
     pub(super) fn close_put_files(&mut self) {
-        let mut open: Vec<(SymbolId, Span)> = self.put.files.iter().filter(|(_, f)| f.open).map(|(&s, f)| (s, f.span)).collect();
+        let mut open: Vec<(SymbolId, Span)> = self
+            .put
+            .files
+            .iter()
+            .filter(|(_, f)| f.open)
+            .map(|(&s, f)| (s, f.span))
+            .collect();
         open.sort_unstable_by_key(|(s, _)| *s);
         for (s, span) in open {
             self.close_put_file(s, span);
@@ -144,7 +179,8 @@ impl Machine<'_> {
     /// What an expression is to `put`; None for what a condition hides.
     pub(super) fn put_item(&self, n: &Node, frame: &mut Frame) -> Option<Item> {
         Some(match &n.kind {
-            NodeKind::Text(t) => match t.strip_prefix("%system.").and_then(|t| t.strip_suffix('%')) {
+            NodeKind::Text(t) => match t.strip_prefix("%system.").and_then(|t| t.strip_suffix('%'))
+            {
                 Some(what) => self.system_value(what),
                 None => Item::Text(t.to_string()),
             },
@@ -161,14 +197,21 @@ impl Machine<'_> {
                 match self.store.element_text(*t, k) {
                     Some(text) => Item::Text(text.to_string()),
                     None => {
-                        let names: Vec<&str> = k.iter().map(|&l| self.store.universe.name(l)).collect();
+                        let names: Vec<&str> =
+                            k.iter().map(|&l| self.store.universe.name(l)).collect();
                         Item::Text(names.join("."))
                     }
                 }
             }
             NodeKind::SymbolText(s) => Item::Text(self.symbols.get(*s).text.to_string()),
-            NodeKind::ObjectAttribute(s, a @ ("tmodstat" | "tsolstat")) => Item::Text(self.status_text(*s, a)),
-            NodeKind::Data(t, _) if self.table_symbol(*t).is_some_and(|s| self.symbols.get(s).is_set()) => {
+            NodeKind::ObjectAttribute(s, a @ ("tmodstat" | "tsolstat")) => {
+                Item::Text(self.status_text(*s, a))
+            }
+            NodeKind::Data(t, _)
+                if self
+                    .table_symbol(*t)
+                    .is_some_and(|s| self.symbols.get(s).is_set()) =>
+            {
                 Item::Member(truth(self.eval(n, frame)))
             }
             NodeKind::Dollar(a, c) if is_text(a) => {
@@ -197,25 +240,45 @@ impl Machine<'_> {
     fn system_value(&self, what: &str) -> Item {
         let now = self.now();
         let part = |f| calendar::part(f, now).unwrap_or(0.0);
-        let (year, month, day) = (part(DataFunction::GYear), part(DataFunction::GMonth), part(DataFunction::GDay));
+        let (year, month, day) = (
+            part(DataFunction::GYear),
+            part(DataFunction::GMonth),
+            part(DataFunction::GDay),
+        );
         let source = || self.map.files().first().map_or("", |f| f.name.as_str());
         let path = std::path::Path::new(source());
-        let name = |p: Option<&std::ffi::OsStr>| p.map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+        let name = |p: Option<&std::ffi::OsStr>| {
+            p.map_or_else(String::new, |s| s.to_string_lossy().into_owned())
+        };
         Item::Text(match what {
             "date" => format!("{month:02}/{day:02}/{:02}", year % 100.0),
-            "date1" => format!("{} {day:02}, {year}", MONTHS[(month.max(1.0) as usize - 1).min(11)]),
+            "date1" => format!(
+                "{} {day:02}, {year}",
+                MONTHS[(month.max(1.0) as usize - 1).min(11)]
+            ),
             "time" => {
-                let [h, m, s] = [DataFunction::GHour, DataFunction::GMinute, DataFunction::GSecond].map(part);
+                let [h, m, s] = [
+                    DataFunction::GHour,
+                    DataFunction::GMinute,
+                    DataFunction::GSecond,
+                ]
+                .map(part);
                 format!("{h:02}:{m:02}:{s:02}")
             }
             "title" => "bmod".into(),
             "version" => format!("bmod {}", env!("CARGO_PKG_VERSION")),
-            "verid" | "gamsversion" | "gamsrelease" | "buildcode" => env!("CARGO_PKG_VERSION").into(),
+            "verid" | "gamsversion" | "gamsrelease" | "buildcode" => {
+                env!("CARGO_PKG_VERSION").into()
+            }
             "page" => return Item::Page,
             "ifile" | "sfile" | "incname" => source().to_string(),
             "fn" => name(path.file_stem()),
-            "fe" => path.extension().map_or_else(String::new, |e| format!(".{}", e.to_string_lossy())),
-            "fp" => path.parent().map_or_else(String::new, |p| format!("{}/", p.display())),
+            "fe" => path
+                .extension()
+                .map_or_else(String::new, |e| format!(".{}", e.to_string_lossy())),
+            "fp" => path
+                .parent()
+                .map_or_else(String::new, |p| format!("{}/", p.display())),
             "tab" => "\t".into(),
             "dirsep" => "/".into(),
             "filesys" => "UNIX".into(),
@@ -229,7 +292,10 @@ impl Machine<'_> {
 
 fn is_text(n: &Node) -> bool {
     match &n.kind {
-        NodeKind::Text(_) | NodeKind::LabelText(_) | NodeKind::ElementText(..) | NodeKind::SymbolText(_) => true,
+        NodeKind::Text(_)
+        | NodeKind::LabelText(_)
+        | NodeKind::ElementText(..)
+        | NodeKind::SymbolText(_) => true,
         NodeKind::ObjectAttribute(_, a) => matches!(*a, "tmodstat" | "tsolstat"),
         _ => false,
     }

@@ -47,13 +47,20 @@ impl Machine<'_> {
     /// Shows symbols and texts.
     pub(super) fn display(&mut self, items: &[Shown], span: Span) {
         let line = self.map.line(span);
-        let mut page = Page { text: String::new(), line, open: false };
+        let mut page = Page {
+            text: String::new(),
+            line,
+            open: false,
+        };
         for item in items {
             match item {
                 Shown::Text(t) => {
                     page.line(t.trim_end());
                     if self.options.collect {
-                        self.report.displays.push(Display::Text { line, text: t.to_string() });
+                        self.report.displays.push(Display::Text {
+                            line,
+                            text: t.to_string(),
+                        });
                     }
                 }
                 Shown::Symbol(s, attr) => self.show(*s, *attr, &mut page),
@@ -70,9 +77,20 @@ impl Machine<'_> {
             let attr = attr.unwrap_or("modelstat");
             let value = self.object_attribute(s, attr);
             let symbol = self.symbols.get(s);
-            let kind = if matches!(symbol.kind, SymbolKind::Model(_)) { "MODEL" } else { "FILE" };
+            let kind = if matches!(symbol.kind, SymbolKind::Model(_)) {
+                "MODEL"
+            } else {
+                "FILE"
+            };
             let name = format!("{}.{}", symbol.name, spelled(attr));
-            page.line(&display::scalar(kind, &name, value, &symbol.text, self.decimals(s), &self.store.acronyms));
+            page.line(&display::scalar(
+                kind,
+                &name,
+                value,
+                &symbol.text,
+                self.decimals(s),
+                &self.store.acronyms,
+            ));
             self.collect_scalar(page.line, format!("{}.{attr}", symbol.name), value);
             return;
         }
@@ -81,7 +99,9 @@ impl Machine<'_> {
             self.store.refresh_universe();
         }
         self.tidy_shown(s, attr);
-        let Some(table) = self.shown_table(s, attr) else { return };
+        let Some(table) = self.shown_table(s, attr) else {
+            return;
+        };
         let symbol = self.symbols.get(s);
         let kind = match symbol.kind {
             SymbolKind::Set { .. } | SymbolKind::Alias(_) => "SET",
@@ -100,7 +120,14 @@ impl Machine<'_> {
         let decimals = self.decimals(s);
         if table.dim() == 0 {
             let value = table.get(&[]);
-            page.line(&display::scalar(kind, &shown_name, value, &symbol.text, decimals, &self.store.acronyms));
+            page.line(&display::scalar(
+                kind,
+                &shown_name,
+                value,
+                &symbol.text,
+                decimals,
+                &self.store.acronyms,
+            ));
             drop(table);
             self.collect_scalar(page.line, short, value);
             return;
@@ -126,17 +153,25 @@ impl Machine<'_> {
                 if symbol.is_set() {
                     page.text.push_str(&display::empty_set());
                 } else {
-                    page.text.push_str(&display::all_default(default, decimals, &self.store.acronyms));
+                    page.text.push_str(&display::all_default(
+                        default,
+                        decimals,
+                        &self.store.acronyms,
+                    ));
                 }
                 page.text.push('\n');
             } else {
                 let set = self.symbols.get(root).table;
-                let cells =
-                    if symbol.is_set() { Cells::Members(self.store.texts.get(&set)) } else { Cells::Numbers };
+                let cells = if symbol.is_set() {
+                    Cells::Members(self.store.texts.get(&set))
+                } else {
+                    Cells::Numbers
+                };
                 let layout = match self.formats.get(&s).map(Vec::as_slice) {
-                    Some([_, rows, columns, ..]) => {
-                        Some(Layout { rows: (*rows).max(0) as usize, columns: (*columns).max(1) as usize })
-                    }
+                    Some([_, rows, columns, ..]) => Some(Layout {
+                        rows: (*rows).max(0) as usize,
+                        columns: (*columns).max(1) as usize,
+                    }),
                     _ => None,
                 };
                 let sheet = Sheet {
@@ -156,12 +191,20 @@ impl Machine<'_> {
             let records = table
                 .iter()
                 .map(|(k, v)| {
-                    let labels = k.iter().map(|&l| self.store.universe.name(l).to_string()).collect();
+                    let labels = k
+                        .iter()
+                        .map(|&l| self.store.universe.name(l).to_string())
+                        .collect();
                     (labels, Number(v))
                 })
                 .collect();
             let domain = self.domain_names(self.symbols.get(root));
-            let display = Display::Indexed { line: page.line, symbol: short, domain, records };
+            let display = Display::Indexed {
+                line: page.line,
+                symbol: short,
+                domain,
+                records,
+            };
             drop(table);
             self.report.displays.push(display);
         }
@@ -169,7 +212,11 @@ impl Machine<'_> {
 
     fn collect_scalar(&mut self, line: usize, symbol: String, value: f64) {
         if self.options.collect {
-            self.report.displays.push(Display::Scalar { line, symbol, value: Number(value) });
+            self.report.displays.push(Display::Scalar {
+                line,
+                symbol,
+                value: Number(value),
+            });
         }
     }
 
@@ -185,8 +232,14 @@ impl Machine<'_> {
 
     /// Decimals of a symbol's display: its own, or the option's.
     fn decimals(&self, s: SymbolId) -> usize {
-        let own = self.formats.get(&s).and_then(|f| f.first()).map(|&d| d as f64);
-        let d = own.or_else(|| self.options.number("decimals")).unwrap_or(DECIMALS as f64);
+        let own = self
+            .formats
+            .get(&s)
+            .and_then(|f| f.first())
+            .map(|&d| d as f64);
+        let d = own
+            .or_else(|| self.options.number("decimals"))
+            .unwrap_or(DECIMALS as f64);
         d.clamp(0.0, 8.0) as usize
     }
 
@@ -212,7 +265,9 @@ impl Machine<'_> {
         if matches!(symbol.kind, SymbolKind::Acronym(_) | SymbolKind::Figure(_)) {
             return None;
         }
-        let Some(attr) = attr else { return Some(Cow::Borrowed(self.store.table(table))) };
+        let Some(attr) = attr else {
+            return Some(Cow::Borrowed(self.store.table(table)));
+        };
         if let Some(o) = shown_offset(attr) {
             return Some(Cow::Borrowed(self.store.table(table + o)));
         }
@@ -224,7 +279,8 @@ impl Machine<'_> {
             _ => Derived::Range,
         };
         let is_equation = matches!(symbol.kind, SymbolKind::Equation(_));
-        let [l, lo, up] = [attribute::L, attribute::LO, attribute::UP].map(|o| self.store.table(table + o));
+        let [l, lo, up] =
+            [attribute::L, attribute::LO, attribute::UP].map(|o| self.store.table(table + o));
         let value = |l: f64, lo: f64, up: f64| derived_value(which, is_equation, l, lo, up);
         let mut keys: Vec<&[u32]> = Vec::new();
         for t in [l, lo, up] {
@@ -232,23 +288,99 @@ impl Machine<'_> {
         }
         keys.sort_unstable();
         keys.dedup();
-        let values = keys.iter().map(|k| value(l.get(k), lo.get(k), up.get(k))).collect();
+        let values = keys
+            .iter()
+            .map(|k| value(l.get(k), lo.get(k), up.get(k)))
+            .collect();
         let default = value(l.default_value(), lo.default_value(), up.default_value());
-        Some(Cow::Owned(Table::from_sorted(l.dim(), default, keys.concat(), values)))
+        Some(Cow::Owned(Table::from_sorted(
+            l.dim(),
+            default,
+            keys.concat(),
+            values,
+        )))
     }
 }
 
 /// A model's or file's attribute as GAMS spells it.
 fn spelled(attr: &str) -> Cow<'static, str> {
     const KNOWN: &[&str] = &[
-        "ModelStat", "SolveStat", "ObjVal", "ObjEst", "IterUsd", "ResUsd", "NumEqu", "NumVar", "NumNZ", "NumNLNZ",
-        "NumNLIns", "NumInfes", "SumInfes", "MaxInfes", "MeanInfes", "NumDepnd", "NumDVar", "NumNOpt", "NumRedef",
-        "DomUsd", "Line", "Number", "Marginals", "LimRow", "LimCol", "OptFile", "HoldFixed", "IterLim", "ResLim",
-        "SCALEOPT", "OptCR", "OptCA", "TolInfeas", "TolInfRep", "LinkUsed", "DomLim", "BRatio", "NodLim", "WorkSpace",
-        "WorkFactor", "Cheat", "Cutoff", "TryInt", "PriorOpt", "SysOut", "SolPrint", "SolveOpt", "SolveLink",
-        "SavePoint", "Threads", "DictFile", "ETSolve", "ETSolver", "ETAlg", "ResGen", "ResIn", "ResDeriv", "ResOut",
-        "RngBndMax", "RngBndMin", "RngMatMax", "RngMatMin", "RngRhsMax", "RngRhsMin", "NodUsd", "ProcUsed", "TolProj",
-        "DefPoint", "Handle", "MCPRHoldfx", "FDOpt", "FDDelta", "JustScrDir", "TryLinear", "Reform", "Case",
+        "ModelStat",
+        "SolveStat",
+        "ObjVal",
+        "ObjEst",
+        "IterUsd",
+        "ResUsd",
+        "NumEqu",
+        "NumVar",
+        "NumNZ",
+        "NumNLNZ",
+        "NumNLIns",
+        "NumInfes",
+        "SumInfes",
+        "MaxInfes",
+        "MeanInfes",
+        "NumDepnd",
+        "NumDVar",
+        "NumNOpt",
+        "NumRedef",
+        "DomUsd",
+        "Line",
+        "Number",
+        "Marginals",
+        "LimRow",
+        "LimCol",
+        "OptFile",
+        "HoldFixed",
+        "IterLim",
+        "ResLim",
+        "SCALEOPT",
+        "OptCR",
+        "OptCA",
+        "TolInfeas",
+        "TolInfRep",
+        "LinkUsed",
+        "DomLim",
+        "BRatio",
+        "NodLim",
+        "WorkSpace",
+        "WorkFactor",
+        "Cheat",
+        "Cutoff",
+        "TryInt",
+        "PriorOpt",
+        "SysOut",
+        "SolPrint",
+        "SolveOpt",
+        "SolveLink",
+        "SavePoint",
+        "Threads",
+        "DictFile",
+        "ETSolve",
+        "ETSolver",
+        "ETAlg",
+        "ResGen",
+        "ResIn",
+        "ResDeriv",
+        "ResOut",
+        "RngBndMax",
+        "RngBndMin",
+        "RngMatMax",
+        "RngMatMin",
+        "RngRhsMax",
+        "RngRhsMin",
+        "NodUsd",
+        "ProcUsed",
+        "TolProj",
+        "DefPoint",
+        "Handle",
+        "MCPRHoldfx",
+        "FDOpt",
+        "FDDelta",
+        "JustScrDir",
+        "TryLinear",
+        "Reform",
+        "Case",
     ];
     match KNOWN.iter().find(|k| k.eq_ignore_ascii_case(attr)) {
         Some(k) => Cow::Borrowed(k),

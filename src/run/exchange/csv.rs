@@ -19,10 +19,21 @@ const SYMBOL: &str = "symbol";
 fn parse(text: &str) -> Result<Rows, String> {
     // Where the header has no comma, another delimiter separates.
     let first = text.lines().find(|l| !l.trim().is_empty()).unwrap_or("");
-    let delimiter = [b',', b';', b'\t'].into_iter().find(|&d| first.as_bytes().contains(&d)).unwrap_or(b',');
-    let mut reader =
-        ReaderBuilder::new().has_headers(false).flexible(true).trim(::csv::Trim::All).delimiter(delimiter).from_reader(text.as_bytes());
-    let mut out = Rows { header: StringRecord::new(), rows: Vec::new(), lines: Vec::new() };
+    let delimiter = [b',', b';', b'\t']
+        .into_iter()
+        .find(|&d| first.as_bytes().contains(&d))
+        .unwrap_or(b',');
+    let mut reader = ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .trim(::csv::Trim::All)
+        .delimiter(delimiter)
+        .from_reader(text.as_bytes());
+    let mut out = Rows {
+        header: StringRecord::new(),
+        rows: Vec::new(),
+        lines: Vec::new(),
+    };
     let mut record = StringRecord::new();
     let mut first = true;
     loop {
@@ -45,7 +56,9 @@ fn parse(text: &str) -> Result<Rows, String> {
 }
 
 fn is_long(header: &StringRecord) -> bool {
-    header.get(0).is_some_and(|h| h.eq_ignore_ascii_case(SYMBOL))
+    header
+        .get(0)
+        .is_some_and(|h| h.eq_ignore_ascii_case(SYMBOL))
 }
 
 /// The symbols that a file holds, each once, in their order; none for a file of one symbol.
@@ -56,7 +69,9 @@ pub fn names(text: &str) -> Vec<String> {
     {
         for r in &rows.rows {
             let name = r.get(0).unwrap_or("").split('.').next().unwrap_or("");
-            if out.last().is_none_or(|l| l != name) && !out.iter().any(|o| o.eq_ignore_ascii_case(name)) {
+            if out.last().is_none_or(|l| l != name)
+                && !out.iter().any(|o| o.eq_ignore_ascii_case(name))
+            {
                 out.push(name.to_string());
             }
         }
@@ -67,11 +82,21 @@ pub fn names(text: &str) -> Vec<String> {
 /// Reads the wanted symbols.
 pub fn read(file: &str, text: &str, items: &[Wanted], loading: &mut Loading<'_>) -> Loaded<()> {
     let fail = |w: &Wanted, message: String, help: &str| {
-        Box::new(Diagnostic::execution("E0478", w.span, format!("{file}: {message}")).label(format!("while loading `{}`", w.name)).help(help))
+        Box::new(
+            Diagnostic::execution("E0478", w.span, format!("{file}: {message}"))
+                .label(format!("while loading `{}`", w.name))
+                .help(help),
+        )
     };
     let rows = match (parse(text), items.first()) {
         (_, None) => return Ok(()),
-        (Err(e), Some(w)) => return Err(fail(w, e, "a CSV file has a header line, and the same columns in every line")),
+        (Err(e), Some(w)) => {
+            return Err(fail(
+                w,
+                e,
+                "a CSV file has a header line, and the same columns in every line",
+            ));
+        }
         (Ok(rows), _) => rows,
     };
     if is_long(&rows.header) {
@@ -96,9 +121,16 @@ pub fn read(file: &str, text: &str, items: &[Wanted], loading: &mut Loading<'_>)
 
 fn short(file: &str, line: usize, w: &Wanted, have: usize, need: usize) -> Box<Diagnostic> {
     Box::new(
-        Diagnostic::execution("E0478", w.span, format!("{file}:{line}: {have} columns, but `{}` needs {need}", w.name))
-            .label("nothing was loaded")
-            .help("the columns are the labels, in the order of the indices, then the value"),
+        Diagnostic::execution(
+            "E0478",
+            w.span,
+            format!(
+                "{file}:{line}: {have} columns, but `{}` needs {need}",
+                w.name
+            ),
+        )
+        .label("nothing was loaded")
+        .help("the columns are the labels, in the order of the indices, then the value"),
     )
 }
 
@@ -106,11 +138,20 @@ fn short(file: &str, line: usize, w: &Wanted, have: usize, need: usize) -> Box<D
 fn long(file: &str, rows: &Rows, w: &Wanted, loading: &mut Loading<'_>) -> Loaded<()> {
     let symbol = loading.symbols.get(loading.symbols.root(w.symbol)).clone();
     let dim = symbol.dim();
-    let value_column = rows.header.iter().position(|h| h.eq_ignore_ascii_case("value"));
-    let text_column = rows.header.iter().position(|h| h.eq_ignore_ascii_case("text"));
+    let value_column = rows
+        .header
+        .iter()
+        .position(|h| h.eq_ignore_ascii_case("value"));
+    let text_column = rows
+        .header
+        .iter()
+        .position(|h| h.eq_ignore_ascii_case("text"));
     // Per attribute of variables and equations, in the order in which they appear.
     let mut parts: Vec<(u32, Records)> = Vec::new();
-    let is_record = matches!(symbol.kind, SymbolKind::Variable(_) | SymbolKind::Equation(_));
+    let is_record = matches!(
+        symbol.kind,
+        SymbolKind::Variable(_) | SymbolKind::Equation(_)
+    );
     for (row, &line) in rows.rows.iter().zip(&rows.lines) {
         let mut name = row.get(0).unwrap_or("").splitn(2, '.');
         if !name.next().is_some_and(|n| n.eq_ignore_ascii_case(&w.name)) {
@@ -124,8 +165,12 @@ fn long(file: &str, rows: &Rows, w: &Wanted, loading: &mut Loading<'_>) -> Loade
         };
         let Some(offset) = offset else {
             return Err(Box::new(
-                Diagnostic::execution("E0478", w.span, format!("{file}:{line}: `{}` is not known", row.get(0).unwrap_or("")))
-                    .help("attributes are l, m, lo, up and scale, of variables and equations"),
+                Diagnostic::execution(
+                    "E0478",
+                    w.span,
+                    format!("{file}:{line}: `{}` is not known", row.get(0).unwrap_or("")),
+                )
+                .help("attributes are l, m, lo, up and scale, of variables and equations"),
             ));
         };
         if row.len() <= dim {
@@ -146,14 +191,20 @@ fn long(file: &str, rows: &Rows, w: &Wanted, loading: &mut Loading<'_>) -> Loade
         let at = value_column.unwrap_or(rows.header.len() - 1);
         match row.get(at) {
             Some(v) if !v.is_empty() && (!symbol.is_set() || at > dim) => {
-                let v = if symbol.is_set() { 1.0 } else { loading.value(v, file, line, w)? };
+                let v = if symbol.is_set() {
+                    1.0
+                } else {
+                    loading.value(v, file, line, w)?
+                };
                 part.values.push(v);
             }
             _ if symbol.is_set() => part.values.push(1.0),
             _ => return Err(short(file, line, w, row.len(), at + 1)),
         }
         if symbol.is_set()
-            && let Some(t) = text_column.and_then(|c| row.get(c)).filter(|t| !t.is_empty())
+            && let Some(t) = text_column
+                .and_then(|c| row.get(c))
+                .filter(|t| !t.is_empty())
         {
             let key = part.keys[part.keys.len() - dim..].into();
             part.texts.insert(key, t.into());
@@ -174,7 +225,13 @@ fn is_table(header: &StringRecord, symbol: &Symbol, loading: &Loading<'_>) -> bo
     match symbol.domain[dim - 1] {
         DomainPosition::Set(d) => {
             let table = loading.store.table(loading.symbols.get(d).table);
-            header.iter().skip(dim - 1).all(|h| loading.store.universe.get(h).is_some_and(|l| table.find(&[l]).is_some()))
+            header.iter().skip(dim - 1).all(|h| {
+                loading
+                    .store
+                    .universe
+                    .get(h)
+                    .is_some_and(|l| table.find(&[l]).is_some())
+            })
         }
         _ => header.len() != dim + 1,
     }
@@ -185,8 +242,15 @@ fn single(file: &str, rows: &Rows, w: &Wanted, loading: &mut Loading<'_>) -> Loa
     let symbol = loading.symbols.get(loading.symbols.root(w.symbol)).clone();
     let dim = symbol.dim();
     let mut r = Records::default();
-    if is_table(&rows.header, &symbol, loading) && matches!(symbol.kind, SymbolKind::Parameter { .. }) {
-        let columns: Vec<u32> = rows.header.iter().skip(dim - 1).map(|h| loading.label(h)).collect();
+    if is_table(&rows.header, &symbol, loading)
+        && matches!(symbol.kind, SymbolKind::Parameter { .. })
+    {
+        let columns: Vec<u32> = rows
+            .header
+            .iter()
+            .skip(dim - 1)
+            .map(|h| loading.label(h))
+            .collect();
         for (row, &line) in rows.rows.iter().zip(&rows.lines) {
             if row.len() < dim {
                 return Err(short(file, line, w, row.len(), rows.header.len()));
@@ -208,12 +272,25 @@ fn single(file: &str, rows: &Rows, w: &Wanted, loading: &mut Loading<'_>) -> Loa
     // Columns behind the labels, and the tables that they fill.
     let columns: Vec<(usize, u32)> = match symbol.kind {
         SymbolKind::Variable(_) | SymbolKind::Equation(_) => {
-            let named: Vec<_> =
-                rows.header.iter().enumerate().skip(dim).filter_map(|(c, h)| Some((c, attribute_offset(h)?))).collect();
-            if named.is_empty() { vec![(dim, attribute::L)] } else { named }
+            let named: Vec<_> = rows
+                .header
+                .iter()
+                .enumerate()
+                .skip(dim)
+                .filter_map(|(c, h)| Some((c, attribute_offset(h)?)))
+                .collect();
+            if named.is_empty() {
+                vec![(dim, attribute::L)]
+            } else {
+                named
+            }
         }
         SymbolKind::Parameter { .. } => {
-            let value = rows.header.iter().skip(dim).position(|h| h.eq_ignore_ascii_case("value"));
+            let value = rows
+                .header
+                .iter()
+                .skip(dim)
+                .position(|h| h.eq_ignore_ascii_case("value"));
             vec![(dim + value.unwrap_or(0), 0)]
         }
         _ => vec![(dim, 0)],
@@ -240,7 +317,8 @@ fn single(file: &str, rows: &Rows, w: &Wanted, loading: &mut Loading<'_>) -> Loa
             } else if matches!(symbol.kind, SymbolKind::Parameter { .. }) {
                 return Err(short(file, line, w, row.len(), c + 1));
             } else {
-                r.values.push(loading.store.table(symbol.table + offset).default_value());
+                r.values
+                    .push(loading.store.table(symbol.table + offset).default_value());
             }
         }
     }

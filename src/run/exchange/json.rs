@@ -16,7 +16,9 @@ pub fn names(text: &str) -> Vec<String> {
 
 /// Reads the wanted symbols.
 pub fn read(file: &str, text: &str, items: &[Wanted], loading: &mut Loading<'_>) -> Loaded<()> {
-    let Some(first) = items.first() else { return Ok(()) };
+    let Some(first) = items.first() else {
+        return Ok(());
+    };
     let object: Map<String, Value> = serde_json::from_str(text).map_err(|e| {
         Box::new(
             Diagnostic::execution("E0478", first.span, format!("{file}:{}: {e}", e.line()))
@@ -28,8 +30,14 @@ pub fn read(file: &str, text: &str, items: &[Wanted], loading: &mut Loading<'_>)
             let there: Vec<String> = object.keys().cloned().collect();
             return Err(missing(file, w, &there));
         };
-        Reader { file, w, symbol: loading.symbols.get(loading.symbols.root(w.symbol)).clone(), records: Records::default(), columns: Vec::new() }
-            .symbol(value, loading)?;
+        Reader {
+            file,
+            w,
+            symbol: loading.symbols.get(loading.symbols.root(w.symbol)).clone(),
+            records: Records::default(),
+            columns: Vec::new(),
+        }
+        .symbol(value, loading)?;
     }
     Ok(())
 }
@@ -51,14 +59,23 @@ impl Reader<'_> {
             (true, _) => "[[\"a\", \"x\"], …]".to_string(),
             (false, 0) => "3.5".to_string(),
             (false, _) => {
-                let labels: Vec<String> = (0..dim).map(|p| format!("\"{}\"", (b'a' + p as u8 % 26) as char)).collect();
+                let labels: Vec<String> = (0..dim)
+                    .map(|p| format!("\"{}\"", (b'a' + p as u8 % 26) as char))
+                    .collect();
                 format!("{{\"records\": [[[{}], 3.5], …]}}", labels.join(", "))
             }
         };
         Err(Box::new(
-            Diagnostic::execution("E0478", self.w.span, format!("{}: `{}`: {what}", self.file, self.w.name))
-                .label("nothing was loaded")
-                .help(format!("a {} with {dim} indices is written as `{example}`", self.symbol.kind_name())),
+            Diagnostic::execution(
+                "E0478",
+                self.w.span,
+                format!("{}: `{}`: {what}", self.file, self.w.name),
+            )
+            .label("nothing was loaded")
+            .help(format!(
+                "a {} with {dim} indices is written as `{example}`",
+                self.symbol.kind_name()
+            )),
         ))
     }
 
@@ -68,7 +85,11 @@ impl Reader<'_> {
             SymbolKind::Variable(_) | SymbolKind::Equation(_) => {
                 let mut found = Vec::new();
                 attributes(v, &mut found);
-                if found.is_empty() { vec![attribute::L] } else { found }
+                if found.is_empty() {
+                    vec![attribute::L]
+                } else {
+                    found
+                }
             }
             _ => vec![0],
         };
@@ -100,7 +121,13 @@ impl Reader<'_> {
             }
             _ => return self.wrong("a list of records or an object is expected"),
         }
-        let Self { file, w, records, columns, .. } = self;
+        let Self {
+            file,
+            w,
+            records,
+            columns,
+            ..
+        } = self;
         loading.take(w, file, records, &columns)
     }
 
@@ -108,7 +135,9 @@ impl Reader<'_> {
     fn entry(&mut self, e: &Value, place: usize, loading: &mut Loading<'_>) -> Loaded<()> {
         let dim = self.symbol.dim();
         let (labels, value) = match e {
-            Value::Array(pair) if pair.len() == 2 && pair[0].is_array() => (&pair[0], Some(&pair[1])),
+            Value::Array(pair) if pair.len() == 2 && pair[0].is_array() => {
+                (&pair[0], Some(&pair[1]))
+            }
             other if self.symbol.is_set() => (other, None),
             _ => return self.wrong(&format!("record {place} is not a pair of labels and value")),
         };
@@ -120,7 +149,9 @@ impl Reader<'_> {
             return self.wrong(&format!("record {place} has {} labels", labels.len()));
         }
         for l in labels {
-            let Some(text) = label_text(l) else { return self.wrong(&format!("record {place} has a label that is no text")) };
+            let Some(text) = label_text(l) else {
+                return self.wrong(&format!("record {place} has a label that is no text"));
+            };
             let l = loading.label(&text);
             self.records.keys.push(l);
         }
@@ -135,7 +166,10 @@ impl Reader<'_> {
             return self.values(v, place, loading);
         }
         let Value::Object(m) = v else {
-            return self.wrong(&format!("{} levels of objects are expected", self.symbol.dim()));
+            return self.wrong(&format!(
+                "{} levels of objects are expected",
+                self.symbol.dim()
+            ));
         };
         for (label, inner) in m {
             let l = loading.label(label);
@@ -155,7 +189,8 @@ impl Reader<'_> {
                 Value::Null | Value::Bool(true) | Value::Number(_) => {}
                 Value::String(t) => {
                     if !t.is_empty() && !t.eq_ignore_ascii_case("yes") {
-                        let key = self.records.keys[self.records.keys.len() - self.symbol.dim()..].into();
+                        let key =
+                            self.records.keys[self.records.keys.len() - self.symbol.dim()..].into();
                         self.records.texts.insert(key, t.as_str().into());
                     }
                 }
@@ -171,7 +206,12 @@ impl Reader<'_> {
                     match hit {
                         Some((_, x)) => x,
                         None => {
-                            self.records.values.push(loading.store.table(self.symbol.table + offset).default_value());
+                            self.records.values.push(
+                                loading
+                                    .store
+                                    .table(self.symbol.table + offset)
+                                    .default_value(),
+                            );
                             continue;
                         }
                     }
@@ -186,7 +226,9 @@ impl Reader<'_> {
             };
             match x {
                 Some(x) => self.records.values.push(x),
-                None => return self.wrong(&format!("record {place} has a value that is no number")),
+                None => {
+                    return self.wrong(&format!("record {place} has a value that is no number"));
+                }
             }
         }
         self.columns = columns;

@@ -50,7 +50,14 @@ pub(super) struct Records {
 
 impl<'a> Loading<'a> {
     pub fn new(symbols: &'a Symbols, store: &'a Store, point: bool) -> Self {
-        Self { symbols, store, point, new: Universe::default(), members: FxHashMap::default(), out: Finished::default() }
+        Self {
+            symbols,
+            store,
+            point,
+            new: Universe::default(),
+            members: FxHashMap::default(),
+            out: Finished::default(),
+        }
     }
 
     /// Number of a label, new or not.
@@ -72,9 +79,13 @@ impl<'a> Loading<'a> {
     pub fn value(&self, text: &str, file: &str, place: usize, w: &Wanted) -> Loaded<f64> {
         parse_value(text, &self.store.acronyms).ok_or_else(|| {
             Box::new(
-                Diagnostic::execution("E0478", w.span, format!("{file}:{place}: `{text}` is not a number"))
-                    .label(format!("while loading `{}`", w.name))
-                    .help("numbers, EPS, NA, INF, -INF, UNDF, yes and no are values"),
+                Diagnostic::execution(
+                    "E0478",
+                    w.span,
+                    format!("{file}:{place}: `{text}` is not a number"),
+                )
+                .label(format!("while loading `{}`", w.name))
+                .help("numbers, EPS, NA, INF, -INF, UNDF, yes and no are values"),
             )
         })
     }
@@ -87,7 +98,11 @@ impl<'a> Loading<'a> {
         }
         match self.members.get(&root) {
             Some(m) => m.contains(&l),
-            None => self.store.table(self.symbols.get(root).table).find(&[l]).is_some(),
+            None => self
+                .store
+                .table(self.symbols.get(root).table)
+                .find(&[l])
+                .is_some(),
         }
     }
 
@@ -96,7 +111,9 @@ impl<'a> Loading<'a> {
         let symbol = self.symbols.get(w.symbol);
         let dim = symbol.dim();
         for (p, d) in symbol.domain.iter().enumerate() {
-            let DomainPosition::Set(set) = d else { continue };
+            let DomainPosition::Set(set) = d else {
+                continue;
+            };
             let mut wrong: Vec<(Label, usize)> = Vec::new();
             let mut seen = FxHashSet::default();
             let mut last = None;
@@ -109,25 +126,46 @@ impl<'a> Loading<'a> {
                     wrong.push((key[p], r.places[k]));
                 }
             }
-            let Some(&(first, place)) = wrong.first() else { continue };
+            let Some(&(first, place)) = wrong.first() else {
+                continue;
+            };
             let set_symbol = self.symbols.get(self.symbols.root(*set));
             let others = match wrong.len() {
                 1 => String::new(),
                 n => format!(" (and {} more)", n - 1),
             };
             let table = self.store.table(set_symbol.table);
-            let near = nearest(self.name(first), (0..table.len().min(10_000) as u32).map(|row| self.store.universe.name(table.key(row)[0])))
-                .map(str::to_string);
+            let near = nearest(
+                self.name(first),
+                (0..table.len().min(10_000) as u32)
+                    .map(|row| self.store.universe.name(table.key(row)[0])),
+            )
+            .map(str::to_string);
             let d = Diagnostic::execution(
                 "E0479",
                 w.span,
-                format!("{file}:{place}: `{}` is not a member of the set `{}`{others}", self.name(first), set_symbol.name),
+                format!(
+                    "{file}:{place}: `{}` is not a member of the set `{}`{others}",
+                    self.name(first),
+                    set_symbol.name
+                ),
             )
-            .label(format!("position {} of `{}` runs over `{}`; nothing was loaded", p + 1, symbol.name, set_symbol.name))
-            .other(set_symbol.declared, format!("`{}` is declared here", set_symbol.name));
+            .label(format!(
+                "position {} of `{}` runs over `{}`; nothing was loaded",
+                p + 1,
+                symbol.name,
+                set_symbol.name
+            ))
+            .other(
+                set_symbol.declared,
+                format!("`{}` is declared here", set_symbol.name),
+            );
             return Err(Box::new(match near {
                 Some(n) => d.help(format!("did you mean `{n}`?")),
-                None => d.help(format!("add the label to `{}`, or correct the file", set_symbol.name)),
+                None => d.help(format!(
+                    "add the label to `{}`, or correct the file",
+                    set_symbol.name
+                )),
             }));
         }
         Ok(())
@@ -147,12 +185,19 @@ impl<'a> Loading<'a> {
         for pair in order.windows(2) {
             if key(pair[0]) == key(pair[1]) {
                 let labels: Vec<&str> = key(pair[0]).iter().map(|&l| self.name(l)).collect();
-                let what = if dim == 0 { "the value".to_string() } else { format!("the record `{}`", labels.join(".")) };
+                let what = if dim == 0 {
+                    "the value".to_string()
+                } else {
+                    format!("the record `{}`", labels.join("."))
+                };
                 return Err(Box::new(
                     Diagnostic::execution(
                         "E0478",
                         w.span,
-                        format!("{file}:{}: {what} of `{}` was given before, at {}", r.places[pair[1]], w.name, r.places[pair[0]]),
+                        format!(
+                            "{file}:{}: {what} of `{}` was given before, at {}",
+                            r.places[pair[1]], w.name, r.places[pair[0]]
+                        ),
                     )
                     .label("given twice; nothing was loaded")
                     .help("keep one of the two"),
@@ -165,8 +210,15 @@ impl<'a> Loading<'a> {
             && count > 1
         {
             return Err(Box::new(
-                Diagnostic::execution("E0478", w.span, format!("`{}` is a singleton; the file has {count} elements for it", w.name))
-                    .label("nothing was loaded"),
+                Diagnostic::execution(
+                    "E0478",
+                    w.span,
+                    format!(
+                        "`{}` is a singleton; the file has {count} elements for it",
+                        w.name
+                    ),
+                )
+                .label("nothing was loaded"),
             ));
         }
         for (c, &offset) in columns.iter().enumerate() {
@@ -183,19 +235,24 @@ impl<'a> Loading<'a> {
                 Table::from_sorted(dim, default, keys.clone(), values)
             };
             if is_set && dim == 1 {
-                self.members.insert(root, table.iter().map(|(k, _)| k[0]).collect());
+                self.members
+                    .insert(root, table.iter().map(|(k, _)| k[0]).collect());
             }
             self.out.tables.push((symbol.table + offset, table));
         }
         if is_set {
-            self.out.texts.push((symbol.table, std::mem::take(&mut r.texts)));
+            self.out
+                .texts
+                .push((symbol.table, std::mem::take(&mut r.texts)));
         }
         self.out.symbols.push(root);
         Ok(())
     }
 
     pub fn finish(mut self) -> Finished {
-        self.out.labels = (0..self.new.len() as Label).map(|l| self.new.name(l).to_string()).collect();
+        self.out.labels = (0..self.new.len() as Label)
+            .map(|l| self.new.name(l).to_string())
+            .collect();
         self.out
     }
 }

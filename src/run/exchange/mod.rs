@@ -56,7 +56,8 @@ const ATTRIBUTES: &[(&str, &str, u32)] = &[
 
 /// Place of an attribute by either of its names.
 fn attribute_offset(name: &str) -> Option<u32> {
-    let hit = |a: &&(&str, &str, u32)| a.0.eq_ignore_ascii_case(name) || a.1.eq_ignore_ascii_case(name);
+    let hit =
+        |a: &&(&str, &str, u32)| a.0.eq_ignore_ascii_case(name) || a.1.eq_ignore_ascii_case(name);
     ATTRIBUTES.iter().find(hit).map(|a| a.2)
 }
 
@@ -68,13 +69,22 @@ impl Machine<'_> {
             "gdxin" => self.transfer.input = x.file.as_ref().map(|(f, s)| (f.to_string(), *s)),
             "gdxout" => {
                 self.finish_unload();
-                self.transfer.output = x.file.as_ref().map(|(f, s)| (f.to_string(), *s, Vec::new()));
+                self.transfer.output = x
+                    .file
+                    .as_ref()
+                    .map(|(f, s)| (f.to_string(), *s, Vec::new()));
             }
             k if k.contains("unload") => {
-                let Some(items) = self.wanted(&x.items) else { return };
+                let Some(items) = self.wanted(&x.items) else {
+                    return;
+                };
                 match (&x.file, &mut self.transfer.output) {
                     (Some((file, at)), _) => {
-                        let items = if items.is_empty() { self.everything(span) } else { items };
+                        let items = if items.is_empty() {
+                            self.everything(span)
+                        } else {
+                            items
+                        };
                         self.unload(&file.to_string(), &items, *at);
                     }
                     (None, Some(output)) => output.2.extend(items),
@@ -82,8 +92,14 @@ impl Machine<'_> {
                 }
             }
             k => {
-                let Some(items) = self.wanted(&x.items) else { return };
-                let file = x.file.as_ref().map(|(f, s)| (f.to_string(), *s)).or_else(|| self.transfer.input.clone());
+                let Some(items) = self.wanted(&x.items) else {
+                    return;
+                };
+                let file = x
+                    .file
+                    .as_ref()
+                    .map(|(f, s)| (f.to_string(), *s))
+                    .or_else(|| self.transfer.input.clone());
                 match file {
                     Some((file, at)) if x.file.is_some() || !items.is_empty() => {
                         self.load(&file, &items, k.contains("point"), at, span);
@@ -97,7 +113,11 @@ impl Machine<'_> {
     }
 
     fn no_file(&self, span: Span, write: &str) {
-        self.note(Diagnostic::execution("E0475", span, "no file is named").label("which file?").help(format!("write `{write}` before")));
+        self.note(
+            Diagnostic::execution("E0475", span, "no file is named")
+                .label("which file?")
+                .help(format!("write `{write}` before")),
+        );
     }
 
     /// Writes what `$unload` collected.
@@ -114,19 +134,34 @@ impl Machine<'_> {
         let mut out = Vec::new();
         for (name, other) in items {
             let Some(symbol) = self.symbols.find(&name.name) else {
-                self.note(Diagnostic::execution("E0475", name.span, format!("`{}` is not known", name.name)));
+                self.note(Diagnostic::execution(
+                    "E0475",
+                    name.span,
+                    format!("`{}` is not known", name.name),
+                ));
                 return None;
             };
             if !has_data(&self.symbols.get(symbol).kind) {
                 let kind = self.symbols.get(symbol).kind_name();
                 self.note(
-                    Diagnostic::execution("E0475", name.span, format!("`{}` is a {kind}; it has no data to exchange", name.name))
-                        .label("a set, parameter, variable or equation is expected"),
+                    Diagnostic::execution(
+                        "E0475",
+                        name.span,
+                        format!("`{}` is a {kind}; it has no data to exchange", name.name),
+                    )
+                    .label("a set, parameter, variable or equation is expected"),
                 );
                 return None;
             }
-            let shown = other.as_ref().map_or_else(|| self.symbols.get(symbol).name.to_string(), |o| o.name.to_string());
-            out.push(Wanted { symbol, name: shown, span: name.span });
+            let shown = other.as_ref().map_or_else(
+                || self.symbols.get(symbol).name.to_string(),
+                |o| o.name.to_string(),
+            );
+            out.push(Wanted {
+                symbol,
+                name: shown,
+                span: name.span,
+            });
         }
         Some(out)
     }
@@ -135,7 +170,12 @@ impl Machine<'_> {
     fn everything(&self, span: Span) -> Vec<Wanted> {
         let listed = |k: &SymbolKind| has_data(k) && !matches!(k, SymbolKind::Alias(_));
         let all = self.symbols.iter().skip(1).filter(|(_, s)| listed(&s.kind));
-        all.map(|(symbol, s)| Wanted { symbol, name: s.name.to_string(), span }).collect()
+        all.map(|(symbol, s)| Wanted {
+            symbol,
+            name: s.name.to_string(),
+            span,
+        })
+        .collect()
     }
 
     /// The format of a file; a diagnostic if it is none of ours.
@@ -143,7 +183,9 @@ impl Machine<'_> {
         if file.ends_with('/') {
             return Some(Kind::Folder);
         }
-        let ending = std::path::Path::new(file).extension().map(|e| e.to_string_lossy().to_lowercase());
+        let ending = std::path::Path::new(file)
+            .extension()
+            .map(|e| e.to_string_lossy().to_lowercase());
         match ending.as_deref() {
             Some("csv" | "tsv" | "txt") => return Some(Kind::Csv),
             Some("json") => return Some(Kind::Json),
@@ -153,27 +195,45 @@ impl Machine<'_> {
             Some("gdx") | None => {
                 let stem = file.strip_suffix(".gdx").unwrap_or(file);
                 let d = if ending.is_none() {
-                    Diagnostic::execution("E0476", span, format!("the name `{file}` does not say a format"))
+                    Diagnostic::execution(
+                        "E0476",
+                        span,
+                        format!("the name `{file}` does not say a format"),
+                    )
                 } else {
-                    Diagnostic::execution("E0476", span, format!("`{file}`: GDX is GAMS's own binary format; bmod exchanges open ones"))
+                    Diagnostic::execution(
+                        "E0476",
+                        span,
+                        format!(
+                            "`{file}`: GDX is GAMS's own binary format; bmod exchanges open ones"
+                        ),
+                    )
                 };
                 d.label("a name that ends in .csv or .json is expected").help(format!(
                     "write `'{stem}.csv'` or `'{stem}.json'`; `gdxdump {stem}.gdx symb=NAME format=csv` makes a CSV file of a GDX symbol"
                 ))
             }
-            Some(other) => Diagnostic::execution("E0476", span, format!("`.{other}` is not a format for data"))
-                .label("a name that ends in .csv or .json is expected"),
+            Some(other) => Diagnostic::execution(
+                "E0476",
+                span,
+                format!("`.{other}` is not a format for data"),
+            )
+            .label("a name that ends in .csv or .json is expected"),
         };
         self.note(d);
         None
     }
 
     fn unload(&mut self, file: &str, items: &[Wanted], span: Span) {
-        let Some(kind) = self.format_of(file, span) else { return };
+        let Some(kind) = self.format_of(file, span) else {
+            return;
+        };
         for w in items {
             let symbol = self.symbols.get(w.symbol);
             let (first, count) = match symbol.kind {
-                SymbolKind::Variable(_) | SymbolKind::Equation(_) => (symbol.table, attribute::COUNT),
+                SymbolKind::Variable(_) | SymbolKind::Equation(_) => {
+                    (symbol.table, attribute::COUNT)
+                }
                 _ => (symbol.table, 1),
             };
             for t in first..first + count {
@@ -201,16 +261,22 @@ impl Machine<'_> {
     }
 
     fn load(&mut self, file: &str, items: &[Wanted], point: bool, at: Span, span: Span) {
-        let Some(kind) = self.format_of(file, at) else { return };
+        let Some(kind) = self.format_of(file, at) else {
+            return;
+        };
         let mut files = Vec::new();
         if kind == Kind::Folder {
             for w in items {
                 let name = format!("{file}{}.csv", w.name);
-                let Some(text) = self.read_file(&name, at) else { return };
+                let Some(text) = self.read_file(&name, at) else {
+                    return;
+                };
                 files.push((name, text, vec![w.clone()]));
             }
         } else {
-            let Some(text) = self.read_file(file, at) else { return };
+            let Some(text) = self.read_file(file, at) else {
+                return;
+            };
             files.push((file.to_string(), text, items.to_vec()));
         }
         let mut loading = Loading::new(&self.symbols, &self.store, point);
@@ -254,11 +320,21 @@ impl Machine<'_> {
     fn declared(&self, names: &[String], point: bool, span: Span) -> Vec<Wanted> {
         let mut out: Vec<Wanted> = Vec::new();
         for n in names {
-            let Some(symbol) = self.symbols.find(n) else { continue };
+            let Some(symbol) = self.symbols.find(n) else {
+                continue;
+            };
             let kind = &self.symbols.get(symbol).kind;
-            let fits = if point { matches!(kind, SymbolKind::Variable(_) | SymbolKind::Equation(_)) } else { has_data(kind) };
+            let fits = if point {
+                matches!(kind, SymbolKind::Variable(_) | SymbolKind::Equation(_))
+            } else {
+                has_data(kind)
+            };
             if fits && !out.iter().any(|w| w.symbol == symbol) {
-                out.push(Wanted { symbol, name: n.clone(), span });
+                out.push(Wanted {
+                    symbol,
+                    name: n.clone(),
+                    span,
+                });
             }
         }
         out
@@ -278,7 +354,10 @@ impl Machine<'_> {
 }
 
 fn has_data(kind: &SymbolKind) -> bool {
-    !matches!(kind, SymbolKind::Model(_) | SymbolKind::File(_) | SymbolKind::Acronym(_) | SymbolKind::Figure(_))
+    !matches!(
+        kind,
+        SymbolKind::Model(_) | SymbolKind::File(_) | SymbolKind::Acronym(_) | SymbolKind::Figure(_)
+    )
 }
 
 /// The name of a special value.
@@ -312,7 +391,9 @@ fn parse_value(text: &str, acronyms: &[Box<str>]) -> Option<f64> {
         "yes" | "true" => 1.0,
         "no" | "false" => 0.0,
         lower => {
-            let n = acronyms.iter().position(|a| a.eq_ignore_ascii_case(lower))?;
+            let n = acronyms
+                .iter()
+                .position(|a| a.eq_ignore_ascii_case(lower))?;
             crate::data::value::acronym(n as u32)
         }
     })
@@ -320,7 +401,11 @@ fn parse_value(text: &str, acronyms: &[Box<str>]) -> Option<f64> {
 
 /// No symbol of that name in the file.
 fn missing(file: &str, w: &Wanted, there: &[String]) -> Box<Diagnostic> {
-    let d = Diagnostic::execution("E0477", w.span, format!("the file `{file}` has no symbol `{}`", w.name));
+    let d = Diagnostic::execution(
+        "E0477",
+        w.span,
+        format!("the file `{file}` has no symbol `{}`", w.name),
+    );
     Box::new(match nearest(&w.name, there.iter().map(String::as_str)) {
         Some(n) => d.help(format!("did you mean `{n}`? write `{} = {n}`", w.name)),
         None if there.is_empty() => d.help("the file holds no symbols"),

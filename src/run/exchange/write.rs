@@ -9,9 +9,11 @@ use serde_json::{Map, Value, json};
 /// Tables of a symbol that a file holds: name of the attribute (none: the data itself) and table.
 fn parts(symbol: &Symbol) -> Vec<(&'static str, u32)> {
     match symbol.kind {
-        SymbolKind::Variable(_) | SymbolKind::Equation(_) => {
-            ATTRIBUTES.iter().filter(|a| a.2 != attribute::SCALE).map(|a| (a.0, symbol.table + a.2)).collect()
-        }
+        SymbolKind::Variable(_) | SymbolKind::Equation(_) => ATTRIBUTES
+            .iter()
+            .filter(|a| a.2 != attribute::SCALE)
+            .map(|a| (a.0, symbol.table + a.2))
+            .collect(),
         _ => vec![("", symbol.table)],
     }
 }
@@ -20,8 +22,16 @@ impl Machine<'_> {
     /// All keys that a symbol has records for, in label order.
     fn keys(&self, symbol: &Symbol) -> Vec<Vec<Label>> {
         let tables = parts(symbol);
-        let mut keys: Vec<Vec<Label>> =
-            tables.iter().flat_map(|(_, t)| self.store.table(*t).iter().map(|(k, _)| k.to_vec()).collect::<Vec<_>>()).collect();
+        let mut keys: Vec<Vec<Label>> = tables
+            .iter()
+            .flat_map(|(_, t)| {
+                self.store
+                    .table(*t)
+                    .iter()
+                    .map(|(k, _)| k.to_vec())
+                    .collect::<Vec<_>>()
+            })
+            .collect();
         if tables.len() > 1 {
             keys.sort_unstable();
             keys.dedup();
@@ -47,18 +57,41 @@ impl Machine<'_> {
             }
             let _ = out.write_record(&header);
             for key in self.keys(symbol) {
-                let mut row: Vec<String> = key.iter().map(|&l| self.store.universe.name(l).to_string()).collect();
+                let mut row: Vec<String> = key
+                    .iter()
+                    .map(|&l| self.store.universe.name(l).to_string())
+                    .collect();
                 if set {
-                    row.push(self.store.element_text(symbol.table, &key).unwrap_or("").to_string());
+                    row.push(
+                        self.store
+                            .element_text(symbol.table, &key)
+                            .unwrap_or("")
+                            .to_string(),
+                    );
                 } else {
-                    row.extend(parts(symbol).iter().map(|(_, t)| self.value_text(self.store.table(*t).get(&key))));
+                    row.extend(
+                        parts(symbol)
+                            .iter()
+                            .map(|(_, t)| self.value_text(self.store.table(*t).get(&key))),
+                    );
                 }
                 let _ = out.write_record(&row);
             }
         } else {
-            let symbols = || items.iter().map(|w| (w, self.symbols.get(self.symbols.root(w.symbol))));
+            let symbols = || {
+                items
+                    .iter()
+                    .map(|w| (w, self.symbols.get(self.symbols.root(w.symbol))))
+            };
             let dim = symbols().map(|(_, s)| s.dim()).max().unwrap_or(0);
-            let texts = symbols().any(|(_, s)| s.is_set() && self.store.texts.get(&s.table).is_some_and(|t| !t.is_empty()));
+            let texts = symbols().any(|(_, s)| {
+                s.is_set()
+                    && self
+                        .store
+                        .texts
+                        .get(&s.table)
+                        .is_some_and(|t| !t.is_empty())
+            });
             let mut header = vec!["symbol".to_string()];
             header.extend((1..=dim).map(|p| format!("label{p}")));
             header.push("value".into());
@@ -75,9 +108,17 @@ impl Machine<'_> {
                         let mut row = vec![name.clone()];
                         row.extend(key.iter().map(|&l| self.store.universe.name(l).to_string()));
                         row.resize(dim + 1, String::new());
-                        row.push(if symbol.is_set() { "yes".into() } else { self.value_text(v) });
+                        row.push(if symbol.is_set() {
+                            "yes".into()
+                        } else {
+                            self.value_text(v)
+                        });
                         if texts {
-                            let text = if symbol.is_set() { self.store.element_text(table, key) } else { None };
+                            let text = if symbol.is_set() {
+                                self.store.element_text(table, key)
+                            } else {
+                                None
+                            };
                             row.push(text.unwrap_or("").to_string());
                         }
                         let _ = out.write_record(&row);
@@ -111,11 +152,20 @@ impl Machine<'_> {
             out.push_str(&format!("  {}: ", Value::from(w.name.as_str())));
             let parts = parts(symbol);
             let value = |key: &[Label]| match parts.as_slice() {
-                [(_, t)] if symbol.is_set() => Value::from(self.store.element_text(*t, key).unwrap_or("")),
+                [(_, t)] if symbol.is_set() => {
+                    Value::from(self.store.element_text(*t, key).unwrap_or(""))
+                }
                 [(_, t)] => self.json_number(self.store.table(*t).get(key)),
                 many => {
-                    let m: Map<String, Value> =
-                        many.iter().map(|(a, t)| ((*a).to_string(), self.json_number(self.store.table(*t).get(key)))).collect();
+                    let m: Map<String, Value> = many
+                        .iter()
+                        .map(|(a, t)| {
+                            (
+                                (*a).to_string(),
+                                self.json_number(self.store.table(*t).get(key)),
+                            )
+                        })
+                        .collect();
                     Value::Object(m)
                 }
             };
@@ -123,7 +173,10 @@ impl Machine<'_> {
                 out.push_str(&value(&[]).to_string());
                 continue;
             }
-            out.push_str(&format!("{{\"domain\": {}, \"records\": [", json!(self.domain_names(symbol))));
+            out.push_str(&format!(
+                "{{\"domain\": {}, \"records\": [",
+                json!(self.domain_names(symbol))
+            ));
             for (k, key) in self.keys(symbol).iter().enumerate() {
                 let labels: Vec<&str> = key.iter().map(|&l| self.store.universe.name(l)).collect();
                 out.push_str(if k > 0 { ",\n    " } else { "\n    " });

@@ -1,0 +1,425 @@
+//! The language suite: every file of `tests/suite` runs, and every claim in its comments holds (their
+//! form: `tests/suite/README.md`).
+//!
+//! `SUITE=put cargo test --test suite` runs the files whose path contains `put`.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
+
+use bmod::check::symbols::{SymbolKind, attribute};
+use bmod::data::value;
+use bmod::diag::Severity;
+use bmod::host::{Host, HostError};
+use bmod::run::{Machine, Options};
+use bmod::session;
+use bmod::source::PreprocessOptions;
+
+/// Reads from the suite's folder, keeps what is written and displayed.
+struct Memory {
+    folder: PathBuf,
+    displays: String,
+    files: BTreeMap<String, String>,
+    start: Instant,
+}
+
+impl Host for Memory {
+    fn read(&mut self, path: &str, _: Option<&Path>) -> Result<(PathBuf, String), HostError> {
+        if let Some(text) = self.files.get(path) {
+            return Ok((path.into(), text.clone()));
+        }
+        let real = self.folder.join(path);
+        match std::fs::read_to_string(&real) {
+            Ok(text) => Ok((real, text)),
+            Err(_) => Err(HostError::NotFound),
+        }
+    }
+
+    fn exists(&mut self, path: &str, _: Option<&Path>) -> bool {
+        self.files.contains_key(path) || self.folder.join(path).is_file()
+    }
+
+    fn write(&mut self, path: &str, bytes: &[u8]) -> Result<PathBuf, HostError> {
+        if path.contains("..") {
+            return Err(HostError::Outside(path.into()));
+        }
+        self.files
+            .insert(path.into(), String::from_utf8_lossy(bytes).into_owned());
+        Ok(path.into())
+    }
+
+    fn print(&mut self, text: &str) {
+        if text.starts_with("----") {
+            self.displays.push_str(text);
+        }
+    }
+
+    fn elapsed(&self) -> f64 {
+        self.start.elapsed().as_secs_f64()
+    }
+
+    fn now(&self) -> f64 {
+        46000.5
+    }
+
+    fn interrupted(&self) -> bool {
+        false
+    }
+}
+
+/// What the comments of a file claim.
+#[derive(Default)]
+struct Claims {
+    values: Vec<(usize, String)>,
+    display: Vec<String>,
+    statistics: Vec<String>,
+    errors: BTreeSet<usize>,
+    executions: BTreeSet<usize>,
+    exit: Option<u8>,
+    files: BTreeMap<String, Vec<String>>,
+    defines: Vec<(String, String)>,
+    nonlinear: bool,
+}
+
+fn claims(text: &str) -> Claims {
+    let mut c = Claims::default();
+    let lower = text.to_lowercase();
+    c.nonlinear = ["nlp", "mcp", "cns", "mpec", "qcp"]
+        .iter()
+        .any(|t| lower.contains(&format!("using {t}")) || lower.contains(&format!("using dn{t}")));
+    for (n, line) in text.lines().enumerate() {
+        let rest = |mark: &str| {
+            line.strip_prefix(mark)
+                .map(|r| r.strip_prefix(' ').unwrap_or(r))
+        };
+        if let Some(r) = rest("*=") {
+            c.values.push((n + 1, r.trim().to_string()));
+        } else if let Some(r) = rest("*>") {
+            c.display.push(r.trim_end().to_string());
+        } else if let Some(r) = rest("*#") {
+            c.statistics.push(r.trim().to_string());
+        } else if let Some(r) = rest("*!") {
+            let words: Vec<&str> = r.split_whitespace().collect();
+            match words[..] {
+                ["error", l, ..] => drop(c.errors.insert(l.parse().expect("a line"))),
+                ["execution", l, ..] => drop(c.executions.insert(l.parse().expect("a line"))),
+                ["exit", e, ..] => c.exit = Some(e.parse().expect("a status")),
+                _ => panic!("line {}: {line}", n + 1),
+            }
+        } else if let Some(r) = line.strip_prefix("*|") {
+            let (file, text) = r.split_once('|').expect("a file name between bars");
+            let text = text.strip_prefix(' ').unwrap_or(text);
+            let lines = c.files.entry(file.to_string()).or_default();
+            lines.push(text.trim_end().to_string());
+        } else if let Some(r) = rest("*@") {
+            let words: Vec<&str> = r.split_whitespace().collect();
+            if let ["-D", define] = words[..] {
+                let (name, value) = define.split_once('=').expect("NAME=VALUE");
+                c.defines.push((name.into(), value.into()));
+            }
+        }
+    }
+    c
+}
+
+/// Labels in quotes between parentheses.
+fn labels(text: &str) -> Vec<String> {
+    let mut out = Vec::new();
+    let mut rest = text;
+    while let Some(start) = rest.find(['\'', '"']) {
+        let quote = &rest[start..=start];
+        let inner = &rest[start + 1..];
+        let end = inner.find(quote).expect("a closing quote");
+        out.push(inner[..end].to_string());
+        rest = &inner[end + 1..];
+    }
+    out
+}
+
+/// `x.l('a')` as the run left it; None where there is no such thing.
+fn value_of(m: &mut Machine, what: &str) -> Option<f64> {
+    let (head, key) = match what.split_once('(') {
+        Some((h, k)) => (h.trim(), k),
+        None => (what.trim(), ""),
+    };
+    if head.eq_ignore_ascii_case("card") {
+        let s = m.symbols.find(key.trim_end_matches(')').trim())?;
+        return Some(m.store.table(m.symbols.get(s).table).len() as f64);
+    }
+    let (name, attr) = match head.split_once('.') {
+        Some((n, a)) => (n, Some(a.to_lowercase())),
+        None => (head, None),
+    };
+    let s = m.symbols.find(name)?;
+    let symbol = m.symbols.get(s);
+    if let SymbolKind::Model(_) = symbol.kind {
+        return Some(
+            m.models
+                .get(&s)
+                .and_then(|x| x.get(&attr?))
+                .unwrap_or(value::NA),
+        );
+    }
+    let offset = match attr.as_deref() {
+        None => 0,
+        Some("l") => attribute::L,
+        Some("m") => attribute::M,
+        Some("lo") => attribute::LO,
+        Some("up") => attribute::UP,
+        Some("scale") => attribute::SCALE,
+        Some("prior") => attribute::PRIOR,
+        Some(_) => return None,
+    };
+    let table = symbol.table + offset;
+    let keys: Option<Vec<u32>> = labels(key)
+        .iter()
+        .map(|l| m.store.universe.get(l))
+        .collect();
+    let table = m.store.table(table);
+    match keys {
+        Some(k) if k.len() == table.dim() => Some(table.get(&k)),
+        Some(_) => None,
+        // No such label: not stored.
+        None => Some(table.default_value()),
+    }
+}
+
+fn same(actual: f64, claimed: &str, tolerance: f64) -> bool {
+    match claimed {
+        "eps" => value::is_eps(actual),
+        "na" => value::is_na(actual),
+        "undf" => value::is_undf(actual),
+        "inf" => actual == f64::INFINITY,
+        "-inf" => actual == f64::NEG_INFINITY,
+        "yes" => actual != 0.0,
+        "no" => actual == 0.0,
+        number => match number.parse::<f64>() {
+            Ok(x) => actual.is_finite() && (actual - x).abs() <= tolerance * x.abs().max(1.0),
+            Err(_) => false,
+        },
+    }
+}
+
+fn spelled(v: f64) -> String {
+    match v {
+        v if value::is_eps(v) => "eps".into(),
+        v if value::is_na(v) => "na".into(),
+        v if v.is_nan() => "undf".into(),
+        v => v.to_string(),
+    }
+}
+
+/// Lines without blanks at their ends, several empty ones as one, none at the ends.
+fn tidy<'a>(lines: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let mut out: Vec<String> = Vec::new();
+    for l in lines.map(str::trim_end) {
+        if !l.is_empty() || out.last().is_some_and(|o| !o.is_empty()) {
+            out.push(l.to_string());
+        }
+    }
+    while out.last().is_some_and(String::is_empty) {
+        out.pop();
+    }
+    out
+}
+
+/// The first line in which two texts differ.
+fn difference(actual: &[String], claimed: &[String]) -> Option<String> {
+    let n = actual.len().max(claimed.len());
+    let k = (0..n).find(|&k| actual.get(k) != claimed.get(k))?;
+    let line = |l: &[String]| {
+        l.get(k)
+            .map_or("(nothing)".to_string(), |t| format!("|{t}|"))
+    };
+    Some(format!(
+        "line {}:\n        is {}\n    should {}",
+        k + 1,
+        line(actual),
+        line(claimed)
+    ))
+}
+
+/// What is wrong with a file.
+fn check(path: &Path) -> Vec<String> {
+    let text = std::fs::read_to_string(path).expect("the file can be read");
+    let c = claims(&text);
+    let mut host = Memory {
+        folder: path.parent().expect("a folder").to_path_buf(),
+        displays: String::new(),
+        files: BTreeMap::new(),
+        start: Instant::now(),
+    };
+    let preprocess = PreprocessOptions {
+        defines: c.defines.clone(),
+        slash_comments: true,
+    };
+    let options = Options {
+        time_limit: 60.0,
+        collect: false,
+        ..Options::default()
+    };
+    let mut wrong = Vec::new();
+    let name = path.file_name().expect("a name").to_string_lossy();
+    let mut values = Vec::new();
+    let finished = session::run(&mut host, &name, preprocess, options, false, &mut |m| {
+        for (line, claim) in &c.values {
+            let (what, claimed) = claim
+                .rsplit_once(char::is_whitespace)
+                .expect("a name and a value");
+            values.push((
+                *line,
+                what.trim().to_string(),
+                claimed.to_string(),
+                value_of(m, what),
+            ));
+        }
+    });
+    let lines = |severity: Severity| -> BTreeSet<usize> {
+        let of = finished
+            .diagnostics
+            .iter()
+            .filter(|d| d.severity == severity);
+        of.map(|d| finished.map.line(d.span)).collect()
+    };
+    let exit = match c.exit {
+        Some(e) => e,
+        None if !c.errors.is_empty() => 2,
+        None if !c.executions.is_empty() => 3,
+        None => 0,
+    };
+    let (errors, executions) = (lines(Severity::Error), lines(Severity::Execution));
+    if finished.end.exit() != exit || (exit == 2 && !c.errors.is_empty() && errors != c.errors) {
+        wrong.push(format!(
+            "exit status {} (errors at {errors:?}), should be {exit} (at {:?})",
+            finished.end.exit(),
+            c.errors
+        ));
+        for d in finished.diagnostics.iter().take(3) {
+            wrong.push(format!(
+                "    {} line {}: {}",
+                d.code,
+                finished.map.line(d.span),
+                d.message
+            ));
+        }
+        if exit != 2 && finished.end.exit() == 2 {
+            return wrong;
+        }
+    }
+    if !c.executions.is_subset(&executions) {
+        wrong.push(format!(
+            "execution errors at {executions:?}, should be at {:?}",
+            c.executions
+        ));
+    }
+    let tolerance = if c.nonlinear { 1e-6 } else { 1e-9 };
+    for (line, what, claimed, actual) in values {
+        match actual {
+            Some(a) if same(a, &claimed, tolerance) => {}
+            Some(a) => wrong.push(format!(
+                "line {line}: {what} is {}, should be {claimed}",
+                spelled(a)
+            )),
+            None => wrong.push(format!("line {line}: there is no {what}")),
+        }
+    }
+    if !c.display.is_empty() {
+        let actual = tidy(host.displays.lines());
+        let claimed = tidy(c.display.iter().map(String::as_str));
+        wrong.extend(difference(&actual, &claimed).map(|d| format!("display, {d}")));
+    }
+    for (file, claimed) in &c.files {
+        match host.files.get(file) {
+            None => wrong.push(format!("the file {file} was not written")),
+            Some(text) => {
+                let actual: Vec<String> = text.lines().map(|l| l.trim_end().to_string()).collect();
+                wrong.extend(difference(&actual, claimed).map(|d| format!("{file}, {d}")));
+            }
+        }
+    }
+    for (k, claimed) in c.statistics.iter().enumerate() {
+        let actual = finished.report.solves.get(k).map(|s| {
+            format!(
+                "rows {} columns {} nonzeros {} nonlinear {}",
+                s.rows, s.columns, s.nonzeros, s.nonlinear_nonzeros
+            )
+        });
+        let actual = actual.unwrap_or_else(|| "no solve".into());
+        if actual != *claimed {
+            wrong.push(format!("solve {}: {actual}, should be {claimed}", k + 1));
+        }
+    }
+    wrong
+}
+
+fn files(folder: &Path, out: &mut Vec<PathBuf>) {
+    let mut entries: Vec<PathBuf> = std::fs::read_dir(folder)
+        .expect("the folder can be read")
+        .map(|e| e.expect("an entry").path())
+        .collect();
+    entries.sort();
+    for p in entries {
+        if p.is_dir() {
+            files(&p, out);
+        } else if p.extension().is_some_and(|e| e == "blk") {
+            out.push(p);
+        }
+    }
+}
+
+#[test]
+fn every_claim_of_the_suite_holds() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/suite");
+    let mut all = Vec::new();
+    files(&folder, &mut all);
+    if let Ok(only) = std::env::var("SUITE") {
+        all.retain(|p| p.to_string_lossy().contains(&only));
+    }
+    assert!(!all.is_empty(), "no file to run");
+    let next = AtomicUsize::new(0);
+    let failures = Mutex::new(BTreeMap::new());
+    let workers = std::thread::available_parallelism()
+        .map_or(1, usize::from)
+        .min(4);
+    std::thread::scope(|s| {
+        for _ in 0..workers {
+            // Nested expressions need room on the stack.
+            let worker = || {
+                while let Some(path) = all.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let result = std::panic::catch_unwind(|| check(path));
+                    let wrong = result.unwrap_or_else(|p| {
+                        let text = p.downcast_ref::<String>().cloned();
+                        let text =
+                            text.or_else(|| p.downcast_ref::<&str>().map(|s| (*s).to_string()));
+                        vec![format!("panic: {}", text.unwrap_or_default())]
+                    });
+                    if !wrong.is_empty() {
+                        failures
+                            .lock()
+                            .expect("no worker panics")
+                            .insert(path.clone(), wrong);
+                    }
+                }
+            };
+            std::thread::Builder::new()
+                .stack_size(64 << 20)
+                .spawn_scoped(s, worker)
+                .expect("a thread");
+        }
+    });
+    let failures = failures.into_inner().expect("no worker panics");
+    for (path, wrong) in &failures {
+        println!("{}", path.strip_prefix(&folder).unwrap_or(path).display());
+        for w in wrong.iter().take(6) {
+            println!("    {w}");
+        }
+    }
+    assert!(
+        failures.is_empty(),
+        "{} of {} files fail",
+        failures.len(),
+        all.len()
+    );
+}
