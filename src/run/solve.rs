@@ -18,12 +18,14 @@ use crate::source::Span;
 struct RunMonitor<'a, 'h> {
     machine: &'a Machine<'h>,
     origin: &'a Origin,
-    log: Vec<String>,
+    log: bool,
 }
 
 impl Monitor for RunMonitor<'_, '_> {
     fn log(&mut self, line: &str) {
-        self.log.push(line.to_string());
+        if self.log {
+            self.machine.print(&format!("{line}\n"));
+        }
     }
 
     fn interrupted(&mut self) -> bool {
@@ -108,7 +110,7 @@ impl Machine<'_> {
         let mut monitor = RunMonitor {
             machine: self,
             origin: &generated.origin,
-            log: Vec::new(),
+            log: settings.log,
         };
         let result = answer(
             s.using,
@@ -117,11 +119,6 @@ impl Machine<'_> {
             &settings,
             &mut monitor,
         );
-        let log = monitor.log;
-        for line in log {
-            self.print(&line);
-            self.print("\n");
-        }
         match result {
             Ok(a) => {
                 let end = self.elapsed();
