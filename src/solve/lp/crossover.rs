@@ -8,10 +8,11 @@
 use super::form::{Point, Problem};
 use super::simplex::{Basis, State};
 
-/// A basis suggested by an interior point.
-pub fn basis(p: &Problem, point: &Point) -> Basis {
+/// A basis suggested by an interior point, and the values of all variables.
+pub fn basis(p: &Problem, point: &Point) -> (Basis, Vec<f64>) {
     let (m, n) = (p.m(), p.n());
     let mut states = Vec::with_capacity(m + n);
+    let mut values = Vec::with_capacity(m + n);
     let mut order: Vec<(f64, usize)> = Vec::with_capacity(m + n);
     for j in 0..n + m {
         let (l, u, x, d) = if j < n {
@@ -21,6 +22,7 @@ pub fn basis(p: &Problem, point: &Point) -> Basis {
             let activity = p.rows.line(i).map(|(k, a)| a * point.x[k]).sum::<f64>();
             (p.row_lower[i], p.row_upper[i], activity, point.y[i])
         };
+        values.push(x);
         let (down, up) = (x - l, u - x);
         let (state, distance) = if l.is_infinite() && u.is_infinite() {
             (State::Free, f64::INFINITY)
@@ -41,5 +43,5 @@ pub fn basis(p: &Problem, point: &Point) -> Basis {
     for &(_, j) in order.iter().take(m) {
         states[j] = State::Basic;
     }
-    states
+    (states, values)
 }

@@ -149,7 +149,7 @@ fn solve(
         Method::Interior => interior_only(&scaled, &limits, monitor),
         Method::Crossover => finished(&scaled, &limits, monitor),
         Method::Simplex => simplex_only(&scaled, &limits, monitor),
-        Method::Auto => finished(&scaled, &limits, monitor),
+        Method::Auto => auto(&scaled, &limits, monitor),
     };
     let (claim, status) = match answer.ended {
         Ended::Solved if answer.almost => (Claim::Unfinished, SolverStatus::TerminatedBySolver),
@@ -208,7 +208,20 @@ fn watch<'a>(
 fn simplex_only(p: &Problem, limits: &Limits, monitor: &mut dyn Monitor) -> Answer {
     let mut simplex = Simplex::new(p);
     let ended = simplex.solve(&mut watch(limits, monitor));
+    if ended == Ended::Solved {
+        tighten(&mut simplex, limits, monitor);
+    }
     simplex_answer(simplex, ended)
+}
+
+fn tighten(simplex: &mut Simplex, limits: &Limits, monitor: &mut dyn Monitor) {
+    let before = simplex.iterations;
+    let tight = simplex.tighten(&mut watch(limits, monitor));
+    let pivots = simplex.iterations - before;
+    let word = if tight { "" } else { "not " };
+    monitor.log(&format!(
+        "tightened after {pivots} pivots: {word}to rounding"
+    ));
 }
 
 fn simplex_answer(mut simplex: Simplex, ended: Ended) -> Answer {
@@ -240,21 +253,72 @@ fn interior_only(p: &Problem, limits: &Limits, monitor: &mut dyn Monitor) -> Ans
     }
 }
 
+/// Columns and rows together up to which the simplex method is tried first.
+const SMALL: usize = 600;
+
+/// Small programs by the simplex method, others by the interior point and its finish; where one
+/// fails the other is tried.
+fn auto(p: &Problem, limits: &Limits, monitor: &mut dyn Monitor) -> Answer {
+    if p.m() + p.n() > SMALL {
+        return finished(p, limits, monitor);
+    }
+    let mut simplex = Simplex::new(p);
+    let effort = 1000 + 20 * (p.m() + p.n()) as u64;
+    let cut = Limits {
+        iterations: limits.iterations.min(effort),
+        ..*limits
+    };
+    let ended = simplex.solve(&mut watch(&cut, monitor));
+    let stuck =
+        ended == Ended::Failed || (ended == Ended::Iterations && effort < limits.iterations);
+    if stuck {
+        return finished(p, limits, monitor);
+    }
+    if ended == Ended::Solved {
+        tighten(&mut simplex, limits, monitor);
+    }
+    simplex_answer(simplex, ended)
+}
+
 /// Interior point, then a basis from it, then the simplex method.
 fn finished(p: &Problem, limits: &Limits, monitor: &mut dyn Monitor) -> Answer {
-    let answer = interior_only(p, limits, monitor);
-    if !matches!(answer.ended, Ended::Solved | Ended::Failed) {
+    let mut answer = interior_only(p, limits, monitor);
+    let pushed = match answer.ended {
+        Ended::Solved => true,
+        // A direction is no point: the simplex method finds one from which it leads on.
+        Ended::Unbounded(_) | Ended::Failed => false,
+        _ => return answer,
+    };
+    let mut simplex = Simplex::new(p);
+    if pushed {
+        let (basis, values) = crossover::basis(p, &answer.point);
+        let end = simplex.push(&basis, &values, &mut watch(limits, monitor));
+        let count = simplex.iterations;
+        monitor.log(&format!("crossover: {count} pushes, {end:?}"));
+    }
+    let ended = simplex.solve(&mut watch(limits, monitor));
+    let pivots = simplex.iterations;
+    monitor.log(&format!(
+        "simplex: {ended:?} after {pivots} iterations in all"
+    ));
+    let useful = matches!(
+        ended,
+        Ended::Solved | Ended::Infeasible(_) | Ended::Unbounded(_)
+    );
+    if !useful {
+        if matches!(ended, Ended::Interrupted | Ended::Time | Ended::Iterations) {
+            // The interior point is still the best there is.
+            answer.almost = true;
+        }
         return answer;
     }
-    let basis = crossover::basis(p, &answer.point);
-    let mut simplex = Simplex::new(p);
-    let ended = simplex.solve_from_basis(&basis, &mut watch(limits, monitor));
-    let pivots = simplex.iterations;
-    monitor.log(&format!("crossover: {ended:?} after {pivots} pivots"));
-    if ended != Ended::Solved {
-        return answer;
+    if ended == Ended::Solved {
+        tighten(&mut simplex, limits, monitor);
     }
     let mut done = simplex_answer(simplex, ended);
+    if done.ended == Ended::Failed {
+        return answer;
+    }
     done.iterations += answer.iterations;
     done.solver = "clarabel";
     done
@@ -303,6 +367,9 @@ fn trivial(p: &Problem) -> Option<interior::Run> {
 }
 
 #[cfg(test)]
+mod random;
+
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::solve::conformance;
@@ -317,6 +384,13 @@ mod tests {
     #[test]
     fn simplex_conforms() {
         conformance::suite(&DualSimplex, 1e-12);
+    }
+
+    #[test]
+    fn crossover_conforms() {
+        let mut settings = Settings::default();
+        settings.options.push(("method".into(), "crossover".into()));
+        conformance::suite_with(&Clarabel, &settings, 1e-12);
     }
 
     #[test]

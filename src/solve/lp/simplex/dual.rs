@@ -77,7 +77,7 @@ impl Simplex {
             let (l, u) = (self.work_lower[j], self.work_upper[j]);
             if self.slot[j] == NONBASIC && l.is_finite() && u.is_finite() {
                 let target = if self.d[j] < 0.0 { u } else { l };
-                if self.d[j].abs() > self.tolerance {
+                if self.d[j].abs() > self.dual_tolerance {
                     self.x[j] = target;
                 }
             }
@@ -262,7 +262,7 @@ impl Simplex {
         let mut flips: Vec<u32> = Vec::new();
         let mut reserve: Option<(usize, usize)> = None;
         loop {
-            let slack = 0.5 * self.tolerance;
+            let slack = 0.5 * self.dual_tolerance;
             let limit = candidates
                 .iter()
                 .fold(f64::INFINITY, |t, c| t.min((c.2 + slack) / c.1));

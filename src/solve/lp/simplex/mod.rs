@@ -24,6 +24,7 @@
 mod dual;
 mod factor;
 mod primal;
+mod push;
 
 use super::Ended;
 use super::form::{Point, Problem, Sparse};
@@ -99,11 +100,15 @@ pub struct Simplex {
     row: Vec<f64>,
     row_index: Vec<u32>,
     row_mark: Vec<bool>,
-    /// Largest violation of a bound and of a reduced cost's sign that counts as none.
+    /// Largest violation of a bound that counts as none.
     pub tolerance: f64,
+    /// Largest violation of a reduced cost's sign that counts as none.
+    pub dual_tolerance: f64,
     /// Iterations so far.
     pub iterations: u64,
     perturb: bool,
+    /// Variables that leave the basis in a repair stay where they are.
+    keep_values: bool,
 }
 
 impl Simplex {
@@ -137,8 +142,10 @@ impl Simplex {
             row_index: Vec::new(),
             row_mark: vec![false; total],
             tolerance: 1e-9,
+            dual_tolerance: 1e-9,
             iterations: 0,
             perturb: true,
+            keep_values: false,
         };
         for i in 0..m {
             s.slot[n + i] = i as u32;
@@ -249,7 +256,9 @@ impl Simplex {
                             return None;
                         }
                         self.slot[out] = NONBASIC;
-                        self.x[out] = self.resting(out, self.x[out]);
+                        if !self.keep_values {
+                            self.x[out] = self.resting(out, self.x[out]);
+                        }
                         self.slot[logical] = slot as u32;
                         self.head[slot] = logical as u32;
                         self.edge[slot] = 1.0;
@@ -382,13 +391,37 @@ impl Simplex {
 
     /// Solves from the present basis. `stop` is asked now and then, with the iterations so far.
     pub fn solve(&mut self, stop: &mut dyn FnMut(u64) -> Option<Ended>) -> Ended {
+        self.rounds(2, stop)
+    }
+
+    /// Solves again from the basis of a first solution, with tolerances near rounding: what a
+    /// violation of δ at every bound does to the objective is δ times the sum of all multipliers,
+    /// and on walls that sum is in the thousands. Where the numbers do not allow it, the first
+    /// basis stays. Returns whether they did.
+    pub fn tighten(&mut self, stop: &mut dyn FnMut(u64) -> Option<Ended>) -> bool {
+        let usual = (self.tolerance, self.dual_tolerance);
+        for (primal, dual) in [(1e-11, 1e-11), (1e-13, 1e-12)] {
+            let basis = self.basis();
+            (self.tolerance, self.dual_tolerance) = (primal, dual);
+            let ended = self.rounds(0, stop);
+            (self.tolerance, self.dual_tolerance) = usual;
+            if ended != Ended::Solved {
+                self.set_basis(&basis);
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Alternates the methods; the first `perturbed` rounds with perturbations.
+    fn rounds(&mut self, perturbed: u32, stop: &mut dyn FnMut(u64) -> Option<Ended>) -> Ended {
         for round in 0..12 {
-            self.perturb = round < 2;
+            self.perturb = round < perturbed;
             if self.restore().is_none() {
                 return Ended::Failed;
             }
             let primal = self.primal_infeasibility() <= self.tolerance;
-            let end = if primal && self.dual_infeasibility() <= self.tolerance {
+            let end = if primal && self.dual_infeasibility() <= self.dual_tolerance {
                 return Ended::Solved;
             } else if primal {
                 self.primal(stop)

@@ -93,12 +93,12 @@ impl Simplex {
     fn priced(&self, refused: &[u32]) -> Option<usize> {
         let mut best = (0.0, None);
         for j in 0..self.n + self.m {
-            if self.slot[j] != NONBASIC || self.d[j].abs() <= self.tolerance {
+            if self.slot[j] != NONBASIC || self.d[j].abs() <= self.dual_tolerance {
                 continue;
             }
             let violation = self.dual_violation(j);
             let score = violation * violation / self.devex[j];
-            if violation > self.tolerance && score > best.0 && !refused.contains(&(j as u32)) {
+            if violation > self.dual_tolerance && score > best.0 && !refused.contains(&(j as u32)) {
                 best = (score, Some(j));
             }
         }
