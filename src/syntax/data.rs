@@ -391,7 +391,7 @@ impl<'a> DataReader<'a> {
         let open = self.at;
         if depth >= DEEPEST {
             return Err(self.error(
-                "E0304",
+                "E0244",
                 open,
                 open + 1,
                 "groups of labels are nested too deeply",
@@ -414,7 +414,7 @@ impl<'a> DataReader<'a> {
                 }
                 None => {
                     return Err(self.error(
-                        "E0301",
+                        "E0241",
                         open,
                         open + 1,
                         "this group of labels is not closed by `)`",
@@ -447,7 +447,7 @@ impl<'a> DataReader<'a> {
                         Ok((&self.text[start + 1..start + 1 + n], true))
                     }
                     _ => Err(self.error(
-                        "E0302",
+                        "E0242",
                         start,
                         start + 1,
                         "this quote is not closed on its line",
@@ -490,7 +490,7 @@ impl<'a> DataReader<'a> {
                         Ok(Tail::Text(text, self.span(from, self.at)))
                     }
                     _ => Err(self.error(
-                        "E0302",
+                        "E0242",
                         from,
                         from + 1,
                         "this quote is not closed on its line",
@@ -503,7 +503,7 @@ impl<'a> DataReader<'a> {
                     let sign = &self.text[start..start + len];
                     return Err(Box::new(
                         Diagnostic::error(
-                            "E0303",
+                            "E0243",
                             self.span(start, start + len),
                             format!("`{sign}` cannot stand in a label without quotes"),
                         )
@@ -560,7 +560,7 @@ impl<'a> DataReader<'a> {
                     end += 1;
                 }
                 return Err(Box::new(
-                    Diagnostic::error("E0305", self.span(start, end), format!("`{}` is not a number", &self.text[start..end]))
+                    Diagnostic::error("E0245", self.span(start, end), format!("`{}` is not a number", &self.text[start..end]))
                         .help("numbers look like `12`, `-3.5`, `1.5e-3`; a comma or a line end comes before the next record"),
                 ));
             }
@@ -595,7 +595,7 @@ impl<'a> DataReader<'a> {
         match self.number_of(spelled) {
             Some(x) => Ok(Tail::Number(x, span)),
             None if word.eq_ignore_ascii_case("undf") => Err(Box::new(
-                Diagnostic::error("E0306", span, "`undf` may be written only after `$onUndf`")
+                Diagnostic::error("E0246", span, "`undf` may be written only after `$onUndf`")
                     .help("for a missing value write `na`"),
             )),
             None if word_start == start => Ok(Tail::Name(word, span)),
@@ -627,7 +627,7 @@ impl<'a> DataReader<'a> {
             Some(';') => format!("{what} was expected here, not `;`"),
             Some(c) => format!("{what} was expected here, not `{c}`"),
         };
-        let d = Diagnostic::error("E0303", self.span(at, at + len), message);
+        let d = Diagnostic::error("E0243", self.span(at, at + len), message);
         Box::new(match found {
             Some(';') => d.help("is the closing `/` of these data missing?"),
             _ => d.help(
@@ -720,7 +720,7 @@ mod tests {
         );
         assert_eq!(read("#a:#b, (x,y):(u,v)"), ["#a:#b", "(x,y):(u,v)"]);
         assert_eq!(read("a (x=y) $ %;\nb"), ["a \"(x=y) $ %;\"", "b"]);
-        assert_eq!(read("a%b, c"), ["!E0303", "c"]);
+        assert_eq!(read("a%b, c"), ["!E0243", "c"]);
         assert_eq!(read(""), Vec::<String>::new());
     }
 
@@ -740,11 +740,11 @@ mod tests {
         assert_eq!(read("1990 5\n1991 6.5"), ["1990=5", "1991=6.5"]);
         assert_eq!(read("a.lo 5, b.l 3"), ["a.lo=5", "b.l=3"]);
         assert_eq!(read("a mon, b +inf, c yes"), ["a~mon", "b=inf", "c=1"]);
-        assert_eq!(read("a 1x, b 2"), ["!E0305", "b=2"]);
+        assert_eq!(read("a 1x, b 2"), ["!E0245", "b=2"]);
         assert_eq!(read("1.2.3 4"), ["1.2.3=4"]);
         assert_eq!(read("a\n 7"), ["a=7"]);
         assert_eq!(read("i1*i3 4"), ["i1*i3=4"]);
-        assert_eq!(read("(a,b 2"), ["!E0303"]);
+        assert_eq!(read("(a,b 2"), ["!E0243"]);
     }
 
     #[test]

@@ -180,7 +180,7 @@ impl<'a> TableReader<'a> {
         {
             let span = first.span;
             return Err(Box::new(
-                Diagnostic::error("E0312", self.row_span, "the label of this row reaches under a column")
+                Diagnostic::error("E0252", self.row_span, "the label of this row reaches under a column")
                     .other(span, "the first column begins here")
                     .help("move the columns to the right, or shorten the label; is a row's label missing?"),
             ));
@@ -206,7 +206,7 @@ impl<'a> TableReader<'a> {
         if to == from {
             self.skip(from + 1);
             return Err(Box::new(Diagnostic::error(
-                "E0303",
+                "E0243",
                 span,
                 "a number was expected here",
             )));
@@ -220,7 +220,7 @@ impl<'a> TableReader<'a> {
         match under {
             1 => Ok((first, value, span)),
             0 => {
-                let mut d = Diagnostic::error("E0310", span, "this value stands under no column")
+                let mut d = Diagnostic::error("E0250", span, "this value stands under no column")
                     .help("a value must stand under a part of its column's label");
                 for near in [first.wrapping_sub(1), first] {
                     if let Some(c) = self.columns.get(near) {
@@ -231,7 +231,7 @@ impl<'a> TableReader<'a> {
             }
             _ => {
                 let d = Diagnostic::error(
-                    "E0311",
+                    "E0251",
                     span,
                     "this value stands under more than one column",
                 )
@@ -339,7 +339,7 @@ mod tests {
         let t = "       aa.x    bb . y\nr1      1         2\n+      cc.(x,y)\nr1      - 1\n  +\n      c1*c3\n(r,s).k  7";
         assert_eq!(
             cells(t),
-            ["r1|aa.x=1", "r1|bb.y=2", "r1|cc.(x,y)=-1", "!E0312"]
+            ["r1|aa.x=1", "r1|bb.y=2", "r1|cc.(x,y)=-1", "!E0252"]
         );
     }
 
@@ -355,13 +355,13 @@ mod tests {
     fn misplaced_values() {
         assert_eq!(
             cells("\n       aa      bb\nr1    1\nr2         2\n"),
-            ["!E0310", "!E0310"]
+            ["!E0250", "!E0250"]
         );
         assert_eq!(
             cells("\n       aa      bb\nr1 1234567890123\nr2 x   3 "),
-            ["!E0311", "!E0310", "r2|aa=3"]
+            ["!E0251", "!E0250", "r2|aa=3"]
         );
-        assert_eq!(cells("\n       aa\nr1 5x   3 "), ["!E0305", "r1|aa=3"]);
+        assert_eq!(cells("\n       aa\nr1 5x   3 "), ["!E0245", "r1|aa=3"]);
     }
 
     #[test]
