@@ -587,6 +587,15 @@ fn files_that_are_not_as_they_should_be() {
 }
 
 #[test]
+fn doubled_dollars_may_be_indented() {
+    let s = statements(
+        "   $$set n 5\nif(a,\n   $$ifThen not set n\n   a = ;\n   $$else\n  a = %n%;\n   $$endIf\n);",
+    );
+    assert_eq!(s.len(), 1);
+    assert!(matches!(&s[0].kind, StmtKind::If(b, _) if b[0].1.len() == 1));
+}
+
+#[test]
 fn defines_and_slashes() {
     let out = read_files(
         &[(

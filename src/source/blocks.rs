@@ -38,10 +38,10 @@ impl Preprocessor<'_> {
             }
             let end = self.line_end(pos);
             let raw = self.raw(pos, end);
-            let found = raw.as_bytes()[0] == self.marks.dollar && {
-                let t = raw[1..].trim_start();
+            let found = self.marks.directive(raw).is_some_and(|start| {
+                let t = raw[start..].trim_start();
                 t[..word_len(t)].eq_ignore_ascii_case(word)
-            };
+            });
             if !found {
                 each(raw.trim_end_matches(['\n', '\r']), pos as u32);
             }
@@ -58,7 +58,7 @@ impl Preprocessor<'_> {
             .next()
             .unwrap_or("")
             .to_ascii_lowercase();
-        let dollar = self.marks.dollar;
+        let marks = self.marks.clone();
         let limit = self.max_jumps;
         let Some(frame) = self.frames.last_mut() else {
             return Ok(());
@@ -84,8 +84,8 @@ impl Preprocessor<'_> {
             let end =
                 memchr::memchr(b'\n', &text.as_bytes()[pos..]).map_or(text.len(), |n| pos + n + 1);
             let line = &text[pos..end];
-            if line.as_bytes()[0] == dollar {
-                let t = line[1..].trim_start();
+            if let Some(start) = marks.directive(line) {
+                let t = line[start..].trim_start();
                 let n = word_len(t);
                 if t[..n].eq_ignore_ascii_case("label")
                     && t[n..]

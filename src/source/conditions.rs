@@ -189,14 +189,14 @@ impl Preprocessor<'_> {
             let pos = frame.pos;
             let end = self.line_end(pos);
             let raw = self.raw(pos, end);
-            if raw.as_bytes().first() != Some(&self.marks.dollar) {
+            let Some(start) = self.marks.directive(raw) else {
                 self.advance(end);
                 continue;
-            }
-            let word_end = raw[1..]
+            };
+            let word_end = raw[start..]
                 .find(|c: char| !c.is_ascii_alphanumeric())
-                .map_or(raw.len(), |n| n + 1);
-            let word = raw[1..word_end].to_ascii_lowercase();
+                .map_or(raw.len(), |n| n + start);
+            let word = raw[start..word_end].to_ascii_lowercase();
             match word.as_str() {
                 "ontext" => {
                     let line = self.take_line();

@@ -263,7 +263,8 @@ fn civil(now: f64) -> (i64, i64, i64) {
 impl Preprocessor<'_> {
     /// A line that begins with `$`.
     pub(super) fn directive_line(&mut self, line: &Line, known: &dyn Known) -> Outcome<()> {
-        self.directives(line, 1, known)
+        let start = self.marks.directive(&line.text).unwrap_or(1);
+        self.directives(line, start, known)
     }
 
     /// The directives from byte `at` on (behind the `$`).
@@ -635,9 +636,10 @@ impl Preprocessor<'_> {
     /// `$else`, `$elseIf`, `$endIf`: whether the lines that follow count.
     pub(super) fn branch(&mut self, line: &Line, known: &dyn Known) -> Outcome<bool> {
         let text = line.text.as_str();
-        let len = word_len(&text[1..]);
-        let word = text[1..1 + len].to_ascii_lowercase();
-        let mut at = 1 + len;
+        let start = self.marks.directive(text).unwrap_or(1);
+        let len = word_len(&text[start..]);
+        let word = text[start..start + len].to_ascii_lowercase();
+        let mut at = start + len;
         let mut tag = String::new();
         if text[at..].starts_with('.') {
             let n = word_len(&text[at + 1..]);

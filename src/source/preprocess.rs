@@ -107,6 +107,20 @@ pub(super) struct Marks {
     pub(super) columns: (usize, usize),
 }
 
+impl Marks {
+    /// If a line is a directive, where its name begins: behind `$` in the first column, or behind `$$`
+    /// after blanks.
+    pub(super) fn directive(&self, line: &str) -> Option<usize> {
+        let bytes = line.as_bytes();
+        let first = bytes.iter().position(|b| !matches!(b, b' ' | b'\t'))?;
+        let doubled = bytes[first] == self.dollar && bytes.get(first + 1) == Some(&self.dollar);
+        if doubled {
+            return Some(first + 2);
+        }
+        (bytes[0] == self.dollar).then_some(1)
+    }
+}
+
 /// A file being read.
 pub(super) struct Frame {
     pub(super) file: FileId,
@@ -119,8 +133,8 @@ pub(super) struct Frame {
     pub(super) arguments: Option<Vec<String>>,
     /// Jumps to a label.
     pub(super) jumps: FxHashMap<String, usize>,
-    /// Next `%`, end-of-line mark, inline mark, slash mark; as far as known.
-    ahead: [usize; 4],
+    /// Next `%`, end-of-line mark, inline mark, slash mark, `$$`; as far as known.
+    ahead: [usize; 5],
     /// Where the file was asked for.
     pub(super) asked: Span,
 }
@@ -128,7 +142,7 @@ pub(super) struct Frame {
 impl Frame {
     /// The next marks are looked for again: reading goes on elsewhere.
     pub(super) fn forget_marks(&mut self) {
-        self.ahead = [0; 4];
+        self.ahead = [0; 5];
     }
 }
 
@@ -227,6 +241,12 @@ impl<'h> Preprocessor<'h> {
         arguments: Option<Vec<String>>,
         asked: Span,
     ) {
+        // Files of old machines end their lines with a carriage return alone.
+        let text = if text.contains('\r') && !text.contains('\n') {
+            text.replace('\r', "\n")
+        } else {
+            text
+        };
         let len = text.len();
         let bom = if text.starts_with('\u{feff}') { 3 } else { 0 };
         let file = self.map.add_file(name, text);
@@ -239,7 +259,7 @@ impl<'h> Preprocessor<'h> {
             ifs: Vec::new(),
             arguments,
             jumps: FxHashMap::default(),
-            ahead: [0; 4],
+            ahead: [0; 5],
             asked,
         });
     }
@@ -370,7 +390,7 @@ impl<'h> Preprocessor<'h> {
                         self.finish_text(l, 0)
                     } else if first == Some(self.marks.comment) {
                         Ok(())
-                    } else if first == Some(self.marks.dollar) {
+                    } else if self.marks.directive(&l.text).is_some() {
                         if grown > 0 {
                             // Statements before it come first.
                             self.advance(pos);
@@ -501,6 +521,7 @@ impl<'h> Preprocessor<'h> {
                 1 if marks.eol_on => find(&marks.eol),
                 2 if marks.inline_on => find(&marks.inline.0),
                 3 if marks.slashes => find(b"//"),
+                4 => find(&[marks.dollar, marks.dollar]),
                 _ => usize::MAX,
             };
         }

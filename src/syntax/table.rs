@@ -2,8 +2,9 @@
 //!
 //! The first line holds the labels of the columns, each further line a row: its label, then values.
 //! A line that begins with `+` is a new line of column labels, and rows begin anew. As in GAMS a
-//! value must share a character position with one column label, and with one only; the label of a
-//! row must not reach under the first column. Tabs go to the next multiple of eight.
+//! value must share a character position with one column, and with one only; a column is as wide as
+//! its label and the values already read under it. The label of a row must not reach under the first
+//! column. Tabs go to the next multiple of eight.
 //!
 //! Invariant: the reader always advances, so it ends on any text.
 
@@ -218,7 +219,13 @@ impl<'a> TableReader<'a> {
             .take_while(|c| c.from < right)
             .count();
         match under {
-            1 => Ok((first, value, span)),
+            1 => {
+                // As in GAMS a column is as wide as its label and the values under it so far.
+                let column = &mut self.columns[first];
+                column.from = column.from.min(left);
+                column.to = column.to.max(right);
+                Ok((first, value, span))
+            }
             0 => {
                 let mut d = Diagnostic::error("E0250", span, "this value stands under no column")
                     .help("a value must stand under a part of its column's label");
@@ -360,6 +367,10 @@ mod tests {
         assert_eq!(
             cells("\n       aa      bb\nr1 1234567890123\nr2 x   3 "),
             ["!E0251", "!E0250", "r2|aa=3"]
+        );
+        assert_eq!(
+            cells("\n     x     y\nb  1234     1\nc  7        .5\nd         2\n"),
+            ["b|x=1234", "!E0250", "c|x=7", "!E0250", "!E0250"]
         );
         assert_eq!(cells("\n       aa\nr1 5x   3 "), ["!E0245", "r1|aa=3"]);
     }
