@@ -127,7 +127,7 @@ fn read_everything(text: &str) {
                     symbols(list, DataKind::Values)
                 }
                 StmtKind::Table(t) => {
-                    let mut reader = TableReader::new(parser.map().expanded(), t.body, false);
+                    let mut reader = TableReader::new(parser.map().expanded(), t.body, 2, false);
                     let mut n = 0;
                     while let Some(r) = reader.next() {
                         n += 1;
