@@ -227,7 +227,7 @@ fn the_first_example_of_the_paper() {
         associated.x[0]
     );
     let nonassociated = run(6, 5, 0.65, false);
-    assert!(nonassociated.x[0] <= associated.x[0] && nonassociated.x[0] > 0.638);
+    assert!(nonassociated.x[0] <= associated.x[0] + 1e-9 && nonassociated.x[0] > 0.638);
 }
 
 /// The table of `docs/mcp.md`: sizes, counts, times.

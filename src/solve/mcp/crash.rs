@@ -19,7 +19,7 @@ const STEP_STOP: f64 = 1e-2;
 /// A short step must change a share 1/this of the active set: the path makes so few changes sooner.
 const PIVOTS_PER_FACTORISATION: usize = 500;
 /// Merit values a step is compared with: their largest.
-const MEMORY: usize = 5;
+const MEMORY: usize = 3;
 /// Directions longer than this come from a singular matrix.
 const DIRECTION_MAX: f64 = 1e10;
 /// Armijo constant of the crash.
@@ -40,8 +40,9 @@ pub(super) fn active_set(x: &[f64], f: &[f64], lower: &[f64], upper: &[f64]) -> 
         .collect()
 }
 
-/// Improves `start`; merit values of the iterates are appended to `history`.
+/// Improves `start` and returns the best iterate; merit values of the iterates are appended to `history`.
 pub(super) fn crash(run: &mut Run, start: Point, history: &mut Vec<f64>) -> Result<Point, Stop> {
+    let mut best = start.clone();
     let mut point = start;
     let mut sets = active_set(&point.x, &point.f, &run.lower, &run.upper);
     log::crash_header(run);
@@ -74,6 +75,9 @@ pub(super) fn crash(run: &mut Run, start: Point, history: &mut Vec<f64>) -> Resu
         log::crash_line(run, iteration + 1, &next, basic.len(), changes, prox, step);
         point = next;
         sets = new_sets;
+        if point.merit < best.merit {
+            best = point.clone();
+        }
         if changes == 0
             || step < STEP_STOP
             || step < 0.3 && changes * PIVOTS_PER_FACTORISATION <= run.n
@@ -81,7 +85,7 @@ pub(super) fn crash(run: &mut Run, start: Point, history: &mut Vec<f64>) -> Resu
             break;
         }
     }
-    Ok(point)
+    Ok(best)
 }
 
 /// Solves (J_BB + ρI) d = −F_B, with a larger ρ as long as the matrix is singular.

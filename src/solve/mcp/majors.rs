@@ -27,12 +27,16 @@ use super::run::{End, Point, Run, Stop};
 const ARMIJO: f64 = 1e-4;
 /// Number of variables up to which the slack start is tried early.
 const SLACK_START: usize = 1000;
+/// A smaller proximal term does not make a singular basis regular in double precision.
+const PROX_MIN: f64 = 1e-9;
 /// A ray is worth a step if t got this far.
 const RAY_MIN: f64 = 1e-2;
 /// Major iterations without a notable fall of the residual before the run is called stuck.
 const STAGNATION: usize = 60;
 /// Steps in a row to solutions ~ 1/v before the run is called stuck: it follows a ray.
 const DOUBTFUL_LIMIT: usize = 8;
+/// Pivots spent on improving what is a solution already.
+const POLISH_LIMIT: usize = 200;
 /// Gradient steps before the run is called stuck.
 const GRADIENT_LIMIT: usize = 6;
 
@@ -46,6 +50,8 @@ pub(super) fn majors(run: &mut Run, start: Point, with_crash: bool) -> Result<En
         if !run.converged(point.residual) || crashed.residual < point.residual {
             point = crashed;
         }
+        // What the crash passed through is no measure for what follows.
+        history = vec![point.merit];
     }
     Majors::new(run, point, history).run(run)
 }
@@ -214,7 +220,7 @@ impl Majors {
         // Where one linearisation is exact, a small term saves the iterations that remove it again.
         let small = if run.problem.is_linear() { 1e-5 } else { 1e-3 };
         for v in [
-            (small * r.min(1.0)).max(10.0 * self.prox),
+            (small * r.min(1.0)).max(10.0 * self.prox).max(PROX_MIN),
             (0.1 * r.min(1.0)).max(100.0 * self.prox),
             1.0,
             10.0,
@@ -225,11 +231,11 @@ impl Majors {
         }
         let limit = match run.settings.minor_iteration_limit {
             // A solution is at hand: not worth many pivots.
-            0 if polish => pivot_limit(run.n) / 10,
+            0 if polish => POLISH_LIMIT,
             0 => pivot_limit(run.n),
             given => given,
         };
-        let (mut reserve, mut ray): (Option<Candidate>, Option<Candidate>) = (None, None);
+        let (mut reserve, mut ray): (Option<(Candidate, f64)>, Option<Candidate>) = (None, None);
         let mut tries = 0;
         for (level, &v) in prox.iter().enumerate() {
             let m = if v > 0.0 {
@@ -246,6 +252,9 @@ impl Majors {
                 continue;
             }
             for start in self.starts(run, level) {
+                if polish && (start.cover || level > 2) {
+                    continue;
+                }
                 tries += 1;
                 self.seed += 1;
                 let (lower, upper) = (run.lower.clone(), run.upper.clone());
@@ -282,8 +291,13 @@ impl Majors {
                         if !found.doubtful {
                             return Ok((Some(found), tries));
                         }
-                        if reserve.is_none() {
-                            reserve = Some(found);
+                        // Of several, the one with the least merit.
+                        if let Some(point) = run.point(found.y.clone())
+                            && reserve
+                                .as_ref()
+                                .is_none_or(|(_, merit)| point.merit < *merit)
+                        {
+                            reserve = Some((found, point.merit));
                         }
                     }
                     PathEnd::Ray | PathEnd::Limit | PathEnd::Numerical | PathEnd::Loop => {
@@ -304,7 +318,7 @@ impl Majors {
                 }
             }
         }
-        Ok((reserve.or(ray), tries))
+        Ok((reserve.map(|r| r.0).or(ray), tries))
     }
 
     /// Starting states for the path, the likeliest first.
