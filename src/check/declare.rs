@@ -11,7 +11,7 @@ use crate::syntax::ast::{
     DomainName, Ident, ModelDecl, ModelItem, ParameterDecl, SetDecl, SymbolDecl, TableDecl,
     VariableKind,
 };
-use crate::syntax::data::{DataKind, DataReader, KeyPart, Tail};
+use crate::syntax::data::{DataKind, DataReader, KeyPart, Tail, width};
 use crate::syntax::table::TableReader;
 use std::rc::Rc;
 
@@ -65,6 +65,7 @@ impl Compiler {
                 );
             }
             self.symbols.get_mut(root).is_domain = true;
+            self.symbols.get_mut(root).open = false;
             out.push(DomainPosition::Set(s));
         }
         Ok(out)
@@ -141,8 +142,21 @@ impl Compiler {
             ));
         }
         let table = tables(self, dim);
+        let open = d
+            .domain
+            .as_ref()
+            .is_none_or(|l| l.iter().all(|n| &*n.name.name == "*"))
+            && dim == usize::from(matches!(kind, SymbolKind::Set { .. }))
+            && matches!(
+                kind,
+                SymbolKind::Set { .. }
+                    | SymbolKind::Parameter { scalar: false }
+                    | SymbolKind::Variable(_)
+                    | SymbolKind::Equation(_)
+            );
         Ok(self.symbols.add(Symbol {
             name: d.name.name.clone(),
+            open,
             kind,
             domain,
             text: d.text.clone().unwrap_or_default(),
@@ -176,7 +190,9 @@ impl Compiler {
     pub(super) fn declare_sets(&mut self, list: &[SetDecl], map: &SourceMap) -> Result<(), Failed> {
         for set in list {
             let mut d = set.symbol.clone();
-            if d.domain.is_none() && self.symbols.find(&d.name.name).is_none() {
+            let new = self.symbols.find(&d.name.name).is_none();
+            let explicit = d.domain.is_some();
+            if d.domain.is_none() && new {
                 d.domain = Some(vec![DomainName {
                     name: Ident {
                         name: "*".into(),
@@ -194,6 +210,9 @@ impl Compiler {
             ) else {
                 continue;
             };
+            if explicit {
+                self.symbols.get_mut(s).open = false;
+            }
             if let Some(body) = d.data {
                 let _ = self.set_data(s, body, d.name.span, map);
             }
@@ -239,6 +258,7 @@ impl Compiler {
                         );
                     }
                     None => {
+                        self.symbols.get_mut(root).open = false;
                         let set = self.symbols.get(root).clone();
                         self.symbols.add(Symbol {
                             name: n.name.clone(),
@@ -497,6 +517,7 @@ impl Compiler {
 
     /// Whether a symbol may get data now; clears it for `$onMultiR`.
     fn open_data(&mut self, s: SymbolId, span: Span) -> Result<(), Failed> {
+        self.symbols.get_mut(s).open = false;
         let symbol = self.symbols.get(s);
         let (had, declared, name, table) = (
             symbol.has_data,
@@ -520,6 +541,19 @@ impl Compiler {
         Ok(())
     }
 
+    /// A symbol declared without a domain has as many indices as its first record.
+    fn shape_by_data(&mut self, s: SymbolId, text: &str, kind: DataKind) {
+        let mut reader = DataReader::new(text, 0, kind, true);
+        if let Some(Ok(r)) = reader.next()
+            && (kind == DataKind::Set || !matches!(r.value, Tail::None))
+        {
+            let dim = width(r.key) + r.matched.map_or(0, width);
+            if dim > 0 && dim <= 20 && dim != self.symbols.get(s).dim() {
+                self.reshape(s, dim);
+            }
+        }
+    }
+
     fn set_data(
         &mut self,
         s: SymbolId,
@@ -527,7 +561,11 @@ impl Compiler {
         name: Span,
         map: &SourceMap,
     ) -> Result<(), Failed> {
+        let open = self.symbols.get(s).open;
         self.open_data(s, name)?;
+        if open {
+            self.shape_by_data(s, map.text(body), DataKind::Set);
+        }
         let symbol = self.symbols.get(s).clone();
         let (table, dim) = (symbol.table, symbol.dim());
         let mut reader = DataReader::new(map.text(body), body.lo, DataKind::Set, self.modes.undf);
@@ -843,10 +881,14 @@ impl Compiler {
         defines: &[bool],
         map: &SourceMap,
     ) -> Result<(), Failed> {
+        let open = self.symbols.get(s).open;
         self.open_data(s, name)?;
+        let text = map.text(body);
+        if open {
+            self.shape_by_data(s, text, DataKind::Values);
+        }
         let symbol = self.symbols.get(s).clone();
         let (table, dim) = (symbol.table, symbol.dim());
-        let text = map.text(body);
         let mut reader =
             DataReader::new(text, body.lo, DataKind::Values, self.modes.undf).with_arity(dim);
         let mut keys = Vec::new();

@@ -155,6 +155,10 @@ impl Compiler {
     ) -> Result<Vec<Part>, Failed> {
         let id = self.lookup_set(set)?;
         self.used(id, set.span);
+        match indices {
+            Some(i) => self.shape(id, i),
+            None => self.symbols.get_mut(id).open = false,
+        }
         let symbol = self.symbols.get(id).clone();
         let dim = symbol.dim();
         let Some(indices) = indices else {
@@ -397,6 +401,48 @@ impl Compiler {
         )
     }
 
+    /// A symbol that was declared without a domain gets as many indices as its first use has.
+    pub(super) fn shape(&mut self, s: SymbolId, indices: &[Expr]) {
+        let symbol = self.symbols.get(s);
+        if !symbol.open || indices.is_empty() {
+            return;
+        }
+        // A tuple set stands for all its positions.
+        let positions = |e: &Expr| match &e.kind {
+            ExprKind::Apply {
+                name,
+                attribute: None,
+                ..
+            } => self
+                .symbols
+                .find(&name.name)
+                .map(|i| self.symbols.get(i))
+                .filter(|i| i.is_set())
+                .map_or(1, |i| i.dim()),
+            _ => 1,
+        };
+        let dim: usize = indices.iter().map(positions).sum();
+        self.symbols.get_mut(s).open = false;
+        if dim <= 20 {
+            self.reshape(s, dim);
+        }
+    }
+
+    /// Gives a symbol without data another number of indices.
+    pub(super) fn reshape(&mut self, s: SymbolId, dim: usize) {
+        let symbol = self.symbols.get_mut(s);
+        symbol.domain = vec![DomainPosition::Universe; dim];
+        let first = symbol.table;
+        let tables = match symbol.kind {
+            SymbolKind::Variable(_) | SymbolKind::Equation(_) => attribute::COUNT,
+            _ => 1,
+        };
+        for t in first..first + tables {
+            let default = self.store.table(t).default_value();
+            *self.store.table_mut(t) = crate::data::table::Table::new(dim, default);
+        }
+    }
+
     /// Key of a symbol from its indices, all of which are under control.
     pub(super) fn key(
         &mut self,
@@ -404,6 +450,7 @@ impl Compiler {
         indices: &[Expr],
         span: Span,
     ) -> Result<Key, Failed> {
+        self.shape(of, indices);
         let dim = self.symbols.get(of).dim();
         // A tuple set under control stands for all its positions: `p(arc)`.
         let mut parts = Vec::with_capacity(dim);

@@ -139,6 +139,7 @@ impl Compiler {
             dynamic: false,
             is_domain: false,
             unordered: false,
+            open: false,
         });
         debug_assert_eq!(universe, UNIVERSE);
         Self {

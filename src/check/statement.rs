@@ -307,6 +307,7 @@ impl Compiler {
             });
         }
         let s = self.lookup(&t.name)?;
+        self.shape(s, &t.indices);
         let symbol = self.symbols.get(s).clone();
         let target = match &symbol.kind {
             SymbolKind::Parameter { .. } if t.attribute.is_none() => Target::Table(symbol.table),
@@ -463,6 +464,7 @@ impl Compiler {
 
     fn equate(&mut self, e: &Equate, span: Span) -> Result<(), Failed> {
         let s = self.lookup(&e.name)?;
+        self.shape(s, &e.indices);
         let symbol = self.symbols.get(s).clone();
         let SymbolKind::Equation(defined) = symbol.kind else {
             return self.fail(

@@ -100,6 +100,8 @@ pub struct Symbol {
     pub is_domain: bool,
     /// A set whose elements are not in the order of the universe.
     pub unordered: bool,
+    /// Declared without a domain and not used yet: the first use says how many indices there are.
+    pub open: bool,
 }
 
 impl Symbol {

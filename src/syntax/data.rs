@@ -100,7 +100,7 @@ pub struct DataReader<'a> {
 const DEEPEST: usize = 50;
 
 /// Positions that the parts of a key take.
-pub(super) fn width(key: &[KeyPart<'_>]) -> usize {
+pub fn width(key: &[KeyPart<'_>]) -> usize {
     key.iter()
         .map(|p| match p {
             KeyPart::Group(g) => g.first().map_or(1, |k| width(k)),
@@ -361,7 +361,7 @@ impl<'a> DataReader<'a> {
                 self.blanks(false);
                 if self.peek() == Some(b'*') {
                     self.at += 1;
-                    self.blanks(false);
+                    self.blanks(true);
                     let (to, _) = self.label()?;
                     return Ok(KeyPart::Range {
                         from: text,
