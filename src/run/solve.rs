@@ -193,9 +193,16 @@ impl Machine<'_> {
         };
         write(&g.origin.columns, attribute::L, &a.outcome.level);
         write(&g.origin.columns, attribute::M, &a.outcome.column_marginal);
-        write(&g.origin.rows, attribute::L, &a.activity);
-        write(&g.origin.rows, attribute::M, &a.outcome.row_marginal);
         let rows = &g.instance.rows;
+        // A row without relation has its constant inside its level.
+        let levels: Vec<f64> = (0..rows.rhs.len())
+            .map(|i| match rows.relation[i] {
+                Relation::Free => a.activity[i] - rows.rhs[i],
+                _ => a.activity[i],
+            })
+            .collect();
+        write(&g.origin.rows, attribute::L, &levels);
+        write(&g.origin.rows, attribute::M, &a.outcome.row_marginal);
         let lower: Vec<f64> = rows
             .relation
             .iter()
