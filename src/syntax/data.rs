@@ -743,13 +743,13 @@ mod tests {
         assert_eq!(read("a 1x, b 2"), ["!E0245", "b=2"]);
         assert_eq!(read("1.2.3 4"), ["1.2.3=4"]);
         assert_eq!(read("a\n 7"), ["a=7"]);
-        let one = DataReader::new("a .5", 0, DataKind::Values, false)
-            .with_arity(1)
-            .next()
-            .map(|r| r.map(|r| r.value));
-        assert!(matches!(one, Some(Ok(Tail::Number(0.5, _)))), "{one:?}");
+        let mut one = DataReader::new("a .5", 0, DataKind::Values, false).with_arity(1);
+        match one.next() {
+            Some(Ok(r)) => assert!(matches!(r.value, Tail::Number(0.5, _))),
+            other => panic!("{other:?}"),
+        }
         assert_eq!(read("i1*i3 4"), ["i1*i3=4"]);
-        assert_eq!(read("(a,b 2"), ["!E0243"]);
+        assert_eq!(read("(a,b 2"), ["!E0241"]);
     }
 
     #[test]
