@@ -390,7 +390,7 @@ pub enum CodeKind {
     /// `if`
     If(Vec<(Node, Vec<Code>)>, Vec<Code>),
     /// `break`
-    Break(Option<Node>),
+    Break(Option<Node>, u32),
     /// `continue`
     Continue(Option<Node>),
     /// `display`

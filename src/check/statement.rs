@@ -180,7 +180,7 @@ impl Compiler {
                 }
                 CodeKind::If(checked, self.body(otherwise, map)?)
             }
-            StmtKind::Break(c) => CodeKind::Break(self.optional(c.as_ref())?),
+            StmtKind::Break(c, loops) => CodeKind::Break(self.optional(c.as_ref())?, *loops),
             StmtKind::Continue(c) => CodeKind::Continue(self.optional(c.as_ref())?),
             StmtKind::Display(c, items) => {
                 CodeKind::Display(self.optional(c.as_ref())?, self.shown(items)?)

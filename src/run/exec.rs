@@ -59,7 +59,8 @@ impl Machine<'_> {
             CodeKind::While(cond, body) => {
                 while truth(self.eval(cond, frame)) {
                     match self.turn(body, frame) {
-                        Flow::Break => break,
+                        Flow::Break(loops) if loops > 1 => return Flow::Break(loops - 1),
+                        Flow::Break(_) => break,
                         Flow::Stop => return Flow::Stop,
                         _ => {}
                     }
@@ -68,7 +69,8 @@ impl Machine<'_> {
             }
             CodeKind::Repeat(body, until) => loop {
                 match self.turn(body, frame) {
-                    Flow::Break => break,
+                    Flow::Break(loops) if loops > 1 => return Flow::Break(loops - 1),
+                    Flow::Break(_) => break,
                     Flow::Stop => return Flow::Stop,
                     _ => {}
                 }
@@ -95,9 +97,9 @@ impl Machine<'_> {
                 }
                 return self.block(otherwise, frame);
             }
-            CodeKind::Break(cond) => {
+            CodeKind::Break(cond, loops) => {
                 if self.holds(cond.as_ref(), frame) {
-                    return Flow::Break;
+                    return Flow::Break(*loops);
                 }
             }
             CodeKind::Continue(cond) => {
@@ -166,10 +168,14 @@ impl Machine<'_> {
                 once = true;
                 false
             });
-            return if once && self.turn(body, frame) == Flow::Stop {
-                Flow::Stop
+            return match if once {
+                self.turn(body, frame)
             } else {
                 Flow::Next
+            } {
+                Flow::Stop => Flow::Stop,
+                Flow::Break(loops) if loops > 1 => Flow::Break(loops - 1),
+                _ => Flow::Next,
             };
         }
         let tuples = self.tuples(d, frame);
@@ -178,7 +184,8 @@ impl Machine<'_> {
                 frame[s as usize] = l;
             }
             match self.turn(body, frame) {
-                Flow::Break => break,
+                Flow::Break(loops) if loops > 1 => return Flow::Break(loops - 1),
+                Flow::Break(_) => break,
                 Flow::Stop => return Flow::Stop,
                 _ => {}
             }
@@ -214,7 +221,8 @@ impl Machine<'_> {
                 return Flow::Next;
             }
             match self.turn(body, frame) {
-                Flow::Break => return Flow::Next,
+                Flow::Break(loops) if loops > 1 => return Flow::Break(loops - 1),
+                Flow::Break(_) => return Flow::Next,
                 Flow::Stop => return Flow::Stop,
                 _ => {}
             }

@@ -47,8 +47,8 @@ const MAX_KEPT_ERRORS: usize = 30;
 pub enum Flow {
     /// Goes on.
     Next,
-    /// Leaves the innermost loop.
-    Break,
+    /// Leaves so many loops.
+    Break(u32),
     /// Next turn of the innermost loop.
     Continue,
     /// Ends the run.

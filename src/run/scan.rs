@@ -34,7 +34,7 @@ pub fn scanned(kind: &CodeKind) -> Box<[TableId]> {
             by.iter().for_each(|b| expr(b, false, o));
         }
         CodeKind::If(arms, _) => arms.iter().for_each(|(c, _)| expr(c, false, o)),
-        CodeKind::Break(c) | CodeKind::Continue(c) | CodeKind::Display(c, _) => {
+        CodeKind::Break(c, _) | CodeKind::Continue(c) | CodeKind::Display(c, _) => {
             c.iter().for_each(|c| expr(c, false, o))
         }
         CodeKind::Abort { condition, .. } => condition.iter().for_each(|c| expr(c, false, o)),

@@ -96,8 +96,8 @@ pub enum StmtKind {
     Repeat(Vec<Stmt>, Expr),
     /// `if(c, … elseif c, … else …);`
     If(Vec<(Expr, Vec<Stmt>)>, Vec<Stmt>),
-    /// `break$c;`
-    Break(Option<Expr>),
+    /// `break$c n;` leaves `n` loops (1 where no number stands).
+    Break(Option<Expr>, u32),
     /// `continue$c;`
     Continue(Option<Expr>),
     /// `display$c 'text', p, x.l;`

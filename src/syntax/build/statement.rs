@@ -77,8 +77,11 @@ impl Builder<'_> {
                 }
                 Ok(StmtKind::If(branches, otherwise))
             }
-            Rule::break_statement => Ok(StmtKind::Break(self.only_condition(pair)?)),
-            Rule::continue_statement => Ok(StmtKind::Continue(self.only_condition(pair)?)),
+            Rule::break_statement => {
+                let (condition, loops) = self.jump(pair)?;
+                Ok(StmtKind::Break(condition, loops))
+            }
+            Rule::continue_statement => Ok(StmtKind::Continue(self.jump(pair)?.0)),
             Rule::display_statement => {
                 let (condition, items, _) = self.display(pair)?;
                 Ok(StmtKind::Display(condition, items))
@@ -277,20 +280,28 @@ impl Builder<'_> {
         })
     }
 
-    fn only_condition(&self, pair: Pair<'_, Rule>) -> Built<Option<Expr>> {
+    /// The condition of `break` and `continue`, and the number of loops.
+    fn jump(&self, pair: Pair<'_, Rule>) -> Built<(Option<Expr>, u32)> {
         let mut conditions = Vec::new();
+        let mut loops = 1;
         for p in parts(pair) {
             match p.as_rule() {
                 Rule::condition => conditions.push(p),
                 _ => {
-                    return Err(Box::new(
-                        Diagnostic::error("E0217", self.span(&p), "`break` leaves one loop only")
-                            .help("put the outer loop's end into a condition"),
-                    ));
+                    loops = p.as_str().parse().ok().filter(|n| *n > 0).ok_or_else(|| {
+                        Box::new(
+                            Diagnostic::error(
+                                "E0217",
+                                self.span(&p),
+                                "the number of loops to leave is a whole number from 1 on",
+                            )
+                            .help("`break;` leaves one loop, `break 2;` two"),
+                        )
+                    })?;
                 }
             }
         }
-        self.conditions(conditions)
+        Ok((self.conditions(conditions)?, loops))
     }
 
     fn display(&self, pair: Pair<'_, Rule>) -> Built<(Option<Expr>, Vec<DisplayItem>, bool)> {
