@@ -191,15 +191,22 @@ impl Compiler {
             .help(format!(
                 "solve a model with `{name}` first, or assign `{name}.l`"
             )),
-            _ => Diagnostic::error("E0319", span, format!("the {kind} `{name}` has no values"))
-                .label("never assigned above")
-                .other(declared, "declared without data here")
-                .help(match s.kind {
-                    SymbolKind::Set { .. } => {
-                        format!("give it elements: `{name} / a, b /`, or `{name}(…) = yes;`")
-                    }
-                    _ => format!("give it data: `{name} / … /`, or assign it before"),
-                }),
+            _ => Diagnostic::error(
+                "E0319",
+                span,
+                format!(
+                    "the {kind} `{name}` has no {}",
+                    if kind == "set" { "elements" } else { "values" }
+                ),
+            )
+            .label("never assigned above")
+            .other(declared, "declared without data here")
+            .help(match s.kind {
+                SymbolKind::Set { .. } => {
+                    format!("give it elements: `{name} / a, b /`, or `{name}(…) = yes;`")
+                }
+                _ => format!("give it data: `{name} / … /`, or assign it before"),
+            }),
         };
         self.report(d);
         // One such message per symbol.

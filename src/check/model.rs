@@ -253,10 +253,7 @@ impl Compiler {
                     ),
                 )
                 .label("indexed")
-                .other(
-                    symbol.declared,
-                    format!("declared with {} indices here", symbol.dim()),
-                )
+                .other(symbol.declared, "declared with indices here")
                 .help("declare a free scalar variable and define it in an equation"),
             );
         }

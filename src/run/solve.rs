@@ -380,7 +380,12 @@ impl Machine<'_> {
     fn solve_message(&self, g: &Generated, a: &Answer) -> Option<String> {
         let r = &a.residuals;
         let mut parts: Vec<String> = a.outcome.message.iter().cloned().collect();
-        if a.status == ModelStatus::IntermediateInfeasible {
+        if matches!(
+            a.status,
+            ModelStatus::Infeasible
+                | ModelStatus::LocallyInfeasible
+                | ModelStatus::IntermediateInfeasible
+        ) {
             let worst = match (r.worst_row, r.worst_column) {
                 (Some(i), _) => Some(self.origin_name(&g.origin.rows, i)),
                 (_, Some(j)) => Some(self.origin_name(&g.origin.columns, j)),
