@@ -36,6 +36,21 @@ pub enum Ended {
     Failed,
 }
 
+impl Ended {
+    /// For the log.
+    fn word(&self) -> &'static str {
+        match self {
+            Self::Solved => "solved",
+            Self::Infeasible(_) => "infeasible",
+            Self::Unbounded(_) => "unbounded",
+            Self::Iterations => "iteration limit",
+            Self::Time => "time limit",
+            Self::Interrupted => "interrupted",
+            Self::Failed => "stuck",
+        }
+    }
+}
+
 /// Limits of a method.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
@@ -283,32 +298,40 @@ fn auto(p: &Problem, limits: &Limits, monitor: &mut dyn Monitor) -> Answer {
 /// Interior point, then a basis from it, then the simplex method.
 fn finished(p: &Problem, limits: &Limits, monitor: &mut dyn Monitor) -> Answer {
     let mut answer = interior_only(p, limits, monitor);
-    let pushed = match answer.ended {
-        Ended::Solved => true,
-        // A direction is no point: the simplex method finds one from which it leads on.
-        Ended::Unbounded(_) | Ended::Failed => false,
-        _ => return answer,
-    };
     let mut simplex = Simplex::new(p);
-    if pushed {
-        let (basis, values) = crossover::basis(p, &answer.point);
-        let end = simplex.push(&basis, &values, &mut watch(limits, monitor));
-        let count = simplex.iterations;
-        monitor.log(&format!("crossover: {count} pushes, {end:?}"));
+    let mut cut = *limits;
+    match answer.ended {
+        Ended::Solved => {
+            let (basis, values) = crossover::basis(p, &answer.point);
+            let end = simplex.push(&basis, &values, &mut watch(limits, monitor));
+            let count = simplex.iterations;
+            let word = if end.is_ok() { "" } else { ", incomplete" };
+            monitor.log(&format!("crossover: {count} pushes{word}"));
+        }
+        // A direction is no point: the simplex method finds one from which it leads on.
+        Ended::Unbounded(_) | Ended::Failed => {}
+        Ended::Infeasible(ref y) if proves_infeasible(p, y) => return answer,
+        // An exact proof is worth some effort.
+        Ended::Infeasible(_) => {
+            cut.iterations = cut.iterations.min(1000 + 2 * (p.m() + p.n()) as u64);
+        }
+        _ => return answer,
     }
-    let ended = simplex.solve(&mut watch(limits, monitor));
+    let ended = simplex.solve(&mut watch(&cut, monitor));
     let pivots = simplex.iterations;
     monitor.log(&format!(
-        "simplex: {ended:?} after {pivots} iterations in all"
+        "simplex: {} after {pivots} iterations in all",
+        ended.word()
     ));
     let useful = matches!(
         ended,
         Ended::Solved | Ended::Infeasible(_) | Ended::Unbounded(_)
     );
     if !useful {
-        if matches!(ended, Ended::Interrupted | Ended::Time | Ended::Iterations) {
+        let cut_short = matches!(ended, Ended::Interrupted | Ended::Time | Ended::Iterations);
+        if answer.ended == Ended::Solved && cut_short {
             // The interior point is still the best there is.
-            answer.almost = true;
+            answer.ended = ended;
         }
         return answer;
     }
@@ -322,6 +345,39 @@ fn finished(p: &Problem, limits: &Limits, monitor: &mut dyn Monitor) -> Answer {
     done.iterations += answer.iterations;
     done.solver = "clarabel";
     done
+}
+
+/// Whether y clearly has yᵀAx < yᵀs for all x and all activities s within bounds. Stricter than
+/// what [`crate::model::certificate`] asks, in the problem's units.
+fn proves_infeasible(p: &Problem, y: &[f64]) -> bool {
+    let top = y.iter().fold(0.0f64, |t, v| t.max(v.abs()));
+    let mut margin = 0.0;
+    let mut size = 0.0f64;
+    for (i, &y) in y.iter().enumerate() {
+        let side = if y > 0.0 {
+            p.row_lower[i]
+        } else {
+            p.row_upper[i]
+        };
+        if side.is_finite() {
+            margin += y * side;
+            size = size.max((y * side).abs());
+        } else if y.abs() > 1e-10 * top {
+            return false;
+        }
+    }
+    for j in 0..p.n() {
+        let terms = p.columns.line(j).map(|(i, a)| a * y[i]);
+        let (reach, largest) = terms.fold((0.0, 0.0f64), |(r, l), t| (r + t, l.max(t.abs())));
+        let bound = if reach > 0.0 { p.upper[j] } else { p.lower[j] };
+        if bound.is_finite() {
+            margin -= reach * bound;
+            size = size.max((reach * bound).abs());
+        } else if reach.abs() > 1e-10 * largest {
+            return false;
+        }
+    }
+    margin > 1e-6 * size
 }
 
 /// Problems without a free column or without a constraint, which Clarabel does not take.

@@ -10,7 +10,7 @@ use feral::lu::{LuParams, LuSingularAction, SparseColMatrix, SparseLu};
 const MARK: f64 = 0.987_654_321_012_345_6;
 
 /// Updates before a fresh factorisation.
-const MOST_UPDATES: usize = 100;
+const MOST_UPDATES: usize = 150;
 
 /// A column as row–value pairs.
 pub type Entries = Vec<(usize, f64)>;
@@ -18,7 +18,9 @@ pub type Entries = Vec<(usize, f64)>;
 /// A factorised basis.
 pub struct Factor {
     lu: SparseLu,
-    /// Work of the updates so far; grows until a fresh factorisation is cheaper.
+    /// Nonzeros of the factor when it was fresh.
+    fresh: usize,
+    /// What the last sparse solve gave.
     solution: Entries,
 }
 
@@ -54,6 +56,7 @@ impl Factor {
             return Err(Failure::Dependent(dependent));
         }
         Ok(Self {
+            fresh: lu.factor_nnz(),
             lu,
             solution: Vec::new(),
         })
@@ -93,8 +96,10 @@ impl Factor {
 
     /// Whether a fresh factorisation is due.
     pub fn is_worn(&self) -> bool {
+        // A factorisation costs hundreds of times what its nonzeros suggest, so the solves may grow
+        // a good deal before a fresh one pays.
         self.updates() >= MOST_UPDATES
             || self.lu.should_refactor_growth()
-            || (self.updates() >= 20 && self.lu.update_work() > 4 * self.lu.factor_nnz())
+            || self.lu.eta_ops() + self.lu.factor_nnz() > 3 * self.fresh + 1000
     }
 }
