@@ -568,7 +568,8 @@ impl Compiler {
         }
         let symbol = self.symbols.get(s).clone();
         let (table, dim) = (symbol.table, symbol.dim());
-        let mut reader = DataReader::new(map.text(body), body.lo, DataKind::Set, self.modes.undf);
+        let mut reader = DataReader::new(map.text(body), body.lo, DataKind::Set, self.modes.undf)
+            .with_arity(dim);
         let mut last: Option<Label> = self.last_label(table, dim);
         let mut unordered = symbol.unordered;
         while let Some(record) = reader.next() {

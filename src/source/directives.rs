@@ -31,7 +31,6 @@ const SILENT_SWITCHES: &[&str] = &[
     "macro",
     "ident",
     "recurse",
-    "delim",
     "embedded",
     "checkerrorlevel",
     "filtered",
@@ -156,6 +155,8 @@ const OTHERS: &[&str] = &[
     "offorder",
     "ondotl",
     "offdotl",
+    "ondelim",
+    "offdelim",
     "log",
     "echo",
     "echon",
@@ -358,6 +359,10 @@ impl Preprocessor<'_> {
             "end" => self.on_end = on,
             "eolcom" => {
                 self.marks.eol_on = on;
+                self.marks_changed();
+            }
+            "delim" => {
+                self.marks.delimited = on;
                 self.marks_changed();
             }
             "inline" => {

@@ -23,6 +23,8 @@ pub use preprocess::{Ending, Known, NothingKnown, PreprocessOptions, SymbolKindN
 pub(crate) use preprocess::{Preprocessor, quoted_end};
 
 /// What reading a line gives; a diagnostic is boxed because it is large and rare.
+pub(crate) use preprocess::DELIMITED;
+
 pub(crate) type Outcome<T> = Result<T, Box<Diagnostic>>;
 
 /// A diagnostic as the outcome.

@@ -103,9 +103,14 @@ pub(super) struct Marks {
     pub(super) inline: (Vec<u8>, Vec<u8>),
     pub(super) inline_on: bool,
     pub(super) slashes: bool,
+    /// `$onDelim`: lines of data are lists with commas; each is marked by [`DELIMITED`].
+    pub(super) delimited: bool,
     /// First and last column that count, from 1.
     pub(super) columns: (usize, usize),
 }
+
+/// Stands before each line of data under `$onDelim`.
+pub(crate) const DELIMITED: &str = "\u{1e}";
 
 impl Marks {
     /// If a line is a directive, where its name begins: behind `$` in the first column, or behind `$$`
@@ -192,6 +197,7 @@ impl<'h> Preprocessor<'h> {
                 inline: (b"/*".to_vec(), b"*/".to_vec()),
                 inline_on: false,
                 slashes: options.slash_comments,
+                delimited: false,
                 columns: (1, usize::MAX),
             },
             modes: Modes::default(),
@@ -501,7 +507,8 @@ impl<'h> Preprocessor<'h> {
 
     /// End of the run of lines from `pos` on that can be copied as they are.
     fn plain_end(&mut self, pos: usize) -> usize {
-        if !self.macros.is_empty() || self.marks.columns != (1, usize::MAX) {
+        if !self.macros.is_empty() || self.marks.columns != (1, usize::MAX) || self.marks.delimited
+        {
             return pos;
         }
         let Some(frame) = self.frames.last_mut() else {
@@ -735,6 +742,11 @@ impl<'h> Preprocessor<'h> {
                     return refuse(Diagnostic::error("E0111", span, e.message).help(e.help));
                 }
             }
+        }
+        if self.marks.delimited && !line.text[from..end].trim().is_empty() {
+            let (lo, _) = line.origin(from, end);
+            let file = line.file();
+            self.map.push_substitute(DELIMITED, file, lo, lo);
         }
         line.emit(&mut self.map, from, end);
         let (_, hi) = line.origin(0, line.text.len());

@@ -196,7 +196,15 @@ impl<'a> DataReader<'a> {
         let start = self.at;
         self.key.clear();
         self.matched.clear();
-        match self.record(start) {
+        let outcome = if self.peek() == Some(MARK) {
+            match self.delimited() {
+                Some(outcome) => outcome,
+                None => return self.next(),
+            }
+        } else {
+            self.record(start)
+        };
+        match outcome {
             Ok(value) => {
                 let span = self.span(start, self.at);
                 Some(Ok(Record {
@@ -217,6 +225,68 @@ impl<'a> DataReader<'a> {
                     memchr::memchr2(b',', b'\n', &bytes[from..]).map_or(bytes.len(), |n| from + n);
                 Some(Err(*d))
             }
+        }
+    }
+
+    /// A line under `$onDelim`: labels, then the value or the text, with commas between. None: empty.
+    fn delimited(&mut self) -> Option<Result<Tail<'a>, Box<Diagnostic>>> {
+        let (lo, hi) = self.marked_line();
+        self.at = hi;
+        let mut fields = Fields::new(self.text, lo, hi).peekable();
+        fields.peek()?;
+        let arity = if self.arity == usize::MAX {
+            1
+        } else {
+            self.arity
+        };
+        for _ in 0..arity {
+            let Some((from, to)) = fields.next() else {
+                return Some(Err(self.expected("a comma and a further label", hi)));
+            };
+            self.key.push(self.field_label(from, to));
+        }
+        let Some((from, to)) = fields.next() else {
+            return Some(Ok(Tail::None));
+        };
+        let text = &self.text[from..to];
+        let span = self.span(from, to);
+        Some(match self.kind {
+            DataKind::Set if text.is_empty() => Ok(Tail::None),
+            DataKind::Set => Ok(Tail::Text(Cow::Borrowed(text), span)),
+            DataKind::Values => self.field_value(from, to),
+        })
+    }
+
+    /// Behind the mark of a line under `$onDelim`, up to its end.
+    pub(super) fn marked_line(&self) -> (usize, usize) {
+        let lo = self.at + 1;
+        let bytes = self.text.as_bytes();
+        let hi = memchr::memchr(b'\n', &bytes[lo..]).map_or(bytes.len(), |n| lo + n);
+        (lo, hi)
+    }
+
+    pub(super) fn field_label(&self, from: usize, to: usize) -> KeyPart<'a> {
+        KeyPart::Label {
+            text: &self.text[from..to],
+            quoted: true,
+            span: self.span(from, to),
+        }
+    }
+
+    /// A value between commas; nothing is 0.
+    pub(super) fn field_value(&self, from: usize, to: usize) -> Result<Tail<'a>, Box<Diagnostic>> {
+        let text = &self.text[from..to];
+        let span = self.span(from, to);
+        if text.is_empty() {
+            return Ok(Tail::Number(0.0, span));
+        }
+        match self.number_of(text) {
+            Some(x) => Ok(Tail::Number(x, span)),
+            None if text.bytes().all(is_label) => Ok(Tail::Name(text, span)),
+            None => Err(Box::new(
+                Diagnostic::error("E0305", span, format!("`{text}` is not a number"))
+                    .help("under `$onDelim` the value stands behind the last comma"),
+            )),
         }
     }
 
@@ -634,6 +704,57 @@ impl<'a> DataReader<'a> {
                 "labels with other signs than letters, digits, `_`, `-`, `+` stand in quotes",
             ),
         })
+    }
+}
+
+/// Marks a line of data under `$onDelim`.
+pub(super) const MARK: u8 = crate::source::DELIMITED.as_bytes()[0];
+
+/// The fields of a line with commas between them: without blanks around them and without quotes.
+pub(super) struct Fields<'t> {
+    text: &'t str,
+    at: Option<usize>,
+    end: usize,
+}
+
+impl<'t> Fields<'t> {
+    /// The fields of `lo..hi`; none if nothing stands there.
+    pub(super) fn new(text: &'t str, lo: usize, hi: usize) -> Self {
+        let empty = text[lo..hi].trim().is_empty();
+        Self {
+            text,
+            at: (!empty).then_some(lo),
+            end: hi,
+        }
+    }
+}
+
+impl Iterator for Fields<'_> {
+    type Item = (usize, usize);
+
+    fn next(&mut self) -> Option<(usize, usize)> {
+        let mut from = self.at?;
+        let bytes = self.text.as_bytes();
+        while from < self.end && is_space(bytes[from]) {
+            from += 1;
+        }
+        let (mut field, mut after) = ((from, from), from);
+        if let Some(&q @ (b'\'' | b'"')) = bytes[..self.end].get(from)
+            && let Some(n) = memchr::memchr(q, &bytes[from + 1..self.end])
+        {
+            field = (from + 1, from + 1 + n);
+            after = from + n + 2;
+        }
+        let comma = memchr::memchr(b',', &bytes[after..self.end]).map(|n| after + n);
+        if after == from {
+            let mut to = comma.unwrap_or(self.end);
+            while to > from && is_space(bytes[to - 1]) {
+                to -= 1;
+            }
+            field = (from, to);
+        }
+        self.at = comma.map(|c| c + 1);
+        Some(field)
     }
 }
 

@@ -8,7 +8,7 @@
 //!
 //! Invariant: the reader always advances, so it ends on any text.
 
-use super::data::{DataKind, DataReader, KeyPart, Tail, width};
+use super::data::{DataKind, DataReader, Fields, KeyPart, MARK, Tail, width};
 use crate::diag::Diagnostic;
 use crate::source::Span;
 
@@ -56,6 +56,8 @@ pub struct TableReader<'a> {
     in_row: bool,
     /// Index positions of rows and columns together.
     dim: usize,
+    /// Cells of a line under `$onDelim` that are still to be given: column and bytes, last first.
+    fields: Vec<(usize, usize, usize)>,
 }
 
 impl<'a> TableReader<'a> {
@@ -77,6 +79,7 @@ impl<'a> TableReader<'a> {
             reader: DataReader::new("", 0, DataKind::Values, undf),
             in_row: false,
             dim,
+            fields: Vec::new(),
         }
     }
 
@@ -89,6 +92,17 @@ impl<'a> TableReader<'a> {
     #[allow(clippy::should_implement_trait)]
     pub fn next(&mut self) -> Option<Result<Cell<'_, 'a>, Diagnostic>> {
         loop {
+            if let Some((column, from, to)) = self.fields.pop() {
+                return Some(match self.reader.field_value(from, to) {
+                    Ok(value) => Ok(Cell {
+                        row: &self.row,
+                        column: &self.columns[column].key,
+                        value,
+                        span: self.span(from, to),
+                    }),
+                    Err(d) => Err(*d),
+                });
+            }
             if self.in_row && self.reader.more() {
                 return Some(match self.cell() {
                     Ok((column, value, span)) => Ok(Cell {
@@ -124,6 +138,10 @@ impl<'a> TableReader<'a> {
         if line.is_empty() {
             return Ok(());
         }
+        if line.as_bytes()[0] == MARK {
+            self.delimited_line(stop - line.len(), stop);
+            return Ok(());
+        }
         if line.starts_with('+') {
             let plus = stop - line.len();
             self.offset = column_after(&self.text[line_start..plus + 1], 0);
@@ -143,6 +161,44 @@ impl<'a> TableReader<'a> {
         } else {
             self.read_row_label()
         }
+    }
+
+    /// A line under `$onDelim`: the labels of the row, or what stands above them, come first.
+    fn delimited_line(&mut self, start: usize, stop: usize) {
+        self.line = &self.text[start..stop];
+        self.line_base = start as u32;
+        self.reader.restart(self.line, self.line_base);
+        let (lo, hi) = self.reader.marked_line();
+        let mut fields = Fields::new(self.line, lo, hi);
+        let rows = self.dim.saturating_sub(1).max(1);
+        let first: Vec<_> = fields.by_ref().take(rows).collect();
+        if first.is_empty() {
+            return;
+        }
+        if self.header {
+            self.header = false;
+            self.columns.clear();
+            for (from, to) in fields {
+                self.columns.push(Column {
+                    key: vec![self.reader.field_label(from, to)],
+                    from,
+                    to,
+                    span: self.span(from, to),
+                });
+            }
+            return;
+        }
+        self.row = first
+            .iter()
+            .map(|&(from, to)| self.reader.field_label(from, to))
+            .collect();
+        self.fields = fields
+            .enumerate()
+            .take(self.columns.len())
+            .filter(|(_, (from, to))| to > from)
+            .map(|(c, (from, to))| (c, from, to))
+            .collect();
+        self.fields.reverse();
     }
 
     fn read_header(&mut self) -> Result<(), Box<Diagnostic>> {

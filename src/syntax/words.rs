@@ -56,7 +56,7 @@ impl Word {
 
 /// Blanks, line ends and the marks that old files end with.
 pub(super) fn is_blank(b: u8) -> bool {
-    matches!(b, b' ' | b'\t' | b'\r' | b'\n' | 0x0c | 0x0b | 0x1a)
+    matches!(b, b' ' | b'\t' | b'\r' | b'\n' | 0x0c | 0x0b | 0x1a | 0x1e)
 }
 
 /// The first byte of a name.
