@@ -105,6 +105,7 @@ fn claims(text: &str) -> Claims {
             match words[..] {
                 ["error", l, ..] => drop(c.errors.insert(l.parse().expect("a line"))),
                 ["execution", l, ..] => drop(c.executions.insert(l.parse().expect("a line"))),
+                ["gams", ..] => {}
                 ["exit", e, ..] => c.exit = Some(e.parse().expect("a status")),
                 _ => panic!("line {}: {line}", n + 1),
             }
