@@ -608,7 +608,8 @@ fn takes_infinity(f: Function, x: f64) -> bool {
     }
 }
 
-/// x rounded to n decimals, halves away from zero; 2.345 rounds to 2.35 although its double is below.
+/// x rounded to n decimals, halves away from zero, as x·10ⁿ is in doubles (like GAMS: 2.345 gives 2.35,
+/// 1.005 gives 1.00).
 fn round_to(x: f64, n: f64) -> f64 {
     let half_away = |v: f64| (v.abs() + 0.5).floor().copysign(v);
     if n == 0.0 {
@@ -619,8 +620,7 @@ fn round_to(x: f64, n: f64) -> f64 {
     if !scaled.is_finite() || scaled.abs() > 4.5e15 {
         return x;
     }
-    let nudged = scaled * (1.0 + 4.0 * f64::EPSILON);
-    let r = half_away(nudged);
+    let r = half_away(scaled);
     if n < 0.0 {
         r * 10f64.powi(-n as i32)
     } else {

@@ -278,6 +278,8 @@ pub const MODEL_ATTRIBUTES: &[&str] = &[
     "numnlins",
     "numinfes",
     "suminfes",
+    "tmodstat",
+    "tsolstat",
     "maxinfes",
     "meaninfes",
     "numdepnd",

@@ -72,6 +72,8 @@ pub(crate) struct Compiler {
     texts_allowed: bool,
     /// Depth of loops and ifs.
     nesting: usize,
+    /// A `put` above names a file.
+    put_named: bool,
     modes: Modes,
 }
 
@@ -153,6 +155,7 @@ impl Compiler {
             in_equation: false,
             texts_allowed: false,
             nesting: 0,
+            put_named: false,
             modes: Modes::default(),
         }
     }

@@ -202,7 +202,7 @@ impl Compiler {
                 }
                 return Ok(());
             }
-            StmtKind::Put(p) => self.put(p)?,
+            StmtKind::Put(p) => self.put(p, span)?,
             StmtKind::Exchange(x) => {
                 for (name, _) in &x.items {
                     let s = self.lookup(name)?;
@@ -533,6 +533,17 @@ impl Compiler {
         let index = self.equations.len();
         let sym = self.symbols.get_mut(s);
         sym.kind = SymbolKind::Equation(Some(index));
+        // A side that the relation bounds is 0 where there is no row.
+        let table = sym.table;
+        let bounded: &[u32] = match e.relation {
+            ast::Relation::Equal => &[attribute::LO, attribute::UP],
+            ast::Relation::Greater => &[attribute::LO],
+            ast::Relation::Less => &[attribute::UP],
+            ast::Relation::Free => &[],
+        };
+        for o in bounded {
+            self.store.table_mut(table + o).set_default(0.0);
+        }
         match r {
             Ok(def) => {
                 self.equations.push(def);
@@ -788,18 +799,29 @@ impl Compiler {
         }))
     }
 
-    fn put(&mut self, p: &Put) -> Result<CodeKind, Failed> {
+    fn put(&mut self, p: &Put, span: Span) -> Result<CodeKind, Failed> {
         let condition = self.optional(p.condition.as_ref())?;
         self.texts_allowed = true;
         let r = self.put_items(&p.items);
         self.texts_allowed = false;
+        if let Ok(items) = &r {
+            self.put_named |= items.iter().any(|i| matches!(i, PutCode::File(_)));
+            if !self.put_named {
+                self.put_named = true;
+                return self.fail(
+                    Diagnostic::error("E0374", span, "no file is named to write to")
+                        .label("which file?")
+                        .help("declare one, `file out / 'out.txt' /;`, and name it first: `put out 'text' /;`"),
+                );
+            }
+        }
         Ok(CodeKind::Put(p.keyword.clone(), condition, r?))
     }
 
     fn put_items(&mut self, items: &[PutItem]) -> Result<Vec<PutCode>, Failed> {
         let mut out = Vec::new();
         for item in items {
-            out.push(match item {
+            let code = match item {
                 PutItem::NewLine => PutCode::NewLine,
                 PutItem::Column(e) => PutCode::Column(self.expr(e)?),
                 PutItem::Row(e) => PutCode::Row(self.expr(e)?),
@@ -829,13 +851,23 @@ impl Compiler {
                             });
                             continue;
                         }
-                        if let Some(s) = self.symbols.find(&name.name) {
-                            let symbol = self.symbols.get(s);
-                            if matches!(symbol.kind, SymbolKind::File(_)) && attribute.is_none() {
-                                out.push(PutCode::File(s));
-                                continue;
-                            }
+                        if let (Some(s), None) = (self.file(name), attribute) {
+                            out.push(PutCode::File(s));
+                            continue;
                         }
+                    }
+                    let mut value = value;
+                    // `put out (a + b)` reads like a symbol with an index.
+                    if let ExprKind::Apply {
+                        name,
+                        attribute: None,
+                        arguments: Some(arguments),
+                    } = &value.kind
+                        && let [one] = arguments.as_slice()
+                        && let Some(s) = self.file(name)
+                    {
+                        out.push(PutCode::File(s));
+                        value = one;
                     }
                     PutCode::Item {
                         value: self.expr(value)?,
@@ -844,9 +876,16 @@ impl Compiler {
                         decimals: *decimals,
                     }
                 }
-            });
+            };
+            out.push(code);
         }
         Ok(out)
+    }
+
+    /// The file of this name, if it is one.
+    fn file(&self, name: &Ident) -> Option<SymbolId> {
+        let s = self.symbols.find(&name.name)?;
+        matches!(self.symbols.get(s).kind, SymbolKind::File(_)).then_some(s)
     }
 
     fn declare_figure(&mut self, f: &ast::Figure) -> Result<(), Failed> {

@@ -157,7 +157,7 @@ pub fn all_default(default: f64, decimals: usize, acronyms: &[Box<str>]) -> Stri
 
 /// The line that stands for an empty set.
 pub fn empty_set() -> String {
-    format!("{:55}( EMPTY )", "")
+    format!("{:54}( EMPTY )", "")
 }
 
 fn width(s: &str) -> usize {
@@ -597,7 +597,7 @@ mod tests {
         });
         assert_eq!(
             text(4, r, wide, PAGE, false),
-            "        x.u.v       a.u.u\n\na       1.000\nx                   2.000\n"
+            "        a.u.u       x.u.v\n\na                   1.000\nx       2.000\n"
         );
     }
 

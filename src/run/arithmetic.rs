@@ -146,6 +146,18 @@ pub fn relate(op: BinaryOp, a: f64, b: f64) -> f64 {
 }
 
 fn compare(op: BinaryOp, a: f64, b: f64) -> bool {
+    // To the order relations infinity is 1e299 and no more.
+    let capped = |x: f64| {
+        if x.is_infinite() {
+            x.signum() * 1e299
+        } else {
+            x
+        }
+    };
+    let (a, b) = match op {
+        BinaryOp::Eq | BinaryOp::Ne => (a, b),
+        _ => (capped(a), capped(b)),
+    };
     match op {
         BinaryOp::Eq => a == b,
         BinaryOp::Ne => a != b,

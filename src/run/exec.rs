@@ -203,13 +203,17 @@ impl Machine<'_> {
     ) -> Flow {
         let (from, to) = (number(self.eval(from, frame)), number(self.eval(to, frame)));
         let by = by.map_or(1.0, |b| number(self.eval(b, frame)));
-        if by <= 0.0 || by.is_nan() || from.is_nan() || to.is_nan() {
-            self.execution_error(
+        let sane = by > 0.0 && !from.is_nan() && !to.is_nan();
+        let mistake = |m: &Self| {
+            m.execution_error(
                 "E0406",
                 span,
                 format!("the step of `for` is {by}; it must be positive"),
                 "use `downto` to count down",
             );
+        };
+        if from.is_nan() || to.is_nan() || by.is_nan() {
+            mistake(self);
             return Flow::Next;
         }
         // The current value of the scalar counts, so that the body may change it.
@@ -225,6 +229,11 @@ impl Machine<'_> {
                 Flow::Break(_) => return Flow::Next,
                 Flow::Stop => return Flow::Stop,
                 _ => {}
+            }
+            // As in GAMS the step is looked at when it is taken.
+            if !sane {
+                mistake(self);
+                return Flow::Next;
             }
             let k = number(self.store.table(table).get(&[]));
             self.store

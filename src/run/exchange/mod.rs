@@ -85,7 +85,7 @@ impl Machine<'_> {
                         } else {
                             items
                         };
-                        self.unload(&file.to_string(), &items, *at);
+                        self.unload(file, &items, *at);
                     }
                     (None, Some(output)) => output.2.extend(items),
                     (None, None) => self.no_file(span, "$gdxOut 'results.json'"),
