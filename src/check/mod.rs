@@ -9,6 +9,7 @@ pub mod node;
 pub mod symbols;
 
 mod declare;
+mod effects;
 mod expr;
 mod figure;
 mod model;

@@ -1,5 +1,6 @@
 //! Statements other than declarations.
 
+use super::effects::Effects;
 use super::functions;
 use super::node::*;
 use super::symbols::{DomainPosition, SymbolKind, attribute};
@@ -131,8 +132,26 @@ impl Compiler {
             StmtKind::Equate(e) => return self.equate(e, span),
             StmtKind::Solve(s) => self.solve(s, span)?,
             StmtKind::Loop(d, body) => self.scoped(|c| {
-                let domain = c.domain(d)?;
-                Ok(CodeKind::Loop(domain, c.body(body, map)?))
+                let mut domain = c.domain(d)?;
+                let body = c.body(body, map)?;
+                // What the body changes is asked at every turn, not before the first.
+                let effects = Effects::of(&body, &c.symbols);
+                let mut late = Vec::new();
+                for cond in std::mem::take(&mut domain.conditions) {
+                    if effects.touch(&cond) {
+                        late.push(cond);
+                    } else {
+                        domain.conditions.push(cond);
+                    }
+                }
+                let body = late.into_iter().rev().fold(body, |body, cond| {
+                    let span = cond.span;
+                    vec![Code::new(
+                        CodeKind::If(vec![(cond, body)], Vec::new()),
+                        span,
+                    )]
+                });
+                Ok(CodeKind::Loop(domain, body))
             })?,
             StmtKind::While(cond, body) => CodeKind::While(self.expr(cond)?, self.body(body, map)?),
             StmtKind::Repeat(body, until) => {
