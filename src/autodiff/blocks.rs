@@ -67,7 +67,7 @@ impl Block {
         self.constants[slot as usize * self.terms() + term]
     }
 
-    fn new(kernel: &Kernel, parts: &[KernelTerms]) -> Self {
+    fn new(kernel: &Kernel, parts: &[KernelTerms], smoothing: f64) -> Self {
         let (v, c) = (kernel.variables as usize, kernel.constants as usize);
         let terms: usize = parts.iter().map(|p| p.row.len()).sum();
         let mut row = Vec::with_capacity(terms);
@@ -97,7 +97,7 @@ impl Block {
                     .then_some(first)
             })
             .collect();
-        let graph = Graph::new(kernel, &uniform);
+        let graph = Graph::new(kernel, &uniform, smoothing);
         let (value, gradient, hessian) = (
             derive::value(&graph),
             derive::gradient(&graph),
@@ -124,8 +124,8 @@ impl Block {
     }
 }
 
-/// Compiles the nonlinear part of an instance.
-pub fn compile(instance: &Instance) -> Vec<Block> {
+/// Compiles the nonlinear part of an instance; `smoothing` as in [`Graph::new`].
+pub fn compile(instance: &Instance, smoothing: f64) -> Vec<Block> {
     let mut groups: Vec<(Kernel, Vec<KernelTerms>)> = Vec::new();
     let mut known: FxHashMap<u64, Vec<usize>> = FxHashMap::default();
     for terms in instance.nonlinear.iter().filter(|t| !t.row.is_empty()) {
@@ -142,7 +142,7 @@ pub fn compile(instance: &Instance) -> Vec<Block> {
     }
     groups
         .into_iter()
-        .map(|(kernel, parts)| Block::new(&kernel, &parts))
+        .map(|(kernel, parts)| Block::new(&kernel, &parts, smoothing))
         .collect()
 }
 

@@ -34,6 +34,19 @@ impl fmt::Display for EvalFailure {
 
 impl std::error::Error for EvalFailure {}
 
+/// Whether some term of an instance has a kink (abs, min, max) that [`Evaluator::smoothed`] rounds.
+pub fn has_kinks(instance: &Instance) -> bool {
+    use crate::model::instance::{Function, Op};
+    let kink = |op: &Op| {
+        matches!(
+            op,
+            Op::Call(Function::Abs | Function::Max | Function::Min, _)
+        )
+    };
+    let mut used = instance.nonlinear.iter().filter(|t| !t.row.is_empty());
+    used.any(|t| t.kernel.ops.iter().any(kink))
+}
+
 /// How a row depends on the columns.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub enum Degree {
@@ -73,7 +86,12 @@ pub struct Evaluator {
 impl Evaluator {
     /// Compiles the kernels and finds the patterns.
     pub fn new(instance: &Instance) -> Self {
-        let blocks = compile(instance);
+        Self::smoothed(instance, 0.0)
+    }
+
+    /// The same with √(a² + δ²) for |a|, and min and max made from it: differentiable everywhere.
+    pub fn smoothed(instance: &Instance, delta: f64) -> Self {
+        let blocks = compile(instance, delta);
         let mut e = Self {
             columns: instance.column_count(),
             blocks,

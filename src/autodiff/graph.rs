@@ -63,6 +63,7 @@ enum Item {
 }
 
 struct Builder<'a> {
+    smoothing: f64,
     elements: Vec<Element>,
     active: Vec<bool>,
     known: FxHashMap<Box<[u32]>, Id>,
@@ -74,8 +75,11 @@ impl Graph {
     ///
     /// A kernel that is no well-formed program (the stack runs empty) gives a graph whose value is
     /// undefined (NaN), so that its evaluation fails instead of the process.
-    pub fn new(kernel: &Kernel, uniform: &[Option<f64>]) -> Self {
+    ///
+    /// With a smoothing δ > 0, |a| becomes √(a² + δ²), and min and max follow from it.
+    pub fn new(kernel: &Kernel, uniform: &[Option<f64>], smoothing: f64) -> Self {
         let mut b = Builder {
+            smoothing,
             elements: Vec::new(),
             active: Vec::new(),
             known: FxHashMap::default(),
@@ -408,6 +412,13 @@ impl Builder<'_> {
             },
             _ => {}
         }
+        if self.smoothing > 0.0 && args.iter().any(|&a| self.is_active(a)) {
+            match f {
+                Function::Abs => return self.smooth_abs(args[0]),
+                Function::Max | Function::Min => return self.smooth_extreme(f, &args),
+                _ => {}
+            }
+        }
         let numbers: Option<Vec<f64>> = args.iter().map(|&a| self.as_number(a)).collect();
         if let Some(numbers) = numbers
             && let Ok(v) = function_value(f, &numbers)
@@ -415,6 +426,30 @@ impl Builder<'_> {
             return self.number(v);
         }
         self.node(Element::Call(f, args))
+    }
+
+    /// √(a² + δ²)
+    fn smooth_abs(&mut self, a: Id) -> Id {
+        let delta = self.number(self.smoothing);
+        self.node(Element::Call(Function::EDist, vec![a, delta]))
+    }
+
+    /// max(a, b) = (a + b + |a − b|)/2, min with the other sign; several arguments one after the other.
+    fn smooth_extreme(&mut self, f: Function, args: &[Id]) -> Id {
+        let sign = if f == Function::Max { 0.5 } else { -0.5 };
+        let mut best = args[0];
+        for &b in &args[1..] {
+            let negative = self.multiple(Item::Node(b), -1.0);
+            let difference = self.sum(Item::Node(best), negative);
+            let difference = self.settle(difference);
+            let distance = self.smooth_abs(difference);
+            let distance = self.multiple(Item::Node(distance), sign);
+            let total = self.sum(Item::Node(best), Item::Node(b));
+            let half = self.multiple(total, 0.5);
+            let total = self.sum(half, distance);
+            best = self.settle(total);
+        }
+        best
     }
 }
 

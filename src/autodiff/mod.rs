@@ -18,5 +18,5 @@ mod scalar;
 pub mod special;
 mod steps;
 
-pub use evaluator::{Degree, EvalFailure, Evaluator};
+pub use evaluator::{Degree, EvalFailure, Evaluator, has_kinks};
 pub use functions::{DomainError, ErrorKind, Operation, function_value};

@@ -11,6 +11,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 /// Nothing a person writes should lead here: it is a bug of bmod, and says so.
 pub fn guarded(status: u8, work: impl FnOnce() -> u8) -> u8 {
     std::panic::set_hook(Box::new(|info| {
+        // a solver that runs on a thread of its own is given up quietly, and another way is tried
+        if std::thread::current().name() == Some(crate::solve::nlp::THREAD) {
+            return;
+        }
         let place = info
             .location()
             .map_or(String::new(), |l| format!(" ({}:{})", l.file(), l.line()));

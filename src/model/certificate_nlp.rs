@@ -106,8 +106,8 @@ pub fn residuals(
         products.add(p);
     };
     let unit = at.column_size.iter().fold(1.0f64, |s, v| v.max(s));
-    for i in 0..instance.row_count() {
-        let (m, rhs) = (row_marginal[i], instance.rows.rhs[i]);
+    for (i, &m) in row_marginal.iter().enumerate() {
+        let rhs = instance.rows.rhs[i];
         let size = at.row_size[i].max(rhs.abs()).max(1.0);
         // multiplier in the direction the row may push, slack in the direction it may not go
         let (push, slack) = match instance.rows.relation[i] {
@@ -164,14 +164,17 @@ pub fn kkt_residual(
     Ok((residuals(instance, x, row_marginal, &at), at))
 }
 
-/// Whether x is (nearly) a stationary point of ½ Σ violation²: a point of local infeasibility.
+/// Whether multipliers y of the rows prove that the rows, linearised at x, have no solution within
+/// the bounds: y has the rows' signs, and Σ y_i (b_i − a_i(x)) exceeds every Σ_j (Jᵀy)_j (x'_j − x_j)
+/// (Farkas). For convex rows that is a proof of infeasibility, for others of local infeasibility.
 ///
-/// With v_i the signed violations, g = Jᵀv must vanish up to the bounds that hold a column; measured
-/// relative to max_i |v_i| · max |∂a_i/∂x_j|. Rows and columns in violation count.
+/// Components of Jᵀy below `tolerance` relative to the terms they are made of, or to what they could
+/// change in the neighbourhood of x, count as 0.
 pub fn is_locally_infeasible(
     instance: &Instance,
     evaluator: &mut Evaluator,
     x: &[f64],
+    y: &[f64],
     tolerance: f64,
 ) -> bool {
     let m = instance.row_count();
@@ -181,30 +184,64 @@ pub fn is_locally_infeasible(
         return false;
     }
     let (start, column) = evaluator.jacobian_pattern();
-    let mut gradient = vec![Sum::default(); x.len()];
-    let mut largest = vec![0.0f64; x.len()];
+    let mut reach = vec![Sum::default(); x.len()];
+    let mut margin = Sum::default();
+    let largest = y.iter().fold(0.0f64, |s, v| s.max(v.abs()));
+    let mut term = 0.0f64;
     for i in 0..m {
-        let gap = activity[i] - instance.rows.rhs[i];
-        let v = match instance.rows.relation[i] {
-            Relation::Equal => gap,
-            Relation::Greater => gap.min(0.0),
-            Relation::Less => gap.max(0.0),
-            Relation::Free => 0.0,
+        let wrong = match instance.rows.relation[i] {
+            Relation::Equal => 0.0,
+            Relation::Greater => -y[i],
+            Relation::Less => y[i],
+            Relation::Free => y[i].abs(),
         };
-        if v == 0.0 {
+        if wrong > 1e-6 * largest || y[i].is_nan() {
+            return false;
+        }
+        if wrong > 0.0 || y[i] == 0.0 {
             continue;
         }
+        margin.add_product(y[i], instance.rows.rhs[i] - activity[i]);
         for k in start[i]..start[i + 1] {
             let j = column[k] as usize;
-            gradient[j].add_product(value[k], v);
-            largest[j] = largest[j].max((value[k] * v).abs());
+            reach[j].add_product(value[k], y[i]);
+            term = term.max((value[k] * y[i]).abs());
         }
     }
-    let top = largest.iter().fold(0.0f64, |s, v| s.max(*v));
-    (0..x.len()).all(|j| {
-        let g = gradient[j].value();
-        let (l, u) = (instance.columns.lower[j], instance.columns.upper[j]);
-        let distance = if g > 0.0 { x[j] - l } else { u - x[j] };
-        g.abs() <= tolerance * top.max(1e-300) || distance <= tolerance * x[j].abs().max(1.0)
-    })
+    let mut margin = margin.value();
+    let size = margin;
+    for (j, r) in reach.iter().enumerate() {
+        let r = r.value();
+        let bound = if r > 0.0 {
+            instance.columns.upper[j]
+        } else {
+            instance.columns.lower[j]
+        };
+        let room = (bound - x[j]).abs();
+        if r.abs() <= tolerance * term || r.abs() * x[j].abs().max(1.0) <= tolerance * size {
+            // noise: only as far as the neighbourhood of x
+            margin -= (r * room.min(x[j].abs().max(1.0))).abs();
+        } else if r != 0.0 {
+            margin -= r.abs() * room;
+        }
+    }
+    margin > 1e-3 * size && size > 0.0
+}
+
+/// Multipliers for [`is_locally_infeasible`] from the violations themselves: right where x minimises
+/// the sum of their squares.
+pub fn violations(instance: &Instance, activity: &[f64]) -> Vec<f64> {
+    activity
+        .iter()
+        .enumerate()
+        .map(|(i, a)| {
+            let gap = instance.rows.rhs[i] - a;
+            match instance.rows.relation[i] {
+                Relation::Equal => gap,
+                Relation::Greater => gap.max(0.0),
+                Relation::Less => gap.min(0.0),
+                Relation::Free => 0.0,
+            }
+        })
+        .collect()
 }

@@ -16,10 +16,12 @@ use super::curvature::negative_curvature;
 use super::elastic::Elastic;
 use super::problem::{Nlp, Problem};
 use super::provider::{Control, Ended, Progress, Provider, Shared, Solution, lock};
-use crate::autodiff::{ErrorKind, EvalFailure};
-use crate::model::certificate::{Linearised, Residuals, TOLERANCE};
-use crate::model::certificate_nlp::{is_locally_infeasible, kkt_residual};
-use crate::model::instance::{Instance, Relation, Sense};
+use super::schedule::{
+    AGREEMENT, BASE, BETTER, FINEST, From, MUCH, NEAR, NEARER, ROUNDING, SCHEDULE, SMALL,
+};
+use super::trial::{Trial, active_set, clean, polished, proved_infeasible, residuals_at, tidy};
+use crate::autodiff::{ErrorKind, EvalFailure, Evaluator, has_kinks};
+use crate::model::instance::Instance;
 use crate::solve::{
     Claim, ModelStatus, Monitor, Outcome, Settings, SolveError, SolverStatus, answer::Answer,
 };
@@ -30,94 +32,6 @@ use std::time::{Duration, Instant};
 const UNBOUNDED: f64 = 1e15;
 /// A point is unbounded evidence from here on, if the provider stopped with diverging iterates.
 const LARGE: f64 = 1e10;
-
-/// Options of every attempt; the person's own come after them.
-const BASE: [(&str, &str); 8] = [
-    ("tol", "1e-9"),
-    ("constr_viol_tol", "1e-9"),
-    ("dual_inf_tol", "1e-6"),
-    ("compl_inf_tol", "1e-8"),
-    ("acceptable_tol", "1e-7"),
-    ("acceptable_dual_inf_tol", "1e-4"),
-    ("honor_original_bounds", "yes"),
-    ("diverging_iterates_tol", "1e18"),
-];
-
-/// Where an attempt starts.
-#[derive(Clone, Copy, PartialEq, Debug)]
-enum From {
-    /// The person's start point.
-    Start,
-    /// The best point so far.
-    Best,
-    /// The person's start, moved by this fraction of its size (and at least by this much).
-    Moved(f64),
-}
-
-/// What to try when an attempt has not led to a certified point.
-const SCHEDULE: [(From, &[(&str, &str)]); 5] = [
-    (
-        From::Start,
-        &[("mu_strategy", "adaptive"), ("bound_relax_factor", "0")],
-    ),
-    (From::Moved(0.1), &[]),
-    (
-        From::Best,
-        &[
-            ("nlp_scaling_method", "none"),
-            ("bound_push", "1e-6"),
-            ("bound_frac", "1e-6"),
-            ("mu_init", "1e-4"),
-        ],
-    ),
-    (
-        From::Start,
-        &[
-            ("bound_push", "1e-4"),
-            ("bound_frac", "1e-4"),
-            ("mu_init", "1e-2"),
-            ("alpha_for_y", "safer-min-dual-infeas"),
-        ],
-    ),
-    (From::Moved(1.0), &[("mu_strategy", "adaptive")]),
-];
-
-/// A point that was judged.
-#[derive(Clone)]
-struct Trial {
-    x: Vec<f64>,
-    lambda: Vec<f64>,
-    level: Vec<f64>,
-    row_marginal: Vec<f64>,
-    at: Linearised,
-    residuals: Residuals,
-    ended: Ended,
-    /// Minimised.
-    objective: f64,
-}
-
-impl Trial {
-    fn is_optimal(&self) -> bool {
-        self.residuals.is_feasible(TOLERANCE) && self.residuals.dual_relative <= TOLERANCE
-    }
-
-    fn is_feasible(&self) -> bool {
-        self.residuals.is_feasible(TOLERANCE)
-    }
-
-    /// Whether this one is worth more than the other.
-    fn better(&self, other: &Self) -> bool {
-        let rank = |t: &Self| u8::from(t.is_optimal()) + u8::from(t.is_feasible());
-        let (a, b) = (rank(self), rank(other));
-        if a != b {
-            return a > b;
-        }
-        if a == 0 {
-            return self.residuals.primal_relative < other.residuals.primal_relative;
-        }
-        self.objective < other.objective
-    }
-}
 
 /// Solves an instance and certifies the answer.
 pub fn solve(
@@ -147,7 +61,10 @@ pub fn solve(
     }
     let start = problem.start().to_vec();
     check_start(instance, &mut problem, &start)?;
+    let kinks = has_kinks(instance).then(|| Evaluator::smoothed(instance, FINEST));
     let mut driver = Driver {
+        kinks,
+        infeasibility: None,
         instance,
         provider,
         settings,
@@ -158,6 +75,7 @@ pub fn solve(
         iterations: 0,
         stopped: None,
         best: None,
+        patience: 3000,
     };
     driver.run()
 }
@@ -191,6 +109,10 @@ fn start_failure(e: &EvalFailure) -> SolveError {
 }
 
 struct Driver<'a> {
+    /// For instances with kinks: derivatives a hair beside them.
+    kinks: Option<Evaluator>,
+    /// A minimum of the violations: variables, and multipliers of all rows.
+    infeasibility: Option<(Vec<f64>, Vec<f64>)>,
     instance: &'a Instance,
     provider: &'a dyn Provider,
     settings: &'a Settings,
@@ -202,6 +124,8 @@ struct Driver<'a> {
     /// Why no further attempt may be made.
     stopped: Option<SolverStatus>,
     best: Option<Trial>,
+    /// Iterations one attempt may take.
+    patience: u64,
 }
 
 impl Driver<'_> {
@@ -213,24 +137,75 @@ impl Driver<'_> {
             self.keep(trial);
             return Ok(self.finish());
         }
-        let first = Instant::now();
         self.attempt(From::Start, &[])?;
-        let spent = first.elapsed();
         self.leave_saddles()?;
-        if !self.is_settled() {
-            for (from, options) in SCHEDULE {
-                if self.is_settled() || self.out_of_patience(spent) {
-                    break;
-                }
-                self.attempt(from, options)?;
-                self.leave_saddles()?;
-            }
+        if self.is_settled() {
+            self.search()?;
+            return Ok(self.finish());
         }
-        if !self.is_settled() && !self.out_of_patience(spent) {
+        if self.kinks.is_some() {
+            self.round_kinks()?;
+        }
+        for (from, options) in SCHEDULE {
+            if self.is_settled() || self.work() > MUCH {
+                break;
+            }
+            self.attempt(from, options)?;
+            self.leave_saddles()?;
+        }
+        if !self.is_settled() && self.work() <= MUCH {
             self.attempt_elastic()?;
             self.leave_saddles()?;
         }
         Ok(self.finish())
+    }
+
+    /// Iterations times nonzeros so far: what decides how much is tried. Time would make the answer
+    /// depend on the machine.
+    fn work(&self) -> f64 {
+        let problem = lock(&*self.problem);
+        let (n, m) = problem.size();
+        let size = n + m + problem.jacobian_pattern().0.len() + problem.hessian_pattern().0.len();
+        self.iterations as f64 * size as f64
+    }
+
+    /// Looks for a better local optimum where that is cheap.
+    fn search(&mut self) -> Result<(), SolveError> {
+        let optimal = |me: &Self| {
+            me.best
+                .as_ref()
+                .filter(|t| t.is_optimal())
+                .map(|t| t.objective)
+        };
+        let Some(first) = optimal(self) else {
+            return Ok(());
+        };
+        if self.work() > SMALL || !self.wants_search() {
+            return Ok(());
+        }
+        self.patience = (4 * self.iterations).max(100);
+        let mut agreed = true;
+        for (k, (from, options)) in BETTER.into_iter().enumerate() {
+            if self.stopped.is_some() || (k >= AGREEMENT && agreed) || self.work() > 5.0 * SMALL {
+                break;
+            }
+            let before = optimal(self);
+            let found = self.attempt(from, options)?;
+            let same = found.is_some_and(|f| (f - first).abs() <= 1e-6 * first.abs().max(1.0));
+            agreed &= same;
+            if optimal(self) != before {
+                self.leave_saddles()?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether there may be several local optima, and the person lets us look for them.
+    fn wants_search(&self) -> bool {
+        let forbidden = |(k, v): &(String, String)| {
+            k.eq_ignore_ascii_case("nlp_search") && (v == "0" || v.eq_ignore_ascii_case("no"))
+        };
+        !self.settings.options.iter().any(forbidden)
     }
 
     fn is_constant(&self) -> bool {
@@ -253,83 +228,129 @@ impl Driver<'_> {
         }
     }
 
-    /// Long problems are not tried as often as short ones.
-    fn out_of_patience(&self, first: Duration) -> bool {
-        let spent = self.begin.elapsed();
-        spent > Duration::from_secs(60) && spent > 4 * first
-    }
-
     fn deadline(&self) -> Option<Instant> {
         (self.settings.time_limit < 1e9)
             .then(|| self.begin + Duration::from_secs_f64(self.settings.time_limit.max(0.0)))
     }
 
     fn start_point(&self, from: From) -> Vec<f64> {
-        match (from, &self.best) {
-            (From::Best, Some(best)) => best.x.clone(),
-            (From::Moved(by), _) => {
-                let problem = lock(&*self.problem);
-                let (lower, upper) = problem.bounds();
-                let mut seed = 12345u64;
-                self.start
-                    .iter()
-                    .zip(lower.iter().zip(upper))
-                    .map(|(&x, (&l, &u))| {
-                        seed = seed
-                            .wrapping_mul(6_364_136_223_846_793_005)
-                            .wrapping_add(1_442_695_040_888_963_407);
-                        let r = (seed >> 11) as f64 / (1u64 << 53) as f64 - 0.5;
-                        (x + 2.0 * r * by * x.abs().max(1.0)).max(l).min(u)
-                    })
-                    .collect()
+        let (mut seed, by, anywhere) = match (from, &self.best) {
+            (From::Best, Some(best)) => return best.x.clone(),
+            (From::Best, None) | (From::Start, _) => return self.start.clone(),
+            (From::Moved(by), _) => (12345, by, false),
+            (From::Anywhere(seed), _) => (seed.wrapping_mul(7919), 1.0, true),
+        };
+        let problem = lock(&*self.problem);
+        let (lower, upper) = problem.bounds();
+        let place = |(&x, (&l, &u)): (&f64, (&f64, &f64))| {
+            seed = u64::wrapping_add(
+                u64::wrapping_mul(seed, 6_364_136_223_846_793_005),
+                1_442_695_040_888_963_407,
+            );
+            let r = (seed >> 11) as f64 / (1u64 << 53) as f64;
+            if anywhere && u - l <= 1e4 {
+                return l + r * (u - l);
             }
-            _ => self.start.clone(),
-        }
+            (x + (2.0 * r - 1.0) * by * x.abs().max(1.0)).max(l).min(u)
+        };
+        self.start
+            .iter()
+            .zip(lower.iter().zip(upper))
+            .map(place)
+            .collect()
     }
 
-    /// One run of the provider, judged and kept if it is the best so far.
-    fn attempt(&mut self, from: From, extra: &[(&str, &str)]) -> Result<(), SolveError> {
+    /// One run of the provider, judged and kept if it is the best so far. The objective of the point if
+    /// it is optimal.
+    fn attempt(&mut self, from: From, extra: &[(&str, &str)]) -> Result<Option<f64>, SolveError> {
         let x = self.start_point(from);
         self.attempt_from(x, extra)
     }
 
-    fn attempt_from(&mut self, x: Vec<f64>, extra: &[(&str, &str)]) -> Result<(), SolveError> {
+    fn attempt_from(
+        &mut self,
+        x: Vec<f64>,
+        extra: &[(&str, &str)],
+    ) -> Result<Option<f64>, SolveError> {
         lock(&*self.problem).set_start(x);
         let shared: Shared = self.problem.clone();
         let solution = self.call(shared, extra)?;
         if solution.ended == Ended::TooFewDegrees && self.stopped.is_none() {
-            return self.attempt_elastic();
+            self.attempt_elastic()?;
+            return Ok(None);
         }
         let trial = self.judge(solution.x, solution.lambda, solution.ended);
+        let objective = trial.is_optimal().then_some(trial.objective);
         self.keep(trial);
+        Ok(objective)
+    }
+
+    /// Solves with rounded kinks, each time from the last point.
+    fn round_kinks(&mut self) -> Result<(), SolveError> {
+        let mut x = self.start.clone();
+        for (k, delta) in ROUNDING.into_iter().enumerate() {
+            if self.stopped.is_some() {
+                break;
+            }
+            let mut problem = Problem::smoothed(self.instance, delta);
+            problem.set_start(x.clone());
+            let options = if k == 0 { &[][..] } else { NEARER };
+            let solution = self.call(Arc::new(Mutex::new(problem)), options)?;
+            if solution.x.iter().all(|v| v.is_finite()) {
+                x.clone_from(&solution.x);
+                let trial = self.judge(solution.x, solution.lambda, solution.ended);
+                self.keep(trial);
+            }
+        }
         Ok(())
     }
 
     fn attempt_elastic(&mut self) -> Result<(), SolveError> {
         let start = self.start.clone();
-        for (rho, weight) in [(1e3, 1.0), (1e6, 1.0), (1.0, 0.0)] {
+        for rho in [1e3, 1e6] {
             lock(&*self.problem).set_start(start.clone());
-            let elastic = Elastic::new(self.problem.clone(), rho, weight);
-            let n = elastic.original_variables();
-            let solution = self.call(Arc::new(Mutex::new(elastic)), &[])?;
-            if self.stopped.is_some() {
-                break;
-            }
-            let mut x = solution.x;
-            x.truncate(n);
-            let ended = if weight == 0.0 && solution.ended == Ended::Solved {
-                // a minimum of the violation: a point of local infeasibility, unless it is 0
-                Ended::Infeasible
-            } else {
-                solution.ended
-            };
-            let trial = self.judge(x, solution.lambda, ended);
+            let trial = self.elastic(rho, 1.0)?;
             let optimal = trial.is_optimal();
             self.keep(trial);
-            if optimal {
-                break;
+            if optimal || self.stopped.is_some() {
+                return Ok(());
             }
         }
+        self.minimise_violation()
+    }
+
+    fn elastic(&mut self, rho: f64, weight: f64) -> Result<Trial, SolveError> {
+        let elastic = Elastic::new(self.problem.clone(), rho, weight);
+        let n = elastic.original_variables();
+        let solution = self.call(Arc::new(Mutex::new(elastic)), &[])?;
+        let mut x = solution.x;
+        x.truncate(n);
+        Ok(self.judge(x, solution.lambda, solution.ended))
+    }
+
+    /// The nearest point to feasibility: a start for the problem itself, or evidence that there is
+    /// none.
+    fn minimise_violation(&mut self) -> Result<(), SolveError> {
+        let Some(best) = self.best.clone().filter(|t| !t.is_feasible()) else {
+            return Ok(());
+        };
+        lock(&*self.problem).set_start(best.x);
+        let trial = self.elastic(1.0, 0.0)?;
+        if trial.is_feasible() {
+            let x = trial.x.clone();
+            self.keep(trial);
+            if self.stopped.is_none() {
+                self.attempt_from(x, NEAR)?;
+            }
+            return Ok(());
+        }
+        // the constraints push with −λ
+        let mut y = vec![0.0; self.instance.row_count()];
+        for (&i, l) in lock(&*self.problem).rows.iter().zip(&trial.lambda) {
+            y[i as usize] = -l;
+        }
+        self.infeasibility = Some((trial.level.clone(), y));
+        self.keep(trial);
         Ok(())
     }
 
@@ -422,6 +443,7 @@ impl Driver<'_> {
     /// Puts a point into the bounds and computes its residuals.
     fn judge(&mut self, mut x: Vec<f64>, lambda: Vec<f64>, ended: Ended) -> Trial {
         let mut problem = lock(&*self.problem);
+        let kinks = &mut self.kinks;
         {
             let (lower, upper) = problem.bounds();
             for (v, (&l, &u)) in x.iter_mut().zip(lower.iter().zip(upper)) {
@@ -432,12 +454,20 @@ impl Driver<'_> {
                 };
             }
         }
-        let plain = residuals_at(self.instance, &mut problem, x, lambda, ended);
-        let tidied = tidy(self.instance, &mut problem, &plain);
-        match tidied {
+        let plain = residuals_at(self.instance, &mut problem, kinks, x, lambda, ended);
+        let mut best = match tidy(self.instance, &mut problem, kinks, &plain) {
             Some(t) if t.is_optimal() || !plain.is_optimal() => t,
             _ => plain,
+        };
+        let residual = |t: &Trial| t.residuals.primal_relative.max(t.residuals.dual_relative);
+        let nearly = residual(&best) < 1e-2 && residual(&best) > 1e-13;
+        if nearly && let Some(t) = polished(self.instance, &mut problem, kinks, &best) {
+            if residual(&t) < residual(&best) {
+                best = t;
+            }
         }
+        clean(self.instance, &mut best);
+        best
     }
 
     fn keep(&mut self, trial: Trial) {
@@ -486,26 +516,9 @@ impl Driver<'_> {
     fn beyond_saddle(&mut self, t: &Trial) -> Option<Vec<f64>> {
         let mut problem = lock(&*self.problem);
         let (lower, upper) = (problem.bounds().0.to_vec(), problem.bounds().1.to_vec());
-        let near = |x: f64, b: f64| (x - b).abs() <= 1e-6 * b.abs().max(1.0);
-        let fixed: Vec<bool> =
-            t.x.iter()
-                .zip(lower.iter().zip(&upper))
-                .map(|(&x, (&l, &u))| near(x, l) || near(x, u))
-                .collect();
-        let binding: Vec<bool> = problem
-            .rows
-            .iter()
-            .map(|&i| {
-                let (a, b) = (
-                    t.at.activity[i as usize],
-                    self.instance.rows.rhs[i as usize],
-                );
-                let size = t.at.row_size[i as usize].max(b.abs()).max(1.0);
-                self.instance.rows.relation[i as usize] == Relation::Equal
-                    || (a - b).abs() <= 1e-6 * size
-            })
-            .collect();
-        let d = negative_curvature(&mut *problem, &t.x, &t.lambda, &fixed, &binding)?;
+        let active = active_set(self.instance, &problem, t, 1e-6);
+        let (fixed, binding) = (&active.fixed, &active.binding);
+        let d = negative_curvature(&mut *problem, &t.x, &t.lambda, fixed, binding)?;
         let unit = d.iter().fold(0.0f64, |s, v| s.max(v.abs()));
         let scale = t.x.iter().fold(1.0f64, |s, v| s.max(v.abs()));
         // the first point along ±d that can be evaluated, has a lower objective and is nearly feasible
@@ -545,7 +558,12 @@ impl Driver<'_> {
             ModelStatus::Unbounded
         } else if best.is_feasible() {
             ModelStatus::Feasible
-        } else if is_locally_infeasible(self.instance, problem.evaluator(), &best.level, 1e-4) {
+        } else if proved_infeasible(
+            self.instance,
+            problem.evaluator(),
+            &best,
+            &self.infeasibility,
+        ) {
             ModelStatus::LocallyInfeasible
         } else {
             ModelStatus::IntermediateInfeasible
@@ -597,106 +615,7 @@ impl Driver<'_> {
 
 /// Options of other solvers that may stand in the same list.
 fn is_for_others(option: &str) -> bool {
-    option.eq_ignore_ascii_case("log")
-}
-
-fn residuals_at(
-    instance: &Instance,
-    problem: &mut Problem,
-    x: Vec<f64>,
-    lambda: Vec<f64>,
-    ended: Ended,
-) -> Trial {
-    let level = problem.levels(&x);
-    let row_marginal = problem.row_marginals(&lambda);
-    let sign = match instance.objective.map(|o| o.sense) {
-        Some(Sense::Maximize) => -1.0,
-        _ => 1.0,
-    };
-    let objective = instance
-        .objective
-        .map_or(0.0, |o| sign * level[o.column as usize]);
-    let (residuals, at) = match kkt_residual(instance, problem.evaluator(), &level, &row_marginal) {
-        Ok(both) => both,
-        Err(_) => failed(instance, problem, &level),
-    };
-    Trial {
-        x,
-        lambda,
-        level,
-        row_marginal,
-        at,
-        residuals,
-        ended,
-        objective,
-    }
-}
-
-/// Residuals of a point without values or derivatives.
-fn failed(instance: &Instance, problem: &mut Problem, level: &[f64]) -> (Residuals, Linearised) {
-    let (m, n) = (instance.row_count(), instance.column_count());
-    let mut activity = vec![0.0; m];
-    let known = problem.evaluator().rows(level, &mut activity).is_ok();
-    if !known {
-        activity.fill(f64::NAN);
-    }
-    let row_size = activity
+    ["log", "nlp_search"]
         .iter()
-        .map(|a| a.abs().max(1.0))
-        .collect::<Vec<_>>();
-    let mut residuals = crate::model::certificate::primal(instance, level, &activity, &row_size);
-    residuals.dual = None;
-    residuals.dual_relative = f64::INFINITY;
-    if !known {
-        residuals.primal_relative = f64::INFINITY;
-    }
-    let at = Linearised {
-        activity,
-        reduced: vec![0.0; n],
-        row_size,
-        column_size: vec![1.0; n],
-    };
-    (residuals, at)
-}
-
-/// An interior point stops short of the bounds by a hair. Puts such variables on their bounds, and
-/// multipliers of slack rows and reduced costs of variables between their bounds to 0.
-fn tidy(instance: &Instance, problem: &mut Problem, t: &Trial) -> Option<Trial> {
-    let (lower, upper) = (problem.bounds().0.to_vec(), problem.bounds().1.to_vec());
-    let mut x = t.x.clone();
-    for (k, v) in x.iter_mut().enumerate() {
-        let r = t.at.reduced[problem.columns[k] as usize];
-        for b in [lower[k], upper[k]] {
-            let distance = (*v - b).abs();
-            // on the bound if it is near, and nearer than the reduced cost is to 0
-            if distance <= 1e-6 * b.abs().max(1.0) && distance <= 1e3 * r.abs() {
-                *v = b;
-            }
-        }
-    }
-    let mut lambda = t.lambda.clone();
-    for (k, l) in lambda.iter_mut().enumerate() {
-        let i = problem.rows[k] as usize;
-        if instance.rows.relation[i] == Relation::Equal {
-            continue;
-        }
-        let slack = (t.at.activity[i] - instance.rows.rhs[i]).abs();
-        if slack > 1e-6 * t.at.row_size[i].max(1.0)
-            && l.abs() * t.at.row_size[i].max(1.0) <= 1e-5 * slack
-        {
-            *l = 0.0;
-        }
-    }
-    let mut tidied = residuals_at(instance, problem, x, lambda, t.ended);
-    for j in 0..instance.column_count() {
-        let (l, u) = (instance.columns.lower[j], instance.columns.upper[j]);
-        let v = tidied.level[j];
-        let inside = v > l && v < u;
-        if inside && tidied.at.reduced[j].abs() <= TOLERANCE * tidied.at.column_size[j].max(1.0) {
-            tidied.at.reduced[j] = 0.0;
-        }
-    }
-    let fine = tidied.residuals.primal_relative <= t.residuals.primal_relative.max(1e-9)
-        && tidied.residuals.dual_relative <= t.residuals.dual_relative.max(1e-9);
-    fine.then_some(tidied)
+        .any(|o| option.eq_ignore_ascii_case(o))
 }

@@ -7,19 +7,29 @@
 pub mod curvature;
 pub mod driver;
 pub mod elastic;
+#[cfg(feature = "ipopt")]
+pub mod ipopt;
+pub mod polish;
 #[cfg(feature = "pounce")]
 pub mod pounce;
 pub mod problem;
 pub mod provider;
+mod schedule;
+mod trial;
 
 use super::answer::Answer;
 use super::{Monitor, Outcome, Settings, SolveError, Solver};
 use crate::model::instance::Instance;
 use provider::Provider;
 
+/// Name of the threads on which providers run that may panic.
+pub const THREAD: &str = "nonlinear solver";
+
 /// The solvers that are in this build, the default first.
 pub fn providers() -> &'static [&'static dyn Provider] {
     &[
+        #[cfg(feature = "ipopt")]
+        &ipopt::Ipopt,
         #[cfg(feature = "pounce")]
         &pounce::Pounce,
     ]

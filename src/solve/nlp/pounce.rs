@@ -61,7 +61,7 @@ impl Provider for Pounce {
         let thread = {
             let (nlp, stop) = (nlp.clone(), stop.clone());
             std::thread::Builder::new()
-                .name("pounce".into())
+                .name(super::THREAD.into())
                 .stack_size(64 << 20)
                 .spawn(move || run(nlp, &options, send, stop))
                 .map_err(|e| format!("no thread could be started: {e}"))?

@@ -108,7 +108,12 @@ pub struct Problem {
 impl Problem {
     /// Takes an instance apart.
     pub fn new(instance: &Instance) -> Self {
-        let evaluator = Evaluator::new(instance);
+        Self::smoothed(instance, 0.0)
+    }
+
+    /// The same with kinks rounded by δ, see [`Evaluator::smoothed`].
+    pub fn smoothed(instance: &Instance, delta: f64) -> Self {
+        let evaluator = Evaluator::smoothed(instance, delta);
         let (m, n) = (instance.row_count(), instance.column_count());
         let columns = &instance.columns;
         let form = objective_form(instance, &evaluator);

@@ -1,0 +1,164 @@
+//! The last digits: Newton's method on the KKT equations of the active set.
+//!
+//! An interior point stops at its tolerance. With the variables at bounds fixed and the binding rows
+//! as equations, the remaining conditions ∇f + Jᵀλ = 0, g = b are a square system in (x, λ); a few
+//! Newton steps with \[H Jᵀ; J 0\] solve it to rounding, if the active set is right and regular. Where
+//! it is not, the steps do not reduce the residual and nothing is changed.
+
+use super::problem::Nlp;
+use faer::linalg::solvers::Solve;
+use faer::sparse::{SparseColMat, Triplet};
+
+/// Entries of the KKT matrix up to which a factorisation is cheap beside the solve.
+const LARGEST: usize = 400_000;
+
+/// What is active at a point.
+pub struct Active {
+    /// Variables that stay where they are.
+    pub fixed: Vec<bool>,
+    /// Constraints that bind.
+    pub binding: Vec<bool>,
+}
+
+/// Improves x and λ. `target` gives the value of each binding constraint. Returns whether the residual
+/// of the system went down.
+pub fn polish(
+    nlp: &mut dyn Nlp,
+    active: &Active,
+    target: &[f64],
+    x: &mut [f64],
+    lambda: &mut [f64],
+) -> bool {
+    let mut improved = false;
+    let Some(mut residual) = System::new(nlp, active, target, x, lambda) else {
+        return false;
+    };
+    for _ in 0..4 {
+        let Some((dx, dl)) = residual.step() else {
+            break;
+        };
+        let trial_x: Vec<f64> = x.iter().zip(&dx).map(|(a, b)| a + b).collect();
+        let trial_l: Vec<f64> = lambda.iter().zip(&dl).map(|(a, b)| a + b).collect();
+        let Some(next) = System::new(nlp, active, target, &trial_x, &trial_l) else {
+            break;
+        };
+        // also the first step must help; later ones may stall at the rounding level
+        if next.size.is_nan() || next.size >= 0.5 * residual.size {
+            break;
+        }
+        x.copy_from_slice(&trial_x);
+        lambda.copy_from_slice(&trial_l);
+        improved = true;
+        residual = next;
+    }
+    improved
+}
+
+/// The KKT system at a point.
+struct System {
+    matrix: SparseColMat<usize, f64>,
+    right: Vec<f64>,
+    /// Largest component of the right-hand side.
+    size: f64,
+    variables: Vec<Option<usize>>,
+    rows: Vec<Option<usize>>,
+    free: usize,
+}
+
+fn number(keep: impl Fn(usize) -> bool, count: usize) -> (Vec<Option<usize>>, usize) {
+    let mut next = 0;
+    let mut place = Vec::with_capacity(count);
+    for k in 0..count {
+        place.push(keep(k).then_some(next));
+        next += usize::from(keep(k));
+    }
+    (place, next)
+}
+
+impl System {
+    fn new(
+        nlp: &mut dyn Nlp,
+        active: &Active,
+        target: &[f64],
+        x: &[f64],
+        lambda: &[f64],
+    ) -> Option<Self> {
+        let (n, m) = nlp.size();
+        let (variables, free) = number(|j| !active.fixed[j], n);
+        let (rows, bound) = number(|i| active.binding[i], m);
+        let entries = nlp.hessian_pattern().0.len() * 2 + nlp.jacobian_pattern().0.len() * 2;
+        if entries > LARGEST || bound > free {
+            return None;
+        }
+        let mut gradient = vec![0.0; n];
+        nlp.gradient(x, &mut gradient)?;
+        let mut g = vec![0.0; m];
+        nlp.constraints(x, &mut g)?;
+        let mut j = vec![0.0; nlp.jacobian_pattern().0.len()];
+        nlp.jacobian(x, &mut j)?;
+        let mut h = vec![0.0; nlp.hessian_pattern().0.len()];
+        nlp.hessian(x, 1.0, lambda, &mut h)?;
+        let mut triplets = Vec::new();
+        let (jr, jc) = nlp.jacobian_pattern();
+        for (k, &a) in j.iter().enumerate() {
+            let (i, v) = (jr[k] as usize, jc[k] as usize);
+            gradient[v] += lambda[i] * a;
+            if let (Some(p), Some(q)) = (rows[i], variables[v]) {
+                triplets.push(Triplet::new(free + p, q, a));
+                triplets.push(Triplet::new(q, free + p, a));
+            }
+        }
+        let (hr, hc) = nlp.hessian_pattern();
+        for (k, &a) in h.iter().enumerate() {
+            if let (Some(p), Some(q)) = (variables[hr[k] as usize], variables[hc[k] as usize]) {
+                triplets.push(Triplet::new(p, q, a));
+                if p != q {
+                    triplets.push(Triplet::new(q, p, a));
+                }
+            }
+        }
+        if triplets.iter().any(|t| !t.val.is_finite()) {
+            return None;
+        }
+        let total = free + bound;
+        let mut right = vec![0.0; total];
+        for (v, place) in variables.iter().enumerate() {
+            if let Some(p) = place {
+                right[*p] = -gradient[v];
+            }
+        }
+        for (i, place) in rows.iter().enumerate() {
+            if let Some(p) = place {
+                right[free + p] = target[i] - g[i];
+            }
+        }
+        let size = right.iter().fold(0.0f64, |s, v| s.max(v.abs()));
+        Some(Self {
+            matrix: SparseColMat::try_new_from_triplets(total, total, &triplets).ok()?,
+            right,
+            size,
+            variables,
+            rows,
+            free,
+        })
+    }
+
+    fn step(&self) -> Option<(Vec<f64>, Vec<f64>)> {
+        if self.size == 0.0 || self.right.is_empty() {
+            return None;
+        }
+        let lu = self.matrix.sp_lu().ok()?;
+        let mut s = self.right.clone();
+        lu.solve_in_place(faer::ColMut::from_slice_mut(&mut s));
+        if s.iter().any(|v| !v.is_finite()) {
+            return None;
+        }
+        let pick = |place: &[Option<usize>], offset: usize| -> Vec<f64> {
+            place
+                .iter()
+                .map(|p| p.map_or(0.0, |p| s[offset + p]))
+                .collect()
+        };
+        Some((pick(&self.variables, 0), pick(&self.rows, self.free)))
+    }
+}

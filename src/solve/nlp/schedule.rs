@@ -1,0 +1,99 @@
+//! Options and starts: what is tried first, and what when that does not lead to a certified point.
+
+/// Options of every attempt; the person's own come after them.
+pub(super) const BASE: [(&str, &str); 8] = [
+    ("tol", "1e-9"),
+    ("constr_viol_tol", "1e-9"),
+    ("dual_inf_tol", "1e-6"),
+    ("compl_inf_tol", "1e-8"),
+    ("acceptable_tol", "1e-7"),
+    ("acceptable_dual_inf_tol", "1e-4"),
+    ("honor_original_bounds", "yes"),
+    ("diverging_iterates_tol", "1e18"),
+];
+
+/// Kinks are rounded by less and less; the last value also serves to judge points at a kink.
+pub(super) const ROUNDING: [f64; 4] = [1e-1, 1e-3, 1e-5, FINEST];
+pub(super) const FINEST: f64 = 1e-7;
+
+/// Where an attempt starts.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) enum From {
+    /// The person's start point.
+    Start,
+    /// The best point so far.
+    Best,
+    /// The person's start, moved by this fraction of its size (and at least by this much).
+    Moved(f64),
+    /// Anywhere between the bounds, the start moved where there are none; the number is a seed.
+    Anywhere(u64),
+}
+
+/// Options that keep an interior point near its start.
+pub(super) const NEAR: &[(&str, &str)] = &[
+    ("mu_strategy", "adaptive"),
+    ("bound_push", "1e-6"),
+    ("bound_frac", "1e-6"),
+];
+pub(super) const NEARER: &[(&str, &str)] = &[
+    ("mu_init", "1e-8"),
+    ("bound_push", "1e-8"),
+    ("bound_frac", "1e-8"),
+];
+pub(super) const CENTRAL: &[(&str, &str)] = &[
+    ("mu_init", "10"),
+    ("bound_push", "0.5"),
+    ("bound_frac", "0.5"),
+];
+
+/// What to try when an attempt has not led to a certified point.
+pub(super) const SCHEDULE: [(From, &[(&str, &str)]); 12] = [
+    (From::Start, NEAR),
+    (From::Moved(0.1), NEAR),
+    (
+        From::Start,
+        &[("mu_strategy", "adaptive"), ("bound_relax_factor", "0")],
+    ),
+    (From::Moved(1.0), &[]),
+    (
+        From::Best,
+        &[
+            ("nlp_scaling_method", "none"),
+            ("bound_push", "1e-6"),
+            ("bound_frac", "1e-6"),
+            ("mu_init", "1e-4"),
+        ],
+    ),
+    (
+        From::Start,
+        &[
+            ("bound_push", "1e-4"),
+            ("bound_frac", "1e-4"),
+            ("mu_init", "1e-2"),
+            ("alpha_for_y", "safer-min-dual-infeas"),
+        ],
+    ),
+    (From::Start, CENTRAL),
+    (From::Anywhere(1), NEAR),
+    (From::Anywhere(2), &[]),
+    (From::Anywhere(3), NEAR),
+    (From::Anywhere(4), &[]),
+    (From::Moved(10.0), NEAR),
+];
+
+/// What to try to better a certified point of a small nonconvex problem. The first
+/// [`AGREEMENT`] are always tried; the others where these did not agree.
+pub(super) const BETTER: [(From, &[(&str, &str)]); 6] = [
+    (From::Start, NEAR),
+    (From::Moved(0.3), &[]),
+    (From::Anywhere(1), &[]),
+    (From::Start, NEARER),
+    (From::Start, CENTRAL),
+    (From::Anywhere(2), NEAR),
+];
+pub(super) const AGREEMENT: usize = 3;
+
+/// Work of the first attempt (iterations times nonzeros) up to which more attempts are cheap.
+pub(super) const SMALL: f64 = 1e6;
+/// Work after which no further attempt is begun: some minutes.
+pub(super) const MUCH: f64 = 3e8;

@@ -1,0 +1,277 @@
+//! A point and what it is worth.
+
+use super::polish::{Active, polish};
+use super::problem::{Nlp, Problem};
+use super::provider::Ended;
+use crate::autodiff::Evaluator;
+use crate::model::certificate::{Linearised, Residuals, TOLERANCE, primal};
+use crate::model::certificate_nlp::{
+    is_locally_infeasible, kkt_residual, linearise, residuals, violations,
+};
+use crate::model::instance::{Instance, Relation, Sense};
+
+/// A point that was judged.
+#[derive(Clone)]
+pub(super) struct Trial {
+    pub(super) x: Vec<f64>,
+    pub(super) lambda: Vec<f64>,
+    pub(super) level: Vec<f64>,
+    pub(super) row_marginal: Vec<f64>,
+    pub(super) at: Linearised,
+    pub(super) residuals: Residuals,
+    pub(super) ended: Ended,
+    /// Minimised.
+    pub(super) objective: f64,
+}
+
+impl Trial {
+    pub(super) fn is_optimal(&self) -> bool {
+        self.residuals.is_feasible(TOLERANCE) && self.residuals.dual_relative <= TOLERANCE
+    }
+
+    pub(super) fn is_feasible(&self) -> bool {
+        self.residuals.is_feasible(TOLERANCE)
+    }
+
+    /// Whether this one is worth more than the other.
+    pub(super) fn better(&self, other: &Self) -> bool {
+        let rank = |t: &Self| u8::from(t.is_optimal()) + u8::from(t.is_feasible());
+        let (a, b) = (rank(self), rank(other));
+        if a != b {
+            return a > b;
+        }
+        if a == 0 {
+            return self.residuals.primal_relative < other.residuals.primal_relative;
+        }
+        self.objective < other.objective
+    }
+}
+
+/// Levels, marginals and residuals of a point.
+pub(super) fn residuals_at(
+    instance: &Instance,
+    problem: &mut Problem,
+    kinks: &mut Option<Evaluator>,
+    x: Vec<f64>,
+    lambda: Vec<f64>,
+    ended: Ended,
+) -> Trial {
+    let level = problem.levels(&x);
+    let row_marginal = problem.row_marginals(&lambda);
+    let sign = match instance.objective.map(|o| o.sense) {
+        Some(Sense::Maximize) => -1.0,
+        _ => 1.0,
+    };
+    let objective = instance
+        .objective
+        .map_or(0.0, |o| sign * level[o.column as usize]);
+    let (mut residuals, mut at) =
+        match kkt_residual(instance, problem.evaluator(), &level, &row_marginal) {
+            Ok(both) => both,
+            Err(_) => failed(instance, problem, &level),
+        };
+    if let Some(evaluator) = kinks {
+        beside_kinks(
+            instance,
+            evaluator,
+            &level,
+            &row_marginal,
+            &mut residuals,
+            &mut at,
+        );
+    }
+    Trial {
+        x,
+        lambda,
+        level,
+        row_marginal,
+        at,
+        residuals,
+        ended,
+        objective,
+    }
+}
+
+/// At a kink the derivative is any number between the one-sided ones: takes the one that the rounded
+/// functions have there, if it makes the point stationary. Values stay exact.
+fn beside_kinks(
+    instance: &Instance,
+    evaluator: &mut Evaluator,
+    level: &[f64],
+    row_marginal: &[f64],
+    found: &mut Residuals,
+    at: &mut Linearised,
+) {
+    let Ok(mut rounded) = linearise(instance, evaluator, level, row_marginal) else {
+        return;
+    };
+    rounded.activity.clone_from(&at.activity);
+    let better = residuals(instance, level, row_marginal, &rounded);
+    if better.dual_relative < found.dual_relative {
+        *found = better;
+        *at = rounded;
+    }
+}
+
+/// Residuals of a point without values or derivatives.
+fn failed(instance: &Instance, problem: &mut Problem, level: &[f64]) -> (Residuals, Linearised) {
+    let (m, n) = (instance.row_count(), instance.column_count());
+    let mut activity = vec![0.0; m];
+    let known = problem.evaluator().rows(level, &mut activity).is_ok();
+    if !known {
+        activity.fill(f64::NAN);
+    }
+    let row_size = activity
+        .iter()
+        .map(|a| a.abs().max(1.0))
+        .collect::<Vec<_>>();
+    let mut residuals = primal(instance, level, &activity, &row_size);
+    residuals.dual = None;
+    residuals.dual_relative = f64::INFINITY;
+    if !known {
+        residuals.primal_relative = f64::INFINITY;
+    }
+    let at = Linearised {
+        activity,
+        reduced: vec![0.0; n],
+        row_size,
+        column_size: vec![1.0; n],
+    };
+    (residuals, at)
+}
+
+/// An interior point stops short of the bounds by a hair. Puts such variables on their bounds, and
+/// multipliers of slack rows and reduced costs of variables between their bounds to 0.
+pub(super) fn tidy(
+    instance: &Instance,
+    problem: &mut Problem,
+    kinks: &mut Option<Evaluator>,
+    t: &Trial,
+) -> Option<Trial> {
+    let (lower, upper) = (problem.bounds().0.to_vec(), problem.bounds().1.to_vec());
+    let mut x = t.x.clone();
+    for (k, v) in x.iter_mut().enumerate() {
+        let r = t.at.reduced[problem.columns[k] as usize];
+        for b in [lower[k], upper[k]] {
+            let distance = (*v - b).abs();
+            // on the bound if it is near, and nearer than the reduced cost is to 0
+            if distance <= 1e-6 * b.abs().max(1.0) && distance <= 1e3 * r.abs() {
+                *v = b;
+            }
+        }
+    }
+    let mut lambda = t.lambda.clone();
+    for (k, l) in lambda.iter_mut().enumerate() {
+        let i = problem.rows[k] as usize;
+        if instance.rows.relation[i] == Relation::Equal {
+            continue;
+        }
+        let slack = (t.at.activity[i] - instance.rows.rhs[i]).abs();
+        if slack > 1e-6 * t.at.row_size[i].max(1.0)
+            && l.abs() * t.at.row_size[i].max(1.0) <= 1e-5 * slack
+        {
+            *l = 0.0;
+        }
+    }
+    let tidied = residuals_at(instance, problem, kinks, x, lambda, t.ended);
+    let fine = tidied.residuals.primal_relative <= t.residuals.primal_relative.max(1e-9)
+        && tidied.residuals.dual_relative <= t.residuals.dual_relative.max(1e-9);
+    fine.then_some(tidied)
+}
+
+/// Variables at a bound and rows that bind, to a relative tolerance.
+pub(super) fn active_set(
+    instance: &Instance,
+    problem: &Problem,
+    t: &Trial,
+    tolerance: f64,
+) -> Active {
+    let (lower, upper) = problem.bounds();
+    let near = |x: f64, b: f64| (x - b).abs() <= tolerance * b.abs().max(1.0);
+    let fixed =
+        t.x.iter()
+            .zip(lower.iter().zip(upper))
+            .map(|(&x, (&l, &u))| near(x, l) || near(x, u))
+            .collect();
+    let binding = problem
+        .rows
+        .iter()
+        .map(|&i| {
+            let i = i as usize;
+            let (a, b) = (t.at.activity[i], instance.rows.rhs[i]);
+            let size = t.at.row_size[i].max(b.abs()).max(1.0);
+            instance.rows.relation[i] == Relation::Equal || (a - b).abs() <= tolerance * size
+        })
+        .collect();
+    Active { fixed, binding }
+}
+
+/// The trial after Newton steps on its active set.
+pub(super) fn polished(
+    instance: &Instance,
+    problem: &mut Problem,
+    kinks: &mut Option<Evaluator>,
+    t: &Trial,
+) -> Option<Trial> {
+    let mut active = active_set(instance, problem, t, 1e-6);
+    let (lower, upper) = (problem.bounds().0.to_vec(), problem.bounds().1.to_vec());
+    let mut x = t.x.clone();
+    let mut lambda = t.lambda.clone();
+    for k in 0..x.len() {
+        if active.fixed[k] {
+            // at a bound without a reduced cost: free, unless it is exactly there
+            let r = t.at.reduced[problem.columns[k] as usize].abs();
+            let (l, u) = (lower[k], upper[k]);
+            let b = if (x[k] - l).abs() <= (x[k] - u).abs() {
+                l
+            } else {
+                u
+            };
+            if r < 1e-7 * t.at.column_size[problem.columns[k] as usize].max(1.0) && x[k] != b {
+                active.fixed[k] = false;
+            } else {
+                x[k] = b;
+            }
+        }
+    }
+    let mut target = Vec::with_capacity(problem.rows.len());
+    for (k, &i) in problem.rows.iter().enumerate() {
+        target.push(instance.rows.rhs[i as usize]);
+        if !active.binding[k] {
+            lambda[k] = 0.0;
+        }
+    }
+    if !polish(problem, &active, &target, &mut x, &mut lambda) {
+        return None;
+    }
+    for (v, (&l, &u)) in x.iter_mut().zip(lower.iter().zip(&upper)) {
+        *v = v.max(l).min(u);
+    }
+    Some(residuals_at(instance, problem, kinks, x, lambda, t.ended))
+}
+
+/// Reduced costs of variables between their bounds that are nothing but noise become 0.
+pub(super) fn clean(instance: &Instance, t: &mut Trial) {
+    for j in 0..instance.column_count() {
+        let (l, u) = (instance.columns.lower[j], instance.columns.upper[j]);
+        let inside = t.level[j] > l && t.level[j] < u;
+        if inside && t.at.reduced[j].abs() <= TOLERANCE * t.at.column_size[j].max(1.0) {
+            t.at.reduced[j] = 0.0;
+        }
+    }
+}
+/// Whether the evidence, or the violations of the best point, prove local infeasibility.
+pub(super) fn proved_infeasible(
+    instance: &Instance,
+    evaluator: &mut Evaluator,
+    best: &Trial,
+    evidence: &Option<(Vec<f64>, Vec<f64>)>,
+) -> bool {
+    if let Some((x, y)) = evidence
+        && is_locally_infeasible(instance, evaluator, x, y, 1e-4)
+    {
+        return true;
+    }
+    let y = violations(instance, &best.at.activity);
+    is_locally_infeasible(instance, evaluator, &best.level, &y, 1e-4)
+}
