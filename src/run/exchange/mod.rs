@@ -224,7 +224,31 @@ impl Machine<'_> {
         None
     }
 
+    /// What a model writes for GAMS as `results.gdx` is written as `results.json`, with a warning.
+    fn instead_of_gdx(&self, file: &str, span: Span) -> Option<String> {
+        let path = std::path::Path::new(file);
+        let gdx = path
+            .extension()
+            .is_none_or(|e| e.eq_ignore_ascii_case("gdx"));
+        if !gdx || file.ends_with('/') {
+            return None;
+        }
+        let other = path.with_extension("json").to_string_lossy().into_owned();
+        self.note(
+            Diagnostic::warning(
+                "E0476",
+                span,
+                format!("`{other}` is written in place of the GDX file `{file}`"),
+            )
+            .label("GDX is GAMS's own binary format")
+            .help("name a file that ends in `.csv` or `.json` to choose the format"),
+        );
+        Some(other)
+    }
+
     fn unload(&mut self, file: &str, items: &[Wanted], span: Span) {
+        let instead = self.instead_of_gdx(file, span);
+        let file = instead.as_deref().unwrap_or(file);
         let Some(kind) = self.format_of(file, span) else {
             return;
         };
