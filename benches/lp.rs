@@ -6,9 +6,10 @@
 use std::collections::HashMap;
 use std::time::Instant;
 
+use bmod::model::certificate;
 use bmod::model::instance::{Columns, Instance, Objective, Relation, Rows, Sense, SparseRows};
 use bmod::solve::lp::Clarabel;
-use bmod::solve::{Monitor, Settings, Solver};
+use bmod::solve::{Monitor, Outcome, Settings, Solver};
 
 struct Quiet(bool);
 
@@ -125,6 +126,20 @@ fn read_mps(text: &str) -> Instance {
     }
 }
 
+/// Model status and largest residuals.
+fn status(instance: &Instance, o: &Outcome) -> String {
+    let r = certificate::linear(instance, o);
+    let status = certificate::linear_status(instance, o, &r);
+    let size = |v: Option<f64>| v.unwrap_or(f64::NAN);
+    format!(
+        "{}, primal {:.0e}, dual {:.0e}, gap {:.0e}",
+        status.name(),
+        size(r.primal),
+        size(r.dual),
+        size(r.gap)
+    )
+}
+
 fn main() {
     let (options, files): (Vec<String>, Vec<String>) = std::env::args()
         .skip(1)
@@ -149,7 +164,7 @@ fn main() {
                 o.solver,
                 o.iterations,
                 o.level[instance.column_count() - 1],
-                o.message.unwrap_or_default(),
+                status(&instance, &o),
             ),
             Err(e) => println!("{file}: {}", e.message),
         }
