@@ -119,6 +119,53 @@ impl Problem {
     pub fn m(&self) -> usize {
         self.row_lower.len()
     }
+
+    /// Whether y proves the problem infeasible, clearly: more strictly than
+    /// [`crate::model::certificate`] asks.
+    pub fn proves_infeasible(&self, y: &[f64]) -> bool {
+        proves_infeasible(
+            &self.columns,
+            [&self.lower, &self.upper],
+            [&self.row_lower, &self.row_upper],
+            y,
+            [1e-6, 1e-10],
+        )
+    }
+}
+
+/// Whether y has yᵀAx < yᵀs for all x and all activities s within bounds (Farkas). `clear` is the
+/// margin asked for, relative to the largest term; entries that meet an infinite bound may be
+/// `noise` of their largest term.
+pub fn proves_infeasible(
+    columns: &Sparse,
+    [lower, upper]: [&[f64]; 2],
+    [row_lower, row_upper]: [&[f64]; 2],
+    y: &[f64],
+    [clear, noise]: [f64; 2],
+) -> bool {
+    let top = y.iter().fold(0.0f64, |t, v| t.max(v.abs()));
+    let (mut margin, mut size) = (0.0, 0.0f64);
+    for (i, &y) in y.iter().enumerate() {
+        let side = if y > 0.0 { row_lower[i] } else { row_upper[i] };
+        if side.is_finite() {
+            margin += y * side;
+            size = size.max((y * side).abs());
+        } else if y.abs() > noise * top {
+            return false;
+        }
+    }
+    for j in 0..columns.lines() {
+        let terms = columns.line(j).map(|(i, a)| a * y[i]);
+        let (reach, largest) = terms.fold((0.0, 0.0f64), |(r, l), t| (r + t, l.max(t.abs())));
+        let bound = if reach > 0.0 { upper[j] } else { lower[j] };
+        if bound.is_finite() {
+            margin -= reach * bound;
+            size = size.max((reach * bound).abs());
+        } else if reach.abs() > noise * largest {
+            return false;
+        }
+    }
+    margin > clear * size
 }
 
 /// A point of a [`Problem`] with its multipliers.

@@ -310,7 +310,7 @@ fn finished(p: &Problem, limits: &Limits, monitor: &mut dyn Monitor) -> Answer {
         }
         // A direction is no point: the simplex method finds one from which it leads on.
         Ended::Unbounded(_) | Ended::Failed => {}
-        Ended::Infeasible(ref y) if proves_infeasible(p, y) => return answer,
+        Ended::Infeasible(ref y) if p.proves_infeasible(y) => return answer,
         // An exact proof is worth some effort.
         Ended::Infeasible(_) => {
             cut.iterations = cut.iterations.min(1000 + 2 * (p.m() + p.n()) as u64);
@@ -345,39 +345,6 @@ fn finished(p: &Problem, limits: &Limits, monitor: &mut dyn Monitor) -> Answer {
     done.iterations += answer.iterations;
     done.solver = "clarabel";
     done
-}
-
-/// Whether y clearly has yᵀAx < yᵀs for all x and all activities s within bounds. Stricter than
-/// what [`crate::model::certificate`] asks, in the problem's units.
-fn proves_infeasible(p: &Problem, y: &[f64]) -> bool {
-    let top = y.iter().fold(0.0f64, |t, v| t.max(v.abs()));
-    let mut margin = 0.0;
-    let mut size = 0.0f64;
-    for (i, &y) in y.iter().enumerate() {
-        let side = if y > 0.0 {
-            p.row_lower[i]
-        } else {
-            p.row_upper[i]
-        };
-        if side.is_finite() {
-            margin += y * side;
-            size = size.max((y * side).abs());
-        } else if y.abs() > 1e-10 * top {
-            return false;
-        }
-    }
-    for j in 0..p.n() {
-        let terms = p.columns.line(j).map(|(i, a)| a * y[i]);
-        let (reach, largest) = terms.fold((0.0, 0.0f64), |(r, l), t| (r + t, l.max(t.abs())));
-        let bound = if reach > 0.0 { p.upper[j] } else { p.lower[j] };
-        if bound.is_finite() {
-            margin -= reach * bound;
-            size = size.max((reach * bound).abs());
-        } else if reach.abs() > 1e-10 * largest {
-            return false;
-        }
-    }
-    margin > 1e-6 * size
 }
 
 /// Problems without a free column or without a constraint, which Clarabel does not take.

@@ -7,6 +7,7 @@
 
 use super::{NONBASIC, PIVOT, SAFE_PIVOT, Simplex, Stop, jitter};
 use crate::solve::lp::Ended;
+use crate::solve::lp::form::proves_infeasible;
 
 impl Simplex {
     /// Makes the basis dual feasible by flipping bounds and shifting costs, then pivots until it is
@@ -37,10 +38,13 @@ impl Simplex {
                 Step::Done => refused.fill(0),
                 Step::Nothing(y) => {
                     let fresh = self.factor.as_ref().is_some_and(|f| f.updates() == 0);
-                    if fresh {
+                    if fresh && self.is_proof(&y) {
                         return Stop::Infeasible(y);
                     }
-                    if self.refresh().is_none() {
+                    if fresh {
+                        // Entries too small to pivot on could still help.
+                        refused[slot] += 1;
+                    } else if self.refresh().is_none() {
                         return Stop::Ended(Ended::Failed);
                     }
                 }
@@ -63,6 +67,19 @@ impl Simplex {
                 }
             }
         }
+    }
+
+    /// Whether the multipliers prove infeasibility for the true bounds.
+    fn is_proof(&self, y: &[f64]) -> bool {
+        let (lower, row_lower) = self.lower.split_at(self.n);
+        let (upper, row_upper) = self.upper.split_at(self.n);
+        proves_infeasible(
+            &self.columns,
+            [lower, upper],
+            [row_lower, row_upper],
+            y,
+            [1e-9, 1e-9],
+        )
     }
 
     /// Factorises afresh, and shifts away what rounding did to dual feasibility.
@@ -161,10 +178,13 @@ impl Simplex {
         };
         let pivot = self.row[entering];
         let fresh = self.factor.as_ref().is_some_and(|f| f.updates() == 0);
-        if pivot.abs() < SAFE_PIVOT && !fresh {
+        let entries = self.row_index.iter();
+        let top = entries.fold(0.0f64, |t, &j| t.max(self.row[j as usize].abs()));
+        let top = top.min(1.0);
+        if pivot.abs() < SAFE_PIVOT * top && !fresh {
             return Step::Unsafe;
         }
-        if pivot.abs() < PIVOT * 100.0 {
+        if pivot.abs() < PIVOT * 100.0 * top {
             return Step::Unsafe;
         }
         let a_q = self.column(entering);
@@ -175,7 +195,7 @@ impl Simplex {
             return Step::Broken;
         };
         let alpha = column.iter().find(|e| e.0 == slot).map_or(0.0, |e| e.1);
-        if (alpha - pivot).abs() > 1e-7 * (1.0 + alpha.abs()) * if fresh { 100.0 } else { 1.0 } {
+        if (alpha - pivot).abs() > 1e-7 * (top + alpha.abs()) * if fresh { 100.0 } else { 1.0 } {
             return Step::Unsafe;
         }
         // Steepest edge: τ = B⁻¹ρ.
@@ -242,13 +262,19 @@ impl Simplex {
 
     /// The entering variable and the variables that change bounds. None: no variable can enter.
     fn entering(&self, sign: f64, violation: f64) -> Option<(usize, Vec<u32>)> {
+        // What is noise depends on the row: entries of one that is small throughout count.
+        let top = self
+            .row_index
+            .iter()
+            .fold(0.0f64, |t, &j| t.max(self.row[j as usize].abs()));
+        let noise = PIVOT * top.min(1.0);
         // Candidates with their pivots, oriented so that a ratio is d/α ≥ 0.
         let mut candidates: Vec<(u32, f64, f64)> = Vec::new();
         for &j in &self.row_index {
             let k = j as usize;
             let (l, u) = (self.work_lower[k], self.work_upper[k]);
             let alpha = sign * self.row[k];
-            if l == u || alpha.abs() <= PIVOT {
+            if l == u || alpha.abs() <= noise {
                 continue;
             }
             let free = l.is_infinite() && u.is_infinite();
@@ -278,7 +304,7 @@ impl Simplex {
                     best = (c.1, c.0);
                 }
             }
-            let enough = best.0 >= SAFE_PIVOT;
+            let enough = best.0 >= SAFE_PIVOT * top.min(1.0);
             if slope - drop < 0.0 || drop.is_nan() {
                 if enough || reserve.is_none() {
                     return Some((best.1 as usize, flips));
