@@ -15,27 +15,49 @@ fn main() {
 
 /// Generates a model; nonzeros of the instance.
 fn generate(file: &str, defines: &[(&str, String)]) -> usize {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/models").join(file);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("benches/models")
+        .join(file);
     let folders = [Path::new(env!("CARGO_MANIFEST_DIR")).to_path_buf()];
     let mut host = SystemHost::new(&path, Path::new("."), &folders, Output::Quiet);
     let options = Options {
         quiet: true,
         collect: false,
-        list: Some(ListOptions { limit: 0, only: Vec::new() }),
+        list: Some(ListOptions {
+            limit: 0,
+            only: Vec::new(),
+        }),
         ..Options::default()
     };
     let preprocess = PreprocessOptions {
-        defines: defines.iter().map(|(k, v)| ((*k).to_string(), v.clone())).collect(),
+        defines: defines
+            .iter()
+            .map(|(k, v)| ((*k).to_string(), v.clone()))
+            .collect(),
         slash_comments: true,
     };
-    let done = session::run(&mut host, &path.to_string_lossy(), preprocess, options, false, &mut |_| {});
-    done.report.solves.last().expect("the model is generated").nonzeros
+    let done = session::run(
+        &mut host,
+        &path.to_string_lossy(),
+        preprocess,
+        options,
+        false,
+        &mut |_| {},
+    );
+    done.report
+        .solves
+        .last()
+        .expect("the model is generated")
+        .nonzeros
 }
 
 /// A wall of n courses of n blocks, contacts found in the language.
 #[divan::bench(args = [25, 50, 100], sample_count = 5)]
 fn wall(n: usize) -> usize {
-    generate("wall.blk", &[("courses", n.to_string()), ("blocks", n.to_string())])
+    generate(
+        "wall.blk",
+        &[("courses", n.to_string()), ("blocks", n.to_string())],
+    )
 }
 
 /// Transportation with n × n arcs.

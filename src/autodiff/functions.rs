@@ -615,16 +615,16 @@ fn round_to(x: f64, n: f64) -> f64 {
     if n == 0.0 {
         return if x.abs() < 4.5e15 { x.round() } else { x };
     }
-    let p = 10f64.powi(n.clamp(-300.0, 300.0) as i32);
-    let scaled = x * p;
+    let unit = 10f64.powi(-(n.clamp(-300.0, 300.0) as i32));
+    let scaled = x / unit;
     if !scaled.is_finite() || scaled.abs() > 4.5e15 {
         return x;
     }
     let r = half_away(scaled);
     if n < 0.0 {
-        r * 10f64.powi(-n as i32)
+        r * unit
     } else {
-        r / p
+        r / 10f64.powi(n.clamp(-300.0, 300.0) as i32)
     }
 }
 

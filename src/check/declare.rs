@@ -547,7 +547,9 @@ impl Compiler {
         if let Some(Ok(r)) = reader.next()
             && (kind == DataKind::Set || !matches!(r.value, Tail::None))
         {
-            let dim = width(r.key) + r.matched.map_or(0, width);
+            let spelled_out = set_prefix(r.key);
+            let key = spelled_out.as_deref().unwrap_or(r.key);
+            let dim = width(key) + r.matched.map_or(0, width);
             if dim > 0 && dim <= 20 && dim != self.symbols.get(s).dim() {
                 self.reshape(s, dim);
             }

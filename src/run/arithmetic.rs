@@ -140,7 +140,8 @@ pub fn relate(op: BinaryOp, a: f64, b: f64) -> f64 {
             if a.is_nan() || b.is_nan() {
                 return relate_special(op, a, b);
             }
-            yes(compare(op, a, b))
+            // Numbers from 1e299 on are as good as infinite.
+            yes(compare(op, a.clamp(-1e299, 1e299), b.clamp(-1e299, 1e299)))
         }
     }
 }

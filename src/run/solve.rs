@@ -153,7 +153,17 @@ impl Machine<'_> {
                         self.origin_name(&generated.origin.columns, c)
                     ));
                 }
-                self.note(Diagnostic::execution("E0422", span, message).label("at this solve"));
+                // The equation is the better place, where one is to blame.
+                let blamed = e.row.and_then(|r| {
+                    let symbol = generated.origin.rows.of(r as u32).symbol;
+                    let of = |d: &&EquationDef| d.symbol == symbol;
+                    self.equations.iter().find(of).map(|d| d.span)
+                });
+                let d = Diagnostic::execution("E0422", blamed.unwrap_or(span), message);
+                self.note(match blamed {
+                    Some(_) => d.label("this row").other(span, "at this solve"),
+                    None => d.label("at this solve"),
+                });
                 let report = self.not_solved(s, &generated);
                 self.report.solves.push(report);
                 Flow::Stop
