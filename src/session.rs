@@ -36,7 +36,7 @@ pub fn run(
     };
     let mut program = match check::compile(host, path, preprocess) {
         Ok(p) => p,
-        Err((d, map)) => return failed(RunStatus::CompilationError, vec![d], map),
+        Err(e) => return failed(RunStatus::CompilationError, vec![e.0], e.1),
     };
     let mut diagnostics = std::mem::take(&mut program.diagnostics);
     if diagnostics.iter().any(|d| d.severity == Severity::Error) {

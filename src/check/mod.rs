@@ -83,8 +83,9 @@ pub fn compile(
     host: &mut dyn Host,
     path: &str,
     options: PreprocessOptions,
-) -> Result<Program, (Diagnostic, SourceMap)> {
-    let mut parser = Parser::new(host, path, options).map_err(|u| (u.diagnostic, u.map))?;
+) -> Result<Program, Box<(Diagnostic, SourceMap)>> {
+    let mut parser =
+        Parser::new(host, path, options).map_err(|u| Box::new((u.diagnostic, u.map)))?;
     let mut c = Compiler::new();
     let mut code = Vec::new();
     loop {

@@ -53,8 +53,7 @@ impl Compiler {
         }
         let items = info.items.clone().unwrap_or_default();
         let mut rows: Vec<ModelRow> = Vec::new();
-        let mut seen = Vec::new();
-        self.collect(&items, span, &mut rows, &mut seen, 0)?;
+        self.collect(&items, &mut rows, 0)?;
         rows.sort_by_key(|r| self.equations[r.definition].symbol);
         if rows.is_empty() {
             return self.fail(
@@ -124,9 +123,7 @@ impl Compiler {
     fn collect(
         &mut self,
         items: &[ModelItem],
-        span: Span,
         rows: &mut Vec<ModelRow>,
-        seen: &mut Vec<SymbolId>,
         depth: usize,
     ) -> Result<(), Failed> {
         if depth > 50 {
@@ -193,7 +190,7 @@ impl Compiler {
                     match self.symbols.get(id).kind.clone() {
                         SymbolKind::Model(m) => {
                             let inner = m.items.clone().unwrap_or_default();
-                            failed |= self.collect(&inner, span, rows, seen, depth + 1).is_err();
+                            failed |= self.collect(&inner, rows, depth + 1).is_err();
                         }
                         _ => failed |= add(self, id, None, restrict, name.span, rows).is_err(),
                     }
@@ -204,7 +201,7 @@ impl Compiler {
                         SymbolKind::Model(m) => {
                             let mut gone = Vec::new();
                             let inner = m.items.clone().unwrap_or_default();
-                            self.collect(&inner, span, &mut gone, seen, depth + 1)?;
+                            self.collect(&inner, &mut gone, depth + 1)?;
                             rows.retain(|r| !gone.iter().any(|g| g.definition == r.definition));
                         }
                         SymbolKind::Equation(Some(d)) => rows.retain(|r| r.definition != d),

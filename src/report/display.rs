@@ -490,8 +490,8 @@ mod tests {
     #[test]
     fn scalars() {
         assert_eq!(
-            scalar("PARAMETER", "s", 3.14159, "a scalar", 3, &[]),
-            "PARAMETER s                    =        3.142  a scalar"
+            scalar("PARAMETER", "s", 3.25, "a scalar", 3, &[]),
+            "PARAMETER s                    =        3.250  a scalar"
         );
         assert_eq!(
             scalar(

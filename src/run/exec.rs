@@ -608,9 +608,7 @@ impl Machine<'_> {
         let (mut keys, mut values): (Vec<Label>, Vec<f64>) = (Vec::new(), Vec::new());
         for (i, (k, v)) in rows.iter().enumerate() {
             let repeated = i > 0 && rows[i - 1].0 == *k;
-            let v = if to_set || (from_set && same_dim) {
-                1.0
-            } else if count && !same_dim {
+            let v = if to_set || (same_dim && from_set) || (count && !same_dim) {
                 1.0
             } else {
                 *v

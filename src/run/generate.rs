@@ -201,7 +201,7 @@ impl Builder<'_, '_> {
         };
         let relation = e.relation;
         let mut row = Row::default();
-        for k in 0..if d == 0 { 1 } else { tuples.len() / d } {
+        for k in 0..tuples.len().checked_div(d).unwrap_or(1) {
             for (&s, &l) in e.domain.slots.iter().zip(&tuples[k * d..]) {
                 frame[s as usize] = l;
             }
@@ -646,10 +646,8 @@ impl Builder<'_, '_> {
                     self.gather(f, coef * c, frame, part);
                 }
             }
-            NodeKind::Dollar(a, c) => {
-                if truth(self.m.eval(c, frame)) {
-                    self.gather(a, coef, frame, part);
-                }
+            NodeKind::Dollar(a, c) if truth(self.m.eval(c, frame)) => {
+                self.gather(a, coef, frame, part);
             }
             NodeKind::Aggregate(AggregateOp::Sum, d, body) => {
                 let m = self.m;

@@ -461,10 +461,11 @@ impl Driver<'_> {
         };
         let residual = |t: &Trial| t.residuals.primal_relative.max(t.residuals.dual_relative);
         let nearly = residual(&best) < 1e-2 && residual(&best) > 1e-13;
-        if nearly && let Some(t) = polished(self.instance, &mut problem, kinks, &best) {
-            if residual(&t) < residual(&best) {
-                best = t;
-            }
+        if nearly
+            && let Some(t) = polished(self.instance, &mut problem, kinks, &best)
+            && residual(&t) < residual(&best)
+        {
+            best = t;
         }
         clean(self.instance, &mut best);
         best

@@ -5,6 +5,9 @@
 //! (|λ| ≤ ρ) satisfy the conditions of the problem itself; where they do not, x is a point of local
 //! infeasibility in the sum norm once ρ dominates f.
 
+// Rows, bounds and slacks stand side by side.
+#![allow(clippy::needless_range_loop)]
+
 use super::problem::Nlp;
 use super::provider::{Shared, lock};
 
