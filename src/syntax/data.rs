@@ -184,25 +184,20 @@ impl<'a> DataReader<'a> {
     /// The next record. After an error, reading goes on behind the next comma or line end.
     #[allow(clippy::should_implement_trait)]
     pub fn next(&mut self) -> Option<Result<Record<'_, 'a>, Diagnostic>> {
-        loop {
+        let (start, outcome) = loop {
             self.blanks(true);
-            if self.peek() == Some(b',') {
-                self.at += 1;
-            } else {
-                break;
+            let start = self.at;
+            self.key.clear();
+            self.matched.clear();
+            match self.peek()? {
+                b',' => self.at += 1,
+                MARK => {
+                    if let Some(outcome) = self.delimited() {
+                        break (start, outcome);
+                    }
+                }
+                _ => break (start, self.record(start)),
             }
-        }
-        self.peek()?;
-        let start = self.at;
-        self.key.clear();
-        self.matched.clear();
-        let outcome = if self.peek() == Some(MARK) {
-            match self.delimited() {
-                Some(outcome) => outcome,
-                None => return self.next(),
-            }
-        } else {
-            self.record(start)
         };
         match outcome {
             Ok(value) => {

@@ -64,8 +64,6 @@ impl<'h> Parser<'h> {
         path: &str,
         options: PreprocessOptions,
     ) -> Result<Self, Box<Unreadable>> {
-        // Expected tokens are only collected when pest is told so.
-        pest::set_error_detail(true);
         match Preprocessor::new(host, path, options) {
             Ok(text) => Ok(Self {
                 text,
@@ -193,6 +191,10 @@ impl<'h> Parser<'h> {
                 None => Ok(ast::StmtKind::Empty),
             },
             Err(e) => {
+                // What would have been accepted is collected only now: it doubles the time.
+                pest::set_error_detail(true);
+                let e = Grammar::parse(rule, text).err().unwrap_or(e);
+                pest::set_error_detail(false);
                 return Err(Box::new(explain::explain(
                     &e, raw, &condensed, expanded, rule,
                 )));
