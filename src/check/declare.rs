@@ -97,6 +97,13 @@ impl Compiler {
                     .help("choose another name"),
                 );
             }
+            if old.open && d.domain.is_some() && domain.len() <= 20 {
+                self.reshape(s, domain.len());
+                let symbol = self.symbols.get_mut(s);
+                symbol.domain = domain;
+                symbol.open = false;
+                return Ok(s);
+            }
             if d.domain.is_some() && domain.len() != old.dim() {
                 return self.wrong_dimension(s, d.name.span, domain.len());
             }
