@@ -273,7 +273,8 @@ impl Compiler {
             let e = &self.equations[r.definition];
             mentions(&e.left, v) || mentions(&e.right, v)
         });
-        if !mentioned {
+        // An equation that failed to compile may be the one that mentions it.
+        if !mentioned && self.error_count() == 0 {
             return self.fail(
                 Diagnostic::error(
                     "E0360",

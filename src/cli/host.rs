@@ -147,6 +147,12 @@ fn other(e: std::io::Error) -> HostError {
     }
 }
 
+/// Whether a file is GAMS's rather than bmod's, by its extension.
+fn is_gams(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|e| ["gms", "inc"].iter().any(|g| e.eq_ignore_ascii_case(g)))
+}
+
 impl SystemHost {
     /// Takes the progress line away.
     pub fn finish(&mut self) {
@@ -183,6 +189,10 @@ impl Host for SystemHost {
                     None => text,
                 };
                 Ok((known, text))
+            }
+            // Old GAMS files are often Latin-1 in their comments; a .blk is UTF-8.
+            Err(e) if is_gams(&real) => {
+                Ok((known, e.into_bytes().into_iter().map(char::from).collect()))
             }
             Err(e) => Err(HostError::NotUtf8(e.utf8_error().valid_up_to())),
         }
