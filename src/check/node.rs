@@ -245,6 +245,8 @@ pub enum Target {
     Object(SymbolId, &'static str),
     /// `execseed = n`
     Seed,
+    /// `execerror = n`
+    Errors,
 }
 
 /// A statement.

@@ -315,11 +315,18 @@ impl Compiler {
 
     fn assign(&mut self, a: &Assign) -> Result<CodeKind, Failed> {
         let t = &a.target;
-        if t.name.name.eq_ignore_ascii_case("execseed") && self.symbols.find("execseed").is_none() {
+        let counter = match t.name.name.to_lowercase().as_str() {
+            "execseed" => Some(Target::Seed),
+            "execerror" => Some(Target::Errors),
+            _ => None,
+        };
+        if let Some(target) = counter
+            && self.symbols.find(&t.name.name).is_none()
+        {
             let value = self.expr(&a.value)?;
             return Ok(CodeKind::Assign {
                 domain: Domain::default(),
-                target: Target::Seed,
+                target,
                 key: Key::default(),
                 value,
                 covers: false,

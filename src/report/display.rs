@@ -118,12 +118,15 @@ fn exponential(x: f64) -> String {
     loop {
         let text = format!("{x:.digits$E}");
         let (mantissa, exponent) = text.split_once('E').unwrap_or((&text, "0"));
-        let text = match exponent.strip_prefix('-') {
-            Some(e) => format!("{mantissa}E-{e}"),
-            None => format!("{mantissa}E+{exponent}"),
+        let exponent = match exponent.strip_prefix('-') {
+            Some(e) => format!("E-{e}"),
+            None => format!("E+{exponent}"),
         };
-        if text.len() <= NUMBER || digits == 0 {
-            return text;
+        let spare = (NUMBER + 1).saturating_sub(mantissa.len() + exponent.len());
+        if spare > 0 || digits == 0 {
+            // Rounding up to a power of ten may have made room for a digit: it is a zero.
+            let zeros = (spare.saturating_sub(1)).min(6 - digits);
+            return format!("{mantissa}{}{exponent}", "0".repeat(zeros));
         }
         digits -= 1;
     }
@@ -140,7 +143,7 @@ pub fn scalar(
 ) -> String {
     let head = format!("{kind} {name}");
     let line = format!(
-        "{head:30} ={:>13}  {text}",
+        "{head:30} = {:>12}  {text}",
         number(value, decimals, acronyms)
     );
     line.trim_end().to_string()
@@ -467,6 +470,7 @@ mod tests {
             (9.99999999e-10, 3, "1.000000E-9"),
             (9.99999999e9, 3, "1.00000E+10"),
             (9.9999996e99, 3, "1.0000E+100"),
+            (9.99999e-100, 3, "1.00000E-99"),
             (-1e-100, 3, "-1.000E-100"),
             (99999999.9996, 3, "1.000000E+8"),
             (-99999.99951, 3, "-100000.000"),

@@ -1,7 +1,7 @@
 //! Numbers as `put` writes them: to a width, with decimals, in four forms.
 //!
-//! Source: GAMS 54.6, observed. A double is shown with at most sixteen significant digits; what is asked
-//! for beyond them is zeros.
+//! Source: GAMS 54.6, observed. What is asked for beyond the digits that tell a double from its
+//! neighbours is zeros.
 
 /// The forms of `.nr`.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -30,8 +30,8 @@ impl Form {
 
 /// Widest number where the width is given as 0.
 const OPEN: usize = 24;
-/// Digits of which the last can be trusted.
-const DIGITS: usize = 16;
+/// Most decimals with an exponent, where it is always there.
+const SCIENTIFIC: usize = 15;
 /// Digits that `.nr = 3` shows.
 const WIDEST: usize = 17;
 
@@ -63,26 +63,28 @@ pub fn number(x: f64, width: usize, decimals: usize, form: Form) -> String {
     }
 }
 
+/// The shortest digits that tell a double from its neighbours, and the exponent of the first.
+fn shortest(x: f64) -> (Vec<u8>, i64) {
+    let text = format!("{:e}", x.abs());
+    let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+    let digits = mantissa.bytes().filter(u8::is_ascii_digit).collect();
+    (digits, exponent.parse().unwrap_or(0))
+}
+
 /// With a fixed number of decimals.
 fn fixed(x: f64, decimals: usize) -> String {
-    // Digits before the point, of a number that is not 0.
-    let magnitude = if x == 0.0 {
-        0
-    } else {
-        x.abs().log10().floor() as i64 + 1
-    };
-    if magnitude + decimals as i64 <= DIGITS as i64 || x == 0.0 {
-        let x = if x == 0.0 { 0.0 } else { x };
+    let x = if x == 0.0 { 0.0 } else { x };
+    // Few digits are always the double's own.
+    if x.abs() < 1e6 && decimals < 9 {
         return format!("{x:.decimals$}");
     }
-    // More digits than a double holds: sixteen of them, then zeros.
-    let text = format!("{:.*e}", DIGITS - 1, x);
-    let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
-    let exponent: i64 = exponent.parse().unwrap_or(0);
-    let digits: String = mantissa.chars().filter(char::is_ascii_digit).collect();
+    let (digits, exponent) = shortest(x);
+    if exponent + decimals as i64 + 1 < digits.len() as i64 {
+        return format!("{x:.decimals$}");
+    }
     let mut out = String::from(if x < 0.0 { "-" } else { "" });
     let digit = |place: i64| match usize::try_from(exponent - place) {
-        Ok(k) => digits.as_bytes().get(k).map_or('0', |&b| b as char),
+        Ok(k) => digits.get(k).map_or('0', |&b| b as char),
         Err(_) => '0',
     };
     for place in (0..=exponent.max(0)).rev() {
@@ -99,17 +101,21 @@ fn fixed(x: f64, decimals: usize) -> String {
 
 /// Mantissa with `digits` decimals (−1: without a point), and the exponent after rounding.
 fn parts(x: f64, digits: i64) -> (String, i64) {
-    let shown = digits.clamp(0, DIGITS as i64 - 1) as usize;
+    let shown = digits.max(0) as usize;
+    let (all, exponent) = shortest(x);
+    if all.len() <= shown + 1 {
+        let mut mantissa = String::from(if x < 0.0 { "-" } else { "" });
+        mantissa.push(all[0] as char);
+        if digits >= 0 {
+            mantissa.push('.');
+            mantissa.extend((1..=shown).map(|k| all.get(k).map_or('0', |&b| b as char)));
+        }
+        return (mantissa, exponent);
+    }
     let text = format!("{x:.shown$e}");
     let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
-    let mut mantissa = mantissa.to_string();
-    if digits == 0 {
-        mantissa.push('.');
-    }
-    for _ in shown as i64..digits {
-        mantissa.push('0');
-    }
-    (mantissa, exponent.parse().unwrap_or(0))
+    let point = if digits == 0 { "." } else { "" };
+    (format!("{mantissa}{point}"), exponent.parse().unwrap_or(0))
 }
 
 /// `1.235E+5`, `1.E+5`, `1E+5`, `1E5`: with as many digits as make the width.
@@ -138,7 +144,7 @@ fn exponential(x: f64, width: usize) -> Option<String> {
 
 /// ` 1.23E+05`: a place for the sign, two digits of exponent, no more decimals than asked for.
 fn scientific(x: f64, width: usize, decimals: usize) -> Option<String> {
-    let mut digits = decimals as i64;
+    let mut digits = decimals.min(SCIENTIFIC) as i64;
     while digits >= -1 {
         let (mantissa, e) = parts(x, digits);
         let sign = if e < 0 { '-' } else { '+' };
@@ -193,7 +199,9 @@ mod tests {
             (1e21 / 3.0, 0, 2, "333333333333333300000.00"),
             (1.0 / 3.0, 20, 18, "0.333333333333333300"),
             (1.0 / 3.0, 0, 25, "0.3333333333333333000000"),
-            (1e10 / 3.0, 24, 15, "3.3333333333333330000E+9"),
+            (3333333333.333333, 24, 15, "3.3333333333333330000E+9"),
+            (9999999.996, 20, 10, "9999999.9960000000"),
+            (123456789012345678.0, 24, 12, "1.234567890123456800E+17"),
             (12.345, 1, 3, "*"),
             (12.345, 2, 3, "12"),
             (12.345, 3, 3, "1E1"),
@@ -232,6 +240,7 @@ mod tests {
             (1.23e150, 8, 2, Form::Scientific, " 1.E+150"),
             (0.0, 12, 2, Form::Scientific, " 0.00E+00"),
             (-1.0, 0, 3, Form::Scientific, "-1.000E+00"),
+            (1.0 / 3.0, 0, 18, Form::Scientific, " 3.333333333333333E-01"),
             (1.0, 12, 2, Form::Widest, "1.0000000000"),
             (1.0, 20, 2, Form::Widest, "1.0000000000000000"),
             (-1.0, 12, 2, Form::Widest, "-1.000000000"),

@@ -189,6 +189,9 @@ impl TextFile {
             "ll" => cut(&mut self.body),
             "hdll" => cut(&mut self.header),
             "tlll" => cut(&mut self.title),
+            "nd" => {
+                self.attributes.insert(name, value.clamp(0.0, 20.0));
+            }
             _ => {
                 self.attributes.insert(name, value);
             }
@@ -385,11 +388,12 @@ impl TextFile {
         Ok(())
     }
 
-    /// `putpage`: the line that is open ends, and the page.
+    /// `putpage`: the line that is open ends, and the page, if one has begun.
     pub fn end_page(&mut self) {
-        self.begin(Part::Body);
-        self.body.reach(self.body.row);
-        self.finish_page();
+        if self.begun.is_some() {
+            self.body.reach(self.body.row);
+            self.finish_page();
+        }
     }
 
     fn finish_page(&mut self) {
@@ -407,6 +411,7 @@ impl TextFile {
                 (3, 0) if !out.is_empty() => out.push('\u{c}'),
                 _ => {}
             }
+            let line = line.trim_end_matches(' ');
             out.push_str(line);
             if pc == 7 {
                 let n = line.chars().count();

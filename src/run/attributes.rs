@@ -14,7 +14,7 @@ impl Machine<'_> {
     pub(super) fn object_attribute(&self, s: SymbolId, a: &'static str) -> f64 {
         if let SymbolKind::File(_) = self.symbols.get(s).kind {
             return match self.put.files.get(&s) {
-                Some(f) => f.text.get(a),
+                Some(f) => f.attribute(a),
                 None => crate::report::textfile::TextFile::default().get(a),
             };
         }

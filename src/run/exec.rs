@@ -246,7 +246,7 @@ impl Machine<'_> {
         match target {
             Target::Table(t) | Target::Set(t) | Target::Singleton(t) => Some(t),
             Target::Fix(s) => Some(self.symbols.get(s).table + attribute::L),
-            Target::Object(..) | Target::Seed => None,
+            Target::Object(..) | Target::Seed | Target::Errors => None,
         }
     }
 
@@ -275,6 +275,7 @@ impl Machine<'_> {
             };
             let v = self.eval(value, frame);
             match target {
+                Target::Errors => self.errors.set(number(v).clamp(0.0, 1e9) as usize),
                 Target::Seed => *self.random.borrow_mut() = Random::new(number(v) as i64),
                 Target::Object(s, a) => self.set_object_attribute(s, a, v, text),
                 _ => {}
@@ -529,7 +530,7 @@ impl Machine<'_> {
                     self.store.table_mut(t + o).merge(&out.keys, &out.values);
                 }
             }
-            Target::Object(..) | Target::Seed => {}
+            Target::Object(..) | Target::Seed | Target::Errors => {}
         }
     }
 

@@ -104,4 +104,22 @@ pub struct PutFile {
     pub open: bool,
     /// The last statement that wrote to it.
     pub span: Span,
+    /// Column and row at the beginning of the statement that runs: what `.cc` and `.cr` are in it.
+    pub cursor: Option<(f64, f64)>,
+}
+
+impl PutFile {
+    /// An attribute.
+    pub fn attribute(&self, a: &str) -> f64 {
+        match (a, self.cursor) {
+            ("cc", Some((column, _))) => column,
+            ("cr", Some((_, row))) => row,
+            _ => self.text.get(a),
+        }
+    }
+
+    /// Keeps the cursor as it is now, until the statement ends.
+    pub fn hold_cursor(&mut self) {
+        self.cursor = Some((self.text.get("cc"), self.text.get("cr")));
+    }
 }

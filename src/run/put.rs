@@ -29,6 +29,33 @@ impl Machine<'_> {
             self.close_put_file(*s, span);
             return;
         }
+        if keyword.starts_with("put_util") {
+            self.put_utility(items, frame, span);
+            return;
+        }
+        if let Some(f) = self.put.current.and_then(|s| self.put.files.get_mut(&s)) {
+            f.hold_cursor();
+        }
+        self.put_items(part, items, frame, span);
+        match keyword {
+            "putclose" => {
+                if let Some(s) = self.put.current {
+                    self.close_put_file(s, span);
+                } else {
+                    self.put_file(span);
+                }
+            }
+            "putpage" => {
+                if let Some(f) = self.put_file(span) {
+                    f.text.end_page();
+                }
+            }
+            _ => {}
+        }
+        self.put.files.values_mut().for_each(|f| f.cursor = None);
+    }
+
+    fn put_items(&mut self, part: Part, items: &[PutCode], frame: &mut Frame, span: Span) {
         for item in items {
             match item {
                 PutCode::File(s) => self.open_put_file(*s),
@@ -68,20 +95,29 @@ impl Machine<'_> {
                 }
             }
         }
-        match keyword {
-            "putclose" => {
-                if let Some(s) = self.put.current {
-                    self.close_put_file(s, span);
-                } else {
-                    self.put_file(span);
+    }
+
+    /// `put_utility 'log' / 'text'`: a message is printed; what asks for other programs is not done.
+    fn put_utility(&mut self, items: &[PutCode], frame: &mut Frame, span: Span) {
+        let mut words = Vec::new();
+        for item in items {
+            if let PutCode::Item { value, .. } = item
+                && let Some(Item::Text(t) | Item::Label(t)) = self.put_item(value, frame)
+            {
+                words.push(t);
+            }
+        }
+        match words.split_first() {
+            Some((what, text)) if matches!(what.to_lowercase().as_str(), "log" | "msg" | "msglog") => {
+                if !self.options.quiet {
+                    self.print(&format!("{}\n", text.concat()));
                 }
             }
-            "putpage" => {
-                if let Some(f) = self.put_file(span) {
-                    f.text.end_page();
-                }
-            }
-            _ => {}
+            _ => self.note(
+                Diagnostic::warning("E0474", span, "`put_utility` is not carried out")
+                    .label("asks for what is outside of the model")
+                    .help("a model run by bmod writes its own files; `put_utility 'log' / 'text'` prints a message"),
+            ),
         }
     }
 
@@ -95,6 +131,9 @@ impl Machine<'_> {
             }
             f.text.reopen();
             f.open = true;
+        }
+        if f.cursor.is_none() {
+            f.hold_cursor();
         }
     }
 
