@@ -12,15 +12,18 @@
 //! The first certified point wins. Where there is none, the best point that was seen is returned, and
 //! called what it is.
 
+use super::consistent::consistent_start;
 use super::curvature::negative_curvature;
 use super::elastic::Elastic;
 use super::problem::{Nlp, Problem};
 use super::provider::{Control, Ended, Progress, Provider, Shared, Solution, lock};
 use super::schedule::{
-    AGREEMENT, BASE, BETTER, FINEST, From, MUCH, NEAR, NEARER, ROUNDING, SCHEDULE, SMALL,
+    AGREEMENT, BASE, BETTER, ELASTIC_AFTER, FINEST, From, MUCH, NEAR, NEARER, ROUNDING, SCHEDULE,
+    SMALL,
 };
-use super::trial::{Trial, active_set, clean, polished, proved_infeasible, residuals_at, tidy};
+use super::trial::{Trial, active_set, clean, polished, residuals_at, tidy};
 use crate::autodiff::{ErrorKind, EvalFailure, Evaluator, has_kinks};
+use crate::model::certificate_nlp::{is_locally_infeasible, violations};
 use crate::model::instance::Instance;
 use crate::solve::{
     Claim, ModelStatus, Monitor, Outcome, Settings, SolveError, SolverStatus, answer::Answer,
@@ -111,8 +114,8 @@ fn start_failure(e: &EvalFailure) -> SolveError {
 struct Driver<'a> {
     /// For instances with kinks: derivatives a hair beside them.
     kinks: Option<Evaluator>,
-    /// A minimum of the violations: variables, and multipliers of all rows.
-    infeasibility: Option<(Vec<f64>, Vec<f64>)>,
+    /// A minimum of the violations, and multipliers of all rows that may prove it.
+    infeasibility: Option<(Trial, Vec<f64>)>,
     instance: &'a Instance,
     provider: &'a dyn Provider,
     settings: &'a Settings,
@@ -138,6 +141,10 @@ impl Driver<'_> {
             return Ok(self.finish());
         }
         self.attempt(From::Start, &[])?;
+        if self.is_settled() {
+            // there is an answer: to look for a better one may not take much longer
+            self.patience = (4 * self.iterations).clamp(100, 3000);
+        }
         self.leave_saddles()?;
         if self.is_settled() {
             self.search()?;
@@ -146,17 +153,24 @@ impl Driver<'_> {
         if self.kinks.is_some() {
             self.round_kinks()?;
         }
-        for (from, options) in SCHEDULE {
+        for (k, (from, options)) in SCHEDULE.into_iter().enumerate() {
             if self.is_settled() || self.work() > MUCH {
                 break;
+            }
+            if k == ELASTIC_AFTER && !self.best.as_ref().is_some_and(Trial::is_feasible) {
+                self.attempt_elastic()?;
+                let proved = self.infeasibility.is_some();
+                if self.is_settled() || (proved && self.work() > SMALL) {
+                    break;
+                }
             }
             self.attempt(from, options)?;
             self.leave_saddles()?;
         }
-        if !self.is_settled() && self.work() <= MUCH {
+        if !self.is_settled() && self.infeasibility.is_none() && self.work() <= MUCH {
             self.attempt_elastic()?;
-            self.leave_saddles()?;
         }
+        self.leave_saddles()?;
         Ok(self.finish())
     }
 
@@ -183,7 +197,6 @@ impl Driver<'_> {
         if self.work() > SMALL || !self.wants_search() {
             return Ok(());
         }
-        self.patience = (4 * self.iterations).max(100);
         let mut agreed = true;
         for (k, (from, options)) in BETTER.into_iter().enumerate() {
             if self.stopped.is_some() || (k >= AGREEMENT && agreed) || self.work() > 5.0 * SMALL {
@@ -191,7 +204,7 @@ impl Driver<'_> {
             }
             let before = optimal(self);
             let found = self.attempt(from, options)?;
-            let same = found.is_some_and(|f| (f - first).abs() <= 1e-6 * first.abs().max(1.0));
+            let same = found.is_none_or(|f| (f - first).abs() <= 1e-6 * first.abs().max(1.0));
             agreed &= same;
             if optimal(self) != before {
                 self.leave_saddles()?;
@@ -233,10 +246,16 @@ impl Driver<'_> {
             .then(|| self.begin + Duration::from_secs_f64(self.settings.time_limit.max(0.0)))
     }
 
-    fn start_point(&self, from: From) -> Vec<f64> {
+    /// None where this start is the same as the person's.
+    fn start_point(&self, from: From) -> Option<Vec<f64>> {
         let (mut seed, by, anywhere) = match (from, &self.best) {
-            (From::Best, Some(best)) => return best.x.clone(),
-            (From::Best, None) | (From::Start, _) => return self.start.clone(),
+            (From::Best, Some(best)) => return Some(best.x.clone()),
+            (From::Best, None) | (From::Start, _) => return Some(self.start.clone()),
+            (From::Consistent, _) => {
+                let problem = lock(&*self.problem);
+                let mut evaluator = Evaluator::new(self.instance);
+                return consistent_start(self.instance, &problem, &mut evaluator, &self.start);
+            }
             (From::Moved(by), _) => (12345, by, false),
             (From::Anywhere(seed), _) => (seed.wrapping_mul(7919), 1.0, true),
         };
@@ -253,18 +272,17 @@ impl Driver<'_> {
             }
             (x + (2.0 * r - 1.0) * by * x.abs().max(1.0)).max(l).min(u)
         };
-        self.start
-            .iter()
-            .zip(lower.iter().zip(upper))
-            .map(place)
-            .collect()
+        let all = self.start.iter().zip(lower.iter().zip(upper));
+        Some(all.map(place).collect())
     }
 
     /// One run of the provider, judged and kept if it is the best so far. The objective of the point if
     /// it is optimal.
     fn attempt(&mut self, from: From, extra: &[(&str, &str)]) -> Result<Option<f64>, SolveError> {
-        let x = self.start_point(from);
-        self.attempt_from(x, extra)
+        match self.start_point(from) {
+            Some(x) => self.attempt_from(x, extra),
+            None => Ok(None),
+        }
     }
 
     fn attempt_from(
@@ -311,12 +329,31 @@ impl Driver<'_> {
             lock(&*self.problem).set_start(start.clone());
             let trial = self.elastic(rho, 1.0)?;
             let optimal = trial.is_optimal();
+            self.note_infeasibility(&trial);
             self.keep(trial);
             if optimal || self.stopped.is_some() {
                 return Ok(());
             }
         }
+        if self.infeasibility.is_some() {
+            return Ok(());
+        }
         self.minimise_violation()
+    }
+
+    /// Keeps an elastic solution whose multipliers prove that there is no feasible point nearby.
+    fn note_infeasibility(&mut self, trial: &Trial) {
+        let mut problem = lock(&*self.problem);
+        // the constraints push with −λ
+        let mut y = vec![0.0; self.instance.row_count()];
+        for (&i, l) in problem.rows.iter().zip(&trial.lambda) {
+            y[i as usize] = -l;
+        }
+        let evaluator = problem.evaluator();
+        let proved = is_locally_infeasible(self.instance, evaluator, &trial.level, &y, 1e-4);
+        if !trial.is_feasible() && self.infeasibility.is_none() && proved {
+            self.infeasibility = Some((trial.clone(), y));
+        }
     }
 
     fn elastic(&mut self, rho: f64, weight: f64) -> Result<Trial, SolveError> {
@@ -344,12 +381,7 @@ impl Driver<'_> {
             }
             return Ok(());
         }
-        // the constraints push with −λ
-        let mut y = vec![0.0; self.instance.row_count()];
-        for (&i, l) in lock(&*self.problem).rows.iter().zip(&trial.lambda) {
-            y[i as usize] = -l;
-        }
-        self.infeasibility = Some((trial.level.clone(), y));
+        self.note_infeasibility(&trial);
         self.keep(trial);
         Ok(())
     }
@@ -553,18 +585,22 @@ impl Driver<'_> {
         });
         let unbounded = self.is_unbounded(&best);
         let mut problem = lock(&*self.problem);
+        let mut proved = |t: &Trial, y: &[f64]| {
+            is_locally_infeasible(self.instance, problem.evaluator(), &t.level, y, 1e-4)
+        };
+        let mut best = best;
         let status = if best.is_optimal() {
             ModelStatus::LocallyOptimal
         } else if unbounded {
             ModelStatus::Unbounded
         } else if best.is_feasible() {
             ModelStatus::Feasible
-        } else if proved_infeasible(
-            self.instance,
-            problem.evaluator(),
-            &best,
-            &self.infeasibility,
-        ) {
+        } else if let Some((t, y)) = self.infeasibility.take()
+            && proved(&t, &y)
+        {
+            best = t;
+            ModelStatus::LocallyInfeasible
+        } else if proved(&best, &violations(self.instance, &best.at.activity)) {
             ModelStatus::LocallyInfeasible
         } else {
             ModelStatus::IntermediateInfeasible
@@ -614,9 +650,46 @@ impl Driver<'_> {
     }
 }
 
-/// Options of other solvers that may stand in the same list.
+/// Options that are not the provider's: the driver's own, those of the `option` statement that the
+/// command line hands over as well, and those of other solvers.
 fn is_for_others(option: &str) -> bool {
-    ["log", "nlp_search"]
-        .iter()
-        .any(|o| option.eq_ignore_ascii_case(o))
+    const OTHERS: [&str; 36] = [
+        "log",
+        "nlp_search",
+        "lp",
+        "rmip",
+        "mip",
+        "nlp",
+        "dnlp",
+        "rminlp",
+        "minlp",
+        "qcp",
+        "rmiqcp",
+        "miqcp",
+        "cns",
+        "mcp",
+        "mpec",
+        "rmpec",
+        "solver",
+        "reslim",
+        "iterlim",
+        "domlim",
+        "limrow",
+        "limcol",
+        "decimals",
+        "optcr",
+        "optca",
+        "bratio",
+        "seed",
+        "sysout",
+        "solprint",
+        "solveopt",
+        "solvelink",
+        "savepoint",
+        "threads",
+        "profile",
+        "dispwidth",
+        "optfile",
+    ];
+    OTHERS.iter().any(|o| option.eq_ignore_ascii_case(o))
 }

@@ -15,6 +15,7 @@ use ipopt_sys as c;
 use std::ffi::{CString, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::slice::{from_raw_parts, from_raw_parts_mut};
+use std::sync::Mutex;
 
 /// `option nlp = ipopt`.
 #[derive(Clone, Copy, Debug, Default)]
@@ -58,6 +59,9 @@ const INTEGERS: [&str; 26] = [
     "max_hessian_perturbation_iters",
 ];
 
+/// MUMPS, Ipopt's linear solver, has global state: one solve at a time.
+static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+
 /// Options of later versions and of pounce, without which this one does as well.
 const OPTIONAL: [&str; 1] = ["acceptable_dual_inf_tol"];
 
@@ -67,6 +71,7 @@ impl Provider for Ipopt {
     }
 
     fn solve(&self, nlp: Shared, control: &mut Control<'_>) -> Result<Solution, String> {
+        let _turn = lock(&ONE_AT_A_TIME);
         let (n, m) = lock(&nlp).size();
         let mut options: Vec<(String, String)> = vec![
             ("print_level".into(), "0".into()),

@@ -4,6 +4,7 @@
 //! ([`pounce`], or Ipopt with the cargo feature `ipopt`) solves it; [`driver`] judges the point by the
 //! KKT residuals of the instance, tries again where they are not small, and says what is known.
 
+pub mod consistent;
 pub mod curvature;
 pub mod driver;
 pub mod elastic;

@@ -21,6 +21,8 @@ pub(super) const FINEST: f64 = 1e-7;
 pub(super) enum From {
     /// The person's start point.
     Start,
+    /// The person's start, with the variables that the model defines computed.
+    Consistent,
     /// The best point so far.
     Best,
     /// The person's start, moved by this fraction of its size (and at least by this much).
@@ -47,9 +49,11 @@ pub(super) const CENTRAL: &[(&str, &str)] = &[
 ];
 
 /// What to try when an attempt has not led to a certified point.
-pub(super) const SCHEDULE: [(From, &[(&str, &str)]); 12] = [
+pub(super) const SCHEDULE: [(From, &[(&str, &str)]); 14] = [
+    (From::Consistent, &[]),
     (From::Start, NEAR),
     (From::Moved(0.1), NEAR),
+    (From::Consistent, NEAR),
     (
         From::Start,
         &[("mu_strategy", "adaptive"), ("bound_relax_factor", "0")],
@@ -81,9 +85,13 @@ pub(super) const SCHEDULE: [(From, &[(&str, &str)]); 12] = [
     (From::Moved(10.0), NEAR),
 ];
 
+/// After so many attempts without a feasible point the elastic form has its turn.
+pub(super) const ELASTIC_AFTER: usize = 3;
+
 /// What to try to better a certified point of a small nonconvex problem. The first
 /// [`AGREEMENT`] are always tried; the others where these did not agree.
-pub(super) const BETTER: [(From, &[(&str, &str)]); 6] = [
+pub(super) const BETTER: [(From, &[(&str, &str)]); 7] = [
+    (From::Consistent, NEAR),
     (From::Start, NEAR),
     (From::Moved(0.3), &[]),
     (From::Anywhere(1), &[]),
@@ -91,7 +99,7 @@ pub(super) const BETTER: [(From, &[(&str, &str)]); 6] = [
     (From::Start, CENTRAL),
     (From::Anywhere(2), NEAR),
 ];
-pub(super) const AGREEMENT: usize = 3;
+pub(super) const AGREEMENT: usize = 4;
 
 /// Work of the first attempt (iterations times nonzeros) up to which more attempts are cheap.
 pub(super) const SMALL: f64 = 1e6;

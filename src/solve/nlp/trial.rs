@@ -5,9 +5,7 @@ use super::problem::{Nlp, Problem};
 use super::provider::Ended;
 use crate::autodiff::Evaluator;
 use crate::model::certificate::{Linearised, Residuals, TOLERANCE, primal};
-use crate::model::certificate_nlp::{
-    is_locally_infeasible, kkt_residual, linearise, residuals, violations,
-};
+use crate::model::certificate_nlp::{kkt_residual, linearise, residuals};
 use crate::model::instance::{Instance, Relation, Sense};
 
 /// A point that was judged.
@@ -259,19 +257,4 @@ pub(super) fn clean(instance: &Instance, t: &mut Trial) {
             t.at.reduced[j] = 0.0;
         }
     }
-}
-/// Whether the evidence, or the violations of the best point, prove local infeasibility.
-pub(super) fn proved_infeasible(
-    instance: &Instance,
-    evaluator: &mut Evaluator,
-    best: &Trial,
-    evidence: &Option<(Vec<f64>, Vec<f64>)>,
-) -> bool {
-    if let Some((x, y)) = evidence
-        && is_locally_infeasible(instance, evaluator, x, y, 1e-4)
-    {
-        return true;
-    }
-    let y = violations(instance, &best.at.activity);
-    is_locally_infeasible(instance, evaluator, &best.level, &y, 1e-4)
 }
