@@ -560,8 +560,10 @@ impl Machine<'_> {
                     *self.random.borrow_mut() = Random::new(*x as i64);
                 }
                 self.options.numbers.insert(name.to_string(), *x);
+                self.options.texts.remove(name);
             }
             OptionCode::Text(t) => {
+                self.options.numbers.remove(name);
                 let on = match t.to_lowercase().as_str() {
                     "on" | "yes" => Some(1.0),
                     "off" | "no" => Some(0.0),

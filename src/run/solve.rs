@@ -179,13 +179,29 @@ impl Machine<'_> {
                 .model_option(model, "iterlim", 2_147_483_647.0)
                 .clamp(0.0, 1e18) as u64,
             evaluation_error_limit: self.model_option(model, "domlim", 0.0).clamp(0.0, 1e18) as u64,
-            options: self.options.solver_options.clone(),
+            options: self.solver_options(),
             log: self
                 .options
                 .solver_options
                 .iter()
                 .any(|(k, v)| k == "log" && v != "0"),
         }
+    }
+
+    /// Options of the command line, and those of `option` statements that are a solver's.
+    fn solver_options(&self) -> Vec<(String, String)> {
+        let mut out = self.options.solver_options.clone();
+        out.retain(|(k, _)| !k.to_lowercase().starts_with("mpec_"));
+        let texts = self.options.texts.iter().map(|(k, v)| (k, v.clone()));
+        let numbers = self.options.numbers.iter().map(|(k, v)| (k, v.to_string()));
+        let mut own: Vec<(String, String)> = texts
+            .chain(numbers)
+            .filter(|(k, _)| k.starts_with("mpec_"))
+            .map(|(k, v)| (k.clone(), v))
+            .collect();
+        own.sort();
+        out.extend(own);
+        out
     }
 
     /// Writes levels, marginals and bounds of rows back.
@@ -349,8 +365,8 @@ impl Machine<'_> {
             } else {
                 None
             },
-            bounds: None,
-            stationarity: None,
+            bounds: a.bounds.map(|b| b.map(json::Number)),
+            stationarity: a.stationarity.map(|s| s.name()),
             message: self.solve_message(g, a),
         };
         let _ = span;

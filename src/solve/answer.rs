@@ -3,6 +3,7 @@
 //! The status that is reported follows from the residuals recomputed on the unscaled instance, not
 //! from the solver's word.
 
+use super::mpec::Stationarity;
 use super::{ModelStatus, Monitor, Outcome, Settings, SolveError, Solver, complementarity};
 use crate::autodiff::Evaluator;
 use crate::model::certificate::{self, Residuals};
@@ -19,6 +20,29 @@ pub struct Answer {
     pub status: ModelStatus,
     /// Level of each row: its left side.
     pub activity: Vec<f64>,
+    /// For an mpec: whether no direction leads downhill.
+    pub stationarity: Option<Stationarity>,
+    /// A proved interval for the optimal value.
+    pub bounds: Option<[f64; 2]>,
+}
+
+impl Answer {
+    /// Without anything that is particular to a problem type.
+    pub fn new(
+        outcome: Outcome,
+        residuals: Residuals,
+        status: ModelStatus,
+        activity: Vec<f64>,
+    ) -> Self {
+        Self {
+            outcome,
+            residuals,
+            status,
+            activity,
+            stationarity: None,
+            bounds: None,
+        }
+    }
 }
 
 /// Solves an instance of a problem type (`lp`, `mcp` …) with the solver chosen for it, if any.
@@ -32,7 +56,7 @@ pub fn answer(
     match using {
         "mcp" => complementary(instance, settings, monitor),
         "cns" => square(instance, settings, monitor),
-        "mpec" | "rmpec" => missing(using),
+        "mpec" | "rmpec" => super::mpec::answer(choice, instance, settings, monitor),
         _ if instance.is_linear() && instance.objective.is_some() => match choice {
             Some("mcp" | "bmcp") => linear(&super::kkt::Kkt, instance, settings, monitor),
             _ => linear(&super::lp::Clarabel, instance, settings, monitor),
@@ -41,15 +65,7 @@ pub fn answer(
     }
 }
 
-fn missing(using: &str) -> Result<Answer, SolveError> {
-    Err(SolveError {
-        message: format!("there is no solver for `{using}` in this build"),
-        row: None,
-        column: None,
-    })
-}
-
-fn linear(
+pub(super) fn linear(
     solver: &dyn Solver,
     instance: &Instance,
     settings: &Settings,
@@ -59,12 +75,7 @@ fn linear(
     let at = certificate::linearise(instance, &outcome);
     let residuals = certificate::residuals(instance, &outcome, &at);
     let status = certificate::linear_status(instance, &outcome, &residuals);
-    Ok(Answer {
-        outcome,
-        residuals,
-        status,
-        activity: at.activity,
-    })
+    Ok(Answer::new(outcome, residuals, status, at.activity))
 }
 
 /// Levels of the rows; not a number where a function has no value.
@@ -90,12 +101,7 @@ fn complementary(
         .collect();
     let residuals = certificate::complementarity(instance, &outcome.level, &f);
     let status = certificate::complementarity_status(&residuals);
-    Ok(Answer {
-        outcome,
-        residuals,
-        status,
-        activity,
-    })
+    Ok(Answer::new(outcome, residuals, status, activity))
 }
 
 fn square(
@@ -108,10 +114,5 @@ fn square(
     let size: Vec<f64> = activity.iter().map(|a| a.abs()).collect();
     let residuals = certificate::primal(instance, &outcome.level, &activity, &size);
     let status = certificate::square_status(&residuals);
-    Ok(Answer {
-        outcome,
-        residuals,
-        status,
-        activity,
-    })
+    Ok(Answer::new(outcome, residuals, status, activity))
 }

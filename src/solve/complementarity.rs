@@ -40,6 +40,27 @@ fn refuse<T>(
     })
 }
 
+/// A pair whose row's relation contradicts the bounds of its column.
+pub(super) fn refuse_relation(
+    relation: Relation,
+    lower: f64,
+    upper: f64,
+    row: usize,
+    column: usize,
+) -> Result<(), SolveError> {
+    let (below, above) = (lower > f64::NEG_INFINITY, upper < f64::INFINITY);
+    let what = match relation {
+        Relation::Greater if above && !below => {
+            "a =g= row may not be paired with a variable that has an upper bound only"
+        }
+        Relation::Less if below && !above => {
+            "a =l= row may not be paired with a variable that has a lower bound only"
+        }
+        _ => return Ok(()),
+    };
+    refuse(what, Some(row), Some(column))
+}
+
 /// Gives every column its row. `square`: a cns, where bounds do not count.
 #[allow(clippy::needless_range_loop)] // rows, bounds and partners side by side
 fn match_rows(instance: &Instance, square: bool) -> Result<Vec<Option<u32>>, SolveError> {
@@ -57,23 +78,7 @@ fn match_rows(instance: &Instance, square: bool) -> Result<Vec<Option<u32>>, Sol
     for j in 0..n {
         let (l, u) = (columns.lower[j], columns.upper[j]);
         match row_of[j] {
-            Some(i) => match instance.rows.relation[i as usize] {
-                Relation::Greater if l == f64::NEG_INFINITY && u < f64::INFINITY => {
-                    return refuse(
-                        "a =g= row may not be paired with a variable that has an upper bound only",
-                        Some(i as usize),
-                        Some(j),
-                    );
-                }
-                Relation::Less if u == f64::INFINITY && l > f64::NEG_INFINITY => {
-                    return refuse(
-                        "a =l= row may not be paired with a variable that has a lower bound only",
-                        Some(i as usize),
-                        Some(j),
-                    );
-                }
-                _ => {}
-            },
+            Some(i) => refuse_relation(instance.rows.relation[i as usize], l, u, i as usize, j)?,
             None if l == u => {}
             None if square || (l == f64::NEG_INFINITY && u == f64::INFINITY) => free.push(j),
             None => {

@@ -10,6 +10,7 @@ pub mod conformance;
 pub mod kkt;
 pub mod lp;
 pub mod mcp;
+pub mod mpec;
 pub mod nlp;
 
 use crate::model::instance::Instance;

@@ -153,9 +153,13 @@ impl Driver<'_> {
         if self.kinks.is_some() {
             self.round_kinks()?;
         }
+        let attempts = self.attempts();
         for (k, (from, options)) in SCHEDULE.into_iter().enumerate() {
             if self.is_settled() || self.work() > MUCH {
                 break;
+            }
+            if k >= attempts {
+                return Ok(self.finish());
             }
             if k == ELASTIC_AFTER && !self.best.as_ref().is_some_and(Trial::is_feasible) {
                 self.attempt_elastic()?;
@@ -219,6 +223,15 @@ impl Driver<'_> {
             k.eq_ignore_ascii_case("nlp_search") && (v == "0" || v.eq_ignore_ascii_case("no"))
         };
         !self.settings.options.iter().any(forbidden)
+    }
+
+    /// How much of the schedule is tried: one program of a sequence is not worth all of it.
+    fn attempts(&self) -> usize {
+        let few = |(k, v): &(String, String)| k == "nlp_attempts" && v == "few";
+        match self.settings.options.iter().any(few) {
+            true => 2,
+            false => usize::MAX,
+        }
     }
 
     fn is_constant(&self) -> bool {
@@ -627,8 +640,8 @@ impl Driver<'_> {
             }
             _ => None,
         };
-        Answer {
-            outcome: Outcome {
+        Answer::new(
+            Outcome {
                 column_marginal: best.at.reduced.clone(),
                 level: best.level,
                 row_marginal: best.row_marginal,
@@ -643,18 +656,19 @@ impl Driver<'_> {
                 ray: Vec::new(),
                 message,
             },
-            residuals: best.residuals,
+            best.residuals,
             status,
-            activity: best.at.activity,
-        }
+            best.at.activity,
+        )
     }
 }
 
 /// Options that are not the provider's: the driver's own, those of the `option` statement that the
 /// command line hands over as well, and those of other solvers.
 fn is_for_others(option: &str) -> bool {
-    const OTHERS: [&str; 36] = [
+    const OTHERS: [&str; 37] = [
         "log",
+        "nlp_attempts",
         "nlp_search",
         "lp",
         "rmip",
@@ -691,5 +705,6 @@ fn is_for_others(option: &str) -> bool {
         "dispwidth",
         "optfile",
     ];
-    OTHERS.iter().any(|o| option.eq_ignore_ascii_case(o))
+    let lower = option.to_lowercase();
+    lower.starts_with("mpec_") || OTHERS.contains(&lower.as_str())
 }

@@ -1,0 +1,493 @@
+//! Mathematical programs with equilibrium constraints (`mpec`): an objective, ordinary constraints,
+//! and pairs l ≤ x ≤ u ⟂ F(x).
+//!
+//! With a piece chosen for every pair ([`pairs`]) the program is an ordinary one. Every method ends
+//! on such a *branch*, solved by the solvers of linear or nonlinear programs: there x is exactly on
+//! its bound or F = 0 to rounding, so complementarity is exact, whatever the accuracy of what
+//! led there. What differs is how the branch is found:
+//!
+//! * [`relaxation`]: nonlinear programs in which the products are bounded by μ → 0, or penalised;
+//! * [`pieces`]: where everything is linear and the pairs couple two otherwise separate systems,
+//!   linear programs on supports.
+//!
+//! From there [`stationarity`] looks for a direction that leads downhill in some piece; while there is
+//! one the search continues in its branch. What is reported follows from residuals recomputed on the
+//! instance as it was generated, and from that check.
+//!
+//! Marginals are those of the final branch: the derivative of the optimal value as long as the pairs
+//! stay on their pieces.
+
+pub mod pairs;
+pub mod relaxation;
+pub mod settings;
+pub mod stationarity;
+mod tree;
+
+use super::answer::Answer;
+use super::lp::Ended;
+use super::{Claim, ModelStatus, Monitor, Outcome, Settings, SolveError, SolverStatus};
+use pairs::{Judged, Piece, Program};
+use relaxation::{Kind, Relaxed};
+use settings::{Method, Options};
+use stationarity::Verdict;
+use std::collections::HashSet;
+use std::time::Instant;
+
+/// What is known about stationarity, for the report.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stationarity {
+    /// B-stationary.
+    Proved,
+    /// Not B-stationary, and no way down was found.
+    Refuted,
+    /// Not known.
+    NotProved,
+}
+
+impl Stationarity {
+    /// For people and for JSON.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Proved => "proved",
+            Self::Refuted => "refuted",
+            Self::NotProved => "not proved",
+        }
+    }
+}
+
+/// Solves, and says what the answer is worth.
+pub fn answer(
+    choice: Option<&str>,
+    instance: &crate::model::instance::Instance,
+    settings: &Settings,
+    monitor: &mut dyn Monitor,
+) -> Result<Answer, SolveError> {
+    let options = Options::new(settings)?;
+    let program = Program::new(instance)?;
+    super::lp::form::validate(&program.envelope)?;
+    let mut search = Search {
+        program: &program,
+        options,
+        choice,
+        settings,
+        monitor,
+        begin: Instant::now(),
+        iterations: 0,
+        best: None,
+        reserve: None,
+        seen: HashSet::new(),
+        notes: Vec::new(),
+        stopped: None,
+    };
+    search.run()
+}
+
+/// A feasible point: the solution of a branch.
+#[derive(Clone)]
+struct Found {
+    pieces: Vec<Piece>,
+    answer: Answer,
+    judged: Judged,
+    /// Minimised.
+    objective: f64,
+    verdict: Option<Stationarity>,
+}
+
+struct Search<'a> {
+    program: &'a Program<'a>,
+    options: Options,
+    choice: Option<&'a str>,
+    settings: &'a Settings,
+    monitor: &'a mut dyn Monitor,
+    begin: Instant,
+    iterations: u64,
+    best: Option<Found>,
+    /// The least infeasible of the points that are not feasible.
+    reserve: Option<Found>,
+    /// Branches that were solved.
+    seen: HashSet<Vec<Piece>>,
+    notes: Vec<String>,
+    stopped: Option<SolverStatus>,
+}
+
+impl Search<'_> {
+    fn run(&mut self) -> Result<Answer, SolveError> {
+        let start: Vec<f64> = {
+            let c = &self.program.instance.columns;
+            let finite = |x: f64| if x.is_finite() { x } else { 0.0 };
+            let clip = |j: usize| finite(c.level[j]).max(c.lower[j]).min(c.upper[j]);
+            (0..c.level.len()).map(clip).collect()
+        };
+        match self.options.method {
+            Method::Check => {
+                let start = self.program.complete(start);
+                let pieces = self.program.nearest(&start);
+                self.check_start(&start, pieces)?;
+            }
+            Method::Penalty => {
+                self.relax(Kind::Penalty, &start)?;
+            }
+            _ => {
+                let kind = match self.options.aggregate {
+                    true => Kind::Aggregate,
+                    false => Kind::Scholtes,
+                };
+                self.relax(kind, &start)?;
+                if self.best.is_none() && !self.is_over() {
+                    self.relax(Kind::Penalty, &start)?;
+                }
+            }
+        }
+        self.finish()
+    }
+
+    fn is_over(&mut self) -> bool {
+        if self.stopped.is_none() {
+            if self.monitor.interrupted() {
+                self.stopped = Some(SolverStatus::UserInterrupt);
+            } else if self.seconds_left() <= 0.0 {
+                self.stopped = Some(SolverStatus::ResourceInterrupt);
+            } else if self.iterations >= self.settings.iteration_limit {
+                self.stopped = Some(SolverStatus::IterationInterrupt);
+            }
+        }
+        self.stopped.is_some()
+    }
+
+    fn seconds_left(&self) -> f64 {
+        (self.settings.time_limit - self.begin.elapsed().as_secs_f64()).max(0.0)
+    }
+
+    /// Settings of a program that is solved on the way.
+    fn sub_settings(&self, extra: &[(&str, &str)]) -> Settings {
+        let mut s = self.settings.clone();
+        s.time_limit = self.seconds_left();
+        s.iteration_limit = s.iteration_limit.saturating_sub(self.iterations);
+        s.log = false;
+        let own = |(k, v): &(&str, &str)| (k.to_string(), v.to_string());
+        // The person's options come last and win.
+        s.options = extra.iter().map(own).collect();
+        s.options.extend(self.settings.options.iter().cloned());
+        s
+    }
+
+    /// Solves a branch and keeps what it gives. None if it was solved before or is not feasible.
+    fn branch(&mut self, pieces: Vec<Piece>, start: &[f64]) -> Result<Option<Found>, SolveError> {
+        if !self.seen.insert(pieces.clone()) || self.is_over() {
+            return Ok(None);
+        }
+        let instance = self.program.branch(&pieces, start);
+        let settings = self.sub_settings(&[("nlp_search", "no")]);
+        let answer = match instance.is_linear() {
+            true => super::answer::linear(&super::lp::Clarabel, &instance, &settings, self.monitor),
+            false => super::nlp::answer(self.choice, &instance, &settings, self.monitor),
+        };
+        let answer = match answer {
+            Ok(a) => a,
+            // A function without a value at this start, say: not the end of the search.
+            Err(e) if self.best.is_some() || self.reserve.is_some() => {
+                self.log(&format!("branch: {}", e.message));
+                return Ok(None);
+            }
+            Err(e) => return Err(e),
+        };
+        self.iterations += answer.outcome.iterations;
+        let judged = self.program.judge(&answer.outcome.level);
+        let objective = self.program.objective(&answer.outcome.level);
+        self.log(&format!(
+            "branch: {}, objective {:.10}, primal {:.1e}, complementarity {:.1e}",
+            answer.status.name(),
+            self.program.sign() * objective,
+            judged.residuals.primal.unwrap_or(f64::NAN),
+            judged.residuals.complementarity_sum.unwrap_or(f64::NAN),
+        ));
+        let found = Found {
+            pieces,
+            answer,
+            judged,
+            objective,
+            verdict: None,
+        };
+        let worth = |f: &Found| f.judged.residuals.primal_relative;
+        if !found.judged.feasible {
+            let better = |r: &Found| worth(&found) < worth(r);
+            if self.reserve.as_ref().is_none_or(better) {
+                self.reserve = Some(found);
+            }
+            return Ok(None);
+        }
+        self.keep(&found);
+        Ok(Some(found))
+    }
+
+    fn keep(&mut self, found: &Found) {
+        let better = match &self.best {
+            None => true,
+            Some(old) => {
+                let margin = 1e-9 * old.objective.abs().max(1.0);
+                let optimal = |f: &Found| f.verdict == Some(Stationarity::Proved);
+                found.objective < old.objective - margin
+                    || (found.objective <= old.objective + margin
+                        && optimal(found)
+                        && !optimal(old))
+            }
+        };
+        if better {
+            self.best = Some(found.clone());
+        }
+    }
+
+    /// From a feasible point downhill through the branches, until no direction leads on.
+    fn descend(&mut self, mut found: Found) -> Result<Found, SolveError> {
+        for _ in 0..1000 {
+            if self.is_over() || found.answer.status == ModelStatus::Unbounded {
+                break;
+            }
+            match self.check(&found.answer.outcome.level) {
+                Verdict::Proved => {
+                    found.verdict = Some(Stationarity::Proved);
+                    break;
+                }
+                Verdict::NotProved => {
+                    found.verdict = Some(Stationarity::NotProved);
+                    break;
+                }
+                Verdict::Refuted {
+                    direction,
+                    slope,
+                    pieces,
+                } => {
+                    let what = self.describe(&direction);
+                    self.log(&format!("not stationary: slope {slope:.3e} along {what}"));
+                    found.verdict = Some(Stationarity::Refuted);
+                    let level = found.answer.outcome.level.clone();
+                    let margin = 1e-10 * found.objective.abs().max(1.0);
+                    match self.branch(pieces, &level)? {
+                        Some(next) if next.objective < found.objective - margin => found = next,
+                        _ => {
+                            // Downhill to first order only, or not at all.
+                            if !self.program.instance.is_linear() {
+                                found.verdict = Some(Stationarity::NotProved);
+                            }
+                            break;
+                        }
+                    }
+                }
+            }
+        }
+        self.keep(&found);
+        if let Some(best) = &mut self.best
+            && best.pieces == found.pieces
+        {
+            best.verdict = found.verdict;
+        }
+        Ok(found)
+    }
+
+    fn check(&mut self, level: &[f64]) -> Verdict {
+        let left = self.seconds_left();
+        let begin = Instant::now();
+        let monitor = &mut *self.monitor;
+        let mut stop = |_| {
+            if monitor.interrupted() {
+                Some(Ended::Interrupted)
+            } else if begin.elapsed().as_secs_f64() > left {
+                Some(Ended::Time)
+            } else {
+                None
+            }
+        };
+        stationarity::check(self.program, level, self.options.nodes, &mut stop)
+    }
+
+    /// The largest entries of a direction, by name.
+    fn describe(&mut self, direction: &[f64]) -> String {
+        let objective = self.program.instance.objective.map(|o| o.column as usize);
+        let mut order: Vec<usize> = (0..direction.len())
+            .filter(|&j| Some(j) != objective && direction[j].abs() > 1e-9)
+            .collect();
+        order.sort_by(|&a, &b| direction[b].abs().total_cmp(&direction[a].abs()));
+        let more = if order.len() > 4 { ", …" } else { "" };
+        let parts: Vec<String> = order
+            .iter()
+            .take(4)
+            .map(|&j| format!("{} {:+.3}", self.monitor.column_name(j), direction[j]))
+            .collect();
+        format!("{}{more}", parts.join(", "))
+    }
+
+    fn check_start(&mut self, start: &[f64], pieces: Vec<Piece>) -> Result<(), SolveError> {
+        let judged = self.program.judge(start);
+        if !judged.feasible {
+            self.notes
+                .push("the start is not feasible: its branch was solved".into());
+            if let Some(f) = self.branch(pieces, start)? {
+                let verdict = self.check(&f.answer.outcome.level);
+                self.conclude(f, verdict);
+            }
+            return Ok(());
+        }
+        let outcome = Outcome {
+            level: start.to_vec(),
+            row_marginal: vec![0.0; self.program.instance.row_count()],
+            column_marginal: vec![0.0; start.len()],
+            claim: Claim::Unfinished,
+            status: SolverStatus::NormalCompletion,
+            iterations: 0,
+            solver: "bmpec",
+            ray: Vec::new(),
+            message: None,
+        };
+        let found = Found {
+            pieces,
+            answer: Answer::new(
+                outcome,
+                judged.residuals.clone(),
+                ModelStatus::Feasible,
+                judged.activity.clone(),
+            ),
+            objective: self.program.objective(start),
+            judged,
+            verdict: None,
+        };
+        let verdict = self.check(start);
+        self.conclude(found, verdict);
+        Ok(())
+    }
+
+    fn conclude(&mut self, mut found: Found, verdict: Verdict) {
+        found.verdict = Some(match &verdict {
+            Verdict::Proved => Stationarity::Proved,
+            Verdict::NotProved => Stationarity::NotProved,
+            Verdict::Refuted {
+                direction, slope, ..
+            } => {
+                let what = self.describe(direction);
+                let text = format!("the objective falls with slope {slope:.3e} along {what}");
+                self.notes.push(text);
+                Stationarity::Refuted
+            }
+        });
+        self.best = Some(found);
+    }
+
+    /// A sequence of nonlinear programs with μ → 0; the branches that its points suggest are solved.
+    fn relax(&mut self, kind: Kind, start: &[f64]) -> Result<(), SolveError> {
+        let mut relaxed = Relaxed::new(self.program, kind);
+        let mut x = start.to_vec();
+        let n = x.len();
+        let mut mu = self.options.mu;
+        loop {
+            relaxed.tighten(self.program, mu, &x);
+            let settings = self.sub_settings(&[
+                ("nlp_search", "no"),
+                ("nlp_attempts", "few"),
+                ("bound_relax_factor", "0"),
+                ("mu_strategy", "adaptive"),
+            ]);
+            let a = super::nlp::answer(self.choice, &relaxed.instance, &settings, self.monitor)?;
+            self.iterations += a.outcome.iterations;
+            let y = &a.outcome.level[..n];
+            let judged = self.program.judge(y);
+            self.log(&format!(
+                "relaxed, μ = {mu:.0e}: {}, objective {:.10}, complementarity {:.1e}",
+                a.status.name(),
+                self.program.sign() * self.program.objective(y),
+                judged.residuals.complementarity_sum.unwrap_or(f64::NAN),
+            ));
+            let usable = a.residuals.is_feasible(1e-4) && y.iter().all(|v| v.is_finite());
+            if usable {
+                x.copy_from_slice(y);
+            }
+            if usable && mu <= 1.01e-4 {
+                let pieces = self.program.nearest(&x);
+                if let Some(f) = self.branch(pieces, &x)? {
+                    let f = self.descend(f)?;
+                    if f.verdict == Some(Stationarity::Proved) && mu <= 1.01e-4 {
+                        return Ok(());
+                    }
+                }
+            }
+            if self.is_over() || mu <= self.options.last {
+                break;
+            }
+            mu = (mu * self.options.factor).max(self.options.last);
+        }
+        if self.best.is_none() {
+            let pieces = self.program.nearest(&x);
+            if let Some(f) = self.branch(pieces, &x)? {
+                self.descend(f)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn log(&mut self, line: &str) {
+        if self.settings.log {
+            self.monitor.log(line);
+        }
+    }
+
+    /// Turns what was found into an answer.
+    fn finish(&mut self) -> Result<Answer, SolveError> {
+        let Some(found) = self.best.take() else {
+            return self.infeasible();
+        };
+        let mut residuals = found.judged.residuals;
+        residuals.dual = found.answer.residuals.dual;
+        residuals.dual_relative = found.answer.residuals.dual_relative;
+        let status = match (found.answer.status, found.verdict) {
+            (ModelStatus::Unbounded, _) => ModelStatus::Unbounded,
+            (_, Some(Stationarity::Proved)) => ModelStatus::LocallyOptimal,
+            _ => ModelStatus::Feasible,
+        };
+        let mut outcome = found.answer.outcome;
+        outcome.iterations = self.iterations;
+        outcome.solver = "bmpec";
+        outcome.status = match (status, self.stopped) {
+            (ModelStatus::Feasible, Some(s)) => s,
+            (_, Some(SolverStatus::UserInterrupt)) => SolverStatus::UserInterrupt,
+            _ => SolverStatus::NormalCompletion,
+        };
+        outcome.message = (!self.notes.is_empty()).then(|| self.notes.join("; "));
+        let mut answer = Answer::new(outcome, residuals, status, found.judged.activity);
+        answer.stationarity = found.verdict;
+        Ok(answer)
+    }
+
+    /// No feasible point was found: is there none?
+    fn infeasible(&mut self) -> Result<Answer, SolveError> {
+        let settings = self.sub_settings(&[("nlp_search", "no")]);
+        let envelope = &self.program.envelope;
+        let mut a = match envelope.is_linear() {
+            true => super::answer::linear(&super::lp::Clarabel, envelope, &settings, self.monitor)?,
+            false => super::nlp::answer(self.choice, envelope, &settings, self.monitor)?,
+        };
+        let proved = matches!(
+            a.status,
+            ModelStatus::Infeasible | ModelStatus::LocallyInfeasible
+        );
+        if !proved {
+            if let Some(r) = self.reserve.take() {
+                a = r.answer;
+            }
+            a.status = match self.stopped {
+                Some(_) => ModelStatus::IntermediateInfeasible,
+                None => ModelStatus::LocallyInfeasible,
+            };
+            self.notes
+                .push("no point that satisfies all pairs was found".into());
+        }
+        let judged = self.program.judge(&a.outcome.level);
+        a.outcome.solver = "bmpec";
+        a.outcome.iterations = self.iterations + a.outcome.iterations;
+        a.outcome.status = self.stopped.unwrap_or(SolverStatus::NormalCompletion);
+        a.outcome.message = (!self.notes.is_empty()).then(|| self.notes.join("; "));
+        Ok(Answer::new(
+            a.outcome,
+            judged.residuals,
+            a.status,
+            judged.activity,
+        ))
+    }
+}

@@ -1,0 +1,172 @@
+//! Nonlinear programs in place of the pairs.
+//!
+//! Every pair gets slacks for the positive and the negative part of F, as far as its bounds allow
+//! them: F = v − w, v, w ≥ 0. At a solution (x − l)·v = 0 and (u − x)·w = 0. Instead of that
+//!
+//! * **Scholtes** (2001): each product ≤ μ;
+//! * **aggregate** (Ferris & Tin-Loi 2001, problem (11)): their sum ≤ μ;
+//! * **penalty** (Hu & Ralph 2004): ρ = 1/μ times their sum is added to the objective.
+//!
+//! All of them satisfy usual constraint qualifications where the program with the products equal to
+//! 0 does not, and their solutions tend to stationary points as μ → 0.
+
+use super::pairs::Program;
+use crate::model::instance::{
+    ColumnKind, Instance, Kernel, KernelTerms, Objective, Op, Relation, Sense, SparseRows,
+};
+
+/// What takes the place of the products.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Each at most μ.
+    Scholtes,
+    /// Their sum at most μ.
+    Aggregate,
+    /// Their sum over μ in the objective.
+    Penalty,
+}
+
+/// The nonlinear program for a μ that may be changed.
+pub struct Relaxed {
+    /// The instance: the program's columns come first.
+    pub instance: Instance,
+    kind: Kind,
+    /// The rows of the products.
+    first: usize,
+    columns: usize,
+}
+
+/// (c₀ + c₁·x)·s
+fn product() -> Kernel {
+    Kernel {
+        ops: vec![
+            Op::Affine {
+                constant: 0,
+                variable: 0,
+                terms: 1,
+            },
+            Op::Var(1),
+            Op::Multiply,
+        ],
+        variables: 2,
+        constants: 2,
+    }
+}
+
+impl Relaxed {
+    /// For a program; [`Relaxed::tighten`] sets μ and the start.
+    pub fn new(program: &Program, kind: Kind) -> Self {
+        let mut out = program.envelope.clone();
+        let n = out.column_count();
+        let first = out.row_count();
+        let mut extra: Vec<Vec<(usize, f64)>> = vec![Vec::new(); first];
+        let mut terms = KernelTerms {
+            kernel: product(),
+            ..KernelTerms::default()
+        };
+        for p in &program.pairs {
+            out.rows.relation[p.row] = Relation::Equal;
+            let sides = [(p.lower, -1.0), (p.upper, 1.0)];
+            for (bound, sign) in sides.into_iter().filter(|s| s.0.is_finite()) {
+                let slack = push_column(&mut out, 0.0);
+                extra[p.row].push((slack, sign));
+                let row = match kind {
+                    Kind::Scholtes => first + terms.row.len(),
+                    _ => first,
+                };
+                terms.row.push(row as u32);
+                terms.coef.push(1.0);
+                terms.columns.extend([p.column as u32, slack as u32]);
+                // x − l, or u − x
+                terms.constants.extend([sign * bound, -sign]);
+            }
+        }
+        let count = match kind {
+            Kind::Scholtes => terms.row.len(),
+            _ => 1,
+        };
+        let mut last = Vec::new();
+        if kind == Kind::Penalty {
+            // penalised = ± objective + ρ·sum
+            let penalised = push_column(&mut out, f64::NEG_INFINITY);
+            if let Some(o) = out.objective {
+                last.push((o.column as usize, -program.sign()));
+            }
+            last.push((penalised, 1.0));
+            out.objective = Some(Objective {
+                column: penalised as u32,
+                sense: Sense::Minimize,
+            });
+        }
+        let mut matrix = SparseRows {
+            start: vec![0],
+            ..SparseRows::default()
+        };
+        for (i, extra) in extra.iter().enumerate() {
+            let entries = out.matrix.row(i).chain(extra.iter().copied());
+            push_row(&mut matrix, entries);
+        }
+        for _ in 0..count {
+            push_row(&mut matrix, last.iter().copied());
+            out.rows.relation.push(match kind {
+                Kind::Penalty => Relation::Equal,
+                _ => Relation::Less,
+            });
+            out.rows.rhs.push(0.0);
+            out.rows.marginal.push(0.0);
+            out.rows.scale.push(1.0);
+        }
+        out.matrix = matrix;
+        if !terms.row.is_empty() {
+            out.nonlinear.push(terms);
+        }
+        Self {
+            instance: out,
+            kind,
+            first,
+            columns: n,
+        }
+    }
+
+    /// Sets μ, and starts from a point of the program.
+    pub fn tighten(&mut self, program: &Program, mu: f64, start: &[f64]) {
+        match self.kind {
+            Kind::Penalty => {
+                if let Some(t) = self.instance.nonlinear.last_mut() {
+                    t.coef.fill(-1.0 / mu);
+                }
+            }
+            _ => self.instance.rows.rhs[self.first..].fill(mu),
+        }
+        let level = &mut self.instance.columns.level;
+        level[..self.columns].copy_from_slice(start);
+        let activity = program.activity(start);
+        let mut slack = self.columns;
+        for p in &program.pairs {
+            let f = program.force(p, &activity);
+            let parts = [(p.lower, f), (p.upper, -f)];
+            for (_, f) in parts.into_iter().filter(|s| s.0.is_finite()) {
+                level[slack] = if f.is_finite() { f.max(0.0) } else { 0.0 };
+                slack += 1;
+            }
+        }
+    }
+}
+
+fn push_column(out: &mut Instance, lower: f64) -> usize {
+    out.columns.lower.push(lower);
+    out.columns.upper.push(f64::INFINITY);
+    out.columns.level.push(0.0);
+    out.columns.marginal.push(0.0);
+    out.columns.scale.push(1.0);
+    out.columns.kind.push(ColumnKind::Continuous);
+    out.column_count() - 1
+}
+
+fn push_row(matrix: &mut SparseRows, entries: impl Iterator<Item = (usize, f64)>) {
+    for (j, a) in entries {
+        matrix.column.push(j as u32);
+        matrix.value.push(a);
+    }
+    matrix.start.push(matrix.column.len());
+}

@@ -1,0 +1,202 @@
+//! B-stationarity: no direction leads downhill, to first order, without leaving the pieces.
+//!
+//! At a feasible point the pairs with F ≠ 0 or x off its bounds are on one piece only; the others
+//! are *biactive*. With everything linearised and only what is active kept, the directions d form a
+//! linear program with complementarity constraints over the biactive pairs (LPEC; Luo, Pang & Ralph
+//! 1996; Nurkanović & Leyffer 2025):
+//!
+//! ```text
+//!     min ∇fᵀd,   active rows and bounds,   0 ≤ dₓ ⟂ ∇Fᵀd ≥ 0 for biactive pairs,   |dⱼ| ≤ max(1, |xⱼ|)
+//! ```
+//!
+//! Its value is 0 (d = 0) if and only if the point is B-stationary. Often already the relaxation
+//! without the products has the value 0: the point is then strongly stationary, and one linear program
+//! proves it. Otherwise branch and bound over the biactive pairs decides, up to a number of nodes. A
+//! direction with a negative value refutes, and names the branch in which the search continues.
+
+use super::pairs::{Pair, Piece, Program};
+use super::tree::{Limits, Lpcc};
+use crate::autodiff::Evaluator;
+use crate::model::instance::Relation;
+use crate::solve::lp::Ended;
+use crate::solve::lp::form::{Problem, Sparse};
+
+/// What is closer to a bound than this, relative to its size, is on it.
+const ACTIVE: f64 = 1e-6;
+
+/// A slope up to this, relative to the size of the objective, is rounding.
+const SLOPE: f64 = 1e-6;
+
+/// What is known about a point.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Verdict {
+    /// No direction leads downhill.
+    Proved,
+    /// This one does.
+    Refuted {
+        /// One entry per column; |dⱼ| ≤ max(1, |xⱼ|).
+        direction: Vec<f64>,
+        /// Change of the (minimised) objective along it.
+        slope: f64,
+        /// The branch it leads into.
+        pieces: Vec<Piece>,
+    },
+    /// The search was not finished.
+    NotProved,
+}
+
+/// Checks a feasible point.
+pub fn check(
+    program: &Program,
+    level: &[f64],
+    nodes: usize,
+    stop: &mut dyn FnMut(u64) -> Option<Ended>,
+) -> Verdict {
+    let Some((problem, pairs, index)) = linearise(program, level) else {
+        return Verdict::NotProved;
+    };
+    let scale = problem.cost.iter().fold(1.0f64, |s, c| s.max(c.abs()))
+        * program.objective(level).abs().max(1.0);
+    let tolerance = SLOPE * scale;
+    let rhs = vec![0.0; pairs.len()];
+    let lpcc = Lpcc {
+        problem: &problem,
+        pairs: &pairs,
+        rhs: &rhs,
+    };
+    let limits = Limits {
+        nodes,
+        cutoff: -tolerance,
+        enough: -tolerance,
+        gap: 0.0,
+    };
+    let found = lpcc.search(&limits, stop);
+    match found.best {
+        Some((slope, direction)) => {
+            let pieces = pieces(program, level, &problem, &index, &direction);
+            Verdict::Refuted {
+                direction,
+                slope,
+                pieces,
+            }
+        }
+        None if found.complete => Verdict::Proved,
+        None => Verdict::NotProved,
+    }
+}
+
+/// The linearised program in d, the biactive pairs, and which pairs of the program they are.
+fn linearise(program: &Program, level: &[f64]) -> Option<(Problem, Vec<Pair>, Vec<usize>)> {
+    let instance = program.instance;
+    let (m, n) = (instance.row_count(), instance.column_count());
+    let activity = program.activity(level);
+    let mut evaluator = Evaluator::new(instance);
+    let (start, column) = evaluator.jacobian_pattern();
+    let (start, column) = (start.to_vec(), column.to_vec());
+    let mut value = vec![0.0; column.len()];
+    evaluator.jacobian(level, &mut value).ok()?;
+    if value.iter().chain(&activity).any(|v| !v.is_finite()) {
+        return None;
+    }
+    let inf = f64::INFINITY;
+    let mut p = Problem {
+        cost: vec![0.0; n],
+        rows: Sparse::new(),
+        ..Problem::default()
+    };
+    let objective = instance.objective.map(|o| o.column as usize);
+    for j in 0..n {
+        let (l, u, x) = (
+            instance.columns.lower[j],
+            instance.columns.upper[j],
+            level[j],
+        );
+        let size = x.abs().max(1.0);
+        let room = if Some(j) == objective {
+            1e6 * size
+        } else {
+            size
+        };
+        let near = |b: f64| (x - b).abs() <= ACTIVE * size;
+        p.lower.push(if near(l) { 0.0 } else { -room });
+        p.upper.push(if near(u) { 0.0 } else { room });
+    }
+    if let Some(z) = objective {
+        p.cost[z] = program.sign();
+    }
+    for i in 0..m {
+        let range = start[i]..start[i + 1];
+        let entries = range.map(|k| (column[k] as usize, value[k]));
+        let mut entries: Vec<(usize, f64)> = entries.collect();
+        entries.sort_unstable_by_key(|e| e.0);
+        p.rows.push(entries);
+        let b = instance.rows.rhs[i];
+        let slack = activity[i] - b;
+        let binds = slack.abs() <= ACTIVE * activity[i].abs().max(b.abs()).max(1.0);
+        let (lo, hi) = match program.envelope.rows.relation[i] {
+            Relation::Equal => (0.0, 0.0),
+            Relation::Greater if binds => (0.0, inf),
+            Relation::Less if binds => (-inf, 0.0),
+            _ => (-inf, inf),
+        };
+        p.row_lower.push(lo);
+        p.row_upper.push(hi);
+    }
+    p.columns = p.rows.transpose(n);
+    let (mut pairs, mut index) = (Vec::new(), Vec::new());
+    for (k, pair) in program.pairs.iter().enumerate() {
+        let x = level[pair.column];
+        let f = program.force(pair, &activity);
+        let size = x.abs().max(1.0);
+        let at_lower = (x - pair.lower).abs() <= ACTIVE * size;
+        let at_upper = (pair.upper - x).abs() <= ACTIVE * size;
+        let row_size = activity[pair.row].abs().max(1.0);
+        let zero = f.abs() <= ACTIVE * row_size;
+        match (zero, at_lower || at_upper) {
+            // F = 0 and x between its bounds
+            (true, false) => (p.row_lower[pair.row], p.row_upper[pair.row]) = (0.0, 0.0),
+            // x at a bound
+            (false, _) => {
+                (p.lower[pair.column], p.upper[pair.column]) = (0.0, 0.0);
+                (p.row_lower[pair.row], p.row_upper[pair.row]) = (-inf, inf);
+            }
+            (true, true) => {
+                index.push(k);
+                let (lower, upper) = (p.lower[pair.column], p.upper[pair.column]);
+                pairs.push(Pair {
+                    column: pair.column,
+                    row: pair.row,
+                    lower: if at_lower { lower } else { -inf },
+                    upper: if at_upper { upper } else { inf },
+                });
+            }
+        }
+    }
+    Some((p, pairs, index))
+}
+
+/// The branch that a direction leads into.
+fn pieces(
+    program: &Program,
+    level: &[f64],
+    problem: &Problem,
+    biactive: &[usize],
+    d: &[f64],
+) -> Vec<Piece> {
+    let mut out = program.nearest(level);
+    for &k in biactive {
+        let p = &program.pairs[k];
+        let x = level[p.column];
+        let df: f64 = problem.rows.line(p.row).map(|(j, a)| a * d[j]).sum();
+        out[k] = if df.abs() > 1e-9 {
+            if df > 0.0 { Piece::Lower } else { Piece::Upper }
+        } else if d[p.column].abs() > 1e-9 {
+            Piece::Inside
+        } else if (x - p.lower).abs() <= (p.upper - x).abs() {
+            Piece::Lower
+        } else {
+            Piece::Upper
+        };
+    }
+    out
+}

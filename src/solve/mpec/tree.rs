@@ -1,0 +1,245 @@
+//! Linear programs with complementarity constraints, by branch and bound on the pieces.
+//!
+//! A node has chosen pieces for some pairs; the others are relaxed to their envelope. Its bound is
+//! the value of that linear program, solved by the simplex method from the parent's basis; where the
+//! solution satisfies all pairs the node is done, otherwise the pair that is farthest from all its
+//! pieces is branched on. Nodes are taken in the order of their bounds, so at any time the least
+//! bound of the open nodes and the best solution enclose the value.
+
+use super::pairs::{Pair, Piece};
+use crate::solve::lp::Ended;
+use crate::solve::lp::form::Problem;
+use crate::solve::lp::simplex::{Basis, Simplex};
+use std::collections::BinaryHeap;
+use std::rc::Rc;
+
+/// A complementarity violation up to this is none.
+const TOLERANCE: f64 = 1e-9;
+
+/// A linear program with pairs; a pair's `column` and `row` are the program's.
+pub struct Lpcc<'a> {
+    /// The linear program; the rows of pairs and their columns have bounds of their own.
+    pub problem: &'a Problem,
+    /// The pairs.
+    pub pairs: &'a [Pair],
+    /// Right-hand side of each pair's row: F is the row's activity minus this.
+    pub rhs: &'a [f64],
+}
+
+/// Limits of a search.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// Nodes.
+    pub nodes: usize,
+    /// Only solutions with a value below this are of interest.
+    pub cutoff: f64,
+    /// A solution with a value below this ends the search.
+    pub enough: f64,
+    /// Nodes whose bound is within this of the best solution are not looked at.
+    pub gap: f64,
+}
+
+/// What a search found.
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// Value and point of the best solution below the cutoff.
+    pub best: Option<(f64, Vec<f64>)>,
+    /// No solution has a value below this (or the best solution's, if that is less).
+    pub bound: f64,
+    /// Nothing is left open: the best solution is a global one, or there is none below the cutoff.
+    pub complete: bool,
+    /// A branch is unbounded.
+    pub unbounded: bool,
+    /// Nodes solved.
+    pub nodes: usize,
+    /// Simplex iterations.
+    pub iterations: u64,
+}
+
+struct Node {
+    bound: f64,
+    depth: usize,
+    number: usize,
+    chosen: Rc<Chosen>,
+    basis: Rc<Basis>,
+}
+
+/// Pieces chosen on the way to a node.
+enum Chosen {
+    None,
+    Also(usize, Piece, Rc<Chosen>),
+}
+
+impl PartialEq for Node {
+    fn eq(&self, other: &Self) -> bool {
+        self.number == other.number
+    }
+}
+
+impl Eq for Node {}
+
+impl PartialOrd for Node {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Node {
+    /// The heap's largest is the next: least bound, then deepest, then first made.
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        let bound = other.bound.total_cmp(&self.bound);
+        let depth = self.depth.cmp(&other.depth);
+        bound.then(depth).then(other.number.cmp(&self.number))
+    }
+}
+
+impl Lpcc<'_> {
+    /// Bounds of a pair's column and of its row's activity on a piece, or in the envelope.
+    pub fn bounds(&self, k: usize, piece: Option<Piece>) -> [(f64, f64); 2] {
+        let (p, b) = (&self.pairs[k], self.rhs[k]);
+        let (l, u) = (p.lower, p.upper);
+        let inf = f64::INFINITY;
+        let between = (self.problem.lower[p.column], self.problem.upper[p.column]);
+        match piece {
+            Some(Piece::Lower) => [(l, l), (b, inf)],
+            Some(Piece::Inside) => [between, (b, b)],
+            Some(Piece::Upper) => [(u, u), (-inf, b)],
+            None => {
+                let low = if u.is_finite() { -inf } else { b };
+                let high = if l.is_finite() { inf } else { b };
+                [between, (low, high)]
+            }
+        }
+    }
+
+    fn apply(&self, simplex: &mut Simplex, k: usize, piece: Option<Piece>) {
+        let [x, f] = self.bounds(k, piece);
+        simplex.set_bounds(self.pairs[k].column, x.0, x.1);
+        simplex.set_bounds(self.problem.n() + self.pairs[k].row, f.0, f.1);
+    }
+
+    fn activity(&self, row: usize, x: &[f64]) -> f64 {
+        self.problem.rows.line(row).map(|(j, a)| a * x[j]).sum()
+    }
+
+    /// Pair that is farthest from being satisfied, among those without a piece.
+    fn worst(&self, x: &[f64], decided: &[bool]) -> Option<(usize, f64)> {
+        let mut worst: Option<(usize, f64)> = None;
+        for (k, p) in self.pairs.iter().enumerate().filter(|(k, _)| !decided[*k]) {
+            let f = self.activity(p.row, x) - self.rhs[k];
+            let v = p.natural(x[p.column], f);
+            if v > TOLERANCE && worst.is_none_or(|w| v > w.1) {
+                worst = Some((k, v));
+            }
+        }
+        worst
+    }
+
+    /// Searches.
+    pub fn search(&self, limits: &Limits, stop: &mut dyn FnMut(u64) -> Option<Ended>) -> Found {
+        let mut simplex = Simplex::new(self.problem);
+        let mut out = Found {
+            best: None,
+            bound: f64::INFINITY,
+            complete: true,
+            unbounded: false,
+            nodes: 0,
+            iterations: 0,
+        };
+        let mut heap = BinaryHeap::new();
+        heap.push(Node {
+            bound: f64::NEG_INFINITY,
+            depth: 0,
+            number: 0,
+            chosen: Rc::new(Chosen::None),
+            basis: Rc::new(simplex.basis()),
+        });
+        let mut number = 1;
+        // Bounds of nodes that were given up.
+        let mut lost = f64::INFINITY;
+        let cutoff = |out: &Found| out.best.as_ref().map_or(limits.cutoff, |b| b.0);
+        while let Some(node) = heap.pop() {
+            if node.bound >= cutoff(&out) - limits.gap {
+                heap.push(node);
+                break;
+            }
+            if out.nodes >= limits.nodes || stop(simplex.iterations).is_some() {
+                heap.push(node);
+                out.complete = false;
+                break;
+            }
+            out.nodes += 1;
+            let mut decided = vec![false; self.pairs.len()];
+            (0..self.pairs.len()).for_each(|k| self.apply(&mut simplex, k, None));
+            let mut chosen = &node.chosen;
+            while let Chosen::Also(k, piece, rest) = &**chosen {
+                self.apply(&mut simplex, *k, Some(*piece));
+                decided[*k] = true;
+                chosen = rest;
+            }
+            let ended = simplex.solve_from_basis(&node.basis, stop);
+            let point = match ended {
+                Ended::Solved => simplex.point(),
+                Ended::Infeasible(_) => continue,
+                Ended::Unbounded(_) => None,
+                _ => {
+                    out.complete = false;
+                    lost = lost.min(node.bound);
+                    continue;
+                }
+            };
+            let (value, branch_on) = match &point {
+                Some(p) => {
+                    let terms = p.x.iter().zip(&self.problem.cost).map(|(x, c)| x * c);
+                    let value = terms.sum::<f64>() + self.problem.offset;
+                    (value.max(node.bound), self.worst(&p.x, &decided))
+                }
+                None => {
+                    // Unbounded so far: the pairs that are left may bound it.
+                    let open = decided.iter().position(|d| !d);
+                    (f64::NEG_INFINITY, open.map(|k| (k, 1.0)))
+                }
+            };
+            if value >= cutoff(&out) - limits.gap {
+                lost = lost.min(value);
+                continue;
+            }
+            let Some((k, _)) = branch_on else {
+                match point {
+                    Some(p) => {
+                        out.best = Some((value, p.x));
+                        if value < limits.enough {
+                            out.complete = false;
+                            lost = lost.min(node.bound);
+                            break;
+                        }
+                    }
+                    None => {
+                        out.unbounded = true;
+                        out.complete = false;
+                        lost = f64::NEG_INFINITY;
+                        break;
+                    }
+                }
+                continue;
+            };
+            let basis = Rc::new(simplex.basis());
+            for piece in [Piece::Inside, Piece::Lower, Piece::Upper] {
+                if self.pairs[k].allows(piece) {
+                    heap.push(Node {
+                        bound: value,
+                        depth: node.depth + 1,
+                        number,
+                        chosen: Rc::new(Chosen::Also(k, piece, node.chosen.clone())),
+                        basis: basis.clone(),
+                    });
+                    number += 1;
+                }
+            }
+        }
+        let open = heap.iter().map(|n| n.bound).fold(lost, f64::min);
+        out.bound = open.min(cutoff(&out));
+        out.iterations = simplex.iterations;
+        out
+    }
+}

@@ -1,0 +1,158 @@
+//! Programs with equilibrium constraints: instances with reference answers (`../shared/corpus/mpec`,
+//! or the folder named by BMOD_SHARED; skipped, visibly, where it is not there), and the check of
+//! stationarity from the language to the report.
+
+use std::path::{Path, PathBuf};
+
+use bmod::cli::host::{Output, SystemHost};
+use bmod::report::json::SolveReport;
+use bmod::run::Options;
+use bmod::session;
+use bmod::source::PreprocessOptions;
+
+fn solves(file: &Path) -> Vec<SolveReport> {
+    let mut host = SystemHost::new(file, Path::new("."), &[], Output::Quiet);
+    let options = Options {
+        quiet: true,
+        collect: false,
+        ..Options::default()
+    };
+    let finished = session::run(
+        &mut host,
+        &file.to_string_lossy(),
+        PreprocessOptions::default(),
+        options,
+        false,
+        &mut |_| {},
+    );
+    for d in &finished.diagnostics {
+        println!("{}: {}", file.display(), d.message);
+    }
+    finished.report.solves
+}
+
+/// A model of one's own, as text.
+fn text(name: &str, model: &str) -> Vec<SolveReport> {
+    let file = std::env::temp_dir().join(format!("bmod_mpec_{name}_{}.blk", std::process::id()));
+    std::fs::write(&file, model).expect("a temporary file");
+    let out = solves(&file);
+    std::fs::remove_file(&file).expect("the temporary file is there");
+    out
+}
+
+fn objective(s: &SolveReport) -> f64 {
+    s.objective.map_or(f64::NAN, |o| o.0)
+}
+
+#[test]
+fn corpus_is_feasible_and_as_good_as_the_reference() {
+    let shared = std::env::var_os("BMOD_SHARED").map_or_else(
+        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared"),
+        PathBuf::from,
+    );
+    let folder = shared.join("corpus");
+    let Ok(mut reader) = csv::Reader::from_path(folder.join("reference.csv")) else {
+        println!("SKIPPED: {} is not there", folder.display());
+        return;
+    };
+    let (mut count, mut infeasible, mut worse) = (0, Vec::new(), Vec::new());
+    for row in reader.records() {
+        let row = row.expect("a row of the reference");
+        if &row[2] != "MPEC" {
+            continue;
+        }
+        count += 1;
+        let want: f64 = row[4].parse().expect("an objective");
+        let all = solves(&folder.join(&row[0]));
+        let Some(s) = all.last() else {
+            infeasible.push(format!("{}: no solve", &row[0]));
+            continue;
+        };
+        let small = |r: Option<f64>| r.is_some_and(|r| r <= 1e-6);
+        if !small(s.residual.primal) || !small(s.residual.complementarity) {
+            infeasible.push(format!("{}: {:?}", &row[0], s.residual));
+        }
+        let sign = if s.sense == Some("max") { -1.0 } else { 1.0 };
+        if sign * (objective(s) - want) > 1e-4 * want.abs().max(1.0) || s.model_status.code != 2 {
+            let status = s.model_status.name;
+            worse.push(format!(
+                "{}: {} ({status}), the reference has {want}",
+                &row[0],
+                objective(s)
+            ));
+        }
+    }
+    assert!(count > 20, "{count} instances");
+    assert!(infeasible.is_empty(), "{}", infeasible.join("\n"));
+    println!("{}", worse.join("\n"));
+    assert!(10 * worse.len() <= count, "{} of {count}", worse.len());
+}
+
+const CORNER: &str = "positive variables x, y; variable f; equations obj, g;
+obj.. f =e= sqr(x - 1) + sqr(y - 1);
+g.. y =g= 0;
+model m / obj, g.x /;
+option mpec_method = check;
+";
+
+#[test]
+fn the_corner_is_refuted_with_a_direction() {
+    let all = text(
+        "corner",
+        &format!("{CORNER} solve m using mpec minimizing f;"),
+    );
+    let [s] = &all[..] else { panic!("{all:?}") };
+    assert_eq!(s.stationarity, Some("refuted"));
+    assert_eq!(s.model_status.code, 7, "feasible, not more");
+    assert_eq!(objective(s), 2.0, "the point is left as it was");
+    let message = s.message.clone().unwrap_or_default();
+    assert!(
+        message.contains("slope -2") && (message.contains("x +1") || message.contains("y +1")),
+        "{message}"
+    );
+}
+
+#[test]
+fn an_end_of_the_corner_is_proved() {
+    let all = text(
+        "end",
+        &format!("{CORNER} x.l = 1; solve m using mpec minimizing f;"),
+    );
+    let [s] = &all[..] else { panic!("{all:?}") };
+    assert_eq!(s.stationarity, Some("proved"));
+    assert_eq!(s.model_status.code, 2);
+    assert_eq!(objective(s), 1.0);
+}
+
+#[test]
+fn the_search_goes_on_from_a_corner() {
+    for method in ["auto", "relaxation", "penalty"] {
+        let all = text(
+            method,
+            &format!("{CORNER} option mpec_method = {method}; solve m using mpec minimizing f;"),
+        );
+        let [s] = &all[..] else { panic!("{all:?}") };
+        assert_eq!(s.stationarity, Some("proved"), "{method}");
+        assert!(
+            (objective(s) - 1.0).abs() < 1e-9,
+            "{method}: {}",
+            objective(s)
+        );
+        assert_eq!(s.complementarity_sum, Some(0.0), "{method}");
+    }
+}
+
+#[test]
+fn options_are_checked() {
+    for (option, word) in [
+        ("mpec_method = simplex", "mpec_method"),
+        ("mpec_bound = some", "mpec_bound"),
+        ("mpec_factor = 2", "mpec_factor"),
+    ] {
+        let all = text(
+            "options",
+            &format!("{CORNER} option {option}; solve m using mpec minimizing f;"),
+        );
+        assert!(all.iter().all(|s| s.solver.is_empty()), "{word}: {all:?}");
+    }
+}
