@@ -480,7 +480,7 @@ impl Search<'_> {
         }
         let judged = self.program.judge(&a.outcome.level);
         a.outcome.solver = "bmpec";
-        a.outcome.iterations = self.iterations + a.outcome.iterations;
+        a.outcome.iterations += self.iterations;
         a.outcome.status = self.stopped.unwrap_or(SolverStatus::NormalCompletion);
         a.outcome.message = (!self.notes.is_empty()).then(|| self.notes.join("; "));
         Ok(Answer::new(

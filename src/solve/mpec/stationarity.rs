@@ -105,12 +105,8 @@ fn linearise(program: &Program, level: &[f64]) -> Option<(Problem, Vec<Pair>, Ve
         ..Problem::default()
     };
     let objective = instance.objective.map(|o| o.column as usize);
-    for j in 0..n {
-        let (l, u, x) = (
-            instance.columns.lower[j],
-            instance.columns.upper[j],
-            level[j],
-        );
+    for (j, &x) in level.iter().enumerate() {
+        let (l, u) = (instance.columns.lower[j], instance.columns.upper[j]);
         let size = x.abs().max(1.0);
         let room = if Some(j) == objective {
             1e6 * size

@@ -39,14 +39,14 @@ pub fn consistent_start(
     // a variable is open if some equation could define it
     let mut open = vec![false; n];
     let mut candidates = Vec::new();
-    for i in 0..instance.row_count() {
+    for (i, nonlinear) in nonlinear.iter_mut().enumerate() {
         if instance.rows.relation[i] != Relation::Equal {
             continue;
         }
-        nonlinear[i].sort_unstable();
+        nonlinear.sort_unstable();
         let mut any = false;
         for (j, _) in instance.matrix.row(i) {
-            if unset(j) && nonlinear[i].binary_search(&(j as u32)).is_err() {
+            if unset(j) && nonlinear.binary_search(&(j as u32)).is_err() {
                 open[j] = true;
                 any = true;
             }
