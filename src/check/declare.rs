@@ -695,11 +695,12 @@ impl Compiler {
             let at = rows.first().map_or(0, Vec::len);
             let behind = self.products(s, at, other, span, defines)?;
             if rows.len() != behind.len() {
-                return self.fail(
-                    Diagnostic::error("E0347", span, format!("`:` matches one by one, but there are {} on the left and {} on the right", rows.len(), behind.len()))
-                        .label("different numbers")
+                self.report(
+                    Diagnostic::warning("E0347", span, format!("`:` matches one by one, but there are {} on the left and {} on the right", rows.len(), behind.len()))
+                        .label("what is left over on one side is dropped")
                         .help("a dot instead of the colon makes all combinations"),
                 );
+                rows.truncate(behind.len());
             }
             rows.iter_mut().zip(behind).for_each(|(a, b)| a.extend(b));
         }

@@ -110,7 +110,13 @@ impl Compiler {
     pub(super) fn domain(&mut self, d: &ast::Domain) -> Result<Domain, Failed> {
         let mut out = Domain::default();
         for item in &d.items {
-            self.domain_item(&item.set, item.indices.as_deref(), item.span, &mut out)?;
+            if item.local {
+                let id = self.lookup_set(&item.set)?;
+                self.used(id, item.set.span);
+                self.run_over(id, &mut out);
+            } else {
+                self.domain_item(&item.set, item.indices.as_deref(), item.span, &mut out)?;
+            }
         }
         if let Some(c) = &d.condition {
             self.condition(c, &mut out)?;
@@ -172,27 +178,7 @@ impl Compiler {
                         )),
                 );
             }
-            let slots: Vec<Slot> = (0..dim).map(|_| self.new_slot()).collect();
-            for (p, &s) in slots.iter().enumerate() {
-                out.slots.push(s);
-                out.sets.push(if dim == 1 {
-                    symbol.table
-                } else {
-                    match symbol.domain[p] {
-                        DomainPosition::Set(d) => self.symbols.get(d).table,
-                        _ => self.symbols.get(UNIVERSE).table,
-                    }
-                });
-            }
-            let parts: Vec<Part> = slots.iter().map(|&s| Part::Slot(s)).collect();
-            out.members.push(Driver {
-                table: symbol.table,
-                key: Key {
-                    parts: parts.clone(),
-                },
-            });
-            self.scope.push((id, slots));
-            return Ok(parts);
+            return Ok(self.run_over(id, out));
         };
         let mut parts = Vec::with_capacity(dim);
         for (p, index) in indices.iter().enumerate() {
@@ -225,6 +211,33 @@ impl Compiler {
         Ok(parts)
     }
 
+    /// Puts a set under control with indices of its own, whether or not it is under control outside.
+    fn run_over(&mut self, id: SymbolId, out: &mut Domain) -> Vec<Part> {
+        let symbol = self.symbols.get(id).clone();
+        let dim = symbol.dim();
+        let slots: Vec<Slot> = (0..dim).map(|_| self.new_slot()).collect();
+        for (p, &s) in slots.iter().enumerate() {
+            out.slots.push(s);
+            out.sets.push(if dim == 1 {
+                symbol.table
+            } else {
+                match symbol.domain[p] {
+                    DomainPosition::Set(d) => self.symbols.get(d).table,
+                    _ => self.symbols.get(UNIVERSE).table,
+                }
+            });
+        }
+        let parts: Vec<Part> = slots.iter().map(|&s| Part::Slot(s)).collect();
+        out.members.push(Driver {
+            table: symbol.table,
+            key: Key {
+                parts: parts.clone(),
+            },
+        });
+        self.scope.push((id, slots));
+        parts
+    }
+
     /// An index that is put under control if it is a set that is not yet.
     pub(super) fn control_index(
         &mut self,
@@ -234,6 +247,18 @@ impl Compiler {
         out: &mut Domain,
     ) -> Result<Vec<Part>, Failed> {
         match &index.kind {
+            ExprKind::Apply {
+                name,
+                attribute: Some(a),
+                arguments: None,
+            } if a.name.eq_ignore_ascii_case("local") => {
+                let s = self.lookup_set(name)?;
+                self.used(s, name.span);
+                if self.symbols.get(s).dim() == 1 {
+                    self.fits(s, of, position, index.span)?;
+                }
+                Ok(self.run_over(s, out))
+            }
             ExprKind::Apply {
                 name,
                 attribute: None,
@@ -796,9 +821,19 @@ impl Compiler {
             ExprKind::Product(factors) => {
                 let mut out = Vec::with_capacity(factors.len());
                 for (f, x) in factors {
-                    out.push((*f == Factor::Divide, self.expr(x)?));
+                    let node = self.expr(x)?;
+                    out.push(match f {
+                        Factor::Divide => divisor(x, node),
+                        Factor::Multiply => (false, node),
+                    });
                 }
                 Ok(product(out, span))
+            }
+            ExprKind::Binary(BinaryOp::Divide, a, right) => {
+                let (Ok(x), Ok(y)) = (self.expr(a), self.expr(right)) else {
+                    return Err(Failed);
+                };
+                Ok(product(vec![(false, x), divisor(right, y)], span))
             }
             ExprKind::Binary(op, a, b) => {
                 let (a, b) = match (self.expr(a), self.expr(b)) {
@@ -816,7 +851,6 @@ impl Compiler {
                         )
                     }
                     BinaryOp::Multiply => product(vec![(false, a), (false, b)], span),
-                    BinaryOp::Divide => product(vec![(false, a), (true, b)], span),
                     BinaryOp::CircularPlus | BinaryOp::CircularMinus => {
                         return self.fail(
                             Diagnostic::error(
@@ -1344,4 +1378,19 @@ fn product(factors: Vec<(bool, Node)>, span: Span) -> Node {
             .iter()
             .all(|(div, n)| n.linear && !(*div && n.has_var));
     combine(NodeKind::Product(factors), span, v > 0, l)
+}
+
+/// A factor that divides. GAMS divides by a number or a scalar parameter `b` as it multiplies by `1/b`,
+/// which shows in the last digit: such a factor multiplies, and is a product of one divisor.
+fn divisor(written: &Expr, node: Node) -> (bool, Node) {
+    let once = match (&written.kind, &node.kind) {
+        (ExprKind::Number(_), NodeKind::Const(_)) => true,
+        (ExprKind::Apply { attribute: None, .. }, NodeKind::Data(_, key)) => key.parts.is_empty(),
+        _ => false,
+    };
+    if !once {
+        return (true, node);
+    }
+    let span = node.span;
+    (false, Node::data(NodeKind::Product(vec![(true, node)]), span))
 }

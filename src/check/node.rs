@@ -73,6 +73,19 @@ pub struct Node {
     pub linear: bool,
 }
 
+impl NodeKind {
+    /// What a factor divides by, if it does so by multiplying with the reciprocal.
+    pub fn reciprocal_of(&self) -> Option<&Node> {
+        match self {
+            NodeKind::Product(factors) => match factors.as_slice() {
+                [(true, b)] => Some(b),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+}
+
 /// The kinds of expressions.
 #[derive(Debug)]
 pub enum NodeKind {

@@ -838,7 +838,7 @@ impl Compiler {
         self.texts_allowed = false;
         if let Ok(items) = &r {
             self.put_named |= items.iter().any(|i| matches!(i, PutCode::File(_)));
-            if !self.put_named {
+            if !self.put_named && !p.keyword.starts_with("put_util") {
                 self.put_named = true;
                 return self.fail(
                     Diagnostic::error("E0374", span, "no file is named to write to")

@@ -96,6 +96,17 @@ pub fn divide(a: f64, b: f64) -> Result<f64, ArithmeticError> {
     }
 }
 
+/// a / b as a · (1/b), the way GAMS divides by numbers and scalars.
+#[inline]
+pub fn divide_by_scalar(a: f64, b: f64) -> Result<f64, ArithmeticError> {
+    let r = 1.0 / b;
+    if r.is_normal() && b.is_finite() {
+        multiply(a, r)
+    } else {
+        divide(a, b)
+    }
+}
+
 #[cold]
 fn divide_special(a: f64, b: f64) -> Result<f64, ArithmeticError> {
     if is_undf(a) || is_undf(b) {

@@ -152,6 +152,12 @@ impl Machine<'_> {
             NodeKind::Product(factors) => {
                 let mut acc = 1.0;
                 for (k, (divide, f)) in factors.iter().enumerate() {
+                    if let Some(b) = f.kind.reciprocal_of() {
+                        let v = self.eval(b, frame);
+                        let r = arithmetic::divide_by_scalar(if k == 0 { 1.0 } else { acc }, v);
+                        acc = self.arithmetic(r, b.span);
+                        continue;
+                    }
                     let v = self.eval(f, frame);
                     acc = match (k, divide) {
                         (0, false) => v,

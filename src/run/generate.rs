@@ -76,6 +76,12 @@ struct Tape {
     constants: Vec<f64>,
 }
 
+/// What `eps` is as a coefficient while a row is built: `eps*x` keeps `x` in the row, and counts, with
+/// the coefficient 0. The size lets it vanish in sums and survive factors.
+const EPS_COEFFICIENT: f64 = 1e-250;
+/// Coefficients below are such.
+const EPS_BELOW: f64 = 1e-200;
+
 struct Builder<'m, 'h> {
     m: &'m Machine<'h>,
     options: GenerateOptions,
@@ -348,7 +354,9 @@ impl Builder<'_, '_> {
                 return;
             }
             matrix.column.push(c);
-            matrix.value.push(v);
+            matrix
+                .value
+                .push(if v.abs() < EPS_BELOW { 0.0 } else { v });
         }
         matrix.start.push(matrix.column.len());
         let t = self.m.symbols.get(e.symbol).table;
@@ -526,7 +534,12 @@ impl Builder<'_, '_> {
                 var = Some(f);
                 continue;
             }
-            let v = self.value(f, frame);
+            let v = self.m.eval(f, frame);
+            let v = match (is_eps(v), divide) {
+                (true, false) => EPS_COEFFICIENT,
+                (true, true) => 0.0,
+                _ => v,
+            };
             if *divide {
                 if v == 0.0 {
                     self.m.execution_error(

@@ -320,6 +320,8 @@ pub struct Domain {
 pub struct DomainItem {
     /// The set.
     pub set: Ident,
+    /// `i.local`: an index of its own, though `i` may be under control outside.
+    pub local: bool,
     /// Its indices; None where no parentheses stand.
     pub indices: Option<Vec<Expr>>,
     /// Whole place.

@@ -348,13 +348,16 @@ impl Splitter {
                             match word {
                                 Word::Control => {
                                     self.control = true;
-                                    if on_end && !opens_parenthesis(bytes, end) {
-                                        self.blocks += 1;
+                                    let bare = !opens_parenthesis(bytes, end);
+                                    let repeat = text[i..end].eq_ignore_ascii_case("repeat");
+                                    if bare && (on_end || repeat) {
+                                        // Inside parentheses a `;` ends nothing anyway.
+                                        self.blocks += usize::from(self.opens.is_empty());
                                         self.control = false;
                                     }
                                 }
                                 Word::EndControl | Word::Until
-                                    if on_end && self.blocks > 0 && self.opens.is_empty() =>
+                                    if self.blocks > 0 && self.opens.is_empty() =>
                                 {
                                     self.blocks -= 1
                                 }

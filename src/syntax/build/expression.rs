@@ -483,13 +483,19 @@ impl Builder<'_> {
         match node.expr.kind {
             ExprKind::Apply {
                 name,
-                attribute: None,
+                attribute,
                 arguments,
-            } => Ok(DomainItem {
-                set: name,
-                indices: arguments,
-                span,
-            }),
+            } if attribute.as_ref().is_none_or(|a| {
+                a.name.eq_ignore_ascii_case("local") && arguments.is_none()
+            }) =>
+            {
+                Ok(DomainItem {
+                    set: name,
+                    local: attribute.is_some(),
+                    indices: arguments,
+                    span,
+                })
+            }
             _ => Err(Box::new(
                 Diagnostic::error("E0214", span, "a set was expected here")
                     .help("sums and loops run over sets: `sum((i,j), …)`, `sum(arc(i,j), …)`"),
