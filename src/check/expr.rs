@@ -1385,12 +1385,20 @@ fn product(factors: Vec<(bool, Node)>, span: Span) -> Node {
 fn divisor(written: &Expr, node: Node) -> (bool, Node) {
     let once = match (&written.kind, &node.kind) {
         (ExprKind::Number(_), NodeKind::Const(_)) => true,
-        (ExprKind::Apply { attribute: None, .. }, NodeKind::Data(_, key)) => key.parts.is_empty(),
+        (
+            ExprKind::Apply {
+                attribute: None, ..
+            },
+            NodeKind::Data(_, key),
+        ) => key.parts.is_empty(),
         _ => false,
     };
     if !once {
         return (true, node);
     }
     let span = node.span;
-    (false, Node::data(NodeKind::Product(vec![(true, node)]), span))
+    (
+        false,
+        Node::data(NodeKind::Product(vec![(true, node)]), span),
+    )
 }

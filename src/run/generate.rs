@@ -354,9 +354,7 @@ impl Builder<'_, '_> {
                 return;
             }
             matrix.column.push(c);
-            matrix
-                .value
-                .push(if v.abs() < EPS_BELOW { 0.0 } else { v });
+            matrix.value.push(if v.abs() < EPS_BELOW { 0.0 } else { v });
         }
         matrix.start.push(matrix.column.len());
         let t = self.m.symbols.get(e.symbol).table;

@@ -485,9 +485,9 @@ impl Builder<'_> {
                 name,
                 attribute,
                 arguments,
-            } if attribute.as_ref().is_none_or(|a| {
-                a.name.eq_ignore_ascii_case("local") && arguments.is_none()
-            }) =>
+            } if attribute
+                .as_ref()
+                .is_none_or(|a| a.name.eq_ignore_ascii_case("local") && arguments.is_none()) =>
             {
                 Ok(DomainItem {
                     set: name,
