@@ -5,9 +5,11 @@
 //!
 //! Invariants: memory is proportional to the records; a *tidy* table is sorted by label order and
 //! has no removed records; iteration is over tidy tables only, so what a person sees is always in
-//! label order. A hash index and *orders* (records grouped by some positions) are built when first
+//! label order. An index by key and *orders* (records grouped by some positions) are built when first
 //! needed and dropped when records move.
 
+use super::key_index::KeyIndex;
+use super::sort::sort_records;
 use super::universe::Label;
 use hashbrown::HashTable;
 use std::cell::{OnceCell, RefCell};
@@ -25,17 +27,10 @@ pub struct Table {
     sorted: usize,
     /// Removed records that still take a place (their value is the default).
     dead: usize,
-    index: OnceCell<Index>,
+    index: OnceCell<KeyIndex>,
     orders: RefCell<Vec<(u32, Rc<Order>)>>,
     distinct: OnceCell<Vec<u32>>,
     special: bool,
-}
-
-#[derive(Clone, Debug)]
-enum Index {
-    /// Record + 1 by label, for one-dimensional tables.
-    Dense(Vec<u32>),
-    Hash(HashTable<u32>),
 }
 
 /// Records grouped by their labels at some positions.
@@ -85,14 +80,6 @@ impl Rows<'_> {
             Rows::List(l) => l[k],
         }
     }
-}
-
-fn hash_key(key: &[Label]) -> u64 {
-    let mut h = rustc_hash::FxHasher::default();
-    for &k in key {
-        h.write_u32(k);
-    }
-    h.finish()
 }
 
 fn hash_at(key: &[Label], positions: &[usize]) -> u64 {
@@ -164,6 +151,11 @@ impl Table {
         &self.keys[at..at + self.dim]
     }
 
+    /// Labels of all stored records, one after the other; among them may be removed ones.
+    pub fn all_keys(&self) -> &[Label] {
+        &self.keys
+    }
+
     /// Value of a stored record.
     #[inline]
     pub fn value(&self, row: u32) -> f64 {
@@ -188,13 +180,10 @@ impl Table {
         debug_assert_eq!(key.len(), self.dim);
         match self.dim {
             0 => (!self.values.is_empty() && self.values[0] != self.default).then_some(0),
-            _ => match self.index.get_or_init(|| self.build_index()) {
-                Index::Dense(by_label) => match by_label.get(key[0] as usize) {
-                    Some(&r) if r > 0 => Some(r - 1),
-                    _ => None,
-                },
-                Index::Hash(t) => t.find(hash_key(key), |&r| self.key(r) == key).copied(),
-            },
+            _ => self
+                .index
+                .get_or_init(|| self.build_index())
+                .find(key, &self.keys),
         }
     }
 
@@ -207,28 +196,10 @@ impl Table {
         }
     }
 
-    fn build_index(&self) -> Index {
-        let alive =
-            |r: u32| self.values[r as usize] != self.default || self.values[r as usize].is_nan();
-        if self.dim == 1 {
-            let top = self.keys.iter().max().map_or(0, |&l| l as usize + 1);
-            if top <= 64 + 16 * self.values.len() {
-                let mut by_label = vec![0; top];
-                for (r, &l) in self.keys.iter().enumerate() {
-                    if alive(r as u32) {
-                        by_label[l as usize] = r as u32 + 1;
-                    }
-                }
-                return Index::Dense(by_label);
-            }
-        }
-        let mut t = HashTable::with_capacity(self.values.len());
-        for r in 0..self.values.len() as u32 {
-            if alive(r) {
-                t.insert_unique(hash_key(self.key(r)), r, |&r| hash_key(self.key(r)));
-            }
-        }
-        Index::Hash(t)
+    fn build_index(&self) -> KeyIndex {
+        KeyIndex::build(&self.keys, self.dim, |r| {
+            self.values[r as usize] != self.default || self.values[r as usize].is_nan()
+        })
     }
 
     fn moved(&mut self) {
@@ -265,18 +236,8 @@ impl Table {
                 self.values[r as usize] = self.default;
                 self.dead += 1;
                 self.moved();
-                let Self {
-                    index, keys, dim, ..
-                } = self;
-                match index.get_mut() {
-                    Some(Index::Dense(by_label)) => by_label[key[0] as usize] = 0,
-                    Some(Index::Hash(t)) => {
-                        let same = |&r: &u32| keys[r as usize * *dim..][..*dim] == *key;
-                        if let Ok(e) = t.find_entry(hash_key(key), same) {
-                            e.remove();
-                        }
-                    }
-                    None => {}
+                if let Some(index) = self.index.get_mut() {
+                    index.remove(key, &self.keys);
                 }
             }
             Some(r) => self.values[r as usize] = value,
@@ -290,28 +251,8 @@ impl Table {
         self.keys.extend_from_slice(key);
         self.values.push(value);
         self.moved();
-        let Self {
-            index, keys, dim, ..
-        } = self;
-        match index.get_mut() {
-            Some(Index::Dense(by_label)) => {
-                let l = key[0] as usize;
-                if l < by_label.len() {
-                    by_label[l] = r + 1;
-                } else if l <= 64 + 16 * (r as usize + 1) {
-                    by_label.resize(l + 1, 0);
-                    by_label[l] = r + 1;
-                } else {
-                    index.take();
-                }
-            }
-            Some(Index::Hash(t)) => {
-                let d = *dim;
-                t.insert_unique(hash_key(key), r, |&r| {
-                    hash_key(&keys[r as usize * d..][..d])
-                });
-            }
-            None => {}
+        if let Some(index) = self.index.get_mut() {
+            index.insert(key, r, &self.keys);
         }
     }
 
@@ -365,14 +306,7 @@ impl Table {
             self.keys.truncate(to * d);
         } else {
             let mut tail: Vec<u32> = (self.sorted as u32..n as u32).collect();
-            match d {
-                1 => tail.sort_by_key(|&r| self.keys[r as usize]),
-                2 => tail.sort_by_cached_key(|&r| {
-                    let k = &self.keys[r as usize * 2..];
-                    (k[0] as u64) << 32 | k[1] as u64
-                }),
-                _ => tail.sort_by(|&a, &b| self.key(a).cmp(self.key(b))),
-            }
+            sort_records(&mut tail, &self.keys, d, &(0..d).collect::<Vec<_>>());
             let mut keys = Vec::with_capacity(self.keys.len());
             let mut values: Vec<f64> = Vec::with_capacity(n);
             let mut put = |t: &Self, r: u32| {
@@ -529,13 +463,7 @@ impl Table {
         }
         let rows: Option<Vec<u32>> = (!prefix).then(|| {
             let mut rows: Vec<u32> = (0..n as u32).collect();
-            rows.sort_by(|&a, &b| {
-                let (a, b) = (self.key(a), self.key(b));
-                positions
-                    .iter()
-                    .map(|&p| a[p])
-                    .cmp(positions.iter().map(|&p| b[p]))
-            });
+            sort_records(&mut rows, &self.keys, self.dim, &positions);
             rows
         });
         let at = |k: usize| self.key(rows.as_ref().map_or(k as u32, |r| r[k]));

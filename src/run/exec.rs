@@ -1,10 +1,11 @@
 //! Statements.
 
-use super::plan::{Pick, Plan, sort_tuples};
+use super::plan::{Pick, Plan};
 use super::random::Random;
 use super::{Flow, Frame, Machine, scan};
 use crate::check::node::*;
 use crate::check::symbols::{SymbolKind, attribute};
+use crate::data::sort::{sort_records, sort_tuples};
 use crate::data::table::Table;
 use crate::data::universe::Label;
 use crate::data::value::{number, truth};
@@ -331,7 +332,7 @@ impl Machine<'_> {
         if self.stopped() {
             return;
         }
-        sort_records(&mut out, key.parts.len());
+        tidy_records(&mut out, key.parts.len());
         self.write(target, out, covers);
     }
 
@@ -635,7 +636,7 @@ impl Machine<'_> {
 }
 
 /// Sorts records by key; of equal keys the last one written stays.
-fn sort_records(r: &mut Records, d: usize) {
+fn tidy_records(r: &mut Records, d: usize) {
     let sorted = d == 0
         || r.keys
             .chunks_exact(d)
@@ -645,12 +646,8 @@ fn sort_records(r: &mut Records, d: usize) {
         return;
     }
     let mut order: Vec<u32> = (0..r.values.len() as u32).collect();
+    sort_records(&mut order, &r.keys, d, &(0..d).collect::<Vec<_>>());
     let key = |i: u32| &r.keys[i as usize * d..(i as usize + 1) * d];
-    if d == 2 {
-        order.sort_by_cached_key(|&i| u64::from(key(i)[0]) << 32 | u64::from(key(i)[1]));
-    } else {
-        order.sort_by(|&a, &b| key(a).cmp(key(b)));
-    }
     let mut keys = Vec::with_capacity(r.keys.len());
     let mut values: Vec<f64> = Vec::with_capacity(r.values.len());
     for (n, &i) in order.iter().enumerate() {

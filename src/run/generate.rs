@@ -7,10 +7,11 @@
 //! As in GAMS: zero coefficients make no nonzero and no column; a row whose terms cancel is dropped
 //! (an error if it then cannot hold); fixed columns stay unless `holdfixed`.
 
-use super::plan::sort_tuples;
 use super::{Frame, Machine, scan};
 use crate::check::node::*;
-use crate::check::symbols::{SymbolKind, attribute};
+use crate::check::symbols::{DomainPosition, SymbolKind, attribute};
+use crate::data::key_index::{KeyIndex, LabelBox};
+use crate::data::sort::{sort_records, sort_tuples};
 use crate::data::universe::Label;
 use crate::data::value::{is_eps, number, truth};
 use crate::diag::Diagnostic;
@@ -18,9 +19,7 @@ use crate::model::instance::*;
 use crate::model::origin::{Block, Blocks, Origin};
 use crate::source::Span;
 use crate::syntax::ast::VariableKind;
-use hashbrown::HashTable;
 use rustc_hash::FxHashMap;
-use std::hash::Hasher;
 
 /// How to generate.
 #[derive(Clone, Copy, Debug, Default)]
@@ -49,16 +48,9 @@ struct ColumnMap {
     keys: Vec<Label>,
     /// Provisional number of each key.
     numbers: Vec<u32>,
-    by_label: Vec<u32>,
-    index: HashTable<u32>,
-}
-
-fn hash_key(key: &[Label]) -> u64 {
-    let mut h = rustc_hash::FxHasher::default();
-    for &k in key {
-        h.write_u32(k);
-    }
-    h.finish()
+    index: KeyIndex,
+    /// The labels that the domain allows, where it does not allow all.
+    labels: Option<LabelBox>,
 }
 
 /// A row in the making: linear terms by column, and a constant.
@@ -99,6 +91,19 @@ struct Builder<'m, 'h> {
 }
 
 impl Machine<'_> {
+    /// The labels that the domain of a symbol allows; None where it allows all.
+    fn label_box(&self, s: SymbolId) -> Option<LabelBox> {
+        let ranges = self.symbols.get(s).domain.iter().map(|p| match p {
+            DomainPosition::Set(set) => {
+                let t = self.store.table(self.symbols.get(*set).table);
+                let labels = || t.all_keys().iter().copied();
+                (t.dim() == 1).then(|| labels().min().zip(labels().max()))?
+            }
+            _ => None,
+        });
+        LabelBox::new(ranges)
+    }
+
     /// Generates the instance of a model; None after an execution error.
     pub fn generate(
         &mut self,
@@ -385,46 +390,27 @@ impl Builder<'_, '_> {
                     dim: key.len(),
                     keys: Vec::new(),
                     numbers: Vec::new(),
-                    by_label: Vec::new(),
-                    index: HashTable::new(),
+                    index: KeyIndex::new(key.len()),
+                    labels: self.m.label_box(symbol),
                 });
                 self.maps.last_mut().expect("just pushed")
             }
         };
-        let found = match m.dim {
-            0 => m.numbers.first().copied(),
-            1 => m
-                .by_label
-                .get(key[0] as usize)
-                .copied()
-                .filter(|&n| n > 0)
-                .map(|n| n - 1),
-            d => m
-                .index
-                .find(hash_key(key), |&i| m.keys[i as usize * d..][..d] == *key)
-                .map(|&i| m.numbers[i as usize]),
-        };
-        if let Some(n) = found {
-            return n;
-        }
         let i = m.numbers.len() as u32;
+        let found = match m.dim {
+            0 => (i > 0).then_some(0),
+            _ => m.index.find_or_insert(key, i, &m.keys),
+        };
+        if let Some(r) = found {
+            return m.numbers[r as usize];
+        }
         m.numbers.push(next);
         m.keys.extend_from_slice(key);
-        match m.dim {
-            0 => {}
-            1 => {
-                let l = key[0] as usize;
-                if m.by_label.len() <= l {
-                    m.by_label.resize(l + 1, 0);
-                }
-                m.by_label[l] = next + 1;
-            }
-            d => {
-                let keys = &m.keys;
-                m.index.insert_unique(hash_key(key), i, |&i| {
-                    hash_key(&keys[i as usize * d..][..d])
-                });
-            }
+        if let Some(b) = &m.labels
+            && !m.index.is_dense()
+            && b.fits(m.numbers.len())
+        {
+            m.index.spread_over(b, &m.keys);
         }
         self.columns += 1;
         self.place.push(0);
@@ -916,15 +902,8 @@ impl Builder<'_, '_> {
                 .filter(|&i| used[m.numbers[i as usize] as usize])
                 .collect();
             let key = |i: u32| &m.keys[i as usize * d..(i as usize + 1) * d];
-            let sorted = order.windows(2).all(|w| key(w[0]) < key(w[1]));
-            if !sorted {
-                match d {
-                    1 => order.sort_unstable_by_key(|&i| key(i)[0]),
-                    2 => order.sort_unstable_by_key(|&i| {
-                        u64::from(key(i)[0]) << 32 | u64::from(key(i)[1])
-                    }),
-                    _ => order.sort_unstable_by(|&a, &b| key(a).cmp(key(b))),
-                }
+            if d > 0 {
+                sort_records(&mut order, &m.keys, d, &(0..d).collect::<Vec<_>>());
             }
             let mut block = Block {
                 symbol: m.symbol,

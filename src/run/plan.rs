@@ -13,6 +13,7 @@ use super::Machine;
 use super::exec::has_random;
 use crate::check::node::*;
 use crate::check::symbols::DomainPosition;
+use crate::data::sort::sort_tuples;
 use crate::data::universe::Label;
 use crate::model::instance::Function;
 use std::rc::Rc;
@@ -641,42 +642,6 @@ fn both(a: Support, b: Support) -> Support {
                 }
             }
             Some(out)
-        }
-    }
-}
-
-/// Sorts flat tuples of `d` labels; with `unique`, drops repeated ones.
-pub(super) fn sort_tuples(flat: Vec<Label>, d: usize, unique: bool) -> Vec<Label> {
-    match d {
-        0 => flat,
-        1 => {
-            let mut v = flat;
-            v.sort_unstable();
-            if unique {
-                v.dedup();
-            }
-            v
-        }
-        2 => {
-            let mut v: Vec<u64> = flat
-                .chunks_exact(2)
-                .map(|k| u64::from(k[0]) << 32 | u64::from(k[1]))
-                .collect();
-            v.sort_unstable();
-            if unique {
-                v.dedup();
-            }
-            v.into_iter()
-                .flat_map(|k| [(k >> 32) as u32, k as u32])
-                .collect()
-        }
-        _ => {
-            let mut v: Vec<&[Label]> = flat.chunks_exact(d).collect();
-            v.sort_unstable();
-            if unique {
-                v.dedup();
-            }
-            v.concat()
         }
     }
 }
