@@ -25,10 +25,23 @@ fn corpus() -> Option<PathBuf> {
 
 /// Runs a file; with `generate_only`, nothing is solved.
 fn run(file: &Path, generate_only: bool) -> Result<SolveReport, String> {
+    run_with(file, generate_only, None)
+}
+
+/// Runs a file with the nonlinear solver of that name.
+fn run_with(
+    file: &Path,
+    generate_only: bool,
+    provider: Option<&str>,
+) -> Result<SolveReport, String> {
     let mut host = SystemHost::new(file, Path::new("."), &[], Output::Quiet);
+    let texts = ["nlp", "dnlp", "qcp"].map(str::to_string);
     let options = Options {
         quiet: true,
         collect: false,
+        texts: provider
+            .map(|p| texts.into_iter().map(|t| (t, p.to_string())).collect())
+            .unwrap_or_default(),
         list: generate_only.then(|| ListOptions {
             limit: 0,
             only: Vec::new(),
@@ -108,4 +121,50 @@ fn linear_programs_have_the_objective_of_the_reference() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// At least 95 in 100 reach an objective no worse than the reference's from the start of the file, with a
+/// certificate; never is a point called optimal that is not feasible.
+#[test]
+fn nonlinear_programs_are_no_worse_than_the_reference() {
+    let Some(folder) = corpus() else { return };
+    for provider in bmod::solve::nlp::providers() {
+        let name = provider.name();
+        let mut reader = csv::Reader::from_path(folder.join("reference.csv"))
+            .expect("the reference can be read");
+        let (mut count, mut worse) = (0, Vec::new());
+        for row in reader.records() {
+            let row = row.expect("a row of the reference");
+            if !matches!(&row[2], "NLP" | "DNLP" | "QCP") {
+                continue;
+            }
+            count += 1;
+            let want: f64 = row[4].parse().expect("an objective");
+            let sign = if &row[5] == "max" { -1.0 } else { 1.0 };
+            match run_with(&folder.join(&row[0]), false, Some(name)) {
+                Ok(s) => {
+                    let got = s.objective.map_or(f64::NAN, |o| o.0);
+                    let reached = sign * (got - want) <= 1e-6 * want.abs().max(1.0);
+                    if !(reached && matches!(s.model_status.code, 1 | 2)) {
+                        worse.push(format!(
+                            "{}: {got} ({}), the reference has {want}",
+                            &row[0], s.model_status.name
+                        ));
+                    }
+                }
+                Err(e) => worse.push(format!("{}: {e}", &row[0])),
+            }
+        }
+        println!(
+            "{name}: {} of {count}; the rest:\n{}",
+            count - worse.len(),
+            worse.join("\n")
+        );
+        assert!(
+            worse.len() * 20 <= count,
+            "{name}: {} of {count} are worse:\n{}",
+            worse.len(),
+            worse.join("\n")
+        );
+    }
 }

@@ -166,6 +166,20 @@ pub const SOLVERS: &[(&str, &str)] = &[
         "bmcp",
         "mcp, cns: bmod's own, on feral 0.22.0 and faer 0.24",
     ),
+    #[cfg(feature = "ipopt")]
+    (
+        "ipopt",
+        "nlp, dnlp, qcp: Ipopt of the system, through ipopt-sys 0.6",
+    ),
+    #[cfg(feature = "pounce")]
+    (
+        "pounce",
+        "nlp, dnlp, qcp: Ipopt's algorithm in Rust, pounce 0.14.0",
+    ),
+    (
+        "bmpec",
+        "mpec, rmpec: bmod's own, on the nonlinear solver and the simplex method",
+    ),
 ];
 
 /// What became of the arguments.

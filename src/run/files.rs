@@ -24,8 +24,21 @@ impl Machine<'_> {
         }
     }
 
+    /// Whether there is such a file: written by `$echo`, or one that may be read.
+    pub(super) fn file_exists(&self, name: &str, span: Span) -> bool {
+        let from = self.map.place(span);
+        let from = from.map(|p| self.map.file(p.file).name.clone());
+        self.map.echoed.contains_key(&name.to_lowercase())
+            || self
+                .host()
+                .exists(name, from.as_deref().map(std::path::Path::new))
+    }
+
     /// Reads a text; a diagnostic if that is not possible.
     pub(super) fn read_file(&mut self, name: &str, span: Span) -> Option<String> {
+        if let Some(text) = self.map.echoed.get(&name.to_lowercase()) {
+            return Some(text.clone());
+        }
         let from = self
             .map
             .place(span)

@@ -17,6 +17,7 @@ mod exchange;
 mod exec;
 mod files;
 mod generate;
+mod option_file;
 mod options;
 mod put;
 mod scan;

@@ -49,7 +49,7 @@ impl Machine<'_> {
     }
 
     /// A model option: the model's own attribute, the `option` statement, or the default.
-    fn model_option(&self, model: SymbolId, name: &'static str, default: f64) -> f64 {
+    pub(super) fn model_option(&self, model: SymbolId, name: &'static str, default: f64) -> f64 {
         self.models
             .get(&model)
             .and_then(|m| m.get(name))
@@ -100,7 +100,11 @@ impl Machine<'_> {
             self.report.solves.push(self.not_solved(s, &generated));
             return Flow::Next;
         }
-        let settings = self.settings(s.model);
+        let mut settings = self.settings(s.model);
+        let mut options = self.option_file(s.model, s.using, span);
+        // The command line has the last word.
+        options.append(&mut settings.options);
+        settings.options = options;
         self.host().progress(&format!(
             "solving {name}: {} rows, {} columns",
             generated.instance.row_count(),

@@ -113,9 +113,13 @@ impl Preprocessor<'_> {
         )
     }
 
-    /// Remembers what `$echo` writes: a later `$include` may read it. Nothing is written to disk.
+    /// Remembers what `$echo` writes: a later `$include`, and the run, may read it. Nothing is written to disk.
     pub(super) fn echo(&mut self, file: &str, text: &str, append: bool) {
-        let entry = self.echoed.entry(file.trim().to_lowercase()).or_default();
+        let entry = self
+            .map
+            .echoed
+            .entry(file.trim().to_lowercase())
+            .or_default();
         if !append {
             entry.clear();
         }

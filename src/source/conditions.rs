@@ -104,7 +104,7 @@ impl Preprocessor<'_> {
             "exist" | "dexist" | "readable" => {
                 let (name, n) = term(after, false);
                 let from = self.frames.last().map(|f| f.path.clone());
-                let found = self.echoed.contains_key(&name.to_lowercase())
+                let found = self.map.echoed.contains_key(&name.to_lowercase())
                     || !name.is_empty() && self.host.exists(name, from.as_deref());
                 Some(Ok((found, len + n)))
             }

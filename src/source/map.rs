@@ -1,6 +1,7 @@
 //! From the expanded text back to the files.
 
 use super::Span;
+use rustc_hash::FxHashMap;
 
 /// Number of a file in a [`SourceMap`].
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -46,6 +47,8 @@ pub struct SourceMap {
     files: Vec<SourceFile>,
     expanded: String,
     segments: Vec<Segment>,
+    /// Files that `$echo` and `$onEcho` wrote, by lower-case name. They are on no disk.
+    pub echoed: FxHashMap<String, String>,
 }
 
 impl SourceMap {

@@ -167,8 +167,6 @@ pub(crate) struct Preprocessor<'h> {
     pub(super) warnings: Vec<Diagnostic>,
     pub(super) log: Vec<String>,
     pub(super) title: Option<String>,
-    /// Files written by `$echo` and `$onEcho`, for a later `$include`.
-    pub(super) echoed: FxHashMap<String, String>,
     pub(super) ending: Ending,
     pub(super) max_jumps: usize,
     pub(super) had_errors: bool,
@@ -206,7 +204,6 @@ impl<'h> Preprocessor<'h> {
             warnings: Vec::new(),
             log: Vec::new(),
             title: None,
-            echoed: FxHashMap::default(),
             ending: Ending::Regular,
             max_jumps: 100,
             had_errors: false,
@@ -285,7 +282,7 @@ impl<'h> Preprocessor<'h> {
                     .help("write `$include 'file.gms'`"),
             );
         }
-        if let Some(text) = self.echoed.get(&name.to_lowercase()) {
+        if let Some(text) = self.map.echoed.get(&name.to_lowercase()) {
             let text = text.clone();
             self.open(PathBuf::from(name), name, text, arguments, asked);
             return Ok(());
