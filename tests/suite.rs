@@ -245,11 +245,23 @@ fn difference(actual: &[String], claimed: &[String]) -> Option<String> {
 /// What is wrong with a file.
 fn check(path: &Path) -> Vec<String> {
     let text = std::fs::read_to_string(path).expect("the file can be read");
-    let c = claims(&text);
+    let name = path.file_name().expect("a name").to_string_lossy();
+    let folder = path.parent().expect("a folder").to_path_buf();
+    check_text(&name, &text, folder, BTreeMap::new())
+}
+
+/// What is wrong with a text; `files` are there besides those of the folder.
+fn check_text(
+    name: &str,
+    text: &str,
+    folder: PathBuf,
+    files: BTreeMap<String, String>,
+) -> Vec<String> {
+    let c = claims(text);
     let mut host = Memory {
-        folder: path.parent().expect("a folder").to_path_buf(),
+        folder,
         displays: String::new(),
-        files: BTreeMap::new(),
+        files,
         start: Instant::now(),
     };
     let preprocess = PreprocessOptions {
@@ -262,9 +274,8 @@ fn check(path: &Path) -> Vec<String> {
         ..Options::default()
     };
     let mut wrong = Vec::new();
-    let name = path.file_name().expect("a name").to_string_lossy();
     let mut values = Vec::new();
-    let finished = session::run(&mut host, &name, preprocess, options, false, &mut |m| {
+    let finished = session::run(&mut host, name, preprocess, options, false, &mut |m| {
         for (line, claim) in &c.values {
             let (what, claimed) = claim
                 .rsplit_once(char::is_whitespace)
@@ -391,6 +402,53 @@ fn the_models_have_their_known_answers() {
     println!("SKIPPED: models/teaching/rocket.blk, a known gap");
     all.retain(|p| !p.ends_with("rocket.blk"));
     hold(all);
+}
+
+/// The examples of a page: the fenced blocks marked `gams`, with the line where each begins.
+fn examples(page: &str) -> Vec<(usize, String)> {
+    let mut out: Vec<(usize, String)> = Vec::new();
+    let mut inside = false;
+    for (n, line) in page.lines().enumerate() {
+        match (inside, line.trim_end()) {
+            (false, "```gams") => {
+                inside = true;
+                out.push((n + 2, String::new()));
+            }
+            (true, "```") => inside = false,
+            (true, line) => {
+                let text = &mut out.last_mut().expect("a block has begun").1;
+                text.push_str(line);
+                text.push('\n');
+            }
+            _ => {}
+        }
+    }
+    assert!(!inside, "the last example is not closed");
+    out
+}
+
+/// Every example of the pages for users runs, claims something, and every claim holds.
+#[test]
+fn the_examples_of_the_reference_hold() {
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    let mut wrong = Vec::new();
+    for page in ["language.md", "gams.md"] {
+        let text = std::fs::read_to_string(docs.join(page)).expect("the page is there");
+        let all = examples(&text);
+        assert!(all.len() > 3, "{page} has {} examples", all.len());
+        for (line, example) in all {
+            let claims = example.lines().any(|l| l.starts_with('*') && !l.starts_with("* "));
+            if !claims {
+                wrong.push(format!("{page} line {line}: the example claims nothing"));
+            }
+            let name = "example.blk".to_string();
+            let files = BTreeMap::from([(name.clone(), example.clone())]);
+            for w in check_text(&name, &example, docs.clone(), files) {
+                wrong.push(format!("{page} line {line}: {w}"));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 /// Every claim of every file holds.

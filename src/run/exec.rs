@@ -290,6 +290,15 @@ impl Machine<'_> {
         } else {
             self.sparse_alternatives(domain, target, key, value, covers)
         };
+        let alternatives = alternatives.map(|drivers| {
+            for d in drivers.iter().flatten() {
+                self.store.tables[d.table as usize].tidy();
+            }
+            drivers
+                .iter()
+                .map(|d| self.make_plan(domain, None, d, Pick::Cheapest))
+                .collect::<Vec<Plan>>()
+        });
         let mut out = Records {
             keys: Vec::new(),
             values: Vec::new(),
@@ -417,8 +426,8 @@ impl Machine<'_> {
         out.values.push(v);
     }
 
-    /// Plans that together find every tuple for which the right side, or what is stored now, is not 0;
-    /// None when running over the whole domain is as good.
+    /// Drivers of plans that together find every tuple for which the right side, or what is stored now, is
+    /// not 0; None when running over the whole domain is as good.
     fn sparse_alternatives(
         &self,
         domain: &Domain,
@@ -426,13 +435,13 @@ impl Machine<'_> {
         key: &Key,
         value: &Node,
         covers: bool,
-    ) -> Option<Vec<Plan>> {
+    ) -> Option<Vec<Vec<Driver>>> {
         let table = match target {
             Target::Table(t) if self.store.table(t).default_value() == 0.0 => t,
             Target::Set(t) => t,
             _ => return None,
         };
-        let alternatives = self.support(value, false)?;
+        let mut alternatives = self.support(value, false)?;
         let mut whole = 1.0;
         for &s in &domain.sets {
             whole *= self.store.table(s).len() as f64;
@@ -454,25 +463,16 @@ impl Machine<'_> {
         if whole < 64.0 || sparse * 3.0 > whole {
             return None;
         }
-        let mut plans: Vec<Plan> = alternatives
-            .iter()
-            .map(|a| self.make_plan(domain, None, a, Pick::Cheapest))
-            .collect();
         if !covers {
             if !key.is_plain() {
                 return None;
             }
-            plans.push(self.make_plan(
-                domain,
-                None,
-                &[Driver {
-                    table,
-                    key: key.clone(),
-                }],
-                Pick::Cheapest,
-            ));
+            alternatives.push(vec![Driver {
+                table,
+                key: key.clone(),
+            }]);
         }
-        Some(plans)
+        Some(alternatives)
     }
 
     /// Stores records; they are sorted.

@@ -8,22 +8,13 @@ pub fn scanned(kind: &CodeKind) -> Box<[TableId]> {
     let o = &mut out;
     match kind {
         CodeKind::Assign {
-            domain,
-            target,
-            key,
-            value,
-            ..
+            domain, key, value, ..
         } => {
+            // What is stored and what a sparse right side holds are made tidy when they turn out to drive
+            // the assignment: an assignment to a few records of a large table must not cost the table.
             self::domain(domain, o);
-            // A sparse right side drives the assignment.
-            expr(value, !domain.slots.is_empty(), o);
+            expr(value, false, o);
             self::key(key, o);
-            if !domain.slots.is_empty() {
-                match target {
-                    Target::Table(t) | Target::Set(t) | Target::Singleton(t) => o.push(*t),
-                    _ => {}
-                }
-            }
         }
         CodeKind::Loop(d, _) => domain(d, o),
         CodeKind::While(c, _) => expr(c, false, o),
