@@ -437,7 +437,9 @@ fn the_examples_of_the_reference_hold() {
         let all = examples(&text);
         assert!(all.len() > 3, "{page} has {} examples", all.len());
         for (line, example) in all {
-            let claims = example.lines().any(|l| l.starts_with('*') && !l.starts_with("* "));
+            let claims = example
+                .lines()
+                .any(|l| l.starts_with('*') && !l.starts_with("* "));
             if !claims {
                 wrong.push(format!("{page} line {line}: the example claims nothing"));
             }
