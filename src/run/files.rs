@@ -71,7 +71,7 @@ fn refused(code: &'static str, what: &str, name: &str, e: &HostError, span: Span
         HostError::Outside(_) if what == "written" => d("it lies outside the output folder".into())
             .help("give a name without `..`, and the folder with `--out`"),
         HostError::Outside(_) => d("it lies outside the folders that may be read".into())
-            .help("put the file beside the model, or allow its folder on the command line"),
+            .help("put the file beside the model, or allow its folder: `--allow-read DIR`"),
         HostError::NotUtf8(at) => {
             d(format!("byte {} is not UTF-8", at + 1)).help("save the file as UTF-8")
         }

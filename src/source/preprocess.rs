@@ -854,7 +854,7 @@ fn unreadable(name: &str, e: &HostError, span: Span) -> Diagnostic {
                 p.display()
             ),
         )
-        .help("put it beside the model, or allow its folder on the command line"),
+        .help("put it beside the model, or allow its folder: `--allow-read DIR`"),
         HostError::NotUtf8(at) => Diagnostic::error(
             "E0102",
             span,

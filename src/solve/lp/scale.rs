@@ -131,12 +131,17 @@ impl Scaling {
     }
 }
 
-/// √(smallest · largest) of the nonzero magnitudes, 1 if there are none.
-fn extremes(values: impl Iterator<Item = f64>) -> f64 {
-    let (mut low, mut high) = (f64::INFINITY, 0.0f64);
-    for v in values.map(f64::abs).filter(|&v| v > 0.0) {
-        low = low.min(v);
-        high = high.max(v);
+/// Entries this small against the largest of their line are rounding of data, not a unit to scale by.
+const ROUNDING: f64 = 1e-12;
+
+/// √(smallest · largest) of the magnitudes above rounding, 1 if there are none.
+fn extremes(values: impl Iterator<Item = f64> + Clone) -> f64 {
+    let high = values.clone().fold(0.0, |h: f64, v| h.max(v.abs()));
+    let low = values.map(f64::abs).filter(|&v| v > ROUNDING * high);
+    let low = low.fold(f64::INFINITY, f64::min);
+    if high > 0.0 && low.is_finite() {
+        (low * high).sqrt()
+    } else {
+        1.0
     }
-    if high > 0.0 { (low * high).sqrt() } else { 1.0 }
 }
