@@ -393,7 +393,12 @@ fn every_claim_of_the_suite_holds() {
 fn the_models_have_their_known_answers() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut all = vec![root.join("models/wall.blk")];
-    for folder in ["tests/models", "models/teaching", "models/walls", "models/structures"] {
+    for folder in [
+        "tests/models",
+        "models/teaching",
+        "models/walls",
+        "models/structures",
+    ] {
         files(&root.join(folder), &mut all);
     }
     // Many starts of one wall: minutes, for a person who asks.
