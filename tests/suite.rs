@@ -13,6 +13,8 @@ use bmod::check::symbols::{SymbolKind, attribute};
 use bmod::data::value;
 use bmod::diag::Severity;
 use bmod::host::{Host, HostError};
+use bmod::report::json::SolveReport;
+use bmod::report::why::Explanation;
 use bmod::run::{Machine, Options};
 use bmod::session;
 use bmod::source::PreprocessOptions;
@@ -81,6 +83,14 @@ struct Claims {
     files: BTreeMap<String, Vec<String>>,
     defines: Vec<(String, String)>,
     nonlinear: bool,
+    /// What `bmod why` must name.
+    why: Vec<String>,
+    /// Members of an irreducible infeasible set.
+    irreducible: Option<usize>,
+    /// Largest relative width of the last solve's proved interval.
+    width: Option<f64>,
+    /// Runs only when it is asked for.
+    slow: bool,
 }
 
 fn claims(text: &str) -> Claims {
@@ -106,7 +116,16 @@ fn claims(text: &str) -> Claims {
                 ["error", l, ..] => drop(c.errors.insert(l.parse().expect("a line"))),
                 ["execution", l, ..] => drop(c.executions.insert(l.parse().expect("a line"))),
                 ["gams", ..] => {}
+                ["slow"] => c.slow = true,
                 ["exit", e, ..] => c.exit = Some(e.parse().expect("a status")),
+                _ => panic!("line {}: {line}", n + 1),
+            }
+        } else if let Some(r) = rest("*?") {
+            let (what, of) = r.trim().split_once(' ').expect("a claim and its value");
+            match what {
+                "why" => c.why.push(of.to_string()),
+                "irreducible" => c.irreducible = Some(of.parse().expect("a number")),
+                "width" => c.width = Some(of.parse().expect("a number")),
                 _ => panic!("line {}: {line}", n + 1),
             }
         } else if let Some(r) = line.strip_prefix("*|") {
@@ -269,8 +288,10 @@ fn check_text(
         slash_comments: true,
     };
     let options = Options {
-        time_limit: 60.0,
+        time_limit: if c.slow { 600.0 } else { 60.0 },
         collect: false,
+        why: !c.why.is_empty() || c.irreducible.is_some(),
+        certify: c.width.is_some(),
         ..Options::default()
     };
     let mut wrong = Vec::new();
@@ -351,6 +372,7 @@ fn check_text(
             }
         }
     }
+    wrong.extend(explained(&c, &finished.report.solves));
     for (k, claimed) in c.statistics.iter().enumerate() {
         let actual = finished.report.solves.get(k).map(|s| {
             format!(
@@ -361,6 +383,52 @@ fn check_text(
         let actual = actual.unwrap_or_else(|| "no solve".into());
         if actual != *claimed {
             wrong.push(format!("solve {}: {actual}, should be {claimed}", k + 1));
+        }
+    }
+    wrong
+}
+
+/// What is wrong with the explanations and the proved interval.
+fn explained(c: &Claims, solves: &[SolveReport]) -> Vec<String> {
+    let mut wrong = Vec::new();
+    let whys = || solves.iter().filter_map(|s| s.why.as_ref());
+    for name in &c.why {
+        let named = |w: &Explanation| w.rows.contains(name) || w.columns.contains(name);
+        let said = |w: &Explanation| w.text.iter().any(|t| t.contains(name.as_str()));
+        if !whys().any(|w| named(w) || said(w)) {
+            let all: Vec<&Explanation> = whys().collect();
+            wrong.push(format!("no explanation names {name}: {all:?}"));
+        }
+    }
+    if let Some(count) = c.irreducible {
+        let shown = |w: &&Explanation| {
+            let text = w.text.first().map_or("", String::as_str);
+            text.contains("with any one of them dropped") || text.contains("cannot be satisfied")
+        };
+        let found: Vec<usize> = whys()
+            .filter(shown)
+            .map(|w| w.text[0].matches("(times ").count())
+            .collect();
+        if !found.contains(&count) {
+            wrong.push(format!("irreducible sets of {found:?}, should be {count}"));
+        }
+    }
+    if let Some(width) = c.width {
+        let solve = solves.last().and_then(|s| Some((s, s.objective?.0)));
+        match solve.and_then(|(s, v)| Some((s.bounds?.map(|b| b.0), v))) {
+            Some(([lo, hi], v)) => {
+                let size = v.abs().max(f64::MIN_POSITIVE);
+                // The objective itself is rounded.
+                let slack = 1e-12 * size + width * size;
+                let holds = lo - slack <= v && v <= hi + slack && lo <= hi;
+                if !holds || (hi - lo) > width * size {
+                    wrong.push(format!("proved [{lo}, {hi}], objective {v}, width {width}"));
+                }
+            }
+            None => {
+                let said = solves.last().and_then(|s| s.message.clone());
+                wrong.push(format!("no interval was proved: {said:?}"));
+            }
         }
     }
     wrong
@@ -398,8 +466,16 @@ fn the_models_have_their_known_answers() {
         "models/teaching",
         "models/walls",
         "models/structures",
+        "models/hard",
     ] {
         files(&root.join(folder), &mut all);
+    }
+    let slow = |p: &PathBuf| claims(&std::fs::read_to_string(p).expect("readable")).slow;
+    if std::env::var("SUITE").is_err() {
+        for p in all.iter().filter(|p| slow(p)) {
+            println!("SKIPPED: {}, slow: SUITE=name runs it", p.display());
+        }
+        all.retain(|p| !slow(p));
     }
     // Many starts of one wall: minutes, for a person who asks.
     all.retain(|p| !p.ends_with("starts.blk") && !p.ends_with("friction_study.blk"));

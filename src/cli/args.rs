@@ -39,6 +39,9 @@ pub enum Command {
     Run(RunArgs),
     /// Reports everything that is wrong with a model, without running it.
     Check(CheckArgs),
+    /// Runs a model and explains how each solve ended: what contradicts what, what is unbounded, where
+    /// the error comes from.
+    Why(WhyArgs),
     /// Shows the generated rows and columns as readable algebra, with names and numbers.
     List(ListArgs),
     /// Prints a script that completes bmod's commands in a shell.
@@ -113,6 +116,23 @@ pub struct CheckArgs {
     /// The model and what all commands share.
     #[command(flatten)]
     pub model: ModelArgs,
+}
+
+/// Arguments of `bmod why`.
+#[derive(Args, Debug, Clone)]
+pub struct WhyArgs {
+    /// The model and what all commands share.
+    #[command(flatten)]
+    pub model: ModelArgs,
+    /// Writes the report, with the explanations, as JSON; - is standard output.
+    #[arg(long, value_name = "FILE|-", value_hint = ValueHint::FilePath)]
+    pub json: Option<PathBuf>,
+    /// Sets an option before the first statement, as the statement `option K = V`.
+    #[arg(long, value_name = "K=V", value_parser = pair)]
+    pub option: Vec<(String, String)>,
+    /// Seconds that one solve may take.
+    #[arg(long, value_name = "S", value_parser = positive)]
+    pub time_limit: Option<f64>,
 }
 
 /// Arguments of `bmod list`.

@@ -41,6 +41,7 @@ pub fn execute(cli: &Cli) -> u8 {
             }
             finished.end.exit()
         }
+        Command::Why(a) => super::why::why(a),
         Command::List(a) => list(a),
         Command::Completions { shell } => {
             let _ = std::io::stdout().write_all(&completions(*shell));
@@ -49,11 +50,11 @@ pub fn execute(cli: &Cli) -> u8 {
     }
 }
 
-fn name(m: &ModelArgs) -> String {
+pub(super) fn name(m: &ModelArgs) -> String {
     m.file.to_string_lossy().into_owned()
 }
 
-fn preprocess(m: &ModelArgs) -> PreprocessOptions {
+pub(super) fn preprocess(m: &ModelArgs) -> PreprocessOptions {
     PreprocessOptions {
         defines: m.define.clone(),
         slash_comments: m
@@ -64,7 +65,7 @@ fn preprocess(m: &ModelArgs) -> PreprocessOptions {
 }
 
 /// Writes diagnostics for the person, or for a program.
-fn tell(finished: &Finished, format: MessageFormat) {
+pub(super) fn tell(finished: &Finished, format: MessageFormat) {
     if finished.diagnostics.is_empty() {
         return;
     }
@@ -98,13 +99,7 @@ fn options(a: &RunArgs) -> Options {
     if let Some(s) = a.time_limit {
         options.time_limit = s;
     }
-    for (k, v) in &a.option {
-        let k = k.to_lowercase();
-        if let Ok(x) = v.parse::<f64>() {
-            options.numbers.insert(k.clone(), x);
-        }
-        options.texts.insert(k, v.to_lowercase());
-    }
+    options.set(&a.option);
     options
 }
 
@@ -150,27 +145,33 @@ fn run(a: &RunArgs) -> u8 {
         status = status.max(EXECUTION);
     }
     if let Some(path) = &a.json {
-        let report = Report {
-            status: finished.end,
-            diagnostics: finished
-                .diagnostics
-                .iter()
-                .map(|d| diagnostics::json(d, &finished.map))
-                .collect(),
-            solves: finished.report.solves,
-            displays: finished.report.displays,
-            files: finished.report.files,
-            ..Report::new(&file)
-        };
-        let text = report.to_json();
-        if json_to_stdout {
-            let _ = std::io::stdout().write_all(text.as_bytes());
-        } else if let Err(e) = write_whole(path, text.as_bytes()) {
-            eprintln!("bmod: {} could not be written: {e}", path.display());
-            status = status.max(EXECUTION);
-        }
+        status = status.max(write_report(finished, &file, path));
     }
     status
+}
+
+/// Writes the report of a run as JSON; the exit status that follows from that.
+pub(super) fn write_report(finished: Finished, file: &str, path: &Path) -> u8 {
+    let report = Report {
+        status: finished.end,
+        diagnostics: finished
+            .diagnostics
+            .iter()
+            .map(|d| diagnostics::json(d, &finished.map))
+            .collect(),
+        solves: finished.report.solves,
+        displays: finished.report.displays,
+        files: finished.report.files,
+        ..Report::new(file)
+    };
+    let text = report.to_json();
+    if path == Path::new("-") {
+        let _ = std::io::stdout().write_all(text.as_bytes());
+    } else if let Err(e) = write_whole(path, text.as_bytes()) {
+        eprintln!("bmod: {} could not be written: {e}", path.display());
+        return EXECUTION;
+    }
+    0
 }
 
 /// Writes a file whole or not at all.

@@ -3,6 +3,7 @@
 pub mod args;
 pub mod commands;
 pub mod host;
+pub mod why;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 

@@ -157,6 +157,9 @@ pub struct SolveReport {
     /// One more line from the solver.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub message: Option<String>,
+    /// Why it ended so (`bmod why`).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub why: Option<super::why::Explanation>,
 }
 
 /// Times of a solve, in seconds.
@@ -278,6 +281,7 @@ mod tests {
             bounds: None,
             stationarity: None,
             message: None,
+            why: None,
         });
         report.displays = vec![
             Display::Scalar {

@@ -11,3 +11,4 @@ pub mod number;
 pub mod solution;
 pub mod summary;
 pub mod textfile;
+pub mod why;

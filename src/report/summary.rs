@@ -38,7 +38,13 @@ pub fn solve(s: &SolveReport, color: bool) -> String {
     }
     out.push('\n');
     if let Some([Number(lo), Number(hi)]) = s.bounds {
-        let _ = writeln!(out, "    proved: between {lo:.13} and {hi:.13}");
+        let name = s.objective_name.as_deref().unwrap_or("objective");
+        let end = |v: f64| Number(v).text();
+        let _ = write!(out, "    proved: {name} ∈ [{}, {}]", end(lo), end(hi));
+        if (hi - lo).is_finite() {
+            let _ = write!(out, ", width {}", small(hi - lo));
+        }
+        out.push('\n');
     }
     if s.solver_status.code != 1 {
         let _ = writeln!(
@@ -79,6 +85,9 @@ pub fn solve(s: &SolveReport, color: bool) -> String {
     }
     if let Some(message) = &s.message {
         let _ = writeln!(out, "    {message}");
+    }
+    for text in s.why.iter().flat_map(|w| &w.text) {
+        let _ = writeln!(out, "  {text}");
     }
     if let Some(stationarity) = s.stationarity {
         let _ = writeln!(out, "    stationarity: {stationarity}");
@@ -187,6 +196,7 @@ mod tests {
             bounds: None,
             stationarity: None,
             message: None,
+            why: None,
         }
     }
 

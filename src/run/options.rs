@@ -21,6 +21,8 @@ pub struct Options {
     pub solver_options: Vec<(String, String)>,
     /// `--certify`
     pub certify: bool,
+    /// `bmod why`: explain how each solve ended.
+    pub why: bool,
     /// Keep displays for the JSON report.
     pub collect: bool,
     /// Keep instances and solutions for `--solution`.
@@ -53,6 +55,7 @@ impl Default for Options {
             numbers: FxHashMap::default(),
             solver_options: Vec::new(),
             certify: false,
+            why: false,
             collect: true,
             keep_solutions: false,
             quiet: false,
@@ -64,6 +67,22 @@ impl Default for Options {
 }
 
 impl Options {
+    /// As `option` statements before the first statement would set them.
+    pub fn set(&mut self, pairs: &[(String, String)]) {
+        for (k, v) in pairs {
+            let (k, v) = (k.to_lowercase(), v.to_lowercase());
+            let on = match v.as_str() {
+                "on" | "yes" => Some(1.0),
+                "off" | "no" => Some(0.0),
+                number => number.parse().ok(),
+            };
+            if let Some(x) = on {
+                self.numbers.insert(k.clone(), x);
+            }
+            self.texts.insert(k, v);
+        }
+    }
+
     /// A numeric option.
     pub fn number(&self, name: &str) -> Option<f64> {
         self.numbers.get(name).copied()

@@ -9,8 +9,10 @@ use crate::diag::Diagnostic;
 use crate::model::instance::{Instance, Relation};
 use crate::model::origin::{Blocks, Origin};
 use crate::report::names::Names;
+use crate::report::why::{Explanation, explain};
 use crate::report::{json, listing, solution, summary};
-use crate::solve::answer::{Answer, answer};
+use crate::solve::answer::{Answer, answer, certify};
+use crate::solve::why;
 use crate::solve::{ModelStatus, Monitor, Settings, SolverStatus};
 use crate::source::Span;
 
@@ -124,7 +126,8 @@ impl Machine<'_> {
             &mut monitor,
         );
         match result {
-            Ok(a) => {
+            Ok(mut a) => {
+                self.certified(s, &generated, &mut a, &settings);
                 let end = self.elapsed();
                 let seconds = json::Seconds {
                     generate: generated_at - begin,
@@ -133,7 +136,7 @@ impl Machine<'_> {
                 };
                 self.store(s, &generated, &a);
                 self.remember(s, &generated, &a, seconds);
-                self.report_solve(s, span, &generated, &a, seconds);
+                self.report_solve(s, &generated, &a, seconds);
                 if self.options.keep_solutions {
                     self.keep_solution(s, generated, a);
                 }
@@ -206,6 +209,44 @@ impl Machine<'_> {
         own.sort();
         out.extend(own);
         out
+    }
+
+    /// A proved interval for the objective of a linear program, where `certify` asks for one. Why
+    /// there is none, or one side only, goes to the answer's message.
+    fn certified(&self, s: &SolveCode, g: &Generated, a: &mut Answer, settings: &Settings) {
+        let wanted = self.options.certify || self.options.number("certify") == Some(1.0);
+        let linear = g.instance.is_linear() && g.instance.objective.is_some();
+        if !wanted || !linear || matches!(s.using, "mpec" | "rmpec") {
+            return;
+        }
+        self.host()
+            .progress("proving an interval for the objective");
+        let mut monitor = RunMonitor {
+            machine: self,
+            origin: &g.origin,
+            log: settings.log,
+        };
+        let Ok(proof) = certify(&g.instance, a, settings, &mut monitor) else {
+            return;
+        };
+        let mut parts: Vec<String> = a.outcome.message.take().into_iter().collect();
+        let mut missing = vec![("lower ", proof.no_low), ("upper ", proof.no_high)];
+        if missing[0].1 == missing[1].1 {
+            missing.truncate(1);
+            missing[0].0 = "";
+        }
+        for (side, missing) in missing {
+            let Some(u) = missing else { continue };
+            let place = match (u.row, u.column) {
+                (Some(i), _) => format!(": {}", self.origin_name(&g.origin.rows, i)),
+                (_, Some(j)) => format!(": {}", self.origin_name(&g.origin.columns, j)),
+                _ => String::new(),
+            };
+            parts.push(format!("no {side}bound is proved: {}{place}", u.why));
+        }
+        a.outcome.message = (!parts.is_empty()).then(|| parts.join("; "));
+        let bounds = [proof.low, proof.high];
+        a.bounds = bounds.iter().any(|b| b.is_finite()).then_some(bounds);
     }
 
     /// Writes levels, marginals and bounds of rows back.
@@ -329,14 +370,7 @@ impl Machine<'_> {
         }
     }
 
-    fn report_solve(
-        &mut self,
-        s: &SolveCode,
-        span: Span,
-        g: &Generated,
-        a: &Answer,
-        seconds: json::Seconds,
-    ) {
+    fn report_solve(&mut self, s: &SolveCode, g: &Generated, a: &Answer, seconds: json::Seconds) {
         use crate::syntax::ast::Sense;
         let r = &a.residuals;
         let objective = g.instance.objective;
@@ -372,8 +406,8 @@ impl Machine<'_> {
             bounds: a.bounds.map(|b| b.map(json::Number)),
             stationarity: a.stationarity.map(|s| s.name()),
             message: self.solve_message(g, a),
+            why: self.options.why.then(|| self.explanation(s, g, a)),
         };
-        let _ = span;
         if !self.options.quiet {
             let text = summary::solve(&solve, self.options.color);
             self.print(&text);
@@ -403,7 +437,24 @@ impl Machine<'_> {
             bounds: None,
             stationarity: None,
             message: None,
+            why: None,
         }
+    }
+
+    /// What explains the status, for `bmod why`.
+    fn explanation(&self, s: &SolveCode, g: &Generated, a: &Answer) -> Explanation {
+        let settings = self.settings(s.model);
+        let mut monitor = RunMonitor {
+            machine: self,
+            origin: &g.origin,
+            log: settings.log,
+        };
+        let found = why::findings(s.using, &g.instance, a, &settings, &mut monitor);
+        let names = RunNames {
+            machine: self,
+            origin: &g.origin,
+        };
+        explain(&found, &g.instance, &names)
     }
 
     /// What else there is to say: the solver's remark, and the worst row or column of a failure.

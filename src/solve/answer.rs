@@ -3,8 +3,9 @@
 //! The status that is reported follows from the residuals recomputed on the unscaled instance, not
 //! from the solver's word.
 
+use super::lp::certify::{Proof, Unproved};
 use super::mpec::Stationarity;
-use super::{ModelStatus, Monitor, Outcome, Settings, SolveError, Solver, complementarity};
+use super::{ModelStatus, Monitor, Outcome, Settings, SolveError, Solver, complementarity, lp};
 use crate::autodiff::Evaluator;
 use crate::model::certificate::{self, Residuals};
 use crate::model::instance::Instance;
@@ -59,10 +60,36 @@ pub fn answer(
         "mpec" | "rmpec" => super::mpec::answer(choice, instance, settings, monitor),
         _ if instance.is_linear() && instance.objective.is_some() => match choice {
             Some("mcp" | "bmcp") => linear(&super::kkt::Kkt, instance, settings, monitor),
-            _ => linear(&super::lp::Clarabel, instance, settings, monitor),
+            _ => linear(&lp::Clarabel, instance, settings, monitor),
         },
         _ => super::nlp::answer(choice, instance, settings, monitor),
     }
+}
+
+/// A proved interval for the optimal value of a linear instance, near its answer.
+pub fn certify(
+    instance: &Instance,
+    answer: &Answer,
+    settings: &Settings,
+    monitor: &mut dyn Monitor,
+) -> Result<Proof, SolveError> {
+    // What the status says is the better answer.
+    let why = match answer.status {
+        ModelStatus::Infeasible | ModelStatus::InfeasibleNoSolution => "the model is infeasible",
+        ModelStatus::Unbounded | ModelStatus::UnboundedNoSolution => "the model is unbounded",
+        _ => return lp::certify::certify(instance, &answer.outcome, settings, monitor),
+    };
+    let nothing = Unproved {
+        why,
+        row: None,
+        column: None,
+    };
+    Ok(Proof {
+        low: f64::NEG_INFINITY,
+        high: f64::INFINITY,
+        no_low: Some(nothing.clone()),
+        no_high: Some(nothing),
+    })
 }
 
 pub(super) fn linear(

@@ -63,7 +63,10 @@ pub(super) fn refuse_relation(
 
 /// Gives every column its row. `square`: a cns, where bounds do not count.
 #[allow(clippy::needless_range_loop)] // rows, bounds and partners side by side
-fn match_rows(instance: &Instance, square: bool) -> Result<Vec<Option<u32>>, SolveError> {
+pub(super) fn match_rows(
+    instance: &Instance,
+    square: bool,
+) -> Result<Vec<Option<u32>>, SolveError> {
     let n = instance.column_count();
     let mut row_of: Vec<Option<u32>> = match &instance.matched {
         Some(m) if !square => m.clone(),

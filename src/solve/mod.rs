@@ -7,11 +7,13 @@ pub mod answer;
 pub mod complementarity;
 #[cfg(test)]
 pub mod conformance;
+pub mod interval;
 pub mod kkt;
 pub mod lp;
 pub mod mcp;
 pub mod mpec;
 pub mod nlp;
+pub mod why;
 
 use crate::model::instance::Instance;
 

@@ -15,7 +15,7 @@
 //! with respect to the right-hand side (rows) or to the bound (columns).
 
 use crate::model::instance::{Instance, Relation, Sense};
-use crate::solve::SolveError;
+use crate::solve::{Outcome, SolveError};
 
 /// A sparse matrix in compressed form; "lines" are columns or rows.
 #[derive(Clone, Debug, Default)]
@@ -274,6 +274,18 @@ impl Form {
     /// Checks an instance and brings it into the solvers' form.
     pub fn new(instance: &Instance) -> Result<Self, SolveError> {
         validate(instance)?;
+        Ok(Self::made(instance, definition(instance)))
+    }
+
+    /// As [`Form::new`], without rounding: the objective variable goes only where dividing by its
+    /// coefficient is exact.
+    pub fn exact(instance: &Instance) -> Result<Self, SolveError> {
+        validate(instance)?;
+        let power = |d: &Definition| d.coefficient.to_bits().trailing_zeros() >= 52;
+        Ok(Self::made(instance, definition(instance).filter(power)))
+    }
+
+    fn made(instance: &Instance, definition: Option<Definition>) -> Self {
         let (m, n) = (instance.row_count(), instance.column_count());
         let infinite = |b: f64| {
             if b >= BIG {
@@ -288,7 +300,6 @@ impl Form {
             Some(o) if o.sense == Sense::Maximize => -1.0,
             _ => 1.0,
         };
-        let definition = definition(instance);
         let mut number = vec![u32::MAX; n];
         let mut columns = Vec::with_capacity(n);
         let mut problem = Problem::default();
@@ -334,7 +345,7 @@ impl Form {
             problem.cost[number[o.column as usize] as usize] = sign;
         }
         problem.columns = problem.rows.transpose(columns.len());
-        Ok(Self {
+        Self {
             problem,
             columns,
             rows,
@@ -342,7 +353,20 @@ impl Form {
             definition,
             instance_rows: m,
             instance_columns: n,
-        })
+        }
+    }
+
+    /// The problem's point for one of the instance.
+    pub fn near(&self, outcome: &Outcome) -> Point {
+        let pick = |values: &[f64], places: &[u32], sign: f64| -> Vec<f64> {
+            let value = |&k: &u32| values.get(k as usize).map_or(0.0, |v| sign * v);
+            places.iter().map(value).collect()
+        };
+        Point {
+            x: pick(&outcome.level, &self.columns, 1.0),
+            y: pick(&outcome.row_marginal, &self.rows, self.sign),
+            d: pick(&outcome.column_marginal, &self.columns, self.sign),
+        }
     }
 
     /// Levels, row marginals and column marginals of the instance for a point of the problem.

@@ -3,6 +3,7 @@
 //! [`Form`] takes an instance apart, [`Scaling`] changes the units, Clarabel finds the optimum,
 //! and the point returns the same way. See the modules for the mathematics.
 
+pub mod certify;
 pub mod crossover;
 pub mod form;
 pub mod interior;

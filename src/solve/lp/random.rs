@@ -3,7 +3,7 @@
 
 use proptest::prelude::*;
 
-use super::{Clarabel, DualSimplex};
+use super::{Clarabel, DualSimplex, certify};
 use crate::model::certificate;
 use crate::model::instance::{Instance, Relation, Sense};
 use crate::solve::conformance::{Quiet, Row, linear};
@@ -125,5 +125,28 @@ proptest! {
             prop_assert!((value(&x) - value(&y)).abs() <= 1e-10);
         }
         prop_assert!(x.claim != Claim::Unfinished);
+    }
+
+    /// Exact arithmetic gives the value of every optimal program; intervals hold it, if there are any.
+    #[test]
+    fn proofs_hold_the_value(p in parts()) {
+        let instance = p.instance();
+        let (status, o) = run(&DualSimplex, "simplex", &instance);
+        let settings = Settings::default();
+        let proof = |exact| {
+            certify::certify_by(&instance, &o, &settings, &mut Quiet, exact).expect("valid")
+        };
+        let (exact, wide) = (proof(true), proof(false));
+        if status == ModelStatus::Optimal {
+            prop_assert!(exact.high - exact.low <= 1e-14 * value(&o).abs(), "{exact:?}");
+            prop_assert!((exact.low - value(&o)).abs() <= 1e-9);
+            prop_assert!(wide.low <= exact.low && wide.high >= exact.high, "{wide:?} {exact:?}");
+        } else {
+            let minimise = p.sense == Sense::Minimize;
+            let open = |p: &certify::Proof| if minimise { p.low == f64::NEG_INFINITY } else { p.high == f64::INFINITY };
+            let shut = |p: &certify::Proof| if minimise { p.high == f64::INFINITY } else { p.low == f64::NEG_INFINITY };
+            // Unbounded: no dual bound; infeasible: no point.
+            prop_assert!(open(&wide) || shut(&wide), "{wide:?}");
+        }
     }
 }

@@ -120,6 +120,36 @@ impl Scaling {
         p
     }
 
+    /// A point in the new units.
+    pub fn carry(&self, mut p: Point) -> Point {
+        for (x, &c) in p.x.iter_mut().zip(&self.column) {
+            *x /= c * self.size;
+        }
+        for (d, &c) in p.d.iter_mut().zip(&self.column) {
+            *d /= self.price / c;
+        }
+        for (y, &r) in p.y.iter_mut().zip(&self.row) {
+            *y /= self.price * r;
+        }
+        p
+    }
+
+    /// Whether no number of the scaled problem left the range in which scaling is exact.
+    pub fn is_exact(&self, p: &Problem, scaled: &Problem) -> bool {
+        let normal = |a: &[f64], b: &[f64]| {
+            a.iter()
+                .zip(b)
+                .all(|(a, b)| *a == 0.0 || a.is_infinite() || b.is_normal())
+        };
+        normal(&p.rows.value, &scaled.rows.value)
+            && normal(&p.columns.value, &scaled.columns.value)
+            && normal(&p.cost, &scaled.cost)
+            && normal(&p.lower, &scaled.lower)
+            && normal(&p.upper, &scaled.upper)
+            && normal(&p.row_lower, &scaled.row_lower)
+            && normal(&p.row_upper, &scaled.row_upper)
+    }
+
     /// A direction of columns in the old units.
     pub fn restore_direction(&self, x: &mut [f64]) {
         x.iter_mut().zip(&self.column).for_each(|(x, &c)| *x *= c);

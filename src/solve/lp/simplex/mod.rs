@@ -22,7 +22,7 @@
 //! [`Simplex::point`] returns is refined until it stands still.
 
 mod dual;
-mod factor;
+pub(in crate::solve) mod factor;
 mod primal;
 mod push;
 

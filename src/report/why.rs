@@ -1,0 +1,271 @@
+//! `bmod why` in sentences: findings of [`crate::solve::why`] with names and numbers.
+
+use serde::Serialize;
+
+use super::names::Names;
+use super::summary::digits;
+use crate::model::instance::{Instance, Relation};
+use crate::solve::why::{Finding, Member};
+
+/// What explains how a solve ended.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Explanation {
+    /// One paragraph per finding.
+    pub text: Vec<String>,
+    /// Rows that are named.
+    pub rows: Vec<String>,
+    /// Columns that are named.
+    pub columns: Vec<String>,
+}
+
+/// Puts findings into words.
+pub fn explain(findings: &[Finding], instance: &Instance, names: &dyn Names) -> Explanation {
+    let mut out = Explanation::default();
+    for f in findings {
+        let text = out.finding(f, instance, names);
+        out.text.push(text);
+    }
+    out
+}
+
+fn counted(n: usize, one: &str) -> String {
+    match n {
+        1 => format!("1 {one}"),
+        n => format!("{n} {one}s"),
+    }
+}
+
+fn short(v: f64) -> String {
+    if v == 0.0 || (1e-4..1e7).contains(&v.abs()) {
+        let text = format!("{v:.6}");
+        if text.contains('.') && v.fract().abs() > 1e-9 {
+            let short = digits((v * 1e6).round() / 1e6);
+            if short == "0" {
+                format!("{v:.2e}")
+            } else {
+                short
+            }
+        } else {
+            digits(v.round())
+        }
+    } else {
+        format!("{v:.2e}")
+    }
+}
+
+impl Explanation {
+    fn row(&mut self, i: usize, names: &dyn Names) -> String {
+        let name = names.row(i);
+        if !self.rows.contains(&name) {
+            self.rows.push(name.clone());
+        }
+        name
+    }
+
+    fn column(&mut self, j: usize, names: &dyn Names) -> String {
+        let name = names.column(j);
+        if !self.columns.contains(&name) {
+            self.columns.push(name.clone());
+        }
+        name
+    }
+
+    fn finding(&mut self, f: &Finding, instance: &Instance, names: &dyn Names) -> String {
+        match f {
+            Finding::Irreducible {
+                members,
+                excess,
+                shown,
+            } => self.irreducible(members, *excess, *shown, instance, names),
+            Finding::Ray(parts) => {
+                let mut text = String::from(
+                    "The objective improves without end: from any feasible point one may go on and \
+                     on in this direction (the largest steps are shown), and no row and no bound \
+                     stops it. A bound or a row that limits one of these is missing.",
+                );
+                for &(j, v) in parts {
+                    let name = self.column(j, names);
+                    text.push_str(&format!("\n    {name} changes by {}", short(v)));
+                }
+                text
+            }
+            Finding::Violated { rows, columns } => {
+                let mut text = String::from(
+                    "The last point violates these most, and nothing near it is better:",
+                );
+                for &(i, v) in rows {
+                    let name = self.row(i, names);
+                    let side = relation(instance, i);
+                    text.push_str(&format!("\n    {name} {side}: by {}", short(v)));
+                }
+                for &(j, v) in columns {
+                    let name = self.column(j, names);
+                    text.push_str(&format!("\n    bounds of {name}: by {}", short(v)));
+                }
+                text
+            }
+            Finding::Inaccurate { rows, columns } => {
+                let mut text = String::from(
+                    "The point is not accurate. A residual changes the objective by itself times \
+                     its multiplier; these carry the error:",
+                );
+                for &(i, rest, share) in rows {
+                    let name = self.row(i, names);
+                    text.push_str(&format!(
+                        "\n    row {name}: off by {rest:.1e}, which is worth {share:.1e}"
+                    ));
+                }
+                for &(j, rest, share) in columns {
+                    let name = self.column(j, names);
+                    text.push_str(&format!(
+                        "\n    column {name}: reduced cost {rest:.1e}, which is worth {share:.1e}"
+                    ));
+                }
+                text
+            }
+            Finding::Scaling {
+                largest,
+                smallest,
+                rows,
+                columns,
+            } => {
+                let mut at = |&(i, j, v): &(usize, usize, f64)| {
+                    let (row, column) = (self.row(i, names), self.column(j, names));
+                    format!("{v:.1e} (of {column} in {row})")
+                };
+                let (high, low) = (at(largest), at(smallest));
+                let mut text = format!(
+                    "The coefficients lie far apart: from {low} to {high}. Other units for these \
+                     variables or equations would bring them together."
+                );
+                for &(i, low, high) in rows {
+                    let name = self.row(i, names);
+                    text.push_str(&format!("\n    row {name}: {low:.1e} to {high:.1e}"));
+                }
+                for &(j, low, high) in columns {
+                    let name = self.column(j, names);
+                    text.push_str(&format!("\n    column {name}: {low:.1e} to {high:.1e}"));
+                }
+                text
+            }
+            Finding::Pairs(pairs) => {
+                let mut text = String::from("These pairs are farthest from a solution:");
+                for &(i, j, r) in pairs {
+                    let column = self.column(j, names);
+                    let pair = match i {
+                        Some(i) => format!("{} with {column}", self.row(i, names)),
+                        None => column,
+                    };
+                    text.push_str(&format!("\n    {pair}: residual {}", short(r)));
+                }
+                text
+            }
+            Finding::Structural { rows, columns } => {
+                let rows: Vec<String> = rows.iter().map(|&i| self.row(i, names)).collect();
+                let columns: Vec<String> = columns.iter().map(|&j| self.column(j, names)).collect();
+                let only = match columns.len() {
+                    0 => "no variable that is not at a bound".to_string(),
+                    _ => format!("only {}", columns.join(", ")),
+                };
+                format!(
+                    "The system is structurally singular here: the rows {} have {only} to satisfy \
+                     them with, whatever the numbers are.",
+                    rows.join(", ")
+                )
+            }
+            Finding::Singular { rows, columns } => {
+                let rows: Vec<String> = rows.iter().map(|&i| self.row(i, names)).collect();
+                let columns: Vec<String> = columns.iter().map(|&j| self.column(j, names)).collect();
+                format!(
+                    "The system is singular at the last point: {} changes with no variable \
+                     independently of other rows ({} has no effect of its own).",
+                    rows.join(", "),
+                    columns.join(", ")
+                )
+            }
+            Finding::WrongWay(pairs) => {
+                let mut text = String::from(
+                    "In these pairs the row falls where its own variable grows, so that moving the \
+                     variable off its bound makes matters worse; is the sign right, or the pair?",
+                );
+                for &(i, j, v) in pairs {
+                    let (row, column) = (self.row(i, names), self.column(j, names));
+                    text.push_str(&format!(
+                        "\n    {row} with {column}: derivative {}",
+                        short(v)
+                    ));
+                }
+                text
+            }
+            Finding::NoValue { row, column, what } => {
+                let row = self.row(*row, names);
+                let argument = column.map_or(String::new(), |j| {
+                    format!(", whose argument is {}", self.column(j, names))
+                });
+                format!("At the last point {row} has no value or no derivative: {what}{argument}.")
+            }
+        }
+    }
+
+    fn irreducible(
+        &mut self,
+        members: &[(Member, f64)],
+        excess: f64,
+        shown: bool,
+        instance: &Instance,
+        names: &dyn Names,
+    ) -> String {
+        let rows = members
+            .iter()
+            .filter(|m| matches!(m.0, Member::Row(_)))
+            .count();
+        let bounds = members.len() - rows;
+        let mut what = Vec::new();
+        if rows > 0 {
+            what.push(counted(rows, "row"));
+        }
+        if bounds > 0 {
+            what.push(counted(bounds, "bound"));
+        }
+        let alone = match (members.len(), shown) {
+            (1, _) => "cannot be satisfied",
+            (_, true) => {
+                "contradict each other; with any one of them dropped, the others can be satisfied"
+            }
+            (_, false) => "contradict each other; perhaps not all of them are needed for that",
+        };
+        let mut text = format!("{} {alone}:", what.join(" and "));
+        for &(m, v) in members {
+            let line = match m {
+                Member::Row(i) => format!("{} {}", self.row(i, names), relation(instance, i)),
+                Member::Lower(j) => {
+                    let l = instance.columns.lower[j];
+                    format!("{}, at least {}", self.column(j, names), digits(l))
+                }
+                Member::Upper(j) => {
+                    let u = instance.columns.upper[j];
+                    format!("{}, at most {}", self.column(j, names), digits(u))
+                }
+            };
+            text.push_str(&format!("\n    {line}    (times {})", short(v)));
+        }
+        if excess > 0.0 && excess.is_finite() {
+            text.push_str(&format!(
+                "\n  Added up with these multipliers they ask for 0 >= {}.",
+                short(excess)
+            ));
+        }
+        text
+    }
+}
+
+/// `=g= 30`
+fn relation(instance: &Instance, i: usize) -> String {
+    let sign = match instance.rows.relation[i] {
+        Relation::Equal => "=e=",
+        Relation::Greater => "=g=",
+        Relation::Less => "=l=",
+        Relation::Free => "=n=",
+    };
+    format!("{sign} {}", digits(instance.rows.rhs[i]))
+}

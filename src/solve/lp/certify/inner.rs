@@ -1,0 +1,97 @@
+//! A point well inside a polyhedron.
+//!
+//! ```text
+//!     max t,   every inequality with slack ≥ t,   t ≤ 1
+//! ```
+//!
+//! Where that gives t = 0, some inequalities hold with equality at every point. Then each has its
+//! own t_i ≤ 1 and their sum is maximised (Freund, Roundy & Todd 1985): what is still without slack
+//! is held as an equation.
+
+use super::super::form::{Problem, Sparse};
+use super::super::{Ended, Limits, interior};
+use super::polyhedron::Polyhedron;
+
+/// Slacks below this are none.
+pub const SLACK: f64 = 1e-7;
+
+/// A point with room around it, as nearly as floating-point numbers go. None: none was found.
+pub fn point(
+    poly: &Polyhedron,
+    limits: &Limits,
+    interrupted: &mut dyn FnMut() -> bool,
+) -> Option<Vec<f64>> {
+    let (x, slack) = search(poly, false, limits, interrupted)?;
+    if slack > SLACK {
+        return Some(x);
+    }
+    Some(search(poly, true, limits, interrupted)?.0)
+}
+
+fn search(
+    poly: &Polyhedron,
+    each: bool,
+    limits: &Limits,
+    interrupted: &mut dyn FnMut() -> bool,
+) -> Option<(Vec<f64>, f64)> {
+    let n = poly.n();
+    let mut p = Problem {
+        rows: Sparse::new(),
+        ..Problem::default()
+    };
+    p.cost = vec![0.0; n];
+    for j in 0..n {
+        let fixed = poly.lower[j] == poly.upper[j];
+        let side = |b: f64, other: f64| if fixed { b } else { other };
+        p.lower.push(side(poly.lower[j], f64::NEG_INFINITY));
+        p.upper.push(side(poly.upper[j], f64::INFINITY));
+    }
+    let mut slack_columns = 0;
+    let mut line = |entries: Vec<(usize, f64)>, sides: [f64; 2], p: &mut Problem| {
+        let [l, u] = sides;
+        if l == u {
+            p.rows.push(entries);
+            p.row_lower.push(l);
+            p.row_upper.push(u);
+            return;
+        }
+        for (side, sign) in [(l, -1.0), (u, 1.0)] {
+            if side.is_infinite() {
+                continue;
+            }
+            if each || slack_columns == 0 {
+                p.cost.push(-1.0);
+                p.lower.push(0.0);
+                p.upper.push(1.0);
+                slack_columns += 1;
+            }
+            // Between two sides there may be less than 1 to share.
+            let share = (0.25 * (u - l)).min(1.0);
+            let mut e = entries.clone();
+            e.push((p.cost.len() - 1, sign * share));
+            p.rows.push(e);
+            p.row_lower
+                .push(if sign < 0.0 { l } else { f64::NEG_INFINITY });
+            p.row_upper.push(if sign < 0.0 { f64::INFINITY } else { u });
+        }
+    };
+    for i in 0..poly.m() {
+        let entries = poly.rows.line(i).collect();
+        line(entries, [poly.row_lower[i], poly.row_upper[i]], &mut p);
+    }
+    for j in 0..n {
+        let sides = [poly.lower[j], poly.upper[j]];
+        if sides[0] != sides[1] && sides.iter().any(|s| s.is_finite()) {
+            line(vec![(j, 1.0)], sides, &mut p);
+        }
+    }
+    p.columns = p.rows.transpose(p.cost.len());
+    let run = interior::solve(&p, 1e-9, limits, interrupted);
+    if run.ended != Ended::Solved {
+        return None;
+    }
+    let least = run.point.x[n..].iter().fold(1.0f64, |t, &v| t.min(v));
+    let mut x = run.point.x;
+    x.truncate(n);
+    Some((x, least))
+}

@@ -1,0 +1,397 @@
+//! A rigorous interval for the optimal value of a linear program.
+//!
+//! A point that satisfies all rows and bounds *exactly* gives an upper bound of the minimum,
+//! multipliers that satisfy the dual ones exactly give a lower bound; on a block wall these are the
+//! kinematic and the static theorem. Both are points of polyhedra ([`polyhedron`]) and both are
+//! found in the same way:
+//!
+//! 1. take the solver's point x*, and a point x⁰ with room around it ([`inner`]);
+//! 2. mix, x = x* + θ(x⁰ − x*), with θ as small as possible: the inequalities get room;
+//! 3. move some columns a little so that the equations hold exactly ([`system`]): how far they
+//!    move is proved, not known to the last bit;
+//! 4. check every bound and every inequality with intervals ([`crate::solve::interval`]).
+//!
+//! The program is the instance as its numbers are stored. No floating-point result is trusted on
+//! the way: a wrong x* or x⁰ makes the interval wide, or there is none. Where a program has no room
+//! (its points, or its multipliers, lie on a plane that rounding leaves), and the program is small,
+//! its optimal basis is solved in rational arithmetic instead ([`exact`]).
+//!
+//! Source: Neumaier & Shcherbina (2004), Jansson (2004); the mixing for walls: the bound theorems
+//! of plasticity.
+
+mod exact;
+mod inner;
+mod polyhedron;
+mod system;
+
+use super::form::{Form, Problem};
+use super::scale::Scaling;
+use super::{Limits, SolveError};
+use crate::model::instance::Instance;
+use crate::solve::interval::{Interval, WideSum};
+use crate::solve::{Monitor, Outcome, Settings};
+use polyhedron::Polyhedron;
+use system::System;
+
+/// Why a bound was not proved.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unproved {
+    /// In the reader's terms; `row` or `column` is named after it.
+    pub why: &'static str,
+    /// The row to name.
+    pub row: Option<usize>,
+    /// The column to name.
+    pub column: Option<usize>,
+}
+
+/// What could be proved about the optimal value of an instance: it is not below `low` and not above
+/// `high`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Proof {
+    /// Lower bound, −∞ if none was proved.
+    pub low: f64,
+    /// Upper bound, +∞ if none was proved.
+    pub high: f64,
+    /// Why there is no lower bound.
+    pub no_low: Option<Unproved>,
+    /// Why there is no upper bound.
+    pub no_high: Option<Unproved>,
+}
+
+/// A point that is known up to a radius per column, as pairs `high + low`.
+pub struct Enclosed {
+    high: Vec<f64>,
+    low: Vec<f64>,
+    radius: Vec<f64>,
+    /// What each row must be, if it is one of the equations.
+    target: Vec<f64>,
+}
+
+impl Enclosed {
+    /// Where column j is.
+    fn value(&self, j: usize) -> Interval {
+        let rest = Interval::point(self.low[j]) + Interval::around_zero(self.radius[j]);
+        Interval::point(self.high[j]) + rest
+    }
+
+    /// Adds a · x_j to a sum.
+    fn add_to(&self, sum: &mut WideSum, a: f64, j: usize) {
+        sum.add_product(a, self.high[j]);
+        if self.low[j] != 0.0 {
+            sum.add_product(a, self.low[j]);
+        }
+        if self.radius[j] != 0.0 {
+            sum.add_interval(Interval::around_zero(self.radius[j]) * a);
+        }
+    }
+}
+
+/// Columns and rows together up to which exact arithmetic is tried first.
+const SMALL: usize = 120;
+
+/// Proves what it can about the optimal value of a linear instance, near an outcome.
+pub fn certify(
+    instance: &Instance,
+    outcome: &Outcome,
+    settings: &Settings,
+    monitor: &mut dyn Monitor,
+) -> Result<Proof, SolveError> {
+    certify_by(instance, outcome, settings, monitor, true)
+}
+
+/// The same, with or without exact arithmetic.
+pub(super) fn certify_by(
+    instance: &Instance,
+    outcome: &Outcome,
+    settings: &Settings,
+    monitor: &mut dyn Monitor,
+    by_basis: bool,
+) -> Result<Proof, SolveError> {
+    let form = Form::exact(instance)?;
+    let scaling = Scaling::new(&form.problem);
+    let p = scaling.apply(&form.problem);
+    let limits = Limits {
+        start: std::time::Instant::now(),
+        seconds: settings.time_limit,
+        iterations: settings.iteration_limit,
+    };
+    let why = |why| Unproved {
+        why,
+        row: None,
+        column: None,
+    };
+    let (mut upper, mut lower) = (Err(why("")), Err(why("")));
+    if !scaling.is_exact(&form.problem, &p) {
+        let extreme = why("the coefficients are so extreme that they cannot be scaled exactly");
+        (upper, lower) = (Err(extreme.clone()), Err(extreme));
+    } else {
+        let small = p.m() + p.n() <= SMALL;
+        if by_basis
+            && small
+            && let Some(value) = exact::value(&p, 2_000_000, &limits, monitor)
+        {
+            (upper, lower) = (value.upper, value.lower);
+        }
+        let near = scaling.carry(form.near(outcome));
+        if upper.is_err() {
+            upper = side(&p, &Polyhedron::primal(&p), &near.x, &limits, monitor, true);
+        }
+        if lower.is_err() {
+            lower = side(&p, &Polyhedron::dual(&p), &near.y, &limits, monitor, false);
+        }
+        let missing = upper.is_err() || lower.is_err();
+        if missing
+            && by_basis
+            && !small
+            && let Some(value) = exact::value(&p, 200_000_000, &limits, monitor)
+        {
+            upper = upper.or(value.upper);
+            lower = lower.or(value.lower);
+        }
+    }
+    // In the units of the instance: the factors are powers of two.
+    let unit = scaling.price * scaling.size;
+    let place = |v: Interval| {
+        let v = (v * unit + Interval::point(form.problem.offset)) * form.sign;
+        [v.low, v.high]
+    };
+    let name = |u: Unproved| Unproved {
+        row: u.row.map(|i| form.rows[i] as usize),
+        column: u.column.map(|j| form.columns[j] as usize),
+        ..u
+    };
+    let mut proof = Proof {
+        low: f64::NEG_INFINITY,
+        high: f64::INFINITY,
+        no_low: None,
+        no_high: None,
+    };
+    let minimise = form.sign > 0.0;
+    match upper {
+        Ok(v) if minimise => proof.high = place(v)[1],
+        Ok(v) => proof.low = place(v)[0],
+        Err(u) if minimise => proof.no_high = Some(name(u)),
+        Err(u) => proof.no_low = Some(name(u)),
+    }
+    match lower {
+        Ok(v) if minimise => proof.low = place(v)[0],
+        Ok(v) => proof.high = place(v)[1],
+        Err(u) if minimise => proof.no_low = Some(name(u)),
+        Err(u) => proof.no_high = Some(name(u)),
+    }
+    Ok(proof)
+}
+
+/// A point near `near` that is proved to be in the polyhedron, and its value.
+fn side(
+    p: &Problem,
+    poly: &Polyhedron,
+    near: &[f64],
+    limits: &Limits,
+    monitor: &mut dyn Monitor,
+    primal: bool,
+) -> Result<Interval, Unproved> {
+    let fail = |why, row: Option<usize>, column: Option<usize>| {
+        let row = row.map(|i| poly.origin[i]);
+        // A row of the dual side stands for a column, and the other way round.
+        let (row, column) = if primal { (row, column) } else { (column, row) };
+        Err(Unproved { why, row, column })
+    };
+    let nothing = if primal {
+        "no point with room inside the rows and bounds was found"
+    } else {
+        "no multipliers with room inside their bounds were found"
+    };
+    let Some(inner) = inner::point(poly, limits, &mut || monitor.interrupted()) else {
+        return fail(nothing, None, None);
+    };
+    // Room of a variable or row between its sides, at both points.
+    let room = |l: f64, u: f64, a: f64, b: f64| (a - l).min(u - a).max((b - l).min(u - b));
+    let mut free = Vec::with_capacity(poly.n());
+    let mut near: Vec<f64> = near.to_vec();
+    let mut inner = inner;
+    for j in 0..poly.n() {
+        let (l, u) = (poly.lower[j], poly.upper[j]);
+        let r = room(l, u, near[j], inner[j]);
+        let held = l == u || r <= inner::SLACK;
+        if held {
+            // Held where it is.
+            let at = if near[j] - l <= u - near[j] { l } else { u };
+            near[j] = at;
+            inner[j] = at;
+        } else {
+            near[j] = near[j].max(l).min(u);
+        }
+        free.push(if held { 0.0 } else { r.min(1.0) });
+    }
+    let mut equations = Vec::new();
+    let mut target = vec![0.0; poly.m()];
+    let mut unit = Vec::new();
+    for i in 0..poly.m() {
+        let (l, u) = (poly.row_lower[i], poly.row_upper[i]);
+        let (a, b) = (poly.activity(i, &near), poly.activity(i, &inner));
+        if l == u || room(l, u, a, b) <= inner::SLACK {
+            target[i] = if a - l <= u - a { l } else { u };
+            equations.push(i);
+            let terms = poly.rows.line(i).map(|(j, v)| (v * near[j]).abs());
+            unit.push(terms.fold(target[i].abs().max(1e-3), f64::max));
+        }
+    }
+    let mut stop = || monitor.interrupted() || limits.seconds_left() <= 0.0;
+    let mut system = match System::new(poly, equations, &free, unit, &mut stop) {
+        Ok(s) => s,
+        Err(Some(row)) => {
+            return fail(
+                "an equation depends on others: rounding decides whether it holds",
+                Some(row),
+                None,
+            );
+        }
+        Err(None) => return fail("the equations could not be solved reliably", None, None),
+    };
+    let mut last = fail(nothing, None, None);
+    let steps = (0..13).map(|k| 2f64.powi(-48 + 4 * k));
+    for theta in std::iter::once(0.0).chain(steps) {
+        let mut x = Enclosed {
+            high: Vec::with_capacity(poly.n()),
+            low: Vec::with_capacity(poly.n()),
+            radius: vec![0.0; poly.n()],
+            target: target.clone(),
+        };
+        for (&a, &b) in near.iter().zip(&inner) {
+            let step = if theta == 0.0 { 0.0 } else { theta * (b - a) };
+            let (high, low) = crate::solve::interval::two_sum(a, step);
+            x.high.push(high);
+            x.low.push(low);
+        }
+        // Columns that do not move need one number only.
+        let mut moves = vec![false; poly.n()];
+        system.basis.iter().for_each(|&j| moves[j] = true);
+        for j in (0..poly.n()).filter(|&j| !moves[j]) {
+            x.low[j] = 0.0;
+        }
+        if system.enclose(poly, &mut x).is_none() {
+            break;
+        }
+        match outside(poly, &x, &system) {
+            None => {
+                return Ok(if primal {
+                    polyhedron::primal_value(p, &x)
+                } else {
+                    polyhedron::dual_value(p, &x)
+                });
+            }
+            Some((row, column)) => {
+                last = fail("rounding decides whether it holds", row, column);
+            }
+        }
+    }
+    last
+}
+
+/// The first row or column that the enclosed point is not proved to satisfy.
+fn outside(
+    poly: &Polyhedron,
+    x: &Enclosed,
+    system: &System,
+) -> Option<(Option<usize>, Option<usize>)> {
+    for j in 0..poly.n() {
+        let v = x.value(j);
+        if !(v.low >= poly.lower[j] && v.high <= poly.upper[j]) {
+            return Some((None, Some(j)));
+        }
+    }
+    let mut solved = vec![false; poly.m()];
+    system.rows().iter().for_each(|&i| solved[i] = true);
+    for i in (0..poly.m()).filter(|&i| !solved[i]) {
+        let mut sum = WideSum::default();
+        for (j, a) in poly.rows.line(i) {
+            x.add_to(&mut sum, a, j);
+        }
+        for (side, above) in [(poly.row_lower[i], true), (poly.row_upper[i], false)] {
+            if side.is_finite() {
+                let mut rest = sum;
+                rest.add(-side);
+                let rest = rest.value();
+                let holds = if above {
+                    rest.low >= 0.0
+                } else {
+                    rest.high <= 0.0
+                };
+                if !holds {
+                    return Some((Some(i), None));
+                }
+            }
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::instance::{Relation, Sense};
+    use crate::solve::Solver;
+    use crate::solve::conformance::{self, Quiet};
+    use crate::solve::lp::Clarabel;
+
+    fn proof(instance: &Instance) -> Proof {
+        let settings = Settings::default();
+        let outcome = Clarabel
+            .solve(instance, &settings, &mut Quiet)
+            .expect("a linear instance");
+        certify(instance, &outcome, &settings, &mut Quiet).expect("a linear instance")
+    }
+
+    const INF: f64 = f64::INFINITY;
+
+    #[test]
+    fn a_textbook_program_is_solved_exactly() {
+        for (sense, cost, value) in [
+            (Sense::Maximize, [3., 2.], 28.0),
+            (Sense::Minimize, [-3., -2.], -28.0),
+        ] {
+            let rows = [(vec![1., 1.], Relation::Less, 10.)];
+            let instance = conformance::linear(sense, &cost, &[(0., 8.), (0., INF)], &rows);
+            let p = proof(&instance);
+            assert_eq!((p.low, p.high), (value, value));
+        }
+    }
+
+    #[test]
+    fn intervals_hold_where_data_are_no_fractions_of_two() {
+        // max x + y, 3x + y <= 1, x + 3y <= 1: 1/2, were 1/10 of it all not rounded.
+        let rows = [
+            (vec![0.3, 0.1], Relation::Less, 0.1),
+            (vec![0.1, 0.3], Relation::Less, 0.1),
+        ];
+        let bounds = [(0., INF), (0., INF)];
+        let instance = conformance::linear(Sense::Maximize, &[1., 1.], &bounds, &rows);
+        let p = proof(&instance);
+        assert!(p.low <= p.high && p.high - p.low < 1e-15 && (p.low - 0.5).abs() < 1e-15);
+    }
+
+    #[test]
+    fn without_a_solution_there_is_no_interval() {
+        let rows = [(vec![1., 1.], Relation::Greater, 30.)];
+        let bounds = [(0., 8.), (0., 8.)];
+        let p = proof(&conformance::linear(
+            Sense::Minimize,
+            &[1., 1.],
+            &bounds,
+            &rows,
+        ));
+        assert_eq!(p.high, INF);
+        assert!(p.no_high.is_some());
+        let rows = [(vec![1., -1.], Relation::Less, 3.)];
+        let bounds = [(0., INF), (0., INF)];
+        let p = proof(&conformance::linear(
+            Sense::Maximize,
+            &[1., 1.],
+            &bounds,
+            &rows,
+        ));
+        assert_eq!(p.high, INF);
+        assert!(p.no_high.is_some());
+    }
+}

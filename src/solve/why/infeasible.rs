@@ -1,0 +1,241 @@
+//! An irreducible set of rows and bounds that contradict each other.
+//!
+//! A proof of infeasibility names multipliers (Farkas); the rows and bounds with a multiplier are
+//! already infeasible. The deletion filter (Chinneck & Dravnieks 1991) then drops one member at a
+//! time: if the rest is still infeasible it is dropped for good (and with it what the new proof
+//! does not use), otherwise it is needed. Since what is left only shrinks, a member that was needed
+//! once is needed in the end: with any one dropped, the rest can be satisfied.
+
+use std::collections::BTreeSet;
+use std::time::Instant;
+
+use super::Finding;
+use crate::model::instance::Instance;
+use crate::solve::lp::Ended;
+use crate::solve::lp::form::{Form, Problem, Sparse};
+use crate::solve::lp::scale::Scaling;
+use crate::solve::lp::simplex::Simplex;
+use crate::solve::{Monitor, Settings};
+
+/// A member of the set.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub enum Member {
+    /// A row.
+    Row(usize),
+    /// A column's lower bound.
+    Lower(usize),
+    /// A column's upper bound.
+    Upper(usize),
+}
+
+/// Seconds for the search.
+const PATIENCE: f64 = 60.0;
+
+/// What a set of members is when it is asked.
+enum Tested {
+    /// Infeasible: the members with a multiplier.
+    Infeasible(Vec<(Member, f64)>, f64),
+    Feasible,
+    Unknown,
+}
+
+/// Finds one such set, from a proof's multipliers for the instance's rows (or from none). None: no
+/// contradiction was found.
+pub fn irreducible(
+    instance: &Instance,
+    ray: &[f64],
+    settings: &Settings,
+    monitor: &mut dyn Monitor,
+) -> Option<Finding> {
+    let form = Form::new(instance).ok()?;
+    let scaling = Scaling::new(&form.problem);
+    let p = scaling.apply(&form.problem);
+    let begin = Instant::now();
+    let patience = PATIENCE.min(settings.time_limit);
+    let mut stop =
+        |m: &mut dyn Monitor| m.interrupted() || begin.elapsed().as_secs_f64() > patience;
+    let mut set: BTreeSet<Member> = BTreeSet::new();
+    if ray.len() == instance.row_count() {
+        let y: Vec<f64> = form
+            .rows
+            .iter()
+            .zip(&scaling.row)
+            .map(|(&i, r)| ray[i as usize] / r)
+            .collect();
+        set.extend(support(&p, &y).0.iter().map(|m| m.0));
+    }
+    let all = || -> BTreeSet<Member> {
+        let rows = (0..p.m()).map(Member::Row);
+        let lower = (0..p.n()).filter(|&j| p.lower[j].is_finite());
+        let upper = (0..p.n()).filter(|&j| p.upper[j].is_finite());
+        rows.chain(lower.map(Member::Lower))
+            .chain(upper.map(Member::Upper))
+            .collect()
+    };
+    // A proof that holds up to rounding may miss a member: then everything is looked at.
+    let mut tested = Tested::Unknown;
+    if !set.is_empty() {
+        tested = test(&p, &set, monitor, &mut stop);
+    }
+    if !matches!(tested, Tested::Infeasible(..)) {
+        set = all();
+        tested = test(&p, &set, monitor, &mut stop);
+    }
+    let Tested::Infeasible(mut members, mut excess) = tested else {
+        return None;
+    };
+    set = members.iter().map(|m| m.0).collect();
+    let mut shown = true;
+    let mut needed: BTreeSet<Member> = BTreeSet::new();
+    while let Some(&member) = set.iter().find(|m| !needed.contains(m)) {
+        let mut rest = set.clone();
+        rest.remove(&member);
+        match test(&p, &rest, monitor, &mut stop) {
+            Tested::Infeasible(fewer, by) => {
+                set = fewer.iter().map(|m| m.0).collect();
+                // What was needed before is needed still; a proof has it.
+                shown &= needed.is_subset(&set);
+                needed.retain(|m| set.contains(m));
+                (members, excess) = (fewer, by);
+            }
+            Tested::Feasible => {
+                needed.insert(member);
+            }
+            Tested::Unknown => {
+                shown = false;
+                needed.insert(member);
+            }
+        }
+    }
+    // In the instance's units and numbers, the largest multiplier 1.
+    let in_units = |m: Member, v: f64| match m {
+        Member::Row(i) => (Member::Row(form.rows[i] as usize), v * scaling.row[i]),
+        Member::Lower(j) => (
+            Member::Lower(form.columns[j] as usize),
+            v / scaling.column[j],
+        ),
+        Member::Upper(j) => (
+            Member::Upper(form.columns[j] as usize),
+            v / scaling.column[j],
+        ),
+    };
+    let mut members: Vec<(Member, f64)> = members.iter().map(|&(m, v)| in_units(m, v)).collect();
+    let top = members.iter().fold(0.0f64, |t, m| t.max(m.1.abs()));
+    members.iter_mut().for_each(|m| m.1 /= top);
+    members.sort_by_key(|m| m.0);
+    Some(Finding::Irreducible {
+        members,
+        excess: excess * scaling.size / top,
+        shown,
+    })
+}
+
+/// The members that a proof uses with their multipliers, and by how much it misses.
+fn support(p: &Problem, y: &[f64]) -> (Vec<(Member, f64)>, f64) {
+    let top = y.iter().fold(0.0f64, |t, v| t.max(v.abs()));
+    let mut members = Vec::new();
+    let mut excess = 0.0;
+    for (i, &v) in y.iter().enumerate() {
+        if v.abs() > 1e-9 * top {
+            members.push((Member::Row(i), v));
+            excess += v * if v > 0.0 {
+                p.row_lower[i]
+            } else {
+                p.row_upper[i]
+            };
+        }
+    }
+    for j in 0..p.n() {
+        let terms = p.columns.line(j).map(|(i, a)| a * y[i]);
+        let (reach, size) = terms.fold((0.0, 0.0f64), |(r, s), t| (r + t, s.max(t.abs())));
+        if reach.abs() > 1e-9 * size {
+            let (member, bound) = if reach > 0.0 {
+                (Member::Upper(j), p.upper[j])
+            } else {
+                (Member::Lower(j), p.lower[j])
+            };
+            members.push((member, -reach));
+            excess -= reach * bound;
+        }
+    }
+    (members, excess)
+}
+
+/// Whether the members alone can be satisfied.
+fn test(
+    p: &Problem,
+    set: &BTreeSet<Member>,
+    monitor: &mut dyn Monitor,
+    stop: &mut dyn FnMut(&mut dyn Monitor) -> bool,
+) -> Tested {
+    if stop(monitor) {
+        return Tested::Unknown;
+    }
+    // Only what the members touch.
+    let mut number = vec![usize::MAX; p.n()];
+    let mut columns = Vec::new();
+    let rows: Vec<usize> = set
+        .iter()
+        .filter_map(|m| match *m {
+            Member::Row(i) => Some(i),
+            _ => None,
+        })
+        .collect();
+    let mut sub = Problem {
+        rows: Sparse::new(),
+        ..Problem::default()
+    };
+    let mut see = |j: usize, columns: &mut Vec<usize>| {
+        if number[j] == usize::MAX {
+            number[j] = columns.len();
+            columns.push(j);
+        }
+        number[j]
+    };
+    for &i in &rows {
+        let line: Vec<(usize, f64)> = p
+            .rows
+            .line(i)
+            .map(|(j, a)| (see(j, &mut columns), a))
+            .collect();
+        sub.rows.push(line);
+        sub.row_lower.push(p.row_lower[i]);
+        sub.row_upper.push(p.row_upper[i]);
+    }
+    for m in set {
+        if let Member::Lower(j) | Member::Upper(j) = *m {
+            see(j, &mut columns);
+        }
+    }
+    for &j in &columns {
+        let bound = |m: Member, b: f64, none: f64| if set.contains(&m) { b } else { none };
+        sub.lower
+            .push(bound(Member::Lower(j), p.lower[j], f64::NEG_INFINITY));
+        sub.upper
+            .push(bound(Member::Upper(j), p.upper[j], f64::INFINITY));
+    }
+    sub.cost = vec![0.0; columns.len()];
+    sub.columns = sub.rows.transpose(columns.len());
+    let mut simplex = Simplex::new(&sub);
+    let most = 5000 + 50 * (sub.m() + sub.n()) as u64;
+    let ended = simplex.solve(&mut |iterations| {
+        let over = iterations > most || stop(monitor);
+        over.then_some(Ended::Iterations)
+    });
+    match ended {
+        Ended::Solved => Tested::Feasible,
+        Ended::Infeasible(y) => {
+            let (members, excess) = support(&sub, &y);
+            let back = |m: Member| match m {
+                Member::Row(i) => Member::Row(rows[i]),
+                Member::Lower(j) => Member::Lower(columns[j]),
+                Member::Upper(j) => Member::Upper(columns[j]),
+            };
+            Tested::Infeasible(
+                members.into_iter().map(|(m, v)| (back(m), v)).collect(),
+                excess,
+            )
+        }
+        _ => Tested::Unknown,
+    }
+}

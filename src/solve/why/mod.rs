@@ -1,0 +1,143 @@
+//! Why a solve ended as it did: what to look at, by row and column.
+//!
+//! Nothing here trusts the solver: every finding is computed from the instance and the point.
+//! [`findings`] chooses by the status; each module says how its finding is made.
+
+mod infeasible;
+mod pairs;
+mod point;
+
+use super::answer::Answer;
+use super::{ModelStatus, Monitor, Settings};
+use crate::model::instance::Instance;
+
+pub use infeasible::{Member, irreducible};
+
+/// One thing that was found, in indices.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Finding {
+    /// Rows and bounds that contradict each other, with the multipliers that show it. `shown`: with
+    /// any one of them dropped the rest can be satisfied.
+    Irreducible {
+        /// The members with their multipliers.
+        members: Vec<(Member, f64)>,
+        /// By how much they contradict each other when added up.
+        excess: f64,
+        /// Whether that none can be spared was shown.
+        shown: bool,
+    },
+    /// A direction of columns along which the objective improves without end.
+    Ray(Vec<(usize, f64)>),
+    /// The rows and columns with the largest violations: index, violation, level asked for.
+    Violated {
+        /// Rows: violation and right-hand side.
+        rows: Vec<(usize, f64)>,
+        /// Columns.
+        columns: Vec<(usize, f64)>,
+    },
+    /// What carries the error of the objective: residual times multiplier.
+    Inaccurate {
+        /// Rows: residual, share of the objective's error.
+        rows: Vec<(usize, f64, f64)>,
+        /// Columns: wrong reduced cost, share.
+        columns: Vec<(usize, f64, f64)>,
+    },
+    /// Coefficients far apart: the largest and the smallest with their places.
+    Scaling {
+        /// Row, column, coefficient.
+        largest: (usize, usize, f64),
+        /// Row, column, coefficient.
+        smallest: (usize, usize, f64),
+        /// Rows with the widest range of coefficients: smallest, largest.
+        rows: Vec<(usize, f64, f64)>,
+        /// Columns with the widest range.
+        columns: Vec<(usize, f64, f64)>,
+    },
+    /// Pairs with the largest natural residuals: row, column, residual.
+    Pairs(Vec<(Option<usize>, usize, f64)>),
+    /// More rows than columns to satisfy them with (or the other way round), whatever the numbers.
+    Structural {
+        /// The rows that share too few columns.
+        rows: Vec<usize>,
+        /// Those columns.
+        columns: Vec<usize>,
+    },
+    /// At this point the rows depend on each other.
+    Singular {
+        /// Rows without a pivot.
+        rows: Vec<usize>,
+        /// Columns that depend on others.
+        columns: Vec<usize>,
+    },
+    /// Pairs whose row falls where its own variable grows: row, column, derivative.
+    WrongWay(Vec<(usize, usize, f64)>),
+    /// A function has no value, or no derivative, here.
+    NoValue {
+        /// The row.
+        row: usize,
+        /// The column that is its argument.
+        column: Option<usize>,
+        /// What failed.
+        what: String,
+    },
+}
+
+/// How many rows or columns a finding names.
+const FEW: usize = 5;
+
+/// What explains the status of an answer.
+pub fn findings(
+    using: &str,
+    instance: &Instance,
+    answer: &Answer,
+    settings: &Settings,
+    monitor: &mut dyn Monitor,
+) -> Vec<Finding> {
+    let mut out = Vec::new();
+    let x = &answer.outcome.level;
+    let linear = instance.is_linear() && instance.objective.is_some();
+    let solved = matches!(
+        answer.status,
+        ModelStatus::Optimal
+            | ModelStatus::LocallyOptimal
+            | ModelStatus::Solved
+            | ModelStatus::SolvedUnique
+    );
+    let scaling = point::scaling(instance, x);
+    match answer.status {
+        ModelStatus::Infeasible | ModelStatus::InfeasibleNoSolution if linear => {
+            out.extend(irreducible(
+                instance,
+                &answer.outcome.ray,
+                settings,
+                monitor,
+            ));
+        }
+        ModelStatus::Unbounded | ModelStatus::UnboundedNoSolution => {
+            out.extend(point::ray(&answer.outcome.ray));
+        }
+        _ if matches!(using, "mcp" | "cns") => {
+            if !solved {
+                out.extend(pairs::findings(instance, using == "cns", x));
+            }
+        }
+        _ if linear => {
+            // Also where the solver gave up: an infeasible program is infeasible.
+            if !solved && !answer.residuals.is_feasible(1e-6) {
+                out.extend(irreducible(instance, &[], settings, monitor));
+            }
+            if !solved && out.is_empty() {
+                out.extend(point::inaccurate(instance, answer));
+            }
+        }
+        _ if !solved => {
+            out.extend(point::no_value(instance, x));
+            out.extend(point::violated(instance, answer));
+        }
+        _ => {}
+    }
+    if !solved || scaling.is_some() {
+        out.extend(scaling);
+    }
+    out
+}

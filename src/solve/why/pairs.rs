@@ -1,0 +1,175 @@
+//! A complementarity problem (or a square system) without a solution: where it is stuck.
+//!
+//! At the point where the solver gave up, columns that are held at a bound leave; the rows of the
+//! others are equations in them. They have a solution nearby unless their Jacobian is singular:
+//! *structurally*, if some rows share too few columns whatever the numbers are (found by a maximum
+//! matching and alternating paths from a row without partner; Dulmage & Mendelsohn 1958), or
+//! *numerically*, found by a sparse LU. A pair is wrong-way if its row falls where its own variable
+//! grows: pushing a variable off its bound then makes matters worse.
+
+use super::point::{largest, no_value};
+use super::{FEW, Finding};
+use crate::autodiff::Evaluator;
+use crate::model::instance::Instance;
+use crate::solve::complementarity::match_rows;
+use crate::solve::lp::simplex::factor::{Entries, Factor, Failure};
+
+/// All findings about pairs at a point.
+pub(super) fn findings(instance: &Instance, square: bool, x: &[f64]) -> Vec<Finding> {
+    if let Some(f) = no_value(instance, x) {
+        return vec![f];
+    }
+    let Ok(row_of) = match_rows(instance, square) else {
+        return Vec::new();
+    };
+    let mut evaluator = Evaluator::new(instance);
+    let mut activity = vec![0.0; instance.row_count()];
+    let (start, column) = evaluator.jacobian_pattern();
+    let (start, column) = (start.to_vec(), column.to_vec());
+    let mut values = vec![0.0; column.len()];
+    if evaluator.rows(x, &mut activity).is_err() || evaluator.jacobian(x, &mut values).is_err() {
+        return Vec::new();
+    }
+    let n = instance.column_count();
+    let mut out = Vec::new();
+    let mut worst = Vec::new();
+    // Columns whose row must hold as an equation.
+    let mut open = Vec::new();
+    for j in 0..n {
+        let (mut l, mut u) = (instance.columns.lower[j], instance.columns.upper[j]);
+        if square && l < u {
+            (l, u) = (f64::NEG_INFINITY, f64::INFINITY);
+        }
+        let row = row_of[j].map(|i| i as usize);
+        let f = row.map_or(0.0, |i| activity[i] - instance.rows.rhs[i]);
+        let mid = (x[j] - f).max(l).min(u);
+        worst.push((row, j, (x[j] - mid).abs()));
+        let held = (x[j] <= l && f >= 0.0) || (x[j] >= u && f <= 0.0);
+        if let (Some(i), false) = (row, held || l == u) {
+            open.push((i, j));
+        }
+    }
+    let worst = largest(&worst, |w| if w.2 > 1e-9 { w.2 } else { 0.0 });
+    if !worst.is_empty() {
+        out.push(Finding::Pairs(worst));
+    }
+    // The Jacobian of the open pairs, by rows.
+    let mut place = vec![usize::MAX; n];
+    for (k, &(_, j)) in open.iter().enumerate() {
+        place[j] = k;
+    }
+    let lines: Vec<Entries> = open
+        .iter()
+        .map(|&(i, _)| {
+            (start[i]..start[i + 1])
+                .filter(|&k| place[column[k] as usize] != usize::MAX)
+                .map(|k| (place[column[k] as usize], values[k]))
+                .collect()
+        })
+        .collect();
+    if let Some((rows, columns)) = short_of_columns(&lines) {
+        out.push(Finding::Structural {
+            rows: rows.iter().take(FEW).map(|&k| open[k].0).collect(),
+            columns: columns.iter().take(FEW).map(|&k| open[k].1).collect(),
+        });
+    } else if !open.is_empty() {
+        let mut by_column: Vec<Entries> = vec![Vec::new(); open.len()];
+        for (r, line) in lines.iter().enumerate() {
+            let top = line.iter().fold(0.0f64, |t, e| t.max(e.1.abs()));
+            for &(c, v) in line.iter().filter(|e| e.1 != 0.0) {
+                by_column[c].push((r, v / top));
+            }
+        }
+        if let Err(Failure::Dependent(list)) = Factor::new(open.len(), &by_column) {
+            out.push(Finding::Singular {
+                rows: list.iter().take(FEW).map(|&(_, r)| open[r].0).collect(),
+                columns: list.iter().take(FEW).map(|&(s, _)| open[s].1).collect(),
+            });
+        }
+    }
+    let mut wrong = Vec::new();
+    for (j, row) in row_of.iter().enumerate() {
+        let Some(i) = row.map(|i| i as usize) else {
+            continue;
+        };
+        let (l, u) = (instance.columns.lower[j], instance.columns.upper[j]);
+        let bounded = l.is_finite() || u.is_finite();
+        let own = (start[i]..start[i + 1]).find(|&k| column[k] as usize == j);
+        if let (true, Some(k)) = (bounded && l < u && !square, own)
+            && values[k] < 0.0
+        {
+            wrong.push((i, j, values[k]));
+        }
+    }
+    let wrong = largest(&wrong, |w| -w.2);
+    if !wrong.is_empty() {
+        out.push(Finding::WrongWay(wrong));
+    }
+    out
+}
+
+/// Rows that together have fewer columns than they are, and these columns. None: a perfect matching
+/// exists. An entry counts where its number is not 0.
+fn short_of_columns(lines: &[Entries]) -> Option<(Vec<usize>, Vec<usize>)> {
+    let n = lines.len();
+    let mut row_of: Vec<Option<usize>> = vec![None; n];
+    for r in 0..n {
+        // Breadth first along alternating paths from row r.
+        let mut from: Vec<Option<usize>> = vec![None; n];
+        let mut seen = vec![r];
+        let mut at = 0;
+        let mut end = None;
+        'search: while at < seen.len() {
+            let row = seen[at];
+            at += 1;
+            for &(c, _) in lines[row].iter().filter(|e| e.1 != 0.0) {
+                if from[c].is_some() {
+                    continue;
+                }
+                from[c] = Some(row);
+                match row_of[c] {
+                    None => {
+                        end = Some(c);
+                        break 'search;
+                    }
+                    Some(next) => seen.push(next),
+                }
+            }
+        }
+        let Some(mut c) = end else {
+            let mut columns: Vec<usize> = (0..n).filter(|&c| from[c].is_some()).collect();
+            columns.sort_unstable();
+            seen.sort_unstable();
+            return Some((seen, columns));
+        };
+        // Turn the path over.
+        while let Some(row) = from[c] {
+            let before = row_of.iter().position(|&m| m == Some(row));
+            row_of[c] = Some(row);
+            match before {
+                Some(b) if b != c && row != r => {
+                    row_of[b] = None;
+                    c = b;
+                }
+                _ => break,
+            }
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::short_of_columns;
+
+    #[test]
+    fn finds_rows_that_share_too_few_columns() {
+        let line = |columns: &[usize]| columns.iter().map(|&c| (c, 1.0)).collect();
+        let full = [line(&[0, 1]), line(&[0]), line(&[1, 2])];
+        assert_eq!(short_of_columns(&full), None);
+        let long = [line(&[0, 1]), line(&[1, 2]), line(&[0]), line(&[2, 3])];
+        assert_eq!(short_of_columns(&long), None);
+        let short = [line(&[0, 2]), line(&[1]), line(&[1])];
+        assert_eq!(short_of_columns(&short), Some((vec![1, 2], vec![1])));
+    }
+}
