@@ -4,6 +4,9 @@
 //!     max t,   every inequality with slack ≥ t,   t ≤ 1
 //! ```
 //!
+//! Mixing such a point in costs the difference of the objective, so a point is sought first among
+//! those whose objective is at most twice the optimal one.
+//!
 //! Where that gives t = 0, some inequalities hold with equality at every point. Then each has its
 //! own t_i ≤ 1 and their sum is maximised (Freund, Roundy & Todd 1985): what is still without slack
 //! is held as an equation.
@@ -16,21 +19,29 @@ use super::polyhedron::Polyhedron;
 pub const SLACK: f64 = 1e-7;
 
 /// A point with room around it, as nearly as floating-point numbers go. None: none was found.
+/// `near` is a point that is (nearly) optimal.
 pub fn point(
     poly: &Polyhedron,
+    near: &[f64],
     limits: &Limits,
     interrupted: &mut dyn FnMut() -> bool,
 ) -> Option<Vec<f64>> {
-    let (x, slack) = search(poly, false, limits, interrupted)?;
-    if slack > SLACK {
-        return Some(x);
+    let value: f64 = poly.cost.iter().zip(near).map(|(c, x)| c * x).sum();
+    let limit = value + if value == 0.0 { 1.0 } else { value.abs() };
+    for limit in [limit, f64::INFINITY] {
+        if let Some((x, slack)) = search(poly, false, limit, limits, interrupted)
+            && slack > SLACK
+        {
+            return Some(x);
+        }
     }
-    Some(search(poly, true, limits, interrupted)?.0)
+    Some(search(poly, true, f64::INFINITY, limits, interrupted)?.0)
 }
 
 fn search(
     poly: &Polyhedron,
     each: bool,
+    limit: f64,
     limits: &Limits,
     interrupted: &mut dyn FnMut() -> bool,
 ) -> Option<(Vec<f64>, f64)> {
@@ -84,6 +95,12 @@ fn search(
         if sides[0] != sides[1] && sides.iter().any(|s| s.is_finite()) {
             line(vec![(j, 1.0)], sides, &mut p);
         }
+    }
+    if limit.is_finite() {
+        let cost = poly.cost.iter().copied().enumerate();
+        p.rows.push(cost.filter(|c| c.1 != 0.0));
+        p.row_lower.push(f64::NEG_INFINITY);
+        p.row_upper.push(limit);
     }
     p.columns = p.rows.transpose(p.cost.len());
     let run = interior::solve(&p, 1e-9, limits, interrupted);

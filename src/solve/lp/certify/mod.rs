@@ -24,11 +24,13 @@ mod inner;
 mod polyhedron;
 mod system;
 
-use super::form::{Form, Problem};
+use super::crossover;
+use super::form::{Form, Point, Problem};
 use super::scale::Scaling;
-use super::{Limits, SolveError};
+use super::simplex::{Simplex, Wide};
+use super::{Ended, Limits, SolveError, watch};
 use crate::model::instance::Instance;
-use crate::solve::interval::{Interval, WideSum};
+use crate::solve::interval::{Interval, WideSum, two_sum};
 use crate::solve::{Monitor, Outcome, Settings};
 use polyhedron::Polyhedron;
 use system::System;
@@ -133,11 +135,12 @@ pub(super) fn certify_by(
             (upper, lower) = (value.upper, value.lower);
         }
         let near = scaling.carry(form.near(outcome));
+        let [x, y] = vertex(&p, near, &limits, monitor);
         if upper.is_err() {
-            upper = side(&p, &Polyhedron::primal(&p), &near.x, &limits, monitor, true);
+            upper = side(&p, &Polyhedron::primal(&p), x, &limits, monitor, true);
         }
         if lower.is_err() {
-            lower = side(&p, &Polyhedron::dual(&p), &near.y, &limits, monitor, false);
+            lower = side(&p, &Polyhedron::dual(&p), y, &limits, monitor, false);
         }
         let missing = upper.is_err() || lower.is_err();
         if missing
@@ -182,11 +185,43 @@ pub(super) fn certify_by(
     Ok(proof)
 }
 
+/// The vertex at a point (if there are several optimal ones, a vertex of the same value), to nearly
+/// twice the working precision: what rounding violates is not in the way then. The point itself
+/// where none is found.
+fn vertex(p: &Problem, near: Point, limits: &Limits, monitor: &mut dyn Monitor) -> [Wide; 2] {
+    let (states, values) = crossover::basis(p, &near);
+    let mut simplex = Simplex::new(p);
+    // A few pivots settle which of the columns at 0 are basic.
+    let most = Limits {
+        iterations: limits.iterations.min((p.m() + p.n()) as u64),
+        ..*limits
+    };
+    let _ = simplex.push(&states, &values, &mut watch(&most, monitor));
+    let solved = simplex.solve(&mut watch(&most, monitor)) == Ended::Solved;
+    if solved {
+        let tolerances = [
+            (1e-11, 1e-11),
+            (1e-13, 1e-12),
+            (1e-14, 1e-13),
+            (1e-14, 1e-14),
+        ];
+        simplex.tighten_to(&tolerances, &mut watch(&most, monitor));
+    }
+    let wide = simplex.wide_point().filter(|_| solved);
+    monitor.log(&format!("vertex: {} pivots", simplex.iterations));
+    wide.unwrap_or_else(|| {
+        [near.x, near.y].map(|v| {
+            let zero = vec![0.0; v.len()];
+            (v, zero)
+        })
+    })
+}
+
 /// A point near `near` that is proved to be in the polyhedron, and its value.
 fn side(
     p: &Problem,
     poly: &Polyhedron,
-    near: &[f64],
+    (mut near, mut near_low): Wide,
     limits: &Limits,
     monitor: &mut dyn Monitor,
     primal: bool,
@@ -202,13 +237,12 @@ fn side(
     } else {
         "no multipliers with room inside their bounds were found"
     };
-    let Some(inner) = inner::point(poly, limits, &mut || monitor.interrupted()) else {
+    let Some(inner) = inner::point(poly, &near, limits, &mut || monitor.interrupted()) else {
         return fail(nothing, None, None);
     };
     // Room of a variable or row between its sides, at both points.
     let room = |l: f64, u: f64, a: f64, b: f64| (a - l).min(u - a).max((b - l).min(u - b));
     let mut free = Vec::with_capacity(poly.n());
-    let mut near: Vec<f64> = near.to_vec();
     let mut inner = inner;
     for j in 0..poly.n() {
         let (l, u) = (poly.lower[j], poly.upper[j]);
@@ -217,10 +251,8 @@ fn side(
         if held {
             // Held where it is.
             let at = if near[j] - l <= u - near[j] { l } else { u };
-            near[j] = at;
+            (near[j], near_low[j]) = (at, 0.0);
             inner[j] = at;
-        } else {
-            near[j] = near[j].max(l).min(u);
         }
         free.push(if held { 0.0 } else { r.min(1.0) });
     }
@@ -249,41 +281,42 @@ fn side(
         }
         Err(None) => return fail("the equations could not be solved reliably", None, None),
     };
-    let mut last = fail(nothing, None, None);
-    let steps = (0..13).map(|k| 2f64.powi(-48 + 4 * k));
-    for theta in std::iter::once(0.0).chain(steps) {
+    let what = if primal { "point" } else { "multipliers" };
+    monitor.log(&format!(
+        "{what}: {} equations verified after {:.2} s",
+        system.rows().len(),
+        limits.start.elapsed().as_secs_f64()
+    ));
+    let mut at = |theta: f64| {
         let mut x = Enclosed {
             high: Vec::with_capacity(poly.n()),
             low: Vec::with_capacity(poly.n()),
             radius: vec![0.0; poly.n()],
             target: target.clone(),
         };
-        for (&a, &b) in near.iter().zip(&inner) {
-            let step = if theta == 0.0 { 0.0 } else { theta * (b - a) };
-            let (high, low) = crate::solve::interval::two_sum(a, step);
+        for ((&a, &a_low), &b) in near.iter().zip(&near_low).zip(&inner) {
+            let (high, low) = two_sum(a, theta * (b - a));
+            let (high, low) = two_sum(high, low + a_low);
             x.high.push(high);
             x.low.push(low);
         }
-        // Columns that do not move need one number only.
-        let mut moves = vec![false; poly.n()];
-        system.basis.iter().for_each(|&j| moves[j] = true);
-        for j in (0..poly.n()).filter(|&j| !moves[j]) {
-            x.low[j] = 0.0;
-        }
-        if system.enclose(poly, &mut x).is_none() {
-            break;
-        }
+        system.enclose(poly, &mut x).ok_or((None, None))?;
         match outside(poly, &x, &system) {
-            None => {
-                return Ok(if primal {
-                    polyhedron::primal_value(p, &x)
-                } else {
-                    polyhedron::dual_value(p, &x)
-                });
+            None if primal => Ok(polyhedron::primal_value(p, &x)),
+            None => Ok(polyhedron::dual_value(p, &x)),
+            Some(place) => Err(place),
+        }
+    };
+    let coarse = (0..24).map(|k| 2f64.powi(-92 + 4 * k));
+    let mut last = fail(nothing, None, None);
+    for theta in std::iter::once(0.0).chain(coarse) {
+        match at(theta) {
+            Ok(value) => {
+                // What is mixed in costs; less of it may do.
+                let finer = [0.125, 0.25, 0.5].iter().find_map(|f| at(theta * f).ok());
+                return Ok(finer.unwrap_or(value));
             }
-            Some((row, column)) => {
-                last = fail("rounding decides whether it holds", row, column);
-            }
+            Err((row, column)) => last = fail("rounding decides whether it holds", row, column),
         }
     }
     last

@@ -18,6 +18,9 @@ pub struct Polyhedron {
     pub row_upper: Vec<f64>,
     pub rows: Sparse,
     pub columns: Sparse,
+    /// What a step costs, for choosing a point that costs little: c, and −b on the dual side, as far
+    /// as that is linear.
+    pub cost: Vec<f64>,
     /// For each row the row (or, on the dual side, the column) of the program it stands for.
     pub origin: Vec<usize>,
 }
@@ -32,6 +35,7 @@ impl Polyhedron {
             row_upper: p.row_upper.clone(),
             rows: p.rows.clone(),
             columns: p.columns.clone(),
+            cost: p.cost.clone(),
             origin: (0..p.m()).collect(),
         }
     }
@@ -46,10 +50,18 @@ impl Polyhedron {
             row_upper: Vec::new(),
             rows: Sparse::new(),
             columns: Sparse::new(),
+            cost: Vec::with_capacity(p.m()),
             origin: Vec::new(),
         };
         for i in 0..p.m() {
             let (l, u) = (p.row_lower[i].is_finite(), p.row_upper[i].is_finite());
+            let (low, high) = (p.row_lower[i], p.row_upper[i]);
+            d.cost.push(match (l, u) {
+                (true, true) if low < high => 0.0,
+                (true, _) => -low,
+                (_, true) => -high,
+                _ => 0.0,
+            });
             // Only the side that is there may be priced.
             d.lower.push(side(!u && l, f64::NEG_INFINITY));
             d.upper.push(side(!l && u, f64::INFINITY));

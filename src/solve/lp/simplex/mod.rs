@@ -29,6 +29,7 @@ mod push;
 use super::Ended;
 use super::form::{Point, Problem, Sparse};
 use crate::model::sum::Sum;
+use crate::solve::interval::{WideSum, two_sum};
 use factor::{Entries, Factor, Failure};
 
 /// Where a variable is in a basis.
@@ -46,6 +47,9 @@ pub enum State {
 
 /// A basis: one state per column, then one per row.
 pub type Basis = Vec<State>;
+
+/// Numbers as pairs `high + low`.
+pub type Wide = (Vec<f64>, Vec<f64>);
 
 /// Position in the basis of a variable that is in none.
 const NONBASIC: u32 = u32::MAX;
@@ -399,8 +403,17 @@ impl Simplex {
     /// and on walls that sum is in the thousands. Where the numbers do not allow it, the first
     /// basis stays. Returns whether they did.
     pub fn tighten(&mut self, stop: &mut dyn FnMut(u64) -> Option<Ended>) -> bool {
+        self.tighten_to(&[(1e-11, 1e-11), (1e-13, 1e-12)], stop)
+    }
+
+    /// The same for a sequence of primal and dual tolerances.
+    pub fn tighten_to(
+        &mut self,
+        tolerances: &[(f64, f64)],
+        stop: &mut dyn FnMut(u64) -> Option<Ended>,
+    ) -> bool {
         let usual = (self.tolerance, self.dual_tolerance);
-        for (primal, dual) in [(1e-11, 1e-11), (1e-13, 1e-12)] {
+        for &(primal, dual) in tolerances {
             let basis = self.basis();
             (self.tolerance, self.dual_tolerance) = (primal, dual);
             let ended = self.rounds(0, stop);
@@ -463,6 +476,60 @@ impl Simplex {
             y,
             d,
         })
+    }
+
+    /// The point of the present basis for the true costs and bounds, x and y as pairs of numbers,
+    /// right to nearly twice the working precision.
+    pub fn wide_point(&mut self) -> Option<[Wide; 2]> {
+        self.restore()?;
+        let total = self.n + self.m;
+        let mut low = vec![0.0; total];
+        let shift = |high: &mut f64, low: &mut f64, step: f64| {
+            let (s, e) = two_sum(*high, step);
+            (*high, *low) = two_sum(s, *low + e);
+        };
+        for _ in 0..4 {
+            let mut rests = Vec::with_capacity(self.m);
+            for i in 0..self.m {
+                let logical = self.n + i;
+                let mut sum = WideSum::new(self.x[logical]);
+                sum.add(low[logical]);
+                for (j, a) in self.rows.line(i) {
+                    sum.add_product(-a, self.x[j]);
+                    sum.add_product(-a, low[j]);
+                }
+                rests.push(sum.value().middle());
+            }
+            self.factor.as_mut()?.forward_dense(&mut rests)?;
+            for (k, &j) in self.head.iter().enumerate() {
+                let j = j as usize;
+                shift(&mut self.x[j], &mut low[j], rests[k]);
+            }
+        }
+        let (mut y, mut y_low) = (vec![0.0; self.m], vec![0.0; self.m]);
+        for _ in 0..5 {
+            let mut rests = Vec::with_capacity(self.m);
+            for &j in &self.head {
+                let j = j as usize;
+                let mut sum = WideSum::new(self.cost[j]);
+                if j < self.n {
+                    for (i, a) in self.columns.line(j) {
+                        sum.add_product(-a, y[i]);
+                        sum.add_product(-a, y_low[i]);
+                    }
+                } else {
+                    sum.add(y[j - self.n]);
+                    sum.add(y_low[j - self.n]);
+                }
+                rests.push(sum.value().middle());
+            }
+            self.factor.as_mut()?.backward_dense(&mut rests)?;
+            for (i, &r) in rests.iter().enumerate() {
+                shift(&mut y[i], &mut y_low[i], r);
+            }
+        }
+        low.truncate(self.n);
+        Some([(self.x[..self.n].to_vec(), low), (y, y_low)])
     }
 
     /// Pivot row of a slot: `row[j]` = ρᵀa_j for all nonbasic j, with ρ the row of the inverse.
