@@ -407,7 +407,11 @@ fn explained(c: &Claims, solves: &[SolveReport]) -> Vec<String> {
         };
         let found: Vec<usize> = whys()
             .filter(shown)
-            .map(|w| w.text[0].matches("(times ").count())
+            .map(|w| {
+                let first = w.text[0].split(':').next().unwrap_or("");
+                let counts = first.split_whitespace().take_while(|t| *t != "with");
+                counts.filter_map(|t| t.parse::<usize>().ok()).sum()
+            })
             .collect();
         if !found.contains(&count) {
             wrong.push(format!("irreducible sets of {found:?}, should be {count}"));

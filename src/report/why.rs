@@ -1,5 +1,7 @@
 //! `bmod why` in sentences: findings of [`crate::solve::why`] with names and numbers.
 
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 
 use super::names::Names;
@@ -235,7 +237,29 @@ impl Explanation {
             (_, false) => "contradict each other; perhaps not all of them are needed for that",
         };
         let mut text = format!("{} {alone}:", what.join(" and "));
+        // Many bounds of one symbol that are alike take one line.
+        let mut alike: BTreeMap<String, usize> = BTreeMap::new();
+        let key = |m: Member| match m {
+            Member::Row(_) => None,
+            Member::Lower(j) => Some((names.column_parts(j).0, "least", instance.columns.lower[j])),
+            Member::Upper(j) => Some((names.column_parts(j).0, "most", instance.columns.upper[j])),
+        };
+        let key = |m: Member| key(m).map(|(s, side, v)| format!("{s}, at {side} {}", digits(v)));
+        for k in members.iter().filter_map(|m| key(m.0)) {
+            *alike.entry(k).or_default() += 1;
+        }
         for &(m, v) in members {
+            if let Some(k) = key(m)
+                && let Some(count) = alike.get_mut(&k).filter(|c| **c > 4 || **c == 0)
+            {
+                let (Member::Row(j) | Member::Lower(j) | Member::Upper(j)) = m;
+                let name = self.column(j, names);
+                if *count > 0 {
+                    text.push_str(&format!("\n    {k}: {count} of them, as {name}"));
+                    *count = 0;
+                }
+                continue;
+            }
             let line = match m {
                 Member::Row(i) => format!("{} {}", self.row(i, names), relation(instance, i)),
                 Member::Lower(j) => {

@@ -239,3 +239,63 @@ fn test(
         _ => Tested::Unknown,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::instance::{Relation, Sense};
+    use crate::solve::conformance::{Quiet, linear};
+    use crate::solve::lp::Clarabel;
+    use crate::solve::{Claim, Solver};
+
+    /// Whether the members alone can be satisfied, asked of the whole solver.
+    fn satisfiable(instance: &Instance, members: &[Member]) -> bool {
+        let mut i = instance.clone();
+        for j in 0..i.column_count() {
+            if !members.contains(&Member::Lower(j)) {
+                i.columns.lower[j] = f64::NEG_INFINITY;
+            }
+            if !members.contains(&Member::Upper(j)) {
+                i.columns.upper[j] = f64::INFINITY;
+            }
+        }
+        for r in 0..i.row_count() {
+            // The last row defines the objective and contradicts nothing.
+            if !members.contains(&Member::Row(r)) && r + 1 < i.row_count() {
+                i.rows.relation[r] = Relation::Free;
+            }
+        }
+        let o = Clarabel.solve(&i, &Settings::default(), &mut Quiet);
+        o.expect("a linear instance").claim != Claim::Infeasible
+    }
+
+    #[test]
+    fn every_member_is_needed() {
+        let inf = f64::INFINITY;
+        let rows = [
+            (vec![1., 1., 0.], Relation::Less, 4.),
+            (vec![0., 1., 1.], Relation::Greater, 9.),
+            (vec![1., 0., -1.], Relation::Equal, 0.),
+            (vec![1., 1., 1.], Relation::Less, 100.),
+            (vec![1., 2., 3.], Relation::Greater, 1.),
+        ];
+        let bounds = [(0., 3.), (-5., 50.), (0., inf)];
+        let instance = linear(Sense::Minimize, &[1., 1., 1.], &bounds, &rows);
+        let found = irreducible(&instance, &[], &Settings::default(), &mut Quiet);
+        let Some(Finding::Irreducible { members, shown, .. }) = found else {
+            panic!("it is infeasible: {found:?}");
+        };
+        assert!(shown);
+        let members: Vec<Member> = members.iter().map(|m| m.0).collect();
+        assert!(!satisfiable(&instance, &members));
+        for k in 0..members.len() {
+            let mut rest = members.clone();
+            rest.remove(k);
+            assert!(
+                satisfiable(&instance, &rest),
+                "{:?} is not needed",
+                members[k]
+            );
+        }
+    }
+}

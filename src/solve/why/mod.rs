@@ -114,7 +114,7 @@ pub fn findings(
             ));
         }
         ModelStatus::Unbounded | ModelStatus::UnboundedNoSolution => {
-            out.extend(point::ray(&answer.outcome.ray));
+            out.extend(point::ray(instance, &answer.outcome.ray));
         }
         _ if matches!(using, "mcp" | "cns") => {
             if !solved {

@@ -18,17 +18,23 @@ pub(super) fn largest<T: Clone>(items: &[T], size: impl Fn(&T) -> f64) -> Vec<T>
     order.into_iter().take(FEW).cloned().collect()
 }
 
-/// The direction's components, the largest first.
-pub(super) fn ray(ray: &[f64]) -> Option<Finding> {
-    let top = ray.iter().fold(0.0f64, |t, v| t.max(v.abs()));
-    let parts: Vec<(usize, f64)> = ray
-        .iter()
-        .enumerate()
+/// The direction's components: the objective's, then the largest.
+pub(super) fn ray(instance: &Instance, ray: &[f64]) -> Option<Finding> {
+    let objective = instance.objective?.column as usize;
+    let others = || ray.iter().enumerate().filter(|e| e.0 != objective);
+    let top = others().fold(0.0f64, |t, e| t.max(e.1.abs()));
+    let top = if top > 0.0 {
+        top
+    } else {
+        ray.get(objective)?.abs()
+    };
+    let all: Vec<(usize, f64)> = others()
         .filter(|(_, v)| v.abs() > 1e-9 * top)
         .map(|(j, v)| (j, v / top))
         .collect();
-    let parts = largest(&parts, |p| p.1.abs());
-    (!parts.is_empty()).then_some(Finding::Ray(parts))
+    let mut parts = vec![(objective, ray.get(objective)? / top)];
+    parts.extend(largest(&all, |p| p.1.abs()));
+    Some(Finding::Ray(parts))
 }
 
 /// Coefficients (derivatives, at the point) that are more than [`WIDE`] apart.
