@@ -42,6 +42,8 @@ pub enum Command {
     /// Runs a model and explains how each solve ended: what contradicts what, what is unbounded, where
     /// the error comes from.
     Why(WhyArgs),
+    /// Solves a model in many ways and shows how long each takes and how large its error is.
+    Bench(BenchArgs),
     /// Shows the generated rows and columns as readable algebra, with names and numbers.
     List(ListArgs),
     /// Prints a script that completes bmod's commands in a shell.
@@ -127,6 +129,35 @@ pub struct WhyArgs {
     /// Writes the report, with the explanations, as JSON; - is standard output.
     #[arg(long, value_name = "FILE|-", value_hint = ValueHint::FilePath)]
     pub json: Option<PathBuf>,
+    /// Sets an option before the first statement, as the statement `option K = V`.
+    #[arg(long, value_name = "K=V", value_parser = pair)]
+    pub option: Vec<(String, String)>,
+    /// Seconds that one solve may take.
+    #[arg(long, value_name = "S", value_parser = positive)]
+    pub time_limit: Option<f64>,
+}
+
+/// Arguments of `bmod bench`.
+#[derive(Args, Debug, Clone)]
+pub struct BenchArgs {
+    /// The model and what all commands share.
+    #[command(flatten)]
+    pub model: ModelArgs,
+    /// Solves per way; their median time counts.
+    #[arg(long, value_name = "N", default_value_t = 3)]
+    pub repeat: usize,
+    /// Only this solve of the model, counted from 1.
+    #[arg(long, value_name = "K")]
+    pub solve: Option<usize>,
+    /// Writes the table as CSV.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub csv: Option<PathBuf>,
+    /// Draws error over time, both logarithmic.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub svg: Option<PathBuf>,
+    /// The same as a PNG.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub png: Option<PathBuf>,
     /// Sets an option before the first statement, as the statement `option K = V`.
     #[arg(long, value_name = "K=V", value_parser = pair)]
     pub option: Vec<(String, String)>,

@@ -41,6 +41,7 @@ pub fn execute(cli: &Cli) -> u8 {
             }
             finished.end.exit()
         }
+        Command::Bench(a) => super::bench::bench(a),
         Command::Why(a) => super::why::why(a),
         Command::List(a) => list(a),
         Command::Completions { shell } => {
@@ -175,7 +176,7 @@ pub(super) fn write_report(finished: Finished, file: &str, path: &Path) -> u8 {
 }
 
 /// Writes a file whole or not at all.
-fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+pub(super) fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     let folder = path
         .parent()
         .filter(|p| !p.as_os_str().is_empty())

@@ -45,6 +45,11 @@ pub struct SystemHost {
     terminal: bool,
 }
 
+/// Whether Ctrl-C was pressed.
+pub fn interrupted() -> bool {
+    INTERRUPTED.load(Ordering::Relaxed)
+}
+
 /// From the first Ctrl-C on [`Host::interrupted`] is true; the second ends the process.
 pub fn watch_ctrl_c() {
     // A second handler cannot be set; the first one does the same.

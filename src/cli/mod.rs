@@ -1,6 +1,7 @@
 //! The edge of the program: arguments, files, terminal.
 
 pub mod args;
+pub mod bench;
 pub mod commands;
 pub mod host;
 pub mod why;

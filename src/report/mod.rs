@@ -9,6 +9,7 @@ pub mod listing;
 pub mod names;
 pub mod number;
 pub mod solution;
+pub mod study;
 pub mod summary;
 pub mod textfile;
 pub mod why;

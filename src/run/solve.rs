@@ -198,12 +198,13 @@ impl Machine<'_> {
     /// Options of the command line, and those of `option` statements that are a solver's.
     fn solver_options(&self) -> Vec<(String, String)> {
         let mut out = self.options.solver_options.clone();
-        out.retain(|(k, _)| !k.to_lowercase().starts_with("mpec_"));
+        let is_ours = |k: &str| k.starts_with("mpec_") || k == "lp_accuracy";
+        out.retain(|(k, _)| !is_ours(&k.to_lowercase()));
         let texts = self.options.texts.iter().map(|(k, v)| (k, v.clone()));
         let numbers = self.options.numbers.iter().map(|(k, v)| (k, v.to_string()));
         let mut own: Vec<(String, String)> = texts
             .chain(numbers)
-            .filter(|(k, _)| k.starts_with("mpec_"))
+            .filter(|(k, _)| is_ours(k))
             .map(|(k, v)| (k.clone(), v))
             .collect();
         own.sort();
@@ -514,6 +515,11 @@ impl Machine<'_> {
         });
     }
 
+    /// The solves that were kept.
+    pub fn kept(&self) -> &[KeptSolve] {
+        &self.kept
+    }
+
     /// Everything about the solves of the run, as JSON (`--solution`).
     pub fn solutions(&self, file: &str) -> String {
         let names: Vec<RunNames> = self
@@ -541,12 +547,19 @@ impl Machine<'_> {
     }
 }
 
-/// A solve that is kept for `--solution`.
+/// A solve that is kept for `--solution` and `bmod bench`.
 pub struct KeptSolve {
     model: String,
     using: &'static str,
     generated: Generated,
     answer: Answer,
+}
+
+impl KeptSolve {
+    /// The model's name, the problem type and the instance.
+    pub fn parts(&self) -> (&str, &'static str, &Instance) {
+        (&self.model, self.using, &self.generated.instance)
+    }
 }
 
 /// Names of rows and columns, made when asked for.

@@ -10,9 +10,9 @@
 //! Invariants: the same scene gives the same bytes; points that are not finite are left out, never
 //! written; every text is escaped.
 
-mod color;
+pub mod color;
 mod layout;
-mod png;
+pub mod png;
 mod svg;
 
 pub use color::Paint;

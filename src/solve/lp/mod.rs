@@ -73,13 +73,58 @@ impl Limits {
 /// The solver of linear programs, `option lp = clarabel`: small programs by the simplex method,
 /// larger ones by Clarabel's interior-point method and a finish by the simplex method.
 ///
-/// Options: `method` = `auto`, `interior`, `simplex`, `crossover`.
+/// Options: `method` = `auto`, `interior`, `simplex`, `crossover`; `tolerance` of the interior point;
+/// `lp_accuracy` = `fast`, `standard`, `high` or a tolerance (see [`Accuracy`]).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Clarabel;
 
 /// The simplex method alone, `option lp = simplex`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DualSimplex;
+
+/// How many digits are wanted, `option lp_accuracy`.
+#[derive(Clone, Copy, PartialEq, Debug)]
+enum Accuracy {
+    /// An interior point of this tolerance, or a vertex to the usual tolerances of 1e-9: digits that
+    /// a residual times the sum of all multipliers leaves.
+    Fast(f64),
+    /// A vertex whose bounds and signs hold to 1e-13: a relative error of the objective ≤ 1e-9.
+    Standard,
+    /// As near to rounding as the basis allows.
+    High,
+}
+
+impl Accuracy {
+    /// From the options; a tolerance above 1e-9 is fast, below 1e-12 high.
+    fn new(settings: &Settings) -> Result<Self, SolveError> {
+        let Some(text) = option(settings, "lp_accuracy") else {
+            return Ok(Self::Standard);
+        };
+        match (text.as_str(), text.parse::<f64>()) {
+            ("fast", _) => Ok(Self::Fast(1e-8)),
+            ("standard", _) => Ok(Self::Standard),
+            ("high", _) => Ok(Self::High),
+            (_, Ok(t)) if t > 1e-9 && t < 1.0 => Ok(Self::Fast(t)),
+            (_, Ok(t)) if (1e-12..=1e-9).contains(&t) => Ok(Self::Standard),
+            (_, Ok(t)) if t > 0.0 && t < 1e-12 => Ok(Self::High),
+            _ => Err(SolveError {
+                message: format!(
+                    "the option `lp_accuracy` takes `fast`, `standard`, `high` or a tolerance, not \
+                     `{text}`"
+                ),
+                row: None,
+                column: None,
+            }),
+        }
+    }
+}
+
+/// A solver option's text, lower case.
+fn option(settings: &Settings, name: &str) -> Option<String> {
+    let asked = settings.options.iter().rev();
+    let mut asked = asked.filter(|o| o.0.eq_ignore_ascii_case(name));
+    asked.next().map(|o| o.1.to_lowercase())
+}
 
 /// Which way to go.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -101,12 +146,7 @@ impl Solver for Clarabel {
         settings: &Settings,
         monitor: &mut dyn Monitor,
     ) -> Result<Outcome, SolveError> {
-        let asked = settings
-            .options
-            .iter()
-            .rev()
-            .find(|o| o.0.eq_ignore_ascii_case("method"));
-        let method = match asked.map(|o| o.1.to_lowercase()).as_deref() {
+        let method = match option(settings, "method").as_deref() {
             Some("interior") => Method::Interior,
             Some("crossover") => Method::Crossover,
             Some("simplex") => Method::Simplex,
@@ -158,14 +198,28 @@ fn solve(
         seconds: settings.time_limit,
         iterations: settings.iteration_limit,
     };
+    let accuracy = Accuracy::new(settings)?;
+    let tolerance = option(settings, "tolerance").and_then(|t| t.parse::<f64>().ok());
+    let tolerance = tolerance.filter(|t| *t > 0.0 && *t < 1.0);
     let form = Form::new(instance)?;
     let scaling = Scaling::new(&form.problem);
     let scaled = scaling.apply(&form.problem);
-    let answer = match method {
-        Method::Interior => interior_only(&scaled, &limits, monitor),
-        Method::Crossover => finished(&scaled, &limits, monitor),
-        Method::Simplex => simplex_only(&scaled, &limits, monitor),
-        Method::Auto => auto(&scaled, &limits, monitor),
+    let small = scaled.m() + scaled.n() <= SMALL;
+    let answer = match (method, accuracy) {
+        (Method::Interior, _) => {
+            interior_only(&scaled, tolerance.unwrap_or(1e-10), &limits, monitor)
+        }
+        (Method::Auto, Accuracy::Fast(t)) if !small => {
+            let answer = interior_only(&scaled, t, &limits, monitor);
+            match answer.ended {
+                // Whatever is no solution is looked at more closely.
+                Ended::Solved | Ended::Time | Ended::Interrupted => answer,
+                _ => finished(&scaled, accuracy, &limits, monitor),
+            }
+        }
+        (Method::Crossover, _) => finished(&scaled, accuracy, &limits, monitor),
+        (Method::Simplex, _) => simplex_only(&scaled, accuracy, &limits, monitor),
+        (Method::Auto, _) => auto(&scaled, accuracy, &limits, monitor),
     };
     let (claim, status) = match answer.ended {
         Ended::Solved if answer.almost => (Claim::Unfinished, SolverStatus::TerminatedBySolver),
@@ -221,18 +275,30 @@ fn watch<'a>(
     }
 }
 
-fn simplex_only(p: &Problem, limits: &Limits, monitor: &mut dyn Monitor) -> Answer {
+fn simplex_only(
+    p: &Problem,
+    accuracy: Accuracy,
+    limits: &Limits,
+    monitor: &mut dyn Monitor,
+) -> Answer {
     let mut simplex = Simplex::new(p);
     let ended = simplex.solve(&mut watch(limits, monitor));
     if ended == Ended::Solved {
-        tighten(&mut simplex, limits, monitor);
+        tighten(&mut simplex, accuracy, limits, monitor);
     }
     simplex_answer(simplex, ended)
 }
 
-fn tighten(simplex: &mut Simplex, limits: &Limits, monitor: &mut dyn Monitor) {
+fn tighten(simplex: &mut Simplex, accuracy: Accuracy, limits: &Limits, monitor: &mut dyn Monitor) {
+    if matches!(accuracy, Accuracy::Fast(_)) {
+        return;
+    }
     let before = simplex.iterations;
-    let tight = simplex.tighten(&mut watch(limits, monitor));
+    let mut tight = simplex.tighten(&mut watch(limits, monitor));
+    if accuracy == Accuracy::High {
+        let finest = [(1e-14, 1e-13), (1e-14, 1e-14)];
+        tight &= simplex.tighten_to(&finest, &mut watch(limits, monitor));
+    }
     let pivots = simplex.iterations - before;
     let word = if tight { "" } else { "not " };
     monitor.log(&format!(
@@ -255,10 +321,15 @@ fn simplex_answer(mut simplex: Simplex, ended: Ended) -> Answer {
     }
 }
 
-fn interior_only(p: &Problem, limits: &Limits, monitor: &mut dyn Monitor) -> Answer {
+fn interior_only(
+    p: &Problem,
+    tolerance: f64,
+    limits: &Limits,
+    monitor: &mut dyn Monitor,
+) -> Answer {
     let run = match trivial(p) {
         Some(run) => run,
-        None => interior::solve(p, 1e-10, limits, &mut || monitor.interrupted()),
+        None => interior::solve(p, tolerance, limits, &mut || monitor.interrupted()),
     };
     Answer {
         point: run.point,
@@ -274,9 +345,9 @@ const SMALL: usize = 600;
 
 /// Small programs by the simplex method, others by the interior point and its finish; where one
 /// fails the other is tried.
-fn auto(p: &Problem, limits: &Limits, monitor: &mut dyn Monitor) -> Answer {
+fn auto(p: &Problem, accuracy: Accuracy, limits: &Limits, monitor: &mut dyn Monitor) -> Answer {
     if p.m() + p.n() > SMALL {
-        return finished(p, limits, monitor);
+        return finished(p, accuracy, limits, monitor);
     }
     let mut simplex = Simplex::new(p);
     let effort = 1000 + 20 * (p.m() + p.n()) as u64;
@@ -288,17 +359,17 @@ fn auto(p: &Problem, limits: &Limits, monitor: &mut dyn Monitor) -> Answer {
     let stuck =
         ended == Ended::Failed || (ended == Ended::Iterations && effort < limits.iterations);
     if stuck {
-        return finished(p, limits, monitor);
+        return finished(p, accuracy, limits, monitor);
     }
     if ended == Ended::Solved {
-        tighten(&mut simplex, limits, monitor);
+        tighten(&mut simplex, accuracy, limits, monitor);
     }
     simplex_answer(simplex, ended)
 }
 
 /// Interior point, then a basis from it, then the simplex method.
-fn finished(p: &Problem, limits: &Limits, monitor: &mut dyn Monitor) -> Answer {
-    let mut answer = interior_only(p, limits, monitor);
+fn finished(p: &Problem, accuracy: Accuracy, limits: &Limits, monitor: &mut dyn Monitor) -> Answer {
+    let mut answer = interior_only(p, 1e-10, limits, monitor);
     let mut simplex = Simplex::new(p);
     let mut cut = *limits;
     match answer.ended {
@@ -337,7 +408,7 @@ fn finished(p: &Problem, limits: &Limits, monitor: &mut dyn Monitor) -> Answer {
         return answer;
     }
     if ended == Ended::Solved {
-        tighten(&mut simplex, limits, monitor);
+        tighten(&mut simplex, accuracy, limits, monitor);
     }
     let mut done = simplex_answer(simplex, ended);
     if done.ended == Ended::Failed {

@@ -1,0 +1,157 @@
+//! `bmod bench`: how long until the answer is good to so many digits.
+
+use std::path::Path;
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::args::{BenchArgs, EXECUTION, USAGE};
+use super::commands::{name, preprocess, tell, write_whole};
+use super::host::{Output, SystemHost, interrupted, watch_ctrl_c};
+use crate::report::figure::png;
+use crate::report::study;
+use crate::run::Options;
+use crate::session;
+use crate::solve::study::{Study, study as run_study};
+use crate::solve::{Monitor, Settings};
+
+/// Nothing is said while it is timed.
+struct Silent;
+
+impl Monitor for Silent {
+    fn log(&mut self, _: &str) {}
+
+    fn interrupted(&mut self) -> bool {
+        interrupted()
+    }
+
+    fn row_name(&self, row: usize) -> String {
+        format!("row {row}")
+    }
+
+    fn column_name(&self, column: usize) -> String {
+        format!("column {column}")
+    }
+}
+
+/// Carries out `bmod bench`; its exit status.
+pub fn bench(a: &BenchArgs) -> u8 {
+    watch_ctrl_c();
+    let Ok(out) = tempfile::tempdir() else {
+        eprintln!("bmod: no folder for temporary files");
+        return EXECUTION;
+    };
+    let mut host = SystemHost::new(
+        &a.model.file,
+        out.path(),
+        &a.model.allow_read,
+        Output::Quiet,
+    );
+    let mut options = Options {
+        keep_solutions: true,
+        quiet: true,
+        collect: false,
+        ..Options::default()
+    };
+    options.set(&a.option);
+    let file = name(&a.model);
+    let mut studies: Vec<(String, Study)> = Vec::new();
+    let mut asked_beyond = None;
+    let finished = session::run(
+        &mut host,
+        &file,
+        preprocess(&a.model),
+        options,
+        false,
+        &mut |m| {
+            let kept = m.kept();
+            if let Some(k) = a.solve.filter(|&k| k == 0 || k > kept.len()) {
+                asked_beyond = Some((k, kept.len()));
+                return;
+            }
+            for (k, solve) in kept.iter().enumerate() {
+                if a.solve.is_some_and(|wanted| wanted != k + 1) {
+                    continue;
+                }
+                let (model, using, instance) = solve.parts();
+                let title = format!("{model} using {using} ({})", short(&file));
+                let bar = ProgressBar::new(1);
+                if let Ok(style) =
+                    ProgressStyle::with_template("{bar:30} {pos}/{len}  {elapsed:>4}  {wide_msg}")
+                {
+                    bar.set_style(style);
+                }
+                let settings = Settings {
+                    time_limit: a.time_limit.unwrap_or(120.0),
+                    options: a.option.clone(),
+                    ..Settings::default()
+                };
+                let mut progress = |done: usize, total: usize, what: &str| {
+                    bar.set_length(total as u64);
+                    bar.set_position(done as u64);
+                    bar.set_message(format!("{model}: {what}"));
+                };
+                let s = run_study(
+                    using,
+                    instance,
+                    &settings,
+                    a.repeat,
+                    &mut Silent,
+                    &mut progress,
+                );
+                bar.finish_and_clear();
+                studies.push((title, s));
+                if interrupted() {
+                    break;
+                }
+            }
+        },
+    );
+    host.finish();
+    tell(&finished, a.model.message_format);
+    let mut status = finished.end.exit();
+    if let Some((k, n)) = asked_beyond {
+        eprintln!("bmod: there is no solve {k}: the model has {n}");
+        return USAGE;
+    }
+    if studies.is_empty() && status == 0 {
+        println!("Nothing was solved.");
+    }
+    for (k, (title, s)) in studies.iter().enumerate() {
+        println!("{}", study::table(title, s));
+        let files = [
+            (&a.csv, study::csv(s).into_bytes()),
+            (&a.svg, study::svg(title, s).into_bytes()),
+            (
+                &a.png,
+                match &a.png {
+                    Some(_) => png::png(&study::svg(title, s), 2.0).unwrap_or_default(),
+                    None => Vec::new(),
+                },
+            ),
+        ];
+        for (path, bytes) in files {
+            let Some(path) = path else { continue };
+            let path = numbered(path, k, studies.len());
+            if let Err(e) = write_whole(&path, &bytes) {
+                eprintln!("bmod: {} could not be written: {e}", path.display());
+                status = status.max(EXECUTION);
+            }
+        }
+    }
+    status
+}
+
+fn short(file: &str) -> String {
+    let name = Path::new(file).file_name();
+    name.map_or(file.to_string(), |n| n.to_string_lossy().into_owned())
+}
+
+/// `study.csv`, or `study-2.csv` for the second of several.
+fn numbered(path: &Path, k: usize, count: usize) -> std::path::PathBuf {
+    if count < 2 {
+        return path.to_path_buf();
+    }
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let extension = path.extension().unwrap_or_default().to_string_lossy();
+    path.with_file_name(format!("{stem}-{}.{extension}", k + 1))
+}
