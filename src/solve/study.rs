@@ -201,11 +201,11 @@ pub fn study(
             complementarity: r.complementarity.or(r.natural),
             iterations: a.outcome.iterations,
         });
-        if instance.objective.is_none() {
-            if let Some(run) = runs.last_mut() {
-                run.error = r.natural.or(r.primal);
-                run.complementarity = r.natural;
-            }
+        if instance.objective.is_none()
+            && let Some(run) = runs.last_mut()
+        {
+            run.error = r.natural.or(r.primal);
+            run.complementarity = r.natural;
         }
         if best.as_ref().is_none_or(|b| merit(&a) < merit(b)) {
             best = Some(a);

@@ -117,9 +117,8 @@ pub fn findings(
             out.extend(point::ray(instance, &answer.outcome.ray));
         }
         _ if matches!(using, "mcp" | "cns") => {
-            if !solved {
-                out.extend(pairs::findings(instance, using == "cns", x));
-            }
+            let found = (!solved).then(|| pairs::findings(instance, using == "cns", x));
+            out.extend(found.into_iter().flatten());
         }
         _ if linear => {
             // Also where the solver gave up: an infeasible program is infeasible.

@@ -174,13 +174,13 @@ fn multipliers_fail(
             return fails(Some(i), None);
         }
     }
-    for j in 0..p.n() {
+    for (j, &state) in basis.iter().enumerate().take(p.n()) {
         let mut d = rational(p.cost[j]);
         for (i, a) in p.columns.line(j).filter(|e| e.1 != 0.0) {
             work.spend(&d, &y[i])?;
             d -= rational(a) * &y[i];
         }
-        if wrong(&d, basis[j], p.lower[j] == p.upper[j]) {
+        if wrong(&d, state, p.lower[j] == p.upper[j]) {
             return fails(None, Some(j));
         }
     }

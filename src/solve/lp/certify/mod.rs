@@ -259,14 +259,14 @@ fn side(
     let mut equations = Vec::new();
     let mut target = vec![0.0; poly.m()];
     let mut unit = Vec::new();
-    for i in 0..poly.m() {
+    for (i, target) in target.iter_mut().enumerate() {
         let (l, u) = (poly.row_lower[i], poly.row_upper[i]);
         let (a, b) = (poly.activity(i, &near), poly.activity(i, &inner));
         if l == u || room(l, u, a, b) <= inner::SLACK {
-            target[i] = if a - l <= u - a { l } else { u };
+            *target = if a - l <= u - a { l } else { u };
             equations.push(i);
             let terms = poly.rows.line(i).map(|(j, v)| (v * near[j]).abs());
-            unit.push(terms.fold(target[i].abs().max(1e-3), f64::max));
+            unit.push(terms.fold(target.abs().max(1e-3), f64::max));
         }
     }
     let mut stop = || monitor.interrupted() || limits.seconds_left() <= 0.0;
