@@ -184,6 +184,11 @@ impl Compiler {
         if self.in_equation || self.modes.implicit_assign || s.has_data || s.assigned {
             return;
         }
+        // A statement that could not be read may be the one that gives it values.
+        let unread = |d: &Diagnostic| d.severity == Severity::Error && d.code < "E03";
+        if self.diagnostics.iter().any(unread) {
+            return;
+        }
         let (name, kind, declared) = (s.name.clone(), s.kind_name(), s.declared);
         let d = match s.kind {
             SymbolKind::Variable(_) | SymbolKind::Equation(_) => Diagnostic::error(

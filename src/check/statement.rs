@@ -134,7 +134,17 @@ impl Compiler {
             StmtKind::File(list) => return self.declare_files(list),
             StmtKind::Figure(f) => return self.declare_figure(f),
             StmtKind::Empty => return Ok(()),
-            StmtKind::Assign(a) => self.assign(a)?,
+            StmtKind::Assign(a) => {
+                let code = self.assign(a);
+                if code.is_err()
+                    && let Some(s) = self.symbols.find(&a.target.name.name)
+                {
+                    // It is meant to get values: no second message where it is used.
+                    let root = self.symbols.root(s);
+                    self.symbols.get_mut(root).assigned = true;
+                }
+                code?
+            }
             StmtKind::Equate(e) => return self.equate(e, span),
             StmtKind::Solve(s) => self.solve(s, span)?,
             StmtKind::Loop(d, body) => self.scoped(|c| {
