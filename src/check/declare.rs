@@ -764,23 +764,27 @@ impl Compiler {
                 self.data_label(s, position, text, *span, defines)?,
             ]]),
             KeyPart::Range { from, to, span } => {
-                let Some(labels) = range(from, to) else {
-                    return self.fail(
-                        Diagnostic::error("E0344", *span, format!("`{from}*{to}` is not a range"))
+                let labels = match range(from, to) {
+                    Ok(labels) => labels,
+                    Err(NoRange::TooLong(n)) => {
+                        let d =
+                            Diagnostic::error("E0343", *span, format!("this range has {n} labels"))
+                                .label("too many")
+                                .help(format!("{MAX_EXPANSION} are the most"));
+                        return self.fail(d);
+                    }
+                    Err(NoRange::Unlike) => {
+                        return self.fail(
+                            Diagnostic::error(
+                                "E0344",
+                                *span,
+                                format!("`{from}*{to}` is not a range"),
+                            )
                             .label("the labels must differ in one number")
                             .help("for instance `i1*i10` or `1990*2000`"),
-                    );
+                        );
+                    }
                 };
-                if labels.len() > MAX_EXPANSION {
-                    return self.fail(
-                        Diagnostic::error(
-                            "E0343",
-                            *span,
-                            format!("this range has {} labels", labels.len()),
-                        )
-                        .label("too many"),
-                    );
-                }
                 labels
                     .iter()
                     .map(|l| Ok(vec![self.data_label(s, position, l, *span, defines)?]))
@@ -1213,11 +1217,20 @@ fn letters(from: &str, to: &str) -> Option<Vec<String>> {
     Some((lo..=hi).map(spell).collect())
 }
 
+/// Why two labels span no range.
+#[derive(Debug, PartialEq)]
+enum NoRange {
+    /// They do not differ in one number.
+    Unlike,
+    /// So many labels.
+    TooLong(u64),
+}
+
 /// `i1*i10`: labels that differ in one number, up or down; leading zeros are kept.
-fn range(from: &str, to: &str) -> Option<Vec<String>> {
+fn range(from: &str, to: &str) -> Result<Vec<String>, NoRange> {
     let (a, b) = (from.as_bytes(), to.as_bytes());
     if from.eq_ignore_ascii_case(to) {
-        return Some(vec![from.to_string()]);
+        return Ok(vec![from.to_string()]);
     }
     let mut prefix = a
         .iter()
@@ -1234,16 +1247,18 @@ fn range(from: &str, to: &str) -> Option<Vec<String>> {
             .count()
     };
     if a.iter().chain(b).all(u8::is_ascii_alphabetic) {
-        return letters(from, to);
+        return letters(from, to).ok_or(NoRange::Unlike);
     }
     let (da, db) = (digits(a), digits(b));
     if da == 0 || db == 0 || !a[prefix + da..].eq_ignore_ascii_case(&b[prefix + db..]) {
-        return None;
+        return Err(NoRange::Unlike);
     }
     let (na, nb) = (&from[prefix..prefix + da], &to[prefix..prefix + db]);
-    let (lo, hi): (u64, u64) = (na.parse().ok()?, nb.parse().ok()?);
-    if lo.abs_diff(hi) > 100_000_000 {
-        return None;
+    let (Ok(lo), Ok(hi)) = (na.parse::<u64>(), nb.parse::<u64>()) else {
+        return Err(NoRange::Unlike);
+    };
+    if lo.abs_diff(hi) >= MAX_EXPANSION as u64 {
+        return Err(NoRange::TooLong(lo.abs_diff(hi).saturating_add(1)));
     }
     // A leading zero, or equal lengths, fixes the width.
     let width = if na.starts_with('0') || da == db {
@@ -1253,7 +1268,7 @@ fn range(from: &str, to: &str) -> Option<Vec<String>> {
     };
     let (head, tail) = (&from[..prefix], &from[prefix + da..]);
     let label = |k: u64| format!("{head}{k:0width$}{tail}");
-    Some(if lo <= hi {
+    Ok(if lo <= hi {
         (lo..=hi).map(label).collect()
     } else {
         (hi..=lo).rev().map(label).collect()
@@ -1270,10 +1285,10 @@ mod tests {
         assert_eq!(range("c09", "c11").unwrap(), ["c09", "c10", "c11"]);
         assert_eq!(range("s02s", "s04s").unwrap(), ["s02s", "s03s", "s04s"]);
         assert_eq!(range("1990", "1992").unwrap(), ["1990", "1991", "1992"]);
-        assert_eq!(range("a1", "b3"), None);
+        assert_eq!(range("a1", "b3"), Err(NoRange::Unlike));
         assert_eq!(range("a3", "a1").unwrap(), ["a3", "a2", "a1"]);
         assert_eq!(range("b", "d").unwrap(), ["b", "c", "d"]);
         assert_eq!(range("y", "ab").unwrap(), ["y", "z", "aa", "ab"]);
-        assert_eq!(range("d", "a"), None);
+        assert_eq!(range("d", "a"), Err(NoRange::Unlike));
     }
 }

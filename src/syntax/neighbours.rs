@@ -90,6 +90,10 @@ pub(super) fn whole_statement(f: &Failure<'_>) -> Option<Diagnostic> {
             "a loop over a set is written with `loop`",
             "write `loop(i, … );`; in an equation the index stands behind its name: `e(i).. …`",
         ),
+        ("for" | "while" | "if" | "loop", _) if body_in_braces(rest) => say(
+            "statements are not grouped by braces",
+            "they stand inside of the parentheses, after a comma: `if(c, … );`, `while(c, … );`",
+        ),
         ("for" | "while" | "if" | "loop", _) if !rest.starts_with(['(', '[', '{']) => say(
             &format!(
                 "`{}` needs parentheses around its condition and its statements",
@@ -119,6 +123,21 @@ pub(super) fn whole_statement(f: &Failure<'_>) -> Option<Diagnostic> {
         ),
         _ => equation(f, lead),
     }
+}
+
+/// `(a < 3) { …`
+fn body_in_braces(rest: &str) -> bool {
+    let mut depth = 0usize;
+    for (k, c) in rest.char_indices() {
+        match c {
+            '(' => depth += 1,
+            ')' if depth == 1 => return rest[k + 1..].trim_start().starts_with('{'),
+            ')' => depth = depth.saturating_sub(1),
+            _ if depth == 0 => return false,
+            _ => {}
+        }
+    }
+    false
 }
 
 /// `end if`: the splitter has cut before `if`.

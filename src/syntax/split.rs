@@ -277,6 +277,8 @@ impl Splitter {
             .label(format!("its `{close}` is missing"))
             .help(if open.block {
                 format!("close the block with `{close};` before the next statement")
+            } else if open.byte == b'{' {
+                "braces are parentheses here; statements that belong together stand in `loop(i, … );`, `if(c, … );`".to_string()
             } else {
                 format!("write `{close}` before the `;`")
             }),
