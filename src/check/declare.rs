@@ -1277,7 +1277,7 @@ fn range(from: &str, to: &str) -> Result<Vec<String>, NoRange> {
 
 #[cfg(test)]
 mod tests {
-    use super::range;
+    use super::{NoRange, range};
 
     #[test]
     fn ranges_keep_prefix_suffix_and_zeros() {
