@@ -484,8 +484,6 @@ fn the_models_have_their_known_answers() {
     // Many starts of one wall: minutes, for a person who asks.
     all.retain(|p| !p.ends_with("starts.blk") && !p.ends_with("friction_study.blk"));
     // Not solved to the certificate yet: ends as a feasible point, 2e-6 from stationary.
-    println!("SKIPPED: models/teaching/rocket.blk, a known gap");
-    all.retain(|p| !p.ends_with("rocket.blk"));
     hold(all);
 }
 

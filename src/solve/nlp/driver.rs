@@ -19,7 +19,7 @@ use super::problem::{Nlp, Problem};
 use super::provider::{Control, Ended, Progress, Provider, Shared, Solution, lock};
 use super::schedule::{
     AGREEMENT, BASE, BETTER, ELASTIC_AFTER, FINEST, From, MUCH, NEAR, NEARER, ROUNDING, SCHEDULE,
-    SMALL,
+    SHARP, SMALL,
 };
 use super::trial::{Trial, active_set, clean, polished, residuals_at, tidy};
 use crate::autodiff::{ErrorKind, EvalFailure, Evaluator, has_kinks};
@@ -149,6 +149,9 @@ impl Driver<'_> {
         if self.is_settled() {
             self.search()?;
             return Ok(self.finish());
+        }
+        if self.best.as_ref().is_some_and(Trial::is_nearly_optimal) {
+            self.attempt(From::Start, SHARP)?;
         }
         if self.kinks.is_some() {
             self.round_kinks()?;
@@ -506,11 +509,17 @@ impl Driver<'_> {
         };
         let residual = |t: &Trial| t.residuals.primal_relative.max(t.residuals.dual_relative);
         let nearly = residual(&best) < 1e-2 && residual(&best) > 1e-13;
-        if nearly
-            && let Some(t) = polished(self.instance, &mut problem, kinks, &best)
-            && residual(&t) < residual(&best)
-        {
-            best = t;
+        // What is active shows only so clearly: with a wider net where the narrow one is not enough.
+        for tolerance in [1e-6, 1e-5, 1e-4] {
+            if nearly
+                && let Some(t) = polished(self.instance, &mut problem, kinks, &best, tolerance)
+                && residual(&t) < residual(&best)
+            {
+                best = t;
+            }
+            if best.is_optimal() {
+                break;
+            }
         }
         clean(self.instance, &mut best);
         best

@@ -48,6 +48,9 @@ pub(super) const CENTRAL: &[(&str, &str)] = &[
     ("bound_frac", "0.5"),
 ];
 
+/// A smaller last barrier, for variables that are neither clearly at a bound nor clearly off it.
+pub(super) const SHARP: &[(&str, &str)] = &[("tol", "1e-11"), ("compl_inf_tol", "1e-12")];
+
 /// What to try when an attempt has not led to a certified point.
 pub(super) const SCHEDULE: [(From, &[(&str, &str)]); 14] = [
     (From::Consistent, &[]),

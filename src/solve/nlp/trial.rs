@@ -31,6 +31,11 @@ impl Trial {
         self.residuals.is_feasible(TOLERANCE)
     }
 
+    /// Feasible, and stationary but for a little.
+    pub(super) fn is_nearly_optimal(&self) -> bool {
+        self.is_feasible() && self.residuals.dual_relative <= 1e3 * TOLERANCE
+    }
+
     /// Whether this one is worth more than the other.
     pub(super) fn better(&self, other: &Self) -> bool {
         let rank = |t: &Self| u8::from(t.is_optimal()) + u8::from(t.is_feasible());
@@ -204,14 +209,15 @@ pub(super) fn active_set(
     Active { fixed, binding }
 }
 
-/// The trial after Newton steps on its active set.
+/// The trial after Newton steps on its active set, found to a relative tolerance.
 pub(super) fn polished(
     instance: &Instance,
     problem: &mut Problem,
     kinks: &mut Option<Evaluator>,
     t: &Trial,
+    tolerance: f64,
 ) -> Option<Trial> {
-    let mut active = active_set(instance, problem, t, 1e-6);
+    let mut active = active_set(instance, problem, t, tolerance);
     let (lower, upper) = (problem.bounds().0.to_vec(), problem.bounds().1.to_vec());
     let mut x = t.x.clone();
     let mut lambda = t.lambda.clone();
