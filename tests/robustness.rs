@@ -155,6 +155,18 @@ fn programs_are_refused() {
     );
 }
 
+/// Texts that once made a run panic.
+#[test]
+fn found_by_damage() {
+    // A variable without a domain, used as a scalar first, then with an index.
+    run(
+        "set i / a, b /;\nvariable x, z;\nequation e, o;\ne(i).. x =g= ord(i);\no.. z =e= sum(i, x(i));\n\
+         model m / all /;\nsolve m using lp minimizing z;\n",
+        5.0,
+        2000,
+    );
+}
+
 /// A word, a number, a text in quotes, blanks, or one other character.
 fn words(text: &str) -> Vec<&str> {
     let mut out = Vec::new();

@@ -428,8 +428,12 @@ impl Compiler {
 
     /// A symbol that was declared without a domain gets as many indices as its first use has.
     pub(super) fn shape(&mut self, s: SymbolId, indices: &[Expr]) {
-        let symbol = self.symbols.get(s);
-        if !symbol.open || indices.is_empty() {
+        if !self.symbols.get(s).open {
+            return;
+        }
+        if indices.is_empty() {
+            // The first use says that it has none.
+            self.symbols.get_mut(s).open = false;
             return;
         }
         // A tuple set stands for all its positions.

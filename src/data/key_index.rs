@@ -89,6 +89,17 @@ enum Shape {
     Hash(HashTable<u32>),
 }
 
+/// Whether two keys of the same length are equal, without a call for the usual lengths.
+#[inline]
+fn same(a: &[Label], b: &[Label]) -> bool {
+    match (a, b) {
+        ([a], [b]) => a == b,
+        ([a0, a1], [b0, b1]) => a0 == b0 && a1 == b1,
+        ([a0, a1, a2], [b0, b1, b2]) => a0 == b0 && a1 == b1 && a2 == b2,
+        _ => a == b,
+    }
+}
+
 #[inline]
 fn hash_key(key: &[Label]) -> u64 {
     let mut h = rustc_hash::FxHasher::default();
@@ -167,7 +178,7 @@ impl KeyIndex {
             Shape::Dense(b, place) => place[b.place(key)?].checked_sub(1),
             Shape::Hash(t) => {
                 let d = self.dim;
-                t.find(hash_key(key), |&r| keys[r as usize * d..][..d] == *key)
+                t.find(hash_key(key), |&r| same(&keys[r as usize * d..][..d], key))
                     .copied()
             }
         }

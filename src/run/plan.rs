@@ -206,7 +206,9 @@ impl Machine<'_> {
                 if used.iter().any(|s| free.contains(s)) {
                     return true;
                 }
-                steps.push(Step::Filter(*i));
+                if !self.scanned_by(&d.conditions[*i], steps) {
+                    steps.push(Step::Filter(*i));
+                }
                 false
             });
         };
@@ -303,6 +305,25 @@ impl Machine<'_> {
             ordered: order == d.slots,
             sizes,
         }
+    }
+
+    /// Whether a condition is "this record is not 0" of a record that a step scans: then it holds.
+    fn scanned_by(&self, condition: &Node, steps: &[Step]) -> bool {
+        let NodeKind::Data(t, wanted) = &condition.kind else {
+            return false;
+        };
+        let same = |(a, b): (&Part, &Part)| match (a, b) {
+            (Part::Slot(a), Part::Slot(b)) => a == b,
+            (Part::Label(a), Part::Label(b)) => a == b,
+            _ => false,
+        };
+        self.store.table(*t).default_value() == 0.0
+            && steps.iter().any(|s| match s {
+                Step::Scan { table, key, .. } => {
+                    table == t && key.iter().zip(&wanted.parts).all(same)
+                }
+                _ => false,
+            })
     }
 
     /// Whether a slot belongs to a sum inside the expression, not to the statement around.
