@@ -18,8 +18,10 @@
 //! stay on their pieces.
 
 pub mod pairs;
+pub mod pieces;
 pub mod relaxation;
 pub mod settings;
+pub mod split;
 pub mod stationarity;
 mod tree;
 
@@ -27,6 +29,7 @@ use super::answer::Answer;
 use super::lp::Ended;
 use super::{Claim, ModelStatus, Monitor, Outcome, Settings, SolveError, SolverStatus};
 use pairs::{Judged, Piece, Program};
+use pieces::{Pieces, Solution};
 use relaxation::{Kind, Relaxed};
 use settings::{Method, Options};
 use stationarity::Verdict;
@@ -118,7 +121,11 @@ impl Search<'_> {
             let clip = |j: usize| finite(c.level[j]).max(c.lower[j]).min(c.upper[j]);
             (0..c.level.len()).map(clip).collect()
         };
-        match self.options.method {
+        let method = self.options.method;
+        if matches!(method, Method::Auto | Method::Pieces) && self.supports(&start)? {
+            return self.finish();
+        }
+        match method {
             Method::Check => {
                 let start = self.program.complete(start);
                 let pieces = self.program.nearest(&start);
@@ -126,6 +133,15 @@ impl Search<'_> {
             }
             Method::Penalty => {
                 self.relax(Kind::Penalty, &start)?;
+            }
+            Method::Pieces => {
+                return Err(SolveError {
+                    message: "the method `pieces` is for linear models whose pairs couple two systems that \
+                              have no equation in common"
+                        .into(),
+                    row: None,
+                    column: None,
+                });
             }
             _ => {
                 let kind = match self.options.aggregate {
@@ -282,6 +298,133 @@ impl Search<'_> {
             best.verdict = found.verdict;
         }
         Ok(found)
+    }
+
+    /// The method of supports. False if it does not apply or finds nothing.
+    fn supports(&mut self, start: &[f64]) -> Result<bool, SolveError> {
+        let Some(mut pieces) = Pieces::new(self.program) else {
+            return Ok(false);
+        };
+        let mut candidates: Vec<Solution> = Vec::new();
+        let mut levels = vec![self.equilibrium(start)];
+        if start.iter().any(|&x| x != 0.0) {
+            levels.push(self.equilibrium(&vec![0.0; start.len()]));
+        }
+        if self.program.judge(start).feasible {
+            levels.push(Some(start.to_vec()));
+        }
+        let mut failures = 0;
+        // The swaps of a large program from one point are work enough.
+        let large = start.len() > 2000;
+        let (work, best_of, alternations) = match large {
+            true => (70_000, 1, 0),
+            false => (30_000, 2, self.options.starts),
+        };
+        let (left, begin) = (self.seconds_left(), Instant::now());
+        let monitor = &mut *self.monitor;
+        let log = self.settings.log;
+        let sign = self.program.sign();
+        let mut stop = |_| match begin.elapsed().as_secs_f64() > left {
+            true => Some(Ended::Time),
+            false => None,
+        };
+        let mut note = |what: &str, s: &Solution| {
+            if log {
+                monitor.log(&format!("{what}: {:.10}", sign * s.a.value));
+            }
+        };
+        for level in levels.into_iter().flatten() {
+            if let Some(s) = pieces.at(&level, &mut stop) {
+                note("piece at an equilibrium", &s);
+                let next = match large {
+                    true => None,
+                    false => pieces.alternate(s.b.clone(), 1e-3, &mut stop),
+                };
+                candidates.push(s);
+                if let Some(s) = next {
+                    note("alternation from there", &s);
+                    candidates.push(s);
+                }
+            }
+        }
+        for _ in 0..alternations {
+            // The second start in a row that leads nowhere is the last.
+            match pieces.random_start(&mut stop) {
+                Some(s) => {
+                    note("alternation", &s);
+                    candidates.push(s);
+                    failures = 0;
+                }
+                None if failures > 0 => break,
+                None => failures += 1,
+            }
+        }
+        candidates.sort_by(|a, b| a.a.value.total_cmp(&b.a.value));
+        candidates.dedup_by(|a, b| a.pieces == b.pieces);
+        let mut best: Option<Solution> = None;
+        let mut exhausted = false;
+        for s in candidates.into_iter().take(best_of) {
+            let s = pieces.swaps(s, work, &mut stop);
+            note(
+                if pieces.exhausted {
+                    "no swap improves"
+                } else {
+                    "swaps"
+                },
+                &s,
+            );
+            if best.as_ref().is_none_or(|b| s.a.value < b.a.value) {
+                best = Some(s);
+                exhausted = pieces.exhausted;
+            }
+        }
+        self.iterations += pieces.iterations();
+        let Some(best) = best else { return Ok(false) };
+        let mut level = start.to_vec();
+        pieces.write(&best, &mut level);
+        let mut on = best.pieces;
+        // The branch's own point of B may have a smaller support: then there is more to gain.
+        for _ in 0..20 {
+            let Some(mut found) = self.branch(on.clone(), &level)? else {
+                break;
+            };
+            level.clone_from(&found.answer.outcome.level);
+            let there = pieces.pieces_at(&level);
+            let settled = there == on && found.answer.status == ModelStatus::Optimal;
+            if settled {
+                found.verdict = Some(Stationarity::Proved);
+                if exhausted {
+                    self.notes
+                        .push("plateau: no single swap of supports improves".into());
+                }
+            } else {
+                found.verdict = Some(Stationarity::NotProved);
+            }
+            self.keep(&found);
+            if settled || there == on {
+                break;
+            }
+            on = there;
+        }
+        Ok(self.best.is_some())
+    }
+
+    /// A point that satisfies the pairs, from a start, by the complementarity solver: where the rows and
+    /// columns without partners are equally many equations and free columns.
+    fn equilibrium(&mut self, start: &[f64]) -> Option<Vec<f64>> {
+        let mut instance = self.program.instance.clone();
+        instance.objective = None;
+        instance.columns.level.copy_from_slice(start);
+        let settings = self.sub_settings(&[]);
+        let out = super::complementarity::solve(&instance, false, &settings, self.monitor).ok()?;
+        self.iterations += out.iterations;
+        let judged = self.program.judge(&out.level);
+        let value = self.program.sign() * self.program.objective(&out.level);
+        self.log(&format!(
+            "equilibrium: objective {value:.10}, natural residual {:.1e}",
+            judged.residuals.natural.unwrap_or(f64::NAN)
+        ));
+        judged.feasible.then_some(out.level)
     }
 
     fn check(&mut self, level: &[f64]) -> Verdict {

@@ -21,6 +21,12 @@ impl Simplex {
             {
                 return Stop::Ended(why);
             }
+            if self.cutoff.is_finite() && self.iterations.is_multiple_of(4) {
+                let terms = self.work_cost.iter().zip(&self.x).map(|(c, x)| c * x);
+                if terms.sum::<f64>() > self.cutoff {
+                    return Stop::Ended(Ended::Iterations);
+                }
+            }
             let Some((slot, above)) = self.leaving(&refused) else {
                 let fresh = self.factor.as_ref().is_some_and(|f| f.updates() == 0);
                 if fresh {

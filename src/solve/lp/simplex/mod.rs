@@ -110,6 +110,9 @@ pub struct Simplex {
     pub dual_tolerance: f64,
     /// Iterations so far.
     pub iterations: u64,
+    /// The dual method may give up (as if at an iteration limit) once the value is above this. The
+    /// perturbation of the costs makes that inexact: leave a margin.
+    pub cutoff: f64,
     perturb: bool,
     /// Variables that leave the basis in a repair stay where they are.
     keep_values: bool,
@@ -148,6 +151,7 @@ impl Simplex {
             tolerance: 1e-9,
             dual_tolerance: 1e-9,
             iterations: 0,
+            cutoff: f64::INFINITY,
             perturb: true,
             keep_values: false,
         };
@@ -169,6 +173,15 @@ impl Simplex {
     /// Changes the cost of a column.
     pub fn set_cost(&mut self, column: usize, cost: f64) {
         self.cost[column] = cost;
+    }
+
+    /// Takes bounds, costs and the count of iterations from another engine for the same rows.
+    pub fn copy_data(&mut self, other: &Self) {
+        self.lower.copy_from_slice(&other.lower);
+        self.upper.copy_from_slice(&other.upper);
+        self.cost.copy_from_slice(&other.cost);
+        self.iterations = other.iterations;
+        self.cutoff = other.cutoff;
     }
 
     /// The basis, to start from again.

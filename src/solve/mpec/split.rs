@@ -1,0 +1,412 @@
+//! Linear programs whose pairs couple two systems that share nothing else.
+//!
+//! In limit analysis the pairs join the statics (stresses, load factor) to the kinematics (rates of
+//! motion): y(x) ⟂ z, and no equation has both x and z in it. In general: cut the pairs; what still
+//! hangs together by rows and columns are components; if every pair joins components of different
+//! *sides*, and the objective's component is on the first side A, then for a given point of one side
+//! the pairs are nothing but bounds on the other. So
+//!
+//! * the value is α(S) = min { objective : A, pieces that B's point allows }, a linear program, and it
+//!   depends on B's point only through the set S of the pairs that it makes binding (its *support*);
+//! * fewer binding pairs give a smaller α.
+//!
+//! **Stationarity.** Near a point of B the support can only grow. So the optimum of A's program on the
+//! support of B's point is a local minimum of the whole (in the topology of both), proved by that
+//! one linear program and its multipliers, with no enumeration of the biactive pairs.
+
+use super::pairs::{Piece, Program};
+use crate::model::instance::Relation;
+use crate::solve::lp::Ended;
+use crate::solve::lp::form::{Problem, Sparse};
+use crate::solve::lp::simplex::{Basis, Simplex, State};
+
+/// A value this close to a bound is on it. Simplex solutions have their nonbasic variables exactly
+/// there; this is for degenerate basic ones.
+const ZERO: f64 = 1e-9;
+
+/// One of the two systems.
+pub struct Side {
+    simplex: Simplex,
+    /// Whether a program that does not get ready is tried again from a fresh start.
+    pub patient: bool,
+    /// Basis to start from: of the last solution, or set by the caller.
+    pub basis: Option<Basis>,
+    problem: Problem,
+    /// Column of the instance of each column.
+    pub columns: Vec<usize>,
+    /// Variable of each pair: a column, or n + a row.
+    variable: Vec<usize>,
+    /// Whether it is the row of the pair that is on this side.
+    has_row: Vec<bool>,
+}
+
+/// A solution of one side.
+#[derive(Clone, Debug)]
+pub struct Point {
+    /// Of the side's columns.
+    pub x: Vec<f64>,
+    /// Cost, without what was added to it.
+    pub value: f64,
+    /// The variable of each pair: x, or F.
+    pub pair: Vec<f64>,
+    /// Derivative of the cost with respect to it, where it rests at a bound.
+    pub reduced: Vec<f64>,
+}
+
+/// Both sides.
+pub struct Split {
+    /// With the objective.
+    pub a: Side,
+    /// The other one.
+    pub b: Side,
+    /// Bounds of each pair's column.
+    pub bounds: Vec<(f64, f64)>,
+}
+
+impl Split {
+    /// None if the program is not linear or does not come apart.
+    pub fn new(program: &Program) -> Option<Self> {
+        let instance = &program.envelope;
+        if !instance.is_linear() || program.pairs.is_empty() {
+            return None;
+        }
+        let z = instance.objective?.column as usize;
+        let (m, n) = (instance.row_count(), instance.column_count());
+        // Components by union of columns (0 … n−1) and rows (n … n+m−1).
+        let mut parent: Vec<usize> = (0..n + m).collect();
+        for i in 0..m {
+            for (j, _) in instance.matrix.row(i) {
+                if instance.columns.lower[j] < instance.columns.upper[j] {
+                    let (a, b) = (root(&mut parent, j), root(&mut parent, n + i));
+                    parent[a] = b;
+                }
+            }
+        }
+        // Sides by walking along the pairs from the objective's component.
+        let mut joined: Vec<Vec<usize>> = vec![Vec::new(); n + m];
+        for p in &program.pairs {
+            let (a, b) = (root(&mut parent, p.column), root(&mut parent, n + p.row));
+            joined[a].push(b);
+            joined[b].push(a);
+        }
+        let mut side: Vec<Option<bool>> = vec![None; n + m];
+        let mut queue = Vec::new();
+        // What no pair joins to the objective may be anywhere.
+        for start in std::iter::once(z).chain(0..n + m) {
+            let r = root(&mut parent, start);
+            if side[r].is_none() {
+                side[r] = Some(true);
+                queue.push(r);
+            }
+            while let Some(c) = queue.pop() {
+                for &d in &joined[c] {
+                    if side[d].is_none() {
+                        side[d] = side[c].map(|here| !here);
+                        queue.push(d);
+                    } else if side[d] == side[c] {
+                        return None;
+                    }
+                }
+            }
+        }
+        let mut on_a = |k: usize| side[root(&mut parent, k)] == Some(true);
+        let place: Vec<bool> = (0..n + m).map(&mut on_a).collect();
+        let make = |which: bool| Side::new(program, &place, which);
+        Some(Self {
+            a: make(true),
+            b: make(false),
+            bounds: program.pairs.iter().map(|p| (p.lower, p.upper)).collect(),
+        })
+    }
+
+    /// The pieces that a point of a side allows the other one; for a point on several the one that
+    /// restricts the other side least.
+    pub fn pieces(&self, side: &Side, point: &Point) -> Vec<Piece> {
+        let piece = |k: usize| {
+            let v = point.pair[k];
+            let (l, u) = self.bounds[k];
+            if side.has_row[k] {
+                if v > ZERO {
+                    Piece::Lower
+                } else if v < -ZERO {
+                    Piece::Upper
+                } else {
+                    Piece::Inside
+                }
+            } else if l.is_finite() && v - l <= ZERO * l.abs().max(1.0) {
+                Piece::Lower
+            } else if u.is_finite() && u - v <= ZERO * u.abs().max(1.0) {
+                Piece::Upper
+            } else {
+                Piece::Inside
+            }
+        };
+        (0..self.bounds.len()).map(piece).collect()
+    }
+
+    /// Pairs whose piece, given by a point of `side`, restricts the other side.
+    pub fn binds(&self, side: &Side, k: usize, piece: Piece) -> bool {
+        side.has_row[k] != (piece == Piece::Inside)
+    }
+
+    /// Weights on the pairs' variables of the other side under which the sum of products with this
+    /// side's point is least where it is 0; up to a constant.
+    pub fn weights(&self, side: &Side, point: &Point) -> Vec<f64> {
+        let weight = |k: usize| {
+            let v = point.pair[k];
+            let (l, u) = self.bounds[k];
+            match side.has_row[k] {
+                // F·x
+                true if v.abs() > ZERO => v,
+                true => 0.0,
+                // (x − l)·F, with F ≥ 0; −(u − x)·F, with F ≤ 0
+                false if u.is_infinite() && v - l > ZERO => v - l,
+                false if l.is_infinite() && u - v > ZERO => v - u,
+                false => 0.0,
+            }
+        };
+        (0..self.bounds.len()).map(weight).collect()
+    }
+
+    /// Σ |F|·distance over the pairs.
+    pub fn gap(&self, a: &Point, b: &Point) -> f64 {
+        let product = |k: usize| {
+            let (x, f) = match self.a.has_row[k] {
+                true => (b.pair[k], a.pair[k]),
+                false => (a.pair[k], b.pair[k]),
+            };
+            let (l, u) = self.bounds[k];
+            let room = if f > 0.0 { x - l } else { u - x };
+            if f.abs() <= ZERO || room.abs() <= ZERO {
+                0.0
+            } else {
+                (f * room).abs()
+            }
+        };
+        (0..self.bounds.len()).map(product).sum()
+    }
+}
+
+fn root(parent: &mut [usize], mut k: usize) -> usize {
+    while parent[k] != k {
+        parent[k] = parent[parent[k]];
+        k = parent[k];
+    }
+    k
+}
+
+impl Side {
+    fn new(program: &Program, on_a: &[bool], which: bool) -> Self {
+        let instance = &program.envelope;
+        let (m, n) = (instance.row_count(), instance.column_count());
+        let columns: Vec<usize> = (0..n).filter(|&j| on_a[j] == which).collect();
+        let rows: Vec<usize> = (0..m).filter(|&i| on_a[n + i] == which).collect();
+        let mut column_at = vec![usize::MAX; n];
+        let mut row_at = vec![usize::MAX; m];
+        columns
+            .iter()
+            .enumerate()
+            .for_each(|(k, &j)| column_at[j] = k);
+        rows.iter().enumerate().for_each(|(k, &i)| row_at[i] = k);
+        let pick = |v: &[f64]| -> Vec<f64> { columns.iter().map(|&j| v[j]).collect() };
+        let mut problem = Problem {
+            cost: vec![0.0; columns.len()],
+            lower: pick(&instance.columns.lower),
+            upper: pick(&instance.columns.upper),
+            rows: Sparse::new(),
+            ..Problem::default()
+        };
+        if let Some(o) = instance.objective
+            && column_at[o.column as usize] != usize::MAX
+        {
+            problem.cost[column_at[o.column as usize]] = program.sign();
+        }
+        for &i in &rows {
+            // Fixed columns of the other side are constants here.
+            let mut constant = 0.0;
+            let mut entries = Vec::new();
+            for (j, a) in instance.matrix.row(i) {
+                match column_at[j] {
+                    usize::MAX => constant += a * instance.columns.lower[j],
+                    k => entries.push((k, a)),
+                }
+            }
+            problem.rows.push(entries);
+            let b = instance.rows.rhs[i] - constant;
+            let (lo, hi) = match instance.rows.relation[i] {
+                Relation::Equal => (b, b),
+                Relation::Greater => (b, f64::INFINITY),
+                Relation::Less => (f64::NEG_INFINITY, b),
+                Relation::Free => (f64::NEG_INFINITY, f64::INFINITY),
+            };
+            problem.row_lower.push(lo);
+            problem.row_upper.push(hi);
+        }
+        problem.columns = problem.rows.transpose(columns.len());
+        // F is the activity minus this, which stands in the row's bounds where they are finite.
+        let has_row: Vec<bool> = program
+            .pairs
+            .iter()
+            .map(|p| row_at[p.row] != usize::MAX)
+            .collect();
+        let variable = program
+            .pairs
+            .iter()
+            .zip(&has_row)
+            .map(|(p, &row)| match row {
+                true => columns.len() + row_at[p.row],
+                false => column_at[p.column],
+            });
+        Self {
+            variable: variable.collect(),
+            has_row,
+            basis: None,
+            patient: true,
+            simplex: Simplex::new(&problem),
+            columns,
+            problem,
+        }
+    }
+}
+
+/// Right-hand sides of the pairs' rows, for [`Side::solve`].
+pub fn shifts(program: &Program) -> Vec<f64> {
+    let rhs = &program.instance.rows.rhs;
+    program.pairs.iter().map(|p| rhs[p.row]).collect()
+}
+
+impl Side {
+    fn n(&self) -> usize {
+        self.problem.n()
+    }
+
+    /// The side's part of a point of the program.
+    pub fn point_at(&self, level: &[f64], rhs: &[f64]) -> Point {
+        let x: Vec<f64> = self.columns.iter().map(|&j| level[j]).collect();
+        let value = x.iter().zip(&self.problem.cost).map(|(x, c)| x * c).sum();
+        let pair = self.pairs_at(&x, rhs);
+        Point {
+            reduced: vec![0.0; pair.len()],
+            x,
+            value,
+            pair,
+        }
+    }
+
+    fn pairs_at(&self, x: &[f64], rhs: &[f64]) -> Vec<f64> {
+        let n = self.n();
+        let at = |(k, &v): (usize, &usize)| match v < n {
+            true => x[v],
+            false => {
+                let line = self.problem.rows.line(v - n);
+                line.map(|(j, a)| a * x[j]).sum::<f64>() - rhs[k]
+            }
+        };
+        self.variable.iter().enumerate().map(at).collect()
+    }
+
+    /// The engine with the present bounds and costs, and the basis of all rows.
+    fn fresh(&self) -> Simplex {
+        let mut out = Simplex::new(&self.problem);
+        out.copy_data(&self.simplex);
+        out
+    }
+
+    /// Sets a pair's bounds to those of a piece, or to the envelope's.
+    pub fn restrict(&mut self, k: usize, piece: Option<Piece>, (l, u): (f64, f64), rhs: f64) {
+        let inf = f64::INFINITY;
+        let (lo, hi) = match (self.has_row[k], piece) {
+            (true, Some(Piece::Lower)) => (rhs, inf),
+            (true, Some(Piece::Inside)) => (rhs, rhs),
+            (true, Some(Piece::Upper)) => (-inf, rhs),
+            (true, None) => (
+                if u.is_finite() { -inf } else { rhs },
+                if l.is_finite() { inf } else { rhs },
+            ),
+            (false, Some(Piece::Lower)) => (l, l),
+            (false, Some(Piece::Upper)) => (u, u),
+            (false, _) => (l, u),
+        };
+        self.simplex.set_bounds(self.variable[k], lo, hi);
+    }
+
+    /// Costs: the objective times `weight` plus a cost on each pair's variable.
+    pub fn price(&mut self, weight: f64, pairs: &[f64]) {
+        for (j, c) in self.problem.cost.iter().enumerate() {
+            self.simplex.set_cost(j, weight * c);
+        }
+        for i in 0..self.problem.m() {
+            self.simplex.set_cost(self.problem.n() + i, 0.0);
+        }
+        for (k, &w) in pairs.iter().enumerate() {
+            let v = self.variable[k];
+            let own = if v < self.problem.n() {
+                weight * self.problem.cost[v]
+            } else {
+                0.0
+            };
+            self.simplex.set_cost(v, own + w);
+        }
+    }
+
+    /// Solves from the last basis. None: infeasible, unbounded, or not solved.
+    pub fn solve(
+        &mut self,
+        rhs: &[f64],
+        stop: &mut dyn FnMut(u64) -> Option<Ended>,
+    ) -> Option<Point> {
+        // A restart takes few iterations. One that does not is not waited for: a fresh start may do.
+        let limit = 200 + (self.problem.m() + self.n()) as u64 / 4;
+        for attempt in 1..=if self.patient { 2 } else { 1 } {
+            match &self.basis {
+                Some(b) if attempt == 1 => self.simplex.set_basis(b),
+                _ => self.simplex = self.fresh(),
+            }
+            let before = self.simplex.iterations;
+            let most = before + attempt * attempt * limit;
+            let ended = self.simplex.solve(&mut |i| match i > most {
+                true => Some(Ended::Iterations),
+                false => stop(i),
+            });
+            let cut = self.simplex.cutoff.is_finite() && self.simplex.iterations <= most;
+            match ended {
+                Ended::Solved => break,
+                Ended::Iterations | Ended::Failed if attempt == 1 && !cut => {}
+                _ => return None,
+            }
+        }
+        self.basis = Some(self.simplex.basis());
+        let p = self.simplex.point()?;
+        let basis = self.basis.as_deref().unwrap_or(&[]);
+        let n = self.n();
+        let value = p.x.iter().zip(&self.problem.cost).map(|(x, c)| x * c).sum();
+        let pair = self.pairs_at(&p.x, rhs);
+        let reduced = |&v: &usize| match basis.get(v) {
+            Some(State::Basic) | None => 0.0,
+            _ if v < n => p.d[v],
+            _ => p.y[v - n],
+        };
+        let reduced = self.variable.iter().map(reduced).collect();
+        Some(Point {
+            x: p.x,
+            value,
+            pair,
+            reduced,
+        })
+    }
+
+    /// Programs whose value is above this may be given up.
+    pub fn cut_above(&mut self, value: f64) {
+        self.simplex.cutoff = value;
+    }
+
+    /// Whether it is the row of the pair that is on this side.
+    pub fn has_row(&self, k: usize) -> bool {
+        self.has_row[k]
+    }
+
+    /// Simplex iterations so far.
+    pub fn iterations(&self) -> u64 {
+        self.simplex.iterations
+    }
+}
