@@ -156,3 +156,74 @@ fn options_are_checked() {
         assert!(all.iter().all(|s| s.solver.is_empty()), "{word}: {all:?}");
     }
 }
+
+/// A wall of two courses on the ground, by the generic model.
+fn small_wall(then: &str) -> Vec<SolveReport> {
+    let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
+    let model = format!(
+        "Sets course / k1*k2 /, pos / p1*p3 /;
+Table len(course,pos)
+         p1    p2    p3
+   k2     1     1
+   k1   0.5     1   0.5;
+$include {}
+{then}",
+        models.join("block_limit.blk").display()
+    );
+    let folder = std::env::temp_dir().join(format!(
+        "bmod_mpec_wall_{}_{}",
+        std::process::id(),
+        then.len()
+    ));
+    std::fs::create_dir_all(&folder).expect("a temporary folder");
+    let file = folder.join("wall.blk");
+    std::fs::write(&file, model).expect("a temporary file");
+    let mut host = SystemHost::new(&file, Path::new("."), &[models], Output::Quiet);
+    let options = Options {
+        quiet: true,
+        collect: false,
+        ..Options::default()
+    };
+    let finished = session::run(
+        &mut host,
+        &file.to_string_lossy(),
+        PreprocessOptions::default(),
+        options,
+        false,
+        &mut |_| {},
+    );
+    std::fs::remove_dir_all(&folder).expect("the temporary folder is there");
+    for d in &finished.diagnostics {
+        println!("{}", d.message);
+    }
+    finished.report.solves
+}
+
+#[test]
+fn supports_and_relaxation_agree_on_a_small_wall() {
+    let all = small_wall(
+        "solve static using lp maximizing alpha;
+solve least using mpec minimizing alpha;
+option mpec_method = relaxation;
+solve least using mpec minimizing alpha;",
+    );
+    let [lp, pieces, relaxed] = &all[..] else {
+        panic!("{all:?}")
+    };
+    assert_eq!(pieces.stationarity, Some("proved"));
+    assert_eq!(pieces.model_status.code, 2);
+    assert!(pieces.complementarity_sum.is_some_and(|s| s <= 1e-10));
+    assert!(pieces.residual.primal.is_some_and(|r| r <= 1e-9));
+    assert!(objective(pieces) <= objective(lp) + 1e-9);
+    assert!(objective(pieces) <= objective(relaxed) + 1e-7);
+    assert!(relaxed.complementarity_sum.is_some_and(|s| s <= 1e-10));
+}
+
+#[test]
+fn pieces_are_refused_where_the_program_does_not_come_apart() {
+    let all = text(
+        "refused",
+        &format!("{CORNER} option mpec_method = pieces; solve m using mpec minimizing f;"),
+    );
+    assert!(all.iter().all(|s| s.solver.is_empty()), "{all:?}");
+}
