@@ -317,7 +317,7 @@ impl Search<'_> {
         // The swaps of a large program from one point are work enough.
         let large = start.len() > 2000;
         let (work, best_of, alternations) = match large {
-            true => (50_000, 1, 0),
+            true => (60_000, 1, 0),
             false => (15_000, 2, self.options.starts),
         };
         let (left, begin) = (self.seconds_left(), Instant::now());

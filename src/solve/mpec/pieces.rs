@@ -21,10 +21,10 @@ const BETTER: f64 = 1e-10;
 /// Products below this vanish.
 const GAP: f64 = 1e-11;
 
-/// Rounds of swaps from one point: the last one tries all of them, the others [`FEW`] and a tenth,
+/// Rounds of swaps from one point: the last one tries all of them, the others [`FEW`] and a twentieth,
 /// each with other weights.
-const KICKS: usize = 4;
-const FEW: usize = 20;
+const KICKS: usize = 8;
+const FEW: usize = 10;
 
 /// A point of both sides; A's is optimal on the support of B's.
 #[derive(Clone, Debug)]
@@ -137,7 +137,7 @@ impl Pieces {
             let tries = if last {
                 order.len()
             } else {
-                FEW + order.len() / 10
+                FEW + order.len() / 20
             };
             for (_, k) in order.into_iter().take(tries) {
                 if self.iterations() > limit || stop(0).is_some() {
