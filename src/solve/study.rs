@@ -220,7 +220,8 @@ pub fn study(
     };
     for run in &mut runs {
         if let (Some(v), Some(z)) = (value, run.objective) {
-            let size = if v == 0.0 { 1.0 } else { v.abs() };
+            // A value that is zero but for rounding has no relative error.
+            let size = if v.abs() < 1e-9 { 1.0 } else { v.abs() };
             run.error = Some((z - v).abs() / size);
         }
     }

@@ -178,6 +178,8 @@ struct Answer {
     iterations: u64,
     solver: &'static str,
     almost: bool,
+    /// What is not unique about the solution.
+    remark: Option<&'static str>,
 }
 
 fn solve(
@@ -253,7 +255,7 @@ fn solve(
         iterations: answer.iterations,
         solver: answer.solver,
         ray,
-        message: None,
+        message: answer.remark.map(str::to_string),
     })
 }
 
@@ -308,6 +310,10 @@ fn tighten(simplex: &mut Simplex, accuracy: Accuracy, limits: &Limits, monitor: 
 
 fn simplex_answer(mut simplex: Simplex, ended: Ended) -> Answer {
     let point = simplex.point();
+    let others = match (&ended, &point) {
+        (Ended::Solved, Some(_)) => simplex.others(),
+        _ => (false, false),
+    };
     Answer {
         ended: if point.is_none() {
             Ended::Failed
@@ -318,6 +324,12 @@ fn simplex_answer(mut simplex: Simplex, ended: Ended) -> Answer {
         iterations: simplex.iterations,
         solver: "simplex",
         almost: false,
+        remark: match others {
+            (true, true) => Some("neither the solution nor its marginals are unique"),
+            (true, false) => Some("the solution is not unique"),
+            (false, true) => Some("the marginals are not unique"),
+            (false, false) => None,
+        },
     }
 }
 
@@ -337,6 +349,7 @@ fn interior_only(
         iterations: run.iterations,
         solver: "clarabel",
         almost: run.almost,
+        remark: None,
     }
 }
 

@@ -25,6 +25,7 @@ mod dual;
 pub(in crate::solve) mod factor;
 mod primal;
 mod push;
+mod unique;
 
 use super::Ended;
 use super::form::{Point, Problem, Sparse};
