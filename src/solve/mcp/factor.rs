@@ -9,7 +9,7 @@
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::amd;
-use faer::sparse::linalg::solvers::Lu;
+use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use feral::{LuParams, LuScaling, SparseColMatrix, SparseLu, SparseLuSymbolic};
 
@@ -56,10 +56,7 @@ impl Fill {
 
 /// `faer`'s factors of a finite matrix; None if it is structurally singular.
 pub(super) fn faer_lu(matrix: &SparseColMatrix) -> Option<Lu<usize, f64>> {
-    let m = matrix.m;
-    let pattern =
-        SymbolicSparseColMatRef::new_checked(m, m, &matrix.col_ptr, None, &matrix.row_idx);
-    SparseColMatRef::new(pattern, &matrix.values).sp_lu().ok()
+    Analysis::default().lu(matrix)
 }
 
 /// x ← A⁻¹x.
@@ -81,15 +78,46 @@ enum Engine {
 /// Residual, relative to the right-hand side, above which a solution is not one.
 const RESIDUAL_TOLERANCE: f64 = 1e-6;
 
+/// The ordering of a pattern, kept for matrices that share it.
+#[derive(Default)]
+pub(super) struct Analysis(Option<(Vec<usize>, Vec<usize>, SymbolicLu<usize>)>);
+
+impl Analysis {
+    /// `faer`'s factors, by the ordering at hand if the pattern is the same.
+    fn lu(&mut self, matrix: &SparseColMatrix) -> Option<Lu<usize, f64>> {
+        let m = matrix.m;
+        let pattern =
+            SymbolicSparseColMatRef::new_checked(m, m, &matrix.col_ptr, None, &matrix.row_idx);
+        let same =
+            matches!(&self.0, Some((c, r, _)) if *c == matrix.col_ptr && *r == matrix.row_idx);
+        if !same {
+            let symbolic = SymbolicLu::try_new(pattern).ok()?;
+            self.0 = Some((matrix.col_ptr.clone(), matrix.row_idx.clone(), symbolic));
+        }
+        let (_, _, symbolic) = self.0.as_ref()?;
+        let matrix = SparseColMatRef::new(pattern, &matrix.values);
+        Lu::try_new_with_symbolic(symbolic.clone(), matrix).ok()
+    }
+}
+
 impl Factor {
     /// Factorises; None if singular or not finite.
     pub(super) fn new(matrix: SparseColMatrix, fill: Fill) -> Option<Factor> {
+        Factor::analysed(matrix, fill, &mut Analysis::default())
+    }
+
+    /// Factorises one of several matrices with the same pattern.
+    pub(super) fn analysed(
+        matrix: SparseColMatrix,
+        fill: Fill,
+        analysis: &mut Analysis,
+    ) -> Option<Factor> {
         // A non-finite entry must not reach the factorisation, which compares magnitudes.
         if matrix.m == 0 || matrix.values.iter().any(|v| !v.is_finite()) {
             return None;
         }
         let lu = match fill {
-            Fill::Heavy => Engine::Supernodal(Box::new(faer_lu(&matrix)?)),
+            Fill::Heavy => Engine::Supernodal(Box::new(analysis.lu(&matrix)?)),
             Fill::Light => {
                 let params = LuParams {
                     scaling: LuScaling::InfNorm,

@@ -18,34 +18,63 @@ use feral::SparseColMatrix;
 
 use super::crash::{active_set, crash};
 use super::factor::shifted;
+use super::interior::interior;
 use super::log;
 use super::merit::Phi;
-use super::path::{Kind, LinearProblem, PathEnd, PathResult, Start, follow};
+use super::path::{HARRIS, HARRIS_CLOSE, Kind, LinearProblem, PathEnd, PathResult, Start, follow};
 use super::run::{End, Point, Run, Stop};
+use super::vertex::vertex;
 
 /// Armijo constant of the M test and of the line search.
 const ARMIJO: f64 = 1e-4;
 /// Number of variables up to which the slack start is tried early.
 const SLACK_START: usize = 1000;
-/// A smaller proximal term does not make a singular basis regular in double precision.
-const PROX_MIN: f64 = 1e-9;
+/// Number of variables from which the crash is interior: one step of it replaces many pivots.
+pub(super) const LARGE: usize = 1000;
+/// The least proximal term that is tried on a singular basis; steps that succeed make it smaller, down
+/// to the least that counts.
+const PROX_FIRST: f64 = 1e-7;
+const PROX_MIN: f64 = 1e-12;
 /// A ray is worth a step if t got this far.
 const RAY_MIN: f64 = 1e-2;
+/// Residual from which a singular basis is taken for that of a face of solutions.
+const VERTEX: f64 = 1e-2;
 /// Major iterations without a notable fall of the residual before the run is called stuck.
 const STAGNATION: usize = 60;
+/// The same where the residual would be accepted already, and the problem is large.
+const STAGNATION_NEAR: usize = 4;
 /// Steps in a row to solutions ~ 1/v before the run is called stuck: it follows a ray.
 const DOUBTFUL_LIMIT: usize = 8;
 /// Pivots spent on improving what is a solution already.
 const POLISH_LIMIT: usize = 200;
+/// Major iterations spent on that, as long as each takes a digit off the residual.
+const POLISH_STEPS: usize = 5;
 /// Gradient steps before the run is called stuck.
 const GRADIENT_LIMIT: usize = 6;
 
-/// Runs crash (if `with_crash`) and major iterations from `start`.
-pub(super) fn majors(run: &mut Run, start: Point, with_crash: bool) -> Result<End, Stop> {
+/// What comes before the first major iteration.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Crash {
+    None,
+    /// Projected Newton steps.
+    Newton,
+    /// Interior steps; projected Newton steps if they lead nowhere.
+    Interior,
+}
+
+/// Runs a crash and major iterations from `start`.
+pub(super) fn majors(run: &mut Run, start: Point, before: Crash) -> Result<End, Stop> {
     let mut history = vec![start.merit];
     let mut point = start;
-    if with_crash && !run.polished(point.residual) {
-        let crashed = crash(run, point.clone(), &mut history)?;
+    if before != Crash::None && !run.polished(point.residual) {
+        let mut crashed = None;
+        if before == Crash::Interior {
+            crashed = interior(run, &point)?.filter(|p| p.residual < 1e-2 * point.residual);
+        }
+        let crashed = match crashed {
+            Some(found) => found,
+            None => crash(run, point.clone(), &mut history)?,
+        };
         // A start that is good enough is left only for a better one.
         if !run.converged(point.residual) || crashed.residual < point.residual {
             point = crashed;
@@ -118,26 +147,29 @@ impl Majors {
 
     fn run(mut self, run: &mut Run) -> Result<End, Stop> {
         log::major_header(run, &self.point);
-        // One more iteration after convergence: Newton's method doubles the digits.
-        let mut polish = false;
+        // More iterations after convergence: Newton's method doubles the digits.
+        let mut polishing = 0;
         let (mut least, mut idle) = (f64::INFINITY, 0);
         for _ in 0..run.settings.major_iteration_limit {
             idle += 1;
             if self.best.residual < 0.9 * least {
                 (least, idle) = (self.best.residual, 0);
             }
-            if idle > STAGNATION {
+            // Good enough to accept, and no better in sight: another method may do better.
+            let acceptable =
+                run.n > LARGE && self.best.residual <= run.settings.acceptable_tolerance;
+            if idle > STAGNATION || acceptable && idle > STAGNATION_NEAR {
                 return Ok(End::Stuck);
             }
             if run.converged(self.point.residual) {
-                if polish || run.polished(self.point.residual) {
+                if polishing == POLISH_STEPS || run.polished(self.point.residual) {
                     return Ok(End::Solved);
                 }
-                polish = true;
+                polishing += 1;
             }
             run.check()?;
             let Some(jacobian) = run.jacobian(&self.point.x) else {
-                if polish {
+                if polishing > 0 {
                     return Ok(End::Solved);
                 }
                 if !self.back(run, None)? {
@@ -147,30 +179,36 @@ impl Majors {
             };
             run.majors += 1;
             let pivots = run.pivots;
+            let polish = polishing > 0;
             let (candidate, tries) = self.linear_solution(run, &jacobian, polish)?;
             if polish {
                 // The point is good already: keep the step only if it is better.
-                if let Some(candidate) = candidate
-                    && let Some(next) = run.point(candidate.y)
-                {
-                    let kept = if next.residual < self.point.residual {
-                        'M'
-                    } else {
-                        '-'
-                    };
-                    log::major_line(
-                        run,
-                        &next,
-                        run.pivots - pivots,
-                        candidate.end,
-                        candidate.t,
-                        candidate.prox,
-                        1.0,
-                        kept,
-                        tries,
-                    );
+                let better = candidate.and_then(|c| Some((run.point(c.y.clone())?, c)));
+                let Some((next, candidate)) = better else {
+                    return Ok(End::Solved);
+                };
+                let kind = match next.residual {
+                    r if r <= 0.1 * self.point.residual => 'M',
+                    _ => '-',
+                };
+                let (end, t, prox) = (candidate.end, candidate.t, candidate.prox);
+                log::major_line(
+                    run,
+                    &next,
+                    run.pivots - pivots,
+                    end,
+                    t,
+                    prox,
+                    1.0,
+                    kind,
+                    tries,
+                );
+                if kind == '-' {
+                    return Ok(End::Solved);
                 }
-                return Ok(End::Solved);
+                (self.warm, self.point) = (candidate.kind, next);
+                self.reduce_prox(prox);
+                continue;
             }
             let Some(candidate) = candidate else {
                 log::major_line(
@@ -220,7 +258,7 @@ impl Majors {
         // Where one linearisation is exact, a small term saves the iterations that remove it again.
         let small = if run.problem.is_linear() { 1e-5 } else { 1e-3 };
         for v in [
-            (small * r.min(1.0)).max(10.0 * self.prox).max(PROX_MIN),
+            (small * r.min(1.0)).max(10.0 * self.prox).max(PROX_FIRST),
             (0.1 * r.min(1.0)).max(100.0 * self.prox),
             1.0,
             10.0,
@@ -251,7 +289,10 @@ impl Majors {
             if m.values.iter().chain(&q).any(|v| !v.is_finite()) {
                 continue;
             }
-            for start in self.starts(run, level) {
+            for mut start in self.starts(run, level) {
+                if polish {
+                    start.tolerance = HARRIS_CLOSE;
+                }
                 if polish && (start.cover || level > 2) {
                     continue;
                 }
@@ -264,13 +305,22 @@ impl Majors {
                     lower: &lower,
                     upper: &upper,
                 };
+                let mut result = follow(run, &linear, &start, limit, self.seed)?;
+                if result.end == PathEnd::Singular
+                    && level == 0
+                    && self.point.residual <= VERTEX
+                    && (polish || run.n > LARGE)
+                    && let Some(at) = vertex(run, &linear, &start, limit)?
+                {
+                    result = follow(run, &linear, &at, limit, self.seed)?;
+                }
                 let PathResult {
                     end,
                     x,
                     t,
                     kind,
                     pivots,
-                } = follow(run, &linear, &start, limit, self.seed)?;
+                } = result;
                 log::try_line(run, end, t, v, pivots, start.cover);
                 match end {
                     PathEnd::Solved => {
@@ -340,6 +390,7 @@ impl Majors {
             kind: near.clone(),
             x: x.clone(),
             cover: false,
+            tolerance: HARRIS,
         });
         if level == 0 {
             // The state of the normal map's variable z = x − F.
@@ -360,6 +411,7 @@ impl Majors {
                     kind,
                     x: x.clone(),
                     cover: false,
+                    tolerance: HARRIS,
                 });
             }
         }
@@ -385,6 +437,7 @@ impl Majors {
                 kind,
                 x: x.clone(),
                 cover: true,
+                tolerance: HARRIS,
             });
         }
         starts
@@ -430,11 +483,7 @@ impl Majors {
                 } else {
                     self.untested += 1;
                 }
-                let cap = 1e-2 * (2.0 * self.point.merit).sqrt();
-                self.prox = (0.4 * prox.max(self.prox)).min(cap);
-                if self.prox < 1e-12 {
-                    self.prox = 0.0;
-                }
+                self.reduce_prox(prox);
                 return Ok(true);
             }
         }
@@ -450,6 +499,15 @@ impl Majors {
             tries,
         );
         self.back(run, Some(jacobian))
+    }
+
+    /// The proximal term of the next iteration, after a step with `used`.
+    fn reduce_prox(&mut self, used: f64) {
+        let cap = 1e-2 * (2.0 * self.point.merit).sqrt();
+        self.prox = (0.4 * used.max(self.prox)).min(cap);
+        if self.prox < PROX_MIN {
+            self.prox = 0.0;
+        }
     }
 
     fn new_checkpoint(&mut self) {

@@ -33,6 +33,7 @@
 mod basis;
 mod crash;
 mod factor;
+mod interior;
 mod log;
 mod majors;
 mod merit;
@@ -44,6 +45,7 @@ mod run;
 mod semismooth;
 mod smoothing;
 mod starts;
+mod vertex;
 
 pub use merit::natural_residual;
 

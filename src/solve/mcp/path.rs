@@ -37,14 +37,17 @@ use super::merit::natural_residual;
 use super::random::Random;
 use super::run::{Run, Stop};
 
-/// Tolerance of the Harris ratio test: how far a bound may be passed for the sake of a larger pivot.
-const HARRIS: f64 = 1e-9;
+/// How far a bound may be passed in the ratio test, usually and where the solution is close.
+pub(super) const HARRIS: f64 = 1e-9;
+pub(super) const HARRIS_CLOSE: f64 = 1e-13;
 /// A rate of change below this does not block.
 const RATE_MIN: f64 = 1e-9;
 /// A pivot below this on updated factors asks for fresh ones.
 const PIVOT_DOUBTFUL: f64 = 1e-7;
 /// A pivot below this is no pivot.
 const PIVOT_MIN: f64 = 1e-10;
+/// Factorisations for the sake of one doubtful pivot after which a path is given up.
+const DOUBTS: usize = 20;
 /// Size of the random shift of the start into its bounds.
 const SHIFT: f64 = 1e-4;
 
@@ -54,6 +57,20 @@ pub(super) struct LinearProblem<'a> {
     pub(super) q: &'a [f64],
     pub(super) lower: &'a [f64],
     pub(super) upper: &'a [f64],
+}
+
+impl LinearProblem<'_> {
+    /// The column of a variable in the extended system.
+    pub(super) fn column(&self, variable: Variable) -> Sparse {
+        match variable.kind {
+            Kind::AtLower => vec![(variable.index, -1.0)],
+            Kind::AtUpper => vec![(variable.index, 1.0)],
+            Kind::Between => {
+                let (rows, values) = self.m.column(variable.index);
+                rows.iter().copied().zip(values.iter().copied()).collect()
+            }
+        }
+    }
 }
 
 /// Which variable of an index is basic.
@@ -75,6 +92,8 @@ pub(super) struct Start {
     pub(super) x: Vec<f64>,
     /// Cover all slacks by one size, as Lemke's method does, instead of by their own values.
     pub(super) cover: bool,
+    /// How far a bound may be passed for the sake of a larger pivot (Harris's ratio test).
+    pub(super) tolerance: f64,
 }
 
 /// How a path ended.
@@ -119,9 +138,9 @@ pub(super) struct PathResult {
 
 /// A variable of the extended system: x, w or v of an index.
 #[derive(Debug, Clone, Copy)]
-struct Variable {
-    index: usize,
-    kind: Kind,
+pub(super) struct Variable {
+    pub(super) index: usize,
+    pub(super) kind: Kind,
 }
 
 /// What happens first along a direction.
@@ -160,6 +179,7 @@ pub(super) fn follow(
             kind: result.kind.clone(),
             x: result.x.clone(),
             cover: false,
+            tolerance: start.tolerance,
         };
         let left = limit - result.pivots;
         let next = follow_once(run, problem, &again, left, seed + (repair << 32))?;
@@ -224,6 +244,7 @@ struct Path<'a> {
     /// for what the ratio test let pass. Moving a variable from where it stopped to its bound would
     /// move t by that amount over p_hole, which may be tiny.
     rest: Vec<[f64; 3]>,
+    tolerance: f64,
     pivots: usize,
     rate: Vec<f64>,
 }
@@ -315,6 +336,7 @@ impl<'a> Path<'a> {
                     ]
                 })
                 .collect(),
+            tolerance: start.tolerance,
             pivots: 0,
             rate: vec![0.0; n],
         };
@@ -334,18 +356,6 @@ impl<'a> Path<'a> {
             ),
             _ => (0.0, f64::INFINITY),
         };
-    }
-
-    /// The column of a variable in the extended system.
-    fn column(&self, variable: Variable) -> Sparse {
-        match variable.kind {
-            Kind::AtLower => vec![(variable.index, -1.0)],
-            Kind::AtUpper => vec![(variable.index, 1.0)],
-            Kind::Between => {
-                let (rows, values) = self.problem.m.column(variable.index);
-                rows.iter().copied().zip(values.iter().copied()).collect()
-            }
-        }
     }
 
     /// Fresh factors, y and p.
@@ -407,7 +417,7 @@ impl<'a> Path<'a> {
             }
             Event::Flip(_) | Event::Ray => return Ok(PathEnd::Ray),
         };
-        let mut direction = Sparse::new();
+        let (mut direction, mut doubts) = (Sparse::new(), 0);
         loop {
             run.pivots += 1;
             self.pivots += 1;
@@ -423,7 +433,7 @@ impl<'a> Path<'a> {
             if self.moved == 0 {
                 return Ok(PathEnd::Loop);
             }
-            let column = self.column(entering);
+            let column = self.problem.column(entering);
             leaving = loop {
                 let old = self.basis.as_ref().is_none_or(Basis::is_old);
                 if old && !self.refactor(run) {
@@ -459,7 +469,8 @@ impl<'a> Path<'a> {
                             .map_or(0.0, |d| d.1);
                         let pivot = at_slot.abs().max(at_hole.abs());
                         if pivot < PIVOT_DOUBTFUL && !fresh {
-                            if !self.refactor(run) {
+                            doubts += 1;
+                            if doubts > DOUBTS || !self.refactor(run) {
                                 return Ok(PathEnd::Numerical);
                             }
                             continue;
@@ -558,7 +569,7 @@ impl<'a> Path<'a> {
         for i in slots.clone() {
             let rate = self.rate[i];
             if rate.abs() > RATE_MIN {
-                let step = (distance(i, rate).max(0.0) + HARRIS) / rate.abs();
+                let step = (distance(i, rate).max(0.0) + self.tolerance) / rate.abs();
                 if step < longest {
                     longest = step;
                 }
@@ -696,7 +707,11 @@ impl<'a> Path<'a> {
 }
 
 /// Factorises the matrix of the slots' columns.
-fn factorise(run: &mut Run, problem: &LinearProblem, slot: &[Variable]) -> Option<Basis> {
+pub(super) fn factorise(
+    run: &mut Run,
+    problem: &LinearProblem,
+    slot: &[Variable],
+) -> Option<Basis> {
     run.factorisations += 1;
     let mut b = Builder::new(slot.len());
     for v in slot {
@@ -878,6 +893,7 @@ mod tests {
                 kind: kind.clone(),
                 x: vec![0.0; n],
                 cover,
+                tolerance: HARRIS,
             };
             let (settings, mut nothing, mut silent) = (Settings::default(), Nothing, Silent);
             let mut run = Run::new(&mut nothing, &settings, &mut silent, None);
@@ -920,6 +936,7 @@ mod tests {
             kind: vec![Kind::AtLower],
             x: vec![0.0],
             cover: true,
+            tolerance: HARRIS,
         };
         let (settings, mut nothing, mut silent) = (Settings::default(), Nothing, Silent);
         let mut run = Run::new(&mut nothing, &settings, &mut silent, None);

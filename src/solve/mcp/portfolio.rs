@@ -9,7 +9,7 @@
 use std::time::{Duration, Instant};
 
 use super::log;
-use super::majors::majors;
+use super::majors::{Crash, LARGE, majors};
 use super::merit::natural_residual;
 use super::presolve::Reduced;
 use super::random::Random;
@@ -22,7 +22,7 @@ use super::{Monitor, Outcome, Problem, Settings, Status};
 /// A method of the portfolio.
 #[derive(Debug, Clone, Copy)]
 enum Method {
-    Path { crash: bool },
+    Path { crash: Crash },
     Smoothing,
     Semismooth { lambda: f64, memory: usize },
     Starts,
@@ -31,8 +31,8 @@ enum Method {
 impl Method {
     fn name(self) -> &'static str {
         match self {
-            Method::Path { crash: true } => "path",
-            Method::Path { crash: false } => "path without crash",
+            Method::Path { crash: Crash::None } => "path without crash",
+            Method::Path { .. } => "path",
             Method::Smoothing => "smoothing",
             Method::Semismooth { .. } => "semismooth",
             Method::Starts => "path from random starts",
@@ -167,9 +167,16 @@ fn attempt(run: &mut Run, restarts: &mut usize) -> Result<(), Stop> {
     }
     run.check()?;
     if let Some(start) = first_point(run) {
-        let crash = run.settings.crash_method;
+        let (crash, other) = match run.settings.crash_method {
+            true if run.n > LARGE => (Crash::Interior, Crash::Newton),
+            true => (Crash::Newton, Crash::None),
+            false => (Crash::None, Crash::Newton),
+        };
         let mut methods = vec![Method::Path { crash }];
         if run.settings.fallbacks {
+            if run.n > LARGE {
+                methods.push(Method::Path { crash: other });
+            }
             if run.problem.is_linear() {
                 methods.push(Method::Starts);
             }
@@ -179,7 +186,9 @@ fn attempt(run: &mut Run, restarts: &mut usize) -> Result<(), Stop> {
                     lambda: 0.95,
                     memory: 8,
                 },
-                Method::Path { crash: !crash },
+                Method::Path {
+                    crash: if run.n > LARGE { Crash::None } else { other },
+                },
                 Method::Semismooth {
                     lambda: 0.8,
                     memory: 1,
@@ -203,7 +212,9 @@ fn attempt(run: &mut Run, restarts: &mut usize) -> Result<(), Stop> {
         log::note(run, || format!("Restart {} from a random point", k + 1));
         let Some(start) = run.point(x) else { continue };
         for method in [
-            Method::Path { crash: true },
+            Method::Path {
+                crash: Crash::Newton,
+            },
             Method::Smoothing,
             Method::Semismooth {
                 lambda: 0.95,
@@ -233,7 +244,7 @@ fn succeeds(run: &mut Run, method: Method, start: Point) -> Result<bool, Stop> {
         if let Some(point) = run.point(x)
             && run.converged(point.residual)
         {
-            majors(run, point, false)?;
+            majors(run, point, Crash::None)?;
         }
     }
     Ok(true)

@@ -7,7 +7,7 @@
 
 use super::log;
 use super::majors::pivot_limit;
-use super::path::{Kind, LinearProblem, PathEnd, Start, follow};
+use super::path::{HARRIS, Kind, LinearProblem, PathEnd, Start, follow};
 use super::random::Random;
 use super::run::{End, Point, Run, Stop};
 
@@ -74,6 +74,7 @@ pub(super) fn starts(run: &mut Run, start: Point) -> Result<End, Stop> {
                 kind,
                 x,
                 cover: false,
+                tolerance: HARRIS,
             },
             limit,
             100 + attempt,

@@ -1,0 +1,361 @@
+//! Interior crash: a predictor-corrector method that finds the active set of a large problem.
+//!
+//! With slacks w, v ≥ 0 for the finite bounds, F(x) = w − v, (x − l)w = μ, (u − x)v = μ, a step towards
+//! products p and q solves
+//!
+//! ```text
+//! (J + D + ρI) dx = −(F − w + v) + p/(x−l) − w − q/(u−x) + v,     D = w/(x−l) + v/(u−x),
+//! ```
+//!
+//! with p = q = σμ less the products of the predictor's steps (Mehrotra 1992), or without them where
+//! they shorten the step, and then with outliers among the products pulled in (Gondzio 1996). The
+//! proximal term ρ grows while steps are short, as they are where J is not monotone.
+//!
+//! For monotone problems the number of steps hardly grows with n, while the path makes at least a pivot
+//! for every index that a crash got wrong; for others this is a heuristic like any crash. Its
+//! point need not be accurate: a bound is active where the slack is the larger of the two, and the
+//! path does the rest.
+
+use super::factor::{Analysis, Factor, combine};
+use super::log;
+use super::run::{Point, Run, Stop};
+
+/// Steps at most.
+const LIMIT: usize = 80;
+/// Share of the way to the boundary.
+const DAMPING: f64 = 0.995;
+/// A step shorter than this is a bad one: ρ grows.
+const STEP_BAD: f64 = 0.1;
+/// Steps in a row without progress that end the crash.
+const PATIENCE: usize = 10;
+/// Corrections of outliers per step.
+const CORRECTIONS: usize = 3;
+/// A step below which the second order is left out.
+const STEP_SHORT: f64 = 0.3;
+/// ρ, least and largest.
+const PROX: (f64, f64) = (1e-9, 1e-5);
+/// Products below this are rounding errors.
+const PRODUCT_MIN: f64 = 1e-13;
+
+/// Distances from the bounds and the slacks that go with them; 1 and 0 for a bound that is not there.
+#[derive(Clone)]
+struct State {
+    a: Vec<f64>,
+    w: Vec<f64>,
+    b: Vec<f64>,
+    v: Vec<f64>,
+}
+
+/// A step: of x, w and v.
+struct Step {
+    x: Vec<f64>,
+    w: Vec<f64>,
+    v: Vec<f64>,
+    /// How far it may go, at most 1.
+    length: f64,
+}
+
+/// Which bounds are finite.
+struct Bounds {
+    lower: Vec<bool>,
+    upper: Vec<bool>,
+    count: usize,
+}
+
+/// Looks for a better point than `start`. None if there is none, or nothing to do.
+pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, Stop> {
+    let n = run.n;
+    let finite = |bounds: &[f64]| bounds.iter().map(|b| b.is_finite()).collect::<Vec<_>>();
+    let (lower, upper) = (finite(&run.lower), finite(&run.upper));
+    let count = lower.iter().chain(&upper).filter(|b| **b).count();
+    let bounds = Bounds {
+        lower,
+        upper,
+        count,
+    };
+    if count == 0 {
+        return Ok(None);
+    }
+    let x = (0..n)
+        .map(|i| {
+            let inside = (0.5 * (run.upper[i] - run.lower[i])).min(1.0);
+            // Without a bound on a side the other one decides; max and min ignore NaN.
+            start.x[i]
+                .max(run.lower[i] + inside)
+                .min(run.upper[i] - inside)
+        })
+        .collect();
+    let Some(mut point) = run.point(x) else {
+        return Ok(None);
+    };
+    let mut state = State {
+        a: Vec::new(),
+        w: (0..n)
+            .map(|i| {
+                if bounds.lower[i] {
+                    point.f[i].max(1.0)
+                } else {
+                    0.0
+                }
+            })
+            .collect(),
+        b: Vec::new(),
+        v: (0..n)
+            .map(|i| {
+                if bounds.upper[i] {
+                    (-point.f[i]).max(1.0)
+                } else {
+                    0.0
+                }
+            })
+            .collect(),
+    };
+    log::note(run, || {
+        "Interior crash\n iter    product  equations    residual     step     prox".into()
+    });
+    let mut best = start.clone();
+    let mut analysis = Analysis::default();
+    let mut prox = PROX.0;
+    let (mut least, mut idle) = (f64::INFINITY, 0);
+    for iteration in 0..LIMIT {
+        run.check()?;
+        state.a = (0..n)
+            .map(|i| {
+                if bounds.lower[i] {
+                    point.x[i] - run.lower[i]
+                } else {
+                    1.0
+                }
+            })
+            .collect();
+        state.b = (0..n)
+            .map(|i| {
+                if bounds.upper[i] {
+                    run.upper[i] - point.x[i]
+                } else {
+                    1.0
+                }
+            })
+            .collect();
+        if let Some(found) = run.point(snapped(run, &point.x, &state, &bounds))
+            && found.residual < best.residual
+        {
+            best = found;
+        }
+        let mu = state.product(&bounds);
+        let r: Vec<f64> = (0..n)
+            .map(|i| point.f[i] - state.w[i] + state.v[i])
+            .collect();
+        let off = r.iter().fold(0.0f64, |m, r| m.max(r.abs()));
+        idle += 1;
+        if mu + off < 0.5 * least {
+            (least, idle) = (mu + off, 0);
+        }
+        if run.converged(best.residual)
+            || mu < PRODUCT_MIN
+            || idle > PATIENCE
+            || !(mu + off).is_finite()
+        {
+            break;
+        }
+        let Some(jacobian) = run.jacobian(&point.x) else {
+            break;
+        };
+        let matrix = combine(
+            &jacobian,
+            |i| state.w[i] / state.a[i] + state.v[i] / state.b[i] + prox,
+            |_| 1.0,
+        );
+        run.factorisations += 1;
+        let step = Factor::analysed(matrix, run.fill, &mut analysis)
+            .and_then(|mut factor| step(&mut factor, &state, &bounds, &r, mu));
+        let Some(step) = step else {
+            if prox >= PROX.1 {
+                break;
+            }
+            prox = (100.0 * prox).min(PROX.1);
+            continue;
+        };
+        let t = step.length;
+        let residual = best.residual;
+        log::note(run, || {
+            format!(
+                "{:5} {mu:10.3e} {off:10.3e} {residual:11.4e} {t:8.1e} {prox:8.1e}",
+                iteration + 1
+            )
+        });
+        let x = point
+            .x
+            .iter()
+            .zip(&step.x)
+            .map(|(x, d)| x + t * d)
+            .collect();
+        let Some(next) = run.point(x) else { break };
+        point = next;
+        state
+            .w
+            .iter_mut()
+            .zip(&step.w)
+            .for_each(|(w, d)| *w += t * d);
+        state
+            .v
+            .iter_mut()
+            .zip(&step.v)
+            .for_each(|(v, d)| *v += t * d);
+        if t < STEP_BAD {
+            prox = (10.0 * prox).min(PROX.1);
+        } else if t > 0.5 {
+            prox = (0.1 * prox).max(PROX.0);
+        }
+    }
+    Ok((best.residual < start.residual).then_some(best))
+}
+
+/// x with the bounds active whose slack is the larger.
+fn snapped(run: &Run, x: &[f64], state: &State, bounds: &Bounds) -> Vec<f64> {
+    (0..x.len())
+        .map(|i| {
+            if bounds.lower[i] && state.a[i] < state.w[i] {
+                run.lower[i]
+            } else if bounds.upper[i] && state.b[i] < state.v[i] {
+                run.upper[i]
+            } else {
+                x[i]
+            }
+        })
+        .collect()
+}
+
+impl State {
+    /// Mean of the products.
+    fn product(&self, bounds: &Bounds) -> f64 {
+        let sum: f64 = (0..self.a.len())
+            .map(|i| self.a[i] * self.w[i] + self.b[i] * self.v[i])
+            .sum();
+        sum / bounds.count as f64
+    }
+
+    /// Products after a step of length t, at index i.
+    fn products(&self, step: &Step, t: f64, i: usize) -> (f64, f64) {
+        (
+            (self.a[i] + t * step.x[i]) * (self.w[i] + t * step.w[i]),
+            (self.b[i] - t * step.x[i]) * (self.v[i] + t * step.v[i]),
+        )
+    }
+
+    /// The step towards products p and q; None if the matrix is singular.
+    fn newton(
+        &self,
+        factor: &mut Factor,
+        bounds: &Bounds,
+        r: &[f64],
+        p: &[f64],
+        q: &[f64],
+    ) -> Option<Step> {
+        let n = r.len();
+        let to = |i: usize| {
+            (
+                if bounds.lower[i] {
+                    p[i] / self.a[i] - self.w[i]
+                } else {
+                    0.0
+                },
+                if bounds.upper[i] {
+                    q[i] / self.b[i] - self.v[i]
+                } else {
+                    0.0
+                },
+            )
+        };
+        let right: Vec<f64> = (0..n).map(|i| to(i).0 - to(i).1 - r[i]).collect();
+        let x = factor.solve(&right)?;
+        let w: Vec<f64> = (0..n)
+            .map(|i| to(i).0 - self.w[i] / self.a[i] * x[i])
+            .collect();
+        let v: Vec<f64> = (0..n)
+            .map(|i| to(i).1 + self.v[i] / self.b[i] * x[i])
+            .collect();
+        let mut longest = 1.0 / DAMPING;
+        let mut limit = |value: f64, change: f64| {
+            if change < 0.0 {
+                longest = f64::min(longest, -value / change);
+            }
+        };
+        for i in 0..n {
+            if bounds.lower[i] {
+                limit(self.a[i], x[i]);
+                limit(self.w[i], w[i]);
+            }
+            if bounds.upper[i] {
+                limit(self.b[i], -x[i]);
+                limit(self.v[i], v[i]);
+            }
+        }
+        Some(Step {
+            x,
+            w,
+            v,
+            length: DAMPING * longest,
+        })
+    }
+}
+
+/// Predictor, corrector, corrections of outliers.
+fn step(factor: &mut Factor, state: &State, bounds: &Bounds, r: &[f64], mu: f64) -> Option<Step> {
+    let n = r.len();
+    let zero = vec![0.0; n];
+    let predictor = state.newton(factor, bounds, r, &zero, &zero)?;
+    let t = predictor.length;
+    let after: f64 = (0..n)
+        .map(|i| {
+            let (p, q) = state.products(&predictor, t, i);
+            p * f64::from(u8::from(bounds.lower[i])) + q * f64::from(u8::from(bounds.upper[i]))
+        })
+        .sum::<f64>()
+        / bounds.count as f64;
+    let mut sigma = (after / mu).clamp(0.0, 1.0).powi(3);
+    let mut p: Vec<f64> = (0..n)
+        .map(|i| sigma * mu - predictor.x[i] * predictor.w[i])
+        .collect();
+    let mut q: Vec<f64> = (0..n)
+        .map(|i| sigma * mu + predictor.x[i] * predictor.v[i])
+        .collect();
+    let mut step = state.newton(factor, bounds, r, &p, &q)?;
+    if step.length < STEP_SHORT {
+        let centred = sigma.max(0.5);
+        let target = vec![centred * mu; n];
+        let other = state.newton(factor, bounds, r, &target, &target)?;
+        if other.length > step.length {
+            (step, sigma, p, q) = (other, centred, target.clone(), target);
+        }
+    }
+    let target = sigma.max(1e-3) * mu;
+    let (small, large) = (0.1 * target, 10.0 * target);
+    let pull = |product: f64, aim: f64| {
+        if product < small {
+            aim + small - product
+        } else if product > large {
+            aim + (large - product).max(-large)
+        } else {
+            aim
+        }
+    };
+    for _ in 0..CORRECTIONS {
+        if step.length > 0.9 {
+            break;
+        }
+        let t = (2.0 * step.length + 0.1).min(1.0);
+        for i in 0..n {
+            let (low, high) = state.products(&step, t, i);
+            (p[i], q[i]) = (pull(low, p[i]), pull(high, q[i]));
+        }
+        let Some(other) = state.newton(factor, bounds, r, &p, &q) else {
+            break;
+        };
+        if other.length < 1.05 * step.length {
+            break;
+        }
+        step = other;
+    }
+    Some(step)
+}
