@@ -481,8 +481,6 @@ fn the_models_have_their_known_answers() {
         }
         all.retain(|p| !slow(p));
     }
-    // Many starts of one wall: minutes, for a person who asks.
-    all.retain(|p| !p.ends_with("starts.blk") && !p.ends_with("friction_study.blk"));
     // Not solved to the certificate yet: ends as a feasible point, 2e-6 from stationary.
     hold(all);
 }

@@ -300,7 +300,8 @@ impl Compiler {
         let e = &self.equations[definition];
         let name = self.symbols.get(e.symbol).name.clone();
         let linear_only = matches!(using, "lp" | "rmip" | "mip");
-        let smooth_only = !matches!(using, "dnlp" | "rminlp" | "minlp") && !linear_only;
+        let smooth_only =
+            !matches!(using, "dnlp" | "rminlp" | "minlp" | "mcp" | "cns") && !linear_only;
         let mut found: Option<(Span, String, &'static str, String)> = None;
         for side in [&e.left, &e.right] {
             walk(side, &mut |n| {

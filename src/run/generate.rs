@@ -883,8 +883,13 @@ impl Builder<'_, '_> {
             }
         }
         let mut matched_rows = Vec::new();
+        let mut alone = Vec::new();
         for (v, r, key) in &pairs {
+            let known = self.columns;
             let c = self.column(*v, key);
+            if c >= known {
+                alone.push((c, *r));
+            }
             used.resize(self.columns as usize, false);
             used[c as usize] = true;
             matched_rows.push((c, *r));
@@ -936,6 +941,19 @@ impl Builder<'_, '_> {
             let column = columns.symbol(z).map_or(0, |b| b.start);
             self.instance.objective = Some(Objective { column, sense });
         }
+        if solve.using == "mcp" {
+            let renumbered = |list: &[(u32, u32)]| -> Vec<(u32, u32)> {
+                list.iter()
+                    .map(|&(c, r)| (new_number[c as usize], r))
+                    .collect()
+            };
+            self.check_partners(
+                &rows,
+                &columns,
+                &renumbered(&matched_rows),
+                &renumbered(&alone),
+            );
+        }
         if matches!(solve.using, "mcp" | "mpec" | "rmpec" | "cns") {
             let mut matched: Vec<Option<u32>> = vec![None; next as usize];
             for (c, r) in matched_rows {
@@ -965,6 +983,60 @@ impl Builder<'_, '_> {
             nonzeros,
             nonlinear_nonzeros,
         }
+    }
+
+    /// A pair whose row is empty, or whose column stands in no row (`alone`), decides nothing: an error,
+    /// as in GAMS, unless the column is fixed.
+    fn check_partners(
+        &mut self,
+        rows: &Blocks,
+        columns: &Blocks,
+        pairs: &[(u32, u32)],
+        alone: &[(u32, u32)],
+    ) {
+        let m = &self.instance.matrix;
+        let mut empty: Vec<bool> = m.start.windows(2).map(|w| w[0] == w[1]).collect();
+        for k in &self.instance.nonlinear {
+            k.row.iter().for_each(|&r| empty[r as usize] = false);
+        }
+        let bounds = &self.instance.columns;
+        let fixed = |c: u32| bounds.lower[c as usize] == bounds.upper[c as usize];
+        let blamed = pairs
+            .iter()
+            .find(|&&(c, r)| empty[r as usize] && !fixed(c))
+            .or_else(|| alone.iter().find(|&&(c, _)| !fixed(c)));
+        let Some(&(c, r)) = blamed else { return };
+        let name = |blocks: &Blocks, i: u32| {
+            let block = blocks.of(i);
+            self.m.record_name(block.symbol, block.key(i))
+        };
+        let (row, column) = (name(rows, r), name(columns, c));
+        let symbol = rows.of(r).symbol;
+        let place = self
+            .m
+            .equations
+            .iter()
+            .find(|d| d.symbol == symbol)
+            .map_or(self.span, |d| d.span);
+        let (code, message, help) = if empty[r as usize] {
+            (
+                "E0414",
+                format!("the row {row} is empty, and its partner {column} is not fixed"),
+                "no variable is left in the row: restrict the equation by a `$` condition, or fix the variable",
+            )
+        } else {
+            (
+                "E0415",
+                format!("the row {row} is paired with {column}, which stands in no row"),
+                "restrict the equation by a `$` condition to where the variable is used, or fix the variable",
+            )
+        };
+        let diagnostic = Diagnostic::execution(code, place, message)
+            .label("this equation")
+            .other(self.span, "at this solve")
+            .help(help);
+        self.m.note(diagnostic);
+        self.failed = true;
     }
 
     /// Columns increasing within each row.

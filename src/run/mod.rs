@@ -13,6 +13,7 @@ mod calendar;
 mod constant;
 mod draw;
 mod eval;
+mod examine;
 mod exchange;
 mod exec;
 mod files;

@@ -112,6 +112,14 @@ impl Machine<'_> {
             generated.instance.row_count(),
             generated.instance.column_count()
         ));
+        if matches!(s.using, "mcp" | "cns") {
+            self.examine(
+                &generated.instance,
+                &generated.origin,
+                s.using == "cns",
+                span,
+            );
+        }
         let choice = self.options.texts.get(s.using).cloned();
         let mut monitor = RunMonitor {
             machine: self,

@@ -1,14 +1,12 @@
 //! An instance as a complementarity problem: `mcp`, and square systems (`cns`).
 //!
-//! Each column has one row: its partner. Equality rows without a partner are given, in order, to
-//! the free columns without one (any order gives the same solutions); a fixed column needs no row.
 //! What happens at a solution is decided by the bounds: F is left minus right whatever the relation.
 
 use super::mcp;
+use super::pairing::{match_rows, refuse};
 use super::{Claim, Monitor, Outcome, Settings, SolveError, SolverStatus};
 use crate::autodiff::Evaluator;
-use crate::model::instance::{Instance, Relation};
-use std::time::Instant;
+use crate::model::instance::Instance;
 
 /// Rows and columns put side by side.
 struct Square<'a> {
@@ -26,104 +24,6 @@ struct Square<'a> {
     /// Where each entry of the pattern stands in the evaluator's Jacobian.
     from: Vec<usize>,
     constant: Vec<bool>,
-}
-
-fn refuse<T>(
-    message: impl Into<String>,
-    row: Option<usize>,
-    column: Option<usize>,
-) -> Result<T, SolveError> {
-    Err(SolveError {
-        message: message.into(),
-        row,
-        column,
-    })
-}
-
-/// A pair whose row's relation contradicts the bounds of its column.
-pub(super) fn refuse_relation(
-    relation: Relation,
-    lower: f64,
-    upper: f64,
-    row: usize,
-    column: usize,
-) -> Result<(), SolveError> {
-    let (below, above) = (lower > f64::NEG_INFINITY, upper < f64::INFINITY);
-    let what = match relation {
-        Relation::Greater if above && !below => {
-            "a =g= row may not be paired with a variable that has an upper bound only"
-        }
-        Relation::Less if below && !above => {
-            "a =l= row may not be paired with a variable that has a lower bound only"
-        }
-        _ => return Ok(()),
-    };
-    refuse(what, Some(row), Some(column))
-}
-
-/// Gives every column its row. `square`: a cns, where bounds do not count.
-#[allow(clippy::needless_range_loop)] // rows, bounds and partners side by side
-pub(super) fn match_rows(
-    instance: &Instance,
-    square: bool,
-) -> Result<Vec<Option<u32>>, SolveError> {
-    let n = instance.column_count();
-    let mut row_of: Vec<Option<u32>> = match &instance.matched {
-        Some(m) if !square => m.clone(),
-        _ => vec![None; n],
-    };
-    let mut taken = vec![false; instance.row_count()];
-    for r in row_of.iter().flatten() {
-        taken[*r as usize] = true;
-    }
-    let columns = &instance.columns;
-    let mut free = Vec::new();
-    for j in 0..n {
-        let (l, u) = (columns.lower[j], columns.upper[j]);
-        match row_of[j] {
-            Some(i) => refuse_relation(instance.rows.relation[i as usize], l, u, i as usize, j)?,
-            None if l == u => {}
-            None if square || (l == f64::NEG_INFINITY && u == f64::INFINITY) => free.push(j),
-            None => {
-                return refuse(
-                    "a variable without a row must be free or fixed",
-                    None,
-                    Some(j),
-                );
-            }
-        }
-    }
-    let mut left: Vec<usize> = (0..instance.row_count()).filter(|&i| !taken[i]).collect();
-    for &i in &left {
-        if instance.rows.relation[i] != Relation::Equal {
-            let what = if square {
-                "a square system has equations (=e=) only"
-            } else {
-                "an inequality without a variable is left over"
-            };
-            return refuse(what, Some(i), None);
-        }
-    }
-    if left.len() != free.len() {
-        let what = if square {
-            "the system is not square"
-        } else {
-            "the counts do not match"
-        };
-        let (r, c) = (left.len(), free.len());
-        let (row, column) = (left.get(c).copied(), free.get(r).copied());
-        let which = if square { "" } else { "unmatched " };
-        return refuse(
-            format!("{what}: {r} {which}equations, {c} {which}variables that are not fixed"),
-            row,
-            column,
-        );
-    }
-    left.reverse();
-    for j in free {
-        row_of[j] = left.pop().map(|i| i as u32);
-    }
-    Ok(row_of)
 }
 
 impl<'a> Square<'a> {
@@ -269,9 +169,9 @@ impl mcp::Problem for Square<'_> {
 }
 
 /// The run's monitor, as the complementarity solver wants it.
-pub(super) struct Line<'a> {
-    pub(super) monitor: &'a mut dyn Monitor,
-    pub(super) log: bool,
+struct Line<'a> {
+    monitor: &'a mut dyn Monitor,
+    log: bool,
 }
 
 impl mcp::Monitor for Line<'_> {
@@ -293,7 +193,7 @@ impl mcp::Monitor for Line<'_> {
 }
 
 /// Options by PATH's names.
-pub(super) fn options(settings: &Settings) -> Result<mcp::Settings, SolveError> {
+fn options(settings: &Settings) -> Result<mcp::Settings, SolveError> {
     let mut s = mcp::Settings {
         time_limit: settings.time_limit,
         ..mcp::Settings::default()
@@ -312,6 +212,7 @@ pub(super) fn options(settings: &Settings) -> Result<mcp::Settings, SolveError> 
             ("cumulative_iteration_limit", Ok(v)) => s.cumulative_iteration_limit = count(v),
             ("minor_iteration_limit", Ok(v)) => s.minor_iteration_limit = count(v),
             ("proximal_perturbation", Ok(v)) => s.proximal_perturbation = v,
+            ("time_limit", Ok(v)) => s.time_limit = s.time_limit.min(v),
             ("nms_memory_size", Ok(v)) => s.nms_memory_size = count(v),
             ("restart_limit", Ok(v)) => s.restart_limit = count(v),
             ("preprocess", _) => {
@@ -325,7 +226,8 @@ pub(super) fn options(settings: &Settings) -> Result<mcp::Settings, SolveError> 
                 | "minor_iteration_limit"
                 | "proximal_perturbation"
                 | "nms_memory_size"
-                | "restart_limit",
+                | "restart_limit"
+                | "time_limit",
                 Err(_),
             ) => {
                 return refuse(
@@ -340,6 +242,28 @@ pub(super) fn options(settings: &Settings) -> Result<mcp::Settings, SolveError> 
     Ok(s)
 }
 
+/// Runs the complementarity solver: its outcome, and how it ended in GAMS's terms.
+pub(super) fn run(
+    problem: &mut dyn mcp::Problem,
+    settings: &Settings,
+    monitor: &mut dyn Monitor,
+) -> Result<(mcp::Outcome, SolverStatus), SolveError> {
+    let limits = options(settings)?;
+    let log = settings.log;
+    let out = mcp::solve(problem, &limits, &mut Line { monitor, log });
+    let status = match out.status {
+        mcp::Status::Solved => SolverStatus::NormalCompletion,
+        mcp::Status::IterationLimit => SolverStatus::IterationInterrupt,
+        mcp::Status::TimeLimit => SolverStatus::ResourceInterrupt,
+        mcp::Status::Interrupted => SolverStatus::UserInterrupt,
+        mcp::Status::NoSolution => SolverStatus::TerminatedBySolver,
+        mcp::Status::EvaluationFailed
+        | mcp::Status::InvalidBounds
+        | mcp::Status::InvalidProblem => SolverStatus::InternalSolverFailure,
+    };
+    Ok((out, status))
+}
+
 /// Solves an mcp (or, with `square`, a cns). The outcome's marginals are those of GAMS: of a row the
 /// level of its column, of a column F.
 pub fn solve(
@@ -348,18 +272,8 @@ pub fn solve(
     settings: &Settings,
     monitor: &mut dyn Monitor,
 ) -> Result<Outcome, SolveError> {
-    let begin = Instant::now();
     let mut problem = Square::new(instance, square)?;
-    let limits = options(settings)?;
-    let out = mcp::solve(
-        &mut problem,
-        &limits,
-        &mut Line {
-            monitor,
-            log: settings.log,
-        },
-    );
-    let _ = begin;
+    let (out, status) = run(&mut problem, settings, monitor)?;
     if out.status == mcp::Status::EvaluationFailed {
         let mut f = vec![0.0; instance.column_count()];
         let failure = mcp::Problem::function(&mut problem, &instance.columns.level, &mut f).err();
@@ -367,34 +281,26 @@ pub fn solve(
         return refuse(format!("the start cannot be evaluated: {what}"), row, None);
     }
     let mut row_marginal = vec![0.0; instance.row_count()];
-    for (j, r) in problem.row_of.iter().enumerate() {
-        if let Some(r) = r {
-            row_marginal[*r as usize] = out.x[j];
+    let mut column_marginal = vec![0.0; out.x.len()];
+    // The marginals of a square system have no meaning.
+    if !square {
+        column_marginal.copy_from_slice(&out.f);
+        for (j, r) in problem.row_of.iter().enumerate() {
+            if let Some(r) = r {
+                row_marginal[*r as usize] = out.x[j];
+            }
         }
     }
-    let (claim, status) = match out.status {
-        mcp::Status::Solved => (Claim::Solved, SolverStatus::NormalCompletion),
-        mcp::Status::IterationLimit => (Claim::Unfinished, SolverStatus::IterationInterrupt),
-        mcp::Status::TimeLimit => (Claim::Unfinished, SolverStatus::ResourceInterrupt),
-        mcp::Status::Interrupted => (Claim::Unfinished, SolverStatus::UserInterrupt),
-        mcp::Status::NoSolution => (Claim::Unfinished, SolverStatus::TerminatedBySolver),
-        mcp::Status::EvaluationFailed
-        | mcp::Status::InvalidBounds
-        | mcp::Status::InvalidProblem => (Claim::Unfinished, SolverStatus::InternalSolverFailure),
-    };
-    if square {
-        // The marginals of a square system have no meaning.
-        row_marginal.iter_mut().for_each(|m| *m = 0.0);
-    }
+    let solved = out.status == mcp::Status::Solved;
     Ok(Outcome {
-        column_marginal: if square {
-            vec![0.0; out.x.len()]
-        } else {
-            out.f.clone()
-        },
         level: out.x,
         row_marginal,
-        claim,
+        column_marginal,
+        claim: if solved {
+            Claim::Solved
+        } else {
+            Claim::Unfinished
+        },
         status,
         iterations: (out.majors + out.pivots) as u64,
         solver: "bmcp",

@@ -4,8 +4,8 @@
 //! l ≤ x ≤ u ⟂ c − Aᵀy and y (free | ≥ 0 | ≤ 0) ⟂ Ax − b. The pivoting solver ends at a basic
 //! solution with residuals near the rounding error, where interior points give six digits.
 
-use super::complementarity::{Line, options};
-use super::{Claim, Monitor, Outcome, Settings, SolveError, Solver, SolverStatus, mcp};
+use super::complementarity::run;
+use super::{Claim, Monitor, Outcome, Settings, SolveError, Solver, mcp};
 use crate::model::instance::{Instance, Relation, Sense};
 
 /// The optimality conditions of a linear program.
@@ -142,27 +142,12 @@ impl Solver for Kkt {
     ) -> Result<Outcome, SolveError> {
         let n = instance.column_count();
         let mut problem = Conditions::new(instance);
-        let limits = options(settings)?;
-        let out = mcp::solve(
-            &mut problem,
-            &limits,
-            &mut Line {
-                monitor,
-                log: settings.log,
-            },
-        );
+        let (out, status) = run(&mut problem, settings, monitor)?;
         let sign = match instance.objective {
             Some(o) if o.sense == Sense::Maximize => -1.0,
             _ => 1.0,
         };
         let solved = out.status == mcp::Status::Solved;
-        let status = match out.status {
-            mcp::Status::Solved => SolverStatus::NormalCompletion,
-            mcp::Status::IterationLimit => SolverStatus::IterationInterrupt,
-            mcp::Status::TimeLimit => SolverStatus::ResourceInterrupt,
-            mcp::Status::Interrupted => SolverStatus::UserInterrupt,
-            _ => SolverStatus::TerminatedBySolver,
-        };
         Ok(Outcome {
             level: out.x[..n].to_vec(),
             row_marginal: out.x[n..].iter().map(|y| sign * y).collect(),

@@ -13,6 +13,7 @@ pub mod lp;
 pub mod mcp;
 pub mod mpec;
 pub mod nlp;
+pub mod pairing;
 pub mod structure;
 pub mod study;
 pub mod why;

@@ -1,5 +1,5 @@
-//! What can be seen of a complementarity model before it is solved: rows that bounds may switch off,
-//! empty rows and columns, and structurally singular blocks.
+//! What can be seen of a complementarity model before it is solved: equations that bounds may switch
+//! off, and structurally singular blocks. (Empty rows and columns are errors of generation.)
 //!
 //! The rows of free variables are equations. If k of them stand in fewer than k variables, they
 //! contradict each other or repeat each other whatever the numbers; if k free variables stand in fewer
@@ -16,15 +16,6 @@ pub enum Finding {
     /// Pairs (row, column) of an equation (`=e=`) and a variable with a bound: where the variable is at
     /// the bound, the equation need not hold.
     BoundedEquation(Vec<(usize, usize)>),
-    /// A row without variables, and whether it is the constant 0.
-    EmptyRow {
-        /// The row.
-        row: usize,
-        /// Its constant, left minus right.
-        constant: f64,
-    },
-    /// A variable that stands in no row.
-    EmptyColumn(usize),
     /// More equations than variables that stand in them.
     Overdetermined(Block),
     /// More free variables than rows that they stand in.
@@ -92,15 +83,6 @@ pub fn examine(instance: &Instance, row_of: &[Option<u32>], square: bool) -> Vec
         .collect();
     if !bounded.is_empty() {
         findings.push(Finding::BoundedEquation(bounded));
-    }
-    for i in (0..m).filter(|&i| by_row.of(i).is_empty()) {
-        findings.push(Finding::EmptyRow {
-            row: i,
-            constant: -instance.rows.rhs[i],
-        });
-    }
-    for j in (0..n).filter(|&j| by_column.of(j).is_empty() && !fixed(j)) {
-        findings.push(Finding::EmptyColumn(j));
     }
     let mut equation = vec![false; m];
     for (j, row) in row_of.iter().enumerate() {

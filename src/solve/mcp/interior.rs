@@ -176,6 +176,7 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
             prox = (100.0 * prox).min(PROX.1);
             continue;
         };
+        run.crash_iterations += 1;
         let t = step.length;
         let residual = best.residual;
         log::note(run, || {

@@ -19,9 +19,10 @@ use feral::SparseColMatrix;
 use super::crash::{active_set, crash};
 use super::factor::shifted;
 use super::interior::interior;
+use super::linear::{Kind, LinearProblem};
 use super::log;
 use super::merit::Phi;
-use super::path::{HARRIS, HARRIS_CLOSE, Kind, LinearProblem, PathEnd, PathResult, Start, follow};
+use super::path::{HARRIS, HARRIS_CLOSE, PathEnd, PathResult, Start, follow};
 use super::run::{End, Point, Run, Stop};
 use super::vertex::vertex;
 
@@ -45,7 +46,7 @@ const STAGNATION: usize = 60;
 const STAGNATION_NEAR: usize = 4;
 /// Steps in a row to solutions ~ 1/v before the run is called stuck: it follows a ray.
 const DOUBTFUL_LIMIT: usize = 8;
-/// Pivots spent on improving what is a solution already.
+/// Pivots spent on improving what is a solution already, or a share 1/10 of n.
 const POLISH_LIMIT: usize = 200;
 /// Major iterations spent on that, as long as each takes a digit off the residual.
 const POLISH_STEPS: usize = 5;
@@ -112,6 +113,8 @@ struct Majors {
     warm: Option<Vec<Kind>>,
     untested: usize,
     gradient_steps: usize,
+    /// A vertex of the face of solutions was looked for.
+    at_vertex: bool,
     /// Steps in a row to solutions that may stand for rays.
     doubtful: usize,
     seed: u64,
@@ -131,6 +134,7 @@ impl Majors {
             warm: None,
             untested: 0,
             gradient_steps: 0,
+            at_vertex: false,
             doubtful: 0,
             seed: 1,
         }
@@ -267,9 +271,11 @@ impl Majors {
                 prox.push(v);
             }
         }
+        // Large, and close to a solution: long paths are not worth their pivots any more.
+        let near = run.n > LARGE && self.point.residual <= run.settings.acceptable_tolerance;
         let limit = match run.settings.minor_iteration_limit {
             // A solution is at hand: not worth many pivots.
-            0 if polish => POLISH_LIMIT,
+            0 if polish || near => POLISH_LIMIT.max(run.n / 10),
             0 => pivot_limit(run.n),
             given => given,
         };
@@ -293,7 +299,7 @@ impl Majors {
                 if polish {
                     start.tolerance = HARRIS_CLOSE;
                 }
-                if polish && (start.cover || level > 2) {
+                if (polish || near) && (start.cover || level > 2) {
                     continue;
                 }
                 tries += 1;
@@ -310,6 +316,7 @@ impl Majors {
                     && level == 0
                     && self.point.residual <= VERTEX
                     && (polish || run.n > LARGE)
+                    && !std::mem::replace(&mut self.at_vertex, true)
                     && let Some(at) = vertex(run, &linear, &start, limit)?
                 {
                     result = follow(run, &linear, &at, limit, self.seed)?;

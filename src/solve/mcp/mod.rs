@@ -34,6 +34,7 @@ mod basis;
 mod crash;
 mod factor;
 mod interior;
+mod linear;
 mod log;
 mod majors;
 mod merit;

@@ -29,11 +29,8 @@
 //! the reference; the larger pivot decides. In skew-symmetric problems (linear programs) every
 //! other d_hole is zero, so both moves are needed.
 
-use feral::SparseColMatrix;
-
 use super::basis::{Basis, Sparse};
-use super::factor::Builder;
-use super::merit::natural_residual;
+use super::linear::{Kind, LinearProblem, Variable, factorise, solve_refined, solves};
 use super::random::Random;
 use super::run::{Run, Stop};
 
@@ -50,39 +47,6 @@ const PIVOT_MIN: f64 = 1e-10;
 const DOUBTS: usize = 20;
 /// Size of the random shift of the start into its bounds.
 const SHIFT: f64 = 1e-4;
-
-/// A linear mixed complementarity problem Mx + q ⟂ l ≤ x ≤ u.
-pub(super) struct LinearProblem<'a> {
-    pub(super) m: &'a SparseColMatrix,
-    pub(super) q: &'a [f64],
-    pub(super) lower: &'a [f64],
-    pub(super) upper: &'a [f64],
-}
-
-impl LinearProblem<'_> {
-    /// The column of a variable in the extended system.
-    pub(super) fn column(&self, variable: Variable) -> Sparse {
-        match variable.kind {
-            Kind::AtLower => vec![(variable.index, -1.0)],
-            Kind::AtUpper => vec![(variable.index, 1.0)],
-            Kind::Between => {
-                let (rows, values) = self.m.column(variable.index);
-                rows.iter().copied().zip(values.iter().copied()).collect()
-            }
-        }
-    }
-}
-
-/// Which variable of an index is basic.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
-    /// x, between its bounds.
-    Between,
-    /// w: x is at its lower bound.
-    AtLower,
-    /// v: x is at its upper bound.
-    AtUpper,
-}
 
 /// Where a path starts.
 #[derive(Debug, Clone)]
@@ -134,13 +98,6 @@ pub(super) struct PathResult {
     pub(super) t: f64,
     pub(super) kind: Vec<Kind>,
     pub(super) pivots: usize,
-}
-
-/// A variable of the extended system: x, w or v of an index.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Variable {
-    pub(super) index: usize,
-    pub(super) kind: Kind,
 }
 
 /// What happens first along a direction.
@@ -706,85 +663,12 @@ impl<'a> Path<'a> {
     }
 }
 
-/// Factorises the matrix of the slots' columns.
-pub(super) fn factorise(
-    run: &mut Run,
-    problem: &LinearProblem,
-    slot: &[Variable],
-) -> Option<Basis> {
-    run.factorisations += 1;
-    let mut b = Builder::new(slot.len());
-    for v in slot {
-        match v.kind {
-            Kind::AtLower => b.push(v.index, -1.0),
-            Kind::AtUpper => b.push(v.index, 1.0),
-            Kind::Between => {
-                let (rows, values) = problem.m.column(v.index);
-                rows.iter().zip(values).for_each(|(&i, &x)| b.push(i, x));
-            }
-        }
-        b.end_column();
-    }
-    Basis::new(&b.finish(), run.fill)
-}
-
-/// Solves with the basis, refines once, and checks the residual.
-fn solve_refined(
-    basis: &mut Basis,
-    problem: &LinearProblem,
-    slot: &[Variable],
-    b: &mut [f64],
-) -> bool {
-    let right = b.to_vec();
-    if !basis.solve(b) {
-        return false;
-    }
-    let norm = right.iter().fold(0.0f64, |a, v| a.max(v.abs()));
-    for step in 0..2 {
-        let mut residual = right.clone();
-        for (v, &value) in slot.iter().zip(b.iter()) {
-            match v.kind {
-                Kind::AtLower => residual[v.index] += value,
-                Kind::AtUpper => residual[v.index] -= value,
-                Kind::Between => {
-                    let (rows, values) = problem.m.column(v.index);
-                    rows.iter()
-                        .zip(values)
-                        .for_each(|(&i, &m)| residual[i] -= m * value);
-                }
-            }
-        }
-        let worst = residual.iter().fold(0.0f64, |a, v| {
-            if v.is_nan() {
-                f64::INFINITY
-            } else {
-                a.max(v.abs())
-            }
-        });
-        if worst <= 1e-15 * norm {
-            return true;
-        }
-        if step == 1 || !basis.solve(&mut residual) {
-            return worst <= 1e-6 * norm.max(1e-300);
-        }
-        b.iter_mut().zip(&residual).for_each(|(x, d)| *x += d);
-    }
-    true
-}
-
-/// Whether y solves the linear problem, to a tolerance that says the path did not lie.
-fn solves(linear: &LinearProblem, y: &[f64]) -> bool {
-    let mut f = vec![0.0; y.len()];
-    linear.m.matvec(y, &mut f);
-    f.iter_mut().zip(linear.q).for_each(|(f, q)| *f += q);
-    let scale = y.iter().fold(1.0f64, |a, v| a.max(v.abs()));
-    natural_residual(y, &f, linear.lower, linear.upper).0 <= 1e-6 * scale
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::factor::Builder;
     use super::super::{EvalError, Problem, Settings, Silent};
     use super::*;
+    use feral::SparseColMatrix;
 
     /// Something to count the factorisations of.
     struct Nothing;

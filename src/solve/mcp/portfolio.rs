@@ -107,8 +107,14 @@ pub(super) fn solve(
     }
     if monitor.wants_log() {
         let line = format!(
-            "{:?}: residual {:.2e}, method {}",
-            outcome.status, outcome.residual, outcome.method
+            "{:?}: residual {:.2e}, method {}; majors {}, pivots {}, crash {}, factorisations {}",
+            outcome.status,
+            outcome.residual,
+            outcome.method,
+            outcome.majors,
+            outcome.pivots,
+            outcome.crash_iterations,
+            outcome.factorisations
         );
         monitor.log(&line);
     }

@@ -5,9 +5,10 @@
 //! has no negative entry: far out all slacks are positive, the path comes in from a ray and, as in
 //! the method of Lemke and Howson, has nowhere else to go than a solution.
 
+use super::linear::{Kind, LinearProblem};
 use super::log;
 use super::majors::pivot_limit;
-use super::path::{HARRIS, Kind, LinearProblem, PathEnd, Start, follow};
+use super::path::{HARRIS, PathEnd, Start, follow};
 use super::random::Random;
 use super::run::{End, Point, Run, Stop};
 

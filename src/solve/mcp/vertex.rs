@@ -8,8 +8,9 @@
 //! (Bixby & Saltzman 1994).
 
 use super::factor::shifted;
+use super::linear::{Kind, LinearProblem, Variable, factorise};
 use super::log;
-use super::path::{Kind, LinearProblem, Start, Variable, factorise};
+use super::path::Start;
 use super::random::Random;
 use super::run::{Run, Stop};
 
@@ -17,6 +18,8 @@ use super::run::{Run, Stop};
 const EPSILON: f64 = 1e-9;
 /// A solution (2-norm) longer than this, for a right-hand side with entries of size 1, is a null vector.
 const LENGTH: f64 = 2e7;
+/// Factorisations for the sake of one update after which the attempt is given up.
+const FAILURES: usize = 20;
 /// Entries below this share of the largest one do not block.
 const ENTRY_MIN: f64 = 1e-6;
 
@@ -59,7 +62,7 @@ pub(super) fn vertex(
             .collect()
     };
     let mut random = Random::new(11);
-    let mut basis = None;
+    let (mut basis, mut failures) = (None, 0);
     let mut direction = Vec::new();
     for moves in 0..limit {
         if moves % 32 == 0 {
@@ -122,8 +125,20 @@ pub(super) fn vertex(
         if !factors.solve_sparse(&column, &mut direction) {
             return Ok(None);
         }
+        // Columns outside the range of B have directions as long as null vectors; others leave the
+        // defect as it is, as happens where the problem is not monotone.
+        if direction.iter().map(|d| d.1 * d.1).sum::<f64>().sqrt() < 1e-2 * LENGTH {
+            log::note(run, || {
+                format!("no vertex: the defect stays after {moves} moves")
+            });
+            return Ok(None);
+        }
         if !factors.replace(k, &column, &direction) {
             basis = None;
+            failures += 1;
+            if failures > FAILURES {
+                return Ok(None);
+            }
         }
     }
     log::note(run, || "no vertex: too many moves".into());

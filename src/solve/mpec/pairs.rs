@@ -17,7 +17,7 @@ use crate::model::certificate::{self, Residuals, TOLERANCE};
 use crate::model::instance::{Instance, KernelTerms, Relation, Sense};
 use crate::model::sum::Sum;
 use crate::solve::SolveError;
-use crate::solve::complementarity::refuse_relation;
+use crate::solve::pairing::refuse_relation;
 
 /// A row and a column with a choice.
 #[derive(Clone, Copy, Debug, PartialEq)]

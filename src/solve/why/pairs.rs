@@ -11,8 +11,8 @@ use super::point::{largest, no_value};
 use super::{FEW, Finding};
 use crate::autodiff::Evaluator;
 use crate::model::instance::Instance;
-use crate::solve::complementarity::match_rows;
 use crate::solve::lp::simplex::factor::{Entries, Factor, Failure};
+use crate::solve::pairing::match_rows;
 
 /// All findings about pairs at a point.
 pub(super) fn findings(instance: &Instance, square: bool, x: &[f64]) -> Vec<Finding> {
