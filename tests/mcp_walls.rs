@@ -28,3 +28,16 @@ fn the_first_example_of_the_paper() {
     let nonassociated = run(6, 5, 0.65, false);
     assert!(nonassociated.x[0] <= associated.x[0] + 1e-9 && nonassociated.x[0] > 0.638);
 }
+
+/// Large enough for the interior crash, which ends inside a face of solutions.
+#[test]
+fn a_large_wall_has_the_load_factor_of_the_linear_program() {
+    let associated = run(15, 8, 0.65, true);
+    assert!(
+        (associated.x[0] - 0.534027271).abs() < 1e-9,
+        "{}",
+        associated.x[0]
+    );
+    let nonassociated = run(15, 8, 0.65, false);
+    assert!(nonassociated.x[0] < associated.x[0]);
+}

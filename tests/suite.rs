@@ -481,7 +481,6 @@ fn the_models_have_their_known_answers() {
         }
         all.retain(|p| !slow(p));
     }
-    // Not solved to the certificate yet: ends as a feasible point, 2e-6 from stationary.
     hold(all);
 }
 
