@@ -23,8 +23,8 @@ fn every_problem_is_solved() {
                 let residual = s.residual.natural.unwrap_or(f64::INFINITY);
                 if s.model_status.code != 1 || residual > tolerance {
                     wrong.push(format!(
-                        "{} (PATH solves it: {}): {} rows, status {}, residual {residual:e}",
-                        reference.file, reference.solved, s.rows, s.model_status.code
+                        "{} ({} variables, PATH solves it: {}): {} rows, status {}, residual {residual:e}",
+                        reference.file, reference.size, reference.solved, s.rows, s.model_status.code
                     ));
                 }
             }

@@ -208,6 +208,11 @@ impl Majors {
                     tries,
                 );
                 if kind == '-' {
+                    // The proximal term may be what keeps the digits away: at a vertex none is needed.
+                    if self.prox > 0.0 && !self.at_vertex {
+                        self.prox = 0.0;
+                        continue;
+                    }
                     return Ok(End::Solved);
                 }
                 (self.warm, self.point) = (candidate.kind, next);
@@ -315,7 +320,7 @@ impl Majors {
                 if result.end == PathEnd::Singular
                     && level == 0
                     && self.point.residual <= VERTEX
-                    && (polish || run.n > LARGE)
+                    && polish
                     && !std::mem::replace(&mut self.at_vertex, true)
                     && let Some(at) = vertex(run, &linear, &start, limit)?
                 {
