@@ -314,11 +314,11 @@ impl Search<'_> {
             levels.push(Some(start.to_vec()));
         }
         let mut failures = 0;
-        // The swaps of a large program from one point are work enough.
+        // The swaps of a large program are work enough.
         let large = start.len() > 2000;
-        let (work, best_of, alternations) = match large {
-            true => (60_000, 1, 0),
-            false => (15_000, 2, self.options.starts),
+        let (work, alternations) = match large {
+            true => (60_000, 0),
+            false => (15_000, self.options.starts),
         };
         let (left, begin) = (self.seconds_left(), Instant::now());
         let monitor = &mut *self.monitor;
@@ -360,24 +360,16 @@ impl Search<'_> {
             }
         }
         candidates.sort_by(|a, b| a.a.value.total_cmp(&b.a.value));
-        candidates.dedup_by(|a, b| a.pieces == b.pieces);
-        let mut best: Option<Solution> = None;
-        let mut exhausted = false;
-        for s in candidates.into_iter().take(best_of) {
+        let best = candidates.into_iter().next().map(|s| {
             let s = pieces.swaps(s, work, &mut stop);
-            note(
-                if pieces.exhausted {
-                    "no swap improves"
-                } else {
-                    "swaps"
-                },
-                &s,
-            );
-            if best.as_ref().is_none_or(|b| s.a.value < b.a.value) {
-                best = Some(s);
-                exhausted = pieces.exhausted;
-            }
-        }
+            let what = match pieces.exhausted {
+                true => "no swap improves",
+                false => "swaps",
+            };
+            note(what, &s);
+            s
+        });
+        let exhausted = pieces.exhausted;
         self.iterations += pieces.iterations();
         let Some(best) = best else { return Ok(false) };
         let mut level = start.to_vec();
