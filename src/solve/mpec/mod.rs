@@ -568,6 +568,10 @@ impl Search<'_> {
         let Some(found) = self.best.take() else {
             return self.infeasible();
         };
+        if self.options.bound != settings::Bound::None {
+            let text = "`mpec_bound` is not there yet: no lower bound was computed";
+            self.notes.push(text.into());
+        }
         let mut residuals = found.judged.residuals;
         residuals.dual = found.answer.residuals.dual;
         residuals.dual_relative = found.answer.residuals.dual_relative;
