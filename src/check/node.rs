@@ -337,9 +337,9 @@ pub enum PutCode {
         /// Alignment.
         align: Option<char>,
         /// Width.
-        width: Option<i64>,
+        width: Option<Node>,
         /// Decimals.
-        decimals: Option<i64>,
+        decimals: Option<Node>,
     },
 }
 

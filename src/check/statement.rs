@@ -888,8 +888,8 @@ impl Compiler {
                             out.push(PutCode::Item {
                                 value,
                                 align: *align,
-                                width: *width,
-                                decimals: *decimals,
+                                width: self.optional(width.as_ref())?,
+                                decimals: self.optional(decimals.as_ref())?,
                             });
                             continue;
                         }
@@ -914,8 +914,8 @@ impl Compiler {
                     PutCode::Item {
                         value: self.expr(value)?,
                         align: *align,
-                        width: *width,
-                        decimals: *decimals,
+                        width: self.optional(width.as_ref())?,
+                        decimals: self.optional(decimals.as_ref())?,
                     }
                 }
             };

@@ -16,6 +16,9 @@ const MONTHS: [&str; 12] = [
     "Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec",
 ];
 
+/// Widths and decimals beyond are cut to it.
+const WIDEST: f64 = 32_767.0;
+
 impl Machine<'_> {
     /// A statement.
     pub(super) fn put(&mut self, keyword: &str, items: &[PutCode], frame: &mut Frame, span: Span) {
@@ -81,10 +84,14 @@ impl Machine<'_> {
                     width,
                     decimals,
                 } => {
+                    let mut whole = |n: &Option<Node>| {
+                        let x = number(self.eval(n.as_ref()?, frame));
+                        Some(x.round().clamp(0.0, WIDEST) as i64)
+                    };
                     let format = Format {
                         align: *align,
-                        width: *width,
-                        decimals: *decimals,
+                        width: whole(width),
+                        decimals: whole(decimals),
                     };
                     let Some(item) = self.put_item(value, frame) else {
                         continue;

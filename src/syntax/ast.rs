@@ -530,9 +530,9 @@ pub enum PutItem {
         /// `<` left, `>` right, `=` centred (`<>`).
         align: Option<char>,
         /// Width.
-        width: Option<i64>,
+        width: Option<Expr>,
         /// Decimals.
-        decimals: Option<i64>,
+        decimals: Option<Expr>,
     },
 }
 

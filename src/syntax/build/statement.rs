@@ -501,8 +501,11 @@ impl Builder<'_> {
                         p.as_str().chars().next().unwrap_or('>')
                     })
                 }
-                Rule::width => width = Some(self.whole_number(p)?),
-                _ => decimals = decimals.or(Some(self.whole_number(p)?)),
+                Rule::width => width = Some(self.put_number(p)?),
+                _ => {
+                    let d = self.put_number(p)?;
+                    decimals = decimals.or(Some(d));
+                }
             }
         }
         if let Some(c) = self.conditions(conditions)? {
@@ -520,14 +523,17 @@ impl Builder<'_> {
         })
     }
 
-    fn whole_number(&self, pair: Pair<'_, Rule>) -> Built<i64> {
-        let at = self.span(&pair);
-        pair.as_str().trim().parse().map_err(|_| {
-            Box::new(
-                Diagnostic::error("E0219", at, "widths and decimals are whole numbers")
-                    .help("for example `x.l:10:4`"),
-            )
-        })
+    /// A width or decimals: digits, a scalar, or an expression in parentheses.
+    fn put_number(&self, pair: Pair<'_, Rule>) -> Built<Expr> {
+        let span = self.span(&pair);
+        let inner = need(&mut parts(pair), span, "a width")?;
+        if inner.as_rule() == Rule::digits {
+            return Ok(Expr {
+                kind: ExprKind::Number(inner.as_str().parse().unwrap_or(0.0)),
+                span,
+            });
+        }
+        self.operand(inner)
     }
 
     fn exchange(&self, pair: Pair<'_, Rule>) -> Built<StmtKind> {
