@@ -43,11 +43,24 @@ pub fn linearise(
         reduced[objective.column as usize].add(1.0);
         column_size[objective.column as usize] = 1.0;
     }
+    let mut nonlinear = vec![false; m];
+    for terms in &instance.nonlinear {
+        for &i in &terms.row {
+            nonlinear[i as usize] = true;
+        }
+    }
     for i in 0..m {
         let multiplier = row_marginal[i];
         for k in start[i]..start[i + 1] {
             let (j, a) = (column[k] as usize, value[k]);
-            row_size[i] = row_size[i].max((a * x[j].abs().max(xi)).abs());
+            // A slope that varies says little about the size of its row where the variable is small:
+            // in y·z ≤ μ at y = 0 it is z, which may be anything.
+            let floor = if nonlinear[i] {
+                (a.abs() * xi).min(1.0)
+            } else {
+                a.abs() * xi
+            };
+            row_size[i] = row_size[i].max((a * x[j]).abs()).max(floor);
             reduced[j].add_product(-multiplier, a);
             column_size[j] = column_size[j].max((a * multiplier.abs().max(eta)).abs());
         }
