@@ -3,14 +3,52 @@
 //! The collection is not part of the project: it is looked for beside it (`../shared/corpus`) or where
 //! `BMOD_SHARED` says. Where it is not there, the test says so and passes.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use bmod::host::{Host, HostError};
-use bmod::source::{NothingKnown, PreprocessOptions, Span};
+use bmod::source::{Known, PreprocessOptions, Span, SymbolKindName};
 use bmod::syntax::Parser;
 use bmod::syntax::ast::{Stmt, StmtKind, SymbolDecl};
 use bmod::syntax::data::{DataKind, DataReader};
 use bmod::syntax::table::TableReader;
+
+/// What is declared so far: enough for the `$if declared` of our own models. Sets have some elements.
+#[derive(Default)]
+struct Declared(HashSet<String>);
+
+impl Declared {
+    fn add(&mut self, s: &Stmt) {
+        let mut name = |d: &SymbolDecl| {
+            self.0.insert(d.name.name.to_lowercase());
+        };
+        match &s.kind {
+            StmtKind::Set(list) => list.iter().for_each(|d| name(&d.symbol)),
+            StmtKind::Parameter(list) => list.iter().for_each(|d| name(&d.symbol)),
+            StmtKind::Variable(_, list) | StmtKind::Equation(list) => list.iter().for_each(name),
+            StmtKind::Table(t) => name(&t.symbol),
+            _ => {}
+        }
+    }
+}
+
+impl Known for Declared {
+    fn kind(&self, name: &str) -> Option<SymbolKindName> {
+        self.is_defined(name).then_some("set")
+    }
+    fn is_defined(&self, name: &str) -> bool {
+        self.0.contains(&name.to_lowercase())
+    }
+    fn dimension(&self, _: &str) -> Option<usize> {
+        None
+    }
+    fn card(&self, name: &str) -> Option<usize> {
+        self.is_defined(name).then_some(6)
+    }
+    fn scalar_value(&self, _: &str) -> Option<f64> {
+        None
+    }
+}
 
 struct Disk;
 
@@ -111,11 +149,13 @@ fn parse(path: &Path) -> (Vec<String>, usize) {
     };
     let mut wrong = Vec::new();
     let mut statements = 0;
+    let mut declared = Declared::default();
     loop {
-        match parser.next(&NothingKnown) {
+        match parser.next(&declared) {
             Ok(None) => return (wrong, statements),
             Ok(Some(s)) => {
                 statements += 1;
+                declared.add(&s);
                 wrong.extend(read_data(&parser, &s));
             }
             Err(list) => {
