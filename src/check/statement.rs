@@ -6,6 +6,7 @@ use super::node::*;
 use super::symbols::{DomainPosition, SymbolKind, attribute};
 use super::{Compiler, Failed};
 use crate::diag::{Diagnostic, nearest};
+use crate::solve::OWN_OPTIONS;
 use crate::source::{SourceMap, Span};
 use crate::syntax::ast::{
     self, Assign, DisplayItem, Equate, Expr, ExprKind, Ident, OptionForm, OptionItem, OptionValue,
@@ -75,16 +76,7 @@ const OPTIONS: &[&str] = &[
     "mcprholdfx",
     "gdxuels",
     "shuffle",
-    "lp_accuracy",
     "certify",
-    "mpec_method",
-    "mpec_bound",
-    "mpec_relaxation",
-    "mpec_mu",
-    "mpec_mu_end",
-    "mpec_factor",
-    "mpec_starts",
-    "mpec_nodes",
     "checkerrorlevel",
     "dmpuserSym",
     "resLim",
@@ -96,6 +88,13 @@ const OPTIONS: &[&str] = &[
     "hessscale",
     "ecimplicitload",
 ];
+
+/// Whether an option is the language's and not a solver's: a problem type (`nlp = ipopt`), a limit, a
+/// switch.
+pub fn is_statement_option(name: &str) -> bool {
+    let mut known = [OPTIONS, functions::PROBLEM_TYPES].into_iter().flatten();
+    known.any(|o| o.eq_ignore_ascii_case(name))
+}
 
 impl Compiler {
     /// Checks a statement and appends its code.
@@ -703,12 +702,11 @@ impl Compiler {
                 Ok(Some(CodeKind::Clear(s)))
             }
             OptionForm::Assign(v) => {
-                let is_type = functions::PROBLEM_TYPES.contains(&lower.as_str());
-                if !is_type && !OPTIONS.iter().any(|o| o.eq_ignore_ascii_case(&lower)) {
+                if !is_statement_option(&lower) && !OWN_OPTIONS.contains(&lower.as_str()) {
                     return self.unknown_option(item);
                 }
                 if let OptionValue::Text(t, span) = v
-                    && is_type
+                    && functions::PROBLEM_TYPES.contains(&lower.as_str())
                     && !functions::SOLVERS.iter().any(|s| s.eq_ignore_ascii_case(t))
                 {
                     let near = nearest(t, functions::SOLVERS.iter().copied()).map(str::to_string);
@@ -739,14 +737,9 @@ impl Compiler {
     }
 
     fn unknown_option<T>(&mut self, item: &OptionItem) -> Result<T, Failed> {
-        let near = nearest(
-            &item.name.name,
-            OPTIONS
-                .iter()
-                .copied()
-                .chain(functions::PROBLEM_TYPES.iter().copied()),
-        )
-        .map(str::to_string);
+        let known = [OPTIONS, OWN_OPTIONS, functions::PROBLEM_TYPES];
+        let near = nearest(&item.name.name, known.into_iter().flatten().copied());
+        let near = near.map(str::to_string);
         let d = Diagnostic::error(
             "E0329",
             item.name.span,

@@ -94,7 +94,6 @@ fn options(a: &RunArgs) -> Options {
         keep_solutions: a.solution.is_some(),
         collect: a.json.is_some(),
         quiet: a.quiet,
-        solver_options: a.option.clone(),
         ..Options::default()
     };
     if let Some(s) = a.time_limit {

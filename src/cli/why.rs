@@ -27,7 +27,6 @@ pub fn why(a: &WhyArgs) -> u8 {
         why: true,
         quiet: true,
         collect: a.json.is_some(),
-        solver_options: a.option.clone(),
         ..Options::default()
     };
     if let Some(s) = a.time_limit {

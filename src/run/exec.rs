@@ -555,30 +555,10 @@ impl Machine<'_> {
     }
 
     fn set_option(&mut self, name: &str, value: &OptionCode) {
-        match value {
-            OptionCode::Number(x) => {
-                if name == "seed" {
-                    *self.random.borrow_mut() = Random::new(*x as i64);
-                }
-                self.options.numbers.insert(name.to_string(), *x);
-                self.options.texts.remove(name);
-            }
-            OptionCode::Text(t) => {
-                self.options.numbers.remove(name);
-                let on = match t.to_lowercase().as_str() {
-                    "on" | "yes" => Some(1.0),
-                    "off" | "no" => Some(0.0),
-                    _ => None,
-                };
-                if let Some(x) = on {
-                    self.options.numbers.insert(name.to_string(), x);
-                }
-                self.options
-                    .texts
-                    .insert(name.to_string(), t.to_lowercase());
-            }
-            OptionCode::Flag => {}
+        if let ("seed", OptionCode::Number(x)) = (name, value) {
+            *self.random.borrow_mut() = Random::new(*x as i64);
         }
+        self.options.assign(name, value);
     }
 
     fn clear(&mut self, s: SymbolId) {

@@ -1,7 +1,9 @@
 //! Options of a run, and what models and files remember.
 
-use crate::check::node::SymbolId;
+use crate::check::node::{OptionCode, SymbolId};
+use crate::check::statement::is_statement_option;
 use crate::report::textfile::TextFile;
+use crate::solve::OWN_OPTIONS;
 use crate::source::Span;
 use rustc_hash::FxHashMap;
 use std::cell::Cell;
@@ -17,8 +19,10 @@ pub struct Options {
     pub texts: FxHashMap<String, String>,
     /// Numeric options, lower case.
     pub numbers: FxHashMap<String, f64>,
-    /// `--option K=V`: solver options.
+    /// `--option K=V` for the solvers: what no `option` statement takes.
     pub solver_options: Vec<(String, String)>,
+    /// `--option log=1`: print the solver's log.
+    pub log: bool,
     /// `--certify`
     pub certify: bool,
     /// `bmod why`: explain how each solve ended.
@@ -54,6 +58,7 @@ impl Default for Options {
             texts: FxHashMap::default(),
             numbers: FxHashMap::default(),
             solver_options: Vec::new(),
+            log: false,
             certify: false,
             why: false,
             collect: true,
@@ -67,20 +72,38 @@ impl Default for Options {
 }
 
 impl Options {
-    /// As `option` statements before the first statement would set them.
+    /// `--option K=V`: what the language knows as an `option` statement before the first statement would
+    /// set it, the rest for the solvers.
     pub fn set(&mut self, pairs: &[(String, String)]) {
-        for (k, v) in pairs {
-            let (k, v) = (k.to_lowercase(), v.to_lowercase());
-            let on = match v.as_str() {
-                "on" | "yes" => Some(1.0),
-                "off" | "no" => Some(0.0),
-                number => number.parse().ok(),
-            };
-            if let Some(x) = on {
-                self.numbers.insert(k.clone(), x);
+        for (name, value) in pairs {
+            let name = name.to_lowercase();
+            if name == "log" {
+                self.log = value != "0";
+            } else if is_statement_option(&name) || OWN_OPTIONS.contains(&name.as_str()) {
+                let number = value.parse().map(OptionCode::Number);
+                let value = number.unwrap_or_else(|_| OptionCode::Text(value.as_str().into()));
+                self.assign(&name, &value);
+            } else {
+                self.solver_options.push((name, value.clone()));
             }
-            self.texts.insert(k, v);
         }
+    }
+
+    /// What an `option` statement does; `name` in lower case.
+    pub fn assign(&mut self, name: &str, value: &OptionCode) {
+        let (number, text) = match value {
+            OptionCode::Flag => return,
+            OptionCode::Number(x) => (Some(*x), None),
+            OptionCode::Text(t) => match t.to_lowercase() {
+                t if t == "on" || t == "yes" => (Some(1.0), Some(t)),
+                t if t == "off" || t == "no" => (Some(0.0), Some(t)),
+                t => (None, Some(t)),
+            },
+        };
+        self.numbers.remove(name);
+        self.texts.remove(name);
+        self.numbers.extend(number.map(|x| (name.to_string(), x)));
+        self.texts.extend(text.map(|t| (name.to_string(), t)));
     }
 
     /// A numeric option.

@@ -13,7 +13,7 @@ use crate::report::why::{Explanation, explain};
 use crate::report::{json, listing, solution, summary};
 use crate::solve::answer::{Answer, answer, certify};
 use crate::solve::why;
-use crate::solve::{ModelStatus, Monitor, Settings, SolverStatus};
+use crate::solve::{ModelStatus, Monitor, OWN_OPTIONS, Settings, SolverStatus};
 use crate::source::Span;
 
 /// A solver's line to the run.
@@ -195,27 +195,19 @@ impl Machine<'_> {
                 .clamp(0.0, 1e18) as u64,
             evaluation_error_limit: self.model_option(model, "domlim", 0.0).clamp(0.0, 1e18) as u64,
             options: self.solver_options(),
-            log: self
-                .options
-                .solver_options
-                .iter()
-                .any(|(k, v)| k == "log" && v != "0"),
+            log: self.options.log,
         }
     }
 
-    /// Options of the command line, and those of `option` statements that are a solver's.
+    /// Options of other solvers, from the command line, and bmod's own, as the `option` statements
+    /// left them.
     fn solver_options(&self) -> Vec<(String, String)> {
+        let own = OWN_OPTIONS.iter().filter_map(|&name| {
+            let text = self.options.texts.get(name).cloned();
+            let value = text.or_else(|| Some(self.options.number(name)?.to_string()))?;
+            Some((name.to_string(), value))
+        });
         let mut out = self.options.solver_options.clone();
-        let is_ours = |k: &str| k.starts_with("mpec_") || k == "lp_accuracy";
-        out.retain(|(k, _)| !is_ours(&k.to_lowercase()));
-        let texts = self.options.texts.iter().map(|(k, v)| (k, v.clone()));
-        let numbers = self.options.numbers.iter().map(|(k, v)| (k, v.to_string()));
-        let mut own: Vec<(String, String)> = texts
-            .chain(numbers)
-            .filter(|(k, _)| is_ours(k))
-            .map(|(k, v)| (k.clone(), v))
-            .collect();
-        own.sort();
         out.extend(own);
         out
     }

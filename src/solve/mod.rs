@@ -177,6 +177,30 @@ impl Default for Settings {
     }
 }
 
+/// Options of bmod's own methods. The `option` statement takes them as well, and no other solver sees them.
+pub const OWN_OPTIONS: &[&str] = &[
+    "lp_accuracy",
+    "mpec_bound",
+    "mpec_factor",
+    "mpec_method",
+    "mpec_mu",
+    "mpec_mu_end",
+    "mpec_nodes",
+    "mpec_relaxation",
+    "mpec_starts",
+    "nlp_attempts",
+    "nlp_search",
+];
+
+impl Settings {
+    /// A solver option's text, lower case: what was said last counts.
+    pub fn option(&self, name: &str) -> Option<String> {
+        let mut asked = self.options.iter().rev();
+        let of = asked.find(|(k, _)| k.eq_ignore_ascii_case(name));
+        of.map(|(_, v)| v.to_lowercase())
+    }
+}
+
 /// The solver's line to the outside.
 pub trait Monitor {
     /// A line of the log.
@@ -198,6 +222,17 @@ pub struct SolveError {
     pub row: Option<usize>,
     /// The column to name, if one is to blame.
     pub column: Option<usize>,
+}
+
+impl SolveError {
+    /// With no row or column to blame.
+    pub fn new(message: impl Into<String>) -> Self {
+        Self {
+            message: message.into(),
+            row: None,
+            column: None,
+        }
+    }
 }
 
 /// A solver for some problem types.

@@ -97,7 +97,7 @@ enum Accuracy {
 impl Accuracy {
     /// From the options; a tolerance above 1e-9 is fast, below 1e-12 high.
     fn new(settings: &Settings) -> Result<Self, SolveError> {
-        let Some(text) = option(settings, "lp_accuracy") else {
+        let Some(text) = settings.option("lp_accuracy") else {
             return Ok(Self::Standard);
         };
         match (text.as_str(), text.parse::<f64>()) {
@@ -107,23 +107,12 @@ impl Accuracy {
             (_, Ok(t)) if t > 1e-9 && t < 1.0 => Ok(Self::Fast(t)),
             (_, Ok(t)) if (1e-12..=1e-9).contains(&t) => Ok(Self::Standard),
             (_, Ok(t)) if t > 0.0 && t < 1e-12 => Ok(Self::High),
-            _ => Err(SolveError {
-                message: format!(
-                    "the option `lp_accuracy` takes `fast`, `standard`, `high` or a tolerance, not \
+            _ => Err(SolveError::new(format!(
+                "the option `lp_accuracy` takes `fast`, `standard`, `high` or a tolerance, not \
                      `{text}`"
-                ),
-                row: None,
-                column: None,
-            }),
+            ))),
         }
     }
-}
-
-/// A solver option's text, lower case.
-fn option(settings: &Settings, name: &str) -> Option<String> {
-    let asked = settings.options.iter().rev();
-    let mut asked = asked.filter(|o| o.0.eq_ignore_ascii_case(name));
-    asked.next().map(|o| o.1.to_lowercase())
 }
 
 /// Which way to go.
@@ -146,7 +135,7 @@ impl Solver for Clarabel {
         settings: &Settings,
         monitor: &mut dyn Monitor,
     ) -> Result<Outcome, SolveError> {
-        let method = match option(settings, "method").as_deref() {
+        let method = match settings.option("method").as_deref() {
             Some("interior") => Method::Interior,
             Some("crossover") => Method::Crossover,
             Some("simplex") => Method::Simplex,
@@ -189,11 +178,9 @@ fn solve(
     method: Method,
 ) -> Result<Outcome, SolveError> {
     if !instance.is_linear() {
-        return Err(SolveError {
-            message: "the model has nonlinear terms; this solver takes linear models".into(),
-            row: None,
-            column: None,
-        });
+        return Err(SolveError::new(
+            "the model has nonlinear terms; this solver takes linear models",
+        ));
     }
     let limits = Limits {
         start: Instant::now(),
@@ -201,7 +188,9 @@ fn solve(
         iterations: settings.iteration_limit,
     };
     let accuracy = Accuracy::new(settings)?;
-    let tolerance = option(settings, "tolerance").and_then(|t| t.parse::<f64>().ok());
+    let tolerance = settings
+        .option("tolerance")
+        .and_then(|t| t.parse::<f64>().ok());
     let tolerance = tolerance.filter(|t| *t > 0.0 && *t < 1.0);
     let form = Form::new(instance)?;
     let scaling = Scaling::new(&form.problem);

@@ -135,13 +135,10 @@ impl Search<'_> {
                 self.relax(Kind::Penalty, &start)?;
             }
             Method::Pieces => {
-                return Err(SolveError {
-                    message: "the method `pieces` is for linear models whose pairs couple two systems that \
-                              have no equation in common"
-                        .into(),
-                    row: None,
-                    column: None,
-                });
+                return Err(SolveError::new(
+                    "the method `pieces` is for linear models whose pairs couple two systems that \
+                              have no equation in common",
+                ));
             }
             _ => {
                 let kind = match self.options.aggregate {

@@ -75,10 +75,8 @@ impl Options {
             };
             let text = value.to_lowercase();
             let number = text.parse::<f64>().ok().filter(|v| *v >= 0.0);
-            let refused = |takes: &str| SolveError {
-                message: format!("the option `{name}` takes {takes}, not `{value}`"),
-                row: None,
-                column: None,
+            let refused = |takes: &str| {
+                SolveError::new(format!("the option `{name}` takes {takes}, not `{value}`"))
             };
             match option {
                 "method" => {

@@ -26,7 +26,8 @@ use crate::autodiff::{ErrorKind, EvalFailure, Evaluator, has_kinks};
 use crate::model::certificate_nlp::{is_locally_infeasible, violations};
 use crate::model::instance::Instance;
 use crate::solve::{
-    Claim, ModelStatus, Monitor, Outcome, Settings, SolveError, SolverStatus, answer::Answer,
+    Claim, ModelStatus, Monitor, OWN_OPTIONS, Outcome, Settings, SolveError, SolverStatus,
+    answer::Answer,
 };
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
@@ -55,11 +56,7 @@ pub fn solve(
         }
     }
     let mut problem = Problem::new(instance);
-    let wants_marginals = settings
-        .options
-        .iter()
-        .any(|(k, v)| k.eq_ignore_ascii_case("warm_start_init_point") && v == "yes");
-    if wants_marginals {
+    if settings.option("warm_start_init_point").as_deref() == Some("yes") {
         problem.use_marginals(instance);
     }
     let start = problem.start().to_vec();
@@ -222,18 +219,15 @@ impl Driver<'_> {
 
     /// Whether there may be several local optima, and the person lets us look for them.
     fn wants_search(&self) -> bool {
-        let forbidden = |(k, v): &(String, String)| {
-            k.eq_ignore_ascii_case("nlp_search") && (v == "0" || v.eq_ignore_ascii_case("no"))
-        };
-        !self.settings.options.iter().any(forbidden)
+        let asked = self.settings.option("nlp_search");
+        !matches!(asked.as_deref(), Some("0" | "no" | "off"))
     }
 
     /// How much of the schedule is tried: one program of a sequence is not worth all of it.
     fn attempts(&self) -> usize {
-        let few = |(k, v): &(String, String)| k == "nlp_attempts" && v == "few";
-        match self.settings.options.iter().any(few) {
-            true => 2,
-            false => usize::MAX,
+        match self.settings.option("nlp_attempts").as_deref() {
+            Some("few") => 2,
+            _ => usize::MAX,
         }
     }
 
@@ -412,7 +406,7 @@ impl Driver<'_> {
             put(k, v);
         }
         for (k, v) in &self.settings.options {
-            if !is_for_others(k) {
+            if !OWN_OPTIONS.contains(&k.to_lowercase().as_str()) {
                 put(k, v);
             }
         }
@@ -464,11 +458,7 @@ impl Driver<'_> {
             watch: &mut watch,
         };
         let result = self.provider.solve(nlp.clone(), &mut control);
-        let solution = result.map_err(|message| SolveError {
-            message,
-            row: None,
-            column: None,
-        })?;
+        let solution = result.map_err(SolveError::new)?;
         self.iterations += solution.iterations;
         self.stopped = match solution.ended {
             _ if stopped.is_some() => stopped,
@@ -479,11 +469,10 @@ impl Driver<'_> {
             _ => self.stopped,
         };
         if let Ended::InvalidOption = solution.ended {
-            return Err(SolveError {
-                message: format!("{} does not take one of the options", self.provider.name()),
-                row: None,
-                column: None,
-            });
+            return Err(SolveError::new(format!(
+                "{} does not take one of the options",
+                self.provider.name()
+            )));
         }
         Ok(solution)
     }
@@ -657,11 +646,7 @@ impl Driver<'_> {
                 claim,
                 status: solver_status,
                 iterations: self.iterations,
-                solver: if self.provider.name() == "ipopt" {
-                    "ipopt"
-                } else {
-                    "pounce"
-                },
+                solver: self.provider.name(),
                 ray: Vec::new(),
                 message,
             },
@@ -670,50 +655,4 @@ impl Driver<'_> {
             best.at.activity,
         )
     }
-}
-
-/// Options that are not the provider's: the driver's own, those of the `option` statement that the
-/// command line hands over as well, and those of other solvers.
-fn is_for_others(option: &str) -> bool {
-    const OTHERS: [&str; 37] = [
-        "log",
-        "nlp_attempts",
-        "nlp_search",
-        "lp",
-        "rmip",
-        "mip",
-        "nlp",
-        "dnlp",
-        "rminlp",
-        "minlp",
-        "qcp",
-        "rmiqcp",
-        "miqcp",
-        "cns",
-        "mcp",
-        "mpec",
-        "rmpec",
-        "solver",
-        "reslim",
-        "iterlim",
-        "domlim",
-        "limrow",
-        "limcol",
-        "decimals",
-        "optcr",
-        "optca",
-        "bratio",
-        "seed",
-        "sysout",
-        "solprint",
-        "solveopt",
-        "solvelink",
-        "savepoint",
-        "threads",
-        "profile",
-        "dispwidth",
-        "optfile",
-    ];
-    let lower = option.to_lowercase();
-    lower.starts_with("mpec_") || OTHERS.contains(&lower.as_str())
 }

@@ -10,7 +10,7 @@
 // the only module that talks to C
 #![allow(unsafe_code)]
 
-use super::provider::{Control, Ended, Progress, Provider, Shared, Solution, is_forbidden, lock};
+use super::provider::{Control, Ended, Progress, Provider, Shared, Solution, lock};
 use ipopt_sys as c;
 use std::ffi::{CString, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -73,21 +73,8 @@ impl Provider for Ipopt {
     fn solve(&self, nlp: Shared, control: &mut Control<'_>) -> Result<Solution, String> {
         let _turn = lock(&ONE_AT_A_TIME);
         let (n, m) = lock(&nlp).size();
-        let mut options: Vec<(String, String)> = vec![
-            ("print_level".into(), "0".into()),
-            ("sb".into(), "yes".into()),
-            ("option_file_name".into(), String::new()),
-            (
-                "max_iter".into(),
-                control.iterations.min(1_000_000_000).to_string(),
-            ),
-        ];
-        for (k, v) in &control.options {
-            if is_forbidden(k) {
-                return Err(format!("the option `{k}` is not available here"));
-            }
-            options.push((k.clone(), v.clone()));
-        }
+        let mut options = control.all_options()?;
+        options.push(("option_file_name".into(), String::new()));
         let mut problem: c::CNLP_ProblemPtr = std::ptr::null_mut();
         // SAFETY: the out-pointer is valid, the callbacks have the required signatures.
         let created = unsafe {

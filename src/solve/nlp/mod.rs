@@ -57,11 +57,10 @@ fn choose(choice: Option<&str>) -> Result<&'static dyn Provider, SolveError> {
         None => all.first(),
     };
     // a name that no nonlinear solver bears is some other solver of the same model type in GAMS
-    found.or(all.first()).copied().ok_or_else(|| SolveError {
-        message: "there is no solver for nonlinear models in this build".into(),
-        row: None,
-        column: None,
-    })
+    found
+        .or(all.first())
+        .copied()
+        .ok_or_else(|| SolveError::new("there is no solver for nonlinear models in this build"))
 }
 
 /// A nonlinear solver by name, for callers that want the bare outcome.

@@ -7,7 +7,7 @@
 //! shared, progress comes back through a channel, and a panic ends the thread, not the program.
 //! Without its restoration phase wired in, every hard case ends `RestorationFailed`.
 
-use super::provider::{Control, Ended, Progress, Provider, Shared, Solution, is_forbidden, lock};
+use super::provider::{Control, Ended, Progress, Provider, Shared, Solution, lock};
 use pounce_algorithm::application::{
     IpoptApplication, Ma57Config, default_backend_factory, feral_config_from_options,
 };
@@ -39,22 +39,9 @@ impl Provider for Pounce {
     }
 
     fn solve(&self, nlp: Shared, control: &mut Control<'_>) -> Result<Solution, String> {
-        let mut options = vec![
-            ("print_level".to_string(), "0".to_string()),
-            ("sb".to_string(), "yes".to_string()),
-            (
-                "max_iter".to_string(),
-                control.iterations.min(1_000_000_000).to_string(),
-            ),
-        ];
+        let mut options = control.all_options()?;
         if let Some(s) = control.seconds() {
             options.push(("max_wall_time".into(), format!("{s:.6}")));
-        }
-        for (k, v) in &control.options {
-            if is_forbidden(k) {
-                return Err(format!("the option `{k}` is not available here"));
-            }
-            options.push((k.clone(), v.clone()));
         }
         let (send, receive) = channel();
         let stop = Arc::new(AtomicBool::new(false));

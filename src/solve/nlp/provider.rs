@@ -82,6 +82,18 @@ pub struct Control<'c> {
 }
 
 impl Control<'_> {
+    /// What is to be set: silence, the iteration limit, and what was asked for. Err: an option that
+    /// is not available.
+    pub fn all_options(&self) -> Result<Vec<(String, String)>, String> {
+        let limit = self.iterations.min(1_000_000_000).to_string();
+        let own = [("print_level", "0"), ("sb", "yes"), ("max_iter", &limit)];
+        let own = own.map(|(k, v)| (k.to_string(), v.to_string()));
+        match self.options.iter().find(|(k, _)| is_forbidden(k)) {
+            Some((k, _)) => Err(format!("the option `{k}` is not available here")),
+            None => Ok(own.into_iter().chain(self.options.clone()).collect()),
+        }
+    }
+
     /// Seconds left.
     pub fn seconds(&self) -> Option<f64> {
         self.deadline.map(|d| {
@@ -110,7 +122,7 @@ pub trait Provider {
 }
 
 /// Options that would make a provider read or write files, or print.
-pub fn is_forbidden(option: &str) -> bool {
+fn is_forbidden(option: &str) -> bool {
     const FORBIDDEN: [&str; 10] = [
         "output_file",
         "option_file_name",
