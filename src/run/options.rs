@@ -97,6 +97,7 @@ impl Options {
             OptionCode::Text(t) => match t.to_lowercase() {
                 t if t == "on" || t == "yes" => (Some(1.0), Some(t)),
                 t if t == "off" || t == "no" => (Some(0.0), Some(t)),
+                t if t == "default" => (None, None),
                 t => (None, Some(t)),
             },
         };

@@ -1,7 +1,7 @@
 //! The interior-point method: Clarabel on a scaled [`Problem`].
 //!
-//! Clarabel solves `min ½xᵀPx + qᵀx, Ax + s = b, s ∈ K` with multipliers z ∈ K*, q + Aᵀz = 0. Here
-//! P = 0 and K is a zero cone (equations) followed by a nonnegative orthant (sides of rows, then
+//! Clarabel solves `min ½xᵀPx + qᵀx, Ax + s = b, s ∈ K` with multipliers z ∈ K*, Px + q + Aᵀz = 0. Here
+//! P = 0 for linear programs, and K is a zero cone (equations) followed by a nonnegative orthant (sides of rows, then
 //! bounds). Fixed columns are left out. With y the derivative of the optimum with respect to a
 //! row's side: y = −z for an equation and an upper side, +z for a lower side; likewise for d.
 //!
@@ -48,9 +48,11 @@ enum Source {
     Lower(usize),
 }
 
-/// Runs Clarabel. `interrupted` is asked every few milliseconds.
+/// Runs Clarabel, on ½xᵀPx + cᵀx where the upper triangle of a positive semidefinite P is given by
+/// columns. `interrupted` is asked every few milliseconds.
 pub fn solve(
     p: &Problem,
+    hessian: Option<&Sparse>,
     tolerance: f64,
     limits: &Limits,
     interrupted: &mut dyn FnMut() -> bool,
@@ -65,7 +67,7 @@ pub fn solve(
         })
         .collect();
     let free = fixed.iter().filter(|&&f| !f).count();
-    let q: Vec<f64> = (0..p.n())
+    let mut q: Vec<f64> = (0..p.n())
         .filter(|&j| !fixed[j])
         .map(|j| p.cost[j])
         .collect();
@@ -104,7 +106,10 @@ pub fn solve(
         ..DefaultSettings::default()
     };
     let stop = Arc::new(AtomicBool::new(false));
-    let objective = CscMatrix::zeros((free, free));
+    let objective = match hessian {
+        None => CscMatrix::zeros((free, free)),
+        Some(h) => reduced(p, h, &fixed, &number, &mut q),
+    };
     let run = || {
         let mut solver = DefaultSolver::new(&objective, &q, &a, &b, &cones, settings).ok()?;
         let flag = Arc::clone(&stop);
@@ -180,12 +185,49 @@ pub fn solve(
     for j in 0..p.n() {
         point.d[j] = p.cost[j] - p.columns.line(j).map(|(i, a)| a * point.y[i]).sum::<f64>();
     }
+    // d = c + Px − Aᵀy
+    for (j, i, v) in hessian.into_iter().flat_map(entries) {
+        point.d[j] += v * point.x[i];
+        if i != j {
+            point.d[i] += v * point.x[j];
+        }
+    }
     Run {
         point,
         ended,
         iterations,
         almost,
     }
+}
+
+fn entries(h: &Sparse) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
+    (0..h.lines()).flat_map(|j| h.line(j).map(move |(i, v)| (j, i, v)))
+}
+
+/// P without its fixed columns, whose part goes to q.
+fn reduced(
+    p: &Problem,
+    h: &Sparse,
+    fixed: &[bool],
+    number: &[usize],
+    q: &mut [f64],
+) -> CscMatrix<f64> {
+    let mut kept = Sparse::new();
+    for j in 0..h.lines() {
+        for (i, v) in h.line(j) {
+            match (fixed[i], fixed[j]) {
+                (true, false) => q[number[j]] += v * p.lower[i],
+                (false, true) => q[number[i]] += v * p.lower[j],
+                _ => {}
+            }
+        }
+        if !fixed[j] {
+            let line = h.line(j).filter(|&(i, _)| !fixed[i]);
+            kept.push(line.map(|(i, v)| (number[i], v)));
+        }
+    }
+    let index = kept.index.iter().map(|&i| i as usize).collect();
+    CscMatrix::new(q.len(), q.len(), kept.start, index, kept.value)
 }
 
 /// The constraints in the order of Clarabel's cones.

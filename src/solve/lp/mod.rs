@@ -330,7 +330,7 @@ fn interior_only(
 ) -> Answer {
     let run = match trivial(p) {
         Some(run) => run,
-        None => interior::solve(p, tolerance, limits, &mut || monitor.interrupted()),
+        None => interior::solve(p, None, tolerance, limits, &mut || monitor.interrupted()),
     };
     Answer {
         point: run.point,

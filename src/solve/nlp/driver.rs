@@ -1,6 +1,9 @@
 //! From an instance to a certified answer, with any provider.
 //!
-//! The provider is asked first with ordinary options from the person's own start point. What comes
+//! A convex quadratic program goes to Clarabel, and a certified point is then a global optimum. The
+//! status says so where Clarabel was asked for; a model that asks for no solver expects, as in GAMS,
+//! a local optimum, and the message says that it is global.
+//! Otherwise, or where that point is not good enough, the provider is asked first with ordinary options from the person's own start point. What comes
 //! back is judged by the KKT residuals of the instance, not by the provider's word:
 //!
 //! * a point that satisfies them is looked at once more: negative curvature on the tangent space of
@@ -12,11 +15,13 @@
 //! The first certified point wins. Where there is none, the best point that was seen is returned, and
 //! called what it is.
 
+use super::Convexity;
 use super::consistent::consistent_start;
 use super::curvature::negative_curvature;
 use super::elastic::Elastic;
 use super::problem::{Nlp, Problem};
 use super::provider::{Control, Ended, Progress, Provider, Shared, Solution, lock};
+use super::quadratic::Quadratic;
 use super::schedule::{
     AGREEMENT, BASE, BETTER, ELASTIC_AFTER, FINEST, From, MUCH, NEAR, NEARER, ROUNDING, SCHEDULE,
     SHARP, SMALL,
@@ -25,6 +30,7 @@ use super::trial::{Trial, active_set, clean, polished, residuals_at, tidy};
 use crate::autodiff::{ErrorKind, EvalFailure, Evaluator, has_kinks};
 use crate::model::certificate_nlp::{is_locally_infeasible, violations};
 use crate::model::instance::Instance;
+use crate::solve::lp::Limits;
 use crate::solve::{
     Claim, ModelStatus, Monitor, OWN_OPTIONS, Outcome, Settings, SolveError, SolverStatus,
     answer::Answer,
@@ -41,6 +47,7 @@ const LARGE: f64 = 1e10;
 pub fn solve(
     instance: &Instance,
     provider: &dyn Provider,
+    convexity: Convexity,
     settings: &Settings,
     monitor: &mut dyn Monitor,
 ) -> Result<Answer, SolveError> {
@@ -61,6 +68,16 @@ pub fn solve(
     }
     let start = problem.start().to_vec();
     check_start(instance, &mut problem, &start)?;
+    let quadratic = match convexity {
+        Convexity::Ignored => None,
+        Convexity::Used | Convexity::Asked => Quadratic::new(&mut problem),
+    };
+    let message = (convexity == Convexity::Asked && quadratic.is_none()).then(|| {
+        let name = provider.name();
+        format!(
+            "not a convex quadratic program with linear rows: solved by {name}, not by clarabel"
+        )
+    });
     let kinks = has_kinks(instance).then(|| Evaluator::smoothed(instance, FINEST));
     let mut driver = Driver {
         kinks,
@@ -69,6 +86,9 @@ pub fn solve(
         provider,
         settings,
         monitor,
+        convex: quadratic.is_some().then_some(convexity),
+        solver: provider.name(),
+        message,
         start,
         problem: Arc::new(Mutex::new(problem)),
         begin: Instant::now(),
@@ -77,7 +97,7 @@ pub fn solve(
         best: None,
         patience: 3000,
     };
-    driver.run()
+    driver.run(quadratic)
 }
 
 /// The start point must have values; derivatives may be missing there.
@@ -117,6 +137,12 @@ struct Driver<'a> {
     provider: &'a dyn Provider,
     settings: &'a Settings,
     monitor: &'a mut dyn Monitor,
+    /// A point that satisfies the KKT conditions is a global optimum.
+    convex: Option<Convexity>,
+    /// Name of who found the answer.
+    solver: &'static str,
+    /// What the person is to hear in any case.
+    message: Option<String>,
     start: Vec<f64>,
     problem: Arc<Mutex<Problem>>,
     begin: Instant,
@@ -129,13 +155,20 @@ struct Driver<'a> {
 }
 
 impl Driver<'_> {
-    fn run(&mut self) -> Result<Answer, SolveError> {
+    fn run(&mut self, quadratic: Option<Quadratic>) -> Result<Answer, SolveError> {
         let (n, m) = lock(&*self.problem).size();
         if n == 0 || m == 0 && self.is_constant() {
             let x = self.start.clone();
             let trial = self.judge(x, vec![0.0; m], Ended::Solved);
             self.keep(trial);
             return Ok(self.finish());
+        }
+        if let Some(quadratic) = quadratic {
+            self.attempt_quadratic(&quadratic);
+            if self.is_settled() {
+                self.solver = "clarabel";
+                return Ok(self.finish());
+            }
         }
         self.attempt(From::Start, &[])?;
         if self.is_settled() {
@@ -198,7 +231,7 @@ impl Driver<'_> {
         let Some(first) = optimal(self) else {
             return Ok(());
         };
-        if self.work() > SMALL || !self.wants_search() {
+        if self.convex.is_some() || self.work() > SMALL || !self.wants_search() {
             return Ok(());
         }
         let mut agreed = true;
@@ -311,6 +344,32 @@ impl Driver<'_> {
         let objective = trial.is_optimal().then_some(trial.objective);
         self.keep(trial);
         Ok(objective)
+    }
+
+    fn attempt_quadratic(&mut self, quadratic: &Quadratic) {
+        let limits = Limits {
+            start: self.begin,
+            seconds: self.settings.time_limit,
+            iterations: self.settings.iteration_limit,
+        };
+        let solution = quadratic.solve(&limits, &mut || self.monitor.interrupted());
+        self.iterations += solution.iterations;
+        self.note_end(solution.ended);
+        let trial = self.judge(solution.x, solution.lambda, solution.ended);
+        self.keep(trial);
+    }
+
+    /// Whether how a solver ended leaves room for a further attempt.
+    fn note_end(&mut self, ended: Ended) {
+        self.stopped = match ended {
+            _ if self.stopped.is_some() => self.stopped,
+            Ended::Stopped if self.monitor.interrupted() => Some(SolverStatus::UserInterrupt),
+            Ended::Time => Some(SolverStatus::ResourceInterrupt),
+            Ended::Iterations if self.iterations >= self.settings.iteration_limit => {
+                Some(SolverStatus::IterationInterrupt)
+            }
+            _ => None,
+        };
     }
 
     /// Solves with rounded kinks, each time from the last point.
@@ -460,14 +519,8 @@ impl Driver<'_> {
         let result = self.provider.solve(nlp.clone(), &mut control);
         let solution = result.map_err(SolveError::new)?;
         self.iterations += solution.iterations;
-        self.stopped = match solution.ended {
-            _ if stopped.is_some() => stopped,
-            Ended::Time => Some(SolverStatus::ResourceInterrupt),
-            Ended::Iterations if self.iterations >= self.settings.iteration_limit => {
-                Some(SolverStatus::IterationInterrupt)
-            }
-            _ => self.stopped,
-        };
+        self.stopped = stopped.or(self.stopped);
+        self.note_end(solution.ended);
         if let Ended::InvalidOption = solution.ended {
             return Err(SolveError::new(format!(
                 "{} does not take one of the options",
@@ -498,17 +551,11 @@ impl Driver<'_> {
         };
         let residual = |t: &Trial| t.residuals.primal_relative.max(t.residuals.dual_relative);
         let nearly = residual(&best) < 1e-2 && residual(&best) > 1e-13;
-        // What is active shows only so clearly: with a wider net where the narrow one is not enough.
-        for tolerance in [1e-6, 1e-5, 1e-4] {
-            if nearly
-                && let Some(t) = polished(self.instance, &mut problem, kinks, &best, tolerance)
-                && residual(&t) < residual(&best)
-            {
-                best = t;
-            }
-            if best.is_optimal() {
-                break;
-            }
+        if nearly
+            && let Some(t) = polished(self.instance, &mut problem, kinks, &best, 1e-6)
+            && residual(&t) < residual(&best)
+        {
+            best = t;
         }
         clean(self.instance, &mut best);
         best
@@ -601,7 +648,10 @@ impl Driver<'_> {
         };
         let mut best = best;
         let status = if best.is_optimal() {
-            ModelStatus::LocallyOptimal
+            match self.convex {
+                Some(Convexity::Asked) => ModelStatus::Optimal,
+                _ => ModelStatus::LocallyOptimal,
+            }
         } else if unbounded {
             ModelStatus::Unbounded
         } else if best.is_feasible() {
@@ -617,7 +667,7 @@ impl Driver<'_> {
             ModelStatus::IntermediateInfeasible
         };
         let claim = match status {
-            ModelStatus::LocallyOptimal => Claim::Solved,
+            ModelStatus::Optimal | ModelStatus::LocallyOptimal => Claim::Solved,
             ModelStatus::Unbounded => Claim::Unbounded,
             ModelStatus::LocallyInfeasible => Claim::Infeasible,
             _ => Claim::Unfinished,
@@ -631,12 +681,16 @@ impl Driver<'_> {
             },
             _ => SolverStatus::NormalCompletion,
         };
+        let message = self.message.take();
         let message = match (status, &problem.last_failure) {
             (ModelStatus::Feasible | ModelStatus::IntermediateInfeasible, Some(f)) => {
                 let row = self.monitor.row_name(f.row as usize);
                 Some(format!("the last evaluation that failed: {f} in {row}"))
             }
-            _ => None,
+            (ModelStatus::LocallyOptimal, _) if self.convex.is_some() => {
+                Some("convex: a local optimum is a global one".into())
+            }
+            _ => message,
         };
         Answer::new(
             Outcome {
@@ -646,7 +700,7 @@ impl Driver<'_> {
                 claim,
                 status: solver_status,
                 iterations: self.iterations,
-                solver: self.provider.name(),
+                solver: self.solver,
                 ray: Vec::new(),
                 message,
             },

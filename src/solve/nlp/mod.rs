@@ -1,7 +1,8 @@
 //! Nonlinear programs: problem types nlp, dnlp, qcp and the relaxed ones.
 //!
 //! [`problem`] puts an instance into the form min f(x), l ≤ x ≤ u, a ≤ g(x) ≤ b; a provider
-//! ([`pounce`], or Ipopt with the cargo feature `ipopt`) solves it; [`driver`] judges the point by the
+//! ([`pounce`], or Ipopt with the cargo feature `ipopt`) solves it, or Clarabel where it is a convex
+//! quadratic program ([`quadratic`]); [`driver`] judges the point by the
 //! KKT residuals of the instance, tries again where they are not small, and says what is known.
 
 pub mod consistent;
@@ -15,6 +16,7 @@ pub mod polish;
 pub mod pounce;
 pub mod problem;
 pub mod provider;
+pub mod quadratic;
 mod schedule;
 mod trial;
 
@@ -46,21 +48,31 @@ pub fn answer(
     settings: &Settings,
     monitor: &mut dyn Monitor,
 ) -> Result<Answer, SolveError> {
-    let provider = choose(choice)?;
-    driver::solve(instance, provider, settings, monitor)
+    let all = providers();
+    let named = choice.and_then(|c| all.iter().find(|p| p.name().eq_ignore_ascii_case(c)));
+    let convexity = match choice {
+        Some("clarabel") => Convexity::Asked,
+        _ if named.is_some() => Convexity::Ignored,
+        // a name that no solver of ours bears is some other solver of the same model type in GAMS
+        _ => Convexity::Used,
+    };
+    match named.or(all.first()) {
+        Some(p) => driver::solve(instance, *p, convexity, settings, monitor),
+        None => Err(SolveError::new(
+            "there is no solver for nonlinear models in this build",
+        )),
+    }
 }
 
-fn choose(choice: Option<&str>) -> Result<&'static dyn Provider, SolveError> {
-    let all = providers();
-    let found = match choice {
-        Some(name) => all.iter().find(|p| p.name().eq_ignore_ascii_case(name)),
-        None => all.first(),
-    };
-    // a name that no nonlinear solver bears is some other solver of the same model type in GAMS
-    found
-        .or(all.first())
-        .copied()
-        .ok_or_else(|| SolveError::new("there is no solver for nonlinear models in this build"))
+/// What is made of a convex quadratic program.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Convexity {
+    /// Nothing: the provider was chosen by name.
+    Ignored,
+    /// Clarabel solves it.
+    Used,
+    /// Clarabel solves it, the status is `optimal`, and the person hears if it is not convex.
+    Asked,
 }
 
 /// A nonlinear solver by name, for callers that want the bare outcome.

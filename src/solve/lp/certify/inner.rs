@@ -103,7 +103,7 @@ fn search(
         p.row_upper.push(limit);
     }
     p.columns = p.rows.transpose(p.cost.len());
-    let run = interior::solve(&p, 1e-9, limits, interrupted);
+    let run = interior::solve(&p, None, 1e-9, limits, interrupted);
     if run.ended != Ended::Solved {
         return None;
     }
