@@ -548,18 +548,24 @@ impl Compiler {
         Ok(())
     }
 
-    /// A symbol declared without a domain has as many indices as its first record.
+    /// A symbol declared without a domain has as many indices as its first record. A dot behind a
+    /// blank begins a number there.
     fn shape_by_data(&mut self, s: SymbolId, text: &str, kind: DataKind) {
-        let mut reader = DataReader::new(text, 0, kind, true);
+        let mut reader = DataReader::new(text, 0, kind, true).with_arity(1);
         if let Some(Ok(r)) = reader.next()
             && (kind == DataKind::Set || !matches!(r.value, Tail::None))
         {
             let spelled_out = set_prefix(r.key);
             let key = spelled_out.as_deref().unwrap_or(r.key);
             let dim = width(key) + r.matched.map_or(0, width);
-            if dim > 0 && dim <= 20 && dim != self.symbols.get(s).dim() {
-                self.reshape(s, dim);
-            }
+            self.set_dimension(s, dim);
+        }
+    }
+
+    /// Takes the number of indices that data show.
+    fn set_dimension(&mut self, s: SymbolId, dim: usize) {
+        if dim > 0 && dim <= 20 && dim != self.symbols.get(s).dim() {
+            self.reshape(s, dim);
         }
     }
 
@@ -1016,7 +1022,17 @@ impl Compiler {
             SymbolKind::Parameter { scalar: false },
             |c, n| c.store.add_table(n, 0.0),
         )?;
+        let open = self.symbols.get(s).open;
         self.open_data(s, t.symbol.name.span)?;
+        if open {
+            let mut reader = TableReader::new(map.expanded(), t.body, 1, self.modes.undf);
+            while let Some(cell) = reader.next() {
+                if let Ok(cell) = cell {
+                    self.set_dimension(s, width(cell.row) + width(cell.column));
+                    break;
+                }
+            }
+        }
         let symbol = self.symbols.get(s).clone();
         if symbol.dim() < 2 {
             return self.fail(

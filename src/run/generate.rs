@@ -548,11 +548,17 @@ impl Builder<'_, '_> {
         }
         let mut tape = Tape::default();
         self.build(n, frame, &mut tape);
-        if tape.columns.is_empty() {
-            // All its variables are held fixed or its sums are empty: a number after all.
-            let v = super::constant::evaluate(&tape.ops, &tape.constants);
-            match v {
-                Ok(v) => row.constant += coef * v,
+        // Without variables, or with some held fixed, it may be a number or linear after all.
+        if tape.columns.is_empty() || self.options.hold_fixed {
+            match super::constant::affine(&tape.ops, &tape.constants) {
+                Ok(Some(a)) => {
+                    row.constant += coef * a.constant;
+                    for (v, c) in a.terms {
+                        self.add(tape.columns[v as usize], coef * c, row);
+                    }
+                    return;
+                }
+                Ok(None) => {}
                 Err(e) => {
                     self.m.execution_error(
                         "E0403",
@@ -560,9 +566,9 @@ impl Builder<'_, '_> {
                         e.to_string(),
                         "guard it with a condition",
                     );
+                    return;
                 }
             }
-            return;
         }
         let k = match self.kernels.get(&tape.ops) {
             Some(&k) => k,

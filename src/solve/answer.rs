@@ -5,9 +5,12 @@
 
 use super::lp::certify::{Proof, Unproved};
 use super::mpec::Stationarity;
-use super::{ModelStatus, Monitor, Outcome, Settings, SolveError, Solver, complementarity, lp};
+use super::{
+    Claim, ModelStatus, Monitor, Outcome, Settings, SolveError, Solver, complementarity, lp,
+};
 use crate::autodiff::Evaluator;
-use crate::model::certificate::{self, Residuals};
+use crate::model::certificate::{self, Linearised, Residuals, TOLERANCE};
+use crate::model::certificate_nlp::{is_locally_infeasible, linearise, violations};
 use crate::model::instance::Instance;
 
 /// A solver's point with its certificate.
@@ -137,9 +140,37 @@ fn square(
     monitor: &mut dyn Monitor,
 ) -> Result<Answer, SolveError> {
     let outcome = complementarity::solve(instance, true, settings, monitor)?;
-    let activity = activity(instance, &outcome.level);
-    let size: Vec<f64> = activity.iter().map(|a| a.abs()).collect();
-    let residuals = certificate::primal(instance, &outcome.level, &activity, &size);
-    let status = certificate::square_status(&residuals);
-    Ok(Answer::new(outcome, residuals, status, activity))
+    let mut evaluator = Evaluator::new(instance);
+    let at = linearise(
+        instance,
+        &mut evaluator,
+        &outcome.level,
+        &outcome.row_marginal,
+    )
+    .unwrap_or_else(|_| Linearised {
+        activity: activity(instance, &outcome.level),
+        row_size: vec![1.0; instance.row_count()],
+        ..Linearised::default()
+    });
+    let residuals = certificate::primal(instance, &outcome.level, &at.activity, &at.row_size);
+    let status = if residuals.is_feasible(TOLERANCE) {
+        ModelStatus::Solved
+    } else if certificate::is_beyond_bounds(instance) {
+        ModelStatus::Infeasible
+    } else if outcome.claim == Claim::Solved
+        || is_locally_infeasible(
+            instance,
+            &mut evaluator,
+            &outcome.level,
+            &violations(instance, &at.activity),
+            1e-4,
+        )
+    {
+        // Either the rows hold and the point they determine is beyond a bound, or nothing nearby
+        // makes the rows' violation smaller.
+        ModelStatus::LocallyInfeasible
+    } else {
+        ModelStatus::IntermediateInfeasible
+    };
+    Ok(Answer::new(outcome, residuals, status, at.activity))
 }
