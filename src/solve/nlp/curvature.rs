@@ -4,15 +4,16 @@
 //! bound) the Hessian of the Lagrangian must have no negative curvature; where it has, a direction of
 //! negative curvature leads to better points, and the point was a saddle: min x·y at 0.
 //!
-//! The smallest eigenvalue of P H P is found by Lanczos's method with full reorthogonalisation, P
+//! First the inertia of \[H Jᵀ; J −δI\] is looked at: with as many negative eigenvalues as binding
+//! constraints H is positive definite on the tangent space, and there is nothing to find. Otherwise
+//! the smallest eigenvalue of P H P is found by Lanczos's method with full reorthogonalisation, P
 //! being the orthogonal projection onto the tangent space by the augmented system
 //! \[I Jᵀ; J −δI\]: one factorisation, then products only, so the cost is that of a few iterations of
 //! the solver at any size.
 
+use super::polish::number;
 use super::problem::Nlp;
-use faer::linalg::solvers::Solve;
-use faer::sparse::linalg::solvers::Lu;
-use faer::sparse::{SparseColMat, Triplet};
+use super::symmetric::{Lower, Symmetric};
 
 /// Steps of Lanczos's method at most.
 const STEPS: usize = 60;
@@ -40,37 +41,26 @@ pub fn negative_curvature(
         return None;
     }
     // free variables and binding constraints, renumbered
-    let number = |keep: &dyn Fn(usize) -> bool, count: usize| {
-        let mut next = 0;
-        let place: Vec<Option<usize>> = (0..count)
-            .map(|k| {
-                keep(k).then(|| {
-                    next += 1;
-                    next - 1
-                })
-            })
-            .collect();
-        (place, next)
-    };
-    let (variable, free) = number(&|j| !fixed[j], n);
-    let (row, bound) = number(&|i| binding[i], m);
+    let (variable, free) = number(|j| !fixed[j], n);
+    let (row, bound) = number(|i| binding[i], m);
     if free == 0 {
         return None;
     }
-    let projection = {
-        let (jr, jc) = nlp.jacobian_pattern();
-        let (jr, jc) = (jr.to_vec(), jc.to_vec());
-        let mut j = vec![0.0; jr.len()];
-        nlp.jacobian(x, &mut j)?;
-        let entries = (0..jr.len()).filter_map(|k| {
-            let (i, v) = (row[jr[k] as usize]?, variable[jc[k] as usize]?);
-            Some((i, v, j[k]))
-        });
-        Projection::new(free, bound, entries)?
-    };
+    let mut j = vec![0.0; nlp.jacobian_pattern().0.len()];
+    nlp.jacobian(x, &mut j)?;
+    let (jr, jc) = nlp.jacobian_pattern();
+    let jacobian = (0..j.len()).filter_map(|k| {
+        let (i, v) = (row[jr[k] as usize]?, variable[jc[k] as usize]?);
+        Some((i, v, j[k])).filter(|e| e.2 != 0.0)
+    });
+    let jacobian = unit_rows(jacobian.collect(), bound);
     let entries: Vec<(usize, usize, f64)> = (0..hr.len())
         .filter_map(|k| Some((variable[hr[k] as usize]?, variable[hc[k] as usize]?, h[k])))
         .collect();
+    if is_convex(free, bound, &jacobian, &entries) {
+        return None;
+    }
+    let projection = Projection::new(free, bound, &jacobian)?;
     let (value, largest, direction) = lanczos(free, &projection, &entries)?;
     if value > -1e-6 * largest || value > -1e-9 {
         return None;
@@ -84,56 +74,85 @@ pub fn negative_curvature(
     Some(out)
 }
 
+/// J with rows of unit size, so that δ means the same for all.
+fn unit_rows(mut jacobian: Vec<(usize, usize, f64)>, m: usize) -> Vec<(usize, usize, f64)> {
+    let mut norm = vec![0.0f64; m];
+    for &(i, _, a) in &jacobian {
+        norm[i] = norm[i].max(a.abs());
+    }
+    for (i, _, a) in &mut jacobian {
+        *a /= norm[*i];
+    }
+    jacobian
+}
+
+/// The factors of \[D Jᵀ; J −δI\] of order n + m, D by its entries.
+fn augmented(
+    n: usize,
+    m: usize,
+    jacobian: &[(usize, usize, f64)],
+    d: impl Iterator<Item = (usize, usize, f64)>,
+) -> Option<Symmetric> {
+    let mut matrix = Lower::default();
+    for (i, j, v) in d {
+        matrix.push(i, j, v);
+    }
+    for i in 0..m {
+        matrix.push(n + i, n + i, -1e-12);
+    }
+    for &(i, j, a) in jacobian {
+        matrix.push(n + i, j, a);
+    }
+    Symmetric::new(n + m, &matrix)
+}
+
+/// Whether the Hessian is clearly positive definite on the null space of J.
+fn is_convex(
+    n: usize,
+    m: usize,
+    jacobian: &[(usize, usize, f64)],
+    hessian: &[(usize, usize, f64)],
+) -> bool {
+    // every diagonal entry is there, so that the pattern is that of a nonsingular matrix
+    let diagonal = (0..n).map(|j| (j, j, 0.0));
+    let d = hessian.iter().copied().chain(diagonal);
+    let factors = augmented(n, m, jacobian, d);
+    factors.and_then(|f| f.inertia()) == Some((n, m))
+}
+
 /// The orthogonal projection onto the null space of J.
 struct Projection {
     n: usize,
     total: usize,
-    lu: Option<Lu<usize, f64>>,
+    /// None where there is nothing to project on.
+    factors: Option<Symmetric>,
 }
 
 impl Projection {
-    fn new(n: usize, m: usize, entries: impl Iterator<Item = (usize, usize, f64)>) -> Option<Self> {
-        if m == 0 {
-            return Some(Self {
-                n,
-                total: n,
-                lu: None,
-            });
-        }
-        let entries: Vec<_> = entries.filter(|e| e.2 != 0.0).collect();
-        if entries.iter().any(|e| !e.2.is_finite()) {
-            return None;
-        }
-        // rows of unit size, so that δ means the same for all
-        let mut norm = vec![0.0f64; m];
-        for &(i, _, a) in &entries {
-            norm[i] = norm[i].max(a.abs());
-        }
-        let mut triplets = Vec::with_capacity(n + m + 2 * entries.len());
-        triplets.extend((0..n).map(|j| Triplet::new(j, j, 1.0)));
-        triplets.extend((0..m).map(|i| Triplet::new(n + i, n + i, -1e-12)));
-        for (i, j, a) in entries {
-            let a = a / norm[i];
-            triplets.push(Triplet::new(n + i, j, a));
-            triplets.push(Triplet::new(j, n + i, a));
-        }
-        let matrix = SparseColMat::try_new_from_triplets(n + m, n + m, &triplets).ok()?;
+    fn new(n: usize, m: usize, jacobian: &[(usize, usize, f64)]) -> Option<Self> {
+        let factors = match m {
+            0 => None,
+            _ => Some(augmented(n, m, jacobian, (0..n).map(|j| (j, j, 1.0)))?),
+        };
         Some(Self {
             n,
             total: n + m,
-            lu: Some(matrix.sp_lu().ok()?),
+            factors,
         })
     }
 
-    fn apply(&self, v: &mut [f64]) {
-        let Some(lu) = &self.lu else { return };
+    /// Whether it could be applied.
+    fn apply(&self, v: &mut [f64]) -> Option<()> {
+        let Some(factors) = &self.factors else {
+            return Some(());
+        };
         // twice: the second pass removes what rounding left in the first
         for _ in 0..2 {
             let mut b = vec![0.0; self.total];
             b[..self.n].copy_from_slice(v);
-            lu.solve_in_place(faer::ColMut::from_slice_mut(&mut b));
-            v.copy_from_slice(&b[..self.n]);
+            v.copy_from_slice(&factors.solve(&b)?[..self.n]);
         }
+        Some(())
     }
 }
 
@@ -155,7 +174,7 @@ fn lanczos(
             (seed >> 11) as f64 / (1u64 << 53) as f64 - 0.5
         })
         .collect();
-    projection.apply(&mut q);
+    projection.apply(&mut q)?;
     let norm = dot(&q, &q).sqrt();
     if norm.is_nan() || norm < 1e-8 {
         return None;
@@ -172,7 +191,7 @@ fn lanczos(
                 w[j] += a * q[i];
             }
         }
-        projection.apply(&mut w);
+        projection.apply(&mut w)?;
         alpha.push(dot(q, &w));
         for _ in 0..2 {
             for b in &basis {

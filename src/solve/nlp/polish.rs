@@ -6,11 +6,7 @@
 //! it is not, the steps do not reduce the residual and nothing is changed.
 
 use super::problem::Nlp;
-use faer::linalg::solvers::Solve;
-use faer::sparse::{SparseColMat, Triplet};
-
-/// Entries of the KKT matrix up to which a factorisation is cheap beside the solve.
-const LARGEST: usize = 400_000;
+use super::symmetric::{Lower, Symmetric};
 
 /// What is active at a point.
 pub struct Active {
@@ -56,7 +52,7 @@ pub fn polish(
 
 /// The KKT system at a point.
 struct System {
-    matrix: SparseColMat<usize, f64>,
+    matrix: Lower,
     right: Vec<f64>,
     /// Largest component of the right-hand side.
     size: f64,
@@ -65,7 +61,8 @@ struct System {
     free: usize,
 }
 
-fn number(keep: impl Fn(usize) -> bool, count: usize) -> (Vec<Option<usize>>, usize) {
+/// Numbers those that are kept, in order; and how many there are.
+pub(super) fn number(keep: impl Fn(usize) -> bool, count: usize) -> (Vec<Option<usize>>, usize) {
     let mut next = 0;
     let mut place = Vec::with_capacity(count);
     for k in 0..count {
@@ -86,8 +83,7 @@ impl System {
         let (n, m) = nlp.size();
         let (variables, free) = number(|j| !active.fixed[j], n);
         let (rows, bound) = number(|i| active.binding[i], m);
-        let entries = nlp.hessian_pattern().0.len() * 2 + nlp.jacobian_pattern().0.len() * 2;
-        if entries > LARGEST || bound > free {
+        if bound > free {
             return None;
         }
         let mut gradient = vec![0.0; n];
@@ -98,27 +94,20 @@ impl System {
         nlp.jacobian(x, &mut j)?;
         let mut h = vec![0.0; nlp.hessian_pattern().0.len()];
         nlp.hessian(x, 1.0, lambda, &mut h)?;
-        let mut triplets = Vec::new();
+        let mut matrix = Lower::default();
         let (jr, jc) = nlp.jacobian_pattern();
         for (k, &a) in j.iter().enumerate() {
             let (i, v) = (jr[k] as usize, jc[k] as usize);
             gradient[v] += lambda[i] * a;
             if let (Some(p), Some(q)) = (rows[i], variables[v]) {
-                triplets.push(Triplet::new(free + p, q, a));
-                triplets.push(Triplet::new(q, free + p, a));
+                matrix.push(free + p, q, a);
             }
         }
         let (hr, hc) = nlp.hessian_pattern();
         for (k, &a) in h.iter().enumerate() {
             if let (Some(p), Some(q)) = (variables[hr[k] as usize], variables[hc[k] as usize]) {
-                triplets.push(Triplet::new(p, q, a));
-                if p != q {
-                    triplets.push(Triplet::new(q, p, a));
-                }
+                matrix.push(p, q, a);
             }
-        }
-        if triplets.iter().any(|t| !t.val.is_finite()) {
-            return None;
         }
         let total = free + bound;
         let mut right = vec![0.0; total];
@@ -134,7 +123,7 @@ impl System {
         }
         let size = right.iter().fold(0.0f64, |s, v| s.max(v.abs()));
         Some(Self {
-            matrix: SparseColMat::try_new_from_triplets(total, total, &triplets).ok()?,
+            matrix,
             right,
             size,
             variables,
@@ -147,12 +136,7 @@ impl System {
         if self.size == 0.0 || self.right.is_empty() {
             return None;
         }
-        let lu = self.matrix.sp_lu().ok()?;
-        let mut s = self.right.clone();
-        lu.solve_in_place(faer::ColMut::from_slice_mut(&mut s));
-        if s.iter().any(|v| !v.is_finite()) {
-            return None;
-        }
+        let s = Symmetric::new(self.right.len(), &self.matrix)?.solve(&self.right)?;
         let pick = |place: &[Option<usize>], offset: usize| -> Vec<f64> {
             place
                 .iter()

@@ -1,0 +1,59 @@
+//! Factors of the symmetric systems around an active set: `feral`'s LDLᵀ with Bunch–Kaufman pivots.
+//!
+//! A KKT matrix has dense columns as soon as one variable stands in every row, the length of a time
+//! step say; a symmetric ordering puts them last, where an LU ordered for AᵀA fills up. The signs of
+//! the pivots are those of the eigenvalues.
+
+use feral::{CscMatrix, FactorStatus, Solver};
+
+/// A symmetric matrix and its factors.
+pub struct Symmetric {
+    matrix: CscMatrix,
+    solver: Solver,
+}
+
+/// Entries (row, column, value) with row ≥ column; those of the same place add up.
+#[derive(Default)]
+pub struct Lower {
+    rows: Vec<usize>,
+    columns: Vec<usize>,
+    values: Vec<f64>,
+}
+
+impl Lower {
+    /// Adds an entry of either triangle.
+    pub fn push(&mut self, i: usize, j: usize, value: f64) {
+        self.rows.push(i.max(j));
+        self.columns.push(i.min(j));
+        self.values.push(value);
+    }
+}
+
+impl Symmetric {
+    /// Factors a matrix of order n; None if it is singular or not finite.
+    pub fn new(n: usize, lower: &Lower) -> Option<Self> {
+        if !lower.values.iter().all(|v| v.is_finite()) {
+            return None;
+        }
+        let entries = (&lower.rows, &lower.columns, &lower.values);
+        let matrix = CscMatrix::from_triplets(n, entries.0, entries.1, entries.2).ok()?;
+        // One thread: the same digits on every machine.
+        let mut solver = Solver::new().with_parallel(false);
+        match solver.factor(&matrix, None) {
+            FactorStatus::Success => Some(Self { matrix, solver }),
+            _ => None,
+        }
+    }
+
+    /// A⁻¹b, refined; None if it is not finite.
+    pub fn solve(&self, b: &[f64]) -> Option<Vec<f64>> {
+        let x = self.solver.solve_refined(&self.matrix, b).ok()?;
+        x.iter().all(|v| v.is_finite()).then_some(x)
+    }
+
+    /// Numbers of positive and negative eigenvalues.
+    pub fn inertia(&self) -> Option<(usize, usize)> {
+        let i = self.solver.inertia()?;
+        Some((i.positive, i.negative))
+    }
+}
