@@ -144,6 +144,11 @@ impl Factor {
 
     /// Solves A x = b; None if the solution does not satisfy the system.
     pub(super) fn solve(&mut self, b: &[f64]) -> Option<Vec<f64>> {
+        self.solve_to(b, 1e-14)
+    }
+
+    /// As [`Factor::solve`], refined only as long as the residual, relative to b, is larger than `enough`.
+    pub(super) fn solve_to(&mut self, b: &[f64], enough: f64) -> Option<Vec<f64>> {
         let mut x = b.to_vec();
         self.solve_once(&mut x)?;
         let mut residual = vec![0.0; b.len()];
@@ -162,7 +167,7 @@ impl Factor {
             if !worst.is_finite() {
                 return None;
             }
-            if worst <= 1e-14 * norm {
+            if worst <= enough * norm {
                 return Some(x);
             }
             if step == 2 {

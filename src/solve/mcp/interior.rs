@@ -8,8 +8,12 @@
 //! ```
 //!
 //! with p = q = σμ less the products of the predictor's steps (Mehrotra 1992), or without them where
-//! they shorten the step, and then with outliers among the products pulled in (Gondzio 1996). The
-//! proximal term ρ grows while steps are short, as they are where J is not monotone.
+//! they shorten the step, and then with outliers among the products pulled in (Gondzio 1996).
+//!
+//! Where J is not monotone, steps may get short far from a solution. Then the proximal term ρ grows, a
+//! hundredfold each time, up to 100 μ: it lets the equations be violated, and the products must not
+//! run ahead of them, so σ aims at μ as large as the violation until that is gone. The crash leaves such a
+//! place with products well centred, where it would have stayed.
 //!
 //! For monotone problems the number of steps hardly grows with n, while the path makes at least a pivot
 //! for every index that a crash got wrong; for others this is a heuristic like any crash. Its
@@ -21,21 +25,27 @@ use super::log;
 use super::run::{Point, Run, Stop};
 
 /// Steps at most.
-const LIMIT: usize = 80;
+const LIMIT: usize = 100;
 /// Share of the way to the boundary.
 const DAMPING: f64 = 0.995;
 /// A step shorter than this is a bad one: ρ grows.
 const STEP_BAD: f64 = 0.1;
 /// Steps in a row without progress that end the crash.
-const PATIENCE: usize = 10;
+const PATIENCE: usize = 20;
 /// Corrections of outliers per step.
 const CORRECTIONS: usize = 3;
 /// A step below which the second order is left out.
 const STEP_SHORT: f64 = 0.3;
-/// ρ, least and largest.
-const PROX: (f64, f64) = (1e-9, 1e-5);
+/// Relative residual of a step.
+const ENOUGH: f64 = 1e-9;
+/// ρ, least and largest, and the most it may be against μ.
+const PROX: (f64, f64) = (1e-11, 1e-2);
+const PROX_SHARE: f64 = 100.0;
+/// Violation of the equations against μ from which μ has to wait, or to grow, at most tenfold.
+const AHEAD: f64 = 3.0;
+const GROWTH: f64 = 10.0;
 /// Products below this are rounding errors.
-const PRODUCT_MIN: f64 = 1e-13;
+const PRODUCT_MIN: f64 = 1e-16;
 
 /// Distances from the bounds and the slacks that go with them; 1 and 0 for a bound that is not there.
 #[derive(Clone)]
@@ -88,27 +98,15 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
     let Some(mut point) = run.point(x) else {
         return Ok(None);
     };
+    let slack = |is: &[bool], sign: f64| -> Vec<f64> {
+        let at = |(&is, f): (&bool, &f64)| if is { (sign * f).max(1.0) } else { 0.0 };
+        is.iter().zip(&point.f).map(at).collect()
+    };
     let mut state = State {
-        a: Vec::new(),
-        w: (0..n)
-            .map(|i| {
-                if bounds.lower[i] {
-                    point.f[i].max(1.0)
-                } else {
-                    0.0
-                }
-            })
-            .collect(),
-        b: Vec::new(),
-        v: (0..n)
-            .map(|i| {
-                if bounds.upper[i] {
-                    (-point.f[i]).max(1.0)
-                } else {
-                    0.0
-                }
-            })
-            .collect(),
+        a: vec![1.0; n],
+        w: slack(&bounds.lower, 1.0),
+        b: vec![1.0; n],
+        v: slack(&bounds.upper, -1.0),
     };
     log::note(run, || {
         "Interior crash\n iter    product  equations    residual     step     prox".into()
@@ -119,24 +117,7 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
     let (mut least, mut idle) = (f64::INFINITY, 0);
     for iteration in 0..LIMIT {
         run.check()?;
-        state.a = (0..n)
-            .map(|i| {
-                if bounds.lower[i] {
-                    point.x[i] - run.lower[i]
-                } else {
-                    1.0
-                }
-            })
-            .collect();
-        state.b = (0..n)
-            .map(|i| {
-                if bounds.upper[i] {
-                    run.upper[i] - point.x[i]
-                } else {
-                    1.0
-                }
-            })
-            .collect();
+        state.distances(run, &bounds, &point.x);
         if let Some(found) = run.point(snapped(run, &point.x, &state, &bounds))
             && found.residual < best.residual
         {
@@ -151,7 +132,7 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
         if mu + off < 0.5 * least {
             (least, idle) = (mu + off, 0);
         }
-        if run.converged(best.residual)
+        if run.polished(best.residual)
             || mu < PRODUCT_MIN
             || idle > PATIENCE
             || !(mu + off).is_finite()
@@ -168,7 +149,7 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
         );
         run.factorisations += 1;
         let step = Factor::analysed(matrix, run.fill, &mut analysis)
-            .and_then(|mut factor| step(&mut factor, &state, &bounds, &r, mu));
+            .and_then(|mut factor| step(&mut factor, &state, &bounds, &r, (mu, off)));
         let Some(step) = step else {
             if prox >= PROX.1 {
                 break;
@@ -204,7 +185,7 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
             .zip(&step.v)
             .for_each(|(v, d)| *v += t * d);
         if t < STEP_BAD {
-            prox = (10.0 * prox).min(PROX.1);
+            prox = (100.0 * prox).min(PROX.1).min(PROX_SHARE * mu).max(PROX.0);
         } else if t > 0.5 {
             prox = (0.1 * prox).max(PROX.0);
         }
@@ -228,6 +209,18 @@ fn snapped(run: &Run, x: &[f64], state: &State, bounds: &Bounds) -> Vec<f64> {
 }
 
 impl State {
+    /// a and b at x.
+    fn distances(&mut self, run: &Run, bounds: &Bounds, x: &[f64]) {
+        for (i, x) in x.iter().enumerate() {
+            if bounds.lower[i] {
+                self.a[i] = x - run.lower[i];
+            }
+            if bounds.upper[i] {
+                self.b[i] = run.upper[i] - x;
+            }
+        }
+    }
+
     /// Mean of the products.
     fn product(&self, bounds: &Bounds) -> f64 {
         let sum: f64 = (0..self.a.len())
@@ -269,7 +262,7 @@ impl State {
             )
         };
         let right: Vec<f64> = (0..n).map(|i| to(i).0 - to(i).1 - r[i]).collect();
-        let x = factor.solve(&right)?;
+        let x = factor.solve_to(&right, ENOUGH)?;
         let w: Vec<f64> = (0..n)
             .map(|i| to(i).0 - self.w[i] / self.a[i] * x[i])
             .collect();
@@ -302,7 +295,13 @@ impl State {
 }
 
 /// Predictor, corrector, corrections of outliers.
-fn step(factor: &mut Factor, state: &State, bounds: &Bounds, r: &[f64], mu: f64) -> Option<Step> {
+fn step(
+    factor: &mut Factor,
+    state: &State,
+    bounds: &Bounds,
+    r: &[f64],
+    (mu, off): (f64, f64),
+) -> Option<Step> {
     let n = r.len();
     let zero = vec![0.0; n];
     let predictor = state.newton(factor, bounds, r, &zero, &zero)?;
@@ -314,7 +313,11 @@ fn step(factor: &mut Factor, state: &State, bounds: &Bounds, r: &[f64], mu: f64)
         })
         .sum::<f64>()
         / bounds.count as f64;
-    let mut sigma = (after / mu).clamp(0.0, 1.0).powi(3);
+    let mut sigma = if off > AHEAD * mu {
+        (off / mu).min(GROWTH)
+    } else {
+        (after / mu).clamp(0.0, 1.0).powi(3)
+    };
     let mut p: Vec<f64> = (0..n)
         .map(|i| sigma * mu - predictor.x[i] * predictor.w[i])
         .collect();

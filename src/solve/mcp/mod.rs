@@ -46,7 +46,6 @@ mod run;
 mod semismooth;
 mod smoothing;
 mod starts;
-mod vertex;
 
 pub use merit::natural_residual;
 
