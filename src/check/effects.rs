@@ -37,7 +37,7 @@ impl Effects {
                             .extend([attribute::L, attribute::LO, attribute::UP].map(|o| t + o));
                     }
                     Target::Object(..) => self.objects = true,
-                    Target::Seed | Target::Errors => {}
+                    Target::Seed | Target::Errors | Target::Ignored => {}
                 },
                 CodeKind::Loop(_, b) | CodeKind::While(_, b) | CodeKind::Repeat(b, _) => {
                     self.add(b, symbols);
@@ -90,6 +90,8 @@ impl Effects {
             }
             NodeKind::ObjectAttribute(..) => self.everything || self.objects,
             NodeKind::Const(_) | NodeKind::Text(_) | NodeKind::SymbolText(_) => false,
+            NodeKind::RecordName(_, k) => self.key(k),
+            NodeKind::OfText(t, n) => self.touch(t) || n.as_ref().is_some_and(|n| self.touch(n)),
         }
     }
 

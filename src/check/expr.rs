@@ -81,13 +81,13 @@ impl Compiler {
         )
     }
 
-    /// Slots of a set that is under control.
-    pub(super) fn controlled(&self, set: SymbolId) -> Option<&[Slot]> {
+    /// What a set that is under control stands for: running indices, or what pins it, `loop(i('a'), …)`.
+    pub(super) fn controlled(&self, set: SymbolId) -> Option<&[Part]> {
         self.scope
             .iter()
             .rev()
             .find(|(s, _)| *s == set)
-            .map(|(_, slots)| slots.as_slice())
+            .map(|(_, parts)| parts.as_slice())
     }
 
     pub(super) fn new_slot(&mut self) -> Slot {
@@ -114,6 +114,10 @@ impl Compiler {
                 let id = self.lookup_set(&item.set)?;
                 self.used(id, item.set.span);
                 self.run_over(id, &mut out);
+            } else if let Some(indices) = &item.indices
+                && item.set.name.eq_ignore_ascii_case("sameas")
+            {
+                self.equal_item(indices, item.span, &mut out)?;
             } else {
                 self.domain_item(&item.set, item.indices.as_deref(), item.span, &mut out)?;
             }
@@ -194,21 +198,54 @@ impl Compiler {
             },
         });
         if self.controlled(id).is_none() {
-            let slots: Option<Vec<Slot>> = parts
-                .iter()
-                .map(|p| {
-                    if let Part::Slot(s) = p {
-                        Some(*s)
-                    } else {
-                        None
-                    }
-                })
-                .collect();
-            if let Some(slots) = slots {
-                self.scope.push((id, slots));
-            }
+            self.scope.push((id, parts.clone()));
         }
         Ok(parts)
+    }
+
+    /// `sum(sameas(i,j), …)`: a set that is not under control yet takes the element of the other.
+    fn equal_item(&mut self, indices: &[Expr], span: Span, out: &mut Domain) -> Result<(), Failed> {
+        let [a, b] = indices else {
+            return self.fail(Diagnostic::error(
+                "E0317",
+                span,
+                "`sameas` compares two single indices",
+            ));
+        };
+        let free = |c: &Self, e: &Expr| match &e.kind {
+            ExprKind::Apply {
+                name,
+                attribute: None,
+                arguments: None,
+            } => c.symbols.find(&name.name).filter(|&s| {
+                let set = c.symbols.get(s);
+                set.is_set() && set.dim() == 1 && c.controlled(s).is_none()
+            }),
+            _ => None,
+        };
+        let (first, second) = if free(self, b).is_some() { (a, b) } else { (b, a) };
+        let one = match &first.kind {
+            ExprKind::Text(t) => vec![Part::Label(self.store.universe.intern(t))],
+            _ => self.control_index(first, UNIVERSE, 0, out)?,
+        };
+        match free(self, second) {
+            Some(s) => {
+                self.used(s, second.span);
+                out.members.push(Driver {
+                    table: self.symbols.get(s).table,
+                    key: Key { parts: one.clone() },
+                });
+                self.scope.push((s, one));
+            }
+            None => {
+                let other = self.index(second, UNIVERSE, 0)?;
+                if let ([p], [q]) = (one.as_slice(), other.as_slice()) {
+                    let same = NodeKind::SameAs(p.clone(), q.clone());
+                    out.conditions.push(Node::data(same, span));
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Puts a set under control with indices of its own, whether or not it is under control outside.
@@ -227,14 +264,14 @@ impl Compiler {
                 }
             });
         }
-        let parts: Vec<Part> = slots.iter().map(|&s| Part::Slot(s)).collect();
+        let parts: Vec<Part> = slots.into_iter().map(Part::Slot).collect();
         out.members.push(Driver {
             table: symbol.table,
             key: Key {
                 parts: parts.clone(),
             },
         });
-        self.scope.push((id, slots));
+        self.scope.push((id, parts.clone()));
         parts
     }
 
@@ -338,7 +375,7 @@ impl Compiler {
         let DomainPosition::Set(d) = self.symbols.get(of).domain[position] else {
             return Ok(());
         };
-        if self.symbols.is_subset(a, d) || self.symbols.get(a).dim() > 1 {
+        if self.modes.universal || self.symbols.is_subset(a, d) || self.symbols.get(a).dim() > 1 {
             return Ok(());
         }
         let (an, dn) = (
@@ -567,8 +604,8 @@ impl Compiler {
 
     /// A set name as an index: its slots, or the element of a singleton.
     fn set_index(&mut self, s: SymbolId, name: &Ident) -> Result<Vec<Part>, Failed> {
-        if let Some(slots) = self.controlled(s) {
-            return Ok(slots.iter().map(|&s| Part::Slot(s)).collect());
+        if let Some(parts) = self.controlled(s) {
+            return Ok(parts.to_vec());
         }
         let root = self.symbols.get(self.symbols.root(s));
         if matches!(root.kind, SymbolKind::Set { singleton: true }) {
@@ -916,6 +953,17 @@ impl Compiler {
         };
         let symbol = self.symbols.get(s).clone();
         let indices = arguments.unwrap_or(&[]);
+        if self.texts_allowed
+            && let Some(a) = attr
+        {
+            if a.name.eq_ignore_ascii_case("ts") {
+                return Ok(Node::data(NodeKind::SymbolText(s), span));
+            }
+            if a.name.eq_ignore_ascii_case("tn") {
+                let key = self.key(s, indices, span)?;
+                return Ok(Node::data(NodeKind::RecordName(s, key), span));
+            }
+        }
         match &symbol.kind {
             SymbolKind::Set { .. } | SymbolKind::Alias(_) => {
                 if let Some(attr) = attr {
@@ -933,9 +981,6 @@ impl Compiler {
             }
             SymbolKind::Parameter { .. } => {
                 if let Some(attr) = attr {
-                    if self.texts_allowed && attr.name.eq_ignore_ascii_case("ts") {
-                        return Ok(Node::data(NodeKind::SymbolText(s), span));
-                    }
                     return self.fail(
                         Diagnostic::error(
                             "E0314",
@@ -1006,9 +1051,6 @@ impl Compiler {
                     );
                 };
                 let attribute = self.object_attribute(s, a)?;
-                if self.texts_allowed && attribute == "ts" {
-                    return Ok(Node::data(NodeKind::SymbolText(s), span));
-                }
                 Ok(Node::data(NodeKind::ObjectAttribute(s, attribute), span))
             }
             SymbolKind::Acronym(n) => Ok(Node::number(value::acronym(*n), span)),
@@ -1028,9 +1070,6 @@ impl Compiler {
         span: Span,
     ) -> Result<Node, Failed> {
         let symbol = self.symbols.get(s).clone();
-        if self.texts_allowed && a.name.eq_ignore_ascii_case("ts") {
-            return Ok(Node::data(NodeKind::SymbolText(s), span));
-        }
         let Some(which) = functions::record_attribute(&a.name) else {
             return self.unknown_attribute(
                 a,
@@ -1106,9 +1145,6 @@ impl Compiler {
         let symbol = self.symbols.get(s).clone();
         let lower = attr.name.to_lowercase();
         match lower.as_str() {
-            "ts" | "tn" if self.texts_allowed => {
-                return Ok(Node::data(NodeKind::SymbolText(s), span));
-            }
             "te" if self.texts_allowed && !indices.is_empty() => {
                 let key = self.key(s, indices, span)?;
                 return Ok(Node::data(NodeKind::ElementText(symbol.table, key), span));
@@ -1185,6 +1221,20 @@ impl Compiler {
         }
         match callee {
             Callee::Ord | Callee::Card => {
+                if let Some(text) = self.text_argument(&args[0])? {
+                    let at = match (callee, args.get(1)) {
+                        (Callee::Card, _) => None,
+                        (_, Some(n)) => Some(Box::new(self.expr(n)?)),
+                        _ => Some(Box::new(Node::number(1.0, span))),
+                    };
+                    return Ok(Node::data(NodeKind::OfText(Box::new(text), at), span));
+                }
+                if let Some(second) = args.get(1) {
+                    return self.fail(
+                        Diagnostic::error("E0316", second.span, "`ord` of a set takes 1 argument")
+                            .label("only `ord('text', n)` has a position"),
+                    );
+                }
                 let ExprKind::Apply {
                     name: n,
                     attribute: None,
@@ -1280,6 +1330,26 @@ impl Compiler {
                 Ok(Node::data(NodeKind::DataCall(f, nodes), span))
             }
         }
+    }
+
+    /// A text where `card` and `ord` may have one: `'abc'`, `i.tl`, `i.te(i)`, `p.ts`.
+    fn text_argument(&mut self, e: &Expr) -> Result<Option<Node>, Failed> {
+        let is_text = match &e.kind {
+            ExprKind::Text(_) => true,
+            ExprKind::Apply {
+                attribute: Some(a), ..
+            } => ["tl", "te", "ts", "tn"]
+                .iter()
+                .any(|t| a.name.eq_ignore_ascii_case(t)),
+            _ => false,
+        };
+        if !is_text {
+            return Ok(None);
+        }
+        let allowed = std::mem::replace(&mut self.texts_allowed, true);
+        let text = self.expr(e);
+        self.texts_allowed = allowed;
+        text.map(Some)
     }
 
     fn unknown_name<T>(&mut self, name: &Ident, called: bool) -> Result<T, Failed> {

@@ -84,6 +84,7 @@ fn is_text(n: &Node) -> bool {
             | NodeKind::LabelText(_)
             | NodeKind::ElementText(..)
             | NodeKind::SymbolText(_)
+            | NodeKind::RecordName(..)
     )
 }
 

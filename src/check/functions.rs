@@ -27,7 +27,7 @@ const FUNCTIONS: &[(&str, Callee, usize, usize)] = {
     use DataFunction as D;
     use Function as F;
     &[
-        ("ord", Ord, 1, 1),
+        ("ord", Ord, 1, 2),
         ("card", Card, 1, 1),
         ("sameas", SameAs, 2, 2),
         ("diag", SameAs, 2, 2),

@@ -21,7 +21,7 @@ use crate::host::Host;
 use crate::source::{Ending, Known, PreprocessOptions, SourceMap, Span};
 use crate::syntax::Parser;
 use crate::syntax::ast::Modes;
-use node::{Code, EquationDef, Slot, SymbolId};
+use node::{Code, EquationDef, Part, Slot, SymbolId};
 use symbols::{DomainPosition, Store, Symbol, SymbolKind, Symbols, UNIVERSE};
 
 /// An error was reported; there is nothing more to say.
@@ -66,7 +66,7 @@ pub(crate) struct Compiler {
     equations: Vec<EquationDef>,
     diagnostics: Vec<Diagnostic>,
     /// Sets under control, innermost last.
-    scope: Vec<(SymbolId, Vec<Slot>)>,
+    scope: Vec<(SymbolId, Vec<Part>)>,
     next_slot: Slot,
     slots: usize,
     in_equation: bool,

@@ -133,6 +133,10 @@ pub enum NodeKind {
     ElementText(TableId, Key),
     /// Explanatory text of a symbol.
     SymbolText(SymbolId),
+    /// `card('text')`; with a position `ord('text', n)`, the code of a character.
+    OfText(Box<Node>, Option<Box<Node>>),
+    /// Name of a symbol with its labels, `p('a','b')`, in `put` and figures.
+    RecordName(SymbolId, Key),
 }
 
 /// Attributes that are computed.
@@ -260,6 +264,8 @@ pub enum Target {
     Seed,
     /// `execerror = n`
     Errors,
+    /// `maxexecerror`, `heaplimit`: limits of a GAMS installation.
+    Ignored,
 }
 
 /// A statement.

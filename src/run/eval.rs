@@ -1,5 +1,6 @@
 //! Values of expressions.
 
+use crate::report::textfile::Item;
 use super::Machine;
 use super::arithmetic::{self, ArithmeticError};
 use crate::autodiff::functions::function_value;
@@ -224,10 +225,24 @@ impl Machine<'_> {
                 let t = self.symbols.get(*s).table;
                 self.data(t + attribute::L, key, frame)
             }
+            NodeKind::OfText(text, at) => {
+                let text = match self.put_item(text, frame) {
+                    Some(Item::Text(t) | Item::Label(t)) => t,
+                    _ => String::new(),
+                };
+                match at {
+                    None => text.chars().count() as f64,
+                    Some(n) => {
+                        let n = number(self.eval(n, frame)).max(1.0) as usize;
+                        text.chars().nth(n - 1).map_or(0.0, |c| f64::from(c as u32))
+                    }
+                }
+            }
             NodeKind::Text(_)
             | NodeKind::LabelText(_)
             | NodeKind::ElementText(..)
-            | NodeKind::SymbolText(_) => 0.0,
+            | NodeKind::SymbolText(_)
+            | NodeKind::RecordName(..) => 0.0,
         }
     }
 
@@ -289,8 +304,21 @@ impl Machine<'_> {
                 .fold(f64::NEG_INFINITY, |a, b| extreme(a, b, |a, b| a > b)),
             Function::Abs | Function::Sqrt | Function::Sign | Function::Sqr if eps => EPS,
             Function::Abs | Function::Sqr => f64::INFINITY,
-            Function::Sqrt | Function::Exp if args[0] == f64::INFINITY => f64::INFINITY,
+            Function::Sqrt | Function::Exp | Function::Log | Function::Log2 | Function::Log10
+                if args[0] == f64::INFINITY =>
+            {
+                f64::INFINITY
+            }
             Function::Exp if args[0] == f64::NEG_INFINITY => 0.0,
+            Function::Power | Function::RPower
+                if args[0] == f64::INFINITY && number(args[1]).is_finite() =>
+            {
+                f64::INFINITY.powf(number(args[1]))
+            }
+            // Bounded functions have a limit.
+            Function::ArcTan if !eps => args[0].signum() * std::f64::consts::FRAC_PI_2,
+            Function::Tanh if !eps => args[0].signum(),
+            Function::Sigmoid | Function::ErrorF if !eps => f64::from(u8::from(args[0] > 0.0)),
             Function::Sign => args[0].signum(),
             Function::Floor | Function::Ceil | Function::Round | Function::Trunc => args[0],
             Function::IfThen => {

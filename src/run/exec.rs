@@ -247,7 +247,7 @@ impl Machine<'_> {
         match target {
             Target::Table(t) | Target::Set(t) | Target::Singleton(t) => Some(t),
             Target::Fix(s) => Some(self.symbols.get(s).table + attribute::L),
-            Target::Object(..) | Target::Seed | Target::Errors => None,
+            Target::Object(..) | Target::Seed | Target::Errors | Target::Ignored => None,
         }
     }
 
@@ -531,7 +531,7 @@ impl Machine<'_> {
                     self.store.table_mut(t + o).merge(&out.keys, &out.values);
                 }
             }
-            Target::Object(..) | Target::Seed | Target::Errors => {}
+            Target::Object(..) | Target::Seed | Target::Errors | Target::Ignored => {}
         }
     }
 

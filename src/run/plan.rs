@@ -674,13 +674,18 @@ pub(super) fn slots_of(n: &Node, out: &mut Vec<Slot>) {
         NodeKind::Data(_, k)
         | NodeKind::Var(_, k)
         | NodeKind::Derived(_, _, k)
-        | NodeKind::ElementText(_, k) => {
+        | NodeKind::ElementText(_, k)
+        | NodeKind::RecordName(_, k) => {
             k.parts.iter().for_each(part);
         }
         NodeKind::Ord(_, p) | NodeKind::LabelAttribute(_, _, p) | NodeKind::LabelText(p) => part(p),
         NodeKind::SameAs(a, b) => {
             part(a);
             part(b);
+        }
+        NodeKind::OfText(t, n) => {
+            slots_of(t, out);
+            n.iter().for_each(|n| slots_of(n, out));
         }
         NodeKind::Dollar(a, c) => {
             slots_of(a, out);

@@ -250,6 +250,25 @@ impl Machine<'_> {
                 }
             }
             NodeKind::SymbolText(s) => Item::Text(self.symbols.get(*s).text.to_string()),
+            NodeKind::RecordName(s, key) => {
+                let mut k = [0; 20];
+                if !self.key(key, frame, &mut k) {
+                    return Some(Item::Text(String::new()));
+                }
+                let labels: Vec<String> = k[..key.parts.len()]
+                    .iter()
+                    .map(|&l| {
+                        let name = self.store.universe.name(l);
+                        let quote = if name.contains('\'') { '"' } else { '\'' };
+                        format!("{quote}{name}{quote}")
+                    })
+                    .collect();
+                let symbol = &self.symbols.get(*s).name;
+                Item::Text(match labels.as_slice() {
+                    [] => symbol.to_string(),
+                    l => format!("{symbol}({})", l.join(",")),
+                })
+            }
             NodeKind::ObjectAttribute(s, a @ ("tmodstat" | "tsolstat")) => {
                 Item::Text(self.status_text(*s, a))
             }
@@ -341,7 +360,8 @@ fn is_text(n: &Node) -> bool {
         NodeKind::Text(_)
         | NodeKind::LabelText(_)
         | NodeKind::ElementText(..)
-        | NodeKind::SymbolText(_) => true,
+        | NodeKind::SymbolText(_)
+        | NodeKind::RecordName(..) => true,
         NodeKind::ObjectAttribute(_, a) => matches!(*a, "tmodstat" | "tsolstat"),
         _ => false,
     }

@@ -84,9 +84,10 @@ pub fn expr(n: &Node, driving: bool, out: &mut Vec<TableId>) {
             }
             key(k, out);
         }
-        NodeKind::Var(_, k) | NodeKind::Derived(_, _, k) | NodeKind::ElementText(_, k) => {
-            key(k, out)
-        }
+        NodeKind::Var(_, k)
+        | NodeKind::Derived(_, _, k)
+        | NodeKind::ElementText(_, k)
+        | NodeKind::RecordName(_, k) => key(k, out),
         NodeKind::Ord(t, p) | NodeKind::LabelAttribute(_, t, p) => {
             out.push(*t);
             part(p, out);
@@ -95,6 +96,10 @@ pub fn expr(n: &Node, driving: bool, out: &mut Vec<TableId>) {
         NodeKind::SameAs(a, b) => {
             part(a, out);
             part(b, out);
+        }
+        NodeKind::OfText(t, n) => {
+            expr(t, false, out);
+            n.iter().for_each(|n| expr(n, false, out));
         }
         NodeKind::Negate(a) | NodeKind::Not(a) => expr(a, driving, out),
         NodeKind::Sum(t) | NodeKind::Product(t) => {

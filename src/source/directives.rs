@@ -11,6 +11,7 @@ use super::preprocess::{Ending, Known, Preprocessor};
 use super::variables::Reach;
 use super::{Outcome, refuse};
 use crate::diag::{Diagnostic, nearest};
+use crate::syntax::ast::Modes;
 
 /// Switches that change nothing here, as `$onX` and `$offX`.
 const SILENT_SWITCHES: &[&str] = &[
@@ -41,7 +42,8 @@ const SILENT_SWITCHES: &[&str] = &[
     "hidden",
     "external",
     "save",
-    "uni",
+    "externalinput",
+    "externaloutput",
     "verbatim",
     "strictdomain",
     "case",
@@ -345,7 +347,8 @@ impl Preprocessor<'_> {
         } else {
             return false;
         };
-        let m = &mut self.modes;
+        let mut modes = self.modes.last().map_or(Modes::default(), |m| m.1);
+        let m = &mut modes;
         match what {
             "multi" => (m.multi, m.multi_replace) = (on, false),
             "multir" => (m.multi, m.multi_replace) = (on, on),
@@ -355,6 +358,7 @@ impl Preprocessor<'_> {
             "order" => m.off_order = !on,
             "dotl" => m.dot_l = on,
             "implicitassign" => m.implicit_assign = on,
+            "uni" => m.universal = on,
             "strictsingleton" => {}
             "end" => self.on_end = on,
             "eolcom" => {
@@ -374,6 +378,7 @@ impl Preprocessor<'_> {
             w if SILENT_SWITCHES.contains(&w) => {}
             _ => return false,
         }
+        self.modes.push((self.map.expanded().len() as u32, modes));
         true
     }
 
@@ -412,11 +417,7 @@ impl Preprocessor<'_> {
                     arguments.push(a.to_owned());
                     tail = t;
                 }
-                let mut name = name.to_owned();
-                if word != "batinclude" && !name.contains('.') {
-                    name += ".gms";
-                }
-                let outcome = self.include(&name, Some(arguments), lo, hi);
+                let outcome = self.include(name, Some(arguments), lo, hi);
                 return outcome.map_err(|d| match (word, d.code) {
                     ("libinclude" | "sysinclude", "E0103") => Box::new(
                         Diagnostic::error(
@@ -436,7 +437,7 @@ impl Preprocessor<'_> {
                 let (name, _) = argument(rest);
                 self.names.drop(reach(word), name);
             }
-            "setenv" | "dropenv" | "setcomps" | "prefixpath" | "phantom" => {}
+            "setenv" | "dropenv" | "prefixpath" | "phantom" => {}
             "setargs" => {
                 let values = self
                     .frames
@@ -446,6 +447,13 @@ impl Preprocessor<'_> {
                 for (i, name) in rest.split_whitespace().enumerate() {
                     let value = values.get(i).cloned().unwrap_or_default();
                     self.names.set(Reach::Local, name, value);
+                }
+            }
+            "setcomps" => {
+                let (all, tail) = argument(rest);
+                let components = all.split('.').chain(std::iter::repeat(""));
+                for (name, value) in tail.split_whitespace().zip(components) {
+                    self.names.set(Reach::Local, name, value.to_owned());
                 }
             }
             "setnames" => {

@@ -159,7 +159,8 @@ pub(crate) struct Preprocessor<'h> {
     pub(super) names: Variables,
     pub(super) macros: Macros,
     pub(super) marks: Marks,
-    pub(super) modes: Modes,
+    /// Switches and where in the expanded text they came into force; never empty.
+    pub(super) modes: Vec<(u32, Modes)>,
     /// `$onEnd`: `endif`, `endloop` … close blocks.
     pub(super) on_end: bool,
     /// Inside an inline comment that runs over lines.
@@ -198,7 +199,7 @@ impl<'h> Preprocessor<'h> {
                 delimited: false,
                 columns: (1, usize::MAX),
             },
-            modes: Modes::default(),
+            modes: vec![(0, Modes::default())],
             on_end: false,
             in_comment: None,
             warnings: Vec::new(),
@@ -288,7 +289,11 @@ impl<'h> Preprocessor<'h> {
             return Ok(());
         }
         let from = self.frames.last().map(|f| f.path.clone());
-        let (path, text) = match self.host.read(name, from.as_deref()) {
+        let mut read = self.host.read(name, from.as_deref());
+        if matches!(read, Err(HostError::NotFound)) && !name.contains('.') {
+            read = self.host.read(&format!("{name}.gms"), from.as_deref());
+        }
+        let (path, text) = match read {
             Ok(found) => found,
             Err(e) => return refuse(unreadable(name, &e, asked)),
         };
@@ -412,9 +417,10 @@ impl<'h> Preprocessor<'h> {
         }
     }
 
-    /// The switches in force.
-    pub(crate) fn modes(&self) -> Modes {
-        self.modes
+    /// The switches in force at a byte of the expanded text.
+    pub(crate) fn modes_at(&self, at: u32) -> Modes {
+        let later = self.modes.partition_point(|(from, _)| *from <= at);
+        self.modes[later.max(1) - 1].1
     }
 
     /// `$onEnd` is in force.
@@ -652,9 +658,13 @@ impl<'h> Preprocessor<'h> {
                 "ps" | "pagesize" => "60".into(),
                 "pw" | "pagewidth" => "255".into(),
                 "input" => self.system("fn", lo)? + &self.system("fe", lo)?,
-                "errmsg" | "error" | "limrow" | "limcol" | "optfile" | "logoption" | "lo" => {
-                    "0".into()
-                }
+                "errmsg" | "error" | "limrow" | "limcol" | "optfile" | "logoption" | "lo"
+                | "optca" | "savepoint" | "profile" | "domlim" | "holdfixed" | "workspace"
+                | "sysout" | "forcework" | "tracelevel" => "0".into(),
+                "solprint" | "solveopt" | "threads" | "appendout" => "1".into(),
+                "solvelink" => "2".into(),
+                "optcr" => "0.0001".into(),
+                "seed" => "3141".into(),
                 "reslim" => "10000000000".into(),
                 "iterlim" => "2147483647".into(),
                 _ => String::new(),

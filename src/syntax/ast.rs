@@ -31,6 +31,8 @@ pub struct Modes {
     pub off_order: bool,
     /// `$onImplicitAssign`: a symbol may be read that was never assigned.
     pub implicit_assign: bool,
+    /// `$onUni`: any set may stand at any position.
+    pub universal: bool,
     /// `$onDotL`: a variable in an assignment means its level.
     pub dot_l: bool,
 }

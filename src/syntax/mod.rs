@@ -24,7 +24,7 @@ use pest::Parser as _;
 use crate::diag::Diagnostic;
 use crate::host::Host;
 use crate::source::{Ending, Known, PreprocessOptions, Preprocessor, SourceMap, Span};
-use ast::{Modes, Stmt};
+use ast::Stmt;
 use build::{Builder, Condensed};
 use explain::Explanation;
 use grammar::{Grammar, Rule};
@@ -44,14 +44,12 @@ pub struct Unreadable {
 pub struct Parser<'h> {
     text: Preprocessor<'h>,
     splitter: Splitter,
-    /// Switches as they stood when the present statement began.
-    modes: Modes,
     /// No more text will come.
     ended: bool,
     /// Errors so far.
     errors: usize,
     /// Statements that were cut at a missing `;`.
-    pending: Option<(Raw, Modes)>,
+    pending: Option<Raw>,
 }
 
 /// Errors after which a text is given up: it is no model.
@@ -68,7 +66,6 @@ impl<'h> Parser<'h> {
             Ok(text) => Ok(Self {
                 text,
                 splitter: Splitter::new(),
-                modes: Modes::default(),
                 ended: false,
                 errors: 0,
                 pending: None,
@@ -85,18 +82,13 @@ impl<'h> Parser<'h> {
         if self.errors > MOST_ERRORS {
             return Ok(None);
         }
-        if let Some((raw, modes)) = self.pending.take() {
-            self.modes = modes;
+        if let Some(raw) = self.pending.take() {
             return self.take(raw).map(Some);
         }
         loop {
-            let was_inside = self.splitter.inside();
             let cut = self
                 .splitter
                 .next(self.text.map.expanded(), self.text.on_end(), self.ended);
-            if !was_inside {
-                self.modes = self.text.modes();
-            }
             match cut {
                 Cut::Statement(raw) => return self.take(raw).map(Some),
                 Cut::More if self.ended => return Ok(None),
@@ -125,7 +117,7 @@ impl<'h> Parser<'h> {
                 if let Some((end, start)) = e.divide {
                     raw.span.hi = end;
                     self.splitter.back_to(start as usize);
-                    self.pending = Some((raw, self.modes));
+                    self.pending = Some(raw);
                 }
                 if let Some(at) = e.resume {
                     self.splitter.back_to(at as usize);
@@ -134,7 +126,7 @@ impl<'h> Parser<'h> {
             })
         } else {
             if problems.iter().all(|p| p.code == "E0201") {
-                self.pending = Some((raw, self.modes));
+                self.pending = Some(raw);
             }
             Err(problems)
         };
@@ -179,11 +171,12 @@ impl<'h> Parser<'h> {
             Class::Algebra => Rule::whole_algebra,
             Class::Directive | Class::Other => Rule::whole_other,
         };
+        let modes = self.text.modes_at(raw.span.lo);
         let builder = Builder {
             condensed: &condensed,
             expanded,
             holes: &raw.holes,
-            undf: self.modes.undf,
+            modes,
         };
         let built = match Grammar::parse(rule, text) {
             Ok(mut pairs) => match pairs.next() {
@@ -205,7 +198,7 @@ impl<'h> Parser<'h> {
                 let stmt = Stmt {
                     kind,
                     span: raw.span,
-                    modes: self.modes,
+                    modes,
                 };
                 self.suspicious_texts(&stmt);
                 Ok(stmt)

@@ -141,11 +141,6 @@ impl Splitter {
         }
     }
 
-    /// Whether a statement has begun.
-    pub(super) fn inside(&self) -> bool {
-        self.start.is_some()
-    }
-
     /// Goes on at a byte that was passed over: a `;` was missing before it.
     pub(super) fn back_to(&mut self, at: usize) {
         self.pos = at;

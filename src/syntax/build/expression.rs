@@ -418,7 +418,7 @@ impl Builder<'_> {
             "na" => value::NA,
             "yes" => 1.0,
             "no" => 0.0,
-            "undf" if self.undf => value::UNDF,
+            "undf" if self.modes.undf => value::UNDF,
             _ => return Ok(None),
         }))
     }

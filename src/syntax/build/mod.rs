@@ -155,8 +155,8 @@ pub(super) struct Builder<'a> {
     pub(super) condensed: &'a Condensed,
     pub(super) expanded: &'a str,
     pub(super) holes: &'a [Hole],
-    /// `undf` may be written.
-    pub(super) undf: bool,
+    /// Switches in force where the statement begins.
+    pub(super) modes: Modes,
 }
 
 impl Builder<'_> {

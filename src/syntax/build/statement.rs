@@ -133,7 +133,7 @@ impl Builder<'_> {
             list.push(Stmt {
                 kind: self.action(p)?,
                 span,
-                modes: Modes::default(),
+                modes: self.modes,
             });
         }
         Ok(list)
@@ -576,7 +576,7 @@ impl Builder<'_> {
                     vec![Stmt {
                         kind: statement,
                         span: at,
-                        modes: Modes::default(),
+                        modes: self.modes,
                     }],
                 )],
                 Vec::new(),
