@@ -226,8 +226,15 @@ impl Machine<'_> {
                 self.data(t + attribute::L, key, frame)
             }
             NodeKind::OfText(text, at) => {
-                let text = match self.put_item(text, frame) {
-                    Some(Item::Text(t) | Item::Label(t)) => t,
+                let text = match (&text.kind, self.put_item(text, frame)) {
+                    // `put` writes the label where an element has no text.
+                    (NodeKind::ElementText(t, key), _) => {
+                        let mut k = [0; 20];
+                        let there = self.key(key, frame, &mut k);
+                        let text = self.store.element_text(*t, &k[..key.parts.len()]);
+                        text.filter(|_| there).unwrap_or_default().to_string()
+                    }
+                    (_, Some(Item::Text(t) | Item::Label(t))) => t,
                     _ => String::new(),
                 };
                 match at {
