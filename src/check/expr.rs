@@ -223,7 +223,11 @@ impl Compiler {
             }),
             _ => None,
         };
-        let (first, second) = if free(self, b).is_some() { (a, b) } else { (b, a) };
+        let (first, second) = if free(self, b).is_some() {
+            (a, b)
+        } else {
+            (b, a)
+        };
         let one = match &first.kind {
             ExprKind::Text(t) => vec![Part::Label(self.store.universe.intern(t))],
             _ => self.control_index(first, UNIVERSE, 0, out)?,

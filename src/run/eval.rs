@@ -1,6 +1,5 @@
 //! Values of expressions.
 
-use crate::report::textfile::Item;
 use super::Machine;
 use super::arithmetic::{self, ArithmeticError};
 use crate::autodiff::functions::function_value;
@@ -11,6 +10,7 @@ use crate::data::universe::Label;
 use crate::data::value::{self, EPS, NA, UNDF, is_eps, is_na, is_undf, number, truth};
 use crate::diag::Diagnostic;
 use crate::model::instance::Function;
+use crate::report::textfile::Item;
 use crate::source::Span;
 
 /// Labels in the slots.
