@@ -3,7 +3,8 @@
     pip install casadi && cargo build --release --features ipopt
     python3 benches/ipopt.py [BINARY]
 
-Medians of three runs; one start for all, that of the model's file.
+Medians of three runs; one start for all, that of the model's file. `search`: the default, which looks for better local
+optima where that is cheap.
 """
 import json
 import statistics
@@ -65,8 +66,8 @@ def casadi(build, n):
     return end - begin, built - begin, float(result["f"]), stats["iter_count"], stats["return_status"]
 
 
-def bmod(model, n, solver):
-    command = [BMOD, "run", "--quiet", "--json", "-", "--out", "/tmp", "-D", f"n={n}", "--option", f"nlp={solver}"]
+def bmod(model, n, solver, search):
+    command = [BMOD, "run", "--quiet", "--json", "-", "--out", "/tmp", "-D", f"n={n}", "--option", f"nlp={solver}", "--option", f"nlp_search={search}"]
     begin = time.perf_counter()
     done = subprocess.run(command + [str(ROOT / model)], capture_output=True, check=False)
     end = time.perf_counter()
@@ -89,5 +90,6 @@ for name, model, build, sizes in [
 ]:
     for n in sizes:
         row(name, n, "CasADi + Ipopt", lambda: casadi(build, n))
-        for solver in ("ipopt", "pounce"):
-            row(name, n, f"bmod + {solver}", lambda: bmod(model, n, solver))
+        for solver, search in [("ipopt", "no"), ("pounce", "no"), ("pounce", "yes")]:
+            note = ", search" if search == "yes" else ""
+            row(name, n, f"bmod + {solver}{note}", lambda: bmod(model, n, solver, search))
