@@ -10,6 +10,8 @@ use std::time::Instant;
 
 use bmod::solve::mcp::{Monitor, Outcome, Settings, Status, solve};
 
+#[path = "../tests/common/mod.rs"]
+mod common;
 #[path = "../tests/complementarity/mod.rs"]
 mod complementarity;
 #[path = "../tests/walls/mod.rs"]

@@ -4,11 +4,11 @@
 //! `cargo bench --bench nlp`, or `cargo bench --bench nlp --features ipopt` for both solvers. Needs `../shared`
 //! (or BMOD_SHARED).
 
-use bmod::cli::host::{Output, SystemHost};
+#[path = "../tests/common/mod.rs"]
+mod common;
+
 use bmod::run::Options;
-use bmod::session;
-use bmod::source::PreprocessOptions;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 struct Line {
     status: u32,
@@ -19,22 +19,12 @@ struct Line {
 }
 
 fn solve(file: &Path, provider: &str) -> Option<Line> {
-    let mut host = SystemHost::new(file, Path::new("."), &[], Output::Quiet);
     let texts = ["nlp", "dnlp", "qcp"].map(|t| (t.to_string(), provider.to_string()));
     let options = Options {
-        quiet: true,
-        collect: false,
         texts: texts.into_iter().collect(),
-        ..Options::default()
+        ..common::quiet()
     };
-    let done = session::run(
-        &mut host,
-        &file.to_string_lossy(),
-        PreprocessOptions::default(),
-        options,
-        false,
-        &mut |_| {},
-    );
+    let done = common::run_file(file, &[], options);
     let s = done.report.solves.last()?;
     Some(Line {
         status: s.model_status.code as u32,
@@ -49,13 +39,7 @@ fn solve(file: &Path, provider: &str) -> Option<Line> {
 }
 
 fn main() {
-    let shared = std::env::var_os("BMOD_SHARED").map_or_else(
-        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared"),
-        PathBuf::from,
-    );
-    let folder = shared.join("corpus");
-    let Ok(mut reader) = csv::Reader::from_path(folder.join("reference.csv")) else {
-        println!("SKIPPED: {} is not there", folder.display());
+    let Some(folder) = common::shared("corpus") else {
         return;
     };
     let names: Vec<&str> = bmod::solve::nlp::providers()
@@ -73,8 +57,7 @@ fn main() {
     );
     let mut sums = vec![(0u64, 0.0, 0usize); names.len()];
     let mut count = 0;
-    for row in reader.records() {
-        let row = row.expect("a row of the reference");
+    for row in common::records(&folder.join("reference.csv")) {
         if !matches!(&row[2], "NLP" | "DNLP" | "QCP") {
             continue;
         }

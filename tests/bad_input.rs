@@ -1,13 +1,13 @@
 //! Bad input: what a person sees, as snapshots. None may panic, name a Rust type, or leave a file.
 
+mod common;
+
 use std::path::{Path, PathBuf};
 
 use bmod::diag::Diagnostic;
 use bmod::host::{Host, HostError};
 use bmod::report::diagnostics::{Look, render};
 use bmod::run::Options;
-use bmod::session;
-use bmod::source::PreprocessOptions;
 
 /// One text; an include that includes itself; a file that is not UTF-8; everything printed is kept.
 struct Bench {
@@ -51,18 +51,7 @@ fn shown(text: &str) -> String {
         text: text.to_string(),
         printed: String::new(),
     };
-    let preprocess = PreprocessOptions {
-        slash_comments: true,
-        ..PreprocessOptions::default()
-    };
-    let finished = session::run(
-        &mut host,
-        "model.blk",
-        preprocess,
-        Options::default(),
-        false,
-        &mut |_| {},
-    );
+    let finished = common::run(&mut host, "model.blk", Options::default());
     let diagnostics: &[Diagnostic] = &finished.diagnostics;
     let look = Look {
         width: 90,
@@ -183,14 +172,7 @@ fn what_no_model_lists_costs_nothing() {
             text: text.to_string(),
             printed: String::new(),
         };
-        let f = session::run(
-            &mut host,
-            "model.blk",
-            PreprocessOptions::default(),
-            Options::default(),
-            false,
-            &mut |_| {},
-        );
+        let f = common::run(&mut host, "model.blk", Options::default());
         let messages: Vec<String> = f.diagnostics.iter().map(|d| d.message.clone()).collect();
         assert_eq!(messages, Vec::<String>::new());
         let s = &f.report.solves[0];

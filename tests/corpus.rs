@@ -2,25 +2,19 @@
 //! named by BMOD_SHARED): every file compiles, its statistics are the reference's, and the linear
 //! programs have the reference's objective. Skipped, visibly, where the folder is not there.
 
+mod common;
+
 use std::path::{Path, PathBuf};
 
-use bmod::cli::host::{Output, SystemHost};
-use bmod::report::json::{RunStatus, SolveReport};
+use bmod::report::json::SolveReport;
 use bmod::run::{ListOptions, Options};
-use bmod::session;
-use bmod::source::PreprocessOptions;
+use csv::StringRecord;
 
-fn corpus() -> Option<PathBuf> {
-    let shared = std::env::var_os("BMOD_SHARED").map_or_else(
-        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared"),
-        PathBuf::from,
-    );
-    let folder = shared.join("corpus");
-    if folder.join("reference.csv").exists() {
-        return Some(folder);
-    }
-    println!("SKIPPED: {} is not there", folder.display());
-    None
+/// The folder and the rows of its table.
+fn corpus() -> Option<(PathBuf, Vec<StringRecord>)> {
+    let folder = common::shared("corpus")?;
+    let rows = common::records(&folder.join("reference.csv"));
+    Some((folder, rows))
 }
 
 /// Runs a file; with `generate_only`, nothing is solved.
@@ -34,11 +28,8 @@ fn run_with(
     generate_only: bool,
     provider: Option<&str>,
 ) -> Result<SolveReport, String> {
-    let mut host = SystemHost::new(file, Path::new("."), &[], Output::Quiet);
     let texts = ["nlp", "dnlp", "qcp"].map(str::to_string);
     let options = Options {
-        quiet: true,
-        collect: false,
         texts: provider
             .map(|p| texts.into_iter().map(|t| (t, p.to_string())).collect())
             .unwrap_or_default(),
@@ -46,33 +37,18 @@ fn run_with(
             limit: 0,
             only: Vec::new(),
         }),
-        ..Options::default()
+        ..common::quiet()
     };
-    let finished = session::run(
-        &mut host,
-        &file.to_string_lossy(),
-        PreprocessOptions::default(),
-        options,
-        false,
-        &mut |_| {},
-    );
-    match finished.report.solves.last() {
-        Some(s) if finished.end == RunStatus::Ok => Ok(s.clone()),
-        _ => Err(finished.diagnostics.first().map_or_else(
-            || "no solve".to_string(),
-            |d| format!("line {}: {}", finished.map.line(d.span), d.message),
-        )),
-    }
+    common::last_solve(&common::run_file(file, &[], options))
 }
 
 #[test]
 fn statistics_are_those_of_the_reference() {
-    let Some(folder) = corpus() else { return };
-    let mut reader =
-        csv::Reader::from_path(folder.join("reference.csv")).expect("the reference can be read");
+    let Some((folder, rows)) = corpus() else {
+        return;
+    };
     let (mut wrong, mut count) = (Vec::new(), 0);
-    for row in reader.records() {
-        let row = row.expect("a row of the reference");
+    for row in &rows {
         let number = |k: usize| row[k].parse::<usize>().expect("a count");
         let want = [number(6), number(7), number(8), number(9)];
         count += 1;
@@ -97,12 +73,11 @@ fn statistics_are_those_of_the_reference() {
 
 #[test]
 fn linear_programs_have_the_objective_of_the_reference() {
-    let Some(folder) = corpus() else { return };
-    let mut reader =
-        csv::Reader::from_path(folder.join("reference.csv")).expect("the reference can be read");
+    let Some((folder, rows)) = corpus() else {
+        return;
+    };
     let mut wrong = Vec::new();
-    for row in reader.records() {
-        let row = row.expect("a row of the reference");
+    for row in &rows {
         if &row[2] != "LP" {
             continue;
         }
@@ -127,14 +102,13 @@ fn linear_programs_have_the_objective_of_the_reference() {
 /// certificate; never is a point called optimal that is not feasible.
 #[test]
 fn nonlinear_programs_are_no_worse_than_the_reference() {
-    let Some(folder) = corpus() else { return };
+    let Some((folder, rows)) = corpus() else {
+        return;
+    };
     for provider in bmod::solve::nlp::providers() {
         let name = provider.name();
-        let mut reader = csv::Reader::from_path(folder.join("reference.csv"))
-            .expect("the reference can be read");
         let (mut count, mut worse) = (0, Vec::new());
-        for row in reader.records() {
-            let row = row.expect("a row of the reference");
+        for row in &rows {
             if !matches!(&row[2], "NLP" | "DNLP" | "QCP") {
                 continue;
             }

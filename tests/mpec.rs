@@ -2,29 +2,14 @@
 //! or the folder named by BMOD_SHARED; skipped, visibly, where it is not there), and the check of
 //! stationarity from the language to the report.
 
+mod common;
+
 use std::path::{Path, PathBuf};
 
-use bmod::cli::host::{Output, SystemHost};
 use bmod::report::json::SolveReport;
-use bmod::run::Options;
-use bmod::session;
-use bmod::source::PreprocessOptions;
 
-fn solves(file: &Path) -> Vec<SolveReport> {
-    let mut host = SystemHost::new(file, Path::new("."), &[], Output::Quiet);
-    let options = Options {
-        quiet: true,
-        collect: false,
-        ..Options::default()
-    };
-    let finished = session::run(
-        &mut host,
-        &file.to_string_lossy(),
-        PreprocessOptions::default(),
-        options,
-        false,
-        &mut |_| {},
-    );
+fn solves(file: &Path, allowed: &[PathBuf]) -> Vec<SolveReport> {
+    let finished = common::run_file(file, allowed, common::quiet());
     for d in &finished.diagnostics {
         println!("{}: {}", file.display(), d.message);
     }
@@ -35,7 +20,7 @@ fn solves(file: &Path) -> Vec<SolveReport> {
 fn text(name: &str, model: &str) -> Vec<SolveReport> {
     let file = std::env::temp_dir().join(format!("bmod_mpec_{name}_{}.blk", std::process::id()));
     std::fs::write(&file, model).expect("a temporary file");
-    let out = solves(&file);
+    let out = solves(&file, &[]);
     std::fs::remove_file(&file).expect("the temporary file is there");
     out
 }
@@ -46,24 +31,17 @@ fn objective(s: &SolveReport) -> f64 {
 
 #[test]
 fn corpus_is_feasible_and_as_good_as_the_reference() {
-    let shared = std::env::var_os("BMOD_SHARED").map_or_else(
-        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared"),
-        PathBuf::from,
-    );
-    let folder = shared.join("corpus");
-    let Ok(mut reader) = csv::Reader::from_path(folder.join("reference.csv")) else {
-        println!("SKIPPED: {} is not there", folder.display());
+    let Some(folder) = common::shared("corpus") else {
         return;
     };
     let (mut count, mut infeasible, mut worse) = (0, Vec::new(), Vec::new());
-    for row in reader.records() {
-        let row = row.expect("a row of the reference");
+    for row in common::records(&folder.join("reference.csv")) {
         if &row[2] != "MPEC" {
             continue;
         }
         count += 1;
         let want: f64 = row[4].parse().expect("an objective");
-        let all = solves(&folder.join(&row[0]));
+        let all = solves(&folder.join(&row[0]), &[]);
         let Some(s) = all.last() else {
             infeasible.push(format!("{}: no solve", &row[0]));
             continue;
@@ -178,25 +156,9 @@ $include {}
     std::fs::create_dir_all(&folder).expect("a temporary folder");
     let file = folder.join("wall.blk");
     std::fs::write(&file, model).expect("a temporary file");
-    let mut host = SystemHost::new(&file, Path::new("."), &[models], Output::Quiet);
-    let options = Options {
-        quiet: true,
-        collect: false,
-        ..Options::default()
-    };
-    let finished = session::run(
-        &mut host,
-        &file.to_string_lossy(),
-        PreprocessOptions::default(),
-        options,
-        false,
-        &mut |_| {},
-    );
+    let out = solves(&file, &[models]);
     std::fs::remove_dir_all(&folder).expect("the temporary folder is there");
-    for d in &finished.diagnostics {
-        println!("{}", d.message);
-    }
-    finished.report.solves
+    out
 }
 
 #[test]

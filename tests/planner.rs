@@ -1,38 +1,10 @@
 //! The planner never changes which tuples count: random sums and assignments, in random wordings, give
 //! what a nest of loops over whole sets gives.
 
-use std::path::{Path, PathBuf};
+mod common;
 
-use bmod::host::{Host, HostError};
 use bmod::report::json::RunStatus;
-use bmod::run::Options;
-use bmod::session;
-use bmod::source::PreprocessOptions;
-
-/// A host with one text and nothing else.
-struct Text(String);
-
-impl Host for Text {
-    fn read(&mut self, path: &str, _: Option<&Path>) -> Result<(PathBuf, String), HostError> {
-        Ok((path.into(), self.0.clone()))
-    }
-    fn exists(&mut self, _: &str, _: Option<&Path>) -> bool {
-        false
-    }
-    fn write(&mut self, _: &str, _: &[u8]) -> Result<PathBuf, HostError> {
-        Err(HostError::NotFound)
-    }
-    fn print(&mut self, _: &str) {}
-    fn elapsed(&self) -> f64 {
-        0.0
-    }
-    fn now(&self) -> f64 {
-        0.0
-    }
-    fn interrupted(&self) -> bool {
-        false
-    }
-}
+use common::Memory;
 
 /// Fixed stream of choices.
 struct Choice(u64);
@@ -153,19 +125,7 @@ abort$(difference > 1e-9) 'the assignment differs', p, q;
 fn plans_find_what_loops_find() {
     for seed in 0..400 {
         let text = case(seed);
-        let mut host = Text(text.clone());
-        let options = Options {
-            quiet: true,
-            ..Options::default()
-        };
-        let finished = session::run(
-            &mut host,
-            "case.blk",
-            PreprocessOptions::default(),
-            options,
-            false,
-            &mut |_| {},
-        );
+        let finished = common::run(&mut Memory::text(&text), "m.blk", common::quiet());
         let messages: Vec<&String> = finished.diagnostics.iter().map(|d| &d.message).collect();
         assert_eq!(
             finished.end,

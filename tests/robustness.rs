@@ -4,73 +4,30 @@
 //! comes out. `FUZZ_CASES=100000 cargo test --test robustness damaged` runs it for hours; what it finds
 //! is shrunk, and belongs into `tests/suite` or here.
 
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+mod common;
+
+use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-use bmod::host::{Host, HostError};
 use bmod::run::Options;
-use bmod::session::{self, Finished};
-use bmod::source::PreprocessOptions;
+use bmod::session::Finished;
+use common::Memory;
 use proptest::prelude::*;
-
-struct Memory {
-    files: BTreeMap<String, String>,
-    start: Instant,
-}
-
-impl Host for Memory {
-    fn read(&mut self, path: &str, _: Option<&Path>) -> Result<(PathBuf, String), HostError> {
-        let text = self.files.get(path).ok_or(HostError::NotFound)?;
-        Ok((path.into(), text.clone()))
-    }
-    fn exists(&mut self, path: &str, _: Option<&Path>) -> bool {
-        self.files.contains_key(path)
-    }
-    fn write(&mut self, path: &str, bytes: &[u8]) -> Result<PathBuf, HostError> {
-        let text = String::from_utf8_lossy(bytes).into_owned();
-        self.files.insert(path.into(), text);
-        Ok(path.into())
-    }
-    fn print(&mut self, _: &str) {}
-    fn elapsed(&self) -> f64 {
-        self.start.elapsed().as_secs_f64()
-    }
-    fn now(&self) -> f64 {
-        46_000.0
-    }
-    fn interrupted(&self) -> bool {
-        false
-    }
-    /// What the whole test holds, where the system says so.
-    fn memory(&self) -> usize {
-        let pages = std::fs::read_to_string("/proc/self/statm").ok();
-        let resident = pages.and_then(|p| p.split_whitespace().nth(1)?.parse::<usize>().ok());
-        resident.map_or(usize::MAX, |r| r * 4096)
-    }
-}
 
 /// The memory that is measured is the process's: one run at a time.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
 
 fn run(text: &str, seconds: f64, megabytes: usize) -> Finished {
     let _alone = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
-    let mut host = Memory {
-        files: BTreeMap::from([("m.blk".to_string(), text.to_string())]),
-        start: Instant::now(),
-    };
-    let preprocess = PreprocessOptions {
-        slash_comments: true,
-        ..PreprocessOptions::default()
-    };
+    let mut host = Memory::text(text);
     let options = Options {
         time_limit: seconds,
         max_memory: Some(megabytes << 20),
         collect: true,
         ..Options::default()
     };
-    session::run(&mut host, "m.blk", preprocess, options, false, &mut |_| {})
+    common::run(&mut host, "m.blk", options)
 }
 
 /// The text ends with a diagnostic of this code, and within the limits.
@@ -333,22 +290,10 @@ fn apply(texts: &[String], which: usize, list: &[Damage]) -> String {
 
 /// The models of the suite that are short.
 fn texts() -> Vec<String> {
-    fn collect(folder: &Path, out: &mut Vec<PathBuf>) {
-        for e in std::fs::read_dir(folder).expect("the folder can be read") {
-            let p = e.expect("an entry").path();
-            if p.is_dir() {
-                collect(&p, out);
-            } else if p.extension().is_some_and(|e| e == "blk") {
-                out.push(p);
-            }
-        }
-    }
-    let mut files = Vec::new();
-    collect(
+    let files = common::files(
         &Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/suite"),
-        &mut files,
+        &["blk"],
     );
-    files.sort();
     files
         .iter()
         .map(|p| std::fs::read_to_string(p).expect("the file can be read"))

@@ -1,55 +1,15 @@
 //! Scenes of `models/block_limit.blk`: pictures that show what the rates say, and scenes that cannot be
 //! meant.
 
+mod common;
+
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use bmod::check::symbols::attribute;
-use bmod::host::{Host, HostError};
 use bmod::run::{Machine, Options};
 use bmod::session::{self, Finished};
-use bmod::source::PreprocessOptions;
-
-/// A scene in memory, files of the project from the disk.
-struct Desk {
-    folder: PathBuf,
-    text: Option<String>,
-    printed: String,
-    files: BTreeMap<String, String>,
-}
-
-impl Host for Desk {
-    fn read(&mut self, path: &str, _: Option<&Path>) -> Result<(PathBuf, String), HostError> {
-        if let (Some(text), "scene.blk") = (&self.text, path) {
-            return Ok((path.into(), text.clone()));
-        }
-        let real = self.folder.join(path);
-        match std::fs::read_to_string(&real) {
-            Ok(text) => Ok((real, text)),
-            Err(_) => Err(HostError::NotFound),
-        }
-    }
-    fn exists(&mut self, path: &str, _: Option<&Path>) -> bool {
-        self.folder.join(path).is_file()
-    }
-    fn write(&mut self, path: &str, bytes: &[u8]) -> Result<PathBuf, HostError> {
-        let text = String::from_utf8_lossy(bytes).into_owned();
-        self.files.insert(path.into(), text);
-        Ok(path.into())
-    }
-    fn print(&mut self, text: &str) {
-        self.printed.push_str(text);
-    }
-    fn elapsed(&self) -> f64 {
-        0.0
-    }
-    fn now(&self) -> f64 {
-        0.0
-    }
-    fn interrupted(&self) -> bool {
-        false
-    }
-}
+use common::Memory;
 
 /// Runs a file below `models/`, or a text as if it stood there.
 fn run(
@@ -57,23 +17,16 @@ fn run(
     file: &str,
     text: Option<String>,
     after: &mut dyn FnMut(&mut Machine),
-) -> (Desk, Finished) {
+) -> (Memory, Finished) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut desk = Desk {
-        folder: root.join("models").join(folder),
-        text,
-        printed: String::new(),
-        files: BTreeMap::new(),
-    };
-    let preprocess = PreprocessOptions {
-        slash_comments: true,
-        ..PreprocessOptions::default()
-    };
+    let scene = text.map(|t| ("scene.blk".to_string(), t));
+    let files = scene.into_iter().collect();
+    let mut desk = Memory::new(files, Some(root.join("models").join(folder)));
     let options = Options {
         time_limit: 60.0,
         ..Options::default()
     };
-    let finished = session::run(&mut desk, file, preprocess, options, false, after);
+    let finished = session::run(&mut desk, file, common::blk(), options, false, after);
     (desk, finished)
 }
 

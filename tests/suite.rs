@@ -3,73 +3,22 @@
 //!
 //! `SUITE=put cargo test --test suite` runs the files whose path contains `put`.
 
+mod common;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::Instant;
 
 use bmod::check::symbols::{SymbolKind, attribute};
 use bmod::data::value;
 use bmod::diag::Severity;
-use bmod::host::{Host, HostError};
 use bmod::report::json::SolveReport;
 use bmod::report::why::Explanation;
 use bmod::run::{Machine, Options};
 use bmod::session;
 use bmod::source::PreprocessOptions;
-
-/// Reads from the suite's folder, keeps what is written and displayed.
-struct Memory {
-    folder: PathBuf,
-    displays: String,
-    files: BTreeMap<String, String>,
-    start: Instant,
-}
-
-impl Host for Memory {
-    fn read(&mut self, path: &str, _: Option<&Path>) -> Result<(PathBuf, String), HostError> {
-        if let Some(text) = self.files.get(path) {
-            return Ok((path.into(), text.clone()));
-        }
-        let real = self.folder.join(path);
-        match std::fs::read_to_string(&real) {
-            Ok(text) => Ok((real, text)),
-            Err(_) => Err(HostError::NotFound),
-        }
-    }
-
-    fn exists(&mut self, path: &str, _: Option<&Path>) -> bool {
-        self.files.contains_key(path) || self.folder.join(path).is_file()
-    }
-
-    fn write(&mut self, path: &str, bytes: &[u8]) -> Result<PathBuf, HostError> {
-        if path.contains("..") {
-            return Err(HostError::Outside(path.into()));
-        }
-        self.files
-            .insert(path.into(), String::from_utf8_lossy(bytes).into_owned());
-        Ok(path.into())
-    }
-
-    fn print(&mut self, text: &str) {
-        if text.starts_with("----") {
-            self.displays.push_str(text);
-        }
-    }
-
-    fn elapsed(&self) -> f64 {
-        self.start.elapsed().as_secs_f64()
-    }
-
-    fn now(&self) -> f64 {
-        46000.5
-    }
-
-    fn interrupted(&self) -> bool {
-        false
-    }
-}
+use common::{Memory, files};
 
 /// What the comments of a file claim.
 #[derive(Default)]
@@ -277,12 +226,7 @@ fn check_text(
     files: BTreeMap<String, String>,
 ) -> Vec<String> {
     let c = claims(text);
-    let mut host = Memory {
-        folder,
-        displays: String::new(),
-        files,
-        start: Instant::now(),
-    };
+    let mut host = Memory::new(files, Some(folder));
     let preprocess = PreprocessOptions {
         defines: c.defines.clone(),
         slash_comments: true,
@@ -359,7 +303,9 @@ fn check_text(
         }
     }
     if !c.display.is_empty() {
-        let actual = tidy(host.displays.lines());
+        let displays = host.printed.iter().filter(|t| t.starts_with("----"));
+        let displays: String = displays.map(String::as_str).collect();
+        let actual = tidy(displays.lines());
         let claimed = tidy(c.display.iter().map(String::as_str));
         wrong.extend(difference(&actual, &claimed).map(|d| format!("display, {d}")));
     }
@@ -438,27 +384,10 @@ fn explained(c: &Claims, solves: &[SolveReport]) -> Vec<String> {
     wrong
 }
 
-fn files(folder: &Path, out: &mut Vec<PathBuf>) {
-    let mut entries: Vec<PathBuf> = std::fs::read_dir(folder)
-        .expect("the folder can be read")
-        .map(|e| e.expect("an entry").path())
-        .collect();
-    entries.sort();
-    for p in entries {
-        if p.is_dir() {
-            files(&p, out);
-        } else if p.extension().is_some_and(|e| e == "blk") {
-            out.push(p);
-        }
-    }
-}
-
 #[test]
 fn every_claim_of_the_suite_holds() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut all = Vec::new();
-    files(&root.join("tests/suite"), &mut all);
-    hold(all);
+    hold(files(&root.join("tests/suite"), &["blk"]));
 }
 
 #[test]
@@ -472,7 +401,7 @@ fn the_models_have_their_known_answers() {
         "models/structures",
         "models/hard",
     ] {
-        files(&root.join(folder), &mut all);
+        all.extend(files(&root.join(folder), &["blk"]));
     }
     let slow = |p: &PathBuf| claims(&std::fs::read_to_string(p).expect("readable")).slow;
     if std::env::var("SUITE").is_err() {

@@ -1,40 +1,14 @@
 //! From text to tree: what is read, and what is said about what cannot be read.
 
-use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+mod common;
+
+use std::collections::BTreeMap;
 
 use bmod::diag::Diagnostic;
-use bmod::host::{Host, HostError};
 use bmod::source::{Ending, NothingKnown, PreprocessOptions};
 use bmod::syntax::Parser;
 use bmod::syntax::ast::*;
-
-/// Files in memory.
-#[derive(Default)]
-struct Memory(HashMap<String, String>);
-
-impl Host for Memory {
-    fn read(&mut self, path: &str, _: Option<&Path>) -> Result<(PathBuf, String), HostError> {
-        let text = self.0.get(path).ok_or(HostError::NotFound)?;
-        Ok((PathBuf::from(path), text.clone()))
-    }
-    fn exists(&mut self, path: &str, _: Option<&Path>) -> bool {
-        self.0.contains_key(path)
-    }
-    fn write(&mut self, _: &str, _: &[u8]) -> Result<PathBuf, HostError> {
-        Err(HostError::Other("no files here".into()))
-    }
-    fn print(&mut self, _: &str) {}
-    fn elapsed(&self) -> f64 {
-        0.0
-    }
-    fn now(&self) -> f64 {
-        46_000.0
-    }
-    fn interrupted(&self) -> bool {
-        false
-    }
-}
+use common::Memory;
 
 /// Everything that came out of a text.
 struct Outcome {
@@ -47,12 +21,8 @@ struct Outcome {
 }
 
 fn read_files(files: &[(&str, &str)], defines: &[(&str, &str)]) -> Outcome {
-    let mut host = Memory(
-        files
-            .iter()
-            .map(|(n, t)| ((*n).to_owned(), (*t).to_owned()))
-            .collect(),
-    );
+    let texts = files.iter().map(|(n, t)| ((*n).into(), (*t).into()));
+    let mut host = Memory::new(texts.collect(), None);
     let main = files[0].0;
     let options = PreprocessOptions {
         defines: defines
@@ -324,7 +294,8 @@ fn text_of<'a>(out: &'a Parser<'_>, d: &SymbolDecl) -> &'a str {
 
 /// Names, domains, texts and data of all declarations of a text.
 fn declared(text: &str) -> Vec<String> {
-    let mut host = Memory(HashMap::from([("m.gms".to_owned(), text.to_owned())]));
+    let files = BTreeMap::from([("m.gms".to_owned(), text.to_owned())]);
+    let mut host = Memory::new(files, None);
     let mut parser =
         Parser::new(&mut host, "m.gms", PreprocessOptions::default()).expect("the file is there");
     let mut found = Vec::new();

@@ -3,10 +3,12 @@
 //! The collection is not part of the project: it is looked for beside it (`../shared/corpus`) or where
 //! `BMOD_SHARED` says. Where it is not there, the test says so and passes.
 
-use std::collections::HashSet;
-use std::path::{Path, PathBuf};
+mod common;
 
-use bmod::host::{Host, HostError};
+use std::collections::HashSet;
+use std::path::Path;
+
+use bmod::cli::host::{Output, SystemHost};
 use bmod::source::{Known, PreprocessOptions, Span, SymbolKindName};
 use bmod::syntax::Parser;
 use bmod::syntax::ast::{Stmt, StmtKind, SymbolDecl};
@@ -47,50 +49,6 @@ impl Known for Declared {
     }
     fn scalar_value(&self, _: &str) -> Option<f64> {
         None
-    }
-}
-
-struct Disk;
-
-impl Host for Disk {
-    fn read(&mut self, path: &str, from: Option<&Path>) -> Result<(PathBuf, String), HostError> {
-        let beside = from
-            .and_then(Path::parent)
-            .map(|d| d.join(path))
-            .filter(|p| p.exists());
-        let path = beside.unwrap_or_else(|| PathBuf::from(path));
-        let text = std::fs::read_to_string(&path).map_err(|e| HostError::Other(e.to_string()))?;
-        Ok((path, text))
-    }
-    fn exists(&mut self, path: &str, _: Option<&Path>) -> bool {
-        Path::new(path).exists()
-    }
-    fn write(&mut self, _: &str, _: &[u8]) -> Result<PathBuf, HostError> {
-        Err(HostError::Other("not here".into()))
-    }
-    fn print(&mut self, _: &str) {}
-    fn elapsed(&self) -> f64 {
-        0.0
-    }
-    fn now(&self) -> f64 {
-        46_000.0
-    }
-    fn interrupted(&self) -> bool {
-        false
-    }
-}
-
-fn models(folder: &Path, found: &mut Vec<PathBuf>) {
-    let Ok(entries) = std::fs::read_dir(folder) else {
-        return;
-    };
-    for entry in entries.flatten() {
-        let path = entry.path();
-        if path.is_dir() {
-            models(&path, found);
-        } else if path.extension().is_some_and(|e| e == "gms" || e == "blk") {
-            found.push(path);
-        }
     }
 }
 
@@ -137,8 +95,9 @@ fn read_data(parser: &Parser<'_>, s: &Stmt) -> Vec<String> {
 }
 
 /// Parses a file; gives what is wrong with it, and the number of statements.
-fn parse(path: &Path) -> (Vec<String>, usize) {
-    let mut disk = Disk;
+fn parse(path: &Path, folder: &Path) -> (Vec<String>, usize) {
+    let allowed = [folder.to_path_buf()];
+    let mut disk = SystemHost::new(path, Path::new("."), &allowed, Output::Quiet);
     let options = PreprocessOptions {
         defines: Vec::new(),
         slash_comments: path.extension().is_some_and(|e| e == "blk"),
@@ -173,12 +132,10 @@ fn parse(path: &Path) -> (Vec<String>, usize) {
 }
 
 fn all_parse(folder: &Path) -> usize {
-    let mut found = Vec::new();
-    models(folder, &mut found);
-    found.sort();
+    let found = common::files(folder, &["gms", "blk"]);
     let mut failures = Vec::new();
     for path in &found {
-        let (wrong, statements) = parse(path);
+        let (wrong, statements) = parse(path, folder);
         if !wrong.is_empty() || statements == 0 {
             failures.push(format!(
                 "{}: {}",
@@ -199,17 +156,9 @@ fn all_parse(folder: &Path) -> usize {
 
 #[test]
 fn the_shared_collection_parses() {
-    let home = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let shared =
-        std::env::var_os("BMOD_SHARED").map_or_else(|| home.join("../shared"), PathBuf::from);
-    let corpus = shared.join("corpus");
-    if !corpus.is_dir() {
-        eprintln!(
-            "SKIPPED: {} is not there (set BMOD_SHARED)",
-            corpus.display()
-        );
+    let Some(corpus) = common::shared("corpus") else {
         return;
-    }
+    };
     assert!(all_parse(&corpus) > 0);
 }
 

@@ -1,40 +1,16 @@
 //! No text makes the reader panic or run without end: models with random damage.
 
-use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+mod common;
 
-use bmod::host::{Host, HostError};
+use std::collections::BTreeMap;
+
 use bmod::source::{NothingKnown, PreprocessOptions, Span};
 use bmod::syntax::Parser;
 use bmod::syntax::ast::{StmtKind, SymbolDecl};
 use bmod::syntax::data::{DataKind, DataReader};
 use bmod::syntax::table::TableReader;
+use common::Memory;
 use proptest::prelude::*;
-
-struct Memory(HashMap<String, String>);
-
-impl Host for Memory {
-    fn read(&mut self, path: &str, _: Option<&Path>) -> Result<(PathBuf, String), HostError> {
-        let text = self.0.get(path).ok_or(HostError::NotFound)?;
-        Ok((PathBuf::from(path), text.clone()))
-    }
-    fn exists(&mut self, path: &str, _: Option<&Path>) -> bool {
-        self.0.contains_key(path)
-    }
-    fn write(&mut self, _: &str, _: &[u8]) -> Result<PathBuf, HostError> {
-        Err(HostError::Other("no files here".into()))
-    }
-    fn print(&mut self, _: &str) {}
-    fn elapsed(&self) -> f64 {
-        0.0
-    }
-    fn now(&self) -> f64 {
-        46_000.0
-    }
-    fn interrupted(&self) -> bool {
-        false
-    }
-}
 
 /// Texts that hold every construct at least once.
 const SEEDS: &[&str] = &[
@@ -61,7 +37,7 @@ const SEEDS: &[&str] = &[
 ];
 
 fn read_everything(text: &str) {
-    let files = HashMap::from([
+    let files = BTreeMap::from([
         ("m.gms".to_owned(), text.to_owned()),
         (
             "inc.gms".to_owned(),
@@ -69,7 +45,7 @@ fn read_everything(text: &str) {
         ),
     ]);
     for slash_comments in [false, true] {
-        let mut host = Memory(files.clone());
+        let mut host = Memory::new(files.clone(), None);
         let options = PreprocessOptions {
             defines: vec![("d".into(), "1".into())],
             slash_comments,

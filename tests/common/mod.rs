@@ -1,0 +1,166 @@
+//! What tests and benchmarks share: a host in memory, runs of files, the folder beside the project.
+
+// Every test is a crate of its own and uses a part of this.
+#![allow(dead_code)]
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use bmod::cli::host::{Output, SystemHost};
+use bmod::host::{Host, HostError};
+use bmod::report::json::{RunStatus, SolveReport};
+use bmod::run::Options;
+use bmod::session::{self, Finished};
+use bmod::source::PreprocessOptions;
+
+/// A part of the folder `../shared` beside the project, or of the folder that BMOD_SHARED names. Says
+/// so where it is not there.
+pub fn shared(part: &str) -> Option<PathBuf> {
+    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared");
+    let folder = std::env::var_os("BMOD_SHARED").map_or_else(beside, PathBuf::from);
+    let found = folder.join(part);
+    if found.exists() {
+        return Some(found);
+    }
+    println!(
+        "SKIPPED: {} is not there (set BMOD_SHARED)",
+        found.display()
+    );
+    None
+}
+
+/// Rows of a table of reference answers.
+pub fn records(csv: &Path) -> Vec<csv::StringRecord> {
+    let reader = csv::Reader::from_path(csv).expect("the reference can be read");
+    let rows = reader.into_records();
+    rows.map(|r| r.expect("a row of the reference")).collect()
+}
+
+/// All files below a folder with one of these extensions, in order.
+pub fn files(folder: &Path, extensions: &[&str]) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let path = entry.path();
+        let is_wanted = |e: &str| path.extension().is_some_and(|x| x == e);
+        if path.is_dir() {
+            found.extend(files(&path, extensions));
+        } else if extensions.iter().any(|e| is_wanted(e)) {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}
+
+/// Files in memory, over those of a folder; what is written and printed is kept.
+pub struct Memory {
+    pub files: BTreeMap<String, String>,
+    pub folder: Option<PathBuf>,
+    /// Each text that was printed.
+    pub printed: Vec<String>,
+    start: Instant,
+}
+
+impl Memory {
+    pub fn new(files: BTreeMap<String, String>, folder: Option<PathBuf>) -> Self {
+        Self {
+            files,
+            folder,
+            printed: Vec::new(),
+            start: Instant::now(),
+        }
+    }
+
+    /// One text, called `m.blk`.
+    pub fn text(text: &str) -> Self {
+        Self::new(BTreeMap::from([("m.blk".into(), text.into())]), None)
+    }
+
+    fn on_disk(&self, path: &str) -> Option<PathBuf> {
+        self.folder.as_ref().map(|f| f.join(path))
+    }
+}
+
+impl Host for Memory {
+    fn read(&mut self, path: &str, _: Option<&Path>) -> Result<(PathBuf, String), HostError> {
+        if let Some(text) = self.files.get(path) {
+            return Ok((path.into(), text.clone()));
+        }
+        let real = self.on_disk(path).ok_or(HostError::NotFound)?;
+        let text = std::fs::read_to_string(&real).map_err(|_| HostError::NotFound)?;
+        Ok((real, text))
+    }
+    fn exists(&mut self, path: &str, _: Option<&Path>) -> bool {
+        self.files.contains_key(path) || self.on_disk(path).is_some_and(|p| p.is_file())
+    }
+    fn write(&mut self, path: &str, bytes: &[u8]) -> Result<PathBuf, HostError> {
+        if path.contains("..") {
+            return Err(HostError::Outside(path.into()));
+        }
+        let text = String::from_utf8_lossy(bytes).into_owned();
+        self.files.insert(path.into(), text);
+        Ok(path.into())
+    }
+    fn print(&mut self, text: &str) {
+        self.printed.push(text.into());
+    }
+    fn elapsed(&self) -> f64 {
+        self.start.elapsed().as_secs_f64()
+    }
+    fn now(&self) -> f64 {
+        46000.5
+    }
+    fn interrupted(&self) -> bool {
+        false
+    }
+    /// What the whole test holds, where the system says so.
+    fn memory(&self) -> usize {
+        let pages = std::fs::read_to_string("/proc/self/statm").ok();
+        let resident = pages.and_then(|p| p.split_whitespace().nth(1)?.parse::<usize>().ok());
+        resident.map_or(0, |r| r * 4096)
+    }
+}
+
+/// As for a `.blk` file.
+pub fn blk() -> PreprocessOptions {
+    PreprocessOptions {
+        slash_comments: true,
+        ..PreprocessOptions::default()
+    }
+}
+
+/// Nothing for people.
+pub fn quiet() -> Options {
+    Options {
+        quiet: true,
+        collect: false,
+        ..Options::default()
+    }
+}
+
+/// Runs a file of a host.
+pub fn run(host: &mut dyn Host, file: &str, options: Options) -> Finished {
+    let preprocess = match file.ends_with(".blk") {
+        true => blk(),
+        false => PreprocessOptions::default(),
+    };
+    session::run(host, file, preprocess, options, false, &mut |_| {})
+}
+
+/// Runs a file on disk; it may read what is below `allowed` besides its own folder.
+pub fn run_file(file: &Path, allowed: &[PathBuf], options: Options) -> Finished {
+    let mut host = SystemHost::new(file, Path::new("."), allowed, Output::Quiet);
+    run(&mut host, &file.to_string_lossy(), options)
+}
+
+/// The last solve of a run that went well, or its first complaint.
+pub fn last_solve(finished: &Finished) -> Result<SolveReport, String> {
+    match finished.report.solves.last() {
+        Some(s) if finished.end == RunStatus::Ok => Ok(s.clone()),
+        _ => Err(finished.diagnostics.first().map_or_else(
+            || "no solve".to_string(),
+            |d| format!("line {}: {}", finished.map.line(d.span), d.message),
+        )),
+    }
+}
