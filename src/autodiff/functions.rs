@@ -571,7 +571,8 @@ pub fn function_value(f: Function, args: &[f64]) -> Result<f64, DomainError> {
         F::Frac if x.is_infinite() => 0.0,
         F::Frac => x - x.trunc(),
         F::Mod if y.abs() < 1e-30 => return fail(1, Singular),
-        F::Mod => x % y,
+        // As GAMS computes it: the exact remainder differs where the quotient is rounded to a whole number.
+        F::Mod => x - (x / y).trunc() * y,
         F::IfThen => return Ok(if truth(x) { y } else { z }),
         F::BoolAnd => indicator(truth(x) && truth(y)),
         F::BoolOr => indicator(truth(x) || truth(y)),

@@ -1058,6 +1058,7 @@ impl Compiler {
             .collect();
         let mut reader = TableReader::new(map.expanded(), t.body, symbol.dim(), self.modes.undf);
         let (mut keys, mut parts) = (Vec::new(), Vec::new());
+        let mut headers = 0;
         while let Some(cell) = reader.next() {
             let (v, span) = match cell {
                 Ok(c) => {
@@ -1080,6 +1081,15 @@ impl Compiler {
                     continue;
                 }
             };
+            // The labels of columns come before those of rows, though no value stand there.
+            if headers < reader.headers() {
+                headers = reader.headers();
+                for part in reader.columns().flatten() {
+                    if let KeyPart::Label { text, .. } = part {
+                        self.store.universe.intern(text);
+                    }
+                }
+            }
             keys.clear();
             if self
                 .expand(s, &parts, None, span, &defines, &mut keys)

@@ -170,7 +170,6 @@ impl Compiler {
             None => self.symbols.get_mut(id).open = false,
         }
         let symbol = self.symbols.get(id).clone();
-        let dim = symbol.dim();
         let Some(indices) = indices else {
             if self.controlled(id).is_some() {
                 return self.fail(
@@ -184,13 +183,7 @@ impl Compiler {
             }
             return Ok(self.run_over(id, out));
         };
-        let mut parts = Vec::with_capacity(dim);
-        for (p, index) in indices.iter().enumerate() {
-            parts.extend(self.control_index(index, id, p.min(dim.saturating_sub(1)), out)?);
-        }
-        if parts.len() != dim {
-            return self.wrong_dimension(id, span, parts.len());
-        }
+        let parts = self.control_key(indices, id, span, out)?;
         out.members.push(Driver {
             table: symbol.table,
             key: Key {
@@ -335,19 +328,57 @@ impl Compiler {
                 }
                 self.domain_item(name, Some(inner), index.span, out)
             }
-            // A lag on a set that is not controlled yet: `f(t+1)..`, `b(t+1) = …`.
-            ExprKind::Sum(terms) => {
-                if let Some((Sign::Plus, base)) = terms.first() {
-                    self.control_lag_base(base, out)?;
-                }
-                self.index(index, of, position)
-            }
-            ExprKind::Binary(BinaryOp::CircularPlus | BinaryOp::CircularMinus, base, _) => {
-                self.control_lag_base(base, out)?;
-                self.index(index, of, position)
-            }
             _ => self.index(index, of, position),
         }
+    }
+
+    /// The key of a symbol whose indices are put under control if they are not yet: `f(t+1)..`,
+    /// `w(m+k(n),n) = …`. Lags come last: how far one goes may depend on any of the indices.
+    pub(super) fn control_key(
+        &mut self,
+        indices: &[Expr],
+        of: SymbolId,
+        span: Span,
+        out: &mut Domain,
+    ) -> Result<Vec<Part>, Failed> {
+        let dim = self.symbols.get(of).dim();
+        let mut parts: Vec<Vec<Part>> = Vec::with_capacity(indices.len());
+        let mut lags = Vec::new();
+        let mut position = 0;
+        for (n, index) in indices.iter().enumerate() {
+            if position >= dim {
+                return self.wrong_dimension(of, span, indices.len());
+            }
+            let base = match &index.kind {
+                ExprKind::Sum(terms) => match terms.first() {
+                    Some((Sign::Plus, base)) => Some(base),
+                    _ => None,
+                },
+                ExprKind::Binary(BinaryOp::CircularPlus | BinaryOp::CircularMinus, base, _) => {
+                    Some(&**base)
+                }
+                _ => None,
+            };
+            let here = match base {
+                Some(base) => {
+                    self.control_lag_base(base, out)?;
+                    lags.push((n, position));
+                    position += 1;
+                    Vec::new()
+                }
+                None => self.control_index(index, of, position, out)?,
+            };
+            position += here.len();
+            parts.push(here);
+        }
+        for (n, position) in lags {
+            parts[n] = self.index(&indices[n], of, position)?;
+        }
+        let parts = parts.concat();
+        if parts.len() != dim {
+            return self.wrong_dimension(of, span, parts.len().max(indices.len()));
+        }
+        Ok(parts)
     }
 
     fn control_lag_base(&mut self, base: &Expr, out: &mut Domain) -> Result<(), Failed> {

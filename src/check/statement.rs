@@ -453,19 +453,10 @@ impl Compiler {
         }
         let r = self.scoped(|c| {
             let mut domain = Domain::default();
-            let mut parts = Vec::new();
-            if !matches!(target, Target::Object(..)) {
-                for index in &t.indices {
-                    if parts.len() >= symbol.dim() {
-                        return c.wrong_dimension(s, t.span, t.indices.len());
-                    }
-                    let p = parts.len();
-                    parts.extend(c.control_index(index, s, p, &mut domain)?);
-                }
-                if parts.len() != symbol.dim() {
-                    return c.wrong_dimension(s, t.span, parts.len().max(t.indices.len()));
-                }
-            }
+            let parts = match target {
+                Target::Object(..) => Vec::new(),
+                _ => c.control_key(&t.indices, s, t.span, &mut domain)?,
+            };
             if let Some(cond) = &a.condition {
                 c.condition(cond, &mut domain)?;
             }
@@ -542,17 +533,7 @@ impl Compiler {
         self.in_equation = true;
         let r = self.scoped(|c| {
             let mut domain = Domain::default();
-            let mut parts = Vec::new();
-            for index in &e.indices {
-                if parts.len() >= symbol.dim() {
-                    return c.wrong_dimension(s, e.name.span, e.indices.len());
-                }
-                let p = parts.len();
-                parts.extend(c.control_index(index, s, p, &mut domain)?);
-            }
-            if parts.len() != symbol.dim() {
-                return c.wrong_dimension(s, e.name.span, parts.len().max(e.indices.len()));
-            }
+            let parts = c.control_key(&e.indices, s, e.name.span, &mut domain)?;
             if let Some(cond) = &e.condition {
                 c.condition(cond, &mut domain)?;
             }

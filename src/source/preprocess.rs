@@ -640,7 +640,8 @@ impl<'h> Preprocessor<'h> {
     /// What `%name%` stands for at byte `lo` of the present file.
     fn value(&mut self, name: &str, lo: u32) -> Option<String> {
         if name.contains(' ') {
-            return None;
+            // `%solveStat.Capability Problems%`
+            return variables::constant(&name.replace(' ', "")).map(str::to_owned);
         }
         if let Some(v) = self.names.get(name) {
             return Some(v.to_owned());

@@ -41,6 +41,8 @@ pub struct TableReader<'a> {
     at: usize,
     end: usize,
     columns: Vec<Column<'a>>,
+    /// Lines of column labels read so far.
+    headers: usize,
     /// The next line that is not blank holds column labels.
     header: bool,
     row: Vec<KeyPart<'a>>,
@@ -69,6 +71,7 @@ impl<'a> TableReader<'a> {
             at: lo.min(hi),
             end: hi,
             columns: Vec::new(),
+            headers: 0,
             header: true,
             row: Vec::new(),
             row_span: body,
@@ -81,6 +84,11 @@ impl<'a> TableReader<'a> {
             dim,
             fields: Vec::new(),
         }
+    }
+
+    /// How many lines of column labels have been read.
+    pub fn headers(&self) -> usize {
+        self.headers
     }
 
     /// Keys of the columns of the present block, in order.
@@ -157,6 +165,7 @@ impl<'a> TableReader<'a> {
         self.reader.restart(self.line, self.line_base);
         if self.header {
             self.header = false;
+            self.headers += 1;
             self.read_header()
         } else {
             self.read_row_label()
@@ -177,6 +186,7 @@ impl<'a> TableReader<'a> {
         }
         if self.header {
             self.header = false;
+            self.headers += 1;
             self.columns.clear();
             for (from, to) in fields {
                 self.columns.push(Column {

@@ -91,11 +91,18 @@ impl Builder<'_> {
                     }
                 };
                 match symbol.data {
-                    Some(body) => Ok(StmtKind::Table(TableDecl { symbol: SymbolDecl { data: None, ..symbol }, body })),
-                    None => Err(Box::new(
-                        Diagnostic::error("E0210", symbol.name.span, format!("the table `{}` has no lines", symbol.name.name))
-                            .help("the line after the name holds the labels of the columns, each further line a row"),
-                    )),
+                    Some(body) => Ok(StmtKind::Table(TableDecl {
+                        symbol: SymbolDecl {
+                            data: None,
+                            ..symbol
+                        },
+                        body,
+                    })),
+                    // A table without lines declares a parameter.
+                    None => Ok(StmtKind::Parameter(vec![ParameterDecl {
+                        symbol,
+                        scalar: false,
+                    }])),
                 }
             }
             Rule::alias_statement => {
