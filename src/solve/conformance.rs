@@ -11,21 +11,7 @@ use Relation::{Equal, Free, Greater, Less};
 
 const INF: f64 = f64::INFINITY;
 
-/// A monitor that says nothing.
-pub struct Quiet;
-
-impl Monitor for Quiet {
-    fn log(&mut self, _: &str) {}
-    fn interrupted(&mut self) -> bool {
-        false
-    }
-    fn row_name(&self, row: usize) -> String {
-        format!("row {row}")
-    }
-    fn column_name(&self, column: usize) -> String {
-        format!("column {column}")
-    }
-}
+pub use super::Quiet;
 
 /// A row: dense coefficients, relation, right-hand side.
 pub type Row = (Vec<f64>, Relation, f64);

@@ -213,6 +213,22 @@ pub trait Monitor {
     fn column_name(&self, column: usize) -> String;
 }
 
+/// A monitor that says nothing.
+pub struct Quiet;
+
+impl Monitor for Quiet {
+    fn log(&mut self, _: &str) {}
+    fn interrupted(&mut self) -> bool {
+        false
+    }
+    fn row_name(&self, row: usize) -> String {
+        format!("row {row}")
+    }
+    fn column_name(&self, column: usize) -> String {
+        format!("column {column}")
+    }
+}
+
 /// Why a solver did not run at all.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolveError {

@@ -17,6 +17,7 @@
 //! Marginals are those of the final branch: the derivative of the optimal value as long as the pairs
 //! stay on their pieces.
 
+mod bound;
 pub mod pairs;
 pub mod pieces;
 pub mod relaxation;
@@ -562,18 +563,23 @@ impl Search<'_> {
 
     /// Turns what was found into an answer.
     fn finish(&mut self) -> Result<Answer, SolveError> {
+        let searched = self.options.method != Method::Check;
+        if searched && self.best.is_none() && !self.is_over() {
+            let settings = self.sub_settings(&[]);
+            if let Some(level) = bound::point(self.program, &settings, self.monitor) {
+                self.improve(&level)?;
+            }
+        }
+        let low = self.lower_bound()?;
         let Some(found) = self.best.take() else {
             return self.infeasible();
         };
-        if self.options.bound != settings::Bound::None {
-            let text = "`mpec_bound` is not there yet: no lower bound was computed";
-            self.notes.push(text.into());
-        }
         let mut residuals = found.judged.residuals;
         residuals.dual = found.answer.residuals.dual;
         residuals.dual_relative = found.answer.residuals.dual_relative;
         let status = match (found.answer.status, found.verdict) {
             (ModelStatus::Unbounded, _) => ModelStatus::Unbounded,
+            _ if low.is_some_and(|l| bound::is_closed(l, found.objective)) => ModelStatus::Optimal,
             (_, Some(Stationarity::Proved)) => ModelStatus::LocallyOptimal,
             _ => ModelStatus::Feasible,
         };
@@ -588,7 +594,43 @@ impl Search<'_> {
         outcome.message = (!self.notes.is_empty()).then(|| self.notes.join("; "));
         let mut answer = Answer::new(outcome, residuals, status, found.judged.activity);
         answer.stationarity = found.verdict;
+        let low = low.map(|l| l.min(found.objective));
+        answer.bounds = low.map(|low| match self.program.sign() > 0.0 {
+            true => [low, found.objective],
+            false => [-found.objective, -low],
+        });
         Ok(answer)
+    }
+
+    /// A lower bound of the (minimised) objective, if one is wanted and there is one; and the better point
+    /// that the search for it may come by.
+    fn lower_bound(&mut self) -> Result<Option<f64>, SolveError> {
+        let bounded = |f: &&Found| f.answer.status != ModelStatus::Unbounded;
+        let Some(found) = self.best.as_ref().filter(bounded).cloned() else {
+            return Ok(None);
+        };
+        if self.options.bound == settings::Bound::None || self.is_over() {
+            return Ok(None);
+        }
+        let settings = self.sub_settings(&[]);
+        let (program, bound) = (self.program, self.options.bound);
+        let level = &found.answer.outcome.level;
+        let proof = bound::lower(program, level, bound, &settings, self.monitor);
+        self.iterations += proof.iterations;
+        self.notes.extend(proof.note);
+        if let Some(level) = proof.better {
+            self.improve(&level)?;
+        }
+        Ok(proof.value)
+    }
+
+    /// Goes on from a point that satisfies the pairs.
+    fn improve(&mut self, level: &[f64]) -> Result<(), SolveError> {
+        let pieces = self.program.nearest(level);
+        if let Some(f) = self.branch(pieces, level)? {
+            self.descend(f)?;
+        }
+        Ok(())
     }
 
     /// No feasible point was found: is there none?

@@ -66,51 +66,7 @@ pub struct Split {
 impl Split {
     /// None if the program is not linear or does not come apart.
     pub fn new(program: &Program) -> Option<Self> {
-        let instance = &program.envelope;
-        if !instance.is_linear() || program.pairs.is_empty() {
-            return None;
-        }
-        let z = instance.objective?.column as usize;
-        let (m, n) = (instance.row_count(), instance.column_count());
-        // Components by union of columns (0 … n−1) and rows (n … n+m−1).
-        let mut parent: Vec<usize> = (0..n + m).collect();
-        for i in 0..m {
-            for (j, _) in instance.matrix.row(i) {
-                if instance.columns.lower[j] < instance.columns.upper[j] {
-                    let (a, b) = (root(&mut parent, j), root(&mut parent, n + i));
-                    parent[a] = b;
-                }
-            }
-        }
-        // Sides by walking along the pairs from the objective's component.
-        let mut joined: Vec<Vec<usize>> = vec![Vec::new(); n + m];
-        for p in &program.pairs {
-            let (a, b) = (root(&mut parent, p.column), root(&mut parent, n + p.row));
-            joined[a].push(b);
-            joined[b].push(a);
-        }
-        let mut side: Vec<Option<bool>> = vec![None; n + m];
-        let mut queue = Vec::new();
-        // What no pair joins to the objective may be anywhere.
-        for start in std::iter::once(z).chain(0..n + m) {
-            let r = root(&mut parent, start);
-            if side[r].is_none() {
-                side[r] = Some(true);
-                queue.push(r);
-            }
-            while let Some(c) = queue.pop() {
-                for &d in &joined[c] {
-                    if side[d].is_none() {
-                        side[d] = side[c].map(|here| !here);
-                        queue.push(d);
-                    } else if side[d] == side[c] {
-                        return None;
-                    }
-                }
-            }
-        }
-        let mut on_a = |k: usize| side[root(&mut parent, k)] == Some(true);
-        let place: Vec<bool> = (0..n + m).map(&mut on_a).collect();
+        let place = sides(program)?;
         let make = |which: bool| Side::new(program, &place, which);
         Some(Self {
             a: make(true),
@@ -185,6 +141,56 @@ impl Split {
         };
         (0..self.bounds.len()).map(product).sum()
     }
+}
+
+/// Which columns (0 … n−1) and rows (n … n+m−1) are on the objective's side; None if the program is not
+/// linear or does not come apart.
+pub fn sides(program: &Program) -> Option<Vec<bool>> {
+    let instance = &program.envelope;
+    if !instance.is_linear() || program.pairs.is_empty() {
+        return None;
+    }
+    let z = instance.objective?.column as usize;
+    let (m, n) = (instance.row_count(), instance.column_count());
+    // Components by union of columns (0 … n−1) and rows (n … n+m−1).
+    let mut parent: Vec<usize> = (0..n + m).collect();
+    for i in 0..m {
+        for (j, _) in instance.matrix.row(i) {
+            if instance.columns.lower[j] < instance.columns.upper[j] {
+                let (a, b) = (root(&mut parent, j), root(&mut parent, n + i));
+                parent[a] = b;
+            }
+        }
+    }
+    // Sides by walking along the pairs from the objective's component.
+    let mut joined: Vec<Vec<usize>> = vec![Vec::new(); n + m];
+    for p in &program.pairs {
+        let (a, b) = (root(&mut parent, p.column), root(&mut parent, n + p.row));
+        joined[a].push(b);
+        joined[b].push(a);
+    }
+    let mut side: Vec<Option<bool>> = vec![None; n + m];
+    let mut queue = Vec::new();
+    // What no pair joins to the objective may be anywhere.
+    for start in std::iter::once(z).chain(0..n + m) {
+        let r = root(&mut parent, start);
+        if side[r].is_none() {
+            side[r] = Some(true);
+            queue.push(r);
+        }
+        while let Some(c) = queue.pop() {
+            for &d in &joined[c] {
+                if side[d].is_none() {
+                    side[d] = side[c].map(|here| !here);
+                    queue.push(d);
+                } else if side[d] == side[c] {
+                    return None;
+                }
+            }
+        }
+    }
+    let on_a = |k: usize| side[root(&mut parent, k)] == Some(true);
+    Some((0..n + m).map(on_a).collect())
 }
 
 fn root(parent: &mut [usize], mut k: usize) -> usize {
@@ -267,6 +273,15 @@ impl Side {
             problem,
         }
     }
+}
+
+/// The whole envelope of a linear program, rows and columns in their order.
+pub fn whole(program: &Program) -> Problem {
+    let (m, n) = (
+        program.envelope.row_count(),
+        program.envelope.column_count(),
+    );
+    Side::new(program, &vec![true; n + m], true).problem
 }
 
 /// Right-hand sides of the pairs' rows, for [`Side::solve`].

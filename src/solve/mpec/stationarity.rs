@@ -70,7 +70,7 @@ pub fn check(
         enough: -tolerance,
         gap: 0.0,
     };
-    let found = lpcc.search(&limits, stop);
+    let found = lpcc.search(&limits, None, stop);
     match found.best {
         Some((slope, direction)) => {
             let pieces = pieces(program, level, &problem, &index, &direction);

@@ -39,6 +39,10 @@ pub struct Limits {
     pub gap: f64,
 }
 
+/// Proves a bound of a node's linear program, for its multipliers: those of its solution, or (`true`) of its
+/// infeasibility; +∞ says that it is empty, −∞ that nothing was proved.
+pub type Prover<'p> = &'p mut dyn FnMut(&Problem, &[f64], bool) -> f64;
+
 /// What a search found.
 #[derive(Clone, Debug)]
 pub struct Found {
@@ -112,10 +116,13 @@ impl Lpcc<'_> {
         }
     }
 
-    fn apply(&self, simplex: &mut Simplex, k: usize, piece: Option<Piece>) {
+    fn apply(&self, simplex: &mut Simplex, node: &mut Problem, k: usize, piece: Option<Piece>) {
         let [x, f] = self.bounds(k, piece);
-        simplex.set_bounds(self.pairs[k].column, x.0, x.1);
-        simplex.set_bounds(self.problem.n() + self.pairs[k].row, f.0, f.1);
+        let (column, row) = (self.pairs[k].column, self.pairs[k].row);
+        simplex.set_bounds(column, x.0, x.1);
+        simplex.set_bounds(self.problem.n() + row, f.0, f.1);
+        (node.lower[column], node.upper[column]) = x;
+        (node.row_lower[row], node.row_upper[row]) = f;
     }
 
     fn activity(&self, row: usize, x: &[f64]) -> f64 {
@@ -135,9 +142,15 @@ impl Lpcc<'_> {
         worst
     }
 
-    /// Searches.
-    pub fn search(&self, limits: &Limits, stop: &mut dyn FnMut(u64) -> Option<Ended>) -> Found {
+    /// Searches. With a prover nothing counts as a bound, and no node as infeasible, but what it proves.
+    pub fn search(
+        &self,
+        limits: &Limits,
+        mut prover: Option<Prover>,
+        stop: &mut dyn FnMut(u64) -> Option<Ended>,
+    ) -> Found {
         let mut simplex = Simplex::new(self.problem);
+        let mut here = self.problem.clone();
         let mut out = Found {
             best: None,
             bound: f64::INFINITY,
@@ -170,17 +183,23 @@ impl Lpcc<'_> {
             }
             out.nodes += 1;
             let mut decided = vec![false; self.pairs.len()];
-            (0..self.pairs.len()).for_each(|k| self.apply(&mut simplex, k, None));
+            (0..self.pairs.len()).for_each(|k| self.apply(&mut simplex, &mut here, k, None));
             let mut chosen = &node.chosen;
             while let Chosen::Also(k, piece, rest) = &**chosen {
-                self.apply(&mut simplex, *k, Some(*piece));
+                self.apply(&mut simplex, &mut here, *k, Some(*piece));
                 decided[*k] = true;
                 chosen = rest;
             }
             let ended = simplex.solve_from_basis(&node.basis, stop);
             let point = match ended {
                 Ended::Solved => simplex.point(),
-                Ended::Infeasible(_) => continue,
+                Ended::Infeasible(y) => {
+                    let proved = prover
+                        .as_mut()
+                        .map_or(f64::INFINITY, |p| p(&here, &y, true));
+                    lost = lost.min(proved.max(node.bound));
+                    continue;
+                }
                 Ended::Unbounded(_) => None,
                 _ => {
                     out.complete = false;
@@ -188,10 +207,14 @@ impl Lpcc<'_> {
                     continue;
                 }
             };
+            let mut reached = f64::INFINITY;
             let (value, branch_on) = match &point {
                 Some(p) => {
                     let terms = p.x.iter().zip(&self.problem.cost).map(|(x, c)| x * c);
-                    let value = terms.sum::<f64>() + self.problem.offset;
+                    reached = terms.sum::<f64>() + self.problem.offset;
+                    let value = prover
+                        .as_mut()
+                        .map_or(reached, |prover| prover(&here, &p.y, false));
                     (value.max(node.bound), self.worst(&p.x, &decided))
                 }
                 None => {
@@ -207,8 +230,13 @@ impl Lpcc<'_> {
             let Some((k, _)) = branch_on else {
                 match point {
                     Some(p) => {
-                        out.best = Some((value, p.x));
-                        if value < limits.enough {
+                        if prover.is_some() {
+                            lost = lost.min(value);
+                        }
+                        if reached < cutoff(&out) {
+                            out.best = Some((reached, p.x));
+                        }
+                        if reached < limits.enough {
                             out.complete = false;
                             lost = lost.min(node.bound);
                             break;

@@ -31,7 +31,7 @@ use super::simplex::{Simplex, Wide};
 use super::{Ended, Limits, SolveError, watch};
 use crate::model::instance::Instance;
 use crate::solve::interval::{Interval, WideSum, two_sum};
-use crate::solve::{Monitor, Outcome, Settings};
+use crate::solve::{Monitor, Outcome, Quiet, Settings};
 use polyhedron::Polyhedron;
 use system::System;
 
@@ -101,8 +101,21 @@ pub fn certify(
     certify_by(instance, outcome, settings, monitor, true)
 }
 
+/// A lower bound of a small program in rational arithmetic, without its offset; −∞ if none was proved.
+pub fn exact_low(p: &Problem) -> f64 {
+    let limits = Limits {
+        start: std::time::Instant::now(),
+        seconds: f64::INFINITY,
+        iterations: u64::MAX,
+    };
+    let small = p.m() + p.n() <= SMALL;
+    let value = small.then(|| exact::value(p, 2_000_000, &limits, &mut Quiet));
+    let value = value.flatten().and_then(|v| v.lower.ok());
+    value.map_or(f64::NEG_INFINITY, |v| v.low)
+}
+
 /// The same, with or without exact arithmetic.
-pub(super) fn certify_by(
+pub(in crate::solve) fn certify_by(
     instance: &Instance,
     outcome: &Outcome,
     settings: &Settings,

@@ -1,0 +1,272 @@
+//! Lower bounds of the global minimum, where everything but the pairs is linear.
+//!
+//! Every bound is that of a linear relaxation, and is proved for it in interval arithmetic
+//! ([`crate::solve::lp::certify`]): multipliers that are shown to satisfy their own constraints exactly.
+//! Nothing about the size of a column is assumed.
+//!
+//! * [`lift`]: where the program comes apart into two sides, products of their rows.
+
+mod lift;
+pub mod weak;
+
+use std::time::Instant;
+
+use super::pairs::Program;
+use super::settings::Bound;
+use super::split::{shifts, whole};
+use super::tree::{self, Lpcc, Prover};
+use crate::model::instance::{Instance, Relation, Sense};
+use crate::solve::answer::linear;
+use crate::solve::lp::form::Problem;
+use crate::solve::lp::{self, Ended, certify};
+use crate::solve::{Monitor, Outcome, Settings};
+
+/// A gap up to this, relative to the objective if that is above 1, is closed.
+pub const GAP: f64 = 1e-6;
+
+/// Whether a lower bound proves a value to be the global minimum.
+pub fn is_closed(low: f64, value: f64) -> bool {
+    value - low <= GAP * value.abs().max(1.0)
+}
+
+/// What was proved.
+pub struct Proof {
+    /// No feasible point has a (minimised) objective below this.
+    pub value: Option<f64>,
+    /// A point that satisfies all pairs and is better than the one that was given.
+    pub better: Option<Vec<f64>>,
+    /// Iterations of the linear programs.
+    pub iterations: u64,
+    /// What there is to say.
+    pub note: Option<String>,
+}
+
+/// A multiplier up to this is none.
+const NOISE: f64 = 1e-9;
+
+/// Products up to which the lifted relaxation is tried by `quick`, and at all.
+const PRODUCTS: [usize; 2] = [4_000, 40_000];
+
+/// Nodes of the tree for `quick`.
+const NODES: usize = 1_000;
+
+/// A lower bound of the (minimised) objective; `level` is the best point known.
+pub fn lower(
+    program: &Program,
+    level: &[f64],
+    wanted: Bound,
+    settings: &Settings,
+    monitor: &mut dyn Monitor,
+) -> Proof {
+    let begin = Instant::now();
+    let mut proof = Proof {
+        value: None,
+        better: None,
+        iterations: 0,
+        note: None,
+    };
+    if !program.envelope.is_linear() {
+        proof.note = Some("no lower bound: the model is not linear without its pairs".into());
+        return proof;
+    }
+    let mut settings = settings.clone();
+    let (most, nodes) = match wanted {
+        Bound::Seconds(s) => {
+            settings.time_limit = settings.time_limit.min(s);
+            (PRODUCTS[1], usize::MAX)
+        }
+        _ => (PRODUCTS[0], NODES),
+    };
+    let best = program.objective(level);
+    let unit = best.abs().max(1.0);
+    // The best point is to be well inside.
+    let cutoff = best + GAP * unit;
+    let low = lifted(program, cutoff, most, &settings, monitor, &mut proof);
+    if is_closed(low, best) {
+        proof.value = Some(low);
+        return proof;
+    }
+    let limits = tree::Limits {
+        nodes,
+        cutoff: best,
+        enough: f64::NEG_INFINITY,
+        gap: 0.5 * GAP * unit,
+    };
+    let mut watch = |iterations| watch(iterations, begin, &settings, monitor);
+    let mut problem = whole(program);
+    proof.iterations += weak::derive(&mut problem, cutoff, level, &mut watch);
+    let found = search(
+        program,
+        &problem,
+        &limits,
+        Some(&mut prove_node),
+        &mut watch,
+    );
+    monitor.log(&format!(
+        "branch and bound: {} nodes, bound {}",
+        found.nodes, found.bound
+    ));
+    proof.iterations += found.iterations;
+    proof.better = found.best.map(|b| b.1);
+    let low = low.max(found.bound);
+    match low.is_finite() {
+        true => proof.value = Some(low),
+        false => proof.note = Some("no lower bound was proved".into()),
+    }
+    proof
+}
+
+/// A point that satisfies all pairs of a linear program, where the other methods find none.
+pub fn point(
+    program: &Program,
+    settings: &Settings,
+    monitor: &mut dyn Monitor,
+) -> Option<Vec<f64>> {
+    if !program.envelope.is_linear() {
+        return None;
+    }
+    let limits = tree::Limits {
+        nodes: NODES,
+        cutoff: f64::INFINITY,
+        enough: f64::INFINITY,
+        gap: 0.0,
+    };
+    let begin = Instant::now();
+    let mut watch = |iterations| watch(iterations, begin, settings, monitor);
+    let found = search(program, &whole(program), &limits, None, &mut watch);
+    found.best.map(|b| b.1)
+}
+
+fn search(
+    program: &Program,
+    problem: &Problem,
+    limits: &tree::Limits,
+    prover: Option<Prover>,
+    stop: &mut dyn FnMut(u64) -> Option<Ended>,
+) -> tree::Found {
+    let lpcc = Lpcc {
+        problem,
+        pairs: &program.pairs,
+        rhs: &shifts(program),
+    };
+    lpcc.search(limits, prover, stop)
+}
+
+fn watch(
+    iterations: u64,
+    begin: Instant,
+    settings: &Settings,
+    monitor: &mut dyn Monitor,
+) -> Option<Ended> {
+    if monitor.interrupted() {
+        Some(Ended::Interrupted)
+    } else if begin.elapsed().as_secs_f64() > settings.time_limit {
+        Some(Ended::Time)
+    } else {
+        (iterations > settings.iteration_limit).then_some(Ended::Iterations)
+    }
+}
+
+/// What can be proved about a node: by its multipliers, or else in rational arithmetic if it is small.
+fn prove_node(p: &Problem, y: &[f64], empty: bool) -> f64 {
+    let none = f64::NEG_INFINITY;
+    let by_multipliers = match empty {
+        true if weak::is_empty(p, y) => f64::INFINITY,
+        true => none,
+        false => weak::bound(p, &p.cost, y) + p.offset,
+    };
+    if by_multipliers > none {
+        return by_multipliers;
+    }
+    match empty {
+        true if certify::exact_low(&weak::elastic(p)) > 0.0 => f64::INFINITY,
+        true => none,
+        false => certify::exact_low(p) + p.offset,
+    }
+}
+
+/// The bound of the lifted relaxation, −∞ if there is none.
+fn lifted(
+    program: &Program,
+    cutoff: f64,
+    most: usize,
+    settings: &Settings,
+    monitor: &mut dyn Monitor,
+    proof: &mut Proof,
+) -> f64 {
+    let mut solver = Linear {
+        settings,
+        monitor,
+        iterations: 0,
+    };
+    let Some(mut sides) = lift::Sides::new(program, cutoff).filter(|s| s.products() <= most) else {
+        return f64::NEG_INFINITY;
+    };
+    for first in [true, false] {
+        let largest = -solver.prove(&sides.size(first), "sum of a side's inequalities");
+        if largest.is_finite() {
+            sides.bound(first, 2.0 * largest.abs().max(1.0));
+        }
+    }
+    let low = solver.prove(&sides.lift(), "lifted relaxation");
+    proof.iterations += solver.iterations;
+    low
+}
+
+/// Solves linear programs with proofs.
+struct Linear<'a> {
+    settings: &'a Settings,
+    monitor: &'a mut dyn Monitor,
+    iterations: u64,
+}
+
+impl Linear<'_> {
+    /// The proved bound of the (minimised) objective, −∞ if there is none.
+    fn prove(&mut self, instance: &Instance, what: &str) -> f64 {
+        let answer = linear(&lp::Clarabel, instance, self.settings, self.monitor);
+        let Ok(answer) = answer else {
+            return f64::NEG_INFINITY;
+        };
+        self.iterations += answer.outcome.iterations;
+        let (kept, outcome) = supported(instance, &answer.outcome);
+        self.monitor.log(&format!("kept {} rows", kept.row_count()));
+        let proof = certify::certify(&kept, &outcome, self.settings, self.monitor);
+        self.monitor.log(&format!("{proof:?}"));
+        let (low, high) = proof.map_or((f64::NEG_INFINITY, f64::INFINITY), |p| (p.low, p.high));
+        self.monitor.log(&format!(
+            "{what}: {} rows, {} columns, {}, value in [{low}, {high}]",
+            instance.row_count(),
+            instance.column_count(),
+            answer.status.name(),
+        ));
+        match instance.objective.map(|o| o.sense) {
+            Some(Sense::Maximize) => -high,
+            _ => low,
+        }
+    }
+}
+
+/// The program without the inequalities that do not matter at its solution: those without multipliers.
+/// Fewer of them are a weaker relaxation, never a wrong one.
+fn supported(instance: &Instance, outcome: &Outcome) -> (Instance, Outcome) {
+    let mut kept = instance.clone();
+    let mut out = outcome.clone();
+    let matters = |y: f64| y.abs() > NOISE;
+    for (j, &d) in outcome.column_marginal.iter().enumerate() {
+        let (l, u) = (&mut kept.columns.lower[j], &mut kept.columns.upper[j]);
+        if *l < *u && !matters(d) {
+            (*l, *u) = (f64::NEG_INFINITY, f64::INFINITY);
+            out.column_marginal[j] = 0.0;
+        }
+    }
+    for (i, &y) in outcome.row_marginal.iter().enumerate() {
+        if kept.rows.relation[i] != Relation::Equal && !matters(y) {
+            kept.rows.relation[i] = Relation::Free;
+            out.row_marginal[i] = 0.0;
+        }
+    }
+    (kept, out)
+}
+
+#[cfg(test)]
+mod tests;
