@@ -4,43 +4,139 @@
 //! bounds. An interior point blurs that: a variable counts as basic the more, the farther it is
 //! from its bounds compared with its reduced cost. The m best are offered as a basis; dependent
 //! ones among them are replaced when it is factorised.
+//!
+//! Where more than m are strictly inside, the optimal points are a face of that many dimensions more, the
+//! interior point is in its middle, and every dimension costs a push. If there are thousands, a second
+//! interior-point run on the [`face`], with a random objective, ends near one of its vertices for less.
 
 use super::form::{Point, Problem};
-use super::simplex::{Basis, State};
+use super::simplex::{Basis, State, jitter};
 
-/// A basis suggested by an interior point, and the values of all variables.
-pub fn basis(p: &Problem, point: &Point) -> (Basis, Vec<f64>) {
+/// Dimensions of the optimal face from which a second interior-point run is cheaper than pushes.
+const WIDE: usize = 3000;
+
+/// The weight of a variable in the objective of a face is at most one over this.
+const NEAR: f64 = 1e-3;
+
+/// A column or row at an interior point.
+struct Place {
+    value: f64,
+    lower: f64,
+    upper: f64,
+    /// Size of its multiplier.
+    price: f64,
+}
+
+impl Place {
+    /// Distance to the nearest bound.
+    fn distance(&self) -> f64 {
+        (self.value - self.lower).min(self.upper - self.value)
+    }
+
+    fn is_low(&self) -> bool {
+        self.value - self.lower <= self.upper - self.value
+    }
+
+    fn is_free(&self) -> bool {
+        self.lower.is_infinite() && self.upper.is_infinite()
+    }
+
+    /// How much it is inside rather than at a bound.
+    fn score(&self) -> f64 {
+        if self.lower == self.upper {
+            return f64::NEG_INFINITY;
+        }
+        self.distance().max(1e-300) / self.price.max(1e-300)
+    }
+}
+
+/// The columns, then the rows.
+fn places<'a>(p: &'a Problem, point: &'a Point) -> impl Iterator<Item = Place> + 'a {
+    let columns = (0..p.n()).map(|j| Place {
+        value: point.x[j],
+        lower: p.lower[j],
+        upper: p.upper[j],
+        price: point.d[j].abs(),
+    });
+    let rows = (0..p.m()).map(|i| Place {
+        value: p.rows.line(i).map(|(k, a)| a * point.x[k]).sum(),
+        lower: p.row_lower[i],
+        upper: p.row_upper[i],
+        price: point.y[i].abs(),
+    });
+    columns.chain(rows)
+}
+
+/// Whether the optimal points, as the interior point sees them, are a face of very many dimensions.
+pub fn is_wide(p: &Problem, point: &Point) -> bool {
+    let inside = places(p, point).filter(|v| v.score() > 1.0).count();
+    inside > p.m() + WIDE
+}
+
+/// The face on which the interior point is, with an objective that has one optimal point: what is
+/// at a bound stays there, and all else is drawn to its bound, with random weights that spare what is
+/// near it already.
+pub fn face(p: &Problem, point: &Point) -> Problem {
+    let mut face = p.clone();
+    face.cost.fill(0.0);
+    for (j, v) in places(p, point).enumerate() {
+        if v.is_free() || v.lower == v.upper {
+            continue;
+        }
+        let row = j.checked_sub(p.n());
+        if v.score() <= 1.0 {
+            let (lower, upper) = match row {
+                Some(i) => (&mut face.row_lower[i], &mut face.row_upper[i]),
+                None => (&mut face.lower[j], &mut face.upper[j]),
+            };
+            if v.is_low() {
+                *upper = *lower;
+            } else {
+                *lower = *upper;
+            }
+            continue;
+        }
+        let sign = if v.is_low() { 1.0 } else { -1.0 };
+        let weight = sign * jitter(j) / v.distance().max(NEAR);
+        match row {
+            Some(i) => p.rows.line(i).for_each(|(k, a)| face.cost[k] += a * weight),
+            None => face.cost[j] += weight,
+        }
+    }
+    face
+}
+
+/// A basis suggested by an interior point, and perhaps one of its face; and the values of all variables.
+pub fn basis(p: &Problem, point: &Point, of_face: Option<&Point>) -> (Basis, Vec<f64>) {
     let (m, n) = (p.m(), p.n());
     let mut states = Vec::with_capacity(m + n);
     let mut values = Vec::with_capacity(m + n);
-    let mut order: Vec<(f64, usize)> = Vec::with_capacity(m + n);
-    for j in 0..n + m {
-        let (l, u, x, d) = if j < n {
-            (p.lower[j], p.upper[j], point.x[j], point.d[j])
-        } else {
-            let i = j - n;
-            let activity = p.rows.line(i).map(|(k, a)| a * point.x[k]).sum::<f64>();
-            (p.row_lower[i], p.row_upper[i], activity, point.y[i])
+    let mut order: Vec<(bool, f64, usize)> = Vec::with_capacity(m + n);
+    let mut second = of_face.map(|f| places(p, f));
+    for (j, first) in places(p, point).enumerate() {
+        // What was fixed on the face comes last, in the order of the first point.
+        let fixed = first.score() <= 1.0;
+        let v = match second.as_mut().and_then(Iterator::next) {
+            Some(v) if !fixed => v,
+            Some(v) => Place {
+                value: v.value,
+                ..first
+            },
+            None => first,
         };
-        values.push(x);
-        let (down, up) = (x - l, u - x);
-        let (state, distance) = if l.is_infinite() && u.is_infinite() {
-            (State::Free, f64::INFINITY)
-        } else if down <= up {
-            (State::Lower, down)
-        } else {
-            (State::Upper, up)
-        };
-        states.push(state);
-        let score = if l == u {
-            -f64::INFINITY
-        } else {
-            distance.max(1e-300) / d.abs().max(1e-300)
-        };
-        order.push((score, j));
+        states.push(match (v.is_free(), v.is_low()) {
+            (true, _) => State::Free,
+            (_, true) => State::Lower,
+            _ => State::Upper,
+        });
+        values.push(v.value);
+        order.push((of_face.is_some() && fixed, v.score(), j));
     }
-    order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-    for &(_, j) in order.iter().take(m) {
+    let last = |a: &(bool, f64, usize), b: &(bool, f64, usize)| {
+        a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)).then(a.2.cmp(&b.2))
+    };
+    order.sort_by(last);
+    for &(_, _, j) in order.iter().take(m) {
         states[j] = State::Basic;
     }
     (states, values)

@@ -6,6 +6,17 @@
 //! row's side: y = −z for an equation and an upper side, +z for a lower side; likewise for d.
 //!
 //! Clarabel trusts its input: a problem comes from [`super::form`], which has checked it.
+//!
+//! # Units
+//!
+//! Clarabel adds δ = 1e-8 to the diagonal of its KKT matrix, +δ for x and −δ for z, and takes back by
+//! refinement what it can. In the units x' = βx, z' = κz (costs times κ, right-hand sides times β) that is
+//! a term δx·β/κ in the dual equations and δz·κ/β in the primal ones: where |x| and |z| differ by
+//! orders of magnitude, as forces and displacements of a wall do, one of them drowns the
+//! equations. [`Aim::Digits`] therefore takes the units from a rough solution, κ/β = (|x|/|z|)²: then
+//! refinement reaches 1e-12, and an objective that was right to 5 digits is right to 10. (Balancing the two
+//! terms, κ/β = |x|/|z|, leaves an error some hundred times larger: measured on walls, where it is the
+//! larger side that must not be disturbed.)
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -18,6 +29,7 @@ use clarabel::solver::{
 };
 
 use super::form::{Point, Problem, Sparse};
+use super::scale::power_of_two;
 use super::{Ended, Limits};
 
 /// What one run gave.
@@ -32,6 +44,25 @@ pub struct Run {
     /// Clarabel met its own tolerance only in a reduced form.
     pub almost: bool,
 }
+
+/// What Clarabel is asked for.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum Aim {
+    /// This tolerance, in the units of the problem.
+    Tolerance(f64),
+    /// As many digits as there are: see the module's text. Only for linear programs.
+    Digits,
+}
+
+/// The tolerance for [`Aim::Digits`], and that of the rough solution before it.
+const FINE: f64 = 1e-12;
+const ROUGH: f64 = 1e-4;
+
+/// Iterations in which [`FINE`] is reached if it can be.
+const FINE_ITERATIONS: u32 = 100;
+
+/// The largest κ/β: beyond it the other side drowns.
+const STEEPEST: f64 = 1e8;
 
 /// One inequality or equation of Clarabel's.
 #[derive(Clone, Copy)]
@@ -53,7 +84,7 @@ enum Source {
 pub fn solve(
     p: &Problem,
     hessian: Option<&Sparse>,
-    tolerance: f64,
+    aim: Aim,
     limits: &Limits,
     interrupted: &mut dyn FnMut() -> bool,
 ) -> Run {
@@ -96,14 +127,17 @@ pub fn solve(
         verbose: false,
         max_iter: u32::try_from(limits.iterations.min(500)).unwrap_or(500),
         time_limit: limits.seconds_left(),
-        tol_gap_abs: tolerance,
-        tol_gap_rel: tolerance,
-        tol_feas: tolerance,
         direct_solve_method: "qdldl".into(),
         max_threads: 1,
         // Clarabel's own presolve drops rows with |b| ≥ 1e20; infinite sides are not sent.
         presolve_enable: false,
         ..DefaultSettings::default()
+    };
+    let asked = |tolerance| DefaultSettings {
+        tol_gap_abs: tolerance,
+        tol_gap_rel: tolerance,
+        tol_feas: tolerance,
+        ..settings.clone()
     };
     let stop = Arc::new(AtomicBool::new(false));
     let objective = match hessian {
@@ -111,10 +145,17 @@ pub fn solve(
         Some(h) => reduced(p, h, &fixed, &number, &mut q),
     };
     let run = || {
-        let mut solver = DefaultSolver::new(&objective, &q, &a, &b, &cones, settings).ok()?;
+        let first = match aim {
+            Aim::Tolerance(t) => t,
+            Aim::Digits => ROUGH,
+        };
+        let mut solver = DefaultSolver::new(&objective, &q, &a, &b, &cones, asked(first)).ok()?;
         let flag = Arc::clone(&stop);
         solver.set_termination_callback(move |_: &_| flag.load(Ordering::Relaxed));
         solver.solve();
+        if aim == Aim::Digits && solver.solution.status == SolverStatus::Solved {
+            refine(&mut solver, [&q, &b], asked(FINE), limits)?;
+        }
         Some(solver.solution)
     };
     // Clarabel's callback must own what it sees, so the monitor is asked from this thread.
@@ -198,6 +239,52 @@ pub fn solve(
         iterations,
         almost,
     }
+}
+
+/// Solves again in the units that suit the solution so far, for more digits; in the units of the problem
+/// where that fails.
+fn refine(
+    solver: &mut DefaultSolver<f64>,
+    [q, b]: [&[f64]; 2],
+    fine: DefaultSettings<f64>,
+    limits: &Limits,
+) -> Option<()> {
+    let times = |v: &[f64], by: f64| v.iter().map(|v| v * by).collect::<Vec<f64>>();
+    let top = |v: &[f64]| v.iter().fold(0.0f64, |t, v| t.max(v.abs()));
+    let (x, z) = (top(&solver.solution.x), top(&solver.solution.z));
+    let steep = match x > 0.0 && z > 0.0 {
+        true => (x / z).powi(2).clamp(1.0 / STEEPEST, STEEPEST),
+        false => 1.0,
+    };
+    let beta = power_of_two(1.0 / x);
+    let kappa = power_of_two(beta * steep);
+    let mut before = solver.solution.iterations;
+    for (beta, kappa) in [(beta, kappa), (1.0, 1.0)] {
+        let settings = DefaultSettings {
+            max_iter: fine.max_iter.min(FINE_ITERATIONS),
+            time_limit: limits.seconds_left(),
+            ..fine.clone()
+        };
+        solver.update_settings(settings).ok()?;
+        solver.update_q(&times(q, kappa)).ok()?;
+        solver.update_b(&times(b, beta)).ok()?;
+        solver.solve();
+        let solution = &mut solver.solution;
+        solution.x.iter_mut().for_each(|v| *v /= beta);
+        solution.z.iter_mut().for_each(|v| *v /= kappa);
+        solution.iterations += before;
+        before = solution.iterations;
+        let failed = matches!(
+            solution.status,
+            SolverStatus::NumericalError
+                | SolverStatus::InsufficientProgress
+                | SolverStatus::MaxIterations
+        );
+        if !failed {
+            break;
+        }
+    }
+    Some(())
 }
 
 fn entries(h: &Sparse) -> impl Iterator<Item = (usize, usize, f64)> + '_ {

@@ -15,6 +15,7 @@ use std::time::Instant;
 use super::{Claim, Monitor, Outcome, Settings, SolveError, Solver, SolverStatus};
 use crate::model::instance::Instance;
 use form::{Form, Point, Problem};
+use interior::Aim;
 use scale::Scaling;
 use simplex::Simplex;
 
@@ -198,10 +199,11 @@ fn solve(
     let small = scaled.m() + scaled.n() <= SMALL;
     let answer = match (method, accuracy) {
         (Method::Interior, _) => {
-            interior_only(&scaled, tolerance.unwrap_or(1e-10), &limits, monitor)
+            let aim = Aim::Tolerance(tolerance.unwrap_or(1e-10));
+            interior_only(&scaled, aim, &limits, monitor)
         }
         (Method::Auto, Accuracy::Fast(t)) if !small => {
-            let answer = interior_only(&scaled, t, &limits, monitor);
+            let answer = interior_only(&scaled, Aim::Tolerance(t), &limits, monitor);
             match answer.ended {
                 // Whatever is no solution is looked at more closely.
                 Ended::Solved | Ended::Time | Ended::Interrupted => answer,
@@ -322,15 +324,10 @@ fn simplex_answer(mut simplex: Simplex, ended: Ended) -> Answer {
     }
 }
 
-fn interior_only(
-    p: &Problem,
-    tolerance: f64,
-    limits: &Limits,
-    monitor: &mut dyn Monitor,
-) -> Answer {
+fn interior_only(p: &Problem, aim: Aim, limits: &Limits, monitor: &mut dyn Monitor) -> Answer {
     let run = match trivial(p) {
         Some(run) => run,
-        None => interior::solve(p, None, tolerance, limits, &mut || monitor.interrupted()),
+        None => interior::solve(p, None, aim, limits, &mut || monitor.interrupted()),
     };
     Answer {
         point: run.point,
@@ -344,6 +341,9 @@ fn interior_only(
 
 /// Columns and rows together up to which the simplex method is tried first.
 const SMALL: usize = 600;
+
+/// Columns and rows together from which an interior point of many digits saves more pivots than it costs.
+const LARGE: usize = 3000;
 
 /// Small programs by the simplex method, others by the interior point and its finish; where one
 /// fails the other is tried.
@@ -371,16 +371,42 @@ fn auto(p: &Problem, accuracy: Accuracy, limits: &Limits, monitor: &mut dyn Moni
 
 /// Interior point, then a basis from it, then the simplex method.
 fn finished(p: &Problem, accuracy: Accuracy, limits: &Limits, monitor: &mut dyn Monitor) -> Answer {
-    let mut answer = interior_only(p, 1e-10, limits, monitor);
+    let aim = match p.m() + p.n() > LARGE {
+        true => Aim::Digits,
+        false => Aim::Tolerance(1e-10),
+    };
+    let mut answer = interior_only(p, aim, limits, monitor);
     let mut simplex = Simplex::new(p);
     let mut cut = *limits;
     match answer.ended {
         Ended::Solved => {
-            let (basis, values) = crossover::basis(p, &answer.point);
+            let wide = crossover::is_wide(p, &answer.point);
+            let of_face = wide.then(|| {
+                let face = crossover::face(p, &answer.point);
+                interior_only(&face, Aim::Tolerance(1e-10), limits, monitor)
+            });
+            let of_face = of_face.filter(|f| f.ended == Ended::Solved);
+            if let Some(f) = &of_face {
+                answer.iterations += f.iterations;
+            }
+            monitor.log(&format!(
+                "interior point: {} iterations{}",
+                answer.iterations,
+                if of_face.is_some() {
+                    ", face included"
+                } else {
+                    ""
+                }
+            ));
+            let of_face = of_face.as_ref().map(|f| &f.point);
+            let (basis, values) = crossover::basis(p, &answer.point, of_face);
             let end = simplex.push(&basis, &values, &mut watch(limits, monitor));
             let count = simplex.iterations;
             let word = if end.is_ok() { "" } else { ", incomplete" };
-            monitor.log(&format!("crossover: {count} pushes{word}"));
+            let outside = simplex.violation();
+            monitor.log(&format!(
+                "crossover: {count} pushes{word}, bounds hold to {outside:.0e}"
+            ));
         }
         // A direction is no point: the simplex method finds one from which it leads on.
         Ended::Unbounded(_) | Ended::Failed => {}

@@ -14,7 +14,8 @@ use super::problem::{Nlp, ObjectiveForm, Problem};
 use super::provider::{Ended, Solution};
 use crate::autodiff::Degree;
 use crate::solve::lp::form::{self, Sparse};
-use crate::solve::lp::{self, Limits, interior};
+use crate::solve::lp::interior::{self, Aim};
+use crate::solve::lp::{self, Limits};
 use faer::Side;
 use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
 use faer::sparse::{SparseColMat, Triplet};
@@ -76,7 +77,13 @@ impl Quadratic {
     /// Runs Clarabel. Multipliers λ as in L = f + λᵀg.
     pub fn solve(&self, limits: &Limits, interrupted: &mut dyn FnMut() -> bool) -> Solution {
         let hessian = Some(&self.hessian);
-        let run = interior::solve(&self.linear, hessian, TOLERANCE, limits, interrupted);
+        let run = interior::solve(
+            &self.linear,
+            hessian,
+            Aim::Tolerance(TOLERANCE),
+            limits,
+            interrupted,
+        );
         Solution {
             ended: match run.ended {
                 lp::Ended::Solved => Ended::Solved,

@@ -12,7 +12,8 @@
 //! is held as an equation.
 
 use super::super::form::{Problem, Sparse};
-use super::super::{Ended, Limits, interior};
+use super::super::interior::{self, Aim};
+use super::super::{Ended, Limits};
 use super::polyhedron::Polyhedron;
 
 /// Slacks below this are none.
@@ -103,7 +104,7 @@ fn search(
         p.row_upper.push(limit);
     }
     p.columns = p.rows.transpose(p.cost.len());
-    let run = interior::solve(&p, None, 1e-9, limits, interrupted);
+    let run = interior::solve(&p, None, Aim::Tolerance(1e-9), limits, interrupted);
     if run.ended != Ended::Solved {
         return None;
     }

@@ -202,7 +202,7 @@ pub(in crate::solve) fn certify_by(
 /// twice the working precision: what rounding violates is not in the way then. The point itself
 /// where none is found.
 fn vertex(p: &Problem, near: Point, limits: &Limits, monitor: &mut dyn Monitor) -> [Wide; 2] {
-    let (states, values) = crossover::basis(p, &near);
+    let (states, values) = crossover::basis(p, &near, None);
     let mut simplex = Simplex::new(p);
     // A few pivots settle which of the columns at 0 are basic.
     let most = Limits {

@@ -33,10 +33,13 @@ pub enum Failure {
     Numbers,
 }
 
-fn parameters() -> LuParams {
+/// A smaller pivot is none.
+const ZERO: f64 = 1e-11;
+
+fn parameters(zero: f64) -> LuParams {
     LuParams {
         max_updates: MOST_UPDATES,
-        zero_pivot_tol: 1e-11,
+        zero_pivot_tol: zero,
         on_singular: LuSingularAction::PerturbToEps { abs_floor: MARK },
         ..LuParams::default()
     }
@@ -45,9 +48,15 @@ fn parameters() -> LuParams {
 impl Factor {
     /// Factorises the matrix with these columns.
     pub fn new(m: usize, columns: &[Entries]) -> Result<Self, Failure> {
+        Self::without_pivots_below(ZERO, m, columns)
+    }
+
+    /// The same, where columns count as dependent whose pivots are smaller than `zero`.
+    pub fn without_pivots_below(zero: f64, m: usize, columns: &[Entries]) -> Result<Self, Failure> {
         let matrix =
             SparseColMatrix::from_sparse_columns(m, columns).map_err(|_| Failure::Numbers)?;
-        let lu = SparseLu::factor_markowitz(&matrix, parameters()).map_err(|_| Failure::Numbers)?;
+        let lu =
+            SparseLu::factor_markowitz(&matrix, parameters(zero)).map_err(|_| Failure::Numbers)?;
         let dependent: Vec<(usize, usize)> = (0..m)
             .filter(|&k| lu.u_dense(k, k).abs() == MARK)
             .map(|k| (lu.qcol()[k], lu.perm()[k]))

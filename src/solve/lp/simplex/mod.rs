@@ -115,8 +115,9 @@ pub struct Simplex {
     /// perturbation of the costs makes that inexact: leave a margin.
     pub cutoff: f64,
     perturb: bool,
-    /// Variables that leave the basis in a repair stay where they are.
-    keep_values: bool,
+    /// A crossover is under way: variables that leave the basis in a repair stay where they are, and
+    /// columns that are nearly dependent leave it.
+    crossing: bool,
 }
 
 impl Simplex {
@@ -154,7 +155,7 @@ impl Simplex {
             iterations: 0,
             cutoff: f64::INFINITY,
             perturb: true,
-            keep_values: false,
+            crossing: false,
         };
         for i in 0..m {
             s.slot[n + i] = i as u32;
@@ -259,10 +260,17 @@ impl Simplex {
         for _ in 0..20 {
             let columns: Vec<Entries> =
                 self.head.iter().map(|&j| self.column(j as usize)).collect();
-            match Factor::new(self.m, &columns) {
+            let factor = match self.crossing {
+                true => Factor::without_pivots_below(SAFE_PIVOT, self.m, &columns),
+                false => Factor::new(self.m, &columns),
+            };
+            match factor {
                 Ok(f) => {
                     self.factor = Some(f);
-                    self.compute_values()?;
+                    match self.crossing {
+                        true => self.compute_good_values(),
+                        false => self.compute_values()?,
+                    }
                     return self.compute_reduced();
                 }
                 Err(Failure::Numbers) => return None,
@@ -274,7 +282,7 @@ impl Simplex {
                             return None;
                         }
                         self.slot[out] = NONBASIC;
-                        if !self.keep_values {
+                        if !self.crossing {
                             self.x[out] = self.resting(out, self.x[out]);
                         }
                         self.slot[logical] = slot as u32;
@@ -311,6 +319,16 @@ impl Simplex {
             }
         }
         self.x.iter().all(|v| v.is_finite()).then_some(())
+    }
+
+    /// The same on the way of a crossover: the values at hand satisfy the equations, and stay where the
+    /// basis is so ill-conditioned that computed ones would not satisfy the bounds.
+    fn compute_good_values(&mut self) {
+        let before = self.x.clone();
+        let violation = self.violation();
+        if self.compute_values().is_none() || self.violation() > violation.max(1e-7) {
+            self.x = before;
+        }
     }
 
     /// Multipliers y with Bᵀy = c_B.
@@ -368,7 +386,7 @@ impl Simplex {
     }
 
     /// Largest violation of a bound by a basic variable.
-    fn primal_infeasibility(&self) -> f64 {
+    pub fn violation(&self) -> f64 {
         self.head.iter().fold(0.0, |worst: f64, &j| {
             let (j, x) = (j as usize, self.x[j as usize]);
             worst
@@ -386,6 +404,9 @@ impl Simplex {
 
     /// Takes back shifts and perturbations; nonbasic variables return to their bounds.
     fn restore(&mut self) -> Option<()> {
+        if self.is_restored() {
+            return Some(());
+        }
         self.work_cost.copy_from_slice(&self.cost);
         self.work_lower.copy_from_slice(&self.lower);
         self.work_upper.copy_from_slice(&self.upper);
@@ -395,6 +416,17 @@ impl Simplex {
             }
         }
         self.refactor()
+    }
+
+    /// Whether there is nothing to take back and the factor is fresh.
+    fn is_restored(&self) -> bool {
+        let resting =
+            |j: usize| self.slot[j] != NONBASIC || self.x[j] == self.resting(j, self.x[j]);
+        self.factor.as_ref().is_some_and(|f| f.updates() == 0)
+            && self.work_cost == self.cost
+            && self.work_lower == self.lower
+            && self.work_upper == self.upper
+            && (0..self.n + self.m).all(resting)
     }
 
     /// Solves from a basis.
@@ -447,7 +479,7 @@ impl Simplex {
             if self.restore().is_none() {
                 return Ended::Failed;
             }
-            let primal = self.primal_infeasibility() <= self.tolerance;
+            let primal = self.violation() <= self.tolerance;
             let end = if primal && self.dual_infeasibility() <= self.dual_tolerance {
                 return Ended::Solved;
             } else if primal {
@@ -589,7 +621,7 @@ impl Simplex {
 }
 
 /// A fixed pseudo-random number in [0.5, 1) for each variable.
-fn jitter(j: usize) -> f64 {
+pub(super) fn jitter(j: usize) -> f64 {
     let mut h = (j as u64).wrapping_add(0x9e37_79b9_7f4a_7c15);
     h = (h ^ (h >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     h = (h ^ (h >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
