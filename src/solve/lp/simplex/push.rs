@@ -28,7 +28,8 @@ impl Simplex {
         for (j, &v) in values.iter().enumerate() {
             self.x[j] = v.max(self.lower[j]).min(self.upper[j]);
         }
-        self.crossing = true;
+        let tolerance = self.tolerance;
+        self.crossing = (0..self.n + self.m).any(|j| self.way(j).abs() > tolerance);
         let done = self.push_all(stop);
         self.crossing = false;
         done
