@@ -80,6 +80,17 @@ pub struct ModelArgs {
     pub message_format: MessageFormat,
 }
 
+/// What the commands that solve share.
+#[derive(Args, Debug, Clone)]
+pub struct SolveArgs {
+    /// Sets an option before the first statement, as the statement `option K = V`.
+    #[arg(long, value_name = "K=V", value_parser = pair)]
+    pub option: Vec<(String, String)>,
+    /// Seconds that the run may take (`bench`: one solve).
+    #[arg(long, value_name = "S", value_parser = positive)]
+    pub time_limit: Option<f64>,
+}
+
 /// Arguments of `bmod run`.
 #[derive(Args, Debug, Clone)]
 pub struct RunArgs {
@@ -98,12 +109,9 @@ pub struct RunArgs {
     /// No summaries and no displays; diagnostics only.
     #[arg(long, short)]
     pub quiet: bool,
-    /// Sets an option before the first statement, as the statement `option K = V`.
-    #[arg(long, value_name = "K=V", value_parser = pair)]
-    pub option: Vec<(String, String)>,
-    /// Seconds that one solve may take.
-    #[arg(long, value_name = "S", value_parser = positive)]
-    pub time_limit: Option<f64>,
+    /// How it is solved.
+    #[command(flatten)]
+    pub solve: SolveArgs,
     /// Memory that the run may take.
     #[arg(long, value_name = "MB", value_parser = positive)]
     pub max_memory: Option<f64>,
@@ -129,12 +137,9 @@ pub struct WhyArgs {
     /// Writes the report, with the explanations, as JSON; - is standard output.
     #[arg(long, value_name = "FILE|-", value_hint = ValueHint::FilePath)]
     pub json: Option<PathBuf>,
-    /// Sets an option before the first statement, as the statement `option K = V`.
-    #[arg(long, value_name = "K=V", value_parser = pair)]
-    pub option: Vec<(String, String)>,
-    /// Seconds that one solve may take.
-    #[arg(long, value_name = "S", value_parser = positive)]
-    pub time_limit: Option<f64>,
+    /// How it is solved.
+    #[command(flatten)]
+    pub solve: SolveArgs,
 }
 
 /// Arguments of `bmod bench`.
@@ -147,8 +152,8 @@ pub struct BenchArgs {
     #[arg(long, value_name = "N", default_value_t = 3)]
     pub repeat: usize,
     /// Only this solve of the model, counted from 1.
-    #[arg(long, value_name = "K")]
-    pub solve: Option<usize>,
+    #[arg(long = "solve", value_name = "K")]
+    pub only: Option<usize>,
     /// Writes the table as CSV.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub csv: Option<PathBuf>,
@@ -158,12 +163,9 @@ pub struct BenchArgs {
     /// The same as a PNG.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub png: Option<PathBuf>,
-    /// Sets an option before the first statement, as the statement `option K = V`.
-    #[arg(long, value_name = "K=V", value_parser = pair)]
-    pub option: Vec<(String, String)>,
-    /// Seconds that one solve may take.
-    #[arg(long, value_name = "S", value_parser = positive)]
-    pub time_limit: Option<f64>,
+    /// How it is solved.
+    #[command(flatten)]
+    pub solve: SolveArgs,
 }
 
 /// Arguments of `bmod list`.
@@ -320,10 +322,27 @@ mod tests {
             [pair("mu", "0.5"), pair("n", "3"), pair("s", "a=b")]
         );
         assert_eq!(run.json, Some(PathBuf::from("-")));
-        assert_eq!(run.option, [pair("lp", "clarabel")]);
-        assert_eq!(run.time_limit, Some(5.0));
+        assert_eq!(run.solve.option, [pair("lp", "clarabel")]);
+        assert_eq!(run.solve.time_limit, Some(5.0));
         assert!(run.quiet && run.certify);
         assert_eq!(run.model.message_format, MessageFormat::Json);
+    }
+
+    #[test]
+    fn versions_are_those_of_the_lock_file() {
+        let lock = include_str!("../../Cargo.lock").to_lowercase();
+        let mut count = 0;
+        for (_, what) in SOLVERS {
+            let words: Vec<String> = what.split([' ', ',']).map(str::to_lowercase).collect();
+            let numbered = |w: &&[String]| w[1].starts_with(|c: char| c.is_ascii_digit());
+            for w in words.windows(2).filter(numbered) {
+                let name = w[0].replace("pounce", "pounce-algorithm");
+                let entry = format!("name = \"{name}\"\nversion = \"{}", w[1]);
+                assert!(lock.contains(&entry), "{what}: {entry}");
+                count += 1;
+            }
+        }
+        assert!(count >= 4, "{count} versions");
     }
 
     #[test]

@@ -5,12 +5,11 @@ use std::path::Path;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::args::{BenchArgs, EXECUTION, USAGE};
-use super::commands::{name, preprocess, tell, write_whole};
-use super::host::{Output, SystemHost, interrupted, watch_ctrl_c};
+use super::commands::{carry_out_silently, name, options, write_whole};
+use super::host::interrupted;
 use crate::report::figure::png;
 use crate::report::study;
 use crate::run::Options;
-use crate::session;
 use crate::solve::study::{Study, study as run_study};
 use crate::solve::{Monitor, Settings};
 
@@ -35,79 +34,63 @@ impl Monitor for Silent {
 
 /// Carries out `bmod bench`; its exit status.
 pub fn bench(a: &BenchArgs) -> u8 {
-    watch_ctrl_c();
-    let Ok(out) = tempfile::tempdir() else {
-        eprintln!("bmod: no folder for temporary files");
-        return EXECUTION;
-    };
-    let mut host = SystemHost::new(
-        &a.model.file,
-        out.path(),
-        &a.model.allow_read,
-        Output::Quiet,
-    );
-    let mut options = Options {
+    let options = Options {
         keep_solutions: true,
         quiet: true,
         collect: false,
-        ..Options::default()
+        time_limit: f64::INFINITY,
+        ..options(&a.solve)
     };
-    options.set(&a.option);
+    let settings = Settings {
+        time_limit: a.solve.time_limit.unwrap_or(120.0),
+        options: options.for_solvers(),
+        ..Settings::default()
+    };
     let file = name(&a.model);
     let mut studies: Vec<(String, Study)> = Vec::new();
     let mut asked_beyond = None;
-    let finished = session::run(
-        &mut host,
-        &file,
-        preprocess(&a.model),
-        options,
-        false,
-        &mut |m| {
-            let kept = m.kept();
-            if let Some(k) = a.solve.filter(|&k| k == 0 || k > kept.len()) {
-                asked_beyond = Some((k, kept.len()));
-                return;
+    let finished = carry_out_silently(&a.model, options, &mut |m| {
+        let kept = m.kept();
+        if let Some(k) = a.only.filter(|&k| k == 0 || k > kept.len()) {
+            asked_beyond = Some((k, kept.len()));
+            return;
+        }
+        for (k, solve) in kept.iter().enumerate() {
+            if a.only.is_some_and(|wanted| wanted != k + 1) {
+                continue;
             }
-            for (k, solve) in kept.iter().enumerate() {
-                if a.solve.is_some_and(|wanted| wanted != k + 1) {
-                    continue;
-                }
-                let (model, using, instance) = solve.parts();
-                let title = format!("{model} using {using} ({})", short(&file));
-                let bar = ProgressBar::new(1);
-                if let Ok(style) =
-                    ProgressStyle::with_template("{bar:30} {pos}/{len}  {elapsed:>4}  {wide_msg}")
-                {
-                    bar.set_style(style);
-                }
-                let settings = Settings {
-                    time_limit: a.time_limit.unwrap_or(120.0),
-                    options: a.option.clone(),
-                    ..Settings::default()
-                };
-                let mut progress = |done: usize, total: usize, what: &str| {
-                    bar.set_length(total as u64);
-                    bar.set_position(done as u64);
-                    bar.set_message(format!("{model}: {what}"));
-                };
-                let s = run_study(
-                    using,
-                    instance,
-                    &settings,
-                    a.repeat,
-                    &mut Silent,
-                    &mut progress,
-                );
-                bar.finish_and_clear();
-                studies.push((title, s));
-                if interrupted() {
-                    break;
-                }
+            let (model, using, instance) = solve.parts();
+            let title = format!("{model} using {using} ({})", short(&file));
+            let bar = ProgressBar::new(1);
+            if let Ok(style) =
+                ProgressStyle::with_template("{bar:30} {pos}/{len}  {elapsed:>4}  {wide_msg}")
+            {
+                bar.set_style(style);
             }
-        },
-    );
-    host.finish();
-    tell(&finished, a.model.message_format);
+            let mut progress = |done: usize, total: usize, what: &str| {
+                bar.set_length(total as u64);
+                bar.set_position(done as u64);
+                bar.set_message(format!("{model}: {what}"));
+            };
+            let s = run_study(
+                using,
+                instance,
+                &settings,
+                a.repeat,
+                &mut Silent,
+                &mut progress,
+            );
+            bar.finish_and_clear();
+            studies.push((title, s));
+            if interrupted() {
+                break;
+            }
+        }
+    });
+    let finished = match finished {
+        Ok(f) => f,
+        Err(status) => return status,
+    };
     let mut status = finished.end.exit();
     if let Some((k, n)) = asked_beyond {
         eprintln!("bmod: there is no solve {k}: the model has {n}");
@@ -118,21 +101,19 @@ pub fn bench(a: &BenchArgs) -> u8 {
     }
     for (k, (title, s)) in studies.iter().enumerate() {
         println!("{}", study::table(title, s));
+        let svg = || study::svg(title, s);
+        let csv: &dyn Fn() -> Result<Vec<u8>, String> = &|| Ok(study::csv(s).into_bytes());
         let files = [
-            (&a.csv, study::csv(s).into_bytes()),
-            (&a.svg, study::svg(title, s).into_bytes()),
-            (
-                &a.png,
-                match &a.png {
-                    Some(_) => png::png(&study::svg(title, s), 2.0).unwrap_or_default(),
-                    None => Vec::new(),
-                },
-            ),
+            (&a.csv, csv),
+            (&a.svg, &|| Ok(svg().into_bytes())),
+            (&a.png, &|| png::png(&svg(), 2.0).map_err(|e| e.to_string())),
         ];
-        for (path, bytes) in files {
+        for (path, content) in files {
             let Some(path) = path else { continue };
             let path = numbered(path, k, studies.len());
-            if let Err(e) = write_whole(&path, &bytes) {
+            let written =
+                content().and_then(|bytes| write_whole(&path, &bytes).map_err(|e| e.to_string()));
+            if let Err(e) = written {
                 eprintln!("bmod: {} could not be written: {e}", path.display());
                 status = status.max(EXECUTION);
             }

@@ -4,12 +4,13 @@ use std::io::{IsTerminal, Write};
 use std::path::Path;
 
 use super::args::{
-    Cli, Command, EXECUTION, ListArgs, MessageFormat, ModelArgs, RunArgs, USAGE, completions,
+    Cli, Command, EXECUTION, ListArgs, MessageFormat, ModelArgs, RunArgs, SolveArgs, USAGE,
+    completions,
 };
 use super::host::{Output, SystemHost, watch_ctrl_c};
 use crate::report::diagnostics::{self, Look};
 use crate::report::json::{Report, RunStatus};
-use crate::run::{ListOptions, Options};
+use crate::run::{ListOptions, Machine, Options};
 use crate::session::{self, Finished};
 use crate::source::PreprocessOptions;
 
@@ -18,21 +19,11 @@ pub fn execute(cli: &Cli) -> u8 {
     match &cli.command {
         Command::Run(a) => run(a),
         Command::Check(a) => {
-            let mut host = SystemHost::new(
-                &a.model.file,
-                Path::new("."),
-                &a.model.allow_read,
-                Output::Standard,
-            );
-            let finished = session::run(
-                &mut host,
-                &name(&a.model),
-                preprocess(&a.model),
-                Options::default(),
-                true,
-                &mut |_| {},
-            );
-            tell(&finished, a.model.message_format);
+            let task = Task {
+                check_only: true,
+                ..Task::new(&a.model, Output::Standard)
+            };
+            let finished = carry_out(task, Options::default(), &mut |_| {});
             if finished.end == RunStatus::Ok
                 && finished.diagnostics.is_empty()
                 && a.model.message_format == MessageFormat::Human
@@ -55,18 +46,76 @@ pub(super) fn name(m: &ModelArgs) -> String {
     m.file.to_string_lossy().into_owned()
 }
 
-pub(super) fn preprocess(m: &ModelArgs) -> PreprocessOptions {
-    PreprocessOptions {
-        defines: m.define.clone(),
-        slash_comments: m
-            .file
-            .extension()
-            .is_some_and(|e| e.eq_ignore_ascii_case("blk")),
+/// A model to be run or checked.
+pub(super) struct Task<'a> {
+    pub model: &'a ModelArgs,
+    /// Folder for the files that the model writes.
+    pub out: &'a Path,
+    /// Where what it prints goes.
+    pub output: Output,
+    /// Nothing is carried out.
+    pub check_only: bool,
+}
+
+impl<'a> Task<'a> {
+    pub(super) fn new(model: &'a ModelArgs, output: Output) -> Self {
+        Self {
+            model,
+            out: Path::new("."),
+            output,
+            check_only: false,
+        }
     }
 }
 
+/// Runs a model as the arguments say, and tells what is wrong with it; `after` sees the machine at the
+/// end.
+pub(super) fn carry_out(
+    task: Task,
+    options: Options,
+    after: &mut dyn FnMut(&mut Machine),
+) -> Finished {
+    watch_ctrl_c();
+    let model = task.model;
+    let mut host = SystemHost::new(&model.file, task.out, &model.allow_read, task.output);
+    let extension = model.file.extension();
+    let preprocess = PreprocessOptions {
+        defines: model.define.clone(),
+        slash_comments: extension.is_some_and(|e| e.eq_ignore_ascii_case("blk")),
+    };
+    let file = name(model);
+    let finished = session::run(
+        &mut host,
+        &file,
+        preprocess,
+        options,
+        task.check_only,
+        after,
+    );
+    host.finish();
+    tell(&finished, model.message_format);
+    finished
+}
+
+/// The same for the answers only: what the model prints and writes is not kept.
+pub(super) fn carry_out_silently(
+    model: &ModelArgs,
+    options: Options,
+    after: &mut dyn FnMut(&mut Machine),
+) -> Result<Finished, u8> {
+    let Ok(out) = tempfile::tempdir() else {
+        eprintln!("bmod: no folder for temporary files");
+        return Err(EXECUTION);
+    };
+    let task = Task {
+        out: out.path(),
+        ..Task::new(model, Output::Quiet)
+    };
+    Ok(carry_out(task, options, after))
+}
+
 /// Writes diagnostics for the person, or for a program.
-pub(super) fn tell(finished: &Finished, format: MessageFormat) {
+fn tell(finished: &Finished, format: MessageFormat) {
     if finished.diagnostics.is_empty() {
         return;
     }
@@ -86,56 +135,42 @@ pub(super) fn tell(finished: &Finished, format: MessageFormat) {
     }
 }
 
-/// Options of the command line, as `option` statements before the first statement would set them.
-fn options(a: &RunArgs) -> Options {
+/// Options as the command line has them.
+pub(super) fn options(a: &SolveArgs) -> Options {
     let mut options = Options {
-        certify: a.certify,
-        max_memory: a.max_memory.map(|mb| (mb * 1048576.0) as usize),
-        keep_solutions: a.solution.is_some(),
-        collect: a.json.is_some(),
-        quiet: a.quiet,
+        time_limit: a.time_limit.unwrap_or(f64::INFINITY),
         ..Options::default()
     };
-    if let Some(s) = a.time_limit {
-        options.time_limit = s;
-    }
     options.set(&a.option);
     options
 }
 
 fn run(a: &RunArgs) -> u8 {
-    watch_ctrl_c();
     let json_to_stdout = a.json.as_deref() == Some(Path::new("-"));
-    let output = if json_to_stdout {
-        Output::Error
-    } else {
-        Output::Standard
+    let (output, is_terminal) = match json_to_stdout {
+        true => (Output::Error, std::io::stderr().is_terminal()),
+        false => (Output::Standard, std::io::stdout().is_terminal()),
     };
-    let mut host = SystemHost::new(&a.model.file, &a.out, &a.model.allow_read, output);
-    let mut options = options(a);
-    options.color = Look::stream(if json_to_stdout {
-        std::io::stderr().is_terminal()
-    } else {
-        std::io::stdout().is_terminal()
-    })
-    .color;
+    let options = Options {
+        certify: a.certify,
+        max_memory: a.max_memory.map(|mb| (mb * 1048576.0) as usize),
+        keep_solutions: a.solution.is_some(),
+        collect: a.json.is_some(),
+        quiet: a.quiet,
+        color: Look::stream(is_terminal).color,
+        ..options(&a.solve)
+    };
     let file = name(&a.model);
     let mut solutions = None;
-    let keep = a.solution.is_some();
-    let finished = session::run(
-        &mut host,
-        &file,
-        preprocess(&a.model),
-        options,
-        false,
-        &mut |m| {
-            if keep {
-                solutions = Some(m.solutions(&file));
-            }
-        },
-    );
-    host.finish();
-    tell(&finished, a.model.message_format);
+    let task = Task {
+        out: &a.out,
+        ..Task::new(&a.model, output)
+    };
+    let finished = carry_out(task, options, &mut |m| {
+        if a.solution.is_some() {
+            solutions = Some(m.solutions(&file));
+        }
+    });
     let mut status = finished.end.exit();
     if let Some(path) = &a.solution
         && let Some(text) = &solutions
@@ -187,13 +222,6 @@ pub(super) fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
 }
 
 fn list(a: &ListArgs) -> u8 {
-    watch_ctrl_c();
-    let mut host = SystemHost::new(
-        &a.model.file,
-        Path::new("."),
-        &a.model.allow_read,
-        Output::Standard,
-    );
     let options = Options {
         list: Some(ListOptions {
             limit: a.limit,
@@ -203,17 +231,8 @@ fn list(a: &ListArgs) -> u8 {
         collect: false,
         ..Options::default()
     };
-    let finished = session::run(
-        &mut host,
-        &name(&a.model),
-        preprocess(&a.model),
-        options,
-        false,
-        &mut |_| {},
-    );
-    host.finish();
-    tell(&finished, a.model.message_format);
-    finished.end.exit()
+    let task = Task::new(&a.model, Output::Standard);
+    carry_out(task, options, &mut |_| {}).end.exit()
 }
 
 /// Runs the command line: the arguments with the program's name first.

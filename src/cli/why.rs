@@ -3,54 +3,31 @@
 use std::path::Path;
 
 use super::args::WhyArgs;
-use super::commands::{name, preprocess, tell, write_report};
-use super::host::{Output, SystemHost, watch_ctrl_c};
+use super::commands::{carry_out_silently, name, options, write_report};
 use crate::report::summary;
 use crate::run::Options;
 use crate::session;
 
 /// Carries out `bmod why`; its exit status.
 pub fn why(a: &WhyArgs) -> u8 {
-    watch_ctrl_c();
-    // The model's own output and files are not wanted here.
-    let Ok(out) = tempfile::tempdir() else {
-        eprintln!("bmod: no folder for temporary files");
-        return super::args::EXECUTION;
-    };
-    let mut host = SystemHost::new(
-        &a.model.file,
-        out.path(),
-        &a.model.allow_read,
-        Output::Quiet,
-    );
-    let mut options = Options {
+    let options = Options {
         why: true,
         quiet: true,
         collect: a.json.is_some(),
-        ..Options::default()
+        ..options(&a.solve)
     };
-    if let Some(s) = a.time_limit {
-        options.time_limit = s;
-    }
-    options.set(&a.option);
-    let file = name(&a.model);
-    let finished = session::run(
-        &mut host,
-        &file,
-        preprocess(&a.model),
-        options,
-        false,
-        &mut |_| {},
-    );
-    host.finish();
-    tell(&finished, a.model.message_format);
+    // The model's own output and files are not wanted here.
+    let finished = match carry_out_silently(&a.model, options, &mut |_| {}) {
+        Ok(f) => f,
+        Err(status) => return status,
+    };
     let status = finished.end.exit();
     match &a.json {
         Some(path) if path == Path::new("-") => {}
         _ => print!("{}", text(&finished)),
     }
     match &a.json {
-        Some(path) => status.max(write_report(finished, &file, path)),
+        Some(path) => status.max(write_report(finished, &name(&a.model), path)),
         None => status,
     }
 }

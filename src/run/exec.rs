@@ -11,6 +11,7 @@ use crate::data::universe::Label;
 use crate::data::value::{number, truth};
 use crate::diag::Diagnostic;
 use crate::source::Span;
+use std::ops::ControlFlow;
 
 /// Sorted records to be written.
 struct Records {
@@ -59,21 +60,15 @@ impl Machine<'_> {
             CodeKind::Loop(d, body) => return self.run_loop(d, body, frame),
             CodeKind::While(cond, body) => {
                 while truth(self.eval(cond, frame)) {
-                    match self.turn(body, frame) {
-                        Flow::Break(loops) if loops > 1 => return Flow::Break(loops - 1),
-                        Flow::Break(_) => break,
-                        Flow::Stop => return Flow::Stop,
-                        _ => {}
+                    if let ControlFlow::Break(flow) = self.turn(body, frame) {
+                        return flow;
                     }
                     self.tidy(c);
                 }
             }
             CodeKind::Repeat(body, until) => loop {
-                match self.turn(body, frame) {
-                    Flow::Break(loops) if loops > 1 => return Flow::Break(loops - 1),
-                    Flow::Break(_) => break,
-                    Flow::Stop => return Flow::Stop,
-                    _ => {}
+                if let ControlFlow::Break(flow) = self.turn(body, frame) {
+                    return flow;
                 }
                 self.tidy(c);
                 if truth(self.eval(until, frame)) {
@@ -149,14 +144,16 @@ impl Machine<'_> {
         }
     }
 
-    /// One turn of a loop's body.
-    fn turn(&mut self, body: &[Code], frame: &mut Frame) -> Flow {
+    /// One turn of a loop's body; Break: the loop ends, and goes on as told.
+    fn turn(&mut self, body: &[Code], frame: &mut Frame) -> ControlFlow<Flow> {
         if !self.keep_going() {
-            return Flow::Stop;
+            return ControlFlow::Break(Flow::Stop);
         }
         match self.block(body, frame) {
-            Flow::Continue => Flow::Next,
-            flow => flow,
+            Flow::Next | Flow::Continue => ControlFlow::Continue(()),
+            Flow::Break(loops) if loops > 1 => ControlFlow::Break(Flow::Break(loops - 1)),
+            Flow::Break(_) => ControlFlow::Break(Flow::Next),
+            Flow::Stop => ControlFlow::Break(Flow::Stop),
         }
     }
 
@@ -169,26 +166,18 @@ impl Machine<'_> {
                 once = true;
                 false
             });
-            return match if once {
-                self.turn(body, frame)
-            } else {
-                Flow::Next
-            } {
-                Flow::Stop => Flow::Stop,
-                Flow::Break(loops) if loops > 1 => Flow::Break(loops - 1),
-                _ => Flow::Next,
-            };
+            if once && let ControlFlow::Break(flow) = self.turn(body, frame) {
+                return flow;
+            }
+            return Flow::Next;
         }
         let tuples = self.tuples(d, frame);
         for t in tuples.chunks_exact(d.slots.len()) {
             for (&s, &l) in d.slots.iter().zip(t) {
                 frame[s as usize] = l;
             }
-            match self.turn(body, frame) {
-                Flow::Break(loops) if loops > 1 => return Flow::Break(loops - 1),
-                Flow::Break(_) => break,
-                Flow::Stop => return Flow::Stop,
-                _ => {}
+            if let ControlFlow::Break(flow) = self.turn(body, frame) {
+                return flow;
             }
         }
         Flow::Next
@@ -225,11 +214,8 @@ impl Machine<'_> {
             if (down && k < limit) || (!down && k > limit) || k.is_nan() {
                 return Flow::Next;
             }
-            match self.turn(body, frame) {
-                Flow::Break(loops) if loops > 1 => return Flow::Break(loops - 1),
-                Flow::Break(_) => return Flow::Next,
-                Flow::Stop => return Flow::Stop,
-                _ => {}
+            if let ControlFlow::Break(flow) = self.turn(body, frame) {
+                return flow;
             }
             // As in GAMS the step is looked at when it is taken.
             if !sane {

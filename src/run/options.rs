@@ -107,6 +107,17 @@ impl Options {
         self.texts.extend(text.map(|t| (name.to_string(), t)));
     }
 
+    /// Options of other solvers, from the command line, and bmod's own, as the `option` statements
+    /// left them.
+    pub fn for_solvers(&self) -> Vec<(String, String)> {
+        let own = OWN_OPTIONS.iter().filter_map(|&name| {
+            let text = self.texts.get(name).cloned();
+            let value = text.or_else(|| Some(self.number(name)?.to_string()))?;
+            Some((name.to_string(), value))
+        });
+        self.solver_options.iter().cloned().chain(own).collect()
+    }
+
     /// A numeric option.
     pub fn number(&self, name: &str) -> Option<f64> {
         self.numbers.get(name).copied()

@@ -13,7 +13,7 @@ use crate::report::why::{Explanation, explain};
 use crate::report::{json, listing, solution, summary};
 use crate::solve::answer::{Answer, answer, certify};
 use crate::solve::why;
-use crate::solve::{ModelStatus, Monitor, OWN_OPTIONS, Settings, SolverStatus};
+use crate::solve::{ModelStatus, Monitor, Settings, SolverStatus};
 use crate::source::Span;
 
 /// A solver's line to the run.
@@ -194,22 +194,9 @@ impl Machine<'_> {
                 .model_option(model, "iterlim", 2_147_483_647.0)
                 .clamp(0.0, 1e18) as u64,
             evaluation_error_limit: self.model_option(model, "domlim", 0.0).clamp(0.0, 1e18) as u64,
-            options: self.solver_options(),
+            options: self.options.for_solvers(),
             log: self.options.log,
         }
-    }
-
-    /// Options of other solvers, from the command line, and bmod's own, as the `option` statements
-    /// left them.
-    fn solver_options(&self) -> Vec<(String, String)> {
-        let own = OWN_OPTIONS.iter().filter_map(|&name| {
-            let text = self.options.texts.get(name).cloned();
-            let value = text.or_else(|| Some(self.options.number(name)?.to_string()))?;
-            Some((name.to_string(), value))
-        });
-        let mut out = self.options.solver_options.clone();
-        out.extend(own);
-        out
     }
 
     /// A proved interval for the objective of a linear program, where `certify` asks for one. Why
