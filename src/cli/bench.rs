@@ -5,8 +5,8 @@ use std::path::Path;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::args::{BenchArgs, EXECUTION, USAGE};
-use super::commands::{carry_out_silently, name, options, write_whole};
-use super::host::interrupted;
+use super::commands::{carry_out_silently, name, options};
+use super::host::{interrupted, write_whole};
 use crate::report::figure::png;
 use crate::report::study;
 use crate::run::Options;

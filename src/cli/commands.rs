@@ -7,7 +7,7 @@ use super::args::{
     Cli, Command, EXECUTION, ListArgs, MessageFormat, ModelArgs, RunArgs, SolveArgs, USAGE,
     completions,
 };
-use super::host::{Output, SystemHost, watch_ctrl_c};
+use super::host::{Output, SystemHost, watch_ctrl_c, write_whole};
 use crate::report::diagnostics::{self, Look};
 use crate::report::json::{Report, RunStatus};
 use crate::run::{ListOptions, Machine, Options};
@@ -207,18 +207,6 @@ pub(super) fn write_report(finished: Finished, file: &str, path: &Path) -> u8 {
         return EXECUTION;
     }
     0
-}
-
-/// Writes a file whole or not at all.
-pub(super) fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    let folder = path
-        .parent()
-        .filter(|p| !p.as_os_str().is_empty())
-        .unwrap_or(Path::new("."));
-    let mut file = tempfile::NamedTempFile::new_in(folder)?;
-    file.write_all(bytes)?;
-    file.persist(path).map_err(|e| e.error)?;
-    Ok(())
 }
 
 fn list(a: &ListArgs) -> u8 {

@@ -167,6 +167,22 @@ impl SystemHost {
     }
 }
 
+/// Writes a file whole or not at all, with the permissions that new files have.
+pub(super) fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".bmod-");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(std::fs::Permissions::from_mode(0o666));
+    }
+    let mut file = builder.tempfile_in(folder.unwrap_or(Path::new(".")))?;
+    file.write_all(bytes)?;
+    file.persist(path).map_err(|e| e.error)?;
+    Ok(())
+}
+
 impl Host for SystemHost {
     fn memory(&self) -> usize {
         // Resident pages, where the system tells.
@@ -231,16 +247,7 @@ impl Host for SystemHost {
         if target.is_dir() {
             return Err(HostError::Other("there is a folder of that name".into()));
         }
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".bmod-");
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt;
-            builder.permissions(std::fs::Permissions::from_mode(0o666));
-        }
-        let mut file = builder.tempfile_in(folder).map_err(other)?;
-        file.write_all(bytes).map_err(other)?;
-        file.persist(&target).map_err(|e| other(e.error))?;
+        write_whole(&target, bytes).map_err(other)?;
         Ok(target
             .strip_prefix(&self.current)
             .map_or(target.clone(), Path::to_path_buf))
