@@ -5,6 +5,7 @@
 //! `$eval card(i)` ask can be answered at their place. Several errors are reported per run.
 
 pub mod functions;
+pub mod load;
 pub mod node;
 pub mod symbols;
 
@@ -20,7 +21,7 @@ use crate::diag::{Diagnostic, Severity};
 use crate::host::Host;
 use crate::source::{Ending, Known, PreprocessOptions, SourceMap, Span};
 use crate::syntax::Parser;
-use crate::syntax::ast::Modes;
+use crate::syntax::ast::{Modes, StmtKind};
 use node::{Code, EquationDef, Part, Slot, SymbolId};
 use symbols::{DomainPosition, Store, Symbol, SymbolKind, Symbols, UNIVERSE};
 
@@ -67,6 +68,8 @@ pub(crate) struct Compiler {
     diagnostics: Vec<Diagnostic>,
     /// Sets under control, innermost last.
     scope: Vec<(SymbolId, Vec<Part>)>,
+    /// The file that `$gdxIn` named.
+    input: Option<(String, Span)>,
     next_slot: Slot,
     slots: usize,
     in_equation: bool,
@@ -94,6 +97,12 @@ pub fn compile(
         match next {
             Ok(None) => break,
             Ok(Some(stmt)) => {
+                if let StmtKind::Exchange(x) = &stmt.kind {
+                    let mut read = |name: &str, at| parser.read(name, at);
+                    if !matches!(c.load_now(x, stmt.span, &mut read), Ok(false)) {
+                        continue;
+                    }
+                }
                 let mut one = Vec::new();
                 let _ = c.statement(&stmt, parser.map(), &mut one);
                 code.append(&mut one);
@@ -152,6 +161,7 @@ impl Compiler {
             equations: Vec::new(),
             diagnostics: Vec::new(),
             scope: Vec::new(),
+            input: None,
             next_slot: 0,
             slots: 0,
             in_equation: false,

@@ -35,9 +35,9 @@ impl Machine<'_> {
     }
 
     /// Reads a text; a diagnostic if that is not possible.
-    pub(super) fn read_file(&mut self, name: &str, span: Span) -> Option<String> {
+    pub(super) fn read_file(&mut self, name: &str, span: Span) -> Result<String, Box<Diagnostic>> {
         if let Some(text) = self.map.echoed.get(&name.to_lowercase()) {
-            return Some(text.clone());
+            return Ok(text.clone());
         }
         let from = self
             .map
@@ -47,11 +47,8 @@ impl Machine<'_> {
             .host()
             .read(name, from.as_deref().map(std::path::Path::new));
         match read {
-            Ok((_, text)) => Some(text),
-            Err(e) => {
-                self.note(refused("E0471", "read", name, &e, span));
-                None
-            }
+            Ok((_, text)) => Ok(text),
+            Err(e) => Err(Box::new(refused("E0471", "read", name, &e, span))),
         }
     }
 }

@@ -98,8 +98,12 @@ impl Machine<'_> {
             if !self.file_exists(file, span) {
                 continue;
             }
-            let Some(text) = self.read_file(file, span) else {
-                return Vec::new();
+            let text = match self.read_file(file, span) {
+                Ok(text) => text,
+                Err(d) => {
+                    self.note(*d);
+                    return Vec::new();
+                }
             };
             return match parse(&text) {
                 Ok(mut options) => {

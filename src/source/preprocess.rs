@@ -11,7 +11,7 @@
 //! that is left to the parser (`$load …;`); every byte of it leads back to a file through the
 //! [`SourceMap`]; includes, macros and `$goto` are bounded.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use rustc_hash::FxHashMap;
 
@@ -318,6 +318,21 @@ impl<'h> Preprocessor<'h> {
         }
         self.open(path, name, text, arguments, asked);
         Ok(())
+    }
+
+    /// The text of a data file, looked for beside the file that asks for it.
+    pub(crate) fn read(&mut self, name: &str, at: Span) -> Result<String, Box<Diagnostic>> {
+        if let Some(text) = self.map.echoed.get(&name.to_lowercase()) {
+            return Ok(text.clone());
+        }
+        let asking = self
+            .map
+            .place(at)
+            .map(|p| self.map.file(p.file).name.clone());
+        match self.host.read(name, asking.as_deref().map(Path::new)) {
+            Ok((_, text)) => Ok(text),
+            Err(e) => Err(Box::new(unreadable(name, &e, at))),
+        }
     }
 
     /// A place in the present file that is not copied, as a span: a blank line stands for it.

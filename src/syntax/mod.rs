@@ -211,6 +211,11 @@ impl<'h> Parser<'h> {
         }
     }
 
+    /// The text of a data file that the statement at `at` asks for.
+    pub fn read(&mut self, name: &str, at: Span) -> Result<String, Box<Diagnostic>> {
+        self.text.read(name, at)
+    }
+
     /// The files and the expanded text so far.
     pub fn map(&self) -> &SourceMap {
         &self.text.map

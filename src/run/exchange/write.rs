@@ -1,6 +1,7 @@
 //! Writing CSV and JSON.
 
-use super::{ATTRIBUTES, Wanted, special_name};
+use super::special_name;
+use crate::check::load::{ATTRIBUTES, Wanted};
 use crate::check::symbols::{Symbol, SymbolKind, attribute};
 use crate::data::universe::Label;
 use crate::run::Machine;

@@ -1,7 +1,7 @@
 //! Reading CSV.
 
-use super::load::{Loaded, Loading, Records};
-use super::{Wanted, attribute_offset, missing};
+use super::records::{Loading, Records};
+use super::{Loaded, Wanted, attribute_offset, missing};
 use crate::check::symbols::{DomainPosition, Symbol, SymbolKind, attribute};
 use crate::diag::Diagnostic;
 use ::csv::{ReaderBuilder, StringRecord};

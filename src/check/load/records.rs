@@ -1,6 +1,6 @@
 //! What a load collects before anything is changed.
 
-use super::{Wanted, parse_value};
+use super::{Loaded, Wanted, parse_value};
 use crate::check::node::{SymbolId, TableId};
 use crate::check::symbols::{DomainPosition, Store, SymbolKind, Symbols, attribute};
 use crate::data::table::Table;
@@ -10,9 +10,6 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Texts of a set's elements.
 type Texts = FxHashMap<Box<[Label]>, Box<str>>;
-
-/// A diagnostic; boxed, because it is large and rare.
-pub(super) type Loaded<T> = Result<T, Box<Diagnostic>>;
 
 /// Symbols while they are read.
 pub(super) struct Loading<'a> {

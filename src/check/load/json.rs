@@ -1,7 +1,7 @@
 //! Reading JSON: an object with a member per symbol.
 
-use super::load::{Loaded, Loading, Records};
-use super::{ATTRIBUTES, Wanted, attribute_offset, missing};
+use super::records::{Loading, Records};
+use super::{ATTRIBUTES, Loaded, Wanted, attribute_offset, missing};
 use crate::check::symbols::{Symbol, SymbolKind, attribute};
 use crate::diag::Diagnostic;
 use serde_json::{Map, Value};
