@@ -4,6 +4,7 @@
 //!   the zero start, for three friction coefficients, φ₀ = 0 and φ₀ = φ; then the growth exponents.
 //! - `cargo bench --bench mcp -- corpus [PATH.csv]`: the corpus beside the project, run through the language:
 //!   the table of `docs/mcp.md`, and sums. `PATH.csv` holds lines `file,seconds` of PATH for the ratio of times.
+//! - `cargo bench --bench mcp -- obstacle [N…]`: the obstacle problem on a string at N points.
 //! - `cargo bench --bench mcp -- log COURSES×WIDTH TANPHI 0|phi`: one wall with its log.
 
 use std::time::Instant;
@@ -93,6 +94,24 @@ fn sweep(sizes: &[(usize, usize)]) {
     }
 }
 
+fn obstacle(sizes: &[usize]) {
+    println!("| n | majors | pivots | crash | factorisations | residual | s |");
+    println!("| --- | --- | --- | --- | --- | --- | --- |");
+    for &n in sizes {
+        let (settings, begin) = (Settings::default(), seconds());
+        let outcome = solve(&mut walls::obstacle(n), &settings, &mut Log(false));
+        println!(
+            "| {n} | {} | {} | {} | {} | {:.0e} | {:.2} |",
+            outcome.majors,
+            outcome.pivots,
+            outcome.crash_iterations,
+            outcome.factorisations,
+            outcome.residual,
+            seconds() - begin
+        );
+    }
+}
+
 /// Slope of the line of least squares.
 fn slope(points: &[(f64, f64)]) -> f64 {
     let n = points.len() as f64;
@@ -146,7 +165,7 @@ fn corpus(times: Option<&str>) {
             }
         };
         // The time without the log.
-        let seconds = (0..3)
+        let seconds = (0..5)
             .filter_map(|_| complementarity::run(&file, false).ok())
             .map(|(r, _)| r.seconds.solve)
             .fold(report.seconds.solve, f64::min);
@@ -203,6 +222,13 @@ fn main() {
                 sizes = vec![(15, 8), (20, 10), (30, 15), (60, 30)];
             }
             sweep(&sizes);
+        }
+        Some("obstacle") => {
+            let mut sizes: Vec<_> = words[1..].iter().filter_map(|w| w.parse().ok()).collect();
+            if sizes.is_empty() {
+                sizes = vec![10_000, 100_000];
+            }
+            obstacle(&sizes);
         }
         Some("corpus") => corpus(words.get(1).map(String::as_str)),
         Some("log") if words.len() == 4 => {

@@ -3,10 +3,14 @@
 //! Problems are written as closures over dense matrices: small, and readable next to the paper
 //! they come from. `F` is differentiated here by central differences where it is not linear.
 
+#[allow(dead_code)]
+mod walls;
+
 use bmod::solve::mcp::{
     EvalError, Monitor, Outcome, Problem, Settings, Silent, Status, natural_residual, solve,
 };
 use proptest::prelude::*;
+use walls::obstacle;
 
 const INF: f64 = f64::INFINITY;
 
@@ -441,25 +445,9 @@ fn bounds_written_as_rows() {
     assert_near(&solve_with(false), &[2.0, -1.0, 3.0, 4.0], 1e-10);
 }
 
-/// The obstacle problem on a string: −u'' ≥ load, u ≥ 0.
-fn obstacle(n: usize) -> Model {
-    let mut triplets = Vec::new();
-    for j in 0..n {
-        for i in j.saturating_sub(1)..(j + 2).min(n) {
-            triplets.push((i, j, if i == j { 2.0 } else { -1.0 }));
-        }
-    }
-    let h = 1.0 / (n as f64 + 1.0);
-    let q = (0..n)
-        .map(|i| -h * h * 10.0 * (9.0 * (i as f64 + 1.0) * h).sin())
-        .collect();
-    Model::sparse(n, triplets, q)
-}
-
 #[test]
 fn many_unknowns_in_a_band() {
-    let mut model = obstacle(10_000);
-    let outcome = model.solve();
+    let outcome = solve(&mut obstacle(10_000), &Settings::default(), &mut Silent);
     assert_eq!(outcome.status, Status::Solved);
     assert!(outcome.residual <= 1e-8 && outcome.x.iter().any(|x| *x > 0.0));
 }

@@ -368,3 +368,46 @@ fn what_does_not_stand_has_no_load_factor() {
         assert!(messages.iter().any(|m| m.contains(says)), "{messages:?}");
     }
 }
+
+/// System (7) of the paper's six walls, from zero: without dilatancy at most the load factor of the linear program,
+/// with dilatancy tan φ that load factor.
+#[test]
+fn the_six_walls_as_complementarity_problems() {
+    for k in 1..=6 {
+        let text = format!(
+            "$set scene wall
+$include example{k}.blk
+Scalar limit;
+solve static using lp maximizing alpha;
+limit = alpha.l;
+option clear = alpha, clear = x, clear = u, clear = z;
+solve collapse using mcp;
+abort$(alpha.l > limit + 1e-9) 'above the linear program', alpha.l, limit;
+option clear = alpha, clear = x, clear = u, clear = z;
+coulomb(%friction%, %friction%)
+solve collapse using mcp;
+abort$(abs(alpha.l - limit) > 1e-9) 'not the linear program', alpha.l, limit;
+"
+        );
+        let (desk, finished) = run("walls", "scene.blk", Some(text), &mut |_| {});
+        assert_eq!(
+            finished.end.exit(),
+            0,
+            "{:?} {}",
+            finished.diagnostics,
+            desk.printed
+        );
+        let solves = &finished.report.solves;
+        let [_, free, associated] = solves.as_slice() else {
+            panic!("{} solves", solves.len());
+        };
+        for solve in [free, associated] {
+            let residual = solve.residual.natural.expect("a natural residual");
+            assert!(
+                solve.model_status.code == 1 && residual <= 1e-10,
+                "example {k}: status {}, residual {residual:e}",
+                solve.model_status.code
+            );
+        }
+    }
+}

@@ -171,8 +171,12 @@ impl mcp::Problem for Square<'_> {
 /// The run's monitor, as the complementarity solver wants it.
 struct Line<'a> {
     monitor: &'a mut dyn Monitor,
+    names: Names<'a>,
     log: bool,
 }
+
+/// What index k of a complementarity problem is called.
+type Names<'a> = &'a dyn Fn(&dyn Monitor, usize) -> String;
 
 impl mcp::Monitor for Line<'_> {
     fn log(&mut self, line: &str) {
@@ -188,7 +192,19 @@ impl mcp::Monitor for Line<'_> {
     }
 
     fn name(&self, i: usize) -> String {
-        self.monitor.column_name(i)
+        (self.names)(self.monitor, i)
+    }
+}
+
+/// The value of an option that is a number, none of which may be negative.
+fn number(name: &str, value: &str) -> Result<f64, SolveError> {
+    match value.parse::<f64>() {
+        Ok(number) if number >= 0.0 => Ok(number),
+        _ => refuse(
+            format!("the option `{name}` needs a number ≥ 0, not `{value}`"),
+            None,
+            None,
+        ),
     }
 }
 
@@ -202,41 +218,42 @@ fn options(settings: &Settings) -> Result<mcp::Settings, SolveError> {
         .cumulative_iteration_limit
         .min(settings.iteration_limit as usize);
     for (name, value) in &settings.options {
-        let number = value.parse::<f64>();
-        let count = |limit: f64| limit.clamp(0.0, 1e15) as usize;
-        match (name.to_lowercase().as_str(), number) {
-            ("convergence_tolerance", Ok(v)) => s.convergence_tolerance = v,
-            ("crash_method", _) => s.crash_method = !value.eq_ignore_ascii_case("none"),
-            ("crash_iteration_limit", Ok(v)) => s.crash_iteration_limit = count(v),
-            ("major_iteration_limit", Ok(v)) => s.major_iteration_limit = count(v),
-            ("cumulative_iteration_limit", Ok(v)) => s.cumulative_iteration_limit = count(v),
-            ("minor_iteration_limit", Ok(v)) => s.minor_iteration_limit = count(v),
-            ("proximal_perturbation", Ok(v)) => s.proximal_perturbation = v,
-            ("time_limit", Ok(v)) => s.time_limit = s.time_limit.min(v),
-            ("nms_memory_size", Ok(v)) => s.nms_memory_size = count(v),
-            ("restart_limit", Ok(v)) => s.restart_limit = count(v),
-            ("preprocess", _) => {
-                s.preprocess = !matches!(value.to_lowercase().as_str(), "no" | "0" | "off")
+        let name = name.to_lowercase();
+        let yes = !matches!(value.to_lowercase().as_str(), "no" | "0" | "off" | "false");
+        match name.as_str() {
+            "crash_method" => s.crash_method = !value.eq_ignore_ascii_case("none"),
+            "preprocess" => s.preprocess = yes,
+            "output" => {
+                s.output_crash_iterations = yes;
+                s.output_major_iterations = yes;
+                s.output_minor_iterations = yes;
+                s.output_final_statistics = yes;
             }
-            (
-                "convergence_tolerance"
-                | "crash_iteration_limit"
-                | "major_iteration_limit"
-                | "cumulative_iteration_limit"
-                | "minor_iteration_limit"
-                | "proximal_perturbation"
-                | "nms_memory_size"
-                | "restart_limit"
-                | "time_limit",
-                Err(_),
-            ) => {
-                return refuse(
-                    format!("the option `{name}` needs a number, not `{value}`"),
-                    None,
-                    None,
-                );
+            "output_crash_iterations" => s.output_crash_iterations = yes,
+            "output_major_iterations" => s.output_major_iterations = yes,
+            "output_minor_iterations" => s.output_minor_iterations = yes,
+            "output_final_statistics" => s.output_final_statistics = yes,
+            "convergence_tolerance" | "proximal_perturbation" | "time_limit" => {
+                let number = number(&name, value)?;
+                match name.as_str() {
+                    "convergence_tolerance" => s.convergence_tolerance = number,
+                    "proximal_perturbation" => s.proximal_perturbation = number,
+                    _ => s.time_limit = s.time_limit.min(number),
+                }
             }
-            _ => {}
+            _ => {
+                let limit = match name.as_str() {
+                    "crash_iteration_limit" => &mut s.crash_iteration_limit,
+                    "major_iteration_limit" => &mut s.major_iteration_limit,
+                    "cumulative_iteration_limit" => &mut s.cumulative_iteration_limit,
+                    "minor_iteration_limit" => &mut s.minor_iteration_limit,
+                    "nms_memory_size" => &mut s.nms_memory_size,
+                    "restart_limit" => &mut s.restart_limit,
+                    // Options of PATH that mean nothing here.
+                    _ => continue,
+                };
+                *limit = number(&name, value)?.min(1e15) as usize;
+            }
         }
     }
     Ok(s)
@@ -245,12 +262,21 @@ fn options(settings: &Settings) -> Result<mcp::Settings, SolveError> {
 /// Runs the complementarity solver: its outcome, and how it ended in GAMS's terms.
 pub(super) fn run(
     problem: &mut dyn mcp::Problem,
+    names: Names,
     settings: &Settings,
     monitor: &mut dyn Monitor,
 ) -> Result<(mcp::Outcome, SolverStatus), SolveError> {
     let limits = options(settings)?;
     let log = settings.log;
-    let out = mcp::solve(problem, &limits, &mut Line { monitor, log });
+    let out = mcp::solve(
+        problem,
+        &limits,
+        &mut Line {
+            monitor,
+            names,
+            log,
+        },
+    );
     let status = match out.status {
         mcp::Status::Solved => SolverStatus::NormalCompletion,
         mcp::Status::IterationLimit => SolverStatus::IterationInterrupt,
@@ -273,7 +299,16 @@ pub fn solve(
     monitor: &mut dyn Monitor,
 ) -> Result<Outcome, SolveError> {
     let mut problem = Square::new(instance, square)?;
-    let (out, status) = run(&mut problem, settings, monitor)?;
+    let row_of = problem.row_of.clone();
+    let names = |monitor: &dyn Monitor, j: usize| match row_of[j] {
+        Some(r) => format!(
+            "{}.{}",
+            monitor.row_name(r as usize),
+            monitor.column_name(j)
+        ),
+        None => monitor.column_name(j),
+    };
+    let (out, status) = run(&mut problem, &names, settings, monitor)?;
     if out.status == mcp::Status::EvaluationFailed {
         let mut f = vec![0.0; instance.column_count()];
         let failure = mcp::Problem::function(&mut problem, &instance.columns.level, &mut f).err();
@@ -285,7 +320,7 @@ pub fn solve(
     // The marginals of a square system have no meaning.
     if !square {
         column_marginal.copy_from_slice(&out.f);
-        for (j, r) in problem.row_of.iter().enumerate() {
+        for (j, r) in row_of.iter().enumerate() {
             if let Some(r) = r {
                 row_marginal[*r as usize] = out.x[j];
             }

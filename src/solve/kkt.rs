@@ -142,7 +142,11 @@ impl Solver for Kkt {
     ) -> Result<Outcome, SolveError> {
         let n = instance.column_count();
         let mut problem = Conditions::new(instance);
-        let (out, status) = run(&mut problem, settings, monitor)?;
+        let names = |monitor: &dyn Monitor, k: usize| match k.checked_sub(n) {
+            None => monitor.column_name(k),
+            Some(row) => monitor.row_name(row),
+        };
+        let (out, status) = run(&mut problem, &names, settings, monitor)?;
         let sign = match instance.objective {
             Some(o) if o.sense == Sense::Maximize => -1.0,
             _ => 1.0,

@@ -1,12 +1,12 @@
 //! Walls of blocks as complementarity problems: system (7) of Ferris & Tin-Loi (2001), assembled
-//! here without the language. For tests and benchmarks of the solver alone.
+//! here without the language; and the obstacle problem. For tests and benchmarks of the solver alone.
 
 use std::f64::consts::FRAC_PI_4;
 
 use bmod::solve::mcp::{EvalError, Problem};
 
 /// Mx + q by compressed columns; x₀ is the load factor α.
-pub struct Wall {
+pub struct Linear {
     lower: Vec<f64>,
     upper: Vec<f64>,
     zero: Vec<f64>,
@@ -100,7 +100,7 @@ fn geometry(courses: usize, width: usize) -> (Vec<Block>, Vec<Contact>) {
 }
 
 /// (7) for a wall in running bond, blocks 4 × 1.75, with tan φ = `friction` and φ₀ = φ or 0: norm ⟂ α, compatibility ⟂ x, equilibrium ⟂ u, yield ⟂ z ≥ 0.
-pub fn wall(courses: usize, width: usize, friction: f64, associated: bool) -> Wall {
+pub fn wall(courses: usize, width: usize, friction: f64, associated: bool) -> Linear {
     let (blocks, contacts) = geometry(courses, width);
     let (x0, u0) = (1, 1 + 3 * contacts.len());
     let z0 = u0 + 3 * blocks.len();
@@ -159,7 +159,7 @@ pub fn wall(courses: usize, width: usize, friction: f64, associated: bool) -> Wa
     let mut col_start = vec![0; n + 1];
     entries.iter().for_each(|e| col_start[e.1 + 1] += 1);
     (0..n).for_each(|j| col_start[j + 1] += col_start[j]);
-    Wall {
+    Linear {
         lower: (0..n)
             .map(|i| if i < z0 { f64::NEG_INFINITY } else { 0.0 })
             .collect(),
@@ -172,7 +172,31 @@ pub fn wall(courses: usize, width: usize, friction: f64, associated: bool) -> Wa
     }
 }
 
-impl Problem for Wall {
+/// The obstacle problem on a string: −u'' ≥ load, u ≥ 0, at n points.
+pub fn obstacle(n: usize) -> Linear {
+    let (mut col_start, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
+    for j in 0..n {
+        for i in j.saturating_sub(1)..(j + 2).min(n) {
+            rows.push(i);
+            values.push(if i == j { 2.0 } else { -1.0 });
+        }
+        col_start.push(rows.len());
+    }
+    let h = 1.0 / (n as f64 + 1.0);
+    Linear {
+        lower: vec![0.0; n],
+        upper: vec![f64::INFINITY; n],
+        zero: vec![0.0; n],
+        col_start,
+        rows,
+        values,
+        q: (0..n)
+            .map(|i| -h * h * 10.0 * (9.0 * (i as f64 + 1.0) * h).sin())
+            .collect(),
+    }
+}
+
+impl Problem for Linear {
     fn n(&self) -> usize {
         self.q.len()
     }

@@ -108,7 +108,7 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
         b: vec![1.0; n],
         v: slack(&bounds.upper, -1.0),
     };
-    log::note(run, || {
+    log::note(run, log::Part::Crash, || {
         "Interior crash\n iter    product  equations    residual     step     prox".into()
     });
     let mut best = start.clone();
@@ -160,7 +160,7 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
         run.crash_iterations += 1;
         let t = step.length;
         let residual = best.residual;
-        log::note(run, || {
+        log::note(run, log::Part::Crash, || {
             format!(
                 "{:5} {mu:10.3e} {off:10.3e} {residual:11.4e} {t:8.1e} {prox:8.1e}",
                 iteration + 1

@@ -1,4 +1,4 @@
-//! The log, in the columns of PATH's.
+//! The log, in the columns of PATH's. A residual stands with the row and the column that it is largest in.
 
 use super::path::PathEnd;
 use super::run::{Point, Run};
@@ -12,16 +12,34 @@ fn worst(run: &Run, point: &Point) -> String {
     run.monitor.name(index)
 }
 
+/// Parts of the log that can be left out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Part {
+    Crash,
+    Majors,
+    Paths,
+}
+
+/// Whether a part of the log is wanted.
+fn wants(run: &Run, part: Part) -> bool {
+    run.monitor.wants_log()
+        && match part {
+            Part::Crash => run.settings.output_crash_iterations,
+            Part::Majors => run.settings.output_major_iterations,
+            Part::Paths => run.settings.output_minor_iterations,
+        }
+}
+
 /// Free text.
-pub(super) fn note(run: &mut Run, text: impl FnOnce() -> String) {
-    if run.monitor.wants_log() {
+pub(super) fn note(run: &mut Run, part: Part, text: impl FnOnce() -> String) {
+    if wants(run, part) {
         let line = text();
         run.monitor.log(&line);
     }
 }
 
 pub(super) fn crash_header(run: &mut Run) {
-    note(run, || {
+    note(run, Part::Crash, || {
         "Crash\n iter    residual     |B|  changes     prox     step".into()
     });
 }
@@ -35,7 +53,7 @@ pub(super) fn crash_line(
     prox: f64,
     step: f64,
 ) {
-    note(run, || {
+    note(run, Part::Crash, || {
         format!(
             "{iteration:5} {:11.4e} {basic:7} {changes:8} {prox:8.1e} {step:8.1e}",
             point.residual
@@ -44,12 +62,12 @@ pub(super) fn crash_line(
 }
 
 pub(super) fn major_header(run: &mut Run, point: &Point) {
-    if run.monitor.wants_log() {
+    if wants(run, Part::Majors) {
         let name = worst(run, point);
-        note(run, || {
+        note(run, Part::Majors, || {
             "Major iterations\nmajor   minor  path        t     prox    residual     step  type tries  (worst row)".into()
         });
-        note(run, || {
+        note(run, Part::Majors, || {
             format!(
                 "    0                                  {:11.4e}                    ({name})",
                 point.residual
@@ -70,9 +88,9 @@ pub(super) fn major_line(
     kind: char,
     tries: usize,
 ) {
-    if run.monitor.wants_log() {
+    if wants(run, Part::Majors) {
         let (name, major) = (worst(run, point), run.majors);
-        note(run, || {
+        note(run, Part::Majors, || {
             format!(
                 "{major:5} {pivots:7}  {:<9} {t:5.3} {prox:8.1e} {:11.4e} {step:8.1e}   {kind} {tries:4}   ({name})",
                 end.word(),
@@ -83,9 +101,9 @@ pub(super) fn major_line(
 }
 
 pub(super) fn step_line(run: &mut Run, point: &Point, step: f64, kind: char) {
-    if run.monitor.wants_log() {
+    if wants(run, Part::Majors) {
         let name = worst(run, point);
-        note(run, || {
+        note(run, Part::Majors, || {
             format!(
                 "                                       {:11.4e} {step:8.1e}   {kind}        ({name})",
                 point.residual
@@ -103,9 +121,9 @@ pub(super) fn newton_line(
     step: f64,
     kind: char,
 ) {
-    if run.monitor.wants_log() {
+    if wants(run, Part::Majors) {
         let name = worst(run, point);
-        note(run, || {
+        note(run, Part::Majors, || {
             format!(
                 "{iteration:5} {parameter:9.2e} {:11.4e} {step:8.1e}   {kind}   ({name})",
                 point.residual
@@ -116,7 +134,7 @@ pub(super) fn newton_line(
 
 /// A path that was tried.
 pub(super) fn try_line(run: &mut Run, end: PathEnd, t: f64, prox: f64, pivots: usize, cover: bool) {
-    note(run, || {
+    note(run, Part::Paths, || {
         format!(
             "      {pivots:7}  {:<9} {t:5.3} {prox:8.1e}{}",
             end.word(),

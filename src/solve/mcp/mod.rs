@@ -119,6 +119,15 @@ pub struct Settings {
     pub preprocess: bool,
     /// Whether the other methods are tried when the main one fails. Default true.
     pub fallbacks: bool,
+    /// Whether the log, if one is wanted, has the iterations of crashes. Default true.
+    pub output_crash_iterations: bool,
+    /// Whether it has the major iterations, and those of the other Newton methods. Default true.
+    pub output_major_iterations: bool,
+    /// Whether it has a line for each path (PATH: some pivots on it). Default true.
+    pub output_minor_iterations: bool,
+    /// Whether it has the problem's size and, at the end, the status, the counts, and where the residual is
+    /// largest. Default true.
+    pub output_final_statistics: bool,
 }
 
 impl Default for Settings {
@@ -138,6 +147,10 @@ impl Default for Settings {
             time_limit: 1000.0,
             preprocess: true,
             fallbacks: true,
+            output_crash_iterations: true,
+            output_major_iterations: true,
+            output_minor_iterations: true,
+            output_final_statistics: true,
         }
     }
 }
@@ -201,7 +214,7 @@ pub trait Monitor {
     fn interrupted(&mut self) -> bool;
     /// False saves the work of composing log lines.
     fn wants_log(&self) -> bool;
-    /// Name of row i and its variable, for the log.
+    /// Names of row i and of its variable, for the log.
     fn name(&self, i: usize) -> String {
         format!("{}", i + 1)
     }

@@ -60,8 +60,9 @@ pub(super) fn solve(
         return outcome;
     }
     let deadline = deadline(settings);
+    let statistics = monitor.wants_log() && settings.output_final_statistics;
     let mut reduced = Reduced::new(problem, settings.preprocess);
-    if monitor.wants_log() {
+    if statistics {
         let line = format!(
             "{} variables, {} nonzeros; after presolve {} (rows turned into bounds: {})",
             reduced.total(),
@@ -98,16 +99,17 @@ pub(super) fn solve(
     run.clip(&mut x);
     let x = reduced.postsolve(&x);
     drop(reduced);
-    judge(problem, x, settings, end, evaluated, &mut outcome);
+    let worst = judge(problem, x, settings, end, evaluated, &mut outcome);
     if let (Some(error), true) = (error, outcome.status == Status::EvaluationFailed) {
         let at = error
             .row
             .map_or(String::new(), |row| format!("row {}: ", monitor.name(row)));
         outcome.message = format!("{at}{}", error.message);
     }
-    if monitor.wants_log() {
+    if statistics {
+        let at = worst.map_or(String::new(), |i| format!(" ({})", monitor.name(i)));
         let line = format!(
-            "{:?}: residual {:.2e}, method {}; majors {}, pivots {}, crash {}, factorisations {}",
+            "{:?}: residual {:.2e}{at}, method {}; majors {}, pivots {}, crash {}, factorisations {}",
             outcome.status,
             outcome.residual,
             outcome.method,
@@ -127,7 +129,7 @@ fn deadline(settings: &Settings) -> Option<Instant> {
     (seconds < 3e9).then(|| Instant::now() + Duration::from_secs_f64(seconds.max(0.0)))
 }
 
-/// The verdict: a fresh F at x on the problem as given.
+/// The verdict: a fresh F at x on the problem as given. Returns where the residual is largest.
 fn judge(
     problem: &mut dyn Problem,
     x: Vec<f64>,
@@ -135,12 +137,15 @@ fn judge(
     end: Result<(), Stop>,
     evaluated: bool,
     outcome: &mut Outcome,
-) {
+) -> Option<usize> {
     let mut f = vec![f64::NAN; x.len()];
+    let mut worst = None;
     if problem.function(&x, &mut f).is_ok() {
         let lower: Vec<f64> = problem.lower().iter().map(|&b| bound(b)).collect();
         let upper: Vec<f64> = problem.upper().iter().map(|&b| bound(b)).collect();
-        outcome.residual = natural_residual(&x, &f, &lower, &upper).0;
+        let (residual, at) = natural_residual(&x, &f, &lower, &upper);
+        outcome.residual = residual;
+        worst = (residual > 0.0).then_some(at);
     }
     let tolerance = settings
         .acceptable_tolerance
@@ -157,6 +162,7 @@ fn judge(
         }
     };
     (outcome.x, outcome.f) = (x, f);
+    worst
 }
 
 /// Runs the methods until one succeeds; the best point is left in the run. Returns the restarts made.
@@ -215,7 +221,9 @@ fn attempt(run: &mut Run, restarts: &mut usize) -> Result<(), Stop> {
         *restarts += 1;
         let spread = 10f64.powf(random.between(-2.0, 1.0));
         let x = random_point(run, &mut random, spread);
-        log::note(run, || format!("Restart {} from a random point", k + 1));
+        log::note(run, log::Part::Majors, || {
+            format!("Restart {} from a random point", k + 1)
+        });
         let Some(start) = run.point(x) else { continue };
         for method in [
             Method::Path {
@@ -277,7 +285,7 @@ fn first_point(run: &mut Run) -> Option<Point> {
         let mut y: Vec<f64> = x.iter().map(|x| x + size * random.uniform()).collect();
         run.clip(&mut y);
         if let Some(point) = defined(run, y) {
-            log::note(run, || {
+            log::note(run, log::Part::Majors, || {
                 "F is not defined at the start; starting near it".into()
             });
             return Some(point);

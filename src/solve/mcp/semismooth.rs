@@ -31,7 +31,7 @@ pub(super) fn semismooth(
     let mut point = start;
     let mut merit = phi.merit(&point.x, &point.f, &run.lower, &run.upper);
     let mut history = vec![merit];
-    log::note(run, || {
+    log::note(run, log::Part::Majors, || {
         format!("Semismooth Newton, lambda = {lambda}\n iter        nu    residual     step")
     });
     for iteration in 0..LIMIT {

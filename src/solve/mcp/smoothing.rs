@@ -24,7 +24,7 @@ pub(super) fn smoothing(run: &mut Run, start: Point) -> Result<End, Stop> {
         mu: MU,
     };
     let mut point = start;
-    log::note(run, || {
+    log::note(run, log::Part::Majors, || {
         "Smoothing Newton\n iter        mu    residual     step".into()
     });
     for iteration in 0..LIMIT {

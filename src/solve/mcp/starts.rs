@@ -26,7 +26,7 @@ pub(super) fn starts(run: &mut Run, start: Point) -> Result<End, Stop> {
     if q.iter().any(|v| !v.is_finite()) {
         return Ok(End::Stuck);
     }
-    log::note(run, || "Paths from random starts".into());
+    log::note(run, log::Part::Majors, || "Paths from random starts".into());
     let (lower, upper) = (run.lower.clone(), run.upper.clone());
     let linear = LinearProblem {
         m: &m,
