@@ -393,7 +393,7 @@ abort$(abs(alpha.l - limit) > 1e-9) 'not the linear program', alpha.l, limit;
         assert_eq!(
             finished.end.exit(),
             0,
-            "{:?} {}",
+            "{:?} {:?}",
             finished.diagnostics,
             desk.printed
         );
