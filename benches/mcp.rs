@@ -4,7 +4,8 @@
 //!   the zero start, for three friction coefficients, φ₀ = 0 and φ₀ = φ; then the growth exponents.
 //! - `cargo bench --bench mcp -- corpus [PATH.csv]`: the corpus beside the project, run through the language:
 //!   the table of `docs/mcp.md`, and sums. `PATH.csv` holds lines `file,seconds` of PATH for the ratio of times.
-//! - `cargo bench --bench mcp -- obstacle [N…]`: the obstacle problem on a string at N points.
+//! - `cargo bench --bench mcp -- obstacle [N…]`: the obstacle problem on a string of N elements;
+//!   of one N alone with its log.
 //! - `cargo bench --bench mcp -- log COURSES×WIDTH TANPHI 0|phi`: one wall with its log.
 
 use std::time::Instant;
@@ -99,7 +100,11 @@ fn obstacle(sizes: &[usize]) {
     println!("| --- | --- | --- | --- | --- | --- | --- |");
     for &n in sizes {
         let (settings, begin) = (Settings::default(), seconds());
-        let outcome = solve(&mut walls::obstacle(n), &settings, &mut Log(false));
+        let outcome = solve(
+            &mut walls::obstacle(n),
+            &settings,
+            &mut Log(sizes.len() == 1),
+        );
         println!(
             "| {n} | {} | {} | {} | {} | {:.0e} | {:.2} |",
             outcome.majors,

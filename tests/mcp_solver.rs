@@ -3,7 +3,6 @@
 //! Problems are written as closures over dense matrices: small, and readable next to the paper
 //! they come from. `F` is differentiated here by central differences where it is not linear.
 
-#[allow(dead_code)]
 mod walls;
 
 use bmod::solve::mcp::{

@@ -1,5 +1,6 @@
 //! Walls of blocks as complementarity problems: system (7) of Ferris & Tin-Loi (2001), assembled
 //! here without the language; and the obstacle problem. For tests and benchmarks of the solver alone.
+#![allow(dead_code)]
 
 use std::f64::consts::FRAC_PI_4;
 
@@ -172,17 +173,17 @@ pub fn wall(courses: usize, width: usize, friction: f64, associated: bool) -> Li
     }
 }
 
-/// The obstacle problem on a string: −u'' ≥ load, u ≥ 0, at n points.
+/// The obstacle problem on a string: −u'' ≥ load, u ≥ 0, by n linear elements.
 pub fn obstacle(n: usize) -> Linear {
+    let h = 1.0 / (n as f64 + 1.0);
     let (mut col_start, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
     for j in 0..n {
         for i in j.saturating_sub(1)..(j + 2).min(n) {
             rows.push(i);
-            values.push(if i == j { 2.0 } else { -1.0 });
+            values.push(if i == j { 2.0 } else { -1.0 } / h);
         }
         col_start.push(rows.len());
     }
-    let h = 1.0 / (n as f64 + 1.0);
     Linear {
         lower: vec![0.0; n],
         upper: vec![f64::INFINITY; n],
@@ -191,7 +192,7 @@ pub fn obstacle(n: usize) -> Linear {
         rows,
         values,
         q: (0..n)
-            .map(|i| -h * h * 10.0 * (9.0 * (i as f64 + 1.0) * h).sin())
+            .map(|i| -h * 10.0 * (9.0 * (i as f64 + 1.0) * h).sin())
             .collect(),
     }
 }
