@@ -263,6 +263,11 @@ fn civil(now: f64) -> (i64, i64, i64) {
     (yoe + era * 400 + i64::from(m <= 2), m, d)
 }
 
+/// Blanks and semicolons may stand between and behind switches: `$offDigit;`.
+fn behind_separators(rest: &str) -> &str {
+    rest.trim_start_matches(|c: char| c.is_whitespace() || c == ';')
+}
+
 impl Preprocessor<'_> {
     /// A line that begins with `$`.
     pub(super) fn directive_line(&mut self, line: &Line, known: &dyn Known) -> Outcome<()> {
@@ -274,7 +279,7 @@ impl Preprocessor<'_> {
     fn directives(&mut self, line: &Line, mut at: usize, known: &dyn Known) -> Outcome<()> {
         loop {
             let text = &line.text;
-            at += text[at..].len() - text[at..].trim_start().len();
+            at = text.len() - behind_separators(&text[at..]).len();
             let from = at;
             let len = word_len(&text[at..]);
             let word = text[at..at + len].to_ascii_lowercase();
@@ -296,7 +301,8 @@ impl Preprocessor<'_> {
             if self.switch(&word) || SILENT.contains(&word.as_str()) {
                 if SILENT.contains(&word.as_str()) {
                     // A number or a mark may stand behind.
-                    let rest = text[at..].trim_start();
+                    let rest = behind_separators(&text[at..]);
+                    at = text.len() - rest.len();
                     if !rest.starts_with(|c: char| {
                         c.is_ascii_alphabetic() || c == self.marks.dollar as char
                     }) {
@@ -306,7 +312,7 @@ impl Preprocessor<'_> {
                         return Ok(());
                     }
                 }
-                let rest = text[at..].trim_start();
+                let rest = behind_separators(&text[at..]);
                 if rest.is_empty() || self.starts_comment(rest) {
                     return Ok(());
                 }
