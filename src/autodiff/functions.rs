@@ -425,6 +425,7 @@ pub fn function_value(f: Function, args: &[f64]) -> Result<f64, DomainError> {
         F::Sinh => x.sinh(),
         F::Cosh => x.cosh(),
         F::Tanh => x.tanh(),
+        F::ErrorF if x.is_infinite() => indicator(x > 0.0),
         F::ErrorF => special::normal_cdf(x),
         F::Gamma if x.abs() <= TINY || (x < 0.0 && x == x.round()) => return fail(0, Singular),
         F::Gamma => special::gamma(x),

@@ -8,11 +8,9 @@ use crate::data::value::{self, EPS};
 use crate::diag::{Diagnostic, nearest};
 use crate::source::{SourceMap, Span};
 use crate::syntax::ast::{
-    DomainName, Ident, ModelDecl, ModelItem, ParameterDecl, SetDecl, SymbolDecl, TableDecl,
-    VariableKind,
+    DomainName, Ident, ModelDecl, ModelItem, ParameterDecl, SetDecl, SymbolDecl, VariableKind,
 };
 use crate::syntax::data::{DataKind, DataReader, KeyPart, Tail, width};
-use crate::syntax::table::TableReader;
 use std::rc::Rc;
 
 /// A range or a product of sets in data may not make more records than this.
@@ -72,7 +70,7 @@ impl Compiler {
     }
 
     /// Declares a symbol, or finds it declared with the same kind and dimension.
-    fn declare(
+    pub(super) fn declare(
         &mut self,
         d: &SymbolDecl,
         kind: SymbolKind,
@@ -523,7 +521,7 @@ impl Compiler {
     }
 
     /// Whether a symbol may get data now; clears it for `$onMultiR`.
-    fn open_data(&mut self, s: SymbolId, span: Span) -> Result<(), Failed> {
+    pub(super) fn open_data(&mut self, s: SymbolId, span: Span) -> Result<(), Failed> {
         self.symbols.get_mut(s).open = false;
         let symbol = self.symbols.get(s);
         let (had, declared, name, table) = (
@@ -563,7 +561,7 @@ impl Compiler {
     }
 
     /// Takes the number of indices that data show.
-    fn set_dimension(&mut self, s: SymbolId, dim: usize) {
+    pub(super) fn set_dimension(&mut self, s: SymbolId, dim: usize) {
         if dim > 0 && dim <= 20 && dim != self.symbols.get(s).dim() {
             self.reshape(s, dim);
         }
@@ -670,7 +668,7 @@ impl Compiler {
     }
 
     /// All keys a record of data stands for, flat.
-    fn expand(
+    pub(super) fn expand(
         &mut self,
         s: SymbolId,
         parts: &[KeyPart],
@@ -721,7 +719,7 @@ impl Compiler {
     }
 
     /// All combinations of the parts of a key that begins at a position.
-    fn products(
+    pub(super) fn products(
         &mut self,
         s: SymbolId,
         position: usize,
@@ -985,7 +983,7 @@ impl Compiler {
         Ok(())
     }
 
-    fn acronym(&mut self, name: &str, span: Span) -> Result<f64, Failed> {
+    pub(super) fn acronym(&mut self, name: &str, span: Span) -> Result<f64, Failed> {
         if let Some(s) = self.symbols.find(name)
             && let SymbolKind::Acronym(n) = self.symbols.get(s).kind
         {
@@ -999,7 +997,14 @@ impl Compiler {
     }
 
     /// Stores a value of a data statement; an error if the record is there already.
-    fn put_value(&mut self, s: SymbolId, table: TableId, key: &[Label], v: f64, span: Span) {
+    pub(super) fn put_value(
+        &mut self,
+        s: SymbolId,
+        table: TableId,
+        key: &[Label],
+        v: f64,
+        span: Span,
+    ) {
         let v = if v == 0.0 && self.modes.eps { EPS } else { v };
         let t = &mut self.store.tables[table as usize];
         if !self.modes.multi && !t.is_after_last(key) && t.find(key).is_some() {
@@ -1014,95 +1019,6 @@ impl Compiler {
             return;
         }
         t.set(key, v);
-    }
-
-    pub(super) fn declare_table(&mut self, t: &TableDecl, map: &SourceMap) -> Result<(), Failed> {
-        let s = self.declare(
-            &t.symbol,
-            SymbolKind::Parameter { scalar: false },
-            |c, n| c.store.add_table(n, 0.0),
-        )?;
-        let open = self.symbols.get(s).open;
-        self.open_data(s, t.symbol.name.span)?;
-        if open {
-            let mut reader = TableReader::new(map.expanded(), t.body, 1, self.modes.undf);
-            while let Some(cell) = reader.next() {
-                if let Ok(cell) = cell {
-                    self.set_dimension(s, width(cell.row) + width(cell.column));
-                    break;
-                }
-            }
-        }
-        let symbol = self.symbols.get(s).clone();
-        if symbol.dim() < 2 {
-            return self.fail(
-                Diagnostic::error(
-                    "E0346",
-                    t.symbol.name.span,
-                    format!(
-                        "a table has rows and columns; `{}` has {} index",
-                        symbol.name,
-                        symbol.dim()
-                    ),
-                )
-                .label("at least two index positions are needed")
-                .help("use a `parameter` with a list instead"),
-            );
-        }
-        let defines: Vec<bool> = t
-            .symbol
-            .domain
-            .iter()
-            .flatten()
-            .map(|d| d.defines)
-            .collect();
-        let mut reader = TableReader::new(map.expanded(), t.body, symbol.dim(), self.modes.undf);
-        let (mut keys, mut parts) = (Vec::new(), Vec::new());
-        let mut headers = 0;
-        while let Some(cell) = reader.next() {
-            let (v, span) = match cell {
-                Ok(c) => {
-                    parts.clear();
-                    parts.extend_from_slice(c.row);
-                    parts.extend_from_slice(c.column);
-                    let v = match c.value {
-                        Tail::Number(v, _) => Ok(v),
-                        Tail::Name(n, at) => self.acronym(n, at),
-                        _ => continue,
-                    };
-                    let Ok(v) = v else { continue };
-                    (v, c.span)
-                }
-                Err(d) => {
-                    self.report(d);
-                    if self.error_count() >= super::MAX_ERRORS {
-                        break;
-                    }
-                    continue;
-                }
-            };
-            // The labels of columns come before those of rows, though no value stand there.
-            if headers < reader.headers() {
-                headers = reader.headers();
-                for part in reader.columns().flatten() {
-                    if let KeyPart::Label { text, .. } = part {
-                        self.store.universe.intern(text);
-                    }
-                }
-            }
-            keys.clear();
-            if self
-                .expand(s, &parts, None, span, &defines, &mut keys)
-                .is_err()
-            {
-                continue;
-            }
-            for k in keys.chunks_exact(symbol.dim()) {
-                self.put_value(s, symbol.table, k, v, span);
-            }
-        }
-        self.store.table_mut(symbol.table).tidy();
-        Ok(())
     }
 
     /// `variable x(i) / a.lo 5 /`.
@@ -1177,7 +1093,7 @@ impl Compiler {
 }
 
 /// Replaces `set` and the name behind it by all elements of that set.
-fn set_prefix<'a>(parts: &[KeyPart<'a>]) -> Option<Vec<KeyPart<'a>>> {
+pub(super) fn set_prefix<'a>(parts: &[KeyPart<'a>]) -> Option<Vec<KeyPart<'a>>> {
     let is_set = |p: &KeyPart| matches!(p, KeyPart::Label { text, quoted: false, .. } if text.eq_ignore_ascii_case("set"));
     if !parts.iter().any(is_set) {
         return None;

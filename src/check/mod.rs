@@ -14,6 +14,7 @@ mod effects;
 mod expr;
 mod figure;
 mod model;
+mod table;
 pub use model::walk as walk_node;
 pub(crate) mod statement;
 

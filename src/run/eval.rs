@@ -3,7 +3,6 @@
 use super::Machine;
 use super::arithmetic::{self, ArithmeticError};
 use crate::autodiff::functions::function_value;
-use crate::check::functions::name_of;
 use crate::check::node::*;
 use crate::check::symbols::{SymbolKind, attribute};
 use crate::data::universe::Label;
@@ -310,22 +309,6 @@ impl Machine<'_> {
                 .copied()
                 .fold(f64::NEG_INFINITY, |a, b| extreme(a, b, |a, b| a > b)),
             Function::Abs | Function::Sqrt | Function::Sign | Function::Sqr if eps => EPS,
-            Function::Abs | Function::Sqr => f64::INFINITY,
-            Function::Sqrt | Function::Exp | Function::Log | Function::Log2 | Function::Log10
-                if args[0] == f64::INFINITY =>
-            {
-                f64::INFINITY
-            }
-            Function::Exp if args[0] == f64::NEG_INFINITY => 0.0,
-            Function::Power | Function::RPower
-                if args[0] == f64::INFINITY && number(args[1]).is_finite() =>
-            {
-                f64::INFINITY.powf(number(args[1]))
-            }
-            // Bounded functions have a limit.
-            Function::ArcTan if !eps => args[0].signum() * std::f64::consts::FRAC_PI_2,
-            Function::Tanh if !eps => args[0].signum(),
-            Function::Sigmoid | Function::ErrorF if !eps => f64::from(u8::from(args[0] > 0.0)),
             Function::Sign => args[0].signum(),
             Function::Floor | Function::Ceil | Function::Round | Function::Trunc => args[0],
             Function::IfThen => {
@@ -344,7 +327,7 @@ impl Machine<'_> {
             Function::BoolAnd => arithmetic::relate(BinaryOp::And, args[0], args[1]),
             Function::BoolOr => arithmetic::relate(BinaryOp::Or, args[0], args[1]),
             Function::BoolNot => f64::from(u8::from(!truth(args[0]))),
-            _ if args.iter().all(|x| x.is_finite() || is_eps(*x)) => {
+            _ => {
                 let plain: Vec<f64> = args.iter().map(|&x| number(x)).collect();
                 match function_value(f, &plain) {
                     Ok(v) => v,
@@ -356,12 +339,6 @@ impl Machine<'_> {
                     ),
                 }
             }
-            _ => self.execution_error(
-                "E0403",
-                span,
-                format!("`{}` of an infinite number has no value", name_of(f)),
-                "replace the infinite number, or guard the function with a condition",
-            ),
         }
     }
 

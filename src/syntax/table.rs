@@ -12,6 +12,17 @@ use super::data::{DataKind, DataReader, Fields, KeyPart, MARK, Tail, width};
 use crate::diag::Diagnostic;
 use crate::source::Span;
 
+/// What comes next in a table.
+#[derive(Debug)]
+pub enum TableItem<'r, 'a> {
+    /// A new line of column labels, see [`TableReader::columns`].
+    Headings,
+    /// The label of a row without values.
+    EmptyRow(&'r [KeyPart<'a>]),
+    /// A value.
+    Cell(Cell<'r, 'a>),
+}
+
 /// One value of a table.
 #[derive(Debug)]
 pub struct Cell<'r, 'a> {
@@ -19,6 +30,8 @@ pub struct Cell<'r, 'a> {
     pub row: &'r [KeyPart<'a>],
     /// Key of the column.
     pub column: &'r [KeyPart<'a>],
+    /// Which of the present columns that is.
+    pub place: usize,
     /// The value: a number or an acronym.
     pub value: Tail<'a>,
     /// Place of the value.
@@ -41,8 +54,6 @@ pub struct TableReader<'a> {
     at: usize,
     end: usize,
     columns: Vec<Column<'a>>,
-    /// Lines of column labels read so far.
-    headers: usize,
     /// The next line that is not blank holds column labels.
     header: bool,
     row: Vec<KeyPart<'a>>,
@@ -56,6 +67,10 @@ pub struct TableReader<'a> {
     reader: DataReader<'a>,
     /// In a row, behind its label.
     in_row: bool,
+    /// The row had no value so far.
+    empty: bool,
+    /// Column labels were read that were not given yet.
+    headings: bool,
     /// Index positions of rows and columns together.
     dim: usize,
     /// Cells of a line under `$onDelim` that are still to be given: column and bytes, last first.
@@ -71,7 +86,6 @@ impl<'a> TableReader<'a> {
             at: lo.min(hi),
             end: hi,
             columns: Vec::new(),
-            headers: 0,
             header: true,
             row: Vec::new(),
             row_span: body,
@@ -81,14 +95,11 @@ impl<'a> TableReader<'a> {
             known: (0, 0),
             reader: DataReader::new("", 0, DataKind::Values, undf),
             in_row: false,
+            empty: false,
+            headings: false,
             dim,
             fields: Vec::new(),
         }
-    }
-
-    /// How many lines of column labels have been read.
-    pub fn headers(&self) -> usize {
-        self.headers
     }
 
     /// Keys of the columns of the present block, in order.
@@ -96,33 +107,42 @@ impl<'a> TableReader<'a> {
         self.columns.iter().map(|c| c.key.as_slice())
     }
 
-    /// The next value. After an error, reading goes on with the next value or line.
+    /// The next item. After an error, reading goes on with the next value or line.
     #[allow(clippy::should_implement_trait)]
-    pub fn next(&mut self) -> Option<Result<Cell<'_, 'a>, Diagnostic>> {
+    pub fn next(&mut self) -> Option<Result<TableItem<'_, 'a>, Diagnostic>> {
         loop {
+            if std::mem::take(&mut self.headings) {
+                return Some(Ok(TableItem::Headings));
+            }
             if let Some((column, from, to)) = self.fields.pop() {
                 return Some(match self.reader.field_value(from, to) {
-                    Ok(value) => Ok(Cell {
+                    Ok(value) => Ok(TableItem::Cell(Cell {
                         row: &self.row,
                         column: &self.columns[column].key,
+                        place: column,
                         value,
                         span: self.span(from, to),
-                    }),
+                    })),
                     Err(d) => Err(*d),
                 });
             }
             if self.in_row && self.reader.more() {
+                self.empty = false;
                 return Some(match self.cell() {
-                    Ok((column, value, span)) => Ok(Cell {
+                    Ok((column, value, span)) => Ok(TableItem::Cell(Cell {
                         row: &self.row,
                         column: &self.columns[column].key,
+                        place: column,
                         value,
                         span,
-                    }),
+                    })),
                     Err(d) => Err(*d),
                 });
             }
             self.in_row = false;
+            if std::mem::take(&mut self.empty) {
+                return Some(Ok(TableItem::EmptyRow(&self.row)));
+            }
             if self.at >= self.end {
                 return None;
             }
@@ -165,7 +185,6 @@ impl<'a> TableReader<'a> {
         self.reader.restart(self.line, self.line_base);
         if self.header {
             self.header = false;
-            self.headers += 1;
             self.read_header()
         } else {
             self.read_row_label()
@@ -186,7 +205,6 @@ impl<'a> TableReader<'a> {
         }
         if self.header {
             self.header = false;
-            self.headers += 1;
             self.columns.clear();
             for (from, to) in fields {
                 self.columns.push(Column {
@@ -196,6 +214,7 @@ impl<'a> TableReader<'a> {
                     span: self.span(from, to),
                 });
             }
+            self.headings = true;
             return;
         }
         self.row = first
@@ -228,6 +247,7 @@ impl<'a> TableReader<'a> {
                 span,
             });
         }
+        self.headings = true;
         Ok(())
     }
 
@@ -253,6 +273,7 @@ impl<'a> TableReader<'a> {
             ));
         }
         self.in_row = true;
+        self.empty = true;
         Ok(())
     }
 
@@ -380,7 +401,9 @@ mod tests {
         let mut out = Vec::new();
         while let Some(c) = t.next() {
             out.push(match c {
-                Ok(c) => {
+                Ok(TableItem::Headings) => continue,
+                Ok(TableItem::EmptyRow(r)) => format!("{}|", key(r)),
+                Ok(TableItem::Cell(c)) => {
                     let v = match c.value {
                         Tail::Number(x, _) => x.to_string(),
                         Tail::Name(n, _) => n.to_owned(),

@@ -1,0 +1,136 @@
+//! `table` declarations.
+
+use super::declare::set_prefix;
+use super::node::SymbolId;
+use super::symbols::SymbolKind;
+use super::{Compiler, Failed, MAX_ERRORS};
+use crate::diag::Diagnostic;
+use crate::source::{SourceMap, Span};
+use crate::syntax::ast::TableDecl;
+use crate::syntax::data::{KeyPart, Tail, width};
+use crate::syntax::table::{TableItem, TableReader};
+
+impl Compiler {
+    pub(super) fn declare_table(&mut self, t: &TableDecl, map: &SourceMap) -> Result<(), Failed> {
+        let s = self.declare(
+            &t.symbol,
+            SymbolKind::Parameter { scalar: false },
+            |c, n| c.store.add_table(n, 0.0),
+        )?;
+        let open = self.symbols.get(s).open;
+        let name = t.symbol.name.span;
+        self.open_data(s, name)?;
+        if open {
+            let mut reader = TableReader::new(map.expanded(), t.body, 1, self.modes.undf);
+            while let Some(item) = reader.next() {
+                if let Ok(TableItem::Cell(c)) = item {
+                    self.set_dimension(s, width(c.row) + width(c.column));
+                    break;
+                }
+            }
+        }
+        let symbol = self.symbols.get(s).clone();
+        let dim = symbol.dim();
+        if dim < 2 {
+            return self.fail(
+                Diagnostic::error(
+                    "E0346",
+                    name,
+                    format!(
+                        "a table has rows and columns; `{}` has {dim} index",
+                        symbol.name
+                    ),
+                )
+                .label("at least two index positions are needed")
+                .help("use a `parameter` with a list instead"),
+            );
+        }
+        let defines: Vec<bool> = t
+            .symbol
+            .domain
+            .iter()
+            .flatten()
+            .map(|d| d.defines)
+            .collect();
+        let mut reader = TableReader::new(map.expanded(), t.body, dim, self.modes.undf);
+        let (mut keys, mut parts) = (Vec::new(), Vec::new());
+        // Columns whose labels were refused.
+        let mut refused: Vec<bool> = Vec::new();
+        while let Some(item) = reader.next() {
+            let cell = match item {
+                Ok(TableItem::Cell(c)) => c,
+                // Labels count even where nothing stands under or behind them: they are checked, and
+                // take their place in the universe.
+                Ok(TableItem::Headings) => {
+                    refused.clear();
+                    for key in reader.columns() {
+                        let at = dim.saturating_sub(width(key));
+                        let label = self.table_label(s, at, key, &defines, name);
+                        refused.push(label.is_err());
+                    }
+                    continue;
+                }
+                Ok(TableItem::EmptyRow(key)) => {
+                    let _ = self.table_label(s, 0, key, &defines, name);
+                    continue;
+                }
+                Err(d) => {
+                    self.report(d);
+                    if self.error_count() >= MAX_ERRORS {
+                        break;
+                    }
+                    continue;
+                }
+            };
+            if refused.get(cell.place) == Some(&true) {
+                continue;
+            }
+            let value = match cell.value {
+                Tail::Number(v, _) => v,
+                Tail::Name(n, at) => match self.acronym(n, at) {
+                    Ok(v) => v,
+                    Err(_) => continue,
+                },
+                _ => continue,
+            };
+            parts.clear();
+            parts.extend_from_slice(cell.row);
+            parts.extend_from_slice(cell.column);
+            keys.clear();
+            if self
+                .expand(s, &parts, None, cell.span, &defines, &mut keys)
+                .is_err()
+            {
+                continue;
+            }
+            for k in keys.chunks_exact(dim) {
+                self.put_value(s, symbol.table, k, value, cell.span);
+            }
+        }
+        self.store.table_mut(symbol.table).tidy();
+        Ok(())
+    }
+
+    /// Checks the label of a row or column that begins at an index position. A set that the table
+    /// defines gets labels from values only.
+    fn table_label(
+        &mut self,
+        s: SymbolId,
+        position: usize,
+        key: &[KeyPart],
+        defines: &[bool],
+        span: Span,
+    ) -> Result<(), Failed> {
+        let spelled_out = set_prefix(key);
+        let mut at = position;
+        for part in spelled_out.as_deref().unwrap_or(key) {
+            let part = std::slice::from_ref(part);
+            let end = at + width(part);
+            if !defines.iter().take(end).skip(at).any(|&d| d) {
+                self.products(s, at, part, span, &[])?;
+            }
+            at = end;
+        }
+        Ok(())
+    }
+}
