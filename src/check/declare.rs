@@ -309,12 +309,30 @@ impl Compiler {
         map: &SourceMap,
     ) -> Result<(), Failed> {
         for d in list {
-            let Ok(s) = self.declare(d, SymbolKind::Variable(VariableKind::Free), |c, n| {
+            let Ok(s) = self.declare(d, SymbolKind::Variable(VariableKind::Unstated), |c, n| {
                 c.record_tables(n)
             }) else {
                 continue;
             };
             if kind != VariableKind::Unstated {
+                let symbol = self.symbols.get(s);
+                if let SymbolKind::Variable(before) = symbol.kind
+                    && before != VariableKind::Unstated
+                    && before != kind
+                {
+                    let d = Diagnostic::error(
+                        "E0348",
+                        d.name.span,
+                        format!("the variable `{}` has another kind already", symbol.name),
+                    )
+                    .label("a second kind")
+                    .other(symbol.declared, "declared here")
+                    .help(
+                        "a variable has one kind; assign its bounds `.lo` and `.up` to narrow it",
+                    );
+                    self.report(d);
+                    continue;
+                }
                 self.symbols.get_mut(s).kind = SymbolKind::Variable(kind);
                 let (lo, up) = match kind {
                     VariableKind::Unstated | VariableKind::Free => {

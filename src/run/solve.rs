@@ -243,7 +243,9 @@ impl Machine<'_> {
             for b in &blocks.list {
                 let t = self.symbols.get(b.symbol).table + offset;
                 let r = b.start as usize..(b.start + b.len) as usize;
-                let values: Vec<f64> = values[r].iter().map(|v| v + 0.0).collect();
+                // What an interior point leaves of a zero is no number that a model means.
+                let plain = |v: &f64| if v.abs() < 1e-100 { 0.0 } else { *v };
+                let values: Vec<f64> = values[r].iter().map(plain).collect();
                 let t = self.store.table_mut(t);
                 // Zeros are set too: what the last solve left must go.
                 t.merge(&b.keys, &values);
