@@ -1,5 +1,6 @@
 //! Declarations and data statements.
 
+use super::expansion::{MAX_EXPANSION, NoRange, Tuples, range};
 use super::node::{SymbolId, TableId};
 use super::symbols::{DomainPosition, ModelInfo, Symbol, SymbolKind, UNIVERSE, attribute};
 use super::{Compiler, Failed};
@@ -12,9 +13,6 @@ use crate::syntax::ast::{
 };
 use crate::syntax::data::{DataKind, DataReader, KeyPart, Tail, width};
 use std::rc::Rc;
-
-/// A range or a product of sets in data may not make more records than this.
-const MAX_EXPANSION: usize = 50_000_000;
 
 impl Compiler {
     fn positions(&mut self, domain: &[DomainName]) -> Result<Vec<DomainPosition>, Failed> {
@@ -714,25 +712,20 @@ impl Compiler {
         }
         let mut rows = self.products(s, 0, parts, span, defines)?;
         if let Some(other) = matched {
-            let at = rows.first().map_or(0, Vec::len);
-            let behind = self.products(s, at, other, span, defines)?;
+            let behind = self.products(s, rows.width, other, span, defines)?;
             if rows.len() != behind.len() {
                 self.report(
                     Diagnostic::warning("E0347", span, format!("`:` matches one by one, but there are {} on the left and {} on the right", rows.len(), behind.len()))
                         .label("what is left over on one side is dropped")
                         .help("a dot instead of the colon makes all combinations"),
                 );
-                rows.truncate(behind.len());
             }
-            rows.iter_mut().zip(behind).for_each(|(a, b)| a.extend(b));
+            rows = rows.beside(&behind);
         }
-        if rows.is_empty() {
-            return Ok(());
+        if rows.len() > 0 && rows.width != dim {
+            return self.wrong_dimension(s, span, rows.width);
         }
-        if rows[0].len() != dim {
-            return self.wrong_dimension(s, span, rows[0].len());
-        }
-        out.extend(rows.into_iter().flatten());
+        out.append(&mut rows.labels);
         Ok(())
     }
 
@@ -744,12 +737,16 @@ impl Compiler {
         parts: &[KeyPart],
         span: Span,
         defines: &[bool],
-    ) -> Result<Vec<Vec<Label>>, Failed> {
-        let mut rows: Vec<Vec<Label>> = vec![Vec::new()];
+    ) -> Result<Tuples, Failed> {
+        let mut rows: Option<Tuples> = None;
         for part in parts {
-            let at = position + rows.first().map_or(0, Vec::len);
-            let choices = self.choices(s, at, part, defines)?;
-            if rows.len().saturating_mul(choices.len()) > MAX_EXPANSION {
+            let at = position + rows.as_ref().map_or(0, |r| r.width);
+            let choices = self.choices(s, at, part, span, defines)?;
+            let Some(before) = rows else {
+                rows = Some(choices);
+                continue;
+            };
+            if before.len().saturating_mul(choices.len()) > MAX_EXPANSION {
                 return self.fail(
                     Diagnostic::error(
                         "E0343",
@@ -760,17 +757,9 @@ impl Compiler {
                     .help("make the set by an assignment with a condition"),
                 );
             }
-            let mut next = Vec::with_capacity(rows.len() * choices.len());
-            for r in &rows {
-                for c in &choices {
-                    let mut k = r.clone();
-                    k.extend_from_slice(c);
-                    next.push(k);
-                }
-            }
-            rows = next;
+            rows = Some(before.times(&choices));
         }
-        Ok(rows)
+        Ok(rows.unwrap_or_default())
     }
 
     /// The tuples one part of a key stands for.
@@ -779,12 +768,14 @@ impl Compiler {
         s: SymbolId,
         position: usize,
         part: &KeyPart,
+        whole: Span,
         defines: &[bool],
-    ) -> Result<Vec<Vec<Label>>, Failed> {
+    ) -> Result<Tuples, Failed> {
         match part {
-            KeyPart::Label { text, span, .. } => Ok(vec![vec![
-                self.data_label(s, position, text, *span, defines)?,
-            ]]),
+            KeyPart::Label { text, span, .. } => {
+                let label = self.data_label(s, position, text, *span, defines)?;
+                Ok(Tuples::single(vec![label]))
+            }
             KeyPart::Range { from, to, span } => {
                 let labels = match range(from, to) {
                     Ok(labels) => labels,
@@ -807,10 +798,10 @@ impl Compiler {
                         );
                     }
                 };
-                labels
+                let labels = labels
                     .iter()
-                    .map(|l| Ok(vec![self.data_label(s, position, l, *span, defines)?]))
-                    .collect()
+                    .map(|l| self.data_label(s, position, l, *span, defines));
+                Ok(Tuples::single(labels.collect::<Result<_, _>>()?))
             }
             KeyPart::AllOf { set, span } => {
                 let id = self.lookup_set(&Ident {
@@ -821,13 +812,7 @@ impl Compiler {
                 if id == UNIVERSE {
                     self.store.refresh_universe();
                 }
-                let keys: Vec<Vec<Label>> = self
-                    .store
-                    .table(t)
-                    .iter()
-                    .map(|(k, _)| k.to_vec())
-                    .collect();
-                Ok(keys)
+                Ok(Tuples::of(self.store.table(t)))
             }
             KeyPart::Universe(_) => {
                 self.store.refresh_universe();
@@ -835,23 +820,19 @@ impl Compiler {
                     Some(DomainPosition::Set(d)) => self.symbols.get(*d).table,
                     _ => UNIVERSE,
                 };
-                Ok(self
-                    .store
-                    .table(t)
-                    .iter()
-                    .map(|(k, _)| k.to_vec())
-                    .collect())
+                Ok(Tuples::of(self.store.table(t)))
             }
             KeyPart::Group(alternatives) => {
-                let mut out = Vec::new();
+                let mut out = Tuples::default();
                 for alternative in alternatives {
-                    out.extend(self.products(
-                        s,
-                        position,
-                        alternative,
-                        Span::default(),
-                        defines,
-                    )?);
+                    let more = self.products(s, position, alternative, whole, defines)?;
+                    if out.len() > 0 && more.len() > 0 && out.width != more.width {
+                        return self.wrong_dimension(s, whole, position + more.width);
+                    }
+                    if more.len() > 0 {
+                        out.width = more.width;
+                    }
+                    out.labels.extend(more.labels);
                 }
                 Ok(out)
             }
@@ -1146,109 +1127,4 @@ fn number(text: &str) -> Option<f64> {
         "no" => 0.0,
         _ => fast_float2::parse(t.strip_prefix('+').unwrap_or(&t)).ok()?,
     })
-}
-
-/// `a*e`, `x*ab`: labels of letters count like the columns of a spreadsheet.
-fn letters(from: &str, to: &str) -> Option<Vec<String>> {
-    let value = |s: &str| {
-        s.bytes().try_fold(0u64, |v, c| {
-            v.checked_mul(26)?
-                .checked_add(u64::from(c.to_ascii_lowercase() - b'a') + 1)
-        })
-    };
-    let (lo, hi) = (value(from)?, value(to)?);
-    if lo > hi || hi - lo > 1_000_000 {
-        return None;
-    }
-    let first = if from.as_bytes()[0].is_ascii_uppercase() {
-        b'A'
-    } else {
-        b'a'
-    };
-    let spell = |mut k: u64| {
-        let mut s = Vec::new();
-        while k > 0 {
-            s.push(first + ((k - 1) % 26) as u8);
-            k = (k - 1) / 26;
-        }
-        s.reverse();
-        s.into_iter().map(char::from).collect()
-    };
-    Some((lo..=hi).map(spell).collect())
-}
-
-/// Why two labels span no range.
-#[derive(Debug, PartialEq)]
-enum NoRange {
-    /// They do not differ in one number.
-    Unlike,
-    /// So many labels.
-    TooLong(u64),
-}
-
-/// `i1*i10`: labels that differ in one number, up or down; leading zeros are kept.
-fn range(from: &str, to: &str) -> Result<Vec<String>, NoRange> {
-    let (a, b) = (from.as_bytes(), to.as_bytes());
-    if from.eq_ignore_ascii_case(to) {
-        return Ok(vec![from.to_string()]);
-    }
-    let mut prefix = a
-        .iter()
-        .zip(b)
-        .take_while(|(x, y)| x.eq_ignore_ascii_case(y))
-        .count();
-    while prefix > 0 && a[prefix - 1].is_ascii_digit() {
-        prefix -= 1;
-    }
-    let digits = |s: &[u8]| {
-        s[prefix..]
-            .iter()
-            .take_while(|c| c.is_ascii_digit())
-            .count()
-    };
-    if a.iter().chain(b).all(u8::is_ascii_alphabetic) {
-        return letters(from, to).ok_or(NoRange::Unlike);
-    }
-    let (da, db) = (digits(a), digits(b));
-    if da == 0 || db == 0 || !a[prefix + da..].eq_ignore_ascii_case(&b[prefix + db..]) {
-        return Err(NoRange::Unlike);
-    }
-    let (na, nb) = (&from[prefix..prefix + da], &to[prefix..prefix + db]);
-    let (Ok(lo), Ok(hi)) = (na.parse::<u64>(), nb.parse::<u64>()) else {
-        return Err(NoRange::Unlike);
-    };
-    if lo.abs_diff(hi) >= MAX_EXPANSION as u64 {
-        return Err(NoRange::TooLong(lo.abs_diff(hi).saturating_add(1)));
-    }
-    // A leading zero, or equal lengths, fixes the width.
-    let width = if na.starts_with('0') || da == db {
-        da
-    } else {
-        0
-    };
-    let (head, tail) = (&from[..prefix], &from[prefix + da..]);
-    let label = |k: u64| format!("{head}{k:0width$}{tail}");
-    Ok(if lo <= hi {
-        (lo..=hi).map(label).collect()
-    } else {
-        (hi..=lo).rev().map(label).collect()
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{NoRange, range};
-
-    #[test]
-    fn ranges_keep_prefix_suffix_and_zeros() {
-        assert_eq!(range("a9", "a11").unwrap(), ["a9", "a10", "a11"]);
-        assert_eq!(range("c09", "c11").unwrap(), ["c09", "c10", "c11"]);
-        assert_eq!(range("s02s", "s04s").unwrap(), ["s02s", "s03s", "s04s"]);
-        assert_eq!(range("1990", "1992").unwrap(), ["1990", "1991", "1992"]);
-        assert_eq!(range("a1", "b3"), Err(NoRange::Unlike));
-        assert_eq!(range("a3", "a1").unwrap(), ["a3", "a2", "a1"]);
-        assert_eq!(range("b", "d").unwrap(), ["b", "c", "d"]);
-        assert_eq!(range("y", "ab").unwrap(), ["y", "z", "aa", "ab"]);
-        assert_eq!(range("d", "a"), Err(NoRange::Unlike));
-    }
 }

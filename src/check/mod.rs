@@ -11,6 +11,7 @@ pub mod symbols;
 
 mod declare;
 mod effects;
+mod expansion;
 mod expr;
 mod figure;
 mod model;
