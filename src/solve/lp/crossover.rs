@@ -13,7 +13,7 @@ use super::form::{Point, Problem};
 use super::simplex::{Basis, State, jitter};
 
 /// Dimensions of the optimal face from which a second interior-point run is cheaper than pushes.
-const WIDE: usize = 3000;
+const WIDE: usize = 1500;
 
 /// The weight of a variable in the objective of a face is at most one over this.
 const NEAR: f64 = 1e-3;
