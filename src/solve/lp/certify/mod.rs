@@ -115,7 +115,7 @@ pub fn exact_low(p: &Problem) -> f64 {
 }
 
 /// The same, with or without exact arithmetic.
-pub(in crate::solve) fn certify_by(
+pub(super) fn certify_by(
     instance: &Instance,
     outcome: &Outcome,
     settings: &Settings,

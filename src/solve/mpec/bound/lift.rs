@@ -15,12 +15,12 @@
 //! from the equations of both sides are contained: in limit analysis, xᵀ(compatibility) −
 //! uᵀ(equilibrium) is the work equation α = −f_Dᵀu + Σ tan φ nᵢ|γᵢ|.
 //!
-//! **What is left out.** e_A·z_j for columns z_j which equations of B determine: it follows from the other
-//! products. And most products with *opposite columns*, two columns without upper bounds whose
-//! entries are each other's negatives (the positive and negative part of one quantity): a solution may
-//! increase both without end, so that no product with them can say anything where that is possible.
-//! Only those with the entries of their own pairs' rows are kept, which the pairs' equations
-//! need. Fewer products are a weaker relaxation, never a wrong one.
+//! Left out are e_A·z_j for columns z_j which equations of B determine: they follow from the other
+//! products.
+//!
+//! *Opposite columns* are two of side B without upper bounds whose entries are each other's negatives:
+//! the positive and negative part of one quantity. A solution in which both are positive stays one, of the
+//! same value, if both are lowered until one is 0; so one of them may be taken to be 0.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -29,6 +29,7 @@ use super::super::split::sides;
 use crate::model::instance::{
     ColumnKind, Columns, Instance, Objective, Relation, Rows, Sense, SparseRows,
 };
+use crate::solve::lp::form::{Problem, Sparse};
 
 /// Σ terms + constant, over the columns of one side.
 #[derive(Clone, Debug, Default)]
@@ -71,8 +72,10 @@ struct Half {
     pair: Vec<Option<usize>>,
     /// Columns that the equations determine by others.
     determined: Vec<bool>,
-    /// Of opposite columns: the other side's columns with which there are products.
-    near: Vec<Option<Vec<usize>>>,
+    /// Of opposite columns: the other one.
+    opposite: Vec<Option<usize>>,
+    /// Columns that are not negative.
+    signed: Vec<bool>,
 }
 
 /// An equation's columns as found in one side, and the constant of the others.
@@ -108,7 +111,8 @@ impl Half {
             inequalities: Vec::new(),
             pair: vec![None; program.pairs.len()],
             determined: vec![false; columns.len()],
-            near: vec![None; columns.len()],
+            opposite: vec![None; columns.len()],
+            signed: vec![false; columns.len()],
         };
         let mut of_row = vec![None; m];
         let mut of_column = vec![None; n];
@@ -144,6 +148,7 @@ impl Half {
             if l > -1e30 {
                 let mut f = Factor::column(k);
                 f.constant = -l;
+                out.signed[k] = l >= 0.0;
                 of_column[j] = Some(out.inequalities.len());
                 out.inequalities.push(f);
             }
@@ -160,30 +165,6 @@ impl Half {
         out
     }
 
-    /// A side without columns.
-    fn nothing() -> Self {
-        Self {
-            count: 0,
-            equations: Vec::new(),
-            inequalities: Vec::new(),
-            pair: Vec::new(),
-            determined: Vec::new(),
-            near: Vec::new(),
-        }
-    }
-
-    /// The sum of the inequalities, without its constant.
-    fn total(&self) -> Factor {
-        let mut sum: BTreeMap<usize, f64> = BTreeMap::new();
-        for (j, v) in self.inequalities.iter().flat_map(|f| &f.terms) {
-            *sum.entry(*j).or_default() += v;
-        }
-        Factor {
-            terms: sum.into_iter().filter(|e| e.1 != 0.0).collect(),
-            constant: 0.0,
-        }
-    }
-
     /// Finds what is redundant: equations that follow from others go, and the columns that the rest
     /// determines are marked.
     fn reduce(&mut self) {
@@ -195,13 +176,9 @@ impl Half {
         }
         // Row echelon form as far as it comes: pivot column and row.
         let mut echelon: Vec<(usize, BTreeMap<usize, f64>)> = Vec::new();
-        let near = &self.near;
         let determined = &mut self.determined;
         let one = self.count;
         self.equations.retain(|f| {
-            if f.terms.iter().any(|t| near[t.0].is_some()) {
-                return true;
-            }
             let mut row: BTreeMap<usize, f64> = f.all(one).collect();
             let size = row.values().fold(0.0f64, |s, v| s.max(v.abs()));
             for (p, other) in &echelon {
@@ -228,56 +205,33 @@ impl Half {
     }
 }
 
-/// Marks pairs of opposite columns of a side, with the columns of the other that stand in the rows of
-/// their pairs.
-fn opposites(
-    program: &Program,
-    on_a: &[bool],
-    which: bool,
-    place: [&[usize]; 2],
-    half: &mut Half,
-    one: usize,
-) {
+/// Marks pairs of opposite columns of a side.
+fn opposites(program: &Program, place: &[usize], half: &mut Half) {
     let instance = &program.envelope;
-    let (m, n) = (instance.row_count(), instance.column_count());
-    let [own, other] = place;
     let mut entries: BTreeMap<usize, Vec<(usize, u64)>> = BTreeMap::new();
-    for i in (0..m).filter(|&i| on_a[n + i] == which) {
-        for (j, a) in instance.matrix.row(i) {
+    for i in 0..instance.row_count() {
+        for (j, a) in instance.matrix.row(i).filter(|e| place[e.0] != usize::MAX) {
             entries.entry(j).or_default().push((i, a.to_bits()));
         }
     }
     // Columns by their entries; a column's opposite has the same with other signs.
     const SIGN: u64 = 1 << 63;
     let mut known: HashMap<Vec<(usize, u64)>, usize> = HashMap::new();
-    let mut found = Vec::new();
     for (j, list) in entries {
-        let unbounded = instance.columns.lower[j].is_finite() && instance.columns.upper[j] >= 1e30;
-        if own[j] == usize::MAX || !unbounded {
+        let ray = instance.columns.lower[j] == 0.0 && instance.columns.upper[j] >= 1e30;
+        if !ray {
             continue;
         }
         let flipped: Vec<(usize, u64)> = list.iter().map(|&(i, a)| (i, a ^ SIGN)).collect();
         match known.remove(&flipped) {
-            Some(k) => found.push((k, j)),
+            Some(k) => {
+                half.opposite[place[j]] = Some(place[k]);
+                half.opposite[place[k]] = Some(place[j]);
+            }
             None => {
                 known.insert(list, j);
             }
         }
-    }
-    for (j, k) in found {
-        let mut near = Vec::new();
-        for p in program
-            .pairs
-            .iter()
-            .filter(|p| p.column == j || p.column == k)
-        {
-            let f = factor(program, p.row, other);
-            near.extend(f.all(one).map(|t| t.0));
-        }
-        near.sort_unstable();
-        near.dedup();
-        half.near[own[j]] = Some(near.clone());
-        half.near[own[k]] = Some(near);
     }
 }
 
@@ -308,38 +262,14 @@ impl<'a> Lifted<'a> {
         }
     }
 
-    /// Whether the product of two columns (or 1) is there.
-    fn has(&self, i: usize, j: usize) -> bool {
-        let near = |half: &Half, own: usize, other: usize| {
-            let list = half.near.get(own).and_then(Option::as_ref);
-            list.is_none_or(|l| l.binary_search(&other).is_ok())
-        };
-        near(self.a, i, j) && near(self.b, j, i)
-    }
-
     fn column(&mut self, i: usize, j: usize) -> u32 {
         let next = self.lower.len() as u32;
         let number = *self.number.entry((i as u32, j as u32)).or_insert(next);
         if number == next {
-            self.free();
+            self.lower.push(f64::NEG_INFINITY);
+            self.upper.push(f64::INFINITY);
         }
         number
-    }
-
-    /// A column that is no product.
-    fn free(&mut self) -> usize {
-        self.lower.push(f64::NEG_INFINITY);
-        self.upper.push(f64::INFINITY);
-        self.lower.len() - 1
-    }
-
-    /// One more entry of the last row.
-    fn also(&mut self, column: usize, value: f64) {
-        self.matrix.column.push(column as u32);
-        self.matrix.value.push(value);
-        if let Some(end) = self.matrix.start.last_mut() {
-            *end += 1;
-        }
     }
 
     fn instance(mut self, target: usize, sense: Sense) -> Instance {
@@ -371,11 +301,6 @@ impl<'a> Lifted<'a> {
         let (one_a, one_b) = (self.a.count, self.b.count);
         let mut entries: BTreeMap<u32, f64> = BTreeMap::new();
         let mut rhs = 0.0;
-        for (i, _) in f.all(one_a) {
-            if g.all(one_b).any(|(j, _)| !self.has(i, j)) {
-                return;
-            }
-        }
         // A coefficient that would be rounded makes another row than the one that is valid.
         let rounded = |v: f64, w: f64| v.mul_add(w, -(v * w)) != 0.0;
         if f.all(one_a)
@@ -419,6 +344,7 @@ impl<'a> Lifted<'a> {
 pub struct Sides {
     a: Half,
     b: Half,
+    columns: Vec<usize>,
     /// The objective's column on side A.
     target: usize,
     sense: Sense,
@@ -447,13 +373,15 @@ impl Sides {
             terms: vec![(place_a[objective], -program.sign())],
             constant: cutoff,
         });
-        opposites(program, &on_a, true, [&place_a, &place_b], &mut a, count_b);
-        opposites(program, &on_a, false, [&place_b, &place_a], &mut b, count_a);
+        opposites(program, &place_b, &mut b);
         a.reduce();
         b.reduce();
         Some(Self {
             a,
             b,
+            columns: (0..program.envelope.column_count())
+                .filter(|&j| on_a[j])
+                .collect(),
             target: place_a[objective],
             sense: match program.sign() < 0.0 {
                 true => Sense::Maximize,
@@ -462,48 +390,89 @@ impl Sides {
         })
     }
 
-    fn half(&mut self, first: bool) -> &mut Half {
-        match first {
-            true => &mut self.a,
-            false => &mut self.b,
+    /// The program of side A alone.
+    pub fn first(&self) -> Problem {
+        let a = &self.a;
+        let mut p = Problem {
+            cost: vec![0.0; a.count],
+            lower: vec![f64::NEG_INFINITY; a.count],
+            upper: vec![f64::INFINITY; a.count],
+            rows: Sparse::new(),
+            ..Problem::default()
+        };
+        p.cost[self.target] = match self.sense {
+            Sense::Maximize => -1.0,
+            Sense::Minimize => 1.0,
+        };
+        let equations = a.equations.iter().map(|f| (f, 0.0));
+        let inequalities = a.inequalities.iter().map(|f| (f, f64::INFINITY));
+        for (f, room) in equations.chain(inequalities) {
+            p.rows.push(f.terms.iter().copied());
+            p.row_lower.push(-f.constant);
+            p.row_upper.push(room - f.constant);
         }
+        p.columns = p.rows.transpose(a.count);
+        p
     }
 
-    /// The linear program of one side alone whose optimum is the largest sum of its inequalities.
-    pub fn size(&mut self, first: bool) -> Instance {
-        let half = self.half(first);
-        let nothing = Half::nothing();
-        let total = half.total();
-        let mut out = Lifted::new(half, &nothing);
-        let one = Factor::one();
-        for e in &half.equations {
-            out.row(e, &one, Relation::Equal);
-        }
-        for f in &half.inequalities {
-            out.row(f, &one, Relation::Greater);
-        }
-        let target = out.free();
-        out.row(&total, &one, Relation::Equal);
-        out.also(target, -1.0);
-        out.instance(target, Sense::Maximize)
+    /// Columns of the program that are on side A.
+    pub fn columns(&self) -> &[usize] {
+        &self.columns
     }
 
-    /// Takes it as proved that the sum of a side's inequalities is at most this.
-    pub fn bound(&mut self, first: bool, size: f64) {
-        let half = self.half(first);
-        let mut f = negative(half.total());
-        f.constant = size;
-        half.inequalities.push(f);
+    /// Number of columns of side B.
+    pub fn count(&self) -> usize {
+        self.b.count
     }
 
-    /// Products of two columns, at most.
+    /// Products of two columns.
     pub fn products(&self) -> usize {
-        let global = |h: &Half| h.near.iter().filter(|n| n.is_none()).count() + 1;
-        global(&self.a) * global(&self.b)
+        (self.a.count + 1) * (self.b.count + 1)
     }
 
-    /// The linear relaxation.
-    pub fn lift(&self) -> Instance {
+    /// What the equations of side B say about the size of its columns where that of some is known:
+    /// |z_j| ≤ `radius[j]`, infinite where it is not. Only sums of magnitudes are used, so that radii
+    /// k times as large give radii at most k times as large, for k ≥ 1.
+    pub fn spread(&self, radius: &mut [f64]) {
+        let b = &self.b;
+        loop {
+            let mut better = false;
+            for f in &b.equations {
+                let open = |t: &&(usize, f64)| radius[t.0].is_infinite();
+                let known = f.terms.iter().filter(|t| !open(t));
+                let sum =
+                    known.fold(f.constant.abs(), |s, t| s + t.1.abs() * radius[t.0]) * 1.000_001;
+                let unknown: Vec<(usize, f64)> = f.terms.iter().filter(open).copied().collect();
+                let one_sign = |s: f64| unknown.iter().all(|t| b.signed[t.0] && t.1 * s > 0.0);
+                let same = unknown.len() == 1 || one_sign(1.0) || one_sign(-1.0);
+                // Of two opposite ones, one is 0.
+                let two = matches!(unknown[..], [(j, _), (k, _)] if b.opposite[j] == Some(k));
+                if same || two {
+                    for (j, a) in unknown {
+                        radius[j] = sum / a.abs();
+                        better = true;
+                    }
+                }
+            }
+            if !better {
+                return;
+            }
+        }
+    }
+
+    /// Whether the column of side B is not negative.
+    pub fn is_signed(&self, j: usize) -> bool {
+        self.b.signed[j]
+    }
+
+    /// Whether the column is one of two opposite ones.
+    pub fn is_opposite(&self, j: usize) -> bool {
+        self.b.opposite[j].is_some()
+    }
+
+    /// The linear relaxation, and which columns each of its columns is the product of: (i, j), with the
+    /// number after the last one for 1.
+    pub fn lift(&self) -> (Instance, Vec<(usize, usize)>) {
         let (a, b) = (&self.a, &self.b);
         let mut out = Lifted::new(a, b);
         let target = out.column(self.target, b.count) as usize;
@@ -536,6 +505,10 @@ impl Sides {
         for g in &b.inequalities {
             out.row(&one, g, Relation::Greater);
         }
-        out.instance(target, self.sense)
+        let mut products = vec![(0, 0); out.lower.len()];
+        for (&(i, j), &k) in &out.number {
+            products[k as usize] = (i as usize, j as usize);
+        }
+        (out.instance(target, self.sense), products)
     }
 }

@@ -7,6 +7,7 @@
 //! * [`lift`]: where the program comes apart into two sides, products of their rows.
 
 mod lift;
+mod products;
 pub mod weak;
 
 use std::time::Instant;
@@ -15,11 +16,10 @@ use super::pairs::Program;
 use super::settings::Bound;
 use super::split::{shifts, whole};
 use super::tree::{self, Lpcc, Prover};
-use crate::model::instance::{Instance, Relation, Sense};
-use crate::solve::answer::linear;
 use crate::solve::lp::form::Problem;
-use crate::solve::lp::{self, Ended, certify};
-use crate::solve::{Monitor, Outcome, Settings};
+use crate::solve::lp::{Ended, certify};
+use crate::solve::{Monitor, Settings};
+use products::Products;
 
 /// A gap up to this, relative to the objective if that is above 1, is closed.
 pub const GAP: f64 = 1e-6;
@@ -40,9 +40,6 @@ pub struct Proof {
     /// What there is to say.
     pub note: Option<String>,
 }
-
-/// A multiplier up to this is none.
-const NOISE: f64 = 1e-9;
 
 /// Products up to which the lifted relaxation is tried by `quick`, and at all.
 const PRODUCTS: [usize; 2] = [4_000, 40_000];
@@ -81,7 +78,14 @@ pub fn lower(
     let unit = best.abs().max(1.0);
     // The best point is to be well inside.
     let cutoff = best + GAP * unit;
-    let low = lifted(program, cutoff, most, &settings, monitor, &mut proof);
+    let mut products = Products {
+        settings: &settings,
+        monitor: &mut *monitor,
+        begin,
+        iterations: 0,
+    };
+    let low = products.bound(program, cutoff, level, most);
+    proof.iterations += products.iterations;
     if is_closed(low, best) {
         proof.value = Some(low);
         return proof;
@@ -183,89 +187,6 @@ fn prove_node(p: &Problem, y: &[f64], empty: bool) -> f64 {
         true => none,
         false => certify::exact_low(p) + p.offset,
     }
-}
-
-/// The bound of the lifted relaxation, −∞ if there is none.
-fn lifted(
-    program: &Program,
-    cutoff: f64,
-    most: usize,
-    settings: &Settings,
-    monitor: &mut dyn Monitor,
-    proof: &mut Proof,
-) -> f64 {
-    let mut solver = Linear {
-        settings,
-        monitor,
-        iterations: 0,
-    };
-    let Some(mut sides) = lift::Sides::new(program, cutoff).filter(|s| s.products() <= most) else {
-        return f64::NEG_INFINITY;
-    };
-    for first in [true, false] {
-        let largest = -solver.prove(&sides.size(first), "sum of a side's inequalities");
-        if largest.is_finite() {
-            sides.bound(first, 2.0 * largest.abs().max(1.0));
-        }
-    }
-    let low = solver.prove(&sides.lift(), "lifted relaxation");
-    proof.iterations += solver.iterations;
-    low
-}
-
-/// Solves linear programs with proofs.
-struct Linear<'a> {
-    settings: &'a Settings,
-    monitor: &'a mut dyn Monitor,
-    iterations: u64,
-}
-
-impl Linear<'_> {
-    /// The proved bound of the (minimised) objective, −∞ if there is none.
-    fn prove(&mut self, instance: &Instance, what: &str) -> f64 {
-        let answer = linear(&lp::Clarabel, instance, self.settings, self.monitor);
-        let Ok(answer) = answer else {
-            return f64::NEG_INFINITY;
-        };
-        self.iterations += answer.outcome.iterations;
-        let (kept, outcome) = supported(instance, &answer.outcome);
-        self.monitor.log(&format!("kept {} rows", kept.row_count()));
-        let proof = certify::certify(&kept, &outcome, self.settings, self.monitor);
-        self.monitor.log(&format!("{proof:?}"));
-        let (low, high) = proof.map_or((f64::NEG_INFINITY, f64::INFINITY), |p| (p.low, p.high));
-        self.monitor.log(&format!(
-            "{what}: {} rows, {} columns, {}, value in [{low}, {high}]",
-            instance.row_count(),
-            instance.column_count(),
-            answer.status.name(),
-        ));
-        match instance.objective.map(|o| o.sense) {
-            Some(Sense::Maximize) => -high,
-            _ => low,
-        }
-    }
-}
-
-/// The program without the inequalities that do not matter at its solution: those without multipliers.
-/// Fewer of them are a weaker relaxation, never a wrong one.
-fn supported(instance: &Instance, outcome: &Outcome) -> (Instance, Outcome) {
-    let mut kept = instance.clone();
-    let mut out = outcome.clone();
-    let matters = |y: f64| y.abs() > NOISE;
-    for (j, &d) in outcome.column_marginal.iter().enumerate() {
-        let (l, u) = (&mut kept.columns.lower[j], &mut kept.columns.upper[j]);
-        if *l < *u && !matters(d) {
-            (*l, *u) = (f64::NEG_INFINITY, f64::INFINITY);
-            out.column_marginal[j] = 0.0;
-        }
-    }
-    for (i, &y) in outcome.row_marginal.iter().enumerate() {
-        if kept.rows.relation[i] != Relation::Equal && !matters(y) {
-            kept.rows.relation[i] = Relation::Free;
-            out.row_marginal[i] = 0.0;
-        }
-    }
-    (kept, out)
 }
 
 #[cfg(test)]

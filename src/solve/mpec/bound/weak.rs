@@ -127,8 +127,9 @@ pub fn derive(
             }
             simplex.set_cost(j, sign);
             let ended = simplex.solve(stop);
+            let point = simplex.point();
             simplex.set_cost(j, 0.0);
-            match (ended, simplex.point()) {
+            match (ended, point) {
                 (Ended::Solved, Some(point)) => {
                     let reach = point.x[j].abs().max(known[j].abs());
                     let bound = -sign * (2.0 * reach + 1.0);
