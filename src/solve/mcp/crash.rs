@@ -89,7 +89,7 @@ pub(super) fn crash(run: &mut Run, start: Point, history: &mut Vec<f64>) -> Resu
 }
 
 /// Solves (J_BB + ρI) d = −F_B, with a larger ρ as long as the matrix is singular.
-fn direction(
+pub(super) fn direction(
     run: &mut Run,
     jacobian: &SparseColMatrix,
     basic: &[usize],
