@@ -24,6 +24,7 @@ use super::log;
 use super::merit::Phi;
 use super::path::{HARRIS, HARRIS_CLOSE, PathEnd, PathResult, Start, follow};
 use super::run::{End, Point, Run, Stop};
+use super::vertex::vertex;
 
 /// Armijo constant of the M test and of the line search.
 const ARMIJO: f64 = 1e-4;
@@ -37,6 +38,8 @@ const PROX_FIRST: f64 = 1e-7;
 const PROX_MIN: f64 = 1e-12;
 /// A ray is worth a step if t got this far.
 const RAY_MIN: f64 = 1e-2;
+/// Residual from which a singular basis is taken for that of a face of solutions.
+const VERTEX: f64 = 1e-2;
 /// Major iterations without a notable fall of the residual before the run is called stuck.
 const STAGNATION: usize = 60;
 /// The same where the residual would be accepted already, and the problem is large.
@@ -110,6 +113,8 @@ struct Majors {
     warm: Option<Vec<Kind>>,
     untested: usize,
     gradient_steps: usize,
+    /// A vertex of the face of solutions was looked for.
+    at_vertex: bool,
     /// Steps in a row to solutions that may stand for rays.
     doubtful: usize,
     seed: u64,
@@ -129,6 +134,7 @@ impl Majors {
             warm: None,
             untested: 0,
             gradient_steps: 0,
+            at_vertex: false,
             doubtful: 0,
             seed: 1,
         }
@@ -202,8 +208,8 @@ impl Majors {
                     tries,
                 );
                 if kind == '-' {
-                    // The proximal term may be what keeps the digits away.
-                    if self.prox > 0.0 {
+                    // The proximal term may be what keeps the digits away: at a vertex none is needed.
+                    if self.prox > 0.0 && !self.at_vertex {
                         self.prox = 0.0;
                         continue;
                     }
@@ -310,13 +316,23 @@ impl Majors {
                     lower: &lower,
                     upper: &upper,
                 };
+                let mut result = follow(run, &linear, &start, limit, self.seed)?;
+                if result.end == PathEnd::Singular
+                    && level == 0
+                    && self.point.residual <= VERTEX
+                    && polish
+                    && !std::mem::replace(&mut self.at_vertex, true)
+                    && let Some(at) = vertex(run, &linear, &start, limit)?
+                {
+                    result = follow(run, &linear, &at, limit, self.seed)?;
+                }
                 let PathResult {
                     end,
                     x,
                     t,
                     kind,
                     pivots,
-                } = follow(run, &linear, &start, limit, self.seed)?;
+                } = result;
                 log::try_line(run, end, t, v, pivots, start.cover);
                 match end {
                     PathEnd::Solved => {

@@ -46,6 +46,7 @@ mod run;
 mod semismooth;
 mod smoothing;
 mod starts;
+mod vertex;
 
 pub use merit::natural_residual;
 
