@@ -742,11 +742,8 @@ impl Compiler {
         for part in parts {
             let at = position + rows.as_ref().map_or(0, |r| r.width);
             let choices = self.choices(s, at, part, span, defines)?;
-            let Some(before) = rows else {
-                rows = Some(choices);
-                continue;
-            };
-            if before.len().saturating_mul(choices.len()) > MAX_EXPANSION {
+            let before = rows.as_ref().map_or(1, Tuples::len);
+            if before.saturating_mul(choices.len()) > MAX_EXPANSION {
                 return self.fail(
                     Diagnostic::error(
                         "E0343",
@@ -757,7 +754,10 @@ impl Compiler {
                     .help("make the set by an assignment with a condition"),
                 );
             }
-            rows = Some(before.times(&choices));
+            rows = Some(match rows {
+                Some(before) => before.times(&choices),
+                None => choices,
+            });
         }
         Ok(rows.unwrap_or_default())
     }

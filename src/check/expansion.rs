@@ -53,11 +53,13 @@ impl Tuples {
 
     /// The first with the first, the second with the second, until one side ends.
     pub fn beside(&self, other: &Self) -> Self {
-        let both = self.rows().zip(other.rows());
-        Self {
-            width: self.width + other.width,
-            labels: both.flat_map(|(a, b)| [a, b].concat()).collect(),
+        let width = self.width + other.width;
+        let mut labels = Vec::with_capacity(self.len().min(other.len()) * width);
+        for (a, b) in self.rows().zip(other.rows()) {
+            labels.extend_from_slice(a);
+            labels.extend_from_slice(b);
         }
+        Self { width, labels }
     }
 }
 
