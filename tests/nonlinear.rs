@@ -5,22 +5,7 @@ use ModelStatus::*;
 use bmod::model::instance::*;
 use bmod::solve::answer::Answer;
 use bmod::solve::nlp::{answer, providers};
-use bmod::solve::{ModelStatus, Monitor, Settings, SolveError, SolverStatus};
-
-struct Quiet;
-
-impl Monitor for Quiet {
-    fn log(&mut self, _: &str) {}
-    fn interrupted(&mut self) -> bool {
-        false
-    }
-    fn row_name(&self, row: usize) -> String {
-        format!("row {row}")
-    }
-    fn column_name(&self, column: usize) -> String {
-        format!("column {column}")
-    }
-}
+use bmod::solve::{ModelStatus, Monitor, Quiet, Settings, SolveError, SolverStatus};
 
 /// Builds instances; column 0 is the objective.
 struct Model(Instance);

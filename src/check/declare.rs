@@ -287,13 +287,7 @@ impl Compiler {
                 continue;
             };
             if let Some(body) = p.symbol.data {
-                let defines: Vec<bool> = p
-                    .symbol
-                    .domain
-                    .iter()
-                    .flatten()
-                    .map(|d| d.defines)
-                    .collect();
+                let defines = p.symbol.defines();
                 let _ = self.parameter_data(s, body, p.symbol.name.span, &defines, map);
             }
         }

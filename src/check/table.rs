@@ -45,13 +45,7 @@ impl Compiler {
                 .help("use a `parameter` with a list instead"),
             );
         }
-        let defines: Vec<bool> = t
-            .symbol
-            .domain
-            .iter()
-            .flatten()
-            .map(|d| d.defines)
-            .collect();
+        let defines = t.symbol.defines();
         let mut reader = TableReader::new(map.expanded(), t.body, dim, self.modes.undf);
         let (mut keys, mut parts) = (Vec::new(), Vec::new());
         // Columns whose labels were refused.

@@ -486,24 +486,23 @@ pub fn complementarity_status(r: &Residuals) -> ModelStatus {
 
 /// Whether the bounds alone keep a linear row from its right-hand side.
 pub fn is_beyond_bounds(instance: &Instance) -> bool {
-    let mut linear = vec![true; instance.row_count()];
-    for &i in instance.nonlinear.iter().flat_map(|k| &k.row) {
-        linear[i as usize] = false;
-    }
-    (0..instance.row_count()).filter(|&i| linear[i]).any(|i| {
-        let (mut low, mut high, mut size) = (0.0, 0.0, 0.0f64);
-        for (j, a) in instance.matrix.row(i) {
-            let ends = [instance.columns.lower[j], instance.columns.upper[j]].map(|b| a * b);
-            low += ends[0].min(ends[1]);
-            high += ends[0].max(ends[1]);
-            for e in ends.iter().filter(|e| e.is_finite()) {
-                size = size.max(e.abs());
+    let nonlinear = instance.nonlinear_rows();
+    (0..instance.row_count())
+        .filter(|&i| !nonlinear[i])
+        .any(|i| {
+            let (mut low, mut high, mut size) = (0.0, 0.0, 0.0f64);
+            for (j, a) in instance.matrix.row(i) {
+                let ends = [instance.columns.lower[j], instance.columns.upper[j]].map(|b| a * b);
+                low += ends[0].min(ends[1]);
+                high += ends[0].max(ends[1]);
+                for e in ends.iter().filter(|e| e.is_finite()) {
+                    size = size.max(e.abs());
+                }
             }
-        }
-        let (relation, rhs) = (instance.rows.relation[i], instance.rows.rhs[i]);
-        let nearest = rhs.max(low).min(high);
-        relative(row_violation(relation, nearest, rhs), size.max(rhs.abs())) > TOLERANCE
-    })
+            let (relation, rhs) = (instance.rows.relation[i], instance.rows.rhs[i]);
+            let nearest = rhs.max(low).min(high);
+            relative(row_violation(relation, nearest, rhs), size.max(rhs.abs())) > TOLERANCE
+        })
 }
 
 #[cfg(test)]

@@ -43,12 +43,7 @@ pub fn linearise(
         reduced[objective.column as usize].add(1.0);
         column_size[objective.column as usize] = 1.0;
     }
-    let mut nonlinear = vec![false; m];
-    for terms in &instance.nonlinear {
-        for &i in &terms.row {
-            nonlinear[i as usize] = true;
-        }
-    }
+    let nonlinear = instance.nonlinear_rows();
     for i in 0..m {
         let multiplier = row_marginal[i];
         for k in start[i]..start[i + 1] {

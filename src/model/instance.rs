@@ -264,6 +264,15 @@ impl Instance {
         self.rows.rhs.len()
     }
 
+    /// By row: whether a nonlinear term stands in it.
+    pub fn nonlinear_rows(&self) -> Vec<bool> {
+        let mut out = vec![false; self.row_count()];
+        for &i in self.nonlinear.iter().flat_map(|k| &k.row) {
+            out[i as usize] = true;
+        }
+        out
+    }
+
     /// Whether there is no nonlinear term.
     pub fn is_linear(&self) -> bool {
         self.nonlinear.iter().all(|k| k.row.is_empty())

@@ -130,10 +130,9 @@ impl Serialize for Coefficients<'_> {
 pub fn to_json(file: &str, solves: &[Solved<'_>]) -> String {
     let solves = solves.iter().map(|solved| {
         let instance = solved.instance;
-        let kernels = instance.nonlinear.iter();
-        let mut nonlinear_rows: Vec<u32> = kernels.flat_map(|k| k.row.iter().copied()).collect();
-        nonlinear_rows.sort_unstable();
-        nonlinear_rows.dedup();
+        let is_nonlinear = instance.nonlinear_rows();
+        let rows = 0..instance.row_count() as u32;
+        let nonlinear_rows = rows.filter(|&i| is_nonlinear[i as usize]).collect();
         let matched = instance.matched.iter().flatten().enumerate();
         Solve {
             model: solved.model,

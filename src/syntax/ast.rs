@@ -151,6 +151,13 @@ pub struct SymbolDecl {
     pub data: Option<Span>,
 }
 
+impl SymbolDecl {
+    /// By position: whether the data make the domain's set (`p(i<)`).
+    pub fn defines(&self) -> Vec<bool> {
+        self.domain.iter().flatten().map(|d| d.defines).collect()
+    }
+}
+
 /// A set of a `set` statement.
 #[derive(Clone, Debug)]
 pub struct SetDecl {
