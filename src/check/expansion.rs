@@ -1,7 +1,14 @@
 //! Keys in data that stand for many: ranges, and products of sets.
 
+use super::node::SymbolId;
+use super::symbols::{DomainPosition, UNIVERSE};
+use super::{Compiler, Failed};
 use crate::data::table::Table;
 use crate::data::universe::Label;
+use crate::diag::Diagnostic;
+use crate::source::Span;
+use crate::syntax::ast::Ident;
+use crate::syntax::data::KeyPart;
 
 /// A range or a product of sets in data may not make more records than this.
 pub const MAX_EXPANSION: usize = 50_000_000;
@@ -148,6 +155,217 @@ fn letters(from: &str, to: &str) -> Option<Vec<String>> {
         s.into_iter().map(char::from).collect()
     };
     Some((lo..=hi).map(spell).collect())
+}
+
+impl Compiler {
+    /// All keys a record of data stands for, flat.
+    pub(super) fn expand(
+        &mut self,
+        s: SymbolId,
+        parts: &[KeyPart],
+        matched: Option<&[KeyPart]>,
+        span: Span,
+        defines: &[bool],
+        out: &mut Vec<Label>,
+    ) -> Result<(), Failed> {
+        let dim = self.symbols.get(s).dim();
+        // `set.i` stands for all elements of i.
+        let spelled_out = [parts].into_iter().find_map(set_prefix);
+        let parts = spelled_out.as_deref().unwrap_or(parts);
+        // One label per position is what data mostly are.
+        if matched.is_none() && parts.iter().all(|p| matches!(p, KeyPart::Label { .. })) {
+            if parts.len() != dim {
+                return self.wrong_dimension(s, span, parts.len());
+            }
+            for (p, part) in parts.iter().enumerate() {
+                let KeyPart::Label { text, span, .. } = part else {
+                    unreachable!("tested above")
+                };
+                out.push(self.data_label(s, p, text, *span, defines)?);
+            }
+            return Ok(());
+        }
+        let mut rows = self.products(s, 0, parts, span, defines)?;
+        if let Some(other) = matched {
+            let behind = self.products(s, rows.width, other, span, defines)?;
+            if rows.len() != behind.len() {
+                self.report(
+                    Diagnostic::warning("E0347", span, format!("`:` matches one by one, but there are {} on the left and {} on the right", rows.len(), behind.len()))
+                        .label("what is left over on one side is dropped")
+                        .help("a dot instead of the colon makes all combinations"),
+                );
+            }
+            rows = rows.beside(&behind);
+        }
+        if rows.len() > 0 && rows.width != dim {
+            return self.wrong_dimension(s, span, rows.width);
+        }
+        out.append(&mut rows.labels);
+        Ok(())
+    }
+
+    /// All combinations of the parts of a key that begins at a position.
+    pub(super) fn products(
+        &mut self,
+        s: SymbolId,
+        position: usize,
+        parts: &[KeyPart],
+        span: Span,
+        defines: &[bool],
+    ) -> Result<Tuples, Failed> {
+        let mut rows: Option<Tuples> = None;
+        for part in parts {
+            let at = position + rows.as_ref().map_or(0, |r| r.width);
+            let choices = self.choices(s, at, part, span, defines)?;
+            let before = rows.as_ref().map_or(1, Tuples::len);
+            if before.saturating_mul(choices.len()) > MAX_EXPANSION {
+                return self.fail(
+                    Diagnostic::error(
+                        "E0343",
+                        span,
+                        format!("this stands for more than {MAX_EXPANSION} records"),
+                    )
+                    .label("too many")
+                    .help("make the set by an assignment with a condition"),
+                );
+            }
+            rows = Some(match rows {
+                Some(before) => before.times(&choices),
+                None => choices,
+            });
+        }
+        Ok(rows.unwrap_or_default())
+    }
+
+    /// The tuples one part of a key stands for.
+    fn choices(
+        &mut self,
+        s: SymbolId,
+        position: usize,
+        part: &KeyPart,
+        whole: Span,
+        defines: &[bool],
+    ) -> Result<Tuples, Failed> {
+        match part {
+            KeyPart::Label { text, span, .. } => {
+                let label = self.data_label(s, position, text, *span, defines)?;
+                Ok(Tuples::single(vec![label]))
+            }
+            KeyPart::Range { from, to, span } => {
+                let labels = match range(from, to) {
+                    Ok(labels) => labels,
+                    Err(NoRange::TooLong(n)) => {
+                        let d =
+                            Diagnostic::error("E0343", *span, format!("this range has {n} labels"))
+                                .label("too many")
+                                .help(format!("{MAX_EXPANSION} are the most"));
+                        return self.fail(d);
+                    }
+                    Err(NoRange::Unlike) => {
+                        return self.fail(
+                            Diagnostic::error(
+                                "E0344",
+                                *span,
+                                format!("`{from}*{to}` is not a range"),
+                            )
+                            .label("the labels must differ in one number")
+                            .help("for instance `i1*i10` or `1990*2000`"),
+                        );
+                    }
+                };
+                let labels = labels
+                    .iter()
+                    .map(|l| self.data_label(s, position, l, *span, defines));
+                Ok(Tuples::single(labels.collect::<Result<_, _>>()?))
+            }
+            KeyPart::AllOf { set, span } => {
+                let id = self.lookup_set(&Ident {
+                    name: (*set).into(),
+                    span: *span,
+                })?;
+                let t = self.symbols.get(id).table;
+                if id == UNIVERSE {
+                    self.store.refresh_universe();
+                }
+                Ok(Tuples::of(self.store.table(t)))
+            }
+            KeyPart::Universe(_) => {
+                self.store.refresh_universe();
+                let t = match self.symbols.get(s).domain.get(position) {
+                    Some(DomainPosition::Set(d)) => self.symbols.get(*d).table,
+                    _ => UNIVERSE,
+                };
+                Ok(Tuples::of(self.store.table(t)))
+            }
+            KeyPart::Group(alternatives) => {
+                let mut out = Tuples::default();
+                for alternative in alternatives {
+                    let more = self.products(s, position, alternative, whole, defines)?;
+                    if out.len() > 0 && more.len() > 0 && out.width != more.width {
+                        return self.wrong_dimension(s, whole, position + more.width);
+                    }
+                    if more.len() > 0 {
+                        out.width = more.width;
+                    }
+                    out.labels.extend(more.labels);
+                }
+                Ok(out)
+            }
+        }
+    }
+
+    /// A label in data at a position of a symbol; checked against the domain.
+    fn data_label(
+        &mut self,
+        s: SymbolId,
+        position: usize,
+        text: &str,
+        span: Span,
+        defines: &[bool],
+    ) -> Result<Label, Failed> {
+        let symbol = self.symbols.get(s);
+        let Some(DomainPosition::Set(d)) = symbol.domain.get(position) else {
+            return Ok(self.store.universe.intern(text));
+        };
+        let set_id = self.symbols.root(*d);
+        let set = self.symbols.get(set_id);
+        let table = set.table;
+        if let Some(l) = self.store.universe.get(text)
+            && self.store.table(table).find(&[l]).is_some()
+        {
+            return Ok(l);
+        }
+        if defines.get(position) == Some(&true) {
+            let l = self.store.universe.intern(text);
+            self.store.table_mut(table).set(&[l], 1.0);
+            self.symbols.get_mut(set_id).has_data = true;
+            return Ok(l);
+        }
+        self.not_a_member(text, "", s, position, span)
+    }
+}
+
+/// Replaces `set` and the name behind it by all elements of that set.
+pub(super) fn set_prefix<'a>(parts: &[KeyPart<'a>]) -> Option<Vec<KeyPart<'a>>> {
+    let is_set = |p: &KeyPart| matches!(p, KeyPart::Label { text, quoted: false, .. } if text.eq_ignore_ascii_case("set"));
+    if !parts.iter().any(is_set) {
+        return None;
+    }
+    let mut out = Vec::with_capacity(parts.len());
+    let mut rest = parts.iter();
+    while let Some(p) = rest.next() {
+        match (is_set(p), rest.clone().next()) {
+            (true, Some(KeyPart::Label { text, span, .. })) => {
+                out.push(KeyPart::AllOf {
+                    set: text,
+                    span: *span,
+                });
+                rest.next();
+            }
+            _ => out.push(p.clone()),
+        }
+    }
+    Some(out)
 }
 
 #[cfg(test)]

@@ -1,31 +1,13 @@
-//! Expressions, indices and domains: from names to slots and tables.
+//! Expressions: from names to numbers, memberships and variables.
 
 use super::functions::{self, Callee};
 use super::node::*;
-use super::symbols::{DomainPosition, SymbolKind, UNIVERSE, attribute};
+use super::symbols::{SymbolKind, UNIVERSE, attribute};
 use super::{Compiler, Failed};
 use crate::data::value;
 use crate::diag::{Diagnostic, nearest};
 use crate::source::Span;
-use crate::syntax::ast::{self, Expr, ExprKind, Factor, Ident, Sign, UnaryOp};
-use std::rc::Rc;
-
-impl Node {
-    /// A node without variables.
-    pub fn data(kind: NodeKind, span: Span) -> Node {
-        Node {
-            kind,
-            span,
-            has_var: false,
-            linear: true,
-        }
-    }
-
-    /// A number.
-    pub fn number(x: f64, span: Span) -> Node {
-        Node::data(NodeKind::Const(x), span)
-    }
-}
+use crate::syntax::ast::{Expr, ExprKind, Factor, Ident, Sign, UnaryOp};
 
 /// Builds a node of children: whether variables stand in it, and whether it is linear if they do.
 fn combine(kind: NodeKind, span: Span, has_var: bool, linear: bool) -> Node {
@@ -79,768 +61,6 @@ impl Compiler {
                 .other(declared, format!("declared as a {kind} here"))
                 .help("an index position takes a set that is under control, a quoted label, or a lag such as `t-1`"),
         )
-    }
-
-    /// What a set that is under control stands for: running indices, or what pins it, `loop(i('a'), …)`.
-    pub(super) fn controlled(&self, set: SymbolId) -> Option<&[Part]> {
-        self.scope
-            .iter()
-            .rev()
-            .find(|(s, _)| *s == set)
-            .map(|(_, parts)| parts.as_slice())
-    }
-
-    pub(super) fn new_slot(&mut self) -> Slot {
-        let s = self.next_slot;
-        self.next_slot += 1;
-        self.slots = self.slots.max(self.next_slot as usize);
-        s
-    }
-
-    /// Runs `f` and forgets what it put under control. Slots are not used again within a statement:
-    /// the planner relies on different sums having different slots.
-    pub(super) fn scoped<T>(&mut self, f: impl FnOnce(&mut Self) -> T) -> T {
-        let scope = self.scope.len();
-        let r = f(self);
-        self.scope.truncate(scope);
-        r
-    }
-
-    /// Takes a domain and puts its indices under control (until the caller's scope ends).
-    pub(super) fn domain(&mut self, d: &ast::Domain) -> Result<Domain, Failed> {
-        let mut out = Domain::default();
-        for item in &d.items {
-            if item.local {
-                let id = self.lookup_set(&item.set)?;
-                self.used(id, item.set.span);
-                self.run_over(id, &mut out);
-            } else if let Some(indices) = &item.indices
-                && item.set.name.eq_ignore_ascii_case("sameas")
-            {
-                self.equal_item(indices, item.span, &mut out)?;
-            } else {
-                self.domain_item(&item.set, item.indices.as_deref(), item.span, &mut out)?;
-            }
-        }
-        if let Some(c) = &d.condition {
-            self.condition(c, &mut out)?;
-        }
-        Ok(out)
-    }
-
-    /// Adds the conjuncts of a condition to a domain.
-    pub(super) fn condition(&mut self, c: &Expr, out: &mut Domain) -> Result<(), Failed> {
-        if let ExprKind::Binary(BinaryOp::And, a, b) = &c.kind {
-            self.condition(a, out)?;
-            return self.condition(b, out);
-        }
-        let node = self.expr(c)?;
-        self.no_variable(&node, "a condition")?;
-        out.conditions.push(node);
-        Ok(())
-    }
-
-    fn no_variable(&mut self, node: &Node, place: &str) -> Result<(), Failed> {
-        if !node.has_var {
-            return Ok(());
-        }
-        self.fail(
-            Diagnostic::error(
-                "E0311",
-                node.span,
-                format!("{place} may not depend on a variable"),
-            )
-            .label("a variable stands in it")
-            .help("use the level of the last solve (`x.l`), a parameter, or a binary formulation"),
-        )
-    }
-
-    /// One item of a domain: controls what is not controlled yet; returns its key parts.
-    pub(super) fn domain_item(
-        &mut self,
-        set: &Ident,
-        indices: Option<&[Expr]>,
-        span: Span,
-        out: &mut Domain,
-    ) -> Result<Vec<Part>, Failed> {
-        let id = self.lookup_set(set)?;
-        self.used(id, set.span);
-        match indices {
-            Some(i) => self.shape(id, i),
-            None => self.symbols.get_mut(id).open = false,
-        }
-        let symbol = self.symbols.get(id).clone();
-        let Some(indices) = indices else {
-            if self.controlled(id).is_some() {
-                return self.fail(
-                    Diagnostic::error("E0305", span, format!("`{}` is under control already", set.name))
-                        .label("controlled a second time here")
-                        .help(format!(
-                            "use an alias for the inner index: `alias({0},{0}2);` and write `{0}2` here",
-                            symbol.name
-                        )),
-                );
-            }
-            return Ok(self.run_over(id, out));
-        };
-        let parts = self.control_key(indices, id, span, out)?;
-        out.members.push(Driver {
-            table: symbol.table,
-            key: Key {
-                parts: parts.clone(),
-            },
-        });
-        if self.controlled(id).is_none() {
-            self.scope.push((id, parts.clone()));
-        }
-        Ok(parts)
-    }
-
-    /// `sum(sameas(i,j), …)`: a set that is not under control yet takes the element of the other.
-    fn equal_item(&mut self, indices: &[Expr], span: Span, out: &mut Domain) -> Result<(), Failed> {
-        let [a, b] = indices else {
-            return self.fail(Diagnostic::error(
-                "E0317",
-                span,
-                "`sameas` compares two single indices",
-            ));
-        };
-        let free = |c: &Self, e: &Expr| match &e.kind {
-            ExprKind::Apply {
-                name,
-                attribute: None,
-                arguments: None,
-            } => c.symbols.find(&name.name).filter(|&s| {
-                let set = c.symbols.get(s);
-                set.is_set() && set.dim() == 1 && c.controlled(s).is_none()
-            }),
-            _ => None,
-        };
-        let (first, second) = if free(self, b).is_some() {
-            (a, b)
-        } else {
-            (b, a)
-        };
-        let one = match &first.kind {
-            ExprKind::Text(t) => vec![Part::Label(self.store.universe.intern(t))],
-            _ => self.control_index(first, UNIVERSE, 0, out)?,
-        };
-        match free(self, second) {
-            Some(s) => {
-                self.used(s, second.span);
-                out.members.push(Driver {
-                    table: self.symbols.get(s).table,
-                    key: Key { parts: one.clone() },
-                });
-                self.scope.push((s, one));
-            }
-            None => {
-                let other = self.index(second, UNIVERSE, 0)?;
-                if let ([p], [q]) = (one.as_slice(), other.as_slice()) {
-                    let same = NodeKind::SameAs(p.clone(), q.clone());
-                    out.conditions.push(Node::data(same, span));
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// Puts a set under control with indices of its own, whether or not it is under control outside.
-    fn run_over(&mut self, id: SymbolId, out: &mut Domain) -> Vec<Part> {
-        let symbol = self.symbols.get(id).clone();
-        let dim = symbol.dim();
-        let slots: Vec<Slot> = (0..dim).map(|_| self.new_slot()).collect();
-        for (p, &s) in slots.iter().enumerate() {
-            out.slots.push(s);
-            out.sets.push(if dim == 1 {
-                symbol.table
-            } else {
-                match symbol.domain[p] {
-                    DomainPosition::Set(d) => self.symbols.get(d).table,
-                    _ => self.symbols.get(UNIVERSE).table,
-                }
-            });
-        }
-        let parts: Vec<Part> = slots.into_iter().map(Part::Slot).collect();
-        out.members.push(Driver {
-            table: symbol.table,
-            key: Key {
-                parts: parts.clone(),
-            },
-        });
-        self.scope.push((id, parts.clone()));
-        parts
-    }
-
-    /// An index that is put under control if it is a set that is not yet.
-    pub(super) fn control_index(
-        &mut self,
-        index: &Expr,
-        of: SymbolId,
-        position: usize,
-        out: &mut Domain,
-    ) -> Result<Vec<Part>, Failed> {
-        match &index.kind {
-            ExprKind::Apply {
-                name,
-                attribute: Some(a),
-                arguments: None,
-            } if a.name.eq_ignore_ascii_case("local") => {
-                let s = self.lookup_set(name)?;
-                self.used(s, name.span);
-                if self.symbols.get(s).dim() == 1 {
-                    self.fits(s, of, position, index.span)?;
-                }
-                Ok(self.run_over(s, out))
-            }
-            ExprKind::Apply {
-                name,
-                attribute: None,
-                arguments: None,
-            } => {
-                let free = self.symbols.find(&name.name).filter(|&s| {
-                    let singleton = matches!(
-                        self.symbols.get(self.symbols.root(s)).kind,
-                        SymbolKind::Set { singleton: true }
-                    );
-                    self.symbols.get(s).is_set() && !singleton && self.controlled(s).is_none()
-                });
-                match free {
-                    Some(s) => {
-                        self.fits(s, of, position, index.span)?;
-                        self.domain_item(name, None, index.span, out)
-                    }
-                    None => self.index(index, of, position),
-                }
-            }
-            ExprKind::Apply {
-                name,
-                attribute: None,
-                arguments: Some(inner),
-            } if self
-                .symbols
-                .find(&name.name)
-                .is_some_and(|s| self.symbols.get(s).is_set()) =>
-            {
-                let s = self.lookup_set(name)?;
-                if self.symbols.get(s).dim() == 1 {
-                    self.fits(s, of, position, index.span)?;
-                }
-                self.domain_item(name, Some(inner), index.span, out)
-            }
-            _ => self.index(index, of, position),
-        }
-    }
-
-    /// The key of a symbol whose indices are put under control if they are not yet: `f(t+1)..`,
-    /// `w(m+k(n),n) = …`. Lags come last: how far one goes may depend on any of the indices.
-    pub(super) fn control_key(
-        &mut self,
-        indices: &[Expr],
-        of: SymbolId,
-        span: Span,
-        out: &mut Domain,
-    ) -> Result<Vec<Part>, Failed> {
-        let dim = self.symbols.get(of).dim();
-        let mut parts: Vec<Vec<Part>> = Vec::with_capacity(indices.len());
-        let mut lags = Vec::new();
-        let mut position = 0;
-        for (n, index) in indices.iter().enumerate() {
-            if position >= dim {
-                return self.wrong_dimension(of, span, indices.len());
-            }
-            let base = match &index.kind {
-                ExprKind::Sum(terms) => match terms.first() {
-                    Some((Sign::Plus, base)) => Some(base),
-                    _ => None,
-                },
-                ExprKind::Binary(BinaryOp::CircularPlus | BinaryOp::CircularMinus, base, _) => {
-                    Some(&**base)
-                }
-                _ => None,
-            };
-            let here = match base {
-                Some(base) => {
-                    self.control_lag_base(base, out)?;
-                    lags.push((n, position));
-                    position += 1;
-                    Vec::new()
-                }
-                None => self.control_index(index, of, position, out)?,
-            };
-            position += here.len();
-            parts.push(here);
-        }
-        for (n, position) in lags {
-            parts[n] = self.index(&indices[n], of, position)?;
-        }
-        let parts = parts.concat();
-        if parts.len() != dim {
-            return self.wrong_dimension(of, span, parts.len().max(indices.len()));
-        }
-        Ok(parts)
-    }
-
-    fn control_lag_base(&mut self, base: &Expr, out: &mut Domain) -> Result<(), Failed> {
-        if let ExprKind::Apply {
-            name,
-            attribute: None,
-            arguments: None,
-        } = &base.kind
-        {
-            let free = self
-                .symbols
-                .find(&name.name)
-                .filter(|&s| self.symbols.get(s).is_set() && self.controlled(s).is_none());
-            if free.is_some() {
-                self.domain_item(name, None, base.span, out)?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Whether set `a` may stand at a position of symbol `of`.
-    fn fits(
-        &mut self,
-        a: SymbolId,
-        of: SymbolId,
-        position: usize,
-        span: Span,
-    ) -> Result<(), Failed> {
-        let DomainPosition::Set(d) = self.symbols.get(of).domain[position] else {
-            return Ok(());
-        };
-        if self.modes.universal || self.symbols.is_subset(a, d) || self.symbols.get(a).dim() > 1 {
-            return Ok(());
-        }
-        let (an, dn) = (
-            self.symbols.get(a).name.clone(),
-            self.symbols.get(d).name.clone(),
-        );
-        let (on, declared) = (
-            self.symbols.get(of).name.clone(),
-            self.symbols.get(of).declared,
-        );
-        let a_root = self.symbols.get(self.symbols.root(a)).declared;
-        let same = self.symbols.is_subset(d, a);
-        let help = if same {
-            format!(
-                "`{dn}` is the smaller set: use an index that runs over `{dn}`, or declare `{on}` over `{an}`"
-            )
-        } else {
-            format!(
-                "declare `{an}` as a subset (`set {an}({dn})`) or as an alias of `{dn}`; equal labels alone do not make it one"
-            )
-        };
-        self.fail(
-            Diagnostic::error(
-                "E0306",
-                span,
-                format!(
-                    "`{an}` may not stand at position {} of `{on}`, which runs over `{dn}`",
-                    position + 1
-                ),
-            )
-            .label(format!("`{an}` is not a subset of `{dn}`"))
-            .other(declared, format!("`{on}` is declared here"))
-            .other(a_root, format!("`{an}` is declared here"))
-            .help(help),
-        )
-    }
-
-    pub(super) fn wrong_dimension<T>(
-        &mut self,
-        of: SymbolId,
-        span: Span,
-        given: usize,
-    ) -> Result<T, Failed> {
-        let s = self.symbols.get(of).clone();
-        let plural = |n: usize| match n {
-            0 => "no index".to_string(),
-            1 => "1 index".to_string(),
-            n => format!("{n} indices"),
-        };
-        let names: Vec<String> = s
-            .domain
-            .iter()
-            .map(|d| match d {
-                DomainPosition::Universe => "*".to_string(),
-                DomainPosition::Set(i) => self.symbols.get(*i).name.to_string(),
-                DomainPosition::Relaxed(n) => n.to_string(),
-            })
-            .collect();
-        let shape = if names.is_empty() {
-            s.name.to_string()
-        } else {
-            format!("{}({})", s.name, names.join(","))
-        };
-        self.fail(
-            Diagnostic::error(
-                "E0304",
-                span,
-                format!(
-                    "`{}` has {}, but {} given here",
-                    s.name,
-                    plural(s.dim()),
-                    match given {
-                        0 => "none is".to_string(),
-                        1 => "1 is".to_string(),
-                        n => format!("{n} are"),
-                    }
-                ),
-            )
-            .label(format!("{} here", plural(given)))
-            .other(
-                s.declared,
-                format!("declared with {} here", plural(s.dim())),
-            )
-            .help(format!("write `{shape}`")),
-        )
-    }
-
-    /// A symbol that was declared without a domain gets as many indices as its first use has.
-    pub(super) fn shape(&mut self, s: SymbolId, indices: &[Expr]) {
-        if !self.symbols.get(s).open {
-            return;
-        }
-        if indices.is_empty() {
-            // The first use says that it has none.
-            self.symbols.get_mut(s).open = false;
-            return;
-        }
-        // A tuple set stands for all its positions.
-        let positions = |e: &Expr| match &e.kind {
-            ExprKind::Apply {
-                name,
-                attribute: None,
-                ..
-            } => self
-                .symbols
-                .find(&name.name)
-                .map(|i| self.symbols.get(i))
-                .filter(|i| i.is_set())
-                .map_or(1, |i| i.dim()),
-            _ => 1,
-        };
-        let dim: usize = indices.iter().map(positions).sum();
-        self.symbols.get_mut(s).open = false;
-        if dim <= 20 {
-            self.reshape(s, dim);
-        }
-    }
-
-    /// Gives a symbol without data another number of indices.
-    pub(super) fn reshape(&mut self, s: SymbolId, dim: usize) {
-        let symbol = self.symbols.get_mut(s);
-        symbol.domain = vec![DomainPosition::Universe; dim];
-        let first = symbol.table;
-        let tables = match symbol.kind {
-            SymbolKind::Variable(_) | SymbolKind::Equation(_) => attribute::COUNT,
-            _ => 1,
-        };
-        for t in first..first + tables {
-            let default = self.store.table(t).default_value();
-            *self.store.table_mut(t) = crate::data::table::Table::new(dim, default);
-        }
-    }
-
-    /// Key of a symbol from its indices, all of which are under control.
-    pub(super) fn key(
-        &mut self,
-        of: SymbolId,
-        indices: &[Expr],
-        span: Span,
-    ) -> Result<Key, Failed> {
-        self.shape(of, indices);
-        let dim = self.symbols.get(of).dim();
-        // A tuple set under control stands for all its positions: `p(arc)`.
-        let mut parts = Vec::with_capacity(dim);
-        for index in indices {
-            if parts.len() >= dim {
-                return self.wrong_dimension(of, span, indices.len());
-            }
-            let p = parts.len();
-            parts.extend(self.index(index, of, p)?);
-        }
-        if parts.len() != dim {
-            return self.wrong_dimension(of, span, parts.len().max(indices.len()));
-        }
-        Ok(Key { parts })
-    }
-
-    /// One index expression at a position of a symbol.
-    pub(super) fn index(
-        &mut self,
-        e: &Expr,
-        of: SymbolId,
-        position: usize,
-    ) -> Result<Vec<Part>, Failed> {
-        match &e.kind {
-            ExprKind::Text(label) => Ok(vec![Part::Label(self.label(label, of, position, e.span)?)]),
-            ExprKind::Apply { name, attribute: None, arguments: None } => {
-                let Some(s) = self.symbols.find(&name.name) else {
-                    return self.unknown_index(name);
-                };
-                if !self.symbols.get(s).is_set() {
-                    self.lookup_set(name)?;
-                }
-                let part = self.set_index(s, name)?;
-                if self.symbols.get(s).dim() == 1 {
-                    self.fits(s, of, position, e.span)?;
-                }
-                Ok(part)
-            }
-            ExprKind::Apply { name, attribute: None, arguments: Some(inner) } => {
-                // p(arc(i,j)): all controlled.
-                let s = self.lookup_set(name)?;
-                let key = self.key(s, inner, e.span)?;
-                Ok(key.parts)
-            }
-            ExprKind::Sum(terms) => self.lag(e, terms, of, position),
-            ExprKind::Binary(op @ (BinaryOp::CircularPlus | BinaryOp::CircularMinus), base, offset) => {
-                let (base_part, set) = self.lag_base(base, of, position)?;
-                let mut offset = self.expr(offset)?;
-                if *op == BinaryOp::CircularMinus {
-                    let span = offset.span;
-                    offset = Node::data(NodeKind::Negate(Box::new(offset)), span);
-                }
-                Ok(vec![Part::Lag(Rc::new(Lag { base: base_part, set, offset, circular: true }))])
-            }
-            ExprKind::Number(x) => {
-                let text = x.to_string();
-                self.fail(
-                    Diagnostic::error("E0307", e.span, "a number may not stand as an index")
-                        .label("an index is expected")
-                        .help(format!("if `{text}` is a label, quote it: `'{text}'`")),
-                )
-            }
-            _ => self.fail(
-                Diagnostic::error("E0307", e.span, "this is not an index")
-                    .label("an index is expected")
-                    .help("an index is a set under control, a quoted label, or a lag such as `t-1` or `t++1`"),
-            ),
-        }
-    }
-
-    fn unknown_index<T>(&mut self, name: &Ident) -> Result<T, Failed> {
-        if self.store.universe.get(&name.name).is_some() {
-            return self.fail(
-                Diagnostic::error(
-                    "E0301",
-                    name.span,
-                    format!("`{}` is not a set, but it is a label", name.name),
-                )
-                .label("unknown set")
-                .help(format!("quote labels in expressions: `'{}'`", name.name)),
-            );
-        }
-        self.lookup(name).and(Err(Failed))
-    }
-
-    /// A set name as an index: its slots, or the element of a singleton.
-    fn set_index(&mut self, s: SymbolId, name: &Ident) -> Result<Vec<Part>, Failed> {
-        if let Some(parts) = self.controlled(s) {
-            return Ok(parts.to_vec());
-        }
-        let root = self.symbols.get(self.symbols.root(s));
-        if matches!(root.kind, SymbolKind::Set { singleton: true }) {
-            let (t, dim) = (root.table, root.dim());
-            return Ok((0..dim).map(|p| Part::Singleton(t, p as u8)).collect());
-        }
-        let (declared, is_label) = (root.declared, self.store.universe.get(&name.name).is_some());
-        let mut help = format!(
-            "let it run: in a sum, `sum({0}, …)`; on the left of an assignment; in the equation's domain; or in `loop({0}, …)`",
-            name.name
-        );
-        if is_label {
-            help.push_str(&format!("; a label is quoted: `'{}'`", name.name));
-        }
-        self.fail(
-            Diagnostic::error(
-                "E0303",
-                name.span,
-                format!("the index `{}` is not under control here", name.name),
-            )
-            .label("nothing lets it run")
-            .other(declared, "the set is declared here")
-            .help(help),
-        )
-    }
-
-    /// A quoted label at a position of a symbol.
-    pub(super) fn label(
-        &mut self,
-        text: &str,
-        of: SymbolId,
-        position: usize,
-        span: Span,
-    ) -> Result<u32, Failed> {
-        let symbol = self.symbols.get(of);
-        let DomainPosition::Set(d) = symbol
-            .domain
-            .get(position)
-            .cloned()
-            .unwrap_or(DomainPosition::Universe)
-        else {
-            return Ok(self.store.universe.intern(text));
-        };
-        let set = self.symbols.get(self.symbols.root(d));
-        let known = self.store.universe.get(text);
-        if let Some(l) = known
-            && (set.dynamic || self.store.table(set.table).find(&[l]).is_some())
-        {
-            return Ok(l);
-        }
-        let (name, set_name, declared) = (symbol.name.clone(), set.name.clone(), set.declared);
-        let table = self.store.table(set.table);
-        let near = {
-            let all = table.len().min(10_000) as u32;
-            nearest(
-                text,
-                (0..all).map(|r| self.store.universe.name(table.key(r)[0])),
-            )
-            .map(str::to_string)
-        };
-        let d = Diagnostic::error(
-            "E0308",
-            span,
-            format!("`'{text}'` is not a member of the set `{set_name}`"),
-        )
-        .label(format!(
-            "position {} of `{name}` runs over `{set_name}`",
-            position + 1
-        ))
-        .other(declared, format!("`{set_name}` is declared here"));
-        self.fail(match near {
-            Some(n) => d.help(format!("did you mean `'{n}'`?")),
-            None => d.help(format!(
-                "add it to the set, or use a label that `{set_name}` has"
-            )),
-        })
-    }
-
-    fn lag_base(
-        &mut self,
-        base: &Expr,
-        of: SymbolId,
-        position: usize,
-    ) -> Result<(Part, TableId), Failed> {
-        match &base.kind {
-            ExprKind::Apply {
-                name,
-                attribute: None,
-                arguments: None,
-            } => {
-                let Some(s) = self.symbols.find(&name.name) else {
-                    return self.unknown_index(name);
-                };
-                if !self.symbols.get(s).is_set() {
-                    self.lookup_set(name)?;
-                }
-                let mut part = self.set_index(s, name)?;
-                self.ordered(s, name.span, "a lag or lead")?;
-                self.fits(s, of, position, base.span)?;
-                let table = self.symbols.get(s).table;
-                match part.len() {
-                    1 => Ok((part.remove(0), table)),
-                    _ => self.fail(
-                        Diagnostic::error("E0307", base.span, "a lag needs a one-dimensional set")
-                            .label("several indices"),
-                    ),
-                }
-            }
-            ExprKind::Text(label) => self.fail(
-                Diagnostic::error(
-                    "E0309",
-                    base.span,
-                    format!("the label `'{label}'` takes no lag or lead"),
-                )
-                .label("a label is one element")
-                .help("write the label you mean, or use an index that runs"),
-            ),
-            _ => self.fail(
-                Diagnostic::error("E0307", base.span, "this is not an index")
-                    .label("an index is expected")
-                    .help("a lag or lead starts from a set under control: `t-1`, `t+k`, `t++1`"),
-            ),
-        }
-    }
-
-    /// `t-1`, `t+k`.
-    fn lag(
-        &mut self,
-        e: &Expr,
-        terms: &[(Sign, Expr)],
-        of: SymbolId,
-        position: usize,
-    ) -> Result<Vec<Part>, Failed> {
-        let (base, set) = self.lag_base(&terms[0].1, of, position)?;
-        if terms.len() > 2 {
-            return self.fail(
-                Diagnostic::error("E0309", e.span, "an index takes one lag or lead")
-                    .label("several")
-                    .help("put the sum into parentheses: `t+(k+1)`"),
-            );
-        }
-        let mut offset = Vec::new();
-        for (sign, t) in &terms[1..] {
-            offset.push((*sign == Sign::Minus, self.expr(t)?));
-        }
-        let offset = match offset.len() {
-            1 if !offset[0].0 => offset.remove(0).1,
-            _ => Node::data(NodeKind::Sum(offset), e.span),
-        };
-        self.no_variable(&offset, "a lag")?;
-        Ok(vec![Part::Lag(Rc::new(Lag {
-            base,
-            set,
-            offset,
-            circular: false,
-        }))])
-    }
-
-    /// An error unless the set has an order.
-    fn ordered(&mut self, s: SymbolId, span: Span, what: &str) -> Result<(), Failed> {
-        if self.modes.off_order {
-            return Ok(());
-        }
-        let root = self.symbols.get(self.symbols.root(s));
-        let (declared, name) = (root.declared, root.name.clone());
-        if matches!(root.kind, SymbolKind::Set { singleton: true }) {
-            return self.fail(
-                Diagnostic::error(
-                    "E0309",
-                    span,
-                    format!("{what} needs an ordered set; `{name}` is a singleton"),
-                )
-                .other(declared, "declared here"),
-            );
-        }
-        if root.dynamic {
-            return self.fail(
-                Diagnostic::error(
-                    "E0309",
-                    span,
-                    format!("{what} needs an ordered set; `{name}` is changed by an assignment"),
-                )
-                .label("a dynamic set has no order")
-                .other(declared, "declared here")
-                .help("use the set that it is a subset of, or `$offOrder`"),
-            );
-        }
-        if root.unordered {
-            return self.fail(
-                Diagnostic::error(
-                    "E0309",
-                    span,
-                    format!("{what} needs an ordered set; the labels of `{name}` appeared earlier in another order"),
-                )
-                .label("not ordered")
-                .other(declared, "declared here")
-                .help("declare the set with its labels in the wanted order before they appear elsewhere"),
-            );
-        }
-        Ok(())
     }
 
     /// An expression.
@@ -1255,82 +475,8 @@ impl Compiler {
             );
         }
         match callee {
-            Callee::Ord | Callee::Card => {
-                if let Some(text) = self.text_argument(&args[0])? {
-                    let at = match (callee, args.get(1)) {
-                        (Callee::Card, _) => None,
-                        (_, Some(n)) => Some(Box::new(self.expr(n)?)),
-                        _ => Some(Box::new(Node::number(1.0, span))),
-                    };
-                    return Ok(Node::data(NodeKind::OfText(Box::new(text), at), span));
-                }
-                if let Some(second) = args.get(1) {
-                    return self.fail(
-                        Diagnostic::error("E0316", second.span, "`ord` of a set takes 1 argument")
-                            .label("only `ord('text', n)` has a position"),
-                    );
-                }
-                let ExprKind::Apply {
-                    name: n,
-                    attribute: None,
-                    arguments: None,
-                } = &args[0].kind
-                else {
-                    return self.fail(
-                        Diagnostic::error(
-                            "E0317",
-                            args[0].span,
-                            format!("`{lower}` takes the name of a set"),
-                        )
-                        .label("not a name")
-                        .help(format!("for instance `{lower}(i)`")),
-                    );
-                };
-                let s = self.lookup(n)?;
-                if callee == Callee::Card {
-                    self.used(s, n.span);
-                    let symbol = self.symbols.get(s);
-                    if matches!(
-                        symbol.kind,
-                        SymbolKind::Model(_)
-                            | SymbolKind::File(_)
-                            | SymbolKind::Acronym(_)
-                            | SymbolKind::Figure(_)
-                    ) {
-                        return self.lookup_set(n).and(Err(Failed));
-                    }
-                    return Ok(Node::data(NodeKind::Card(symbol.table), span));
-                }
-                self.lookup_set(n)?;
-                self.used(s, n.span);
-                self.ordered(s, n.span, "`ord`")?;
-                let mut parts = self.set_index(s, n)?;
-                if parts.len() != 1 {
-                    return self.wrong_dimension(s, n.span, 1);
-                }
-                Ok(Node::data(
-                    NodeKind::Ord(self.symbols.get(s).table, parts.remove(0)),
-                    span,
-                ))
-            }
-            Callee::SameAs => {
-                let mut parts = Vec::new();
-                for a in args {
-                    parts.extend(match &a.kind {
-                        ExprKind::Text(t) => vec![Part::Label(self.store.universe.intern(t))],
-                        _ => self.index(a, UNIVERSE, 0)?,
-                    });
-                }
-                if parts.len() != 2 {
-                    return self.fail(Diagnostic::error(
-                        "E0317",
-                        span,
-                        "`sameas` compares two single indices",
-                    ));
-                }
-                let b = parts.remove(1);
-                Ok(Node::data(NodeKind::SameAs(parts.remove(0), b), span))
-            }
+            Callee::Ord | Callee::Card => self.ord_or_card(callee == Callee::Card, args, span),
+            Callee::SameAs => self.same_as(args, span),
             Callee::Math(f) => {
                 let mut nodes = Vec::with_capacity(args.len());
                 for a in args {
@@ -1365,6 +511,86 @@ impl Compiler {
                 Ok(Node::data(NodeKind::DataCall(f, nodes), span))
             }
         }
+    }
+
+    /// `ord(i)`, `card(s)`, and both of a text.
+    fn ord_or_card(&mut self, card: bool, args: &[Expr], span: Span) -> Result<Node, Failed> {
+        let name = if card { "card" } else { "ord" };
+        if let Some(text) = self.text_argument(&args[0])? {
+            let at = match (card, args.get(1)) {
+                (true, _) => None,
+                (_, Some(n)) => Some(Box::new(self.expr(n)?)),
+                _ => Some(Box::new(Node::number(1.0, span))),
+            };
+            return Ok(Node::data(NodeKind::OfText(Box::new(text), at), span));
+        }
+        if let Some(second) = args.get(1) {
+            return self.fail(
+                Diagnostic::error("E0316", second.span, "`ord` of a set takes 1 argument")
+                    .label("only `ord('text', n)` has a position"),
+            );
+        }
+        let ExprKind::Apply {
+            name: n,
+            attribute: None,
+            arguments: None,
+        } = &args[0].kind
+        else {
+            return self.fail(
+                Diagnostic::error(
+                    "E0317",
+                    args[0].span,
+                    format!("`{name}` takes the name of a set"),
+                )
+                .label("not a name")
+                .help(format!("for instance `{name}(i)`")),
+            );
+        };
+        let s = self.lookup(n)?;
+        if card {
+            self.used(s, n.span);
+            let symbol = self.symbols.get(s);
+            if matches!(
+                symbol.kind,
+                SymbolKind::Model(_)
+                    | SymbolKind::File(_)
+                    | SymbolKind::Acronym(_)
+                    | SymbolKind::Figure(_)
+            ) {
+                return self.lookup_set(n).and(Err(Failed));
+            }
+            return Ok(Node::data(NodeKind::Card(symbol.table), span));
+        }
+        self.lookup_set(n)?;
+        self.used(s, n.span);
+        self.ordered(s, n.span, "`ord`")?;
+        let mut parts = self.set_index(s, n)?;
+        if parts.len() != 1 {
+            return self.wrong_dimension(s, n.span, 1);
+        }
+        Ok(Node::data(
+            NodeKind::Ord(self.symbols.get(s).table, parts.remove(0)),
+            span,
+        ))
+    }
+
+    fn same_as(&mut self, args: &[Expr], span: Span) -> Result<Node, Failed> {
+        let mut parts = Vec::new();
+        for a in args {
+            parts.extend(match &a.kind {
+                ExprKind::Text(t) => vec![Part::Label(self.store.universe.intern(t))],
+                _ => self.index(a, UNIVERSE, 0)?,
+            });
+        }
+        if parts.len() != 2 {
+            return self.fail(Diagnostic::error(
+                "E0317",
+                span,
+                "`sameas` compares two single indices",
+            ));
+        }
+        let b = parts.remove(1);
+        Ok(Node::data(NodeKind::SameAs(parts.remove(0), b), span))
     }
 
     /// A text where `card` and `ord` may have one: `'abc'`, `i.tl`, `i.te(i)`, `p.ts`.

@@ -1,10 +1,12 @@
 //! What the elements of a figure take.
 
-use super::node::{FigureElementCode, Node, NodeKind};
+use super::node::{FigureCode, FigureElementCode, Node, NodeKind};
+use super::symbols::SymbolKind;
 use super::{Compiler, Failed};
 use crate::diag::{Diagnostic, nearest};
 use crate::report::figure::Paint;
-use crate::syntax::ast::FigureElement;
+use crate::syntax::ast::{ExprKind, Figure, FigureElement};
+use std::rc::Rc;
 
 /// Kinds of elements, their arguments, those that must be there, and whether bare values may stand.
 const KINDS: &[(&str, &[&str], &[&str], bool)] = &[
@@ -89,6 +91,85 @@ fn is_text(n: &Node) -> bool {
 }
 
 impl Compiler {
+    pub(super) fn declare_figure(&mut self, f: &Figure) -> Result<(), Failed> {
+        self.texts_allowed = true;
+        let mut elements = Vec::new();
+        let mut failed = false;
+        for e in &f.elements {
+            match self.scoped(|c| c.figure_element(e)) {
+                Ok(x) => elements.push(x),
+                Err(Failed) => failed = true,
+            }
+        }
+        self.texts_allowed = false;
+        let kind = SymbolKind::Figure(Rc::new(FigureCode {
+            title: f.title.clone(),
+            elements,
+        }));
+        self.declare_plain(&f.name, kind, f.title.as_deref())?;
+        if failed { Err(Failed) } else { Ok(()) }
+    }
+
+    fn figure_element(&mut self, e: &FigureElement) -> Result<FigureElementCode, Failed> {
+        let kind = e.kind.name.to_lowercase();
+        if !kinds().any(|k| k == kind) {
+            let d = Diagnostic::error(
+                "E0332",
+                e.kind.span,
+                format!("a figure has no element `{}`", e.kind.name),
+            )
+            .label("unknown element");
+            return self.fail(match nearest(&kind, kinds()) {
+                Some(n) => d.help(format!("did you mean `{n}`?")),
+                None => d.help(format!(
+                    "there are: {}",
+                    kinds().collect::<Vec<_>>().join(", ")
+                )),
+            });
+        }
+        // The levels and data that a figure shows need not be there when it is declared.
+        self.in_equation = true;
+        let r = (|| {
+            let domain = e.domain.as_ref().map(|d| self.domain(d)).transpose()?;
+            let mut arguments = Vec::new();
+            for (name, value) in &e.arguments {
+                // A bare word that names nothing is a word: `fill = none`.
+                let node = match &value.kind {
+                    ExprKind::Apply {
+                        name: word,
+                        attribute: None,
+                        arguments: None,
+                    } if self.symbols.find(&word.name).is_none() => {
+                        Node::data(NodeKind::Text(word.name.clone()), value.span)
+                    }
+                    _ => self.expr(value)?,
+                };
+                if node.has_var {
+                    return self.fail(
+                        Diagnostic::error(
+                            "E0310",
+                            node.span,
+                            "a variable is not a number; a figure shows its level",
+                        )
+                        .label("which of its numbers?")
+                        .help("write `.l` behind the variable's name"),
+                    );
+                }
+                arguments.push((name.as_ref().map(|n| n.name.to_lowercase().into()), node));
+            }
+            let code = FigureElementCode {
+                kind: kind.into(),
+                domain,
+                arguments,
+                span: e.span,
+            };
+            self.figure_arguments(e, &code)?;
+            Ok(code)
+        })();
+        self.in_equation = false;
+        r
+    }
+
     /// Checks names and types of an element's arguments.
     pub(super) fn figure_arguments(
         &mut self,

@@ -9,15 +9,20 @@ pub mod load;
 pub mod node;
 pub mod symbols;
 
+mod control;
+mod data;
 mod declare;
 mod effects;
 mod expansion;
 mod expr;
 mod figure;
+mod index;
 mod model;
+pub(crate) mod option;
+pub(crate) mod output;
+mod statement;
 mod table;
 pub use model::walk as walk_node;
-pub(crate) mod statement;
 
 use crate::diag::{Diagnostic, Severity};
 use crate::host::Host;

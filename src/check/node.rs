@@ -462,3 +462,20 @@ pub enum OptionCode {
     /// A text.
     Text(Box<str>),
 }
+
+impl Node {
+    /// A node without variables.
+    pub fn data(kind: NodeKind, span: Span) -> Node {
+        Node {
+            kind,
+            span,
+            has_var: false,
+            linear: true,
+        }
+    }
+
+    /// A number.
+    pub fn number(x: f64, span: Span) -> Node {
+        Node::data(NodeKind::Const(x), span)
+    }
+}

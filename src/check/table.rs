@@ -1,6 +1,6 @@
 //! `table` declarations.
 
-use super::declare::set_prefix;
+use super::expansion::set_prefix;
 use super::node::SymbolId;
 use super::symbols::SymbolKind;
 use super::{Compiler, Failed, MAX_ERRORS};

@@ -1,7 +1,7 @@
 //! Options of a run, and what models and files remember.
 
 use crate::check::node::{OptionCode, SymbolId};
-use crate::check::statement::is_statement_option;
+use crate::check::option::is_statement_option;
 use crate::report::textfile::TextFile;
 use crate::solve::OWN_OPTIONS;
 use crate::source::Span;

@@ -3,7 +3,7 @@
 use super::Machine;
 use super::eval::derived_value;
 use crate::check::node::{Derived, Shown, SymbolId};
-use crate::check::statement::shown_offset;
+use crate::check::output::shown_offset;
 use crate::check::symbols::{DomainPosition, Symbol, SymbolKind, attribute};
 use crate::data::table::Table;
 use crate::report::display::{self, Cells, Layout, Sheet};

@@ -1,0 +1,331 @@
+//! What lets an index run: domains of sums, loops, assignments and equations put sets under control.
+//!
+//! Invariant: every controlled set stands in `scope` with its parts, innermost last; slots are not used
+//! twice within a statement.
+
+use super::node::*;
+use super::symbols::{DomainPosition, SymbolKind, UNIVERSE};
+use super::{Compiler, Failed};
+use crate::diag::Diagnostic;
+use crate::source::Span;
+use crate::syntax::ast::{self, Expr, ExprKind, Ident, Sign};
+
+impl Compiler {
+    /// What a set that is under control stands for: running indices, or what pins it, `loop(i('a'), …)`.
+    pub(super) fn controlled(&self, set: SymbolId) -> Option<&[Part]> {
+        self.scope
+            .iter()
+            .rev()
+            .find(|(s, _)| *s == set)
+            .map(|(_, parts)| parts.as_slice())
+    }
+
+    pub(super) fn new_slot(&mut self) -> Slot {
+        let s = self.next_slot;
+        self.next_slot += 1;
+        self.slots = self.slots.max(self.next_slot as usize);
+        s
+    }
+
+    /// Runs `f` and forgets what it put under control. Slots are not used again within a statement:
+    /// the planner relies on different sums having different slots.
+    pub(super) fn scoped<T>(&mut self, f: impl FnOnce(&mut Self) -> T) -> T {
+        let scope = self.scope.len();
+        let r = f(self);
+        self.scope.truncate(scope);
+        r
+    }
+
+    /// Takes a domain and puts its indices under control (until the caller's scope ends).
+    pub(super) fn domain(&mut self, d: &ast::Domain) -> Result<Domain, Failed> {
+        let mut out = Domain::default();
+        for item in &d.items {
+            if item.local {
+                let id = self.lookup_set(&item.set)?;
+                self.used(id, item.set.span);
+                self.run_over(id, &mut out);
+            } else if let Some(indices) = &item.indices
+                && item.set.name.eq_ignore_ascii_case("sameas")
+            {
+                self.equal_item(indices, item.span, &mut out)?;
+            } else {
+                self.domain_item(&item.set, item.indices.as_deref(), item.span, &mut out)?;
+            }
+        }
+        if let Some(c) = &d.condition {
+            self.condition(c, &mut out)?;
+        }
+        Ok(out)
+    }
+
+    /// Adds the conjuncts of a condition to a domain.
+    pub(super) fn condition(&mut self, c: &Expr, out: &mut Domain) -> Result<(), Failed> {
+        if let ExprKind::Binary(BinaryOp::And, a, b) = &c.kind {
+            self.condition(a, out)?;
+            return self.condition(b, out);
+        }
+        let node = self.expr(c)?;
+        self.no_variable(&node, "a condition")?;
+        out.conditions.push(node);
+        Ok(())
+    }
+
+    pub(super) fn no_variable(&mut self, node: &Node, place: &str) -> Result<(), Failed> {
+        if !node.has_var {
+            return Ok(());
+        }
+        self.fail(
+            Diagnostic::error(
+                "E0311",
+                node.span,
+                format!("{place} may not depend on a variable"),
+            )
+            .label("a variable stands in it")
+            .help("use the level of the last solve (`x.l`), a parameter, or a binary formulation"),
+        )
+    }
+
+    /// One item of a domain: controls what is not controlled yet; returns its key parts.
+    pub(super) fn domain_item(
+        &mut self,
+        set: &Ident,
+        indices: Option<&[Expr]>,
+        span: Span,
+        out: &mut Domain,
+    ) -> Result<Vec<Part>, Failed> {
+        let id = self.lookup_set(set)?;
+        self.used(id, set.span);
+        match indices {
+            Some(i) => self.shape(id, i),
+            None => self.symbols.get_mut(id).open = false,
+        }
+        let symbol = self.symbols.get(id).clone();
+        let Some(indices) = indices else {
+            if self.controlled(id).is_some() {
+                return self.fail(
+                    Diagnostic::error("E0305", span, format!("`{}` is under control already", set.name))
+                        .label("controlled a second time here")
+                        .help(format!(
+                            "use an alias for the inner index: `alias({0},{0}2);` and write `{0}2` here",
+                            symbol.name
+                        )),
+                );
+            }
+            return Ok(self.run_over(id, out));
+        };
+        let parts = self.control_key(indices, id, span, out)?;
+        out.members.push(Driver {
+            table: symbol.table,
+            key: Key {
+                parts: parts.clone(),
+            },
+        });
+        if self.controlled(id).is_none() {
+            self.scope.push((id, parts.clone()));
+        }
+        Ok(parts)
+    }
+
+    /// `sum(sameas(i,j), …)`: a set that is not under control yet takes the element of the other.
+    fn equal_item(&mut self, indices: &[Expr], span: Span, out: &mut Domain) -> Result<(), Failed> {
+        let [a, b] = indices else {
+            return self.fail(Diagnostic::error(
+                "E0317",
+                span,
+                "`sameas` compares two single indices",
+            ));
+        };
+        let free = |c: &Self, e: &Expr| match &e.kind {
+            ExprKind::Apply {
+                name,
+                attribute: None,
+                arguments: None,
+            } => c.symbols.find(&name.name).filter(|&s| {
+                let set = c.symbols.get(s);
+                set.is_set() && set.dim() == 1 && c.controlled(s).is_none()
+            }),
+            _ => None,
+        };
+        let (first, second) = if free(self, b).is_some() {
+            (a, b)
+        } else {
+            (b, a)
+        };
+        let one = match &first.kind {
+            ExprKind::Text(t) => vec![Part::Label(self.store.universe.intern(t))],
+            _ => self.control_index(first, UNIVERSE, 0, out)?,
+        };
+        match free(self, second) {
+            Some(s) => {
+                self.used(s, second.span);
+                out.members.push(Driver {
+                    table: self.symbols.get(s).table,
+                    key: Key { parts: one.clone() },
+                });
+                self.scope.push((s, one));
+            }
+            None => {
+                let other = self.index(second, UNIVERSE, 0)?;
+                if let ([p], [q]) = (one.as_slice(), other.as_slice()) {
+                    let same = NodeKind::SameAs(p.clone(), q.clone());
+                    out.conditions.push(Node::data(same, span));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Puts a set under control with indices of its own, whether or not it is under control outside.
+    fn run_over(&mut self, id: SymbolId, out: &mut Domain) -> Vec<Part> {
+        let symbol = self.symbols.get(id).clone();
+        let dim = symbol.dim();
+        let slots: Vec<Slot> = (0..dim).map(|_| self.new_slot()).collect();
+        for (p, &s) in slots.iter().enumerate() {
+            out.slots.push(s);
+            out.sets.push(if dim == 1 {
+                symbol.table
+            } else {
+                match symbol.domain[p] {
+                    DomainPosition::Set(d) => self.symbols.get(d).table,
+                    _ => self.symbols.get(UNIVERSE).table,
+                }
+            });
+        }
+        let parts: Vec<Part> = slots.into_iter().map(Part::Slot).collect();
+        out.members.push(Driver {
+            table: symbol.table,
+            key: Key {
+                parts: parts.clone(),
+            },
+        });
+        self.scope.push((id, parts.clone()));
+        parts
+    }
+
+    /// An index that is put under control if it is a set that is not yet.
+    pub(super) fn control_index(
+        &mut self,
+        index: &Expr,
+        of: SymbolId,
+        position: usize,
+        out: &mut Domain,
+    ) -> Result<Vec<Part>, Failed> {
+        match &index.kind {
+            ExprKind::Apply {
+                name,
+                attribute: Some(a),
+                arguments: None,
+            } if a.name.eq_ignore_ascii_case("local") => {
+                let s = self.lookup_set(name)?;
+                self.used(s, name.span);
+                if self.symbols.get(s).dim() == 1 {
+                    self.fits(s, of, position, index.span)?;
+                }
+                Ok(self.run_over(s, out))
+            }
+            ExprKind::Apply {
+                name,
+                attribute: None,
+                arguments: None,
+            } => {
+                let free = self.symbols.find(&name.name).filter(|&s| {
+                    let singleton = matches!(
+                        self.symbols.get(self.symbols.root(s)).kind,
+                        SymbolKind::Set { singleton: true }
+                    );
+                    self.symbols.get(s).is_set() && !singleton && self.controlled(s).is_none()
+                });
+                match free {
+                    Some(s) => {
+                        self.fits(s, of, position, index.span)?;
+                        self.domain_item(name, None, index.span, out)
+                    }
+                    None => self.index(index, of, position),
+                }
+            }
+            ExprKind::Apply {
+                name,
+                attribute: None,
+                arguments: Some(inner),
+            } if self
+                .symbols
+                .find(&name.name)
+                .is_some_and(|s| self.symbols.get(s).is_set()) =>
+            {
+                let s = self.lookup_set(name)?;
+                if self.symbols.get(s).dim() == 1 {
+                    self.fits(s, of, position, index.span)?;
+                }
+                self.domain_item(name, Some(inner), index.span, out)
+            }
+            _ => self.index(index, of, position),
+        }
+    }
+
+    /// The key of a symbol whose indices are put under control if they are not yet: `f(t+1)..`,
+    /// `w(m+k(n),n) = …`. Lags come last: how far one goes may depend on any of the indices.
+    pub(super) fn control_key(
+        &mut self,
+        indices: &[Expr],
+        of: SymbolId,
+        span: Span,
+        out: &mut Domain,
+    ) -> Result<Vec<Part>, Failed> {
+        let dim = self.symbols.get(of).dim();
+        let mut parts: Vec<Vec<Part>> = Vec::with_capacity(indices.len());
+        let mut lags = Vec::new();
+        let mut position = 0;
+        for (n, index) in indices.iter().enumerate() {
+            if position >= dim {
+                return self.wrong_dimension(of, span, indices.len());
+            }
+            let base = match &index.kind {
+                ExprKind::Sum(terms) => match terms.first() {
+                    Some((Sign::Plus, base)) => Some(base),
+                    _ => None,
+                },
+                ExprKind::Binary(BinaryOp::CircularPlus | BinaryOp::CircularMinus, base, _) => {
+                    Some(&**base)
+                }
+                _ => None,
+            };
+            let here = match base {
+                Some(base) => {
+                    self.control_lag_base(base, out)?;
+                    lags.push((n, position));
+                    position += 1;
+                    Vec::new()
+                }
+                None => self.control_index(index, of, position, out)?,
+            };
+            position += here.len();
+            parts.push(here);
+        }
+        for (n, position) in lags {
+            parts[n] = self.index(&indices[n], of, position)?;
+        }
+        let parts = parts.concat();
+        if parts.len() != dim {
+            return self.wrong_dimension(of, span, parts.len().max(indices.len()));
+        }
+        Ok(parts)
+    }
+
+    fn control_lag_base(&mut self, base: &Expr, out: &mut Domain) -> Result<(), Failed> {
+        if let ExprKind::Apply {
+            name,
+            attribute: None,
+            arguments: None,
+        } = &base.kind
+        {
+            let free = self
+                .symbols
+                .find(&name.name)
+                .filter(|&s| self.symbols.get(s).is_set() && self.controlled(s).is_none());
+            if free.is_some() {
+                self.domain_item(name, None, base.span, out)?;
+            }
+        }
+        Ok(())
+    }
+}

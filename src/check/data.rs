@@ -1,0 +1,380 @@
+//! Data statements: elements of sets, numbers of parameters, attributes of variables.
+
+use super::expansion::set_prefix;
+use super::node::{SymbolId, TableId};
+use super::symbols::{SymbolKind, attribute};
+use super::{Compiler, Failed};
+use crate::data::universe::Label;
+use crate::data::value::{self, EPS};
+use crate::diag::Diagnostic;
+use crate::source::{SourceMap, Span};
+use crate::syntax::ast::Ident;
+use crate::syntax::data::{DataKind, DataReader, KeyPart, Tail, width};
+
+impl Compiler {
+    /// Whether a symbol may get data now; clears it for `$onMultiR`.
+    pub(super) fn open_data(&mut self, s: SymbolId, span: Span) -> Result<(), Failed> {
+        self.symbols.get_mut(s).open = false;
+        let symbol = self.symbols.get(s);
+        let (had, declared, name, table) = (
+            symbol.has_data,
+            symbol.declared,
+            symbol.name.clone(),
+            symbol.table,
+        );
+        if had && !self.modes.multi && !self.modes.multi_replace {
+            return self.fail(
+                Diagnostic::error("E0340", span, format!("`{name}` has data already"))
+                    .label("second data statement")
+                    .other(declared, "first declared here")
+                    .help("assign instead (`p(i) = …;`), or allow merging with `$onMulti`"),
+            );
+        }
+        if had && self.modes.multi_replace {
+            self.store.table_mut(table).clear();
+            self.store.texts.remove(&table);
+        }
+        self.symbols.get_mut(s).has_data = true;
+        Ok(())
+    }
+
+    /// A symbol declared without a domain has as many indices as its first record. A dot behind a
+    /// blank begins a number there.
+    fn shape_by_data(&mut self, s: SymbolId, text: &str, kind: DataKind) {
+        let mut reader = DataReader::new(text, 0, kind, true).with_arity(1);
+        if let Some(Ok(r)) = reader.next()
+            && (kind == DataKind::Set || !matches!(r.value, Tail::None))
+        {
+            let spelled_out = set_prefix(r.key);
+            let key = spelled_out.as_deref().unwrap_or(r.key);
+            let dim = width(key) + r.matched.map_or(0, width);
+            self.set_dimension(s, dim);
+        }
+    }
+
+    /// Takes the number of indices that data show.
+    pub(super) fn set_dimension(&mut self, s: SymbolId, dim: usize) {
+        if dim > 0 && dim <= 20 && dim != self.symbols.get(s).dim() {
+            self.reshape(s, dim);
+        }
+    }
+
+    pub(super) fn set_data(
+        &mut self,
+        s: SymbolId,
+        body: Span,
+        name: Span,
+        map: &SourceMap,
+    ) -> Result<(), Failed> {
+        let open = self.symbols.get(s).open;
+        self.open_data(s, name)?;
+        if open {
+            self.shape_by_data(s, map.text(body), DataKind::Set);
+        }
+        let symbol = self.symbols.get(s).clone();
+        let (table, dim) = (symbol.table, symbol.dim());
+        let mut reader = DataReader::new(map.text(body), body.lo, DataKind::Set, self.modes.undf)
+            .with_arity(dim);
+        let mut last: Option<Label> = self.last_label(table, dim);
+        let mut unordered = symbol.unordered;
+        while let Some(record) = reader.next() {
+            let record = match record {
+                Ok(r) => r,
+                Err(d) => {
+                    self.report(d);
+                    break;
+                }
+            };
+            let text: Option<Box<str>> = match &record.value {
+                Tail::None => None,
+                Tail::Text(t, _) => Some((&**t).into()),
+                Tail::Number(_, span) => Some(map.text(*span).into()),
+                Tail::Name(n, _) => Some((*n).into()),
+            };
+            let (mut keys, span) = (Vec::new(), record.span);
+            if self
+                .expand(s, record.key, record.matched, span, &[], &mut keys)
+                .is_err()
+            {
+                continue;
+            }
+            for key in keys.chunks_exact(dim) {
+                if self.store.table(table).find(key).is_some() {
+                    if !self.modes.multi {
+                        let label = self.key_text(key);
+                        self.report(
+                            Diagnostic::error(
+                                "E0341",
+                                span,
+                                format!("the element {label} of `{}` appears twice", symbol.name),
+                            )
+                            .label("second time"),
+                        );
+                    }
+                    continue;
+                }
+                if matches!(symbol.kind, SymbolKind::Set { singleton: true })
+                    && !self.store.table(table).is_empty()
+                {
+                    self.report(
+                        Diagnostic::error(
+                            "E0342",
+                            span,
+                            format!("`{}` is a singleton: it has one element", symbol.name),
+                        )
+                        .label("second element"),
+                    );
+                    continue;
+                }
+                if dim == 1 {
+                    unordered |= last.is_some_and(|l| l > key[0]);
+                    last = Some(key[0]);
+                }
+                self.store.table_mut(table).set(key, 1.0);
+                if let Some(t) = &text {
+                    self.store
+                        .texts
+                        .entry(table)
+                        .or_default()
+                        .insert(key.into(), t.clone());
+                }
+            }
+        }
+        self.store.table_mut(table).tidy();
+        self.symbols.get_mut(s).unordered = unordered;
+        Ok(())
+    }
+
+    fn last_label(&self, table: TableId, dim: usize) -> Option<Label> {
+        let t = self.store.table(table);
+        (dim == 1 && !t.is_empty()).then(|| t.key(t.len() as u32 - 1)[0])
+    }
+
+    /// `'a'.'x'`, for messages.
+    pub(super) fn key_text(&self, key: &[Label]) -> String {
+        let names: Vec<String> = key
+            .iter()
+            .map(|&l| format!("'{}'", self.store.universe.name(l)))
+            .collect();
+        names.join(".")
+    }
+
+    pub(super) fn parameter_data(
+        &mut self,
+        s: SymbolId,
+        body: Span,
+        name: Span,
+        defines: &[bool],
+        map: &SourceMap,
+    ) -> Result<(), Failed> {
+        let open = self.symbols.get(s).open;
+        self.open_data(s, name)?;
+        let text = map.text(body);
+        if open {
+            self.shape_by_data(s, text, DataKind::Values);
+        }
+        let symbol = self.symbols.get(s).clone();
+        let (table, dim) = (symbol.table, symbol.dim());
+        let mut reader =
+            DataReader::new(text, body.lo, DataKind::Values, self.modes.undf).with_arity(dim);
+        let mut keys = Vec::new();
+        while let Some(record) = reader.next() {
+            let record = match record {
+                Ok(r) => r,
+                Err(d) => {
+                    self.report(d);
+                    break;
+                }
+            };
+            let v = match (&record.value, record.key) {
+                (Tail::Number(v, _), _) => *v,
+                (Tail::Name(n, at), _) => match self.acronym(n, *at) {
+                    Ok(v) => v,
+                    Err(Failed) => continue,
+                },
+                // `/ 5 /` of a scalar comes as a lone label.
+                (Tail::None, [KeyPart::Label { text, span, .. }]) if dim == 0 => match number(text)
+                {
+                    Some(v) => {
+                        self.put_value(s, table, &[], v, *span);
+                        continue;
+                    }
+                    None => match self.acronym(text, *span) {
+                        Ok(v) => {
+                            self.put_value(s, table, &[], v, *span);
+                            continue;
+                        }
+                        Err(Failed) => continue,
+                    },
+                },
+                (tail, _) => {
+                    let at = if let Tail::Text(..) = tail {
+                        "a text stands where a number is expected"
+                    } else {
+                        "no number follows the label"
+                    };
+                    self.report(
+                        Diagnostic::error(
+                            "E0345",
+                            record.span,
+                            format!(
+                                "the data of `{}` need a number for each record",
+                                symbol.name
+                            ),
+                        )
+                        .label(at),
+                    );
+                    continue;
+                }
+            };
+            keys.clear();
+            let (span, key) = (record.span, record.key);
+            if self
+                .expand(s, key, record.matched, span, defines, &mut keys)
+                .is_err()
+            {
+                if self.error_count() >= super::MAX_ERRORS {
+                    break;
+                }
+                continue;
+            }
+            if dim == 0 {
+                self.put_value(s, table, &[], v, span);
+                continue;
+            }
+            for k in keys.chunks_exact(dim) {
+                self.put_value(s, table, k, v, span);
+            }
+        }
+        self.store.table_mut(table).tidy();
+        Ok(())
+    }
+
+    pub(super) fn acronym(&mut self, name: &str, span: Span) -> Result<f64, Failed> {
+        if let Some(s) = self.symbols.find(name)
+            && let SymbolKind::Acronym(n) = self.symbols.get(s).kind
+        {
+            return Ok(value::acronym(n));
+        }
+        self.fail(
+            Diagnostic::error("E0345", span, format!("`{name}` is not a number"))
+                .label("a number is expected")
+                .help("numbers are `1.5`, `-2e3`, `inf`, `eps`, `na`; other words must be declared as acronyms"),
+        )
+    }
+
+    /// Stores a value of a data statement; an error if the record is there already.
+    pub(super) fn put_value(
+        &mut self,
+        s: SymbolId,
+        table: TableId,
+        key: &[Label],
+        v: f64,
+        span: Span,
+    ) {
+        let v = if v == 0.0 && self.modes.eps { EPS } else { v };
+        let t = &mut self.store.tables[table as usize];
+        if !self.modes.multi && !t.is_after_last(key) && t.find(key).is_some() {
+            let label = self.key_text(key);
+            let name = self.symbols.get(s).name.clone();
+            let what = if key.is_empty() {
+                format!("`{name}` gets two values")
+            } else {
+                format!("the record {label} of `{name}` appears twice")
+            };
+            self.report(Diagnostic::error("E0341", span, what).label("second time"));
+            return;
+        }
+        t.set(key, v);
+    }
+
+    /// `variable x(i) / a.lo 5 /`.
+    pub(super) fn record_data(
+        &mut self,
+        s: SymbolId,
+        body: Span,
+        map: &SourceMap,
+    ) -> Result<(), Failed> {
+        let symbol = self.symbols.get(s).clone();
+        let mut reader =
+            DataReader::new(map.text(body), body.lo, DataKind::Values, self.modes.undf);
+        while let Some(record) = reader.next() {
+            let record = match record {
+                Ok(r) => r,
+                Err(d) => {
+                    self.report(d);
+                    break;
+                }
+            };
+            let Some((KeyPart::Label { text, span, .. }, key)) = record.key.split_last() else {
+                continue;
+            };
+            let (attr, at) = (text.to_lowercase(), *span);
+            let Tail::Number(v, _) = record.value else {
+                self.report(
+                    Diagnostic::error(
+                        "E0345",
+                        record.span,
+                        "a number is expected behind the attribute",
+                    )
+                    .label("no number"),
+                );
+                continue;
+            };
+            let (span, mut keys) = (record.span, Vec::new());
+            if symbol.dim() > 0 && self.expand(s, key, None, span, &[], &mut keys).is_err() {
+                continue;
+            }
+            let offsets: &[u32] = match attr.as_str() {
+                "l" => &[attribute::L],
+                "m" => &[attribute::M],
+                "lo" => &[attribute::LO],
+                "up" => &[attribute::UP],
+                "fx" => &[attribute::L, attribute::LO, attribute::UP],
+                "scale" => &[attribute::SCALE],
+                "prior" => &[attribute::PRIOR],
+                _ => {
+                    let _ = self.unknown_attribute::<()>(
+                        &Ident {
+                            name: attr.into(),
+                            span: at,
+                        },
+                        &symbol.name,
+                        symbol.kind_name(),
+                        "l, m, lo, up, fx, scale, prior",
+                    );
+                    continue;
+                }
+            };
+            for &o in offsets {
+                let t = self.store.table_mut(symbol.table + o);
+                if symbol.dim() == 0 {
+                    t.set(&[], v);
+                }
+                for k in keys.chunks_exact(symbol.dim().max(1)) {
+                    t.set(k, v);
+                }
+            }
+            self.symbols.get_mut(s).assigned = true;
+        }
+        for o in 0..attribute::COUNT {
+            self.store.table_mut(symbol.table + o).tidy();
+        }
+        Ok(())
+    }
+}
+
+/// A number as it may stand in data.
+fn number(text: &str) -> Option<f64> {
+    let t = text.to_lowercase();
+    Some(match t.as_str() {
+        "inf" | "+inf" => f64::INFINITY,
+        "-inf" => f64::NEG_INFINITY,
+        "eps" => EPS,
+        "na" => value::NA,
+        "undf" => value::UNDF,
+        "yes" => 1.0,
+        "no" => 0.0,
+        _ => fast_float2::parse(t.strip_prefix('+').unwrap_or(&t)).ok()?,
+    })
+}

@@ -1,0 +1,467 @@
+//! Index expressions: from what stands between the parentheses of a symbol to the parts of its key.
+
+use super::node::*;
+use super::symbols::{DomainPosition, SymbolKind, UNIVERSE, attribute};
+use super::{Compiler, Failed};
+use crate::diag::{Diagnostic, nearest};
+use crate::source::Span;
+use crate::syntax::ast::{Expr, ExprKind, Ident, Sign};
+use std::rc::Rc;
+
+impl Compiler {
+    /// Whether set `a` may stand at a position of symbol `of`.
+    pub(super) fn fits(
+        &mut self,
+        a: SymbolId,
+        of: SymbolId,
+        position: usize,
+        span: Span,
+    ) -> Result<(), Failed> {
+        let DomainPosition::Set(d) = self.symbols.get(of).domain[position] else {
+            return Ok(());
+        };
+        if self.modes.universal || self.symbols.is_subset(a, d) || self.symbols.get(a).dim() > 1 {
+            return Ok(());
+        }
+        let (an, dn) = (
+            self.symbols.get(a).name.clone(),
+            self.symbols.get(d).name.clone(),
+        );
+        let (on, declared) = (
+            self.symbols.get(of).name.clone(),
+            self.symbols.get(of).declared,
+        );
+        let a_root = self.symbols.get(self.symbols.root(a)).declared;
+        let same = self.symbols.is_subset(d, a);
+        let help = if same {
+            format!(
+                "`{dn}` is the smaller set: use an index that runs over `{dn}`, or declare `{on}` over `{an}`"
+            )
+        } else {
+            format!(
+                "declare `{an}` as a subset (`set {an}({dn})`) or as an alias of `{dn}`; equal labels alone do not make it one"
+            )
+        };
+        self.fail(
+            Diagnostic::error(
+                "E0306",
+                span,
+                format!(
+                    "`{an}` may not stand at position {} of `{on}`, which runs over `{dn}`",
+                    position + 1
+                ),
+            )
+            .label(format!("`{an}` is not a subset of `{dn}`"))
+            .other(declared, format!("`{on}` is declared here"))
+            .other(a_root, format!("`{an}` is declared here"))
+            .help(help),
+        )
+    }
+
+    pub(super) fn wrong_dimension<T>(
+        &mut self,
+        of: SymbolId,
+        span: Span,
+        given: usize,
+    ) -> Result<T, Failed> {
+        let s = self.symbols.get(of).clone();
+        let plural = |n: usize| match n {
+            0 => "no index".to_string(),
+            1 => "1 index".to_string(),
+            n => format!("{n} indices"),
+        };
+        let names: Vec<String> = s
+            .domain
+            .iter()
+            .map(|d| match d {
+                DomainPosition::Universe => "*".to_string(),
+                DomainPosition::Set(i) => self.symbols.get(*i).name.to_string(),
+                DomainPosition::Relaxed(n) => n.to_string(),
+            })
+            .collect();
+        let shape = if names.is_empty() {
+            s.name.to_string()
+        } else {
+            format!("{}({})", s.name, names.join(","))
+        };
+        self.fail(
+            Diagnostic::error(
+                "E0304",
+                span,
+                format!(
+                    "`{}` has {}, but {} given here",
+                    s.name,
+                    plural(s.dim()),
+                    match given {
+                        0 => "none is".to_string(),
+                        1 => "1 is".to_string(),
+                        n => format!("{n} are"),
+                    }
+                ),
+            )
+            .label(format!("{} here", plural(given)))
+            .other(
+                s.declared,
+                format!("declared with {} here", plural(s.dim())),
+            )
+            .help(format!("write `{shape}`")),
+        )
+    }
+
+    /// A symbol that was declared without a domain gets as many indices as its first use has.
+    pub(super) fn shape(&mut self, s: SymbolId, indices: &[Expr]) {
+        if !self.symbols.get(s).open {
+            return;
+        }
+        if indices.is_empty() {
+            // The first use says that it has none.
+            self.symbols.get_mut(s).open = false;
+            return;
+        }
+        // A tuple set stands for all its positions.
+        let positions = |e: &Expr| match &e.kind {
+            ExprKind::Apply {
+                name,
+                attribute: None,
+                ..
+            } => self
+                .symbols
+                .find(&name.name)
+                .map(|i| self.symbols.get(i))
+                .filter(|i| i.is_set())
+                .map_or(1, |i| i.dim()),
+            _ => 1,
+        };
+        let dim: usize = indices.iter().map(positions).sum();
+        self.symbols.get_mut(s).open = false;
+        if dim <= 20 {
+            self.reshape(s, dim);
+        }
+    }
+
+    /// Gives a symbol without data another number of indices.
+    pub(super) fn reshape(&mut self, s: SymbolId, dim: usize) {
+        let symbol = self.symbols.get_mut(s);
+        symbol.domain = vec![DomainPosition::Universe; dim];
+        let first = symbol.table;
+        let tables = match symbol.kind {
+            SymbolKind::Variable(_) | SymbolKind::Equation(_) => attribute::COUNT,
+            _ => 1,
+        };
+        for t in first..first + tables {
+            let default = self.store.table(t).default_value();
+            *self.store.table_mut(t) = crate::data::table::Table::new(dim, default);
+        }
+    }
+
+    /// Key of a symbol from its indices, all of which are under control.
+    pub(super) fn key(
+        &mut self,
+        of: SymbolId,
+        indices: &[Expr],
+        span: Span,
+    ) -> Result<Key, Failed> {
+        self.shape(of, indices);
+        let dim = self.symbols.get(of).dim();
+        // A tuple set under control stands for all its positions: `p(arc)`.
+        let mut parts = Vec::with_capacity(dim);
+        for index in indices {
+            if parts.len() >= dim {
+                return self.wrong_dimension(of, span, indices.len());
+            }
+            let p = parts.len();
+            parts.extend(self.index(index, of, p)?);
+        }
+        if parts.len() != dim {
+            return self.wrong_dimension(of, span, parts.len().max(indices.len()));
+        }
+        Ok(Key { parts })
+    }
+
+    /// One index expression at a position of a symbol.
+    pub(super) fn index(
+        &mut self,
+        e: &Expr,
+        of: SymbolId,
+        position: usize,
+    ) -> Result<Vec<Part>, Failed> {
+        match &e.kind {
+            ExprKind::Text(label) => Ok(vec![Part::Label(self.label(label, of, position, e.span)?)]),
+            ExprKind::Apply { name, attribute: None, arguments: None } => {
+                let Some(s) = self.symbols.find(&name.name) else {
+                    return self.unknown_index(name);
+                };
+                if !self.symbols.get(s).is_set() {
+                    self.lookup_set(name)?;
+                }
+                let part = self.set_index(s, name)?;
+                if self.symbols.get(s).dim() == 1 {
+                    self.fits(s, of, position, e.span)?;
+                }
+                Ok(part)
+            }
+            ExprKind::Apply { name, attribute: None, arguments: Some(inner) } => {
+                // p(arc(i,j)): all controlled.
+                let s = self.lookup_set(name)?;
+                let key = self.key(s, inner, e.span)?;
+                Ok(key.parts)
+            }
+            ExprKind::Sum(terms) => self.lag(e, terms, of, position),
+            ExprKind::Binary(op @ (BinaryOp::CircularPlus | BinaryOp::CircularMinus), base, offset) => {
+                let (base_part, set) = self.lag_base(base, of, position)?;
+                let mut offset = self.expr(offset)?;
+                if *op == BinaryOp::CircularMinus {
+                    let span = offset.span;
+                    offset = Node::data(NodeKind::Negate(Box::new(offset)), span);
+                }
+                Ok(vec![Part::Lag(Rc::new(Lag { base: base_part, set, offset, circular: true }))])
+            }
+            ExprKind::Number(x) => {
+                let text = x.to_string();
+                self.fail(
+                    Diagnostic::error("E0307", e.span, "a number may not stand as an index")
+                        .label("an index is expected")
+                        .help(format!("if `{text}` is a label, quote it: `'{text}'`")),
+                )
+            }
+            _ => self.fail(
+                Diagnostic::error("E0307", e.span, "this is not an index")
+                    .label("an index is expected")
+                    .help("an index is a set under control, a quoted label, or a lag such as `t-1` or `t++1`"),
+            ),
+        }
+    }
+
+    pub(super) fn unknown_index<T>(&mut self, name: &Ident) -> Result<T, Failed> {
+        if self.store.universe.get(&name.name).is_some() {
+            return self.fail(
+                Diagnostic::error(
+                    "E0301",
+                    name.span,
+                    format!("`{}` is not a set, but it is a label", name.name),
+                )
+                .label("unknown set")
+                .help(format!("quote labels in expressions: `'{}'`", name.name)),
+            );
+        }
+        self.lookup(name).and(Err(Failed))
+    }
+
+    /// A set name as an index: its slots, or the element of a singleton.
+    pub(super) fn set_index(&mut self, s: SymbolId, name: &Ident) -> Result<Vec<Part>, Failed> {
+        if let Some(parts) = self.controlled(s) {
+            return Ok(parts.to_vec());
+        }
+        let root = self.symbols.get(self.symbols.root(s));
+        if matches!(root.kind, SymbolKind::Set { singleton: true }) {
+            let (t, dim) = (root.table, root.dim());
+            return Ok((0..dim).map(|p| Part::Singleton(t, p as u8)).collect());
+        }
+        let (declared, is_label) = (root.declared, self.store.universe.get(&name.name).is_some());
+        let mut help = format!(
+            "let it run: in a sum, `sum({0}, …)`; on the left of an assignment; in the equation's domain; or in `loop({0}, …)`",
+            name.name
+        );
+        if is_label {
+            help.push_str(&format!("; a label is quoted: `'{}'`", name.name));
+        }
+        self.fail(
+            Diagnostic::error(
+                "E0303",
+                name.span,
+                format!("the index `{}` is not under control here", name.name),
+            )
+            .label("nothing lets it run")
+            .other(declared, "the set is declared here")
+            .help(help),
+        )
+    }
+
+    /// A quoted label at a position of a symbol.
+    pub(super) fn label(
+        &mut self,
+        text: &str,
+        of: SymbolId,
+        position: usize,
+        span: Span,
+    ) -> Result<u32, Failed> {
+        let symbol = self.symbols.get(of);
+        let DomainPosition::Set(d) = symbol
+            .domain
+            .get(position)
+            .cloned()
+            .unwrap_or(DomainPosition::Universe)
+        else {
+            return Ok(self.store.universe.intern(text));
+        };
+        let set = self.symbols.get(self.symbols.root(d));
+        let known = self.store.universe.get(text);
+        if let Some(l) = known
+            && (set.dynamic || self.store.table(set.table).find(&[l]).is_some())
+        {
+            return Ok(l);
+        }
+        self.not_a_member(text, "'", of, position, span)
+    }
+
+    /// A label that stands where the domain does not have it; `quote` stands around it.
+    pub(super) fn not_a_member<T>(
+        &mut self,
+        text: &str,
+        quote: &str,
+        of: SymbolId,
+        position: usize,
+        span: Span,
+    ) -> Result<T, Failed> {
+        let symbol = self.symbols.get(of);
+        let set = match symbol.domain.get(position) {
+            Some(DomainPosition::Set(d)) => self.symbols.root(*d),
+            _ => UNIVERSE,
+        };
+        let set = self.symbols.get(set);
+        let table = self.store.table(set.table);
+        let known =
+            (0..table.len().min(10_000) as u32).map(|r| self.store.universe.name(table.key(r)[0]));
+        let (name, set_name) = (&symbol.name, &set.name);
+        let help = match nearest(text, known) {
+            Some(n) => format!("did you mean `{quote}{n}{quote}`?"),
+            None => format!("add `{quote}{text}{quote}` to `{set_name}`, or correct the label"),
+        };
+        let d = Diagnostic::error(
+            "E0308",
+            span,
+            format!("`{quote}{text}{quote}` is not a member of the set `{set_name}`"),
+        )
+        .label(format!(
+            "position {} of `{name}` runs over `{set_name}`",
+            position + 1
+        ))
+        .other(set.declared, format!("`{set_name}` is declared here"))
+        .help(help);
+        self.fail(d)
+    }
+
+    fn lag_base(
+        &mut self,
+        base: &Expr,
+        of: SymbolId,
+        position: usize,
+    ) -> Result<(Part, TableId), Failed> {
+        match &base.kind {
+            ExprKind::Apply {
+                name,
+                attribute: None,
+                arguments: None,
+            } => {
+                let Some(s) = self.symbols.find(&name.name) else {
+                    return self.unknown_index(name);
+                };
+                if !self.symbols.get(s).is_set() {
+                    self.lookup_set(name)?;
+                }
+                let mut part = self.set_index(s, name)?;
+                self.ordered(s, name.span, "a lag or lead")?;
+                self.fits(s, of, position, base.span)?;
+                let table = self.symbols.get(s).table;
+                match part.len() {
+                    1 => Ok((part.remove(0), table)),
+                    _ => self.fail(
+                        Diagnostic::error("E0307", base.span, "a lag needs a one-dimensional set")
+                            .label("several indices"),
+                    ),
+                }
+            }
+            ExprKind::Text(label) => self.fail(
+                Diagnostic::error(
+                    "E0309",
+                    base.span,
+                    format!("the label `'{label}'` takes no lag or lead"),
+                )
+                .label("a label is one element")
+                .help("write the label you mean, or use an index that runs"),
+            ),
+            _ => self.fail(
+                Diagnostic::error("E0307", base.span, "this is not an index")
+                    .label("an index is expected")
+                    .help("a lag or lead starts from a set under control: `t-1`, `t+k`, `t++1`"),
+            ),
+        }
+    }
+
+    /// `t-1`, `t+k`.
+    fn lag(
+        &mut self,
+        e: &Expr,
+        terms: &[(Sign, Expr)],
+        of: SymbolId,
+        position: usize,
+    ) -> Result<Vec<Part>, Failed> {
+        let (base, set) = self.lag_base(&terms[0].1, of, position)?;
+        if terms.len() > 2 {
+            return self.fail(
+                Diagnostic::error("E0309", e.span, "an index takes one lag or lead")
+                    .label("several")
+                    .help("put the sum into parentheses: `t+(k+1)`"),
+            );
+        }
+        let mut offset = Vec::new();
+        for (sign, t) in &terms[1..] {
+            offset.push((*sign == Sign::Minus, self.expr(t)?));
+        }
+        let offset = match offset.len() {
+            1 if !offset[0].0 => offset.remove(0).1,
+            _ => Node::data(NodeKind::Sum(offset), e.span),
+        };
+        self.no_variable(&offset, "a lag")?;
+        Ok(vec![Part::Lag(Rc::new(Lag {
+            base,
+            set,
+            offset,
+            circular: false,
+        }))])
+    }
+
+    /// An error unless the set has an order.
+    pub(super) fn ordered(&mut self, s: SymbolId, span: Span, what: &str) -> Result<(), Failed> {
+        if self.modes.off_order {
+            return Ok(());
+        }
+        let root = self.symbols.get(self.symbols.root(s));
+        let (declared, name) = (root.declared, root.name.clone());
+        if matches!(root.kind, SymbolKind::Set { singleton: true }) {
+            return self.fail(
+                Diagnostic::error(
+                    "E0309",
+                    span,
+                    format!("{what} needs an ordered set; `{name}` is a singleton"),
+                )
+                .other(declared, "declared here"),
+            );
+        }
+        if root.dynamic {
+            return self.fail(
+                Diagnostic::error(
+                    "E0309",
+                    span,
+                    format!("{what} needs an ordered set; `{name}` is changed by an assignment"),
+                )
+                .label("a dynamic set has no order")
+                .other(declared, "declared here")
+                .help("use the set that it is a subset of, or `$offOrder`"),
+            );
+        }
+        if root.unordered {
+            return self.fail(
+                Diagnostic::error(
+                    "E0309",
+                    span,
+                    format!("{what} needs an ordered set; the labels of `{name}` appeared earlier in another order"),
+                )
+                .label("not ordered")
+                .other(declared, "declared here")
+                .help("declare the set with its labels in the wanted order before they appear elsewhere"),
+            );
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,247 @@
+//! The `option` statement: switches and limits, formats, `clear`, projections.
+
+use super::functions;
+use super::node::*;
+use super::symbols::DomainPosition;
+use super::{Compiler, Failed};
+use crate::diag::{Diagnostic, nearest};
+use crate::solve::OWN_OPTIONS;
+use crate::syntax::ast::{Ident, OptionForm, OptionItem, OptionValue};
+
+/// Options of the `option` statement that are numbers or switches, besides solver choices.
+const OPTIONS: &[&str] = &[
+    "limrow",
+    "limcol",
+    "iterlim",
+    "reslim",
+    "decimals",
+    "optcr",
+    "optca",
+    "domlim",
+    "bratio",
+    "seed",
+    "sysout",
+    "solprint",
+    "solveopt",
+    "solvelink",
+    "savepoint",
+    "threads",
+    "profile",
+    "profiletol",
+    "eject",
+    "dispwidth",
+    "forcework",
+    "measure",
+    "memorystat",
+    "strictsingleton",
+    "intvarup",
+    "sys10",
+    "sys11",
+    "sys12",
+    "dmpsym",
+    "dmpopt",
+    "dualcheck",
+    "real1",
+    "real2",
+    "real3",
+    "real4",
+    "real5",
+    "integer1",
+    "integer2",
+    "integer3",
+    "integer4",
+    "integer5",
+    "subsystems",
+    "on115",
+    "zerores",
+    "zeroresrep",
+    "solslack",
+    "cheat",
+    "cutoff",
+    "work",
+    "oldname",
+    "solver",
+    "asyncsollst",
+    "fddelta",
+    "fdopt",
+    "threadsasync",
+    "bratio",
+    "ejectx",
+    "mcprholdfx",
+    "gdxuels",
+    "shuffle",
+    "certify",
+    "checkerrorlevel",
+    "dmpuserSym",
+    "resLim",
+    "holdfixedasync",
+    "prefixloadpath",
+    "debugtask",
+    "validation",
+    "format",
+    "hessscale",
+    "ecimplicitload",
+];
+
+/// Whether an option is the language's and not a solver's: a problem type (`nlp = ipopt`), a limit, a
+/// switch.
+pub fn is_statement_option(name: &str) -> bool {
+    let mut known = [OPTIONS, functions::PROBLEM_TYPES].into_iter().flatten();
+    known.any(|o| o.eq_ignore_ascii_case(name))
+}
+
+impl Compiler {
+    pub(super) fn option(&mut self, item: &OptionItem) -> Result<Option<CodeKind>, Failed> {
+        let lower = item.name.name.to_lowercase();
+        match &item.form {
+            OptionForm::Format(numbers) => {
+                let s = self.lookup(&item.name)?;
+                Ok(Some(CodeKind::Format(s, numbers.clone())))
+            }
+            OptionForm::Project {
+                last,
+                source,
+                indices,
+            } => self.project(item, *last, source, indices.as_deref()),
+            OptionForm::Assign(OptionValue::Text(t, span))
+                if lower == "clear" || lower == "kill" =>
+            {
+                let s = self.lookup(&Ident {
+                    name: t.clone(),
+                    span: *span,
+                })?;
+                Ok(Some(CodeKind::Clear(s)))
+            }
+            OptionForm::Assign(v) => {
+                if !is_statement_option(&lower) && !OWN_OPTIONS.contains(&lower.as_str()) {
+                    return self.unknown_option(item);
+                }
+                if let OptionValue::Text(t, span) = v
+                    && functions::PROBLEM_TYPES.contains(&lower.as_str())
+                    && !functions::SOLVERS.iter().any(|s| s.eq_ignore_ascii_case(t))
+                {
+                    let near = nearest(t, functions::SOLVERS.iter().copied()).map(str::to_string);
+                    let d = Diagnostic::error("E0349", *span, format!("there is no solver `{t}`"))
+                        .label("unknown solver");
+                    return self.fail(match near {
+                        Some(n) => d.help(format!("did you mean `{n}`?")),
+                        None => d.help(
+                            "bmod's own are clarabel (lp), pounce and ipopt (nlp), bmcp (mcp)",
+                        ),
+                    });
+                }
+                let value = match v {
+                    OptionValue::Number(x) => OptionCode::Number(*x),
+                    OptionValue::Text(t, _) => OptionCode::Text(t.clone()),
+                };
+                Ok(Some(CodeKind::Option(lower.into(), value)))
+            }
+            OptionForm::Flag => {
+                if !OPTIONS.iter().any(|o| o.eq_ignore_ascii_case(&lower))
+                    && !matches!(lower.as_str(), "dmpsym" | "eject" | "shut" | "stat")
+                {
+                    return self.unknown_option(item);
+                }
+                Ok(None)
+            }
+        }
+    }
+
+    fn unknown_option<T>(&mut self, item: &OptionItem) -> Result<T, Failed> {
+        let known = [OPTIONS, OWN_OPTIONS, functions::PROBLEM_TYPES];
+        let near = nearest(&item.name.name, known.into_iter().flatten().copied());
+        let near = near.map(str::to_string);
+        let d = Diagnostic::error(
+            "E0329",
+            item.name.span,
+            format!("there is no option `{}`", item.name.name),
+        )
+        .label("unknown option");
+        self.fail(match near {
+            Some(n) => d.help(format!("did you mean `{n}`?")),
+            None => d,
+        })
+    }
+
+    fn project(
+        &mut self,
+        item: &OptionItem,
+        last: bool,
+        source: &Ident,
+        source_indices: Option<&[Ident]>,
+    ) -> Result<Option<CodeKind>, Failed> {
+        let (t, s) = (self.lookup(&item.name)?, self.lookup(source)?);
+        self.used(s, source.span);
+        let (target, from) = (self.symbols.get(t).clone(), self.symbols.get(s).clone());
+        let positions: Vec<usize> = match (&item.indices, source_indices) {
+            (Some(a), Some(b)) => {
+                let mut p = Vec::new();
+                for name in a {
+                    match b
+                        .iter()
+                        .position(|x| x.name.eq_ignore_ascii_case(&name.name))
+                    {
+                        Some(i) => p.push(i),
+                        None => {
+                            return self.fail(Diagnostic::error(
+                                "E0331",
+                                name.span,
+                                format!("`{}` is not an index of the right side", name.name),
+                            ));
+                        }
+                    }
+                }
+                p
+            }
+            _ => {
+                // By domain: each position of the target takes the first unused position of the source with the
+                // same set; by place, from the right, where the sets do not tell.
+                let mut taken = vec![false; from.dim()];
+                let mut p = Vec::new();
+                for d in &target.domain {
+                    let hit = (0..from.dim()).find(|&i| {
+                        !taken[i] && from.domain[i] == *d && *d != DomainPosition::Universe
+                    });
+                    match hit {
+                        Some(i) => {
+                            taken[i] = true;
+                            p.push(i);
+                        }
+                        None => {
+                            p.clear();
+                            break;
+                        }
+                    }
+                }
+                if p.len() != target.dim() {
+                    let extra = from.dim().saturating_sub(target.dim());
+                    p = (0..target.dim()).map(|i| i + extra).collect();
+                }
+                p
+            }
+        };
+        if positions.len() != target.dim() || positions.iter().any(|&p| p >= from.dim()) {
+            return self.fail(
+                Diagnostic::error(
+                    "E0331",
+                    item.name.span,
+                    "the right side has fewer positions than the left",
+                )
+                .other(target.declared, "left side declared here")
+                .other(from.declared, "right side declared here"),
+            );
+        }
+        let root = self.symbols.root(t);
+        let symbol = self.symbols.get_mut(root);
+        symbol.assigned = true;
+        if symbol.is_set() {
+            symbol.dynamic = true;
+        }
+        Ok(Some(CodeKind::Project {
+            target: root,
+            source: s,
+            positions,
+            count: !last,
+        }))
+    }
+}

@@ -1,0 +1,206 @@
+//! What `display` and `put` write.
+
+use super::node::*;
+use super::symbols::{SymbolKind, attribute};
+use super::{Compiler, Failed};
+use crate::diag::Diagnostic;
+use crate::source::Span;
+use crate::syntax::ast::{DisplayItem, ExprKind, Ident, Put, PutItem};
+
+impl Compiler {
+    pub(super) fn shown(&mut self, items: &[DisplayItem]) -> Result<Vec<Shown>, Failed> {
+        let mut out = Vec::new();
+        for item in items {
+            match item {
+                DisplayItem::Text(t, _) => out.push(Shown::Text(t.clone())),
+                DisplayItem::Symbol(r) => {
+                    let s = self.lookup(&r.name)?;
+                    let symbol = self.symbols.get(s).clone();
+                    if !r.indices.is_empty() {
+                        return self.fail(
+                            Diagnostic::error(
+                                "E0328",
+                                r.span,
+                                "`display` takes whole symbols, without indices",
+                            )
+                            .label("indices here")
+                            .help(format!(
+                                "write `display {}`; or copy the part you want into a parameter",
+                                r.name.name
+                            )),
+                        );
+                    }
+                    let attr = match (&symbol.kind, &r.attribute) {
+                        (SymbolKind::Variable(_) | SymbolKind::Equation(_), Some(a)) => {
+                            match display_attribute(&a.name) {
+                                Some(a) => Some(a),
+                                None => {
+                                    return self.unknown_attribute(
+                                        a,
+                                        &symbol.name,
+                                        symbol.kind_name(),
+                                        "l, m, lo, up, scale, prior",
+                                    );
+                                }
+                            }
+                        }
+                        (SymbolKind::Variable(_) | SymbolKind::Equation(_), None) => {
+                            return self.fail(
+                                Diagnostic::error(
+                                    "E0310",
+                                    r.span,
+                                    format!(
+                                        "`{}` is a {}; say which number to display",
+                                        symbol.name,
+                                        symbol.kind_name()
+                                    ),
+                                )
+                                .label("an attribute is expected")
+                                .help(format!("for instance `{}.l`", r.name.name)),
+                            );
+                        }
+                        (SymbolKind::Model(_) | SymbolKind::File(_), Some(a)) => {
+                            Some(self.object_attribute(s, a)?)
+                        }
+                        (_, Some(a)) => {
+                            return self.unknown_attribute(
+                                a,
+                                &symbol.name,
+                                symbol.kind_name(),
+                                "none",
+                            );
+                        }
+                        (_, None) => None,
+                    };
+                    if matches!(attr, None | Some("L" | "M")) {
+                        self.used(s, r.span);
+                    }
+                    out.push(Shown::Symbol(s, attr));
+                }
+            }
+        }
+        Ok(out)
+    }
+
+    pub(super) fn put(&mut self, p: &Put, span: Span) -> Result<CodeKind, Failed> {
+        let condition = self.optional(p.condition.as_ref())?;
+        self.texts_allowed = true;
+        let r = self.put_items(&p.items);
+        self.texts_allowed = false;
+        if let Ok(items) = &r {
+            self.put_named |= items.iter().any(|i| matches!(i, PutCode::File(_)));
+            if !self.put_named && !p.keyword.starts_with("put_util") {
+                self.put_named = true;
+                return self.fail(
+                    Diagnostic::error("E0374", span, "no file is named to write to")
+                        .label("which file?")
+                        .help("declare one, `file out / 'out.txt' /;`, and name it first: `put out 'text' /;`"),
+                );
+            }
+        }
+        Ok(CodeKind::Put(p.keyword.clone(), condition, r?))
+    }
+
+    fn put_items(&mut self, items: &[PutItem]) -> Result<Vec<PutCode>, Failed> {
+        let mut out = Vec::new();
+        for item in items {
+            let code = match item {
+                PutItem::NewLine => PutCode::NewLine,
+                PutItem::Column(e) => PutCode::Column(self.expr(e)?),
+                PutItem::Row(e) => PutCode::Row(self.expr(e)?),
+                PutItem::Item {
+                    value,
+                    align,
+                    width,
+                    decimals,
+                } => {
+                    if let ExprKind::Apply {
+                        name,
+                        attribute,
+                        arguments: None,
+                    } = &value.kind
+                    {
+                        if name.name.eq_ignore_ascii_case("system") {
+                            let what = attribute.as_ref().map_or("", |a| &*a.name).to_lowercase();
+                            let value = Node::data(
+                                NodeKind::Text(format!("%system.{what}%").into()),
+                                value.span,
+                            );
+                            out.push(PutCode::Item {
+                                value,
+                                align: *align,
+                                width: self.optional(width.as_ref())?,
+                                decimals: self.optional(decimals.as_ref())?,
+                            });
+                            continue;
+                        }
+                        if let (Some(s), None) = (self.file(name), attribute) {
+                            out.push(PutCode::File(s));
+                            continue;
+                        }
+                    }
+                    let mut value = value;
+                    // `put out (a + b)` reads like a symbol with an index.
+                    if let ExprKind::Apply {
+                        name,
+                        attribute: None,
+                        arguments: Some(arguments),
+                    } = &value.kind
+                        && let [one] = arguments.as_slice()
+                        && let Some(s) = self.file(name)
+                    {
+                        out.push(PutCode::File(s));
+                        value = one;
+                    }
+                    PutCode::Item {
+                        value: self.expr(value)?,
+                        align: *align,
+                        width: self.optional(width.as_ref())?,
+                        decimals: self.optional(decimals.as_ref())?,
+                    }
+                }
+            };
+            out.push(code);
+        }
+        Ok(out)
+    }
+
+    /// The file of this name, if it is one.
+    fn file(&self, name: &Ident) -> Option<SymbolId> {
+        let s = self.symbols.find(&name.name)?;
+        matches!(self.symbols.get(s).kind, SymbolKind::File(_)).then_some(s)
+    }
+}
+
+/// Attribute as `display` shows it.
+fn display_attribute(name: &str) -> Option<&'static str> {
+    Some(match name.to_lowercase().as_str() {
+        "l" => "L",
+        "m" => "M",
+        "lo" => "Lo",
+        "up" => "Up",
+        "scale" => "Scale",
+        "prior" => "Prior",
+        "stage" => "Stage",
+        "slack" => "Slack",
+        "slacklo" => "SlackLo",
+        "slackup" => "SlackUp",
+        "infeas" => "Infeas",
+        "range" => "Range",
+        _ => return None,
+    })
+}
+
+/// Offset of an attribute table by the name that `display` shows.
+pub fn shown_offset(attr: &str) -> Option<u32> {
+    Some(match attr {
+        "L" => attribute::L,
+        "M" => attribute::M,
+        "Lo" => attribute::LO,
+        "Up" => attribute::UP,
+        "Scale" => attribute::SCALE,
+        "Prior" => attribute::PRIOR,
+        "Stage" => attribute::STAGE,
+        _ => return None,
+    })
+}
