@@ -1,0 +1,330 @@
+//! The last steps of generation: columns in label order, their bounds, pairs, and the counts.
+
+use super::Builder;
+use crate::check::node::*;
+use crate::check::symbols::{SymbolKind, attribute};
+use crate::data::sort::sort_records;
+use crate::data::universe::Label;
+use crate::data::value::number;
+use crate::diag::Diagnostic;
+use crate::model::instance::*;
+use crate::model::origin::{Block, Blocks, Origin};
+use crate::syntax::ast::VariableKind;
+
+impl Builder<'_, '_> {
+    /// Numbers columns in label order, fills their bounds, matches pairs and counts.
+    pub(super) fn finish(&mut self, rows: Blocks, solve: &SolveCode) -> Origin {
+        // Columns of pairs belong to the model even where they stand in no row.
+        let mut pairs: Vec<(SymbolId, u32, Vec<Label>)> = Vec::new();
+        for item in &solve.equations {
+            let (Some(v), e) = (item.pair, self.m.equations[item.definition].symbol) else {
+                continue;
+            };
+            if let Some(block) = rows.symbol(e) {
+                for r in block.start..block.start + block.len {
+                    pairs.push((v, r, block.key(r).to_vec()));
+                }
+            }
+        }
+        let mut used = vec![false; self.columns as usize];
+        for &c in &self.instance.matrix.column {
+            used[c as usize] = true;
+        }
+        for k in &self.instance.nonlinear {
+            for &c in &k.columns {
+                used[c as usize] = true;
+            }
+        }
+        let mut matched_rows = Vec::new();
+        let mut alone = Vec::new();
+        for (v, r, key) in &pairs {
+            let known = self.columns;
+            let c = self.column(*v, key);
+            if c >= known {
+                alone.push((c, *r));
+            }
+            used.resize(self.columns as usize, false);
+            used[c as usize] = true;
+            matched_rows.push((c, *r));
+        }
+        if solve.objective.is_some() {
+            used[0] = true;
+        }
+        self.maps.sort_by_key(|m| m.symbol);
+        let mut new_number = vec![u32::MAX; self.columns as usize];
+        let mut columns = Blocks::default();
+        let mut next = 0u32;
+        for m in &self.maps {
+            let d = m.dim;
+            let mut order: Vec<u32> = (0..m.numbers.len() as u32)
+                .filter(|&i| used[m.numbers[i as usize] as usize])
+                .collect();
+            let key = |i: u32| &m.keys[i as usize * d..(i as usize + 1) * d];
+            if d > 0 {
+                sort_records(&mut order, &m.keys, d, &(0..d).collect::<Vec<_>>());
+            }
+            let mut block = Block {
+                symbol: m.symbol,
+                start: next,
+                len: order.len() as u32,
+                dim: d,
+                keys: Vec::with_capacity(order.len() * d),
+            };
+            for &i in &order {
+                new_number[m.numbers[i as usize] as usize] = next;
+                next += 1;
+                block.keys.extend_from_slice(key(i));
+            }
+            if block.len > 0 {
+                columns.list.push(block);
+            }
+        }
+        self.maps.clear();
+        for c in &mut self.instance.matrix.column {
+            *c = new_number[*c as usize];
+        }
+        for k in &mut self.instance.nonlinear {
+            for c in &mut k.columns {
+                *c = new_number[*c as usize];
+            }
+        }
+        self.sort_rows();
+        self.fill_columns(&columns);
+        if let Some((sense, z)) = solve.objective {
+            let column = columns.symbol(z).map_or(0, |b| b.start);
+            self.instance.objective = Some(Objective { column, sense });
+        }
+        for (c, _) in matched_rows.iter_mut().chain(&mut alone) {
+            *c = new_number[*c as usize];
+        }
+        if solve.using == "mcp" {
+            self.check_partners(&rows, &columns, &matched_rows, &alone);
+        }
+        if matches!(solve.using, "mcp" | "mpec" | "rmpec" | "cns") {
+            self.match_columns(&rows, &columns, &matched_rows);
+        }
+        let (nonzeros, nonlinear_nonzeros) = self.count();
+        Origin {
+            rows,
+            columns,
+            nonzeros,
+            nonlinear_nonzeros,
+        }
+    }
+
+    /// The row of each column that has one; an error where there are two.
+    fn match_columns(&mut self, rows: &Blocks, columns: &Blocks, pairs: &[(u32, u32)]) {
+        let mut matched: Vec<Option<u32>> = vec![None; self.instance.columns.kind.len()];
+        for &(c, r) in pairs {
+            let slot = &mut matched[c as usize];
+            if let Some(other) = *slot {
+                let name = |blocks: &Blocks, i: u32| {
+                    let block = blocks.of(i);
+                    self.m.record_name(block.symbol, block.key(i))
+                };
+                let (column, a, b) = (name(columns, c), name(rows, other), name(rows, r));
+                self.m.note(
+                    Diagnostic::execution(
+                        "E0412",
+                        self.span,
+                        format!("the column {column} is matched twice: with {a} and with {b}"),
+                    )
+                    .label("in this model")
+                    .help(
+                        "each column has one row; restrict one of the equations by a `$` condition",
+                    ),
+                );
+                self.failed = true;
+            }
+            *slot = Some(r);
+        }
+        self.instance.matched = Some(matched);
+    }
+
+    /// A pair whose row is empty, or whose column stands in no row (`alone`), decides nothing: an error,
+    /// as in GAMS, unless the column is fixed.
+    fn check_partners(
+        &mut self,
+        rows: &Blocks,
+        columns: &Blocks,
+        pairs: &[(u32, u32)],
+        alone: &[(u32, u32)],
+    ) {
+        let m = &self.instance.matrix;
+        let mut empty: Vec<bool> = m.start.windows(2).map(|w| w[0] == w[1]).collect();
+        for k in &self.instance.nonlinear {
+            k.row.iter().for_each(|&r| empty[r as usize] = false);
+        }
+        let bounds = &self.instance.columns;
+        let fixed = |c: u32| bounds.lower[c as usize] == bounds.upper[c as usize];
+        let blamed = pairs
+            .iter()
+            .find(|&&(c, r)| empty[r as usize] && !fixed(c))
+            .or_else(|| alone.iter().find(|&&(c, _)| !fixed(c)));
+        let Some(&(c, r)) = blamed else { return };
+        let name = |blocks: &Blocks, i: u32| {
+            let block = blocks.of(i);
+            self.m.record_name(block.symbol, block.key(i))
+        };
+        let (row, column) = (name(rows, r), name(columns, c));
+        let symbol = rows.of(r).symbol;
+        let place = self
+            .m
+            .equations
+            .iter()
+            .find(|d| d.symbol == symbol)
+            .map_or(self.span, |d| d.span);
+        let (code, message, help) = if empty[r as usize] {
+            (
+                "E0414",
+                format!("the row {row} is empty, and its partner {column} is not fixed"),
+                "no variable is left in the row: restrict the equation by a `$` condition, or fix the variable",
+            )
+        } else {
+            (
+                "E0415",
+                format!("the row {row} is paired with {column}, which stands in no row"),
+                "restrict the equation by a `$` condition to where the variable is used, or fix the variable",
+            )
+        };
+        let diagnostic = Diagnostic::execution(code, place, message)
+            .label("this equation")
+            .other(self.span, "at this solve")
+            .help(help);
+        self.m.note(diagnostic);
+        self.failed = true;
+    }
+
+    /// Columns increasing within each row.
+    fn sort_rows(&mut self) {
+        let m = &mut self.instance.matrix;
+        let mut scratch: Vec<(u32, f64)> = Vec::new();
+        for i in 0..m.start.len() - 1 {
+            let r = m.start[i]..m.start[i + 1];
+            if m.column[r.clone()].windows(2).all(|w| w[0] < w[1]) {
+                continue;
+            }
+            scratch.clear();
+            scratch.extend(
+                m.column[r.clone()]
+                    .iter()
+                    .copied()
+                    .zip(m.value[r.clone()].iter().copied()),
+            );
+            scratch.sort_unstable_by_key(|t| t.0);
+            for (k, &(c, v)) in r.zip(&scratch) {
+                m.column[k] = c;
+                m.value[k] = v;
+            }
+        }
+    }
+
+    fn fill_columns(&mut self, blocks: &Blocks) {
+        let n: usize = blocks.list.iter().map(|b| b.len as usize).sum();
+        let c = &mut self.instance.columns;
+        for v in [
+            &mut c.lower,
+            &mut c.upper,
+            &mut c.level,
+            &mut c.marginal,
+            &mut c.scale,
+        ] {
+            v.reserve_exact(n);
+        }
+        for b in &blocks.list {
+            let symbol = self.m.symbols.get(b.symbol);
+            let t = symbol.table;
+            let kind = match symbol.kind {
+                SymbolKind::Variable(
+                    VariableKind::Free
+                    | VariableKind::Positive
+                    | VariableKind::Negative
+                    | VariableKind::Unstated,
+                ) => ColumnKind::Continuous,
+                _ => ColumnKind::Discrete,
+            };
+            let semi = matches!(
+                symbol.kind,
+                SymbolKind::Variable(VariableKind::SemiContinuous | VariableKind::SemiInteger)
+            );
+            let get = |o: u32, key: &[Label]| number(self.m.store.table(t + o).get(key));
+            for i in b.start..b.start + b.len {
+                let key = b.key(i);
+                let lower = get(attribute::LO, key);
+                c.lower.push(if semi { lower.min(0.0) } else { lower });
+                c.upper.push(get(attribute::UP, key));
+                c.level.push(get(attribute::L, key));
+                c.marginal.push(get(attribute::M, key));
+                c.scale.push(if self.options.scale {
+                    get(attribute::SCALE, key)
+                } else {
+                    1.0
+                });
+                c.kind.push(kind);
+            }
+        }
+        for i in 0..n {
+            let (lo, up) = (
+                self.instance.columns.lower[i],
+                self.instance.columns.upper[i],
+            );
+            let level = self.instance.columns.level[i];
+            let block = || blocks.of(i as u32);
+            let name = || self.m.record_name(block().symbol, block().key(i as u32));
+            let problem = if lo.is_nan() || up.is_nan() || level.is_nan() || level.is_infinite() {
+                Some(format!(
+                    "a bound or the level of {} is not a number",
+                    name()
+                ))
+            } else if lo > up {
+                Some(format!(
+                    "the lower bound of {} is above its upper bound: {lo} > {up}",
+                    name()
+                ))
+            } else if lo == f64::INFINITY || up == f64::NEG_INFINITY {
+                Some(format!(
+                    "the bounds of {} leave nothing: {lo} … {up}",
+                    name()
+                ))
+            } else {
+                None
+            };
+            if let Some(message) = problem {
+                self.m.note(
+                    Diagnostic::execution("E0413", self.m.options.at.get(), message)
+                        .label("at this solve")
+                        .help("check the assignments to `.lo`, `.up`, `.fx` and `.l`"),
+                );
+                self.failed = true;
+            }
+        }
+    }
+
+    /// Nonzeros, and nonlinear ones, as pairs of row and column.
+    fn count(&self) -> (usize, usize) {
+        let m = &self.instance.matrix;
+        let mut pairs: Vec<u64> = Vec::new();
+        for k in &self.instance.nonlinear {
+            let v = k.kernel.variables as usize;
+            for (t, &r) in k.row.iter().enumerate() {
+                pairs.extend(
+                    k.columns[t * v..(t + 1) * v]
+                        .iter()
+                        .map(|&c| u64::from(r) << 32 | u64::from(c)),
+                );
+            }
+        }
+        pairs.sort_unstable();
+        pairs.dedup();
+        let both = pairs
+            .iter()
+            .filter(|&&p| {
+                let (r, c) = ((p >> 32) as usize, p as u32);
+                m.column[m.start[r]..m.start[r + 1]]
+                    .binary_search(&c)
+                    .is_ok()
+            })
+            .count();
+        (m.column.len() + pairs.len() - both, pairs.len())
+    }
+}

@@ -1,0 +1,441 @@
+//! The terms of a row: linear ones by column, the rest as programs.
+//!
+//! A program is the postfix form of one nonlinear term; terms that differ in columns and constants
+//! only share their kernel.
+
+use super::{Builder, EPS_COEFFICIENT, Row};
+use crate::check::node::*;
+use crate::data::value::{is_eps, truth};
+use crate::model::instance::*;
+use crate::run::{Frame, constant};
+
+/// A nonlinear term in the making.
+#[derive(Default)]
+struct Tape {
+    ops: Vec<Op>,
+    columns: Vec<u32>,
+    constants: Vec<f64>,
+}
+
+impl Builder<'_, '_> {
+    fn add(&mut self, column: u32, coef: f64, row: &mut Row) {
+        if row.part {
+            row.terms.push((column, coef));
+            return;
+        }
+        let p = &mut self.place[column as usize];
+        if *p == 0 {
+            row.terms.push((column, coef));
+            *p = row.terms.len() as u32;
+        } else {
+            row.terms[*p as usize - 1].1 += coef;
+        }
+    }
+
+    /// A value that goes into the instance: eps is 0.
+    fn value(&self, n: &Node, frame: &mut Frame) -> f64 {
+        let v = self.m.eval(n, frame);
+        if is_eps(v) { 0.0 } else { v }
+    }
+
+    /// Adds `coef · n` to the row.
+    pub(super) fn emit(&mut self, n: &Node, coef: f64, frame: &mut Frame, row: &mut Row) {
+        if !n.has_var {
+            row.constant += coef * self.value(n, frame);
+            return;
+        }
+        match &n.kind {
+            NodeKind::Var(s, key) => match self.reference(*s, key, frame) {
+                Some(Ok(c)) => self.add(c, coef, row),
+                Some(Err(x)) => row.constant += coef * x,
+                None => {}
+            },
+            NodeKind::Negate(a) => self.emit(a, -coef, frame, row),
+            NodeKind::Sum(terms) => {
+                for (minus, t) in terms {
+                    self.emit(t, if *minus { -coef } else { coef }, frame, row);
+                }
+            }
+            NodeKind::Product(factors) => {
+                let Some((c, var)) = self.split(factors, frame) else {
+                    return;
+                };
+                let c = coef * c;
+                if c == 0.0 {
+                    return;
+                }
+                match var {
+                    Some(f) => self.emit(f, c, frame, row),
+                    None => self.emit_nonlinear(n, coef, frame, row),
+                }
+            }
+            NodeKind::Dollar(a, c) => {
+                if truth(self.m.eval(c, frame)) {
+                    self.emit(a, coef, frame, row);
+                }
+            }
+            NodeKind::Aggregate(AggregateOp::Sum, d, body) => {
+                let m = self.m;
+                let plan = m.plan(d, Some(body));
+                m.run_plan(d, &plan, frame, &mut |f| {
+                    self.emit(body, coef, f, row);
+                    !self.failed && m.keep_going()
+                });
+            }
+            _ => self.emit_nonlinear(n, coef, frame, row),
+        }
+    }
+
+    /// Splits a product into its data and the one linear factor with variables, if there is just one
+    /// and it does not divide. None: the data part is not a number (an error was noted).
+    fn split<'n>(
+        &self,
+        factors: &'n [(bool, Node)],
+        frame: &mut Frame,
+    ) -> Option<(f64, Option<&'n Node>)> {
+        let mut c = 1.0;
+        let mut var = None;
+        let mut several = false;
+        for (divide, f) in factors {
+            if f.has_var {
+                several |= var.is_some() || *divide;
+                var = Some(f);
+                continue;
+            }
+            let v = self.m.eval(f, frame);
+            let v = match (is_eps(v), divide) {
+                (true, false) => EPS_COEFFICIENT,
+                (true, true) => 0.0,
+                _ => v,
+            };
+            if *divide {
+                if v == 0.0 {
+                    self.m.execution_error(
+                        "E0401",
+                        f.span,
+                        "division by zero".into(),
+                        "guard it with a condition, `(x/b)$b`",
+                    );
+                    return None;
+                }
+                c /= v;
+            } else {
+                c *= v;
+            }
+        }
+        Some((c, if several { None } else { var }))
+    }
+
+    fn emit_nonlinear(&mut self, n: &Node, coef: f64, frame: &mut Frame, row: &mut Row) {
+        if coef == 0.0 {
+            return;
+        }
+        let mut tape = Tape::default();
+        self.build(n, frame, &mut tape);
+        // Without variables, or with some held fixed, it may be a number or linear after all.
+        if tape.columns.is_empty() || self.options.hold_fixed {
+            match constant::affine(&tape.ops, &tape.constants) {
+                Ok(Some(a)) => {
+                    row.constant += coef * a.constant;
+                    for (v, c) in a.terms {
+                        self.add(tape.columns[v as usize], coef * c, row);
+                    }
+                    return;
+                }
+                Ok(None) => {}
+                Err(e) => {
+                    self.m.execution_error(
+                        "E0403",
+                        n.span,
+                        e.to_string(),
+                        "guard it with a condition",
+                    );
+                    return;
+                }
+            }
+        }
+        let k = match self.kernels.get(&tape.ops) {
+            Some(&k) => k,
+            None => {
+                let k = self.instance.nonlinear.len();
+                self.kernels.insert(tape.ops.clone(), k);
+                self.instance.nonlinear.push(KernelTerms {
+                    kernel: Kernel {
+                        variables: tape.columns.len() as u32,
+                        constants: tape.constants.len() as u32,
+                        ops: tape.ops,
+                    },
+                    ..KernelTerms::default()
+                });
+                k
+            }
+        };
+        self.nonlinear_terms += 1;
+        let terms = &mut self.instance.nonlinear[k];
+        terms.row.push(self.row);
+        terms.coef.push(coef);
+        terms.columns.extend_from_slice(&tape.columns);
+        terms.constants.extend_from_slice(&tape.constants);
+    }
+
+    fn constant(&self, x: f64, tape: &mut Tape) {
+        tape.ops.push(Op::Const(tape.constants.len() as u32));
+        tape.constants.push(x);
+    }
+
+    /// Appends an affine expression.
+    fn affine(&mut self, part: Row, tape: &mut Tape) {
+        let terms: Vec<(u32, f64)> = part.terms.iter().copied().filter(|t| t.1 != 0.0).collect();
+        match terms.as_slice() {
+            [] => self.constant(part.constant, tape),
+            [(c, v)] if *v == 1.0 && part.constant == 0.0 => {
+                tape.ops.push(Op::Var(tape.columns.len() as u32));
+                tape.columns.push(*c);
+            }
+            _ => {
+                tape.ops.push(Op::Affine {
+                    constant: tape.constants.len() as u32,
+                    variable: tape.columns.len() as u32,
+                    terms: terms.len() as u32,
+                });
+                tape.constants.push(part.constant);
+                for (c, v) in terms {
+                    tape.constants.push(v);
+                    tape.columns.push(c);
+                }
+            }
+        }
+    }
+
+    fn linear(&mut self, n: &Node, frame: &mut Frame, tape: &mut Tape) {
+        let mut part = Row::part();
+        self.emit(n, 1.0, frame, &mut part);
+        merge_terms(&mut part.terms);
+        self.affine(part, tape);
+    }
+
+    /// Appends the program of an expression: leaves one value.
+    fn build(&mut self, n: &Node, frame: &mut Frame, tape: &mut Tape) {
+        if !n.has_var {
+            let v = self.value(n, frame);
+            self.constant(v, tape);
+            return;
+        }
+        if n.linear {
+            self.linear(n, frame, tape);
+            return;
+        }
+        match &n.kind {
+            NodeKind::Negate(a) => {
+                self.build(a, frame, tape);
+                tape.ops.push(Op::Negate);
+            }
+            NodeKind::Not(a) => {
+                self.build(a, frame, tape);
+                tape.ops.push(Op::Call(Function::BoolNot, 1));
+            }
+            NodeKind::Sum(terms) => {
+                let (mut part, mut count) = (Row::part(), 0u32);
+                for (minus, t) in terms {
+                    if t.linear {
+                        self.emit(t, if *minus { -1.0 } else { 1.0 }, frame, &mut part);
+                        continue;
+                    }
+                    self.build(t, frame, tape);
+                    if *minus {
+                        tape.ops.push(Op::Negate);
+                    }
+                    count += 1;
+                }
+                merge_terms(&mut part.terms);
+                if !part.terms.is_empty() || part.constant != 0.0 || count == 0 {
+                    self.affine(part, tape);
+                    count += 1;
+                }
+                add_n(count, tape);
+            }
+            NodeKind::Product(factors) => self.build_product(factors, frame, tape),
+            NodeKind::Dollar(a, c) => {
+                if truth(self.m.eval(c, frame)) {
+                    self.build(a, frame, tape);
+                } else {
+                    self.constant(0.0, tape);
+                }
+            }
+            NodeKind::Binary(op, a, b) => self.build_binary(*op, a, b, frame, tape),
+            NodeKind::Call(f, args) => match (f, args.as_slice()) {
+                (Function::Sqr, [a]) => {
+                    self.build(a, frame, tape);
+                    tape.ops.push(Op::PowerInt(2));
+                }
+                (Function::Power, [a, b]) if !b.has_var => {
+                    let p = self.value(b, frame);
+                    if p.fract() != 0.0 || p.abs() > 1e6 {
+                        self.m.execution_error(
+                            "E0403",
+                            b.span,
+                            format!("the exponent of `power` is {p}; it must be a whole number"),
+                            "use `**` or `rpower` for real exponents",
+                        );
+                    }
+                    self.build(a, frame, tape);
+                    tape.ops.push(Op::PowerInt(p as i32));
+                }
+                _ => {
+                    for a in args {
+                        self.build(a, frame, tape);
+                    }
+                    tape.ops.push(Op::Call(*f, args.len() as u32));
+                }
+            },
+            NodeKind::Aggregate(op, d, body) => self.build_aggregate(*op, d, body, frame, tape),
+            _ => self.constant(0.0, tape),
+        }
+    }
+
+    fn build_product(&mut self, factors: &[(bool, Node)], frame: &mut Frame, tape: &mut Tape) {
+        let Some((c, _)) = self.split(factors, frame) else {
+            self.constant(0.0, tape);
+            return;
+        };
+        if c == 0.0 {
+            self.constant(0.0, tape);
+            return;
+        }
+        let mut count = 0;
+        for (_, f) in factors.iter().filter(|(d, f)| f.has_var && !d) {
+            self.build(f, frame, tape);
+            count += 1;
+        }
+        if c != 1.0 || count == 0 {
+            self.constant(c, tape);
+            count += 1;
+        }
+        multiply_n(count, tape);
+        let mut below = 0;
+        for (_, f) in factors.iter().filter(|(d, f)| f.has_var && *d) {
+            self.build(f, frame, tape);
+            below += 1;
+        }
+        if below > 0 {
+            multiply_n(below, tape);
+            tape.ops.push(Op::Divide);
+        }
+    }
+
+    fn build_binary(
+        &mut self,
+        op: BinaryOp,
+        a: &Node,
+        b: &Node,
+        frame: &mut Frame,
+        tape: &mut Tape,
+    ) {
+        self.build(a, frame, tape);
+        self.build(b, frame, tape);
+        tape.ops.push(match op {
+            BinaryOp::Power => Op::Power,
+            BinaryOp::Eq => Op::Call(Function::RelEq, 2),
+            BinaryOp::Ne => Op::Call(Function::RelNe, 2),
+            BinaryOp::Lt => Op::Call(Function::RelLt, 2),
+            BinaryOp::Le => Op::Call(Function::RelLe, 2),
+            BinaryOp::Gt => Op::Call(Function::RelGt, 2),
+            BinaryOp::Ge => Op::Call(Function::RelGe, 2),
+            BinaryOp::And => Op::Call(Function::BoolAnd, 2),
+            BinaryOp::Or => Op::Call(Function::BoolOr, 2),
+            BinaryOp::Xor => Op::Call(Function::BoolXor, 2),
+            BinaryOp::Implies => Op::Call(Function::BoolImp, 2),
+            BinaryOp::Equivalent => Op::Call(Function::BoolEqv, 2),
+            _ => Op::Add,
+        });
+    }
+
+    fn build_aggregate(
+        &mut self,
+        op: AggregateOp,
+        d: &Domain,
+        body: &Node,
+        frame: &mut Frame,
+        tape: &mut Tape,
+    ) {
+        let m = self.m;
+        let sum = op == AggregateOp::Sum;
+        let plan = m.plan(d, if sum { Some(body) } else { None });
+        let mut count = 0u32;
+        m.run_plan(d, &plan, frame, &mut |f| {
+            self.build(body, f, tape);
+            count += 1;
+            m.keep_going()
+        });
+        match op {
+            AggregateOp::Sum => {
+                if count == 0 {
+                    self.constant(0.0, tape);
+                }
+                add_n(count, tape);
+            }
+            AggregateOp::Prod => {
+                if count == 0 {
+                    self.constant(1.0, tape);
+                }
+                multiply_n(count, tape);
+            }
+            AggregateOp::Smin | AggregateOp::Smax => {
+                let (f, none) = if op == AggregateOp::Smin {
+                    (Function::Min, f64::INFINITY)
+                } else {
+                    (Function::Max, f64::NEG_INFINITY)
+                };
+                match count {
+                    0 => self.constant(none, tape),
+                    1 => {}
+                    n => tape.ops.push(Op::Call(f, n)),
+                }
+            }
+            AggregateOp::Sand | AggregateOp::Sor => {
+                let (f, none) = if op == AggregateOp::Sand {
+                    (Function::BoolAnd, 1.0)
+                } else {
+                    (Function::BoolOr, 0.0)
+                };
+                if count == 0 {
+                    self.constant(none, tape);
+                }
+                for _ in 1..count {
+                    tape.ops.push(Op::Call(f, 2));
+                }
+            }
+        }
+    }
+}
+
+fn add_n(n: u32, tape: &mut Tape) {
+    match n {
+        0 | 1 => {}
+        2 => tape.ops.push(Op::Add),
+        n => tape.ops.push(Op::AddN(n)),
+    }
+}
+
+fn multiply_n(n: u32, tape: &mut Tape) {
+    match n {
+        0 | 1 => {}
+        2 => tape.ops.push(Op::Multiply),
+        n => tape.ops.push(Op::MultiplyN(n)),
+    }
+}
+
+/// Sorts terms by column and adds up those of the same.
+fn merge_terms(terms: &mut Vec<(u32, f64)>) {
+    if terms.windows(2).all(|w| w[0].0 < w[1].0) {
+        return;
+    }
+    terms.sort_by_key(|t| t.0);
+    terms.dedup_by(|b, a| {
+        let same = a.0 == b.0;
+        if same {
+            a.1 += b.1;
+        }
+        same
+    });
+}
