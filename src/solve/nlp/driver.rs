@@ -480,6 +480,10 @@ impl Driver<'_> {
         };
         let deadline = self.deadline();
         let (monitor, log) = (&mut *self.monitor, self.settings.log);
+        if log {
+            let extra: Vec<String> = extra.iter().map(|(k, v)| format!(", {k} {v}")).collect();
+            monitor.log(&format!("{}{}", self.provider.name(), extra.concat()));
+        }
         let limit = self.settings.evaluation_error_limit;
         let mut stopped = None;
         let mut header = log;
@@ -558,6 +562,12 @@ impl Driver<'_> {
             best = t;
         }
         clean(self.instance, &mut best);
+        if self.settings.log {
+            self.monitor.log(&format!(
+                "{ended:?}: objective {:.10e}, residuals of the model: primal {:.2e}, dual {:.2e}",
+                best.objective, best.residuals.primal_relative, best.residuals.dual_relative
+            ));
+        }
         best
     }
 

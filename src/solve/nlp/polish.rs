@@ -8,6 +8,11 @@
 use super::problem::Nlp;
 use super::symmetric::{Lower, Symmetric};
 
+/// Steps at most.
+const STEPS: usize = 6;
+/// What makes a system with dependent rows regular: small beside its entries, large beside rounding.
+const REGULARISATION: f64 = 1e-8;
+
 /// What is active at a point.
 pub struct Active {
     /// Variables that stay where they are.
@@ -29,23 +34,25 @@ pub fn polish(
     let Some(mut residual) = System::new(nlp, active, target, x, lambda) else {
         return false;
     };
-    for _ in 0..4 {
-        let Some((dx, dl)) = residual.step() else {
-            break;
-        };
-        let trial_x: Vec<f64> = x.iter().zip(&dx).map(|(a, b)| a + b).collect();
-        let trial_l: Vec<f64> = lambda.iter().zip(&dl).map(|(a, b)| a + b).collect();
-        let Some(next) = System::new(nlp, active, target, &trial_x, &trial_l) else {
-            break;
-        };
-        // also the first step must help; later ones may stall at the rounding level
-        if next.size.is_nan() || next.size >= 0.5 * residual.size {
-            break;
+    let mut regular = true;
+    for _ in 0..STEPS {
+        let next = residual.step(regular).and_then(|(dx, dl)| {
+            let x: Vec<f64> = x.iter().zip(&dx).map(|(a, b)| a + b).collect();
+            let lambda: Vec<f64> = lambda.iter().zip(&dl).map(|(a, b)| a + b).collect();
+            let next = System::new(nlp, active, target, &x, &lambda)?;
+            // also the first step must help; later ones may stall at the rounding level
+            (next.size < 0.5 * residual.size).then_some((x, lambda, next))
+        });
+        match next {
+            Some((next_x, next_lambda, next)) => {
+                x.copy_from_slice(&next_x);
+                lambda.copy_from_slice(&next_lambda);
+                improved = true;
+                residual = next;
+            }
+            None if regular && !improved => regular = false,
+            None => break,
         }
-        x.copy_from_slice(&trial_x);
-        lambda.copy_from_slice(&trial_l);
-        improved = true;
-        residual = next;
     }
     improved
 }
@@ -83,9 +90,6 @@ impl System {
         let (n, m) = nlp.size();
         let (variables, free) = number(|j| !active.fixed[j], n);
         let (rows, bound) = number(|i| active.binding[i], m);
-        if bound > free {
-            return None;
-        }
         let mut gradient = vec![0.0; n];
         nlp.gradient(x, &mut gradient)?;
         let mut g = vec![0.0; m];
@@ -132,11 +136,20 @@ impl System {
         })
     }
 
-    fn step(&self) -> Option<(Vec<f64>, Vec<f64>)> {
-        if self.size == 0.0 || self.right.is_empty() {
+    /// Newton's step; or, where the active rows are dependent, that of the regularised system.
+    fn step(&self, regular: bool) -> Option<(Vec<f64>, Vec<f64>)> {
+        let total = self.right.len();
+        if self.size == 0.0 || total == 0 || regular && total > 2 * self.free {
             return None;
         }
-        let s = Symmetric::new(self.right.len(), &self.matrix)?.solve(&self.right)?;
+        let mut matrix = self.matrix.clone();
+        if !regular {
+            for k in 0..total {
+                let sign = if k < self.free { 1.0 } else { -1.0 };
+                matrix.push(k, k, sign * REGULARISATION);
+            }
+        }
+        let s = Symmetric::new(total, &matrix)?.solve(&self.right)?;
         let pick = |place: &[Option<usize>], offset: usize| -> Vec<f64> {
             place
                 .iter()

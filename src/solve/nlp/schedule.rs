@@ -5,7 +5,7 @@ pub(super) const BASE: [(&str, &str); 8] = [
     ("tol", "1e-9"),
     ("constr_viol_tol", "1e-9"),
     ("dual_inf_tol", "1e-6"),
-    ("compl_inf_tol", "1e-8"),
+    ("compl_inf_tol", "1e-12"),
     ("acceptable_tol", "1e-7"),
     ("acceptable_dual_inf_tol", "1e-4"),
     ("honor_original_bounds", "yes"),
@@ -49,7 +49,7 @@ pub(super) const CENTRAL: &[(&str, &str)] = &[
 ];
 
 /// A smaller last barrier, for variables that are neither clearly at a bound nor clearly off it.
-pub(super) const SHARP: &[(&str, &str)] = &[("tol", "1e-11"), ("compl_inf_tol", "1e-12")];
+pub(super) const SHARP: &[(&str, &str)] = &[("tol", "1e-11"), ("compl_inf_tol", "1e-14")];
 
 /// What to try when an attempt has not led to a certified point.
 pub(super) const SCHEDULE: [(From, &[(&str, &str)]); 14] = [

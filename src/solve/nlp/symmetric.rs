@@ -13,7 +13,7 @@ pub struct Symmetric {
 }
 
 /// Entries (row, column, value) with row ≥ column; those of the same place add up.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct Lower {
     rows: Vec<usize>,
     columns: Vec<usize>,
