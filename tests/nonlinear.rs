@@ -576,7 +576,14 @@ fn interruption_and_log() {
             "{}",
             p.name()
         );
-        assert!(monitor.1[0].contains("objective"));
+        assert_eq!(monitor.1[0], p.name());
+        assert!(monitor.1[1].contains("objective"));
+        assert!(
+            monitor
+                .1
+                .last()
+                .is_some_and(|l| l.contains("residuals of the model"))
+        );
         assert!(!matches!(a.status, LocallyOptimal));
     }
 }

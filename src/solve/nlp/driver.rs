@@ -476,7 +476,7 @@ impl Driver<'_> {
         let cap = if options.iter().any(|(k, _)| k == "max_iter") {
             u64::MAX
         } else {
-            3000
+            self.patience
         };
         let deadline = self.deadline();
         let (monitor, log) = (&mut *self.monitor, self.settings.log);
