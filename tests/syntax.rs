@@ -91,6 +91,7 @@ fn list(items: &[Expr]) -> String {
 fn show(e: &Expr) -> String {
     match &e.kind {
         ExprKind::Number(x) => x.to_string(),
+        ExprKind::Membership(yes) => if *yes { "yes" } else { "no" }.to_string(),
         ExprKind::Text(t) => format!("'{t}'"),
         ExprKind::Apply {
             name,
@@ -201,7 +202,7 @@ fn precedence() {
         ("smax((arc(i,j),k), 1)", "Smax(arc[i,j],k: 1)"),
         ("summer(i) + sums", "(+summer[i]+sums)"),
         ("1.5e-3 + .5 + 5. + 1E+3", "(+0.0015+0.5+5+1000)"),
-        ("inf - yes + no", "(+inf-1+0)"),
+        ("inf - yes + no", "(+inf-yes+no)"),
         ("m.modelstat + i.val", "(+m.modelstat+i.val)"),
         (
             "p('a b')$(not sameas(i,\"it's\"))",

@@ -1,6 +1,6 @@
 //! Data statements: elements of sets, numbers of parameters, attributes of variables.
 
-use super::expansion::set_prefix;
+use super::expansion::{Tuples, set_prefix};
 use super::node::{SymbolId, TableId};
 use super::symbols::{SymbolKind, attribute};
 use super::{Compiler, Failed};
@@ -76,6 +76,7 @@ impl Compiler {
         let mut reader = DataReader::new(map.text(body), body.lo, DataKind::Set, self.modes.undf)
             .with_arity(dim);
         let mut last: Option<Label> = self.last_label(table, dim);
+        let mut keys = Tuples::default();
         let mut unordered = symbol.unordered;
         while let Some(record) = reader.next() {
             let record = match record {
@@ -91,14 +92,14 @@ impl Compiler {
                 Tail::Number(_, span) => Some(map.text(*span).into()),
                 Tail::Name(n, _) => Some((*n).into()),
             };
-            let (mut keys, span) = (Vec::new(), record.span);
+            let span = record.span;
             if self
                 .expand(s, record.key, record.matched, span, &[], &mut keys)
                 .is_err()
             {
                 continue;
             }
-            for key in keys.chunks_exact(dim) {
+            for (key, _) in keys.rows() {
                 if self.store.table(table).find(key).is_some() {
                     if !self.modes.multi {
                         let label = self.key_text(key);
@@ -177,7 +178,7 @@ impl Compiler {
         let (table, dim) = (symbol.table, symbol.dim());
         let mut reader =
             DataReader::new(text, body.lo, DataKind::Values, self.modes.undf).with_arity(dim);
-        let mut keys = Vec::new();
+        let mut keys = Tuples::default();
         while let Some(record) = reader.next() {
             let record = match record {
                 Ok(r) => r,
@@ -227,7 +228,6 @@ impl Compiler {
                     continue;
                 }
             };
-            keys.clear();
             let (span, key) = (record.span, record.key);
             if self
                 .expand(s, key, record.matched, span, defines, &mut keys)
@@ -242,8 +242,8 @@ impl Compiler {
                 self.put_value(s, table, &[], v, span);
                 continue;
             }
-            for k in keys.chunks_exact(dim) {
-                self.put_value(s, table, k, v, span);
+            for (k, factor) in keys.rows() {
+                self.put_value(s, table, k, scaled(v, factor), span);
             }
         }
         self.store.table_mut(table).tidy();
@@ -306,10 +306,6 @@ impl Compiler {
                     break;
                 }
             };
-            let Some((KeyPart::Label { text, span, .. }, key)) = record.key.split_last() else {
-                continue;
-            };
-            let (attr, at) = (text.to_lowercase(), *span);
             let Tail::Number(v, _) = record.value else {
                 self.report(
                     Diagnostic::error(
@@ -321,46 +317,81 @@ impl Compiler {
                 );
                 continue;
             };
-            let (span, mut keys) = (record.span, Vec::new());
-            if symbol.dim() > 0 && self.expand(s, key, None, span, &[], &mut keys).is_err() {
-                continue;
-            }
-            let offsets: &[u32] = match attr.as_str() {
-                "l" => &[attribute::L],
-                "m" => &[attribute::M],
-                "lo" => &[attribute::LO],
-                "up" => &[attribute::UP],
-                "fx" => &[attribute::L, attribute::LO, attribute::UP],
-                "scale" => &[attribute::SCALE],
-                "prior" => &[attribute::PRIOR],
-                _ => {
-                    let _ = self.unknown_attribute::<()>(
-                        &Ident {
-                            name: attr.into(),
-                            span: at,
-                        },
-                        &symbol.name,
-                        symbol.kind_name(),
-                        "l, m, lo, up, fx, scale, prior",
-                    );
-                    continue;
-                }
-            };
-            for &o in offsets {
-                let t = self.store.table_mut(symbol.table + o);
-                if symbol.dim() == 0 {
-                    t.set(&[], v);
-                }
-                for k in keys.chunks_exact(symbol.dim().max(1)) {
-                    t.set(k, v);
-                }
-            }
+            let _ = self.attribute_data(s, record.key, v, record.span);
             self.symbols.get_mut(s).assigned = true;
         }
         for o in 0..attribute::COUNT {
             self.store.table_mut(symbol.table + o).tidy();
         }
         Ok(())
+    }
+
+    /// One record, `a.lo 5`. The attribute stands last, perhaps in a group: `a.(lo 1, up 5)`.
+    fn attribute_data(
+        &mut self,
+        s: SymbolId,
+        key: &[KeyPart],
+        v: f64,
+        span: Span,
+    ) -> Result<(), Failed> {
+        let (text, at, key) = match key.split_last() {
+            Some((KeyPart::Group(alternatives), before)) => {
+                for alternative in alternatives {
+                    let (last, factor) = match alternative.split_last() {
+                        Some((KeyPart::Factor(x), key)) => (key, *x),
+                        _ => (alternative.as_slice(), 1.0),
+                    };
+                    let key = [before, last].concat();
+                    self.attribute_data(s, &key, scaled(v, factor), span)?;
+                }
+                return Ok(());
+            }
+            Some((KeyPart::Label { text, span, .. }, key)) => (*text, *span, key),
+            _ => return Ok(()),
+        };
+        let symbol = self.symbols.get(s).clone();
+        let mut keys = Tuples::default();
+        if symbol.dim() > 0 {
+            self.expand(s, key, None, span, &[], &mut keys)?;
+        }
+        let offsets: &[u32] = match text.to_lowercase().as_str() {
+            "l" => &[attribute::L],
+            "m" => &[attribute::M],
+            "lo" => &[attribute::LO],
+            "up" => &[attribute::UP],
+            "fx" => &[attribute::L, attribute::LO, attribute::UP],
+            "scale" => &[attribute::SCALE],
+            "prior" => &[attribute::PRIOR],
+            _ => {
+                let attr = Ident {
+                    name: text.into(),
+                    span: at,
+                };
+                let known = "l, m, lo, up, fx, scale, prior";
+                return self.unknown_attribute(&attr, &symbol.name, symbol.kind_name(), known);
+            }
+        };
+        for &o in offsets {
+            let t = self.store.table_mut(symbol.table + o);
+            if symbol.dim() == 0 {
+                t.set(&[], v);
+            }
+            for (k, factor) in keys.rows() {
+                t.set(k, scaled(v, factor));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A value times the factor of a group, `a.(x 1, y 2)`; special values stay as they are.
+fn scaled(v: f64, factor: f64) -> f64 {
+    if factor == 1.0 {
+        v
+    } else if v == 1.0 {
+        factor
+    } else {
+        v * factor
     }
 }
 

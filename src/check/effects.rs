@@ -54,7 +54,7 @@ impl Effects {
                     let t = first(*s);
                     self.tables.extend(t..t + attribute::COUNT);
                 }
-                CodeKind::Project { target, .. } => {
+                CodeKind::Match(target, _) | CodeKind::Project { target, .. } => {
                     self.tables.insert(first(*target));
                 }
                 CodeKind::Solve(_) | CodeKind::Exchange(_) => self.everything = true,

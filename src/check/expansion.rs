@@ -20,20 +20,28 @@ pub struct Tuples {
     pub width: usize,
     /// All of them.
     pub labels: Vec<Label>,
+    /// What data say of each besides: factors of its value. Empty where all are 1.
+    factors: Vec<f64>,
 }
 
 impl Tuples {
+    fn new(width: usize, labels: Vec<Label>) -> Self {
+        Self {
+            width,
+            labels,
+            factors: Vec::new(),
+        }
+    }
+
     /// One label a tuple.
     pub fn single(labels: Vec<Label>) -> Self {
-        Self { width: 1, labels }
+        Self::new(1, labels)
     }
 
     /// The keys of a table.
     pub fn of(table: &Table) -> Self {
-        Self {
-            width: table.dim(),
-            labels: table.iter().flat_map(|(k, _)| k.iter().copied()).collect(),
-        }
+        let labels = table.iter().flat_map(|(k, _)| k.iter().copied()).collect();
+        Self::new(table.dim(), labels)
     }
 
     /// How many.
@@ -41,32 +49,57 @@ impl Tuples {
         self.labels.len() / self.width.max(1)
     }
 
-    fn rows(&self) -> std::slice::ChunksExact<'_, Label> {
-        self.labels.chunks_exact(self.width.max(1))
+    /// Tuples, each with the factor of its value.
+    pub fn rows(&self) -> impl Iterator<Item = (&[Label], f64)> {
+        let factors = self.factors.iter().copied().chain(std::iter::repeat(1.0));
+        self.labels.chunks_exact(self.width.max(1)).zip(factors)
+    }
+
+    /// Tuples of each pair put together.
+    fn joined<'a>(
+        width: usize,
+        pairs: impl Iterator<Item = ((&'a [Label], f64), (&'a [Label], f64))>,
+    ) -> Self {
+        let mut out = Self::new(width, Vec::new());
+        for ((a, x), (b, y)) in pairs {
+            out.push(x * y, |labels| {
+                labels.extend_from_slice(a);
+                labels.extend_from_slice(b);
+            });
+        }
+        out
+    }
+
+    fn push(&mut self, factor: f64, labels: impl FnOnce(&mut Vec<Label>)) {
+        if factor != 1.0 || !self.factors.is_empty() {
+            self.factors.resize(self.len(), 1.0);
+            self.factors.push(factor);
+        }
+        labels(&mut self.labels);
+    }
+
+    /// Appends the tuples of another.
+    fn append(&mut self, other: &Self) {
+        for (labels, factor) in other.rows() {
+            self.push(factor, |l| l.extend_from_slice(labels));
+        }
     }
 
     /// Every tuple with every one of the other.
     pub fn times(&self, other: &Self) -> Self {
-        let width = self.width + other.width;
-        let mut labels = Vec::with_capacity(self.len() * other.len() * width);
-        for a in self.rows() {
-            for b in other.rows() {
-                labels.extend_from_slice(a);
-                labels.extend_from_slice(b);
-            }
-        }
-        Self { width, labels }
+        let pairs = self.rows().flat_map(|a| other.rows().map(move |b| (a, b)));
+        Self::joined(self.width + other.width, pairs)
     }
 
     /// The first with the first, the second with the second, until one side ends.
     pub fn beside(&self, other: &Self) -> Self {
-        let width = self.width + other.width;
-        let mut labels = Vec::with_capacity(self.len().min(other.len()) * width);
-        for (a, b) in self.rows().zip(other.rows()) {
-            labels.extend_from_slice(a);
-            labels.extend_from_slice(b);
-        }
-        Self { width, labels }
+        Self::joined(self.width + other.width, self.rows().zip(other.rows()))
+    }
+
+    /// Multiplies the values.
+    fn scale(&mut self, factor: f64) {
+        self.factors.resize(self.len(), 1.0);
+        self.factors.iter_mut().for_each(|f| *f *= factor);
     }
 }
 
@@ -158,7 +191,7 @@ fn letters(from: &str, to: &str) -> Option<Vec<String>> {
 }
 
 impl Compiler {
-    /// All keys a record of data stands for, flat.
+    /// All keys a record of data stands for.
     pub(super) fn expand(
         &mut self,
         s: SymbolId,
@@ -166,8 +199,11 @@ impl Compiler {
         matched: Option<&[KeyPart]>,
         span: Span,
         defines: &[bool],
-        out: &mut Vec<Label>,
+        out: &mut Tuples,
     ) -> Result<(), Failed> {
+        out.width = self.symbols.get(s).dim();
+        out.labels.clear();
+        out.factors.clear();
         let dim = self.symbols.get(s).dim();
         // `set.i` stands for all elements of i.
         let spelled_out = [parts].into_iter().find_map(set_prefix);
@@ -181,7 +217,8 @@ impl Compiler {
                 let KeyPart::Label { text, span, .. } = part else {
                     unreachable!("tested above")
                 };
-                out.push(self.data_label(s, p, text, *span, defines)?);
+                let label = self.data_label(s, p, text, *span, defines)?;
+                out.labels.push(label);
             }
             return Ok(());
         }
@@ -200,7 +237,8 @@ impl Compiler {
         if rows.len() > 0 && rows.width != dim {
             return self.wrong_dimension(s, span, rows.width);
         }
-        out.append(&mut rows.labels);
+        out.labels = rows.labels;
+        out.factors = rows.factors;
         Ok(())
     }
 
@@ -215,6 +253,10 @@ impl Compiler {
     ) -> Result<Tuples, Failed> {
         let mut rows: Option<Tuples> = None;
         for part in parts {
+            if let (KeyPart::Factor(x), Some(rows)) = (part, &mut rows) {
+                rows.scale(*x);
+                continue;
+            }
             let at = position + rows.as_ref().map_or(0, |r| r.width);
             let choices = self.choices(s, at, part, span, defines)?;
             let before = rows.as_ref().map_or(1, Tuples::len);
@@ -307,10 +349,11 @@ impl Compiler {
                     if more.len() > 0 {
                         out.width = more.width;
                     }
-                    out.labels.extend(more.labels);
+                    out.append(&more);
                 }
                 Ok(out)
             }
+            KeyPart::Factor(_) => Ok(Tuples::default()),
         }
     }
 

@@ -6,6 +6,7 @@ use super::symbols::{SymbolKind, UNIVERSE, attribute};
 use super::{Compiler, Failed};
 use crate::data::value;
 use crate::diag::{Diagnostic, nearest};
+use crate::model::instance::Function;
 use crate::source::Span;
 use crate::syntax::ast::{Expr, ExprKind, Factor, Ident, Sign, UnaryOp};
 
@@ -16,6 +17,7 @@ fn combine(kind: NodeKind, span: Span, has_var: bool, linear: bool) -> Node {
         span,
         has_var,
         linear: linear || !has_var,
+        member: false,
     }
 }
 
@@ -68,6 +70,10 @@ impl Compiler {
         let span = e.span;
         match &e.kind {
             ExprKind::Number(x) => Ok(Node::number(*x, span)),
+            ExprKind::Membership(yes) => {
+                let x = f64::from(u8::from(*yes));
+                Ok(Node::membership(NodeKind::Const(x), span))
+            }
             ExprKind::Text(t) => {
                 if !self.texts_allowed {
                     return self.fail(
@@ -85,7 +91,8 @@ impl Compiler {
             } => self.apply(name, attribute.as_ref(), arguments.as_deref(), span),
             ExprKind::Unary(op, a) => {
                 let a = self.expr(a)?;
-                Ok(match (op, &a.kind) {
+                let member = a.member;
+                let node = match (op, &a.kind) {
                     (UnaryOp::Plus, _) => a,
                     (UnaryOp::Minus, NodeKind::Const(x)) if !x.is_nan() => Node::number(-x, span),
                     (UnaryOp::Minus, _) => {
@@ -96,7 +103,8 @@ impl Compiler {
                         let v = a.has_var;
                         combine(NodeKind::Not(Box::new(a)), span, v, false)
                     }
-                })
+                };
+                Ok(Node { member, ..node })
             }
             ExprKind::Sum(terms) => {
                 let mut out = Vec::with_capacity(terms.len());
@@ -110,9 +118,7 @@ impl Compiler {
                 if failed {
                     return Err(Failed);
                 }
-                let v = out.iter().any(|(_, n)| n.has_var);
-                let l = out.iter().all(|(_, n)| n.linear);
-                Ok(combine(NodeKind::Sum(out), span, v, l))
+                self.sum(out, span)
             }
             ExprKind::Product(factors) => {
                 let mut out = Vec::with_capacity(factors.len());
@@ -123,76 +129,134 @@ impl Compiler {
                         Factor::Multiply => (false, node),
                     });
                 }
-                Ok(product(out, span))
+                self.product(out, span)
             }
             ExprKind::Binary(BinaryOp::Divide, a, right) => {
                 let (Ok(x), Ok(y)) = (self.expr(a), self.expr(right)) else {
                     return Err(Failed);
                 };
-                Ok(product(vec![(false, x), divisor(right, y)], span))
+                self.product(vec![(false, x), divisor(right, y)], span)
             }
             ExprKind::Binary(op, a, b) => {
                 let (a, b) = match (self.expr(a), self.expr(b)) {
                     (Ok(a), Ok(b)) => (a, b),
                     _ => return Err(Failed),
                 };
-                Ok(match op {
+                match op {
                     BinaryOp::Add | BinaryOp::Subtract => {
-                        let (v, l) = (a.has_var || b.has_var, a.linear && b.linear);
-                        combine(
-                            NodeKind::Sum(vec![(false, a), (*op == BinaryOp::Subtract, b)]),
+                        self.sum(vec![(false, a), (*op == BinaryOp::Subtract, b)], span)
+                    }
+                    BinaryOp::Multiply => self.product(vec![(false, a), (false, b)], span),
+                    BinaryOp::CircularPlus | BinaryOp::CircularMinus => self.fail(
+                        Diagnostic::error(
+                            "E0313",
                             span,
-                            v,
-                            l,
+                            "`++` and `--` stand between an index and a number only",
                         )
-                    }
-                    BinaryOp::Multiply => product(vec![(false, a), (false, b)], span),
-                    BinaryOp::CircularPlus | BinaryOp::CircularMinus => {
-                        return self.fail(
-                            Diagnostic::error(
-                                "E0313",
-                                span,
-                                "`++` and `--` stand between an index and a number only",
-                            )
-                            .label("not in an index position")
-                            .help("two operators in a row need parentheses: `a - (-b)`"),
-                        );
-                    }
+                        .label("not in an index position")
+                        .help("two operators in a row need parentheses: `a - (-b)`"),
+                    ),
                     _ => {
+                        let logical = matches!(
+                            op,
+                            BinaryOp::And
+                                | BinaryOp::Or
+                                | BinaryOp::Xor
+                                | BinaryOp::Implies
+                                | BinaryOp::Equivalent
+                        );
+                        if !logical {
+                            self.number(&a)?;
+                            self.number(&b)?;
+                        }
                         let v = a.has_var || b.has_var;
-                        combine(
-                            NodeKind::Binary(*op, Box::new(a), Box::new(b)),
-                            span,
-                            v,
-                            false,
-                        )
+                        let kind = NodeKind::Binary(*op, Box::new(a), Box::new(b));
+                        Ok(combine(kind, span, v, false))
                     }
-                })
+                }
             }
             ExprKind::Dollar(a, c) => {
                 let c = self.expr(c)?;
                 self.no_variable(&c, "a `$` condition")?;
                 let a = self.expr(a)?;
-                let (v, l) = (a.has_var, a.linear);
-                Ok(combine(
-                    NodeKind::Dollar(Box::new(a), Box::new(c)),
-                    span,
-                    v,
-                    l,
-                ))
+                let (v, l, member) = (a.has_var, a.linear, a.member);
+                let kind = NodeKind::Dollar(Box::new(a), Box::new(c));
+                let node = combine(kind, span, v, l);
+                Ok(Node { member, ..node })
             }
             ExprKind::Aggregate(op, d, body) => self.scoped(|c| {
                 let domain = c.domain(d)?;
                 let body = c.expr(body)?;
                 let (v, l) = (body.has_var, body.linear && *op == AggregateOp::Sum);
-                Ok(combine(
-                    NodeKind::Aggregate(*op, Box::new(domain), Box::new(body)),
-                    span,
-                    v,
-                    l,
-                ))
+                let member = body.member;
+                // A sum of memberships is their union.
+                let op = match op {
+                    AggregateOp::Sum if member => AggregateOp::Sor,
+                    op => *op,
+                };
+                let kind = NodeKind::Aggregate(op, Box::new(domain), Box::new(body));
+                let node = combine(kind, span, v, l);
+                Ok(Node { member, ..node })
             }),
         }
+    }
+
+    /// An error if a membership stands where a number must.
+    fn number(&mut self, n: &Node) -> Result<(), Failed> {
+        if !n.member {
+            return Ok(());
+        }
+        self.fail(
+            Diagnostic::error("E0375", n.span, "a membership stands where a number is expected")
+                .label("in the set or not: no number")
+                .help("`1$(…)` makes a number of it; with another membership, `+` is union, `*` intersection, `-` difference"),
+        )
+    }
+
+    /// Terms added up. Of memberships, `+` is the union and `-` the difference.
+    fn sum(&mut self, terms: Vec<(bool, Node)>, span: Span) -> Result<Node, Failed> {
+        if !terms.iter().all(|(_, n)| n.member) {
+            for (_, n) in &terms {
+                self.number(n)?;
+            }
+            let v = terms.iter().any(|(_, n)| n.has_var);
+            let l = terms.iter().all(|(_, n)| n.linear);
+            return Ok(combine(NodeKind::Sum(terms), span, v, l));
+        }
+        let mut all: Option<Node> = None;
+        for (minus, n) in terms {
+            let n = if minus {
+                Node::membership(NodeKind::Not(Box::new(n)), span)
+            } else {
+                n
+            };
+            let op = if minus { BinaryOp::And } else { BinaryOp::Or };
+            all = Some(match all {
+                Some(a) => Node::membership(NodeKind::Binary(op, Box::new(a), Box::new(n)), span),
+                None => n,
+            });
+        }
+        Ok(all.unwrap_or_else(|| Node::number(0.0, span)))
+    }
+
+    /// Factors multiplied. Of memberships, it is the intersection.
+    fn product(&mut self, factors: Vec<(bool, Node)>, span: Span) -> Result<Node, Failed> {
+        let divides = factors
+            .iter()
+            .any(|(divide, n)| *divide || n.kind.reciprocal_of().is_some());
+        if divides {
+            for (_, n) in factors.iter().filter(|(divide, _)| !divide) {
+                self.number(n)?;
+            }
+        }
+        let member = factors.iter().all(|(_, n)| n.member);
+        let v = factors.iter().filter(|(_, n)| n.has_var).count();
+        let l = v <= 1
+            && factors
+                .iter()
+                .all(|(div, n)| n.linear && !(*div && n.has_var));
+        let node = combine(NodeKind::Product(factors), span, v > 0, l);
+        Ok(Node { member, ..node })
     }
 
     /// A name with attribute and arguments: symbol or function.
@@ -232,7 +296,7 @@ impl Compiler {
                     }
                     Some(_) => self.key(s, indices, span)?,
                 };
-                Ok(Node::data(NodeKind::Data(symbol.table, key), span))
+                Ok(Node::membership(NodeKind::Data(symbol.table, key), span))
             }
             SymbolKind::Parameter { .. } => {
                 if let Some(attr) = attr {
@@ -264,6 +328,7 @@ impl Compiler {
                             span,
                             has_var: true,
                             linear: true,
+                            member: false,
                         })
                     }
                     None if is_variable && self.modes.dot_l => {
@@ -476,11 +541,15 @@ impl Compiler {
         }
         match callee {
             Callee::Ord | Callee::Card => self.ord_or_card(callee == Callee::Card, args, span),
-            Callee::SameAs => self.same_as(args, span),
+            Callee::SameAs => self.same_as(lower == "sameas", args, span),
             Callee::Math(f) => {
                 let mut nodes = Vec::with_capacity(args.len());
-                for a in args {
-                    nodes.push(self.expr(a)?);
+                for (n, a) in args.iter().enumerate() {
+                    let node = self.expr(a)?;
+                    if f != Function::IfThen || n > 0 {
+                        self.number(&node)?;
+                    }
+                    nodes.push(node);
                 }
                 let v = nodes.iter().any(|n| n.has_var);
                 if v && functions::first_argument_must_be_data(f) && nodes[0].has_var {
@@ -574,11 +643,12 @@ impl Compiler {
         ))
     }
 
-    fn same_as(&mut self, args: &[Expr], span: Span) -> Result<Node, Failed> {
+    /// `sameas`, and `diag`, which is the same as a number.
+    fn same_as(&mut self, member: bool, args: &[Expr], span: Span) -> Result<Node, Failed> {
         let mut parts = Vec::new();
         for a in args {
             parts.extend(match &a.kind {
-                ExprKind::Text(t) => vec![Part::Label(self.store.universe.intern(t))],
+                ExprKind::Text(t) => vec![Part::Label(self.known_label(t, a.span)?)],
                 _ => self.index(a, UNIVERSE, 0)?,
             });
         }
@@ -590,7 +660,12 @@ impl Compiler {
             ));
         }
         let b = parts.remove(1);
-        Ok(Node::data(NodeKind::SameAs(parts.remove(0), b), span))
+        let kind = NodeKind::SameAs(parts.remove(0), b);
+        Ok(if member {
+            Node::membership(kind, span)
+        } else {
+            Node::data(kind, span)
+        })
     }
 
     /// A text where `card` and `ord` may have one: `'abc'`, `i.tl`, `i.te(i)`, `p.ts`.
@@ -652,67 +727,6 @@ impl Compiler {
         };
         self.fail(d)
     }
-
-    /// A set expression: `+` is union, `*` intersection, `-` difference.
-    pub(super) fn set_expr(&mut self, e: &Expr) -> Result<Node, Failed> {
-        let node = self.expr(e)?;
-        Ok(set_algebra(node))
-    }
-}
-
-/// Turns sums of memberships into union and difference.
-fn set_algebra(node: Node) -> Node {
-    let span = node.span;
-    match node.kind {
-        NodeKind::Sum(terms) => {
-            let mut acc: Option<Node> = None;
-            for (minus, t) in terms {
-                let t = set_algebra(t);
-                acc = Some(match (acc, minus) {
-                    (None, false) => t,
-                    (None, true) => Node::data(NodeKind::Not(Box::new(t)), span),
-                    (Some(a), false) => Node::data(
-                        NodeKind::Binary(BinaryOp::Or, Box::new(a), Box::new(t)),
-                        span,
-                    ),
-                    (Some(a), true) => {
-                        let no = Node::data(NodeKind::Not(Box::new(t)), span);
-                        Node::data(
-                            NodeKind::Binary(BinaryOp::And, Box::new(a), Box::new(no)),
-                            span,
-                        )
-                    }
-                });
-            }
-            acc.unwrap_or_else(|| Node::number(0.0, span))
-        }
-        NodeKind::Product(factors) => Node::data(
-            NodeKind::Product(
-                factors
-                    .into_iter()
-                    .map(|(d, f)| (d, set_algebra(f)))
-                    .collect(),
-            ),
-            span,
-        ),
-        NodeKind::Dollar(a, c) => Node::data(NodeKind::Dollar(Box::new(set_algebra(*a)), c), span),
-        kind => Node {
-            kind,
-            span,
-            has_var: node.has_var,
-            linear: node.linear,
-        },
-    }
-}
-
-/// A product; flattened one level so that `a*b*c` and `a*b` are alike.
-fn product(factors: Vec<(bool, Node)>, span: Span) -> Node {
-    let v = factors.iter().filter(|(_, n)| n.has_var).count();
-    let l = v <= 1
-        && factors
-            .iter()
-            .all(|(div, n)| n.linear && !(*div && n.has_var));
-    combine(NodeKind::Product(factors), span, v > 0, l)
 }
 
 /// A factor that divides. GAMS divides by a number or a scalar parameter `b` as it multiplies by `1/b`,

@@ -292,7 +292,7 @@ impl Compiler {
             .cloned()
             .unwrap_or(DomainPosition::Universe)
         else {
-            return Ok(self.store.universe.intern(text));
+            return self.known_label(text, span);
         };
         let set = self.symbols.get(self.symbols.root(d));
         let known = self.store.universe.get(text);
@@ -302,6 +302,33 @@ impl Compiler {
             return Ok(l);
         }
         self.not_a_member(text, "'", of, position, span)
+    }
+
+    /// A label that must be in the universe, unless this place may bring it there.
+    pub(super) fn known_label(&mut self, text: &str, span: Span) -> Result<u32, Failed> {
+        if let Some(l) = self.store.universe.get(text) {
+            return Ok(l);
+        }
+        if self.new_labels {
+            return Ok(self.store.universe.intern(text));
+        }
+        let labels = self.store.universe.len().min(10_000) as u32;
+        let near = nearest(text, (0..labels).map(|l| self.store.universe.name(l)));
+        let d = Diagnostic::error("E0308", span, format!("no set has the label `'{text}'`"))
+            .label("unknown label")
+            .help(match near {
+                Some(n) => format!("did you mean `'{n}'`?"),
+                None => "a label must stand in data, or be assigned to, before it is used".into(),
+            });
+        self.fail(d)
+    }
+
+    /// Runs `f` where labels may be new: on the left of an assignment, in the key of an equation.
+    pub(super) fn defining<T>(&mut self, f: impl FnOnce(&mut Self) -> T) -> T {
+        let before = std::mem::replace(&mut self.new_labels, true);
+        let r = f(self);
+        self.new_labels = before;
+        r
     }
 
     /// A label that stands where the domain does not have it; `quote` stands around it.

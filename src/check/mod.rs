@@ -13,7 +13,7 @@ mod control;
 mod data;
 mod declare;
 mod effects;
-mod expansion;
+pub(crate) mod expansion;
 mod expr;
 mod figure;
 mod index;
@@ -80,6 +80,8 @@ pub(crate) struct Compiler {
     next_slot: Slot,
     slots: usize,
     in_equation: bool,
+    /// Labels that are new may stand here.
+    new_labels: bool,
     texts_allowed: bool,
     /// Depth of loops and ifs.
     nesting: usize,
@@ -172,6 +174,7 @@ impl Compiler {
             next_slot: 0,
             slots: 0,
             in_equation: false,
+            new_labels: false,
             texts_allowed: false,
             nesting: 0,
             put_named: false,

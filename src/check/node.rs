@@ -71,6 +71,8 @@ pub struct Node {
     pub has_var: bool,
     /// Whether it is at most linear in the variables.
     pub linear: bool,
+    /// Whether it says that something is in a set, and is no number.
+    pub member: bool,
 }
 
 impl NodeKind {
@@ -441,9 +443,9 @@ pub enum CodeKind {
         source: SymbolId,
         /// For each position of the target the position of the source.
         positions: Vec<usize>,
-        /// Count (`<`) or keep the last (`<=`), where the source has more positions.
-        count: bool,
     },
+    /// `option m(i:j,k)`: sets that are matched with what stands before (true), or multiplied out.
+    Match(SymbolId, Vec<(bool, TableId)>),
     /// `put` and its kin: keyword, condition, items.
     Put(Box<str>, Option<Node>, Vec<PutCode>),
     /// Data exchange.
@@ -471,6 +473,15 @@ impl Node {
             span,
             has_var: false,
             linear: true,
+            member: false,
+        }
+    }
+
+    /// A membership.
+    pub fn membership(kind: NodeKind, span: Span) -> Node {
+        Node {
+            member: true,
+            ..Node::data(kind, span)
         }
     }
 

@@ -2,7 +2,6 @@
 
 use super::functions;
 use super::node::*;
-use super::symbols::DomainPosition;
 use super::{Compiler, Failed};
 use crate::diag::{Diagnostic, nearest};
 use crate::solve::OWN_OPTIONS;
@@ -99,10 +98,11 @@ impl Compiler {
                 Ok(Some(CodeKind::Format(s, numbers.clone())))
             }
             OptionForm::Project {
-                last,
+                from_left,
                 source,
                 indices,
-            } => self.project(item, *last, source, indices.as_deref()),
+            } => self.project(item, *from_left, source, indices.as_deref()),
+            OptionForm::Match(sets) => self.matching(item, sets),
             OptionForm::Assign(OptionValue::Text(t, span))
                 if lower == "clear" || lower == "kill" =>
             {
@@ -163,10 +163,44 @@ impl Compiler {
         })
     }
 
+    fn matching(
+        &mut self,
+        item: &OptionItem,
+        sets: &[(bool, Ident)],
+    ) -> Result<Option<CodeKind>, Failed> {
+        let target = self.lookup_set(&item.name)?;
+        let (mut tables, mut position) = (Vec::new(), 0);
+        for (matched, name) in sets {
+            let s = self.lookup_set(name)?;
+            self.used(s, name.span);
+            let symbol = self.symbols.get(s);
+            let dim = symbol.dim();
+            tables.push((*matched, symbol.table));
+            if position + dim > self.symbols.get(target).dim() {
+                return self.wrong_dimension(target, item.name.span, position + dim);
+            }
+            self.fits(s, target, position, name.span)?;
+            position += dim;
+        }
+        if position != self.symbols.get(target).dim() {
+            return self.wrong_dimension(target, item.name.span, position);
+        }
+        self.changes_set(target);
+        Ok(Some(CodeKind::Match(target, tables)))
+    }
+
+    /// A statement gives a symbol its values; a set has no order of its own then.
+    fn changes_set(&mut self, s: SymbolId) {
+        let root = self.symbols.root(s);
+        let symbol = self.symbols.get_mut(root);
+        symbol.assigned = true;
+        symbol.dynamic |= symbol.is_set();
+    }
+
     fn project(
         &mut self,
         item: &OptionItem,
-        last: bool,
+        from_left: bool,
         source: &Ident,
         source_indices: Option<&[Ident]>,
     ) -> Result<Option<CodeKind>, Failed> {
@@ -194,54 +228,37 @@ impl Compiler {
                 p
             }
             _ => {
-                // By domain: each position of the target takes the first unused position of the source with the
-                // same set; by place, from the right, where the sets do not tell.
-                let mut taken = vec![false; from.dim()];
+                // Each position of the target takes an unused position of the source with the same set,
+                // looked for from the right, or with `<=` from the left.
+                let mut free: Vec<usize> = (0..from.dim()).collect();
+                if !from_left {
+                    free.reverse();
+                }
                 let mut p = Vec::new();
                 for d in &target.domain {
-                    let hit = (0..from.dim()).find(|&i| {
-                        !taken[i] && from.domain[i] == *d && *d != DomainPosition::Universe
-                    });
-                    match hit {
-                        Some(i) => {
-                            taken[i] = true;
-                            p.push(i);
-                        }
-                        None => {
-                            p.clear();
-                            break;
-                        }
+                    if let Some(i) = free.iter().position(|&i| from.domain[i] == *d) {
+                        p.push(free.remove(i));
                     }
-                }
-                if p.len() != target.dim() {
-                    let extra = from.dim().saturating_sub(target.dim());
-                    p = (0..target.dim()).map(|i| i + extra).collect();
                 }
                 p
             }
         };
-        if positions.len() != target.dim() || positions.iter().any(|&p| p >= from.dim()) {
+        if positions.len() != target.dim() {
             return self.fail(
                 Diagnostic::error(
                     "E0331",
                     item.name.span,
-                    "the right side has fewer positions than the left",
+                    "the right side does not have the index sets of the left",
                 )
                 .other(target.declared, "left side declared here")
                 .other(from.declared, "right side declared here"),
             );
         }
-        let root = self.symbols.root(t);
-        let symbol = self.symbols.get_mut(root);
-        symbol.assigned = true;
-        if symbol.is_set() {
-            symbol.dynamic = true;
-        }
+        self.changes_set(t);
         Ok(Some(CodeKind::Project {
-            target: root,
+            target: self.symbols.root(t),
             source: s,
             positions,
-            count: !last,
         }))
     }
 }

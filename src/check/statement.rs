@@ -368,17 +368,13 @@ impl Compiler {
             let mut domain = Domain::default();
             let parts = match target {
                 Target::Object(..) => Vec::new(),
-                _ => c.control_key(&t.indices, s, t.span, &mut domain)?,
+                _ => c.defining(|c| c.control_key(&t.indices, s, t.span, &mut domain))?,
             };
             if let Some(cond) = &a.condition {
                 c.condition(cond, &mut domain)?;
             }
             c.texts_allowed = matches!(target, Target::Object(..));
-            let value = if is_set {
-                c.set_expr(&a.value)
-            } else {
-                c.expr(&a.value)
-            };
+            let value = c.expr(&a.value);
             c.texts_allowed = false;
             let value = value?;
             let covers = domain.conditions.is_empty()
@@ -446,7 +442,7 @@ impl Compiler {
         self.in_equation = true;
         let r = self.scoped(|c| {
             let mut domain = Domain::default();
-            let parts = c.control_key(&e.indices, s, e.name.span, &mut domain)?;
+            let parts = c.defining(|c| c.control_key(&e.indices, s, e.name.span, &mut domain))?;
             if let Some(cond) = &e.condition {
                 c.condition(cond, &mut domain)?;
             }

@@ -1,9 +1,10 @@
 //! `table` declarations.
 
-use super::expansion::set_prefix;
+use super::expansion::{Tuples, set_prefix};
 use super::node::SymbolId;
 use super::symbols::SymbolKind;
 use super::{Compiler, Failed, MAX_ERRORS};
+use crate::data::value::truth;
 use crate::diag::Diagnostic;
 use crate::source::{SourceMap, Span};
 use crate::syntax::ast::TableDecl;
@@ -12,11 +13,13 @@ use crate::syntax::table::{TableItem, TableReader};
 
 impl Compiler {
     pub(super) fn declare_table(&mut self, t: &TableDecl, map: &SourceMap) -> Result<(), Failed> {
-        let s = self.declare(
-            &t.symbol,
-            SymbolKind::Parameter { scalar: false },
-            |c, n| c.store.add_table(n, 0.0),
-        )?;
+        // A set that is declared already may get its elements so: cells are `yes` or nothing.
+        let declared = self.symbols.find(&t.symbol.name.name);
+        let kind = match declared.map(|s| &self.symbols.get(s).kind) {
+            Some(kind @ SymbolKind::Set { .. }) => kind.clone(),
+            _ => SymbolKind::Parameter { scalar: false },
+        };
+        let s = self.declare(&t.symbol, kind, |c, n| c.store.add_table(n, 0.0))?;
         let open = self.symbols.get(s).open;
         let name = t.symbol.name.span;
         self.open_data(s, name)?;
@@ -47,7 +50,7 @@ impl Compiler {
         }
         let defines = t.symbol.defines();
         let mut reader = TableReader::new(map.expanded(), t.body, dim, self.modes.undf);
-        let (mut keys, mut parts) = (Vec::new(), Vec::new());
+        let (mut keys, mut parts) = (Tuples::default(), Vec::new());
         // Columns whose labels were refused.
         let mut refused: Vec<bool> = Vec::new();
         while let Some(item) = reader.next() {
@@ -90,15 +93,18 @@ impl Compiler {
             parts.clear();
             parts.extend_from_slice(cell.row);
             parts.extend_from_slice(cell.column);
-            keys.clear();
             if self
                 .expand(s, &parts, None, cell.span, &defines, &mut keys)
                 .is_err()
             {
                 continue;
             }
-            for k in keys.chunks_exact(dim) {
-                self.put_value(s, symbol.table, k, value, cell.span);
+            for (k, _) in keys.rows() {
+                if !symbol.is_set() {
+                    self.put_value(s, symbol.table, k, value, cell.span);
+                } else if truth(value) {
+                    self.store.table_mut(symbol.table).set(k, 1.0);
+                }
             }
         }
         self.store.table_mut(symbol.table).tidy();

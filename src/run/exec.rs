@@ -3,6 +3,7 @@
 use super::plan::{Pick, Plan};
 use super::random::Random;
 use super::{Flow, Frame, Machine, scan};
+use crate::check::expansion::Tuples;
 use crate::check::node::*;
 use crate::check::symbols::{SymbolKind, attribute};
 use crate::data::sort::{sort_records, sort_tuples};
@@ -121,14 +122,17 @@ impl Machine<'_> {
             CodeKind::Option(name, value) => self.set_option(name, value),
             CodeKind::Clear(s) => self.clear(*s),
             CodeKind::Format(s, numbers) => {
-                self.formats.insert(*s, numbers.clone());
+                // Decimals alone leave the layout as it is.
+                let format = self.formats.entry(*s).or_default();
+                let keep = numbers.len().min(format.len());
+                format.splice(..keep, numbers.iter().copied());
             }
             CodeKind::Project {
                 target,
                 source,
                 positions,
-                count,
-            } => self.project(*target, *source, positions, *count),
+            } => self.project(*target, *source, positions),
+            CodeKind::Match(target, sets) => self.match_sets(*target, sets),
             CodeKind::Put(keyword, cond, items) => {
                 if self.holds(cond.as_ref(), frame) {
                     self.put(keyword, items, frame, c.span);
@@ -499,7 +503,7 @@ impl Machine<'_> {
                     let table = self.store.table_mut(t);
                     table.clear();
                     table.set(first, 1.0);
-                    if chosen.len() > 1 {
+                    if chosen.len() > 1 && self.options.number("strictsingleton") != Some(0.0) {
                         let n = chosen.len();
                         self.execution_error(
                             "E0407",
@@ -561,8 +565,29 @@ impl Machine<'_> {
         }
     }
 
-    /// `option p < q`: counts, or keeps the last; to a set: membership.
-    fn project(&mut self, target: SymbolId, source: SymbolId, positions: &[usize], count: bool) {
+    /// `option m(i:j,k)`
+    fn match_sets(&mut self, target: SymbolId, sets: &[(bool, TableId)]) {
+        let mut all: Option<Tuples> = None;
+        for &(matched, t) in sets {
+            self.store.table_mut(t).tidy();
+            let set = Tuples::of(self.store.table(t));
+            all = Some(match all {
+                None => set,
+                Some(before) if matched => before.beside(&set),
+                Some(before) => before.times(&set),
+            });
+        }
+        let table = self.symbols.get(target).table;
+        let table = self.store.table_mut(table);
+        table.clear();
+        for (key, _) in all.iter().flat_map(Tuples::rows) {
+            table.set(key, 1.0);
+        }
+        table.tidy();
+    }
+
+    /// `option p < q`: counts where `q` has more positions; to a set: membership.
+    fn project(&mut self, target: SymbolId, source: SymbolId, positions: &[usize]) {
         let (t, s) = (self.symbols.get(target), self.symbols.get(source));
         let (tt, st, to_set, from_set) = (t.table, s.table, t.is_set(), s.is_set());
         self.store.table_mut(st).tidy();
@@ -578,13 +603,13 @@ impl Machine<'_> {
         let (mut keys, mut values): (Vec<Label>, Vec<f64>) = (Vec::new(), Vec::new());
         for (i, (k, v)) in rows.iter().enumerate() {
             let repeated = i > 0 && rows[i - 1].0 == *k;
-            let v = if to_set || (same_dim && from_set) || (count && !same_dim) {
+            let v = if to_set || from_set || !same_dim {
                 1.0
             } else {
                 *v
             };
             match (repeated, values.last_mut()) {
-                (true, Some(last)) => *last = if count && !to_set { *last + 1.0 } else { v },
+                (true, Some(last)) => *last = if to_set { v } else { *last + 1.0 },
                 _ => {
                     keys.extend_from_slice(k);
                     values.push(v);

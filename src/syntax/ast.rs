@@ -349,8 +349,10 @@ pub struct Expr {
 /// The kinds of expressions.
 #[derive(Clone, Debug)]
 pub enum ExprKind {
-    /// A number, or `inf`, `eps`, `na`, `undf` (see `data::value`), `yes` (1), `no` (0).
+    /// A number, or `inf`, `eps`, `na`, `undf` (see `data::value`).
     Number(f64),
+    /// `yes`, `no`.
+    Membership(bool),
     /// A quoted text: a label in an index position, a text in `put`.
     Text(Box<str>),
     /// A name, perhaps with attribute and arguments: symbol, function or index, told apart later.
@@ -492,15 +494,18 @@ pub enum OptionForm {
     Assign(OptionValue),
     /// `option p:3:1:2`
     Format(Vec<i64>),
-    /// `option p < q` (`<=` keeps the last instead of counting).
+    /// `option p < q` (`<=` looks for the index sets from the left).
     Project {
         /// Written `<=`.
-        last: bool,
+        from_left: bool,
         /// The source.
         source: Ident,
         /// Its index names.
         indices: Option<Vec<Ident>>,
     },
+    /// `option m(i:j,k)`: from left to right, a set behind a colon (true) is matched one by one, one behind
+    /// a comma multiplied out.
+    Match(Vec<(bool, Ident)>),
 }
 
 /// Right side of `option name = …`.

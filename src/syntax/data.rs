@@ -54,6 +54,9 @@ pub enum KeyPart<'a> {
     Group(Vec<Vec<KeyPart<'a>>>),
     /// `*`
     Universe(Span),
+    /// The number behind an alternative of a group, `a.(x 1, y 2)`: a factor of the record's value. It
+    /// takes no position.
+    Factor(f64),
 }
 
 /// What stands behind a key.
@@ -94,6 +97,8 @@ pub struct DataReader<'a> {
     arity: usize,
     key: Vec<KeyPart<'a>>,
     matched: Vec<KeyPart<'a>>,
+    /// The key has factors.
+    factors: bool,
 }
 
 /// Groups inside groups.
@@ -104,6 +109,7 @@ pub fn width(key: &[KeyPart<'_>]) -> usize {
     key.iter()
         .map(|p| match p {
             KeyPart::Group(g) => g.first().map_or(1, |k| width(k)),
+            KeyPart::Factor(_) => 0,
             _ => 1,
         })
         .sum()
@@ -130,6 +136,7 @@ impl<'a> DataReader<'a> {
             arity: usize::MAX,
             key: Vec::with_capacity(8),
             matched: Vec::new(),
+            factors: false,
         }
     }
 
@@ -291,6 +298,7 @@ impl<'a> DataReader<'a> {
         {
             return Ok(value);
         }
+        self.factors = false;
         let mut key = std::mem::take(&mut self.key);
         let outcome = self.key_parts(&mut key, 0);
         self.key = key;
@@ -307,7 +315,11 @@ impl<'a> DataReader<'a> {
         }
         match self.kind {
             DataKind::Set => self.element_text(),
-            DataKind::Values => self.value(),
+            // Factors are value enough.
+            DataKind::Values => Ok(match self.value()? {
+                Tail::None if self.factors => Tail::Number(1.0, self.span(start, self.at)),
+                value => value,
+            }),
         }
     }
 
@@ -475,6 +487,17 @@ impl<'a> DataReader<'a> {
                 Some(_) => {
                     let mut key = Vec::new();
                     self.key_parts(&mut key, depth + 1)?;
+                    self.blanks(false);
+                    if self.kind == DataKind::Values
+                        && !matches!(self.peek(), None | Some(b',' | b')' | b'\n'))
+                    {
+                        let at = self.at;
+                        let Tail::Number(x, _) = self.value()? else {
+                            return Err(self.expected("a number", at));
+                        };
+                        key.push(KeyPart::Factor(x));
+                        self.factors = true;
+                    }
                     list.push(key);
                 }
                 None => {
@@ -781,6 +804,7 @@ mod tests {
                 KeyPart::Range { from, to, .. } => format!("{from}*{to}"),
                 KeyPart::AllOf { set, .. } => format!("#{set}"),
                 KeyPart::Universe(_) => "*".into(),
+                KeyPart::Factor(x) => x.to_string(),
                 KeyPart::Group(g) => format!(
                     "({})",
                     g.iter().map(|k| key(k)).collect::<Vec<_>>().join(",")

@@ -389,6 +389,7 @@ mod tests {
                     KeyPart::Range { from, to, .. } => format!("{from}*{to}"),
                     KeyPart::AllOf { set, .. } => format!("#{set}"),
                     KeyPart::Universe(_) => "*".into(),
+                    KeyPart::Factor(x) => x.to_string(),
                     KeyPart::Group(g) => format!(
                         "({})",
                         g.iter().map(|k| key(k)).collect::<Vec<_>>().join(",")

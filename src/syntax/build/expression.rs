@@ -381,13 +381,10 @@ impl Builder<'_> {
         }
         if attribute.is_none()
             && arguments.is_none()
-            && let Some(x) = self.special(&name)?
+            && let Some(kind) = self.special(&name)?
         {
             return Ok(Node {
-                expr: Expr {
-                    kind: ExprKind::Number(x),
-                    span,
-                },
+                expr: Expr { kind, span },
                 depth: 1,
                 open: false,
             });
@@ -407,20 +404,22 @@ impl Builder<'_> {
     }
 
     /// `inf`, `eps` …
-    fn special(&self, name: &Ident) -> Built<Option<f64>> {
+    fn special(&self, name: &Ident) -> Built<Option<ExprKind>> {
         let n = &*name.name;
         if n.len() > 4 {
             return Ok(None);
         }
-        Ok(Some(match n.to_ascii_lowercase().as_str() {
-            "inf" => f64::INFINITY,
-            "eps" => value::EPS,
-            "na" => value::NA,
-            "yes" => 1.0,
-            "no" => 0.0,
-            "undf" if self.modes.undf => value::UNDF,
-            _ => return Ok(None),
-        }))
+        Ok(Some(ExprKind::Number(
+            match n.to_ascii_lowercase().as_str() {
+                "yes" => return Ok(Some(ExprKind::Membership(true))),
+                "no" => return Ok(Some(ExprKind::Membership(false))),
+                "inf" => f64::INFINITY,
+                "eps" => value::EPS,
+                "na" => value::NA,
+                "undf" if self.modes.undf => value::UNDF,
+                _ => return Ok(None),
+            },
+        )))
     }
 
     fn aggregate(&self, pair: Pair<'_, Rule>) -> Built<Node> {

@@ -345,20 +345,31 @@ impl Builder<'_> {
                 Rule::option_format => {
                     OptionForm::Format(p.into_inner().map(|n| number(n.as_str()) as i64).collect())
                 }
+                Rule::option_match => {
+                    let (mut sets, mut matched) = (Vec::new(), false);
+                    for q in p.into_inner() {
+                        if q.as_rule() == Rule::matched {
+                            matched = true;
+                        } else {
+                            sets.push((std::mem::take(&mut matched), self.ident(&q)));
+                        }
+                    }
+                    OptionForm::Match(sets)
+                }
                 _ => {
-                    let (mut last, mut source, mut from) = (false, None, None);
+                    let (mut from_left, mut source, mut from) = (false, None, None);
                     for q in p.into_inner() {
                         match q.as_rule() {
                             Rule::option_names if source.is_none() => indices = Some(self.names(q)),
                             Rule::option_names => from = Some(self.names(q)),
-                            Rule::kept_last => last = true,
-                            Rule::counted => {}
+                            Rule::from_left => from_left = true,
+                            Rule::from_right => {}
                             _ => source = Some(self.ident(&q)),
                         }
                     }
                     match source {
                         Some(source) => OptionForm::Project {
-                            last,
+                            from_left,
                             source,
                             indices: from,
                         },
