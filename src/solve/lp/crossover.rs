@@ -10,7 +10,8 @@
 //! interior-point run on the [`face`], with a random objective, ends near one of its vertices for less.
 
 use super::form::{Point, Problem};
-use super::simplex::{Basis, State, jitter};
+use super::simplex::push::Start;
+use super::simplex::{State, jitter};
 
 /// Dimensions of the optimal face from which a second interior-point run is cheaper than pushes.
 const WIDE: usize = 1500;
@@ -41,6 +42,11 @@ impl Place {
         self.lower.is_infinite() && self.upper.is_infinite()
     }
 
+    /// Whether the multiplier holds it at a bound.
+    fn is_held(&self) -> bool {
+        self.score() <= 1.0
+    }
+
     /// How much it is inside rather than at a bound.
     fn score(&self) -> f64 {
         if self.lower == self.upper {
@@ -69,7 +75,7 @@ fn places<'a>(p: &'a Problem, point: &'a Point) -> impl Iterator<Item = Place> +
 
 /// Whether the optimal points, as the interior point sees them, are a face of very many dimensions.
 pub fn is_wide(p: &Problem, point: &Point) -> bool {
-    let inside = places(p, point).filter(|v| v.score() > 1.0).count();
+    let inside = places(p, point).filter(|v| !v.is_held()).count();
     inside > p.m() + WIDE
 }
 
@@ -84,7 +90,7 @@ pub fn face(p: &Problem, point: &Point) -> Problem {
             continue;
         }
         let row = j.checked_sub(p.n());
-        if v.score() <= 1.0 {
+        if v.is_held() {
             let (lower, upper) = match row {
                 Some(i) => (&mut face.row_lower[i], &mut face.row_upper[i]),
                 None => (&mut face.lower[j], &mut face.upper[j]),
@@ -106,38 +112,43 @@ pub fn face(p: &Problem, point: &Point) -> Problem {
     face
 }
 
-/// A basis suggested by an interior point, and perhaps one of its face; and the values of all variables.
-pub fn basis(p: &Problem, point: &Point, of_face: Option<&Point>) -> (Basis, Vec<f64>) {
+/// A basis suggested by an interior point, and perhaps one of its face; and where all variables are.
+pub fn start(p: &Problem, point: &Point, of_face: Option<&Point>) -> Start {
     let (m, n) = (p.m(), p.n());
-    let mut states = Vec::with_capacity(m + n);
-    let mut values = Vec::with_capacity(m + n);
+    let mut start = Start {
+        basis: Vec::with_capacity(m + n),
+        value: Vec::with_capacity(m + n),
+        held: Vec::with_capacity(m + n),
+        y: point.y.clone(),
+    };
     let mut order: Vec<(bool, f64, usize)> = Vec::with_capacity(m + n);
     let mut second = of_face.map(|f| places(p, f));
     for (j, first) in places(p, point).enumerate() {
         // What was fixed on the face comes last, in the order of the first point.
-        let fixed = first.score() <= 1.0;
+        let held = first.is_held();
         let v = match second.as_mut().and_then(Iterator::next) {
-            Some(v) if !fixed => v,
+            Some(v) if !held => v,
             Some(v) => Place {
                 value: v.value,
                 ..first
             },
             None => first,
         };
-        states.push(match (v.is_free(), v.is_low()) {
+        start.basis.push(match (v.is_free(), v.is_low()) {
             (true, _) => State::Free,
             (_, true) => State::Lower,
             _ => State::Upper,
         });
-        values.push(v.value);
-        order.push((of_face.is_some() && fixed, v.score(), j));
+        start.value.push(v.value);
+        start.held.push(held);
+        order.push((of_face.is_some() && held, v.score(), j));
     }
     let last = |a: &(bool, f64, usize), b: &(bool, f64, usize)| {
         a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)).then(a.2.cmp(&b.2))
     };
     order.sort_by(last);
     for &(_, _, j) in order.iter().take(m) {
-        states[j] = State::Basic;
+        start.basis[j] = State::Basic;
     }
-    (states, values)
+    start
 }

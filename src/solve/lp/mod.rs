@@ -399,8 +399,8 @@ fn finished(p: &Problem, accuracy: Accuracy, limits: &Limits, monitor: &mut dyn 
                 }
             ));
             let of_face = of_face.as_ref().map(|f| &f.point);
-            let (basis, values) = crossover::basis(p, &answer.point, of_face);
-            let end = simplex.push(&basis, &values, &mut watch(limits, monitor));
+            let start = crossover::start(p, &answer.point, of_face);
+            let end = simplex.push(&start, &mut watch(limits, monitor));
             let count = simplex.iterations;
             let word = if end.is_ok() { "" } else { ", incomplete" };
             let outside = simplex.violation();

@@ -202,14 +202,14 @@ pub(super) fn certify_by(
 /// twice the working precision: what rounding violates is not in the way then. The point itself
 /// where none is found.
 fn vertex(p: &Problem, near: Point, limits: &Limits, monitor: &mut dyn Monitor) -> [Wide; 2] {
-    let (states, values) = crossover::basis(p, &near, None);
+    let start = crossover::start(p, &near, None);
     let mut simplex = Simplex::new(p);
     // A few pivots settle which of the columns at 0 are basic.
     let most = Limits {
         iterations: limits.iterations.min((p.m() + p.n()) as u64),
         ..*limits
     };
-    let _ = simplex.push(&states, &values, &mut watch(&most, monitor));
+    let _ = simplex.push(&start, &mut watch(&most, monitor));
     let solved = simplex.solve(&mut watch(&most, monitor)) == Ended::Solved;
     if solved {
         let tolerances = [

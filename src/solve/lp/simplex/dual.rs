@@ -28,7 +28,7 @@ impl Simplex {
                 }
             }
             let Some((slot, above)) = self.leaving(&refused) else {
-                let fresh = self.factor.as_ref().is_some_and(|f| f.updates() == 0);
+                let fresh = self.is_fresh();
                 if fresh {
                     return Stop::Done;
                 }
@@ -43,7 +43,7 @@ impl Simplex {
             match self.dual_step(slot, above) {
                 Step::Done => refused.fill(0),
                 Step::Nothing(y) => {
-                    let fresh = self.factor.as_ref().is_some_and(|f| f.updates() == 0);
+                    let fresh = self.is_fresh();
                     if fresh && self.is_proof(&y) {
                         return Stop::Infeasible(y);
                     }
@@ -55,7 +55,7 @@ impl Simplex {
                     }
                 }
                 Step::Unsafe => {
-                    let fresh = self.factor.as_ref().is_some_and(|f| f.updates() == 0);
+                    let fresh = self.is_fresh();
                     if fresh {
                         // On a fresh factor the row itself is bad: look at the others first.
                         refused[slot] += 1;
@@ -125,7 +125,7 @@ impl Simplex {
             let (l, u) = (self.work_lower[j], self.work_upper[j]);
             let free = l.is_infinite() && u.is_infinite();
             let wrong = self.dual_violation(j) > 0.0;
-            let at_lower = u.is_infinite() || (l.is_finite() && self.x[j] - l <= u - self.x[j]);
+            let at_lower = self.is_low(j);
             let target = if free || (wrong && !perturb) {
                 0.0
             } else if perturb {
@@ -183,7 +183,7 @@ impl Simplex {
             return Step::Nothing(y);
         };
         let pivot = self.row[entering];
-        let fresh = self.factor.as_ref().is_some_and(|f| f.updates() == 0);
+        let fresh = self.is_fresh();
         let entries = self.row_index.iter();
         let top = entries.fold(0.0f64, |t, &j| t.max(self.row[j as usize].abs()));
         let top = top.min(1.0);
@@ -260,7 +260,7 @@ impl Simplex {
         if worn.is_none() {
             return Step::Broken;
         }
-        if self.factor.as_ref().is_some_and(|f| f.updates() == 0) {
+        if self.is_fresh() {
             self.shift_costs(false);
         }
         Step::Done
@@ -284,7 +284,7 @@ impl Simplex {
                 continue;
             }
             let free = l.is_infinite() && u.is_infinite();
-            let at_lower = u.is_infinite() || (l.is_finite() && self.x[k] - l <= u - self.x[k]);
+            let at_lower = self.is_low(k);
             let may = free || (alpha > 0.0) == at_lower;
             if may {
                 candidates.push((j, alpha.abs(), if free { 0.0 } else { self.d[k].abs() }));

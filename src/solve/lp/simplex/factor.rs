@@ -33,8 +33,8 @@ pub enum Failure {
     Numbers,
 }
 
-/// A smaller pivot is none.
-const ZERO: f64 = 1e-11;
+/// A smaller pivot is none, usually.
+pub const ZERO: f64 = 1e-11;
 
 fn parameters(zero: f64) -> LuParams {
     LuParams {

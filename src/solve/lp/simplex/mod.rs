@@ -24,14 +24,14 @@
 mod dual;
 pub(in crate::solve) mod factor;
 mod primal;
-mod push;
+pub mod push;
 mod unique;
 
 use super::Ended;
 use super::form::{Point, Problem, Sparse};
 use crate::model::sum::Sum;
 use crate::solve::interval::{WideSum, two_sum};
-use factor::{Entries, Factor, Failure};
+use factor::{Entries, Factor, Failure, ZERO};
 
 /// Where a variable is in a basis.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -116,8 +116,8 @@ pub struct Simplex {
     pub cutoff: f64,
     perturb: bool,
     /// A crossover is under way: variables that leave the basis in a repair stay where they are, and
-    /// columns that are nearly dependent leave it.
-    crossing: bool,
+    /// columns with a smaller pivot than this leave it.
+    crossing: Option<f64>,
 }
 
 impl Simplex {
@@ -155,7 +155,7 @@ impl Simplex {
             iterations: 0,
             cutoff: f64::INFINITY,
             perturb: true,
-            crossing: false,
+            crossing: None,
         };
         for i in 0..m {
             s.slot[n + i] = i as u32;
@@ -260,16 +260,13 @@ impl Simplex {
         for _ in 0..20 {
             let columns: Vec<Entries> =
                 self.head.iter().map(|&j| self.column(j as usize)).collect();
-            let factor = match self.crossing {
-                true => Factor::without_pivots_below(SAFE_PIVOT, self.m, &columns),
-                false => Factor::new(self.m, &columns),
-            };
-            match factor {
+            let zero = self.crossing.unwrap_or(ZERO);
+            match Factor::without_pivots_below(zero, self.m, &columns) {
                 Ok(f) => {
                     self.factor = Some(f);
                     match self.crossing {
-                        true => self.compute_good_values(),
-                        false => self.compute_values()?,
+                        Some(_) => self.compute_good_values(),
+                        None => self.compute_values()?,
                     }
                     return self.compute_reduced();
                 }
@@ -282,7 +279,7 @@ impl Simplex {
                             return None;
                         }
                         self.slot[out] = NONBASIC;
-                        if !self.crossing {
+                        if self.crossing.is_none() {
                             self.x[out] = self.resting(out, self.x[out]);
                         }
                         self.slot[logical] = slot as u32;
@@ -371,14 +368,25 @@ impl Simplex {
         Some(())
     }
 
+    /// Whether a variable is nearer to its lower bound.
+    fn is_low(&self, j: usize) -> bool {
+        let (l, u, x) = (self.work_lower[j], self.work_upper[j], self.x[j]);
+        u.is_infinite() || (l.is_finite() && x - l <= u - x)
+    }
+
+    /// Whether the basis is factorised, and was not changed since.
+    fn is_fresh(&self) -> bool {
+        self.factor.as_ref().is_some_and(|f| f.updates() == 0)
+    }
+
     /// By how much a reduced cost has the wrong sign for where its variable is.
     fn dual_violation(&self, j: usize) -> f64 {
-        let (l, u, x, d) = (self.work_lower[j], self.work_upper[j], self.x[j], self.d[j]);
+        let (l, u, d) = (self.work_lower[j], self.work_upper[j], self.d[j]);
         if l == u {
             0.0
         } else if l.is_infinite() && u.is_infinite() {
             d.abs()
-        } else if u.is_infinite() || (l.is_finite() && x - l <= u - x) {
+        } else if self.is_low(j) {
             (-d).max(0.0)
         } else {
             d.max(0.0)
@@ -422,7 +430,7 @@ impl Simplex {
     fn is_restored(&self) -> bool {
         let resting =
             |j: usize| self.slot[j] != NONBASIC || self.x[j] == self.resting(j, self.x[j]);
-        self.factor.as_ref().is_some_and(|f| f.updates() == 0)
+        self.is_fresh()
             && self.work_cost == self.cost
             && self.work_lower == self.lower
             && self.work_upper == self.upper

@@ -27,7 +27,7 @@ impl Simplex {
             {
                 return Stop::Ended(why);
             }
-            let fresh = self.factor.as_ref().is_some_and(|f| f.updates() == 0);
+            let fresh = self.is_fresh();
             let Some(entering) = self.priced(&refused) else {
                 if fresh {
                     return Stop::Done;

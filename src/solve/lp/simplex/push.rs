@@ -1,52 +1,108 @@
 //! From an interior point to a vertex: the push phase of a crossover (Megiddo 1991; Bixby &
 //! Saltzman 1994).
 //!
-//! Given values for all variables and a basis, the nonbasic variables that are not at a bound move
-//! to their nearest ones, all together: most of them have hardly any way to go, and one solve with the basis
-//! moves thousands. Where a basic variable reaches its bound first, it leaves the basis for the one of
-//! the moving variables that does most of its motion, and the rest goes on. The point stays feasible, and on the
-//! optimal face if it was there; in the end it is a vertex.
+//! Two pushes lead from a point on the optimal face and multipliers for it to an optimal basis.
+//!
+//! *Values*: the nonbasic variables that are not at a bound move to their nearest ones, all together: most
+//! of them have hardly any way to go, and one solve with the basis moves thousands. Where a basic variable
+//! reaches its bound first, it leaves the basis for the one of the moving variables that does most of its motion,
+//! and the rest goes on. Variables that the multipliers hold at a bound do not move, or the point would leave
+//! the optimal face; in the end it is a vertex of that face.
+//!
+//! *Multipliers*: the reduced costs of the basic variables go to 0, again all together. Where that of a
+//! nonbasic variable would change its sign first, the variable enters the basis for one of them, which is at
+//! its bound: the vertex stays where it is.
 
-use super::{NONBASIC, PIVOT, SAFE_PIVOT, Simplex, State};
+use super::factor::ZERO;
+use super::{Basis, NONBASIC, PIVOT, SAFE_PIVOT, Simplex};
 use crate::solve::lp::Ended;
 
-/// A basic variable that violates its bound by more does not block.
+/// What violates its bound, or its sign, by more does not block: it is left to the simplex method.
 const OUTSIDE: f64 = 1e-6;
 
+/// Where a crossover begins: one entry per column, then one per row.
+#[derive(Clone, Debug)]
+pub struct Start {
+    /// The basis.
+    pub basis: Basis,
+    /// Values, near a solution of the equations.
+    pub value: Vec<f64>,
+    /// What stays at its nearest bound.
+    pub held: Vec<bool>,
+    /// Multipliers of the rows.
+    pub y: Vec<f64>,
+}
+
 impl Simplex {
-    /// Starts from a basis and values of all variables, and pushes. Err: it could not be done.
+    /// Pushes the values, then the multipliers. Err: it could not be done.
     pub fn push(
         &mut self,
-        basis: &[State],
-        values: &[f64],
+        start: &Start,
         stop: &mut dyn FnMut(u64) -> Option<Ended>,
     ) -> Result<(), Ended> {
-        self.set_basis(basis);
+        self.set_basis(&start.basis);
         self.work_cost.copy_from_slice(&self.cost);
         self.work_lower.copy_from_slice(&self.lower);
         self.work_upper.copy_from_slice(&self.upper);
-        for (j, &v) in values.iter().enumerate() {
+        for (j, &v) in start.value.iter().enumerate() {
             self.x[j] = v.max(self.lower[j]).min(self.upper[j]);
+            if start.held[j] {
+                let bound = self.resting(j, self.x[j]);
+                (self.work_lower[j], self.work_upper[j]) = (bound, bound);
+            }
         }
-        let tolerance = self.tolerance;
-        self.crossing = (0..self.n + self.m).any(|j| self.way(j).abs() > tolerance);
-        let done = self.push_all(stop);
-        self.crossing = false;
+        // Where there is far to go, a basis that is nearly dependent leads astray.
+        let far = (0..self.n + self.m).any(|j| self.way(j).abs() > self.tolerance);
+        self.crossing = Some(if far { SAFE_PIVOT } else { ZERO });
+        let mut done = self.push_values(stop);
+        self.work_lower.copy_from_slice(&self.lower);
+        self.work_upper.copy_from_slice(&self.upper);
+        if done.is_ok() {
+            done = self.push_multipliers(&start.y, stop);
+        }
+        self.crossing = None;
         done
     }
 
-    fn push_all(&mut self, stop: &mut dyn FnMut(u64) -> Option<Ended>) -> Result<(), Ended> {
+    fn push_values(&mut self, stop: &mut dyn FnMut(u64) -> Option<Ended>) -> Result<(), Ended> {
         self.refactor().ok_or(Ended::Failed)?;
-        loop {
-            if self.iterations.is_multiple_of(32)
+        self.until_arrived(stop, Self::push_step)
+    }
+
+    fn push_multipliers(
+        &mut self,
+        y: &[f64],
+        stop: &mut dyn FnMut(u64) -> Option<Ended>,
+    ) -> Result<(), Ended> {
+        let mut d: Vec<f64> = (0..self.n + self.m).map(|j| self.price(j, y)).collect();
+        // What is inside its bounds stays basic; its reduced cost is what the interior point left.
+        let inside = self.head.iter().map(|&j| match d[j as usize] {
+            v if self.may_rest(j as usize, v) => 0.0,
+            v => v,
+        });
+        let rate = self.rates(inside.collect()).ok_or(Ended::Failed)?;
+        d.iter_mut().zip(&rate).for_each(|(d, r)| *d += r);
+        self.until_arrived(stop, |s| s.push_multipliers_step(&mut d))
+    }
+
+    /// A push that takes more steps than there are variables goes round in circles: pivots on the border of
+    /// being none.
+    fn until_arrived(
+        &mut self,
+        stop: &mut dyn FnMut(u64) -> Option<Ended>,
+        mut step: impl FnMut(&mut Self) -> Option<bool>,
+    ) -> Result<(), Ended> {
+        for count in 0..self.n + self.m {
+            if count.is_multiple_of(32)
                 && let Some(why) = stop(self.iterations)
             {
                 return Err(why);
             }
-            if self.push_step().ok_or(Ended::Failed)? {
+            if step(self).ok_or(Ended::Failed)? {
                 return Ok(());
             }
         }
+        Err(Ended::Failed)
     }
 
     /// What a nonbasic variable has to go.
@@ -87,8 +143,7 @@ impl Simplex {
         };
         let rho = self.factor.as_mut()?.backward(&[(slot, 1.0)])?.clone();
         self.pivot_row(&rho);
-        let fresh = self.factor.as_ref().is_some_and(|f| f.updates() == 0);
-        let least = if fresh { 100.0 * PIVOT } else { SAFE_PIVOT };
+        let least = self.least_pivot();
         let mut entering = (0.0, None);
         for &j in &self.row_index {
             let j = j as usize;
@@ -98,11 +153,7 @@ impl Simplex {
             }
         }
         let Some(entering) = entering.1 else {
-            if fresh {
-                return None;
-            }
-            self.refactor()?;
-            return Some(false);
+            return self.refreshed();
         };
         let leaving = self.head[slot] as usize;
         self.x[leaving] = match rate[slot] > 0.0 {
@@ -114,7 +165,7 @@ impl Simplex {
         Some(false)
     }
 
-    /// How much of the way all can go (Harris's ratio test), and the slot that ends it.
+    /// How much of the way all can go, and the slot that ends it.
     fn first_block(&self, rate: &[f64]) -> (f64, Option<usize>) {
         let room = |k: usize| {
             let j = self.head[k] as usize;
@@ -123,22 +174,115 @@ impl Simplex {
                 false => self.work_upper[j] - self.x[j],
             }
         };
-        // What is far outside is left to the simplex method.
-        let slack = self.tolerance;
-        let may = |k: &usize| rate[*k] != 0.0 && room(*k) > -OUTSIDE;
-        let limit = (0..self.m)
-            .filter(may)
-            .map(|k| (room(k).max(0.0) + slack) / rate[k].abs())
-            .fold(1.0, f64::min);
-        if limit == 1.0 {
-            return (1.0, None);
+        let slots = (0..self.m).filter(|&k| rate[k] != 0.0);
+        first(slots.map(|k| (k, room(k), rate[k].abs())), self.tolerance)
+    }
+
+    /// Moves the reduced costs of all basic variables as far as the others allow, and pivots there. True:
+    /// all arrived.
+    fn push_multipliers_step(&mut self, d: &mut [f64]) -> Option<bool> {
+        let part = self.head.iter().map(|&j| d[j as usize]).collect();
+        let rate = self.rates(part)?;
+        let (step, blocking) = self.first_sign(d, &rate);
+        d.iter_mut().zip(&rate).for_each(|(d, r)| *d += step * r);
+        let Some(entering) = blocking else {
+            return Some(true);
+        };
+        let a_q = self.column(entering);
+        let column = self.factor.as_mut()?.forward(&a_q)?.clone();
+        let least = self.least_pivot();
+        let mut leaving = (0.0, None);
+        for &(slot, a) in &column {
+            let j = self.head[slot] as usize;
+            let part = (a * d[j]).abs();
+            if part > leaving.0 && a.abs() > least && self.may_rest(j, d[j]) {
+                leaving = (part, Some(slot));
+            }
         }
-        let first = (0..self.m)
-            .filter(|k| may(k) && room(*k) <= limit * rate[*k].abs())
-            .max_by(|&a, &b| rate[a].abs().total_cmp(&rate[b].abs()));
-        match first {
-            Some(k) => ((room(k).max(0.0) / rate[k].abs()).min(1.0), Some(k)),
-            None => (1.0, None),
+        let Some(slot) = leaving.1 else {
+            return self.refreshed();
+        };
+        let leaving = self.head[slot] as usize;
+        self.x[leaving] = self.resting(leaving, self.x[leaving]);
+        d[entering] = 0.0;
+        self.iterations += 1;
+        self.exchange(slot, entering)?;
+        Some(false)
+    }
+
+    /// How the reduced costs of all variables change while those of the slots change by −`part`.
+    fn rates(&mut self, mut part: Vec<f64>) -> Option<Vec<f64>> {
+        self.factor.as_mut()?.backward_dense(&mut part)?;
+        let mut rate = vec![0.0; self.n + self.m];
+        for (i, &y) in part.iter().enumerate().filter(|e| *e.1 != 0.0) {
+            self.rows.line(i).for_each(|(j, a)| rate[j] -= a * y);
+            rate[self.n + i] += y;
         }
+        Some(rate)
+    }
+
+    /// Whether a variable is at a bound where it may have this reduced cost.
+    fn may_rest(&self, j: usize, d: f64) -> bool {
+        let (l, u, x) = (self.work_lower[j], self.work_upper[j], self.x[j]);
+        (d > 0.0 && x - l <= OUTSIDE) || (d < 0.0 && u - x <= OUTSIDE)
+    }
+
+    /// How much of their way the reduced costs can go, and the variable whose sign ends it.
+    fn first_sign(&self, d: &[f64], rate: &[f64]) -> (f64, Option<usize>) {
+        let candidates = (0..d.len()).filter_map(|j| {
+            let (l, u) = (self.work_lower[j], self.work_upper[j]);
+            if self.slot[j] != NONBASIC || rate[j] == 0.0 || l == u {
+                return None;
+            }
+            let free = l.is_infinite() && u.is_infinite();
+            let room = match self.is_low(j) {
+                _ if free => -d[j].abs(),
+                true => d[j],
+                false => -d[j],
+            };
+            let blocks = free || (rate[j] < 0.0) == self.is_low(j);
+            blocks.then_some((j, room, rate[j].abs()))
+        });
+        first(candidates, self.dual_tolerance)
+    }
+
+    /// The smallest pivot that is taken now.
+    fn least_pivot(&self) -> f64 {
+        match self.is_fresh() {
+            true => 100.0 * PIVOT,
+            false => SAFE_PIVOT,
+        }
+    }
+
+    /// No pivot was good enough: perhaps one is on a fresh factor.
+    fn refreshed(&mut self) -> Option<bool> {
+        if self.is_fresh() {
+            return None;
+        }
+        self.refactor()?;
+        Some(false)
+    }
+}
+
+/// Harris's ratio test over things with room and a rate at which they use it: how much of a step of 1 can be
+/// gone, and the thing that ends it.
+fn first(
+    things: impl Iterator<Item = (usize, f64, f64)> + Clone,
+    slack: f64,
+) -> (f64, Option<usize>) {
+    let things = things.filter(|t| t.1 > -OUTSIDE);
+    let limit = things
+        .clone()
+        .map(|(_, room, rate)| (room.max(0.0) + slack) / rate)
+        .fold(1.0, f64::min);
+    if limit == 1.0 {
+        return (1.0, None);
+    }
+    let first = things
+        .filter(|&(_, room, rate)| room <= limit * rate)
+        .max_by(|a, b| a.2.total_cmp(&b.2));
+    match first {
+        Some((k, room, rate)) => ((room.max(0.0) / rate).min(1.0), Some(k)),
+        None => (1.0, None),
     }
 }

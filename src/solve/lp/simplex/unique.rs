@@ -81,7 +81,7 @@ impl Simplex {
                     continue;
                 }
                 let free = l.is_infinite() && u.is_infinite();
-                let at_lower = u.is_infinite() || (l.is_finite() && self.x[j] - l <= u - self.x[j]);
+                let at_lower = self.is_low(j);
                 if free {
                     step = 0.0;
                 } else if (rate > 0.0) == at_lower {

@@ -96,10 +96,10 @@ impl Products<'_> {
         let mut problem = form.problem.clone();
         let near = form.near(&answer.outcome);
         let mut simplex = Simplex::new(&problem);
-        let (states, values) = crossover::basis(&problem, &near, None);
+        let start = crossover::start(&problem, &near, None);
         let mut y = near.y;
         let ended = self.watched(|stop| {
-            let _ = simplex.push(&states, &values, stop);
+            let _ = simplex.push(&start, stop);
             simplex.solve(stop)
         });
         if ended == Ended::Solved {
