@@ -35,6 +35,7 @@ fn generate(file: &str, defines: &[(&str, String)]) -> usize {
             .map(|(k, v)| ((*k).to_string(), v.clone()))
             .collect(),
         slash_comments: true,
+        ..PreprocessOptions::default()
     };
     let done = session::run(
         &mut host,

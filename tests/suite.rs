@@ -230,6 +230,7 @@ fn check_text(
     let preprocess = PreprocessOptions {
         defines: c.defines.clone(),
         slash_comments: true,
+        ..PreprocessOptions::default()
     };
     let options = Options {
         time_limit: if c.slow { 600.0 } else { 60.0 },

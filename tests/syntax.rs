@@ -30,6 +30,7 @@ fn read_files(files: &[(&str, &str)], defines: &[(&str, &str)]) -> Outcome {
             .map(|(a, b)| ((*a).to_owned(), (*b).to_owned()))
             .collect(),
         slash_comments: main.ends_with(".blk"),
+        ..PreprocessOptions::default()
     };
     let mut out = Outcome {
         statements: Vec::new(),

@@ -101,6 +101,7 @@ fn parse(path: &Path, folder: &Path) -> (Vec<String>, usize) {
     let options = PreprocessOptions {
         defines: Vec::new(),
         slash_comments: path.extension().is_some_and(|e| e == "blk"),
+        ..PreprocessOptions::default()
     };
     let mut parser = match Parser::new(&mut disk, &path.to_string_lossy(), options) {
         Ok(p) => p,

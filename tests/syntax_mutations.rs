@@ -49,6 +49,7 @@ fn read_everything(text: &str) {
         let options = PreprocessOptions {
             defines: vec![("d".into(), "1".into())],
             slash_comments,
+            ..PreprocessOptions::default()
         };
         let Ok(mut parser) = Parser::new(&mut host, "m.gms", options) else {
             continue;

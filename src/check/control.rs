@@ -152,7 +152,7 @@ impl Compiler {
             (b, a)
         };
         let one = match &first.kind {
-            ExprKind::Text(t) => vec![Part::Label(self.known_label(t, first.span)?)],
+            ExprKind::Text(t) => vec![Part::Label(self.store.universe.intern(t))],
             _ => self.control_index(first, UNIVERSE, 0, out)?,
         };
         match free(self, second) {

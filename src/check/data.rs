@@ -2,7 +2,7 @@
 
 use super::expansion::{Tuples, set_prefix};
 use super::node::{SymbolId, TableId};
-use super::symbols::{SymbolKind, attribute};
+use super::symbols::{DomainPosition, SymbolKind, attribute};
 use super::{Compiler, Failed};
 use crate::data::universe::Label;
 use crate::data::value::{self, EPS};
@@ -12,6 +12,22 @@ use crate::syntax::ast::Ident;
 use crate::syntax::data::{DataKind, DataReader, KeyPart, Tail, width};
 
 impl Compiler {
+    /// The sets that data define, `p(i<)`, get theirs with them.
+    pub(super) fn open_domains(
+        &mut self,
+        s: SymbolId,
+        defines: &[bool],
+        span: Span,
+    ) -> Result<(), Failed> {
+        for (position, _) in defines.iter().enumerate().filter(|(_, d)| **d) {
+            if let Some(DomainPosition::Set(d)) = self.symbols.get(s).domain.get(position) {
+                let root = self.symbols.root(*d);
+                self.open_data(root, span)?;
+            }
+        }
+        Ok(())
+    }
+
     /// Whether a symbol may get data now; clears it for `$onMultiR`.
     pub(super) fn open_data(&mut self, s: SymbolId, span: Span) -> Result<(), Failed> {
         self.symbols.get_mut(s).open = false;
@@ -64,10 +80,12 @@ impl Compiler {
         s: SymbolId,
         body: Span,
         name: Span,
+        defines: &[bool],
         map: &SourceMap,
     ) -> Result<(), Failed> {
         let open = self.symbols.get(s).open;
         self.open_data(s, name)?;
+        self.open_domains(s, defines, name)?;
         if open {
             self.shape_by_data(s, map.text(body), DataKind::Set);
         }
@@ -94,7 +112,7 @@ impl Compiler {
             };
             let span = record.span;
             if self
-                .expand(s, record.key, record.matched, span, &[], &mut keys)
+                .expand(s, record.key, record.matched, span, defines, &mut keys)
                 .is_err()
             {
                 continue;
@@ -170,6 +188,7 @@ impl Compiler {
     ) -> Result<(), Failed> {
         let open = self.symbols.get(s).open;
         self.open_data(s, name)?;
+        self.open_domains(s, defines, name)?;
         let text = map.text(body);
         if open {
             self.shape_by_data(s, text, DataKind::Values);

@@ -213,7 +213,7 @@ impl Compiler {
                 self.symbols.get_mut(s).open = false;
             }
             if let Some(body) = d.data {
-                let _ = self.set_data(s, body, d.name.span, map);
+                let _ = self.set_data(s, body, d.name.span, &d.defines(), map);
             }
         }
         Ok(())

@@ -10,6 +10,14 @@ use crate::source::Span;
 use crate::syntax::ast::Ident;
 use crate::syntax::data::KeyPart;
 
+/// What a label takes, about: its name twice, its place in the universe.
+const LABEL_BYTES: usize = 128;
+
+/// What a record takes, about.
+fn record_bytes(dim: usize) -> usize {
+    24 + 8 * dim
+}
+
 /// A range or a product of sets in data may not make more records than this.
 pub const MAX_EXPANSION: usize = 50_000_000;
 
@@ -112,8 +120,8 @@ pub enum NoRange {
     TooLong(u64),
 }
 
-/// `i1*i10`: labels that differ in one number, up or down; leading zeros are kept.
-pub fn range(from: &str, to: &str) -> Result<Vec<String>, NoRange> {
+/// `i1*i10`: labels that differ in one number, up or down, so many at most; leading zeros are kept.
+pub fn range(from: &str, to: &str, most: usize) -> Result<Vec<String>, NoRange> {
     let (a, b) = (from.as_bytes(), to.as_bytes());
     if from.eq_ignore_ascii_case(to) {
         return Ok(vec![from.to_string()]);
@@ -143,7 +151,7 @@ pub fn range(from: &str, to: &str) -> Result<Vec<String>, NoRange> {
     let (Ok(lo), Ok(hi)) = (na.parse::<u64>(), nb.parse::<u64>()) else {
         return Err(NoRange::Unlike);
     };
-    if lo.abs_diff(hi) >= MAX_EXPANSION as u64 {
+    if lo.abs_diff(hi) >= most as u64 {
         return Err(NoRange::TooLong(lo.abs_diff(hi).saturating_add(1)));
     }
     // A leading zero, or equal lengths, fixes the width.
@@ -213,6 +221,7 @@ impl Compiler {
             if parts.len() != dim {
                 return self.wrong_dimension(s, span, parts.len());
             }
+            self.take(1, record_bytes(dim), span)?;
             for (p, part) in parts.iter().enumerate() {
                 let KeyPart::Label { text, span, .. } = part else {
                     unreachable!("tested above")
@@ -223,6 +232,7 @@ impl Compiler {
             return Ok(());
         }
         let mut rows = self.products(s, 0, parts, span, defines)?;
+        self.take(rows.len(), record_bytes(dim), span)?;
         if let Some(other) = matched {
             let behind = self.products(s, rows.width, other, span, defines)?;
             if rows.len() != behind.len() {
@@ -271,6 +281,8 @@ impl Compiler {
                     .help("make the set by an assignment with a condition"),
                 );
             }
+            let labels = choices.width + rows.as_ref().map_or(0, |r| r.width);
+            self.take(before * choices.len(), 4 * labels, span)?;
             rows = Some(match rows {
                 Some(before) => before.times(&choices),
                 None => choices,
@@ -294,9 +306,16 @@ impl Compiler {
                 Ok(Tuples::single(vec![label]))
             }
             KeyPart::Range { from, to, span } => {
-                let labels = match range(from, to) {
+                let room = match self.max_memory {
+                    Some(limit) => limit.saturating_sub(self.taken) / LABEL_BYTES,
+                    None => MAX_EXPANSION,
+                };
+                let labels = match range(from, to, room.min(MAX_EXPANSION)) {
                     Ok(labels) => labels,
                     Err(NoRange::TooLong(n)) => {
+                        if n <= MAX_EXPANSION as u64 {
+                            self.take(n as usize, LABEL_BYTES, *span)?;
+                        }
                         let d =
                             Diagnostic::error("E0343", *span, format!("this range has {n} labels"))
                                 .label("too many")
@@ -315,6 +334,7 @@ impl Compiler {
                         );
                     }
                 };
+                self.take(labels.len(), LABEL_BYTES, *span)?;
                 let labels = labels
                     .iter()
                     .map(|l| self.data_label(s, position, l, *span, defines));
@@ -381,7 +401,6 @@ impl Compiler {
         if defines.get(position) == Some(&true) {
             let l = self.store.universe.intern(text);
             self.store.table_mut(table).set(&[l], 1.0);
-            self.symbols.get_mut(set_id).has_data = true;
             return Ok(l);
         }
         self.not_a_member(text, "", s, position, span)
@@ -417,14 +436,20 @@ mod tests {
 
     #[test]
     fn ranges_keep_prefix_suffix_and_zeros() {
-        assert_eq!(range("a9", "a11").unwrap(), ["a9", "a10", "a11"]);
-        assert_eq!(range("c09", "c11").unwrap(), ["c09", "c10", "c11"]);
-        assert_eq!(range("s02s", "s04s").unwrap(), ["s02s", "s03s", "s04s"]);
-        assert_eq!(range("1990", "1992").unwrap(), ["1990", "1991", "1992"]);
-        assert_eq!(range("a1", "b3"), Err(NoRange::Unlike));
-        assert_eq!(range("a3", "a1").unwrap(), ["a3", "a2", "a1"]);
-        assert_eq!(range("b", "d").unwrap(), ["b", "c", "d"]);
-        assert_eq!(range("y", "ab").unwrap(), ["y", "z", "aa", "ab"]);
-        assert_eq!(range("d", "a"), Err(NoRange::Unlike));
+        assert_eq!(range("a9", "a11", 100).unwrap(), ["a9", "a10", "a11"]);
+        assert_eq!(range("c09", "c11", 100).unwrap(), ["c09", "c10", "c11"]);
+        assert_eq!(
+            range("s02s", "s04s", 100).unwrap(),
+            ["s02s", "s03s", "s04s"]
+        );
+        assert_eq!(
+            range("1990", "1992", 100).unwrap(),
+            ["1990", "1991", "1992"]
+        );
+        assert_eq!(range("a1", "b3", 100), Err(NoRange::Unlike));
+        assert_eq!(range("a3", "a1", 100).unwrap(), ["a3", "a2", "a1"]);
+        assert_eq!(range("b", "d", 100).unwrap(), ["b", "c", "d"]);
+        assert_eq!(range("y", "ab", 100).unwrap(), ["y", "z", "aa", "ab"]);
+        assert_eq!(range("d", "a", 100), Err(NoRange::Unlike));
     }
 }

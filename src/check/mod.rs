@@ -87,6 +87,9 @@ pub(crate) struct Compiler {
     nesting: usize,
     /// A `put` above names a file.
     put_named: bool,
+    /// What data may take, and what they took so far, in bytes.
+    max_memory: Option<usize>,
+    taken: usize,
     modes: Modes,
 }
 
@@ -96,9 +99,11 @@ pub fn compile(
     path: &str,
     options: PreprocessOptions,
 ) -> Result<Program, Box<(Diagnostic, SourceMap)>> {
+    let max_memory = options.max_memory;
     let mut parser =
         Parser::new(host, path, options).map_err(|u| Box::new((u.diagnostic, u.map)))?;
     let mut c = Compiler::new();
+    c.max_memory = max_memory;
     let mut code = Vec::new();
     loop {
         let next = parser.next(&c);
@@ -178,6 +183,8 @@ impl Compiler {
             texts_allowed: false,
             nesting: 0,
             put_named: false,
+            max_memory: None,
+            taken: 0,
             modes: Modes::default(),
         }
     }
@@ -187,6 +194,24 @@ impl Compiler {
     fn report(&mut self, d: Diagnostic) {
         if self.diagnostics.last() != Some(&d) {
             self.diagnostics.push(d);
+        }
+    }
+
+    /// Takes memory for data, estimated from what they say: the same text ends at the same place
+    /// everywhere.
+    fn take(&mut self, records: usize, bytes: usize, span: Span) -> Result<(), Failed> {
+        self.taken = self.taken.saturating_add(records.saturating_mul(bytes));
+        match self.max_memory {
+            Some(limit) if self.taken > limit => self.fail(
+                Diagnostic::error(
+                    "E0491",
+                    span,
+                    format!("the memory limit of {} MB is used up", limit >> 20),
+                )
+                .label("by the data up to here")
+                .help("raise it with `--max-memory`, or make the set by an assignment with a condition"),
+            ),
+            _ => Ok(()),
         }
     }
 
@@ -245,6 +270,37 @@ impl Compiler {
 }
 
 impl Known for Compiler {
+    fn set_text(&self, name: &str, what: &str) -> Option<String> {
+        let s = self
+            .symbols
+            .get(self.symbols.root(self.symbols.find(name)?));
+        let what = what.to_lowercase();
+        if what == "ts" {
+            return Some(s.text.to_string());
+        }
+        let table = self.store.table(s.table);
+        if !s.is_set() || table.is_empty() {
+            return None;
+        }
+        let (record, what) = match what.strip_prefix("last") {
+            Some(what) => (table.len() as u32 - 1, what),
+            None => (0, what.strip_prefix("first").unwrap_or(&what)),
+        };
+        let key = table.key(record);
+        match what {
+            "tl" => {
+                let labels = key.iter().map(|&l| self.store.universe.name(l));
+                Some(labels.collect::<Vec<_>>().join("."))
+            }
+            "te" => {
+                let texts = self.store.texts.get(&s.table);
+                let text = texts.and_then(|t| t.get(key));
+                Some(text.map(|t| t.to_string()).unwrap_or_default())
+            }
+            _ => None,
+        }
+    }
+
     fn kind(&self, name: &str) -> Option<&'static str> {
         self.symbols
             .find(name)

@@ -161,12 +161,15 @@ impl Compiler {
                 }
                 CodeKind::Exchange(x.clone())
             }
+            // In GAMS too the run goes on when a program cannot be started: what comes after, and the
+            // results before, do not depend on a viewer or an export.
             StmtKind::Refused(what) => {
-                return self.fail(
-                    Diagnostic::error("E0322", what.span, format!("`{}` is refused", what.name))
-                        .label("runs another program")
+                self.report(
+                    Diagnostic::warning("E0322", what.span, format!("`{}` is refused", what.name))
+                        .label("would run another program; passed over")
                         .help("a model run by bmod reads and writes only its own files; prepare the data before, or use `$include`"),
                 );
+                return Ok(());
             }
             StmtKind::Draw(name, file) => {
                 let s = self.lookup(name)?;

@@ -22,7 +22,9 @@ impl Compiler {
         let s = self.declare(&t.symbol, kind, |c, n| c.store.add_table(n, 0.0))?;
         let open = self.symbols.get(s).open;
         let name = t.symbol.name.span;
+        let defines = t.symbol.defines();
         self.open_data(s, name)?;
+        self.open_domains(s, &defines, name)?;
         if open {
             let mut reader = TableReader::new(map.expanded(), t.body, 1, self.modes.undf);
             while let Some(item) = reader.next() {
@@ -48,7 +50,6 @@ impl Compiler {
                 .help("use a `parameter` with a list instead"),
             );
         }
-        let defines = t.symbol.defines();
         let mut reader = TableReader::new(map.expanded(), t.body, dim, self.modes.undf);
         let (mut keys, mut parts) = (Tuples::default(), Vec::new());
         // Columns whose labels were refused.

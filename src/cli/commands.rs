@@ -82,6 +82,7 @@ pub(super) fn carry_out(
     let preprocess = PreprocessOptions {
         defines: model.define.clone(),
         slash_comments: extension.is_some_and(|e| e.eq_ignore_ascii_case("blk")),
+        max_memory: options.max_memory,
     };
     let file = name(model);
     let finished = session::run(

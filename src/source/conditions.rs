@@ -111,7 +111,7 @@ impl Preprocessor<'_> {
             "set" => one(&mut |n| self.names.get(n).is_some()),
             "setlocal" => one(&mut |n| self.names.has(Reach::Local, n)),
             "setglobal" => one(&mut |n| self.names.has(Reach::Global, n)),
-            "setenv" => one(&mut |_| false),
+            "setenv" => one(&mut |n| self.environment.contains_key(&n.to_lowercase())),
             "declared" => one(&mut |n| known.kind(n).is_some()),
             "defined" => one(&mut |n| known.is_defined(n)),
             "dimension" => {

@@ -437,13 +437,21 @@ impl Preprocessor<'_> {
                 });
             }
             "set" | "setlocal" | "setglobal" | "eval" | "evallocal" | "evalglobal" => {
-                return self.define(word, rest, lo, hi, known);
+                return self.define(word, suffix == "set", rest, lo, hi, known);
             }
             "drop" | "droplocal" | "dropglobal" => {
                 let (name, _) = argument(rest);
                 self.names.drop(reach(word), name);
             }
-            "setenv" | "dropenv" | "prefixpath" | "phantom" => {}
+            "setenv" => {
+                let (name, value) = argument(rest.trim_start());
+                let value = unquoted(value).to_owned();
+                self.environment.insert(name.to_lowercase(), value);
+            }
+            "dropenv" => {
+                self.environment.remove(&rest.trim().to_lowercase());
+            }
+            "prefixpath" | "phantom" => {}
             "setargs" => {
                 let values = self
                     .frames
@@ -739,6 +747,7 @@ impl Preprocessor<'_> {
     fn define(
         &mut self,
         word: &str,
+        of_set: bool,
         rest: &str,
         lo: u32,
         hi: u32,
@@ -758,7 +767,20 @@ impl Preprocessor<'_> {
                 )),
             );
         }
-        let value = if word.starts_with("eval") {
+        let value = if word.starts_with("eval") && of_set {
+            // `$eval.set X i.te`
+            let (set, what) = value.split_once('.').unwrap_or((value, ""));
+            match known.set_text(set, what) {
+                Some(text) => text,
+                None => {
+                    let span = self.place(lo, hi);
+                    let message = format!("`${word}.set {name}`: there is no text `{value}`");
+                    return refuse(Diagnostic::error("E0115", span, message).help(
+                        "write the name of a set with elements and `.tl`, `.te`, `.ts`, `.firstTL`, `.lastTE` …",
+                    ));
+                }
+            }
+        } else if word.starts_with("eval") {
             match evaluate(value, known) {
                 Ok((x, n))
                     if value[n..].trim().is_empty()

@@ -257,6 +257,20 @@ impl<'a> Evaluator<'a> {
         &rest[..len]
     }
 
+    /// A text, in quotes or a word.
+    fn text(&mut self) -> &'a str {
+        self.blanks();
+        let rest = self.rest();
+        let quote = rest.chars().next().filter(|c| matches!(c, '\'' | '"'));
+        match quote.and_then(|q| rest[1..].find(q)) {
+            Some(n) => {
+                self.at += n + 2;
+                &rest[1..=n]
+            }
+            None => self.name(),
+        }
+    }
+
     fn word(&mut self) -> Result<f64, String> {
         let name = self.name();
         let lower = name.to_ascii_lowercase();
@@ -292,6 +306,18 @@ impl<'a> Evaluator<'a> {
                 .card(set)
                 .map(|n| n as f64)
                 .ok_or_else(|| format!("`{set}` has no known number of elements here"));
+        }
+        if lower == "sameas" {
+            let a = self.text();
+            self.blanks();
+            if !self.rest().starts_with(',') {
+                return Err("`sameas` compares two texts".into());
+            }
+            self.at += 1;
+            let b = self.text();
+            self.depth -= 1;
+            self.close(open)?;
+            return Ok(f64::from(u8::from(a.eq_ignore_ascii_case(b))));
         }
         let mut args = Vec::new();
         self.blanks();

@@ -42,6 +42,8 @@ pub struct PreprocessOptions {
     pub defines: Vec<(String, String)>,
     /// The file is a `.blk`: `//` begins a comment.
     pub slash_comments: bool,
+    /// What the data in the text may take, in bytes.
+    pub max_memory: Option<usize>,
 }
 
 /// What a directive may ask about the symbols known so far.
@@ -56,6 +58,11 @@ pub trait Known {
     fn card(&self, name: &str) -> Option<usize>;
     /// Value of a scalar.
     fn scalar_value(&self, name: &str) -> Option<f64>;
+    /// What `$eval.set` asks of a set: the label (`tl`) or the text (`te`) of its first or last element,
+    /// its own text (`ts`).
+    fn set_text(&self, _name: &str, _what: &str) -> Option<String> {
+        None
+    }
 }
 
 /// For texts that stand alone: no symbol is known.
@@ -157,6 +164,8 @@ pub(crate) struct Preprocessor<'h> {
     pub(crate) map: SourceMap,
     pub(super) frames: Vec<Frame>,
     pub(super) names: Variables,
+    /// What `$setEnv` said, in lower case; the machine's environment is nobody's business.
+    pub(super) environment: FxHashMap<String, String>,
     pub(super) macros: Macros,
     pub(super) marks: Marks,
     /// Switches and where in the expanded text they came into force; never empty.
@@ -187,6 +196,7 @@ impl<'h> Preprocessor<'h> {
             map: SourceMap::default(),
             frames: Vec::new(),
             names: Variables::default(),
+            environment: FxHashMap::default(),
             macros: Macros::default(),
             marks: Marks {
                 dollar: b'$',
@@ -686,8 +696,8 @@ impl<'h> Preprocessor<'h> {
                 _ => String::new(),
             });
         }
-        if lower.starts_with("sysenv.") {
-            return Some(String::new());
+        if let Some(name) = lower.strip_prefix("sysenv.") {
+            return Some(self.environment.get(name).cloned().unwrap_or_default());
         }
         None
     }

@@ -141,9 +141,10 @@ pub fn quiet() -> Options {
 
 /// Runs a file of a host.
 pub fn run(host: &mut dyn Host, file: &str, options: Options) -> Finished {
-    let preprocess = match file.ends_with(".blk") {
-        true => blk(),
-        false => PreprocessOptions::default(),
+    let preprocess = PreprocessOptions {
+        slash_comments: file.ends_with(".blk"),
+        max_memory: options.max_memory,
+        ..PreprocessOptions::default()
     };
     session::run(host, file, preprocess, options, false, &mut |_| {})
 }
