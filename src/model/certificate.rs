@@ -247,10 +247,7 @@ pub fn residuals(instance: &Instance, outcome: &Outcome, at: &Linearised) -> Res
     let Some(objective) = instance.objective else {
         return out;
     };
-    let sigma = match objective.sense {
-        Sense::Minimize => 1.0,
-        Sense::Maximize => -1.0,
-    };
+    let sigma = objective.sense.sign();
     let (mut dual_row, mut dual_column) = (Worst::default(), Worst::default());
     let (mut product, mut products) = (Worst::default(), Sum::default());
     let mut dual_relative = 0.0f64;

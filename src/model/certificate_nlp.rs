@@ -16,7 +16,7 @@
 //! entry.
 
 use super::certificate::{Linearised, Residuals, primal, units};
-use super::instance::{Instance, Relation, Sense};
+use super::instance::{Instance, Relation};
 use super::sum::Sum;
 use crate::autodiff::{EvalFailure, Evaluator};
 
@@ -101,11 +101,9 @@ pub fn residuals(
     at: &Linearised,
 ) -> Residuals {
     let mut out = primal(instance, x, &at.activity, &at.row_size);
-    let sigma = match instance.objective.map(|o| o.sense) {
-        Some(Sense::Maximize) => -1.0,
-        Some(Sense::Minimize) => 1.0,
-        // no objective: nothing to be stationary for
-        None => return out,
+    let Some(sigma) = instance.objective.map(|o| o.sense.sign()) else {
+        // nothing to be stationary for
+        return out;
     };
     let (mut rows, mut columns) = (Worst::default(), Worst::default());
     let (mut product, mut products) = (0.0f64, Sum::default());

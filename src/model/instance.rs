@@ -273,6 +273,11 @@ impl Instance {
         out
     }
 
+    /// What the objective is multiplied by to make the problem a minimum; 1 without an objective.
+    pub fn sign(&self) -> f64 {
+        self.objective.map_or(1.0, |o| o.sense.sign())
+    }
+
     /// Whether there is no nonlinear term.
     pub fn is_linear(&self) -> bool {
         self.nonlinear.iter().all(|k| k.row.is_empty())

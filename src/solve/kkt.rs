@@ -6,7 +6,7 @@
 
 use super::complementarity::run;
 use super::{Claim, Monitor, Outcome, Settings, SolveError, Solver, mcp};
-use crate::model::instance::{Instance, Relation, Sense};
+use crate::model::instance::{Instance, Relation};
 
 /// The optimality conditions of a linear program.
 struct Conditions<'a> {
@@ -25,11 +25,7 @@ impl<'a> Conditions<'a> {
         let (m, n) = (instance.row_count(), instance.column_count());
         let mut cost = vec![0.0; n];
         if let Some(o) = instance.objective {
-            cost[o.column as usize] = if o.sense == Sense::Minimize {
-                1.0
-            } else {
-                -1.0
-            };
+            cost[o.column as usize] = o.sense.sign();
         }
         let multiplier = |r: &Relation| match r {
             Relation::Equal => (f64::NEG_INFINITY, f64::INFINITY),
@@ -147,10 +143,7 @@ impl Solver for Kkt {
             Some(row) => monitor.row_name(row),
         };
         let (out, status) = run(&mut problem, &names, settings, monitor)?;
-        let sign = match instance.objective {
-            Some(o) if o.sense == Sense::Maximize => -1.0,
-            _ => 1.0,
-        };
+        let sign = instance.sign();
         let solved = out.status == mcp::Status::Solved;
         Ok(Outcome {
             level: out.x[..n].to_vec(),

@@ -14,6 +14,7 @@ pub mod mcp;
 pub mod mpec;
 pub mod nlp;
 pub mod pairing;
+pub mod random;
 pub mod structure;
 pub mod study;
 pub mod why;

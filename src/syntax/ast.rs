@@ -302,6 +302,16 @@ pub enum Sense {
     Maximize,
 }
 
+impl Sense {
+    /// What the objective is multiplied by to make the problem a minimum.
+    pub fn sign(self) -> f64 {
+        match self {
+            Self::Minimize => 1.0,
+            Self::Maximize => -1.0,
+        }
+    }
+}
+
 /// A `solve` statement.
 #[derive(Clone, Debug)]
 pub struct Solve {

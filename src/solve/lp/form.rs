@@ -14,7 +14,7 @@
 //! Marginals come back with GAMS's signs, for min and max alike: the derivative of the objective
 //! with respect to the right-hand side (rows) or to the bound (columns).
 
-use crate::model::instance::{Instance, Relation, Sense};
+use crate::model::instance::{Instance, Relation};
 use crate::solve::{Outcome, SolveError};
 
 /// A sparse matrix in compressed form; "lines" are columns or rows.
@@ -296,10 +296,7 @@ impl Form {
                 b
             }
         };
-        let sign = match instance.objective {
-            Some(o) if o.sense == Sense::Maximize => -1.0,
-            _ => 1.0,
-        };
+        let sign = instance.sign();
         let mut number = vec![u32::MAX; n];
         let mut columns = Vec::with_capacity(n);
         let mut problem = Problem::default();

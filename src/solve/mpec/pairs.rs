@@ -14,7 +14,7 @@
 
 use crate::autodiff::Evaluator;
 use crate::model::certificate::{self, Residuals, TOLERANCE};
-use crate::model::instance::{Instance, KernelTerms, Relation, Sense};
+use crate::model::instance::{Instance, KernelTerms, Relation};
 use crate::model::sum::Sum;
 use crate::solve::SolveError;
 use crate::solve::pairing::refuse_relation;
@@ -152,10 +152,7 @@ impl<'a> Program<'a> {
 
     /// +1 for a minimum, −1 for a maximum.
     pub fn sign(&self) -> f64 {
-        match self.instance.objective.map(|o| o.sense) {
-            Some(Sense::Maximize) => -1.0,
-            _ => 1.0,
-        }
+        self.instance.sign()
     }
 
     /// The objective at a point, minimised.

@@ -14,6 +14,7 @@
 use super::pairs::{Piece, Program};
 use super::split::{Point, Side, Split, shifts};
 use crate::solve::lp::Ended;
+use crate::solve::random::Random;
 
 /// An improvement smaller than this, relative to the value, is none.
 const BETTER: f64 = 1e-10;
@@ -42,7 +43,7 @@ pub struct Pieces {
     /// The two sides.
     pub split: Split,
     rhs: Vec<f64>,
-    seed: u64,
+    random: Random,
     /// No single swap improves the best solution.
     pub exhausted: bool,
 }
@@ -55,7 +56,7 @@ impl Pieces {
         Some(Self {
             split: Split::new(program)?,
             rhs: shifts(program),
-            seed: 0x5eed,
+            random: Random(0x5eed),
             exhausted: false,
         })
     }
@@ -167,13 +168,13 @@ impl Pieces {
     /// Weights of the same point's products at another optimum of A: A's optimum is rarely unique,
     /// and what is near to complementary depends on it.
     fn other_weights(&mut self, usual: &[f64], stop: Stop) -> Vec<f64> {
-        let noise: Vec<f64> = usual.iter().map(|_| 1e-6 * self.random()).collect();
+        let noise: Vec<f64> = usual.iter().map(|_| 1e-6 * self.random.next()).collect();
         self.split.a.price(1.0, &noise);
         let a = self.split.a.solve(&self.rhs, stop);
         let weights = a.map_or_else(|| usual.to_vec(), |a| self.split.weights(&self.split.a, &a));
         weights
             .into_iter()
-            .map(|w| w * (0.5 + self.random()))
+            .map(|w| w * (0.5 + self.random.next()))
             .collect()
     }
 
@@ -211,14 +212,14 @@ impl Pieces {
     /// From a random start to a point that satisfies the pairs.
     pub fn random_start(&mut self, stop: Stop) -> Option<Solution> {
         let count = self.rhs.len();
-        let random: Vec<f64> = (0..count).map(|_| self.random()).collect();
+        let random: Vec<f64> = (0..count).map(|_| self.random.next()).collect();
         // A point of B with random costs on the pairs: their signs keep it bounded where one is.
         let toward = |(w, &(l, _)): (&f64, &(f64, f64))| if l.is_finite() { *w } else { -w };
         let costs: Vec<f64> = random.iter().zip(&self.split.bounds).map(toward).collect();
         self.relax(false, None);
         self.split.b.price(0.0, &costs);
         let b = self.split.b.solve(&self.rhs, stop)?;
-        let rho = 10f64.powf(-3.0 + 2.5 * self.random());
+        let rho = 10f64.powf(-3.0 + 2.5 * self.random.next());
         self.alternate(b, rho, stop)
     }
 
@@ -250,15 +251,6 @@ impl Pieces {
             rho *= 2.0;
         }
         None
-    }
-
-    /// Uniform in [0, 1), from a fixed seed.
-    fn random(&mut self) -> f64 {
-        self.seed = self
-            .seed
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.seed >> 11) as f64 / (1u64 << 53) as f64
     }
 
     /// Writes a solution into levels of the program.

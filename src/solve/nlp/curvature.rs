@@ -12,8 +12,9 @@
 //! the solver at any size.
 
 use super::polish::number;
-use super::problem::Nlp;
+use super::problem::{Entry, Nlp};
 use super::symmetric::{Lower, Symmetric};
+use crate::solve::random::Random;
 
 /// Steps of Lanczos's method at most.
 const STEPS: usize = 60;
@@ -29,14 +30,8 @@ pub fn negative_curvature(
     binding: &[bool],
 ) -> Option<Vec<f64>> {
     let (n, m) = nlp.size();
-    let (hr, hc) = nlp.hessian_pattern();
-    let (hr, hc) = (hr.to_vec(), hc.to_vec());
-    if hr.is_empty() {
-        return None;
-    }
-    let mut h = vec![0.0; hr.len()];
-    nlp.hessian(x, 1.0, lambda, &mut h)?;
-    let size = h.iter().fold(0.0f64, |s, v| s.max(v.abs()));
+    let hessian = nlp.hessian_entries(x, lambda)?;
+    let size = hessian.iter().fold(0.0f64, |s, e| s.max(e.2.abs()));
     if size == 0.0 || !size.is_finite() {
         return None;
     }
@@ -46,17 +41,14 @@ pub fn negative_curvature(
     if free == 0 {
         return None;
     }
-    let mut j = vec![0.0; nlp.jacobian_pattern().0.len()];
-    nlp.jacobian(x, &mut j)?;
-    let (jr, jc) = nlp.jacobian_pattern();
-    let jacobian = (0..j.len()).filter_map(|k| {
-        let (i, v) = (row[jr[k] as usize]?, variable[jc[k] as usize]?);
-        Some((i, v, j[k])).filter(|e| e.2 != 0.0)
-    });
+    let within = |(i, j, a): Entry, rows: &[Option<usize>]| Some((rows[i]?, variable[j]?, a));
+    let jacobian = nlp.jacobian_entries(x)?.into_iter();
+    let jacobian = jacobian
+        .filter(|e| e.2 != 0.0)
+        .filter_map(|e| within(e, &row));
     let jacobian = unit_rows(jacobian.collect(), bound);
-    let entries: Vec<(usize, usize, f64)> = (0..hr.len())
-        .filter_map(|k| Some((variable[hr[k] as usize]?, variable[hc[k] as usize]?, h[k])))
-        .collect();
+    let entries = hessian.into_iter().filter_map(|e| within(e, &variable));
+    let entries: Vec<Entry> = entries.collect();
     if is_convex(free, bound, &jacobian, &entries) {
         return None;
     }
@@ -75,7 +67,7 @@ pub fn negative_curvature(
 }
 
 /// J with rows of unit size, so that δ means the same for all.
-fn unit_rows(mut jacobian: Vec<(usize, usize, f64)>, m: usize) -> Vec<(usize, usize, f64)> {
+fn unit_rows(mut jacobian: Vec<Entry>, m: usize) -> Vec<Entry> {
     let mut norm = vec![0.0f64; m];
     for &(i, _, a) in &jacobian {
         norm[i] = norm[i].max(a.abs());
@@ -90,8 +82,8 @@ fn unit_rows(mut jacobian: Vec<(usize, usize, f64)>, m: usize) -> Vec<(usize, us
 fn augmented(
     n: usize,
     m: usize,
-    jacobian: &[(usize, usize, f64)],
-    d: impl Iterator<Item = (usize, usize, f64)>,
+    jacobian: &[Entry],
+    d: impl Iterator<Item = Entry>,
 ) -> Option<Symmetric> {
     let mut matrix = Lower::default();
     for (i, j, v) in d {
@@ -107,12 +99,7 @@ fn augmented(
 }
 
 /// Whether the Hessian is clearly positive definite on the null space of J.
-fn is_convex(
-    n: usize,
-    m: usize,
-    jacobian: &[(usize, usize, f64)],
-    hessian: &[(usize, usize, f64)],
-) -> bool {
+fn is_convex(n: usize, m: usize, jacobian: &[Entry], hessian: &[Entry]) -> bool {
     // every diagonal entry is there, so that the pattern is that of a nonsingular matrix
     let diagonal = (0..n).map(|j| (j, j, 0.0));
     let d = hessian.iter().copied().chain(diagonal);
@@ -129,7 +116,7 @@ struct Projection {
 }
 
 impl Projection {
-    fn new(n: usize, m: usize, jacobian: &[(usize, usize, f64)]) -> Option<Self> {
+    fn new(n: usize, m: usize, jacobian: &[Entry]) -> Option<Self> {
         let factors = match m {
             0 => None,
             _ => Some(augmented(n, m, jacobian, (0..n).map(|j| (j, j, 1.0)))?),
@@ -161,19 +148,10 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// Smallest Ritz value, largest magnitude of a Ritz value, and the vector of the smallest.
-fn lanczos(
-    n: usize,
-    projection: &Projection,
-    entries: &[(usize, usize, f64)],
-) -> Option<(f64, f64, Vec<f64>)> {
+fn lanczos(n: usize, projection: &Projection, entries: &[Entry]) -> Option<(f64, f64, Vec<f64>)> {
     // a fixed start without symmetry
-    let mut seed = 0x9e37_79b9_7f4a_7c15u64;
-    let mut q: Vec<f64> = (0..n)
-        .map(|_| {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            (seed >> 11) as f64 / (1u64 << 53) as f64 - 0.5
-        })
-        .collect();
+    let mut random = Random(0x9e37_79b9_7f4a_7c15);
+    let mut q: Vec<f64> = (0..n).map(|_| random.next() - 0.5).collect();
     projection.apply(&mut q)?;
     let norm = dot(&q, &q).sqrt();
     if norm.is_nan() || norm < 1e-8 {

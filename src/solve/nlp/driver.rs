@@ -31,6 +31,7 @@ use crate::autodiff::{ErrorKind, EvalFailure, Evaluator, has_kinks};
 use crate::model::certificate_nlp::{is_locally_infeasible, violations};
 use crate::model::instance::Instance;
 use crate::solve::lp::Limits;
+use crate::solve::random::Random;
 use crate::solve::{
     Claim, ModelStatus, Monitor, OWN_OPTIONS, Outcome, Settings, SolveError, SolverStatus,
     answer::Answer,
@@ -291,7 +292,7 @@ impl Driver<'_> {
 
     /// None where this start is the same as the person's.
     fn start_point(&self, from: From) -> Option<Vec<f64>> {
-        let (mut seed, by, anywhere) = match (from, &self.best) {
+        let (seed, by, anywhere) = match (from, &self.best) {
             (From::Best, Some(best)) => return Some(best.x.clone()),
             (From::Best, None) | (From::Start, _) => return Some(self.start.clone()),
             (From::Consistent, _) => {
@@ -304,12 +305,9 @@ impl Driver<'_> {
         };
         let problem = lock(&*self.problem);
         let (lower, upper) = problem.bounds();
+        let mut random = Random(seed);
         let place = |(&x, (&l, &u)): (&f64, (&f64, &f64))| {
-            seed = u64::wrapping_add(
-                u64::wrapping_mul(seed, 6_364_136_223_846_793_005),
-                1_442_695_040_888_963_407,
-            );
-            let r = (seed >> 11) as f64 / (1u64 << 53) as f64;
+            let r = random.next();
             if anywhere && u - l <= 1e4 {
                 return l + r * (u - l);
             }

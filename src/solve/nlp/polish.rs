@@ -94,22 +94,15 @@ impl System {
         nlp.gradient(x, &mut gradient)?;
         let mut g = vec![0.0; m];
         nlp.constraints(x, &mut g)?;
-        let mut j = vec![0.0; nlp.jacobian_pattern().0.len()];
-        nlp.jacobian(x, &mut j)?;
-        let mut h = vec![0.0; nlp.hessian_pattern().0.len()];
-        nlp.hessian(x, 1.0, lambda, &mut h)?;
         let mut matrix = Lower::default();
-        let (jr, jc) = nlp.jacobian_pattern();
-        for (k, &a) in j.iter().enumerate() {
-            let (i, v) = (jr[k] as usize, jc[k] as usize);
+        for (i, v, a) in nlp.jacobian_entries(x)? {
             gradient[v] += lambda[i] * a;
             if let (Some(p), Some(q)) = (rows[i], variables[v]) {
                 matrix.push(free + p, q, a);
             }
         }
-        let (hr, hc) = nlp.hessian_pattern();
-        for (k, &a) in h.iter().enumerate() {
-            if let (Some(p), Some(q)) = (variables[hr[k] as usize], variables[hc[k] as usize]) {
+        for (i, j, a) in nlp.hessian_entries(x, lambda)? {
+            if let (Some(p), Some(q)) = (variables[i], variables[j]) {
                 matrix.push(p, q, a);
             }
         }

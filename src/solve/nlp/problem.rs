@@ -11,7 +11,7 @@
 //! columns, fixed ones too, follow from stationarity: r = e_z − Jᵀm.
 
 use crate::autodiff::{EvalFailure, Evaluator};
-use crate::model::instance::{Instance, Relation, Sense};
+use crate::model::instance::{Instance, Relation};
 
 /// What a provider needs of a nonlinear program.
 pub trait Nlp {
@@ -41,6 +41,29 @@ pub trait Nlp {
     fn hessian(&mut self, x: &[f64], sigma: f64, lambda: &[f64], out: &mut [f64]) -> Option<()>;
     /// Number of evaluations that failed so far.
     fn failures(&self) -> u64;
+
+    /// Jacobian of g: row, column, value.
+    fn jacobian_entries(&mut self, x: &[f64]) -> Option<Vec<Entry>> {
+        let mut value = vec![0.0; self.jacobian_pattern().0.len()];
+        self.jacobian(x, &mut value)?;
+        Some(entries(self.jacobian_pattern(), value))
+    }
+
+    /// Lower triangle of ∇²f + Σ λ_i ∇²g_i: row, column, value.
+    fn hessian_entries(&mut self, x: &[f64], lambda: &[f64]) -> Option<Vec<Entry>> {
+        let mut value = vec![0.0; self.hessian_pattern().0.len()];
+        self.hessian(x, 1.0, lambda, &mut value)?;
+        Some(entries(self.hessian_pattern(), value))
+    }
+}
+
+/// Row, column and value of an entry of a matrix.
+pub type Entry = (usize, usize, f64);
+
+fn entries((rows, columns): (&[u32], &[u32]), value: Vec<f64>) -> Vec<Entry> {
+    let place = rows.iter().zip(columns);
+    let entry = |((&i, &j), v): ((&u32, &u32), f64)| (i as usize, j as usize, v);
+    place.zip(value).map(entry).collect()
 }
 
 /// Where f comes from.
@@ -117,10 +140,7 @@ impl Problem {
         let (m, n) = (instance.row_count(), instance.column_count());
         let columns = &instance.columns;
         let form = objective_form(instance, &evaluator);
-        let sign = match instance.objective.map(|o| o.sense) {
-            Some(Sense::Maximize) => -1.0,
-            _ => 1.0,
-        };
+        let sign = instance.sign();
         let (defining_row, eliminated) = match form {
             ObjectiveForm::Row { row, column, .. } => (row, column),
             _ => (usize::MAX, usize::MAX),

@@ -10,7 +10,7 @@
 //! ε = 1e-12 · max |H|, which is below what the evaluation of H is good for. A programme for which
 //! this fails, for whatever reason, is one for the general method.
 
-use super::problem::{Nlp, ObjectiveForm, Problem};
+use super::problem::{Entry, Nlp, ObjectiveForm, Problem};
 use super::provider::{Ended, Solution};
 use crate::autodiff::Degree;
 use crate::solve::lp::form::{self, Sparse};
@@ -46,7 +46,8 @@ impl Quadratic {
         }
         let (n, m) = problem.size();
         let origin = vec![0.0; n];
-        let entries = hessian(problem, &origin)?;
+        let mut entries = problem.hessian_entries(&origin, &vec![0.0; m])?;
+        entries.retain(|e| e.2 != 0.0);
         if !is_semidefinite(n, &entries) {
             return None;
         }
@@ -54,7 +55,9 @@ impl Quadratic {
         problem.gradient(&origin, &mut cost)?;
         let mut constant = vec![0.0; m];
         problem.constraints(&origin, &mut constant)?;
-        let rows = jacobian(problem, &origin)?;
+        let rows = by_rows(m, &problem.jacobian_entries(&origin)?);
+        // row i of the lower triangle is column i of the upper one
+        entries.sort_unstable_by_key(|&(i, j, _)| (i, j));
         let (lower, upper) = problem.bounds();
         let (row_lower, row_upper) = problem.sides();
         let less = |side: &[f64]| side.iter().zip(&constant).map(|(s, c)| s - c).collect();
@@ -70,7 +73,7 @@ impl Quadratic {
         };
         Some(Self {
             linear,
-            hessian: by_columns(n, &entries),
+            hessian: by_rows(n, &entries),
         })
     }
 
@@ -102,50 +105,18 @@ impl Quadratic {
     }
 }
 
-/// Row, column (row ≥ column) and value of what is not zero in H.
-fn hessian(problem: &mut Problem, x: &[f64]) -> Option<Vec<(usize, usize, f64)>> {
-    let (rows, columns) = problem.hessian_pattern();
-    let place: Vec<(u32, u32)> = rows.iter().copied().zip(columns.iter().copied()).collect();
-    let mut value = vec![0.0; place.len()];
-    let multipliers = vec![0.0; problem.size().1];
-    problem.hessian(x, 1.0, &multipliers, &mut value)?;
-    let all = place.iter().zip(value).filter(|(_, v)| *v != 0.0);
-    Some(
-        all.map(|(&(i, j), v)| (i as usize, j as usize, v))
-            .collect(),
-    )
-}
-
-fn jacobian(problem: &mut Problem, x: &[f64]) -> Option<Sparse> {
-    let (rows, columns) = problem.jacobian_pattern();
-    let place: Vec<(u32, u32)> = rows.iter().copied().zip(columns.iter().copied()).collect();
-    let mut value = vec![0.0; place.len()];
-    problem.jacobian(x, &mut value)?;
-    let mut out = Sparse::new();
-    let mut k = 0;
-    for i in 0..problem.size().1 {
-        let end = k + place[k..].partition_point(|&(r, _)| r as usize <= i);
-        out.push((k..end).map(|k| (place[k].1 as usize, value[k])));
-        k = end;
-    }
-    Some(out)
-}
-
-/// The upper triangle by columns, rows increasing.
-fn by_columns(n: usize, lower: &[(usize, usize, f64)]) -> Sparse {
-    // Row i of the lower triangle is column i of the upper one.
-    let mut entries = lower.to_vec();
-    entries.sort_unstable_by_key(|&(i, j, _)| (i, j));
+/// Rows from entries ordered by row.
+fn by_rows(m: usize, entries: &[Entry]) -> Sparse {
     let mut out = Sparse::new();
     let mut lines = entries.chunk_by(|a, b| a.0 == b.0).peekable();
-    for i in 0..n {
+    for i in 0..m {
         let line = lines.next_if(|l| l[0].0 == i).unwrap_or_default();
         out.push(line.iter().map(|&(_, j, v)| (j, v)));
     }
     out
 }
 
-fn is_semidefinite(n: usize, lower: &[(usize, usize, f64)]) -> bool {
+fn is_semidefinite(n: usize, lower: &[Entry]) -> bool {
     let top = lower.iter().fold(0.0f64, |t, e| t.max(e.2.abs()));
     if !top.is_finite() {
         return false;

@@ -6,7 +6,7 @@ use super::provider::Ended;
 use crate::autodiff::Evaluator;
 use crate::model::certificate::{Linearised, Residuals, TOLERANCE, primal};
 use crate::model::certificate_nlp::{kkt_residual, linearise, residuals};
-use crate::model::instance::{Instance, Relation, Sense};
+use crate::model::instance::{Instance, Relation};
 
 /// A point that was judged.
 #[derive(Clone)]
@@ -61,13 +61,9 @@ pub(super) fn residuals_at(
 ) -> Trial {
     let level = problem.levels(&x);
     let row_marginal = problem.row_marginals(&lambda);
-    let sign = match instance.objective.map(|o| o.sense) {
-        Some(Sense::Maximize) => -1.0,
-        _ => 1.0,
-    };
     let objective = instance
         .objective
-        .map_or(0.0, |o| sign * level[o.column as usize]);
+        .map_or(0.0, |o| o.sense.sign() * level[o.column as usize]);
     let (mut residuals, mut at) =
         match kkt_residual(instance, problem.evaluator(), &level, &row_marginal) {
             Ok(both) => both,

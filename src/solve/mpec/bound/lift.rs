@@ -400,10 +400,7 @@ impl Sides {
             rows: Sparse::new(),
             ..Problem::default()
         };
-        p.cost[self.target] = match self.sense {
-            Sense::Maximize => -1.0,
-            Sense::Minimize => 1.0,
-        };
+        p.cost[self.target] = self.sense.sign();
         let equations = a.equations.iter().map(|f| (f, 0.0));
         let inequalities = a.inequalities.iter().map(|f| (f, f64::INFINITY));
         for (f, room) in equations.chain(inequalities) {
