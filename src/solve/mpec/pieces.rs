@@ -168,13 +168,13 @@ impl Pieces {
     /// Weights of the same point's products at another optimum of A: A's optimum is rarely unique,
     /// and what is near to complementary depends on it.
     fn other_weights(&mut self, usual: &[f64], stop: Stop) -> Vec<f64> {
-        let noise: Vec<f64> = usual.iter().map(|_| 1e-6 * self.random.next()).collect();
+        let noise: Vec<f64> = usual.iter().map(|_| 1e-6 * self.random.uniform()).collect();
         self.split.a.price(1.0, &noise);
         let a = self.split.a.solve(&self.rhs, stop);
         let weights = a.map_or_else(|| usual.to_vec(), |a| self.split.weights(&self.split.a, &a));
         weights
             .into_iter()
-            .map(|w| w * (0.5 + self.random.next()))
+            .map(|w| w * (0.5 + self.random.uniform()))
             .collect()
     }
 
@@ -212,14 +212,14 @@ impl Pieces {
     /// From a random start to a point that satisfies the pairs.
     pub fn random_start(&mut self, stop: Stop) -> Option<Solution> {
         let count = self.rhs.len();
-        let random: Vec<f64> = (0..count).map(|_| self.random.next()).collect();
+        let random: Vec<f64> = (0..count).map(|_| self.random.uniform()).collect();
         // A point of B with random costs on the pairs: their signs keep it bounded where one is.
         let toward = |(w, &(l, _)): (&f64, &(f64, f64))| if l.is_finite() { *w } else { -w };
         let costs: Vec<f64> = random.iter().zip(&self.split.bounds).map(toward).collect();
         self.relax(false, None);
         self.split.b.price(0.0, &costs);
         let b = self.split.b.solve(&self.rhs, stop)?;
-        let rho = 10f64.powf(-3.0 + 2.5 * self.random.next());
+        let rho = 10f64.powf(-3.0 + 2.5 * self.random.uniform());
         self.alternate(b, rho, stop)
     }
 

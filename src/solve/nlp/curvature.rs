@@ -151,7 +151,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 fn lanczos(n: usize, projection: &Projection, entries: &[Entry]) -> Option<(f64, f64, Vec<f64>)> {
     // a fixed start without symmetry
     let mut random = Random(0x9e37_79b9_7f4a_7c15);
-    let mut q: Vec<f64> = (0..n).map(|_| random.next() - 0.5).collect();
+    let mut q: Vec<f64> = (0..n).map(|_| random.uniform() - 0.5).collect();
     projection.apply(&mut q)?;
     let norm = dot(&q, &q).sqrt();
     if norm.is_nan() || norm < 1e-8 {

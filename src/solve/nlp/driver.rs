@@ -23,8 +23,8 @@ use super::problem::{Nlp, Problem};
 use super::provider::{Control, Ended, Progress, Provider, Shared, Solution, lock};
 use super::quadratic::Quadratic;
 use super::schedule::{
-    AGREEMENT, BASE, BETTER, ELASTIC_AFTER, FINEST, From, MUCH, NEAR, NEARER, ROUNDING, SCHEDULE,
-    SHARP, SMALL,
+    AGREEMENT, BASE, BETTER, CHEAP, ELASTIC_AFTER, FINEST, From, MUCH, NEAR, NEARER, ROUNDING,
+    SCHEDULE, SHARP, SMALL,
 };
 use super::trial::{Trial, active_set, clean, polished, residuals_at, tidy};
 use crate::autodiff::{ErrorKind, EvalFailure, Evaluator, has_kinks};
@@ -232,12 +232,12 @@ impl Driver<'_> {
         let Some(first) = optimal(self) else {
             return Ok(());
         };
-        if self.convex.is_some() || self.work() > SMALL || !self.wants_search() {
+        if self.convex.is_some() || self.work() > CHEAP || !self.wants_search() {
             return Ok(());
         }
         let mut agreed = true;
         for (k, (from, options)) in BETTER.into_iter().enumerate() {
-            if self.stopped.is_some() || (k >= AGREEMENT && agreed) || self.work() > 5.0 * SMALL {
+            if self.stopped.is_some() || (k >= AGREEMENT && agreed) || self.work() > 5.0 * CHEAP {
                 break;
             }
             let before = optimal(self);
@@ -307,7 +307,7 @@ impl Driver<'_> {
         let (lower, upper) = problem.bounds();
         let mut random = Random(seed);
         let place = |(&x, (&l, &u)): (&f64, (&f64, &f64))| {
-            let r = random.next();
+            let r = random.uniform();
             if anywhere && u - l <= 1e4 {
                 return l + r * (u - l);
             }
