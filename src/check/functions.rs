@@ -363,6 +363,13 @@ pub const MODEL_ATTRIBUTES: &[&str] = &[
     "reform",
     "sumdom",
     "numunbnd",
+    "requestmarginals",
+    "etalg",
+    "numvarproj",
+    "rescalc",
+    "robj",
+    "sysident",
+    "sysver",
 ];
 
 /// Attributes of files, lower case.

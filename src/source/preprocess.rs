@@ -681,10 +681,10 @@ impl<'h> Preprocessor<'h> {
         if let Some(item) = lower.strip_prefix("gams.") {
             return Some(match item {
                 "workdir" | "wdir" | "curdir" => "./".into(),
-                "ps" | "pagesize" => "60".into(),
+                "limrow" | "limcol" => "3".into(),
                 "pw" | "pagewidth" => "255".into(),
                 "input" => self.system("fn", lo)? + &self.system("fe", lo)?,
-                "errmsg" | "error" | "limrow" | "limcol" | "optfile" | "logoption" | "lo"
+                "ps" | "pagesize" | "errmsg" | "error" | "optfile" | "logoption" | "lo"
                 | "optca" | "savepoint" | "profile" | "domlim" | "holdfixed" | "workspace"
                 | "sysout" | "forcework" | "tracelevel" => "0".into(),
                 "solprint" | "solveopt" | "threads" | "appendout" => "1".into(),
