@@ -181,6 +181,38 @@ solve least using mpec minimizing alpha;",
     assert!(relaxed.complementarity_sum.is_some_and(|s| s <= 1e-10));
 }
 
+/// The paper's walls by `using mpec`. The sixth takes longer than a test should: `models/table1.sh` has all six.
+#[test]
+fn load_factors_are_not_above_the_paper() {
+    for (k, printed) in [
+        (1, 0.63898),
+        (2, 0.55742),
+        (3, 0.35582),
+        (4, 0.26374),
+        (5, 0.20863),
+    ] {
+        let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
+        let file = std::env::temp_dir().join(format!("bmod_least_{k}_{}.blk", std::process::id()));
+        let text = format!(
+            "$set scene 1\n$include {}\nsolve least using mpec minimizing alpha;",
+            models.join(format!("walls/example{k}.blk")).display()
+        );
+        std::fs::write(&file, text).expect("a temporary file");
+        let all = solves(&file, &[models]);
+        std::fs::remove_file(&file).expect("the temporary file is there");
+        let [s] = &all[..] else { panic!("{all:?}") };
+        assert!(objective(s) <= printed + 5e-6, "{k}: {}", objective(s));
+        assert!(s.complementarity_sum.is_some_and(|p| p <= 1e-10), "{k}");
+        assert!(s.residual.primal.is_some_and(|r| r <= 1e-9), "{k}");
+        assert_eq!(s.stationarity, Some("proved"), "{k}");
+        let message = s.message.clone().unwrap_or_default();
+        assert!(
+            message.contains("no single swap of supports improves"),
+            "{k}: {message}"
+        );
+    }
+}
+
 #[test]
 fn pieces_are_refused_where_the_program_does_not_come_apart() {
     let all = text(

@@ -24,13 +24,13 @@ pub mod relaxation;
 pub mod settings;
 pub mod split;
 pub mod stationarity;
+mod supports;
 mod tree;
 
 use super::answer::Answer;
 use super::lp::Ended;
 use super::{Claim, ModelStatus, Monitor, Outcome, Settings, SolveError, SolverStatus};
 use pairs::{Judged, Piece, Program};
-use pieces::{Pieces, Solution};
 use relaxation::{Kind, Relaxed};
 use settings::{Method, Options};
 use stationarity::Verdict;
@@ -298,114 +298,13 @@ impl Search<'_> {
         Ok(found)
     }
 
-    /// The method of supports. False if it does not apply or finds nothing.
-    fn supports(&mut self, start: &[f64]) -> Result<bool, SolveError> {
-        let Some(mut pieces) = Pieces::new(self.program) else {
-            return Ok(false);
-        };
-        let mut candidates: Vec<Solution> = Vec::new();
-        let mut levels = vec![self.equilibrium(start)];
-        if start.iter().any(|&x| x != 0.0) {
-            levels.push(self.equilibrium(&vec![0.0; start.len()]));
-        }
-        if self.program.judge(start).feasible {
-            levels.push(Some(start.to_vec()));
-        }
-        let mut failures = 0;
-        // The swaps of a large program are work enough.
-        let large = start.len() > 2000;
-        let (work, alternations) = match large {
-            true => (60_000, 0),
-            false => (15_000, self.options.starts),
-        };
-        let (left, begin) = (self.seconds_left(), Instant::now());
-        let monitor = &mut *self.monitor;
-        let log = self.settings.log;
-        let sign = self.program.sign();
-        let mut stop = |_| match begin.elapsed().as_secs_f64() > left {
-            true => Some(Ended::Time),
-            false => None,
-        };
-        let mut note = |what: &str, s: &Solution| {
-            if log {
-                monitor.log(&format!("{what}: {:.10}", sign * s.a.value));
-            }
-        };
-        for level in levels.into_iter().flatten() {
-            if let Some(s) = pieces.at(&level, &mut stop) {
-                note("piece at an equilibrium", &s);
-                let next = match large {
-                    true => None,
-                    false => pieces.alternate(s.b.clone(), 1e-3, &mut stop),
-                };
-                candidates.push(s);
-                if let Some(s) = next {
-                    note("alternation from there", &s);
-                    candidates.push(s);
-                }
-            }
-        }
-        for _ in 0..alternations {
-            // The second start in a row that leads nowhere is the last.
-            match pieces.random_start(&mut stop) {
-                Some(s) => {
-                    note("alternation", &s);
-                    candidates.push(s);
-                    failures = 0;
-                }
-                None if failures > 0 => break,
-                None => failures += 1,
-            }
-        }
-        candidates.sort_by(|a, b| a.a.value.total_cmp(&b.a.value));
-        let best = candidates.into_iter().next().map(|s| {
-            let s = pieces.swaps(s, work, &mut stop);
-            let what = match pieces.exhausted {
-                true => "no swap improves",
-                false => "swaps",
-            };
-            note(what, &s);
-            s
-        });
-        let exhausted = pieces.exhausted;
-        self.iterations += pieces.iterations();
-        let Some(best) = best else { return Ok(false) };
-        let mut level = start.to_vec();
-        pieces.write(&best, &mut level);
-        let mut on = best.pieces;
-        // The branch's own point of B may have a smaller support: then there is more to gain.
-        for _ in 0..20 {
-            let Some(mut found) = self.branch(on.clone(), &level)? else {
-                break;
-            };
-            level.clone_from(&found.answer.outcome.level);
-            let there = pieces.pieces_at(&level);
-            let settled = there == on && found.answer.status == ModelStatus::Optimal;
-            if settled {
-                found.verdict = Some(Stationarity::Proved);
-                if exhausted {
-                    self.notes
-                        .push("plateau: no single swap of supports improves".into());
-                }
-            } else {
-                found.verdict = Some(Stationarity::NotProved);
-            }
-            self.keep(&found);
-            if settled || there == on {
-                break;
-            }
-            on = there;
-        }
-        Ok(self.best.is_some())
-    }
-
     /// A point that satisfies the pairs, from a start, by the complementarity solver: where the rows and
     /// columns without partners are equally many equations and free columns.
-    fn equilibrium(&mut self, start: &[f64]) -> Option<Vec<f64>> {
+    fn equilibrium(&mut self, start: &[f64], options: &[(&str, &str)]) -> Option<Vec<f64>> {
         let mut instance = self.program.instance.clone();
         instance.objective = None;
         instance.columns.level.copy_from_slice(start);
-        let settings = self.sub_settings(&[]);
+        let settings = self.sub_settings(options);
         let out = super::complementarity::solve(&instance, false, &settings, self.monitor).ok()?;
         self.iterations += out.iterations;
         let judged = self.program.judge(&out.level);

@@ -4,17 +4,19 @@
 //!   those of points that satisfy everything.
 //! * **swaps**: for every binding pair of the support, the pair with the largest gain by its
 //!   multiplier first: the point of B that avoids it and is nearest to complementary to A's point (a
-//!   linear program), and the piece on that point's support. Where that is better, start again. At
-//!   the end no single swap improves: the *plateau* around the point, which a local minimum in
+//!   linear program), and the piece on that point's support. Where that is better, start again. A's optimum is
+//!   rarely unique, and what is near to complementary depends on it: rounds with other optima find more
+//!   ([`Round`]). At the end no single swap improves: the *plateau* around the point, which a local minimum in
 //!   the usual sense may lie on, is searched as far as single swaps reach.
 //! * **alternation**: A's program with the products penalised, B's with the products as its cost, in
 //!   turn, with a growing penalty, until the products vanish. Random penalties and costs (from a fixed
 //!   seed) give many starts.
 
 use super::pairs::{Piece, Program};
-use super::split::{Point, Side, Split, shifts};
+use super::split::{Point, Retry, Side, Split, shifts};
 use crate::solve::lp::Ended;
 use crate::solve::random::Random;
+use std::collections::HashSet;
 
 /// An improvement smaller than this, relative to the value, is none.
 const BETTER: f64 = 1e-10;
@@ -22,10 +24,8 @@ const BETTER: f64 = 1e-10;
 /// Products below this vanish.
 const GAP: f64 = 1e-11;
 
-/// Rounds of swaps from one point: the last one tries all of them, the others [`FEW`] and a twentieth,
-/// each with other weights.
-const KICKS: usize = 8;
-const FEW: usize = 10;
+/// Iterations of the programs of B and of A in a short round.
+const SHORT: [u64; 2] = [5, 40];
 
 /// A point of both sides; A's is optimal on the support of B's.
 #[derive(Clone, Debug)]
@@ -38,12 +38,33 @@ pub struct Solution {
     pub b: Point,
 }
 
+/// A round of swaps from one point.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Round {
+    /// All of them, a few iterations ([`SHORT`]) each: nearly all that improve need no more, and those that
+    /// move far seldom do.
+    Short,
+    /// The same with the weights of another optimum of A, in random order.
+    Kicked,
+    /// With the weights of the first, whatever was not finished there.
+    Rest,
+}
+
+/// What a swap gives.
+enum Swap {
+    Better(Solution),
+    Nothing,
+    Unfinished,
+}
+
 /// The method's state.
 pub struct Pieces {
     /// The two sides.
     pub split: Split,
     rhs: Vec<f64>,
     random: Random,
+    /// Pieces whose value is known to be no improvement.
+    tried: HashSet<Vec<Piece>>,
     /// No single swap improves the best solution.
     pub exhausted: bool,
 }
@@ -57,6 +78,7 @@ impl Pieces {
             split: Split::new(program)?,
             rhs: shifts(program),
             random: Random(0x5eed),
+            tried: HashSet::new(),
             exhausted: false,
         })
     }
@@ -75,12 +97,9 @@ impl Pieces {
     /// A's optimum on the support of a point of B.
     fn piece(&mut self, b: Point, stop: Stop) -> Option<Solution> {
         let pieces = self.split.pieces(&self.split.b, &b);
-        let side = &mut self.split.a;
-        for (k, &piece) in pieces.iter().enumerate() {
-            side.restrict(k, Some(piece), self.split.bounds[k], self.rhs[k]);
-        }
-        side.price(1.0, &[]);
-        let a = side.solve(&self.rhs, stop)?;
+        self.split.allow(&pieces, &self.rhs);
+        self.split.a.price(1.0, &[]);
+        let a = self.split.a.solve(&self.rhs, stop)?;
         Some(Solution { pieces, a, b })
     }
 
@@ -107,61 +126,124 @@ impl Pieces {
         }
     }
 
-    /// Swaps until none improves, or until the work is done.
-    pub fn swaps(&mut self, mut best: Solution, work: u64, stop: Stop) -> Solution {
+    /// Swaps by these rounds until none improves, or until the work is done.
+    pub fn swaps(
+        &mut self,
+        mut best: Solution,
+        rounds: &[Round],
+        work: u64,
+        stop: Stop,
+    ) -> Solution {
         let limit = self.iterations() + work;
         self.exhausted = false;
-        let mut kicks = 0;
         'again: loop {
             let mut order: Vec<(f64, usize)> = (0..best.pieces.len())
                 .filter(|&k| self.split.binds(&self.split.b, k, best.pieces[k]))
                 .map(|k| (self.gain(&best, k), k))
                 .collect();
             order.sort_by(|x, y| y.0.total_cmp(&x.0).then(x.1.cmp(&y.1)));
-            // Every swap starts from these two bases.
+            // None: nothing is avoided. What B's point becomes under other weights may be better already.
+            let all = order.into_iter().map(|(_, k)| Some(k));
+            let all: Vec<Option<usize>> = std::iter::once(None).chain(all).collect();
+            let mut unfinished = all.clone();
+            // Every swap starts from two states, of A and of B.
             let Some(again) = self.piece(best.b.clone(), stop) else {
                 return best;
             };
-            let mut weights = self.split.weights(&self.split.a, &again.a);
-            let last = kicks == KICKS;
-            if kicks > 0 && !last {
-                weights = self.other_weights(&weights, stop);
-            }
-            self.relax(false, Some(&again.a));
-            self.split.b.price(0.0, &weights);
-            if self.split.b.solve(&self.rhs, stop).is_none() {
-                return best;
-            }
-            let bases = (self.split.a.basis.clone(), self.split.b.basis.clone());
-            let value = best.a.value;
-            let margin = BETTER * value.abs().max(1.0);
-            let tries = if last {
-                order.len()
-            } else {
-                FEW + order.len() / 20
-            };
-            for (_, k) in order.into_iter().take(tries) {
-                if self.iterations() > limit || stop(0).is_some() {
+            let usual = self.split.weights(&self.split.a, &again.a);
+            let a = self.split.a.mark();
+            for &round in rounds {
+                let weights = match round {
+                    Round::Kicked => self.other_weights(&usual, stop),
+                    _ => usual.clone(),
+                };
+                self.relax(false, Some(&again.a));
+                self.split.b.price(0.0, &weights);
+                if self.split.b.solve(&self.rhs, stop).is_none() {
                     return best;
                 }
-                (self.split.a.basis, self.split.b.basis) = bases.clone();
-                let swapped = self.avoid(&again, k, &weights, stop);
-                self.split.a.cut_above(value + 1e-2 * value.abs().max(0.1));
-                let next = swapped.and_then(|b| self.piece(b, stop));
-                self.split.a.cut_above(f64::INFINITY);
-                if let Some(next) = next
-                    && next.a.value < value - margin
-                {
-                    best = next;
-                    kicks = 0;
-                    continue 'again;
+                let b = self.split.b.mark();
+                let list = match round {
+                    Round::Short => all.clone(),
+                    Round::Kicked => self.shuffled(all.clone()),
+                    Round::Rest => std::mem::take(&mut unfinished),
+                };
+                for avoid in list {
+                    if self.iterations() > limit || stop(0).is_some() {
+                        return best;
+                    }
+                    self.split.a.back(&a);
+                    self.split.b.back(&b);
+                    match self.swap(&again, avoid, round != Round::Rest, stop) {
+                        Swap::Better(next) => {
+                            best = next;
+                            continue 'again;
+                        }
+                        Swap::Nothing if round == Round::Short => {
+                            unfinished.retain(|k| *k != avoid);
+                        }
+                        _ => {}
+                    }
                 }
+                self.exhausted = round == Round::Rest;
             }
-            if last {
-                self.exhausted = true;
-                return best;
+            return best;
+        }
+    }
+
+    fn shuffled<T>(&mut self, mut list: Vec<T>) -> Vec<T> {
+        for i in (1..list.len()).rev() {
+            list.swap(i, (self.random.uniform() * (i + 1) as f64) as usize);
+        }
+        list
+    }
+
+    /// The piece at the point of B that avoids a pair, in a few iterations if it is to be `short`.
+    fn swap(&mut self, at: &Solution, avoid: Option<usize>, short: bool, stop: Stop) -> Swap {
+        let rhs = &self.rhs;
+        let run = |side: &mut Side, most: u64, stop: Stop| match short {
+            true => side.retry(most, rhs),
+            false => side.solve(rhs, stop).map_or(Retry::Nothing, Retry::Solved),
+        };
+        let side = &mut self.split.b;
+        if let Some(k) = avoid {
+            let (l, u) = self.split.bounds[k];
+            let v = at.b.pair[k];
+            let piece = if side.has_row(k) {
+                Piece::Inside
+            } else if v - l <= u - v {
+                Piece::Lower
+            } else {
+                Piece::Upper
+            };
+            side.restrict(k, Some(piece), (l, u), rhs[k]);
+        }
+        let b = match run(side, SHORT[0], stop) {
+            Retry::Solved(b) => b,
+            Retry::Nothing => return Swap::Nothing,
+            Retry::Unfinished => return Swap::Unfinished,
+        };
+        let pieces = self.split.pieces(&self.split.b, &b);
+        if self.tried.contains(&pieces) {
+            return Swap::Nothing;
+        }
+        let value = at.a.value;
+        self.split.allow(&pieces, rhs);
+        let side = &mut self.split.a;
+        // Perturbed costs make the value inexact.
+        let margin = if short { 1e-6 } else { 1e-2 };
+        side.cut_above(value + margin * value.abs().max(0.1));
+        let a = run(side, SHORT[1], stop);
+        side.cut_above(f64::INFINITY);
+        match a {
+            Retry::Solved(a) if a.value < value - BETTER * value.abs().max(1.0) => {
+                Swap::Better(Solution { pieces, a, b })
             }
-            kicks += 1;
+            Retry::Unfinished => Swap::Unfinished,
+            _ => {
+                self.tried.insert(pieces);
+                Swap::Nothing
+            }
         }
     }
 
@@ -191,31 +273,23 @@ impl Pieces {
         up.max(down)
     }
 
-    /// The point of B nearest to complementary to A's at which a pair does not bind.
-    fn avoid(&mut self, at: &Solution, k: usize, weights: &[f64], stop: Stop) -> Option<Point> {
-        self.relax(false, Some(&at.a));
-        let (l, u) = self.split.bounds[k];
-        let side = &mut self.split.b;
-        let v = at.b.pair[k];
-        let piece = if side.has_row(k) {
-            Piece::Inside
-        } else if v - l <= u - v {
-            Piece::Lower
-        } else {
-            Piece::Upper
-        };
-        side.restrict(k, Some(piece), (l, u), self.rhs[k]);
-        side.price(0.0, weights);
-        side.solve(&self.rhs, stop)
-    }
-
     /// From a random start to a point that satisfies the pairs.
     pub fn random_start(&mut self, stop: Stop) -> Option<Solution> {
         let count = self.rhs.len();
         let random: Vec<f64> = (0..count).map(|_| self.random.uniform()).collect();
-        // A point of B with random costs on the pairs: their signs keep it bounded where one is.
+        // Random costs on the pairs, of different sizes, so that few of them differ from 0.
+        let random: Vec<f64> = random.iter().map(|w| 10f64.powf(-3.0 * w)).collect();
+        // Signs keep the side bounded where one is.
         let toward = |(w, &(l, _)): (&f64, &(f64, f64))| if l.is_finite() { *w } else { -w };
-        let costs: Vec<f64> = random.iter().zip(&self.split.bounds).map(toward).collect();
+        let mut costs: Vec<f64> = random.iter().zip(&self.split.bounds).map(toward).collect();
+        if self.random.uniform() < 0.5 {
+            // Of A, and then the point of B nearest to complementary to it.
+            self.relax(true, None);
+            let weight = 10f64.powf(2.0 * self.random.uniform() - 0.5);
+            self.split.a.price(weight, &costs);
+            let a = self.split.a.solve(&self.rhs, stop)?;
+            costs = self.split.weights(&self.split.a, &a);
+        }
         self.relax(false, None);
         self.split.b.price(0.0, &costs);
         let b = self.split.b.solve(&self.rhs, stop)?;
@@ -225,14 +299,12 @@ impl Pieces {
 
     /// The alternation from a point of B with a first penalty.
     pub fn alternate(&mut self, b: Point, rho: f64, stop: Stop) -> Option<Solution> {
-        // Rounds are many, and there are other starts.
-        (self.split.a.patient, self.split.b.patient) = (false, false);
-        let end = self.rounds(b, rho, stop);
-        (self.split.a.patient, self.split.b.patient) = (true, true);
-        self.piece(end?, stop)
+        let b = self.rounds(b, rho, stop)?;
+        self.piece(b, stop)
     }
 
     fn rounds(&mut self, mut b: Point, mut rho: f64, stop: Stop) -> Option<Point> {
+        let mut last = f64::INFINITY;
         for _ in 0..100 {
             let mut weights = self.split.weights(&self.split.b, &b);
             let total: f64 = weights.iter().map(|w| w.abs()).sum();
@@ -245,9 +317,12 @@ impl Pieces {
             self.relax(false, Some(&a));
             self.split.b.price(0.0, &weights);
             b = self.split.b.solve(&self.rhs, stop)?;
-            if self.split.gap(&a, &b) < GAP {
+            let gap = self.split.gap(&a, &b);
+            // Neither side moves any more, or hardly: B's point may still have a piece.
+            if gap < GAP || (gap - last).abs() <= 1e-6 * gap {
                 return Some(b);
             }
+            last = gap;
             rho *= 2.0;
         }
         None

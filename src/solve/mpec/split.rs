@@ -18,7 +18,7 @@ use super::pairs::{Piece, Program};
 use crate::model::instance::Relation;
 use crate::solve::lp::Ended;
 use crate::solve::lp::form::{Problem, Sparse};
-use crate::solve::lp::simplex::{Basis, Simplex, State};
+use crate::solve::lp::simplex::Simplex;
 
 /// A value this close to a bound is on it. Simplex solutions have their nonbasic variables exactly
 /// there; this is for degenerate basic ones.
@@ -27,10 +27,6 @@ const ZERO: f64 = 1e-9;
 /// One of the two systems.
 pub struct Side {
     simplex: Simplex,
-    /// Whether a program that does not get ready is tried again from a fresh start.
-    pub patient: bool,
-    /// Basis to start from: of the last solution, or set by the caller.
-    pub basis: Option<Basis>,
     problem: Problem,
     /// Column of the instance of each column.
     pub columns: Vec<usize>,
@@ -51,6 +47,16 @@ pub struct Point {
     pub pair: Vec<f64>,
     /// Derivative of the cost with respect to it, where it rests at a bound.
     pub reduced: Vec<f64>,
+}
+
+/// What came of a program that was to be solved quickly.
+pub enum Retry {
+    /// Its solution.
+    Solved(Point),
+    /// It is infeasible, or its value is above the cut.
+    Nothing,
+    /// It takes longer.
+    Unfinished,
 }
 
 /// Both sides.
@@ -98,6 +104,13 @@ impl Split {
             }
         };
         (0..self.bounds.len()).map(piece).collect()
+    }
+
+    /// Bounds of side A under which the pairs are on the given pieces.
+    pub fn allow(&mut self, pieces: &[Piece], rhs: &[f64]) {
+        for (k, &piece) in pieces.iter().enumerate() {
+            self.a.restrict(k, Some(piece), self.bounds[k], rhs[k]);
+        }
     }
 
     /// Pairs whose piece, given by a point of `side`, restricts the other side.
@@ -266,13 +279,21 @@ impl Side {
         Self {
             variable: variable.collect(),
             has_row,
-            basis: None,
-            patient: true,
-            simplex: Simplex::new(&problem),
+            simplex: engine(&problem),
             columns,
             problem,
         }
     }
+}
+
+/// Updates of a factor after which values are still computed with it. What is sought is a support, and the
+/// final branch is solved afresh.
+const TRUSTED: usize = 30;
+
+fn engine(problem: &Problem) -> Simplex {
+    let mut out = Simplex::new(problem);
+    out.trusted = TRUSTED;
+    out
 }
 
 /// The whole envelope of a linear program, rows and columns in their order.
@@ -322,7 +343,7 @@ impl Side {
 
     /// The engine with the present bounds and costs, and the basis of all rows.
     fn fresh(&self) -> Simplex {
-        let mut out = Simplex::new(&self.problem);
+        let mut out = engine(&self.problem);
         out.copy_data(&self.simplex);
         out
     }
@@ -364,50 +385,66 @@ impl Side {
         }
     }
 
-    /// Solves from the last basis. None: infeasible, unbounded, or not solved.
+    /// The present state, to come back to.
+    pub fn mark(&self) -> Simplex {
+        self.simplex.clone()
+    }
+
+    /// Comes back to a state; iterations go on counting.
+    pub fn back(&mut self, mark: &Simplex) {
+        let iterations = self.simplex.iterations;
+        self.simplex.clone_from(mark);
+        self.simplex.iterations = iterations;
+    }
+
+    /// Solves from the present basis. None: infeasible, unbounded, or not solved.
     pub fn solve(
         &mut self,
         rhs: &[f64],
         stop: &mut dyn FnMut(u64) -> Option<Ended>,
     ) -> Option<Point> {
         // A restart takes few iterations. One that does not is not waited for: a fresh start may do.
-        let limit = 200 + (self.problem.m() + self.n()) as u64 / 4;
-        for attempt in 1..=if self.patient { 2 } else { 1 } {
-            match &self.basis {
-                Some(b) if attempt == 1 => self.simplex.set_basis(b),
-                _ => self.simplex = self.fresh(),
+        let size = (self.problem.m() + self.n()) as u64;
+        for (most, again) in [(200 + size / 4, false), (800 + size, true)] {
+            if again {
+                self.simplex = self.fresh();
             }
-            let before = self.simplex.iterations;
-            let most = before + attempt * attempt * limit;
+            let most = self.simplex.iterations + most;
             let ended = self.simplex.solve(&mut |i| match i > most {
                 true => Some(Ended::Iterations),
                 false => stop(i),
             });
             let cut = self.simplex.cutoff.is_finite() && self.simplex.iterations <= most;
             match ended {
-                Ended::Solved => break,
-                Ended::Iterations | Ended::Failed if attempt == 1 && !cut => {}
+                Ended::Solved => return Some(self.point(rhs)),
+                Ended::Iterations | Ended::Failed if !cut => {}
                 _ => return None,
             }
         }
-        self.basis = Some(self.simplex.basis());
-        let p = self.simplex.point()?;
-        let basis = self.basis.as_deref().unwrap_or(&[]);
-        let n = self.n();
-        let value = p.x.iter().zip(&self.problem.cost).map(|(x, c)| x * c).sum();
-        let pair = self.pairs_at(&p.x, rhs);
-        let reduced = |&v: &usize| match basis.get(v) {
-            Some(State::Basic) | None => 0.0,
-            _ if v < n => p.d[v],
-            _ => p.y[v - n],
-        };
-        let reduced = self.variable.iter().map(reduced).collect();
-        Some(Point {
-            x: p.x,
-            value,
-            pair,
-            reduced,
-        })
+        None
+    }
+
+    /// Solves in at most so many iterations after a small change.
+    pub fn retry(&mut self, most: u64, rhs: &[f64]) -> Retry {
+        let end = self.simplex.iterations + most;
+        match self.simplex.retry(most) {
+            Ended::Solved => Retry::Solved(self.point(rhs)),
+            Ended::Infeasible(_) => Retry::Nothing,
+            Ended::Iterations if self.simplex.iterations < end => Retry::Nothing,
+            _ => Retry::Unfinished,
+        }
+    }
+
+    /// The point of the present basis.
+    fn point(&self, rhs: &[f64]) -> Point {
+        let x = self.simplex.values()[..self.n()].to_vec();
+        let reduced = self.simplex.reduced();
+        Point {
+            value: x.iter().zip(&self.problem.cost).map(|(x, c)| x * c).sum(),
+            pair: self.pairs_at(&x, rhs),
+            reduced: self.variable.iter().map(|&v| reduced[v]).collect(),
+            x,
+        }
     }
 
     /// Programs whose value is above this may be given up.

@@ -21,6 +21,9 @@ impl Simplex {
             {
                 return Stop::Ended(why);
             }
+            if self.iterations >= self.limit {
+                return Stop::Ended(Ended::Iterations);
+            }
             if self.cutoff.is_finite() && self.iterations.is_multiple_of(4) {
                 let terms = self.work_cost.iter().zip(&self.x).map(|(c, x)| c * x);
                 if terms.sum::<f64>() > self.cutoff {
@@ -28,8 +31,7 @@ impl Simplex {
                 }
             }
             let Some((slot, above)) = self.leaving(&refused) else {
-                let fresh = self.is_fresh();
-                if fresh {
+                if self.is_trusted() {
                     return Stop::Done;
                 }
                 if self.refresh().is_none() {
@@ -96,18 +98,22 @@ impl Simplex {
     }
 
     fn make_dual_feasible(&mut self) {
+        let mut flipped = false;
         for j in 0..self.n + self.m {
             let (l, u) = (self.work_lower[j], self.work_upper[j]);
             if self.slot[j] == NONBASIC && l.is_finite() && u.is_finite() {
                 let target = if self.d[j] < 0.0 { u } else { l };
                 if self.d[j].abs() > self.dual_tolerance {
+                    flipped |= self.x[j] != target;
                     self.x[j] = target;
                 }
             }
         }
         self.shift_costs(self.perturb);
         // The flips change the basic values.
-        let _ = self.compute_values();
+        if flipped {
+            let _ = self.compute_values();
+        }
     }
 
     /// Moves costs so that no reduced cost has the wrong sign; with `perturb` a little further, by a

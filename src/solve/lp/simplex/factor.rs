@@ -16,6 +16,7 @@ const MOST_UPDATES: usize = 150;
 pub type Entries = Vec<(usize, f64)>;
 
 /// A factorised basis.
+#[derive(Clone)]
 pub struct Factor {
     lu: SparseLu,
     /// Nonzeros of the factor when it was fresh.

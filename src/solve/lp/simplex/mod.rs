@@ -74,7 +74,8 @@ enum Stop {
     Ended(Ended),
 }
 
-/// The engine.
+/// The engine. A clone is a state to come back to: it costs far less than to factorise again.
+#[derive(Clone)]
 pub struct Simplex {
     m: usize,
     n: usize,
@@ -114,6 +115,10 @@ pub struct Simplex {
     /// The dual method may give up (as if at an iteration limit) once the value is above this. The
     /// perturbation of the costs makes that inexact: leave a margin.
     pub cutoff: f64,
+    /// The methods give up (as at an iteration limit) when [`Self::iterations`] is this.
+    pub limit: u64,
+    /// A factor that was updated at most so often counts as fresh.
+    pub trusted: usize,
     perturb: bool,
     /// A crossover is under way: variables that leave the basis in a repair stay where they are, and
     /// columns with a smaller pivot than this leave it.
@@ -154,6 +159,8 @@ impl Simplex {
             dual_tolerance: 1e-9,
             iterations: 0,
             cutoff: f64::INFINITY,
+            limit: u64::MAX,
+            trusted: 0,
             perturb: true,
             crossing: None,
         };
@@ -410,31 +417,37 @@ impl Simplex {
             .fold(0.0, |worst, j| self.dual_violation(j).max(worst))
     }
 
-    /// Takes back shifts and perturbations; nonbasic variables return to their bounds.
+    /// Takes back shifts and perturbations; nonbasic variables return to their bounds. Only what these or a
+    /// new bound or cost change is computed afresh, unless the factor is worn.
     fn restore(&mut self) -> Option<()> {
-        if self.is_restored() {
-            return Some(());
-        }
+        let new_costs = self.work_cost != self.cost;
         self.work_cost.copy_from_slice(&self.cost);
         self.work_lower.copy_from_slice(&self.lower);
         self.work_upper.copy_from_slice(&self.upper);
+        let mut moved = false;
         for j in 0..self.n + self.m {
             if self.slot[j] == NONBASIC {
-                self.x[j] = self.resting(j, self.x[j]);
+                let rest = self.resting(j, self.x[j]);
+                moved |= rest != self.x[j];
+                self.x[j] = rest;
             }
         }
-        self.refactor()
+        if !self.is_trusted() {
+            return self.refactor();
+        }
+        if moved {
+            self.compute_values()?;
+        }
+        if new_costs {
+            self.compute_reduced()?;
+        }
+        Some(())
     }
 
-    /// Whether there is nothing to take back and the factor is fresh.
-    fn is_restored(&self) -> bool {
-        let resting =
-            |j: usize| self.slot[j] != NONBASIC || self.x[j] == self.resting(j, self.x[j]);
-        self.is_fresh()
-            && self.work_cost == self.cost
-            && self.work_lower == self.lower
-            && self.work_upper == self.upper
-            && (0..self.n + self.m).all(resting)
+    /// Whether values and reduced costs need no fresh factor.
+    fn is_trusted(&self) -> bool {
+        let updates = self.factor.as_ref().map(Factor::updates);
+        updates.is_some_and(|u| u <= self.trusted)
     }
 
     /// Solves from a basis.
@@ -450,6 +463,24 @@ impl Simplex {
     /// Solves from the present basis. `stop` is asked now and then, with the iterations so far.
     pub fn solve(&mut self, stop: &mut dyn FnMut(u64) -> Option<Ended>) -> Ended {
         self.rounds(2, stop)
+    }
+
+    /// Solves after small changes from the present basis, without perturbations, in at most `most` iterations.
+    pub fn retry(&mut self, most: u64) -> Ended {
+        self.limit = self.iterations + most;
+        let ended = self.rounds(0, &mut |_| None);
+        self.limit = u64::MAX;
+        ended
+    }
+
+    /// Values of columns and rows at the present basis.
+    pub fn values(&self) -> &[f64] {
+        &self.x
+    }
+
+    /// Reduced costs of columns and rows at the present basis; 0 for basic ones.
+    pub fn reduced(&self) -> &[f64] {
+        &self.d
     }
 
     /// Solves again from the basis of a first solution, with tolerances near rounding: what a
@@ -501,12 +532,7 @@ impl Simplex {
                 Stop::Unbounded(direction) => {
                     return Ended::Unbounded(direction[..self.n].to_vec());
                 }
-                Stop::Ended(why) => {
-                    return match self.restore() {
-                        Some(()) => why,
-                        None => Ended::Failed,
-                    };
-                }
+                Stop::Ended(why) => return why,
             }
         }
         Ended::Failed

@@ -27,9 +27,12 @@ impl Simplex {
             {
                 return Stop::Ended(why);
             }
+            if self.iterations >= self.limit {
+                return Stop::Ended(Ended::Iterations);
+            }
             let fresh = self.is_fresh();
             let Some(entering) = self.priced(&refused) else {
-                if fresh {
+                if self.is_trusted() {
                     return Stop::Done;
                 }
                 if self.refactor().is_none() {

@@ -1,0 +1,137 @@
+//! The method `pieces` from its starts to the final branch.
+//!
+//! Starts are solutions of the complementarity problem in the pairs: the point the solve begins at, where it
+//! is one, else the solution that the solver finds from there; and the one at the end of its path from
+//! zero, without a crash. The path ends at a basic solution, whose support is small, where an
+//! interior crash ends in the middle of all solutions, with the largest support there is, and α falls as
+//! supports shrink. From the best of them the alternation, and from random starts the alternation and short
+//! swaps; from the best of all several descents by swaps in random order, and then swaps until none
+//! improves. All limits are counts of work, so a run can be repeated.
+
+use super::pieces::{Pieces, Round, Solution};
+use super::{Found, ModelStatus, Piece, Search, SolveError, Stationarity};
+use crate::solve::lp::Ended;
+use std::time::Instant;
+
+/// Swaps, in simplex iterations.
+const SWAPS: u64 = 80_000;
+
+/// Random starts, in simplex iterations times rows and columns. On small programs they cost nothing, and there
+/// are more than were asked for; on large ones they seldom lead anywhere, and there are fewer.
+const STARTS: [u64; 2] = [1_000_000, 20_000_000];
+
+/// Columns of a program of which there is a descent for each start that was asked for.
+const DESCENTS: usize = 500;
+
+impl Search<'_> {
+    /// False if the method does not apply or finds nothing.
+    pub(super) fn supports(&mut self, start: &[f64]) -> Result<bool, SolveError> {
+        let Some(mut pieces) = Pieces::new(self.program) else {
+            return Ok(false);
+        };
+        let mut levels = Vec::new();
+        if self.program.judge(start).feasible {
+            levels.push(start.to_vec());
+        } else {
+            levels.extend(self.equilibrium(start, &[]));
+        }
+        levels.extend(self.equilibrium(&vec![0.0; start.len()], &[("crash_method", "none")]));
+        let best = self.best_support(&mut pieces, &levels);
+        self.iterations += pieces.iterations();
+        match best {
+            Some(best) => self.settle(&pieces, best, start),
+            None => Ok(false),
+        }
+    }
+
+    fn best_support(&mut self, pieces: &mut Pieces, levels: &[Vec<f64>]) -> Option<Solution> {
+        let (left, begin) = (self.seconds_left(), Instant::now());
+        let (monitor, log) = (&mut *self.monitor, self.settings.log);
+        let sign = self.program.sign();
+        let mut stop = |_| (begin.elapsed().as_secs_f64() > left).then_some(Ended::Time);
+        let mut best: Option<Solution> = None;
+        let mut keep = |what: &str, found: Option<Solution>, best: &mut Option<Solution>| {
+            let Some(s) = found else { return };
+            if log {
+                monitor.log(&format!("{what}: {:.10}", sign * s.a.value));
+            }
+            if best.as_ref().is_none_or(|b| s.a.value < b.a.value) {
+                *best = Some(s);
+            }
+        };
+        for level in levels {
+            keep(
+                "piece at an equilibrium",
+                pieces.at(level, &mut stop),
+                &mut best,
+            );
+        }
+        if let Some(b) = best.as_ref().map(|s| s.b.clone()) {
+            let next = pieces.alternate(b, 1e-3, &mut stop);
+            keep("alternation from there", next, &mut best);
+        }
+        let starts = self.options.starts;
+        let columns = self.program.instance.column_count();
+        let size = (columns + self.program.instance.row_count()) as u64;
+        let begun = pieces.iterations();
+        for k in 0..100 * starts {
+            let work = (pieces.iterations() - begun) * size;
+            if work > STARTS[usize::from(k < starts)] || stop(0).is_some() {
+                break;
+            }
+            let next = pieces.random_start(&mut stop);
+            let short = [Round::Short];
+            let next = next.map(|s| pieces.swaps(s, &short, SWAPS, &mut stop));
+            keep("random start", next, &mut best);
+        }
+        // The larger the program, the fewer of the ways lead on.
+        let from = best.clone()?;
+        for _ in 0..starts * columns / DESCENTS {
+            let next = pieces.swaps(from.clone(), &[Round::Kicked], SWAPS, &mut stop);
+            keep("descent", Some(next), &mut best);
+        }
+        let all = [Round::Short, Round::Kicked, Round::Kicked, Round::Rest];
+        let found = pieces.swaps(best.take()?, &all, SWAPS, &mut stop);
+        let what = match pieces.exhausted {
+            true => "no swap improves",
+            false => "swaps",
+        };
+        keep(what, Some(found), &mut best);
+        best
+    }
+
+    /// Solves the branch of a solution. Its own point of B may have a smaller support: then there is more to
+    /// gain.
+    fn settle(
+        &mut self,
+        pieces: &Pieces,
+        best: Solution,
+        start: &[f64],
+    ) -> Result<bool, SolveError> {
+        let mut level = start.to_vec();
+        pieces.write(&best, &mut level);
+        let mut on: Vec<Piece> = best.pieces;
+        for _ in 0..20 {
+            let Some(mut found): Option<Found> = self.branch(on.clone(), &level)? else {
+                break;
+            };
+            level.clone_from(&found.answer.outcome.level);
+            let there = pieces.pieces_at(&level);
+            let settled = there == on && found.answer.status == ModelStatus::Optimal;
+            found.verdict = Some(match settled {
+                true => Stationarity::Proved,
+                false => Stationarity::NotProved,
+            });
+            if settled && pieces.exhausted {
+                let note = "plateau: no single swap of supports improves";
+                self.notes.push(note.into());
+            }
+            self.keep(&found);
+            if settled || there == on {
+                break;
+            }
+            on = there;
+        }
+        Ok(self.best.is_some())
+    }
+}
