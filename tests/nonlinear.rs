@@ -524,6 +524,49 @@ fn options_and_limits() {
     }
 }
 
+/// Started at the answer with its multipliers, a solver has little left to do.
+#[test]
+fn warm_start() {
+    for p in providers() {
+        let options = |pairs: &[(&str, &str)]| Settings {
+            options: pairs
+                .iter()
+                .map(|&(k, v)| (k.to_string(), v.to_string()))
+                .collect(),
+            ..Settings::default()
+        };
+        let mut m = hs71().0;
+        let cold = options(&[("nlp_search", "no")]);
+        let first = answer(Some(p.name()), &m, &cold, &mut Quiet).unwrap();
+        m.columns.level = first.outcome.level;
+        m.rows.marginal = first.outcome.row_marginal;
+        let warm = options(&[
+            ("nlp_search", "no"),
+            ("warm_start_init_point", "yes"),
+            ("mu_init", "1e-6"),
+            ("warm_start_bound_push", "1e-8"),
+            ("warm_start_bound_frac", "1e-8"),
+        ]);
+        let second = answer(Some(p.name()), &m, &warm, &mut Quiet).unwrap();
+        assert_eq!(second.status, LocallyOptimal);
+        let (a, b) = (first.outcome.iterations, second.outcome.iterations);
+        assert!(b < a, "{}: {a}, then {b} iterations", p.name());
+    }
+}
+
+#[test]
+fn limit_of_time() {
+    for p in providers() {
+        let settings = Settings {
+            time_limit: 0.0,
+            ..Settings::default()
+        };
+        let a = answer(Some(p.name()), &hs71().0, &settings, &mut Quiet).unwrap();
+        assert_eq!(a.outcome.status, SolverStatus::ResourceInterrupt);
+        assert!(!matches!(a.status, LocallyOptimal | Optimal));
+    }
+}
+
 struct Impatient(u32, Vec<String>);
 
 impl Monitor for Impatient {
