@@ -540,6 +540,7 @@ fn warm_start() {
         let first = answer(Some(p.name()), &m, &cold, &mut Quiet).unwrap();
         m.columns.level = first.outcome.level;
         m.rows.marginal = first.outcome.row_marginal;
+        m.columns.marginal = first.outcome.column_marginal;
         let warm = options(&[
             ("nlp_search", "no"),
             ("warm_start_init_point", "yes"),

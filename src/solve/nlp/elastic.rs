@@ -105,6 +105,10 @@ impl Nlp for Elastic {
         None
     }
 
+    fn start_reduced(&self) -> Option<&[f64]> {
+        None
+    }
+
     fn jacobian_pattern(&self) -> (&[u32], &[u32]) {
         (&self.jacobian.0, &self.jacobian.1)
     }

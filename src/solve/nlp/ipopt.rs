@@ -252,8 +252,7 @@ unsafe extern "C" fn init(
                 out(x, n).copy_from_slice(nlp.start());
             }
             if init_z != 0 {
-                out(z_l, n).fill(1.0);
-                out(z_u, n).fill(1.0);
+                nlp.start_bounds(out(z_l, n), out(z_u, n));
             }
             if init_lambda != 0 {
                 let lambda = out(lambda, m);

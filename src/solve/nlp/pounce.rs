@@ -203,8 +203,7 @@ impl TNLP for Adapter {
             }
         }
         if sp.init_z {
-            sp.z_l.fill(1.0);
-            sp.z_u.fill(1.0);
+            nlp.start_bounds(sp.z_l, sp.z_u);
         }
         true
     }

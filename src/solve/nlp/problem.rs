@@ -25,6 +25,8 @@ pub trait Nlp {
     fn start(&self) -> &[f64];
     /// Start multipliers λ of the constraints, if they are to be used.
     fn start_multipliers(&self) -> Option<&[f64]>;
+    /// Start values of ∇f + Jᵀλ, which the multipliers of the bounds balance, if they are to be used.
+    fn start_reduced(&self) -> Option<&[f64]>;
     /// Pattern of the Jacobian of the constraints: rows and columns.
     fn jacobian_pattern(&self) -> (&[u32], &[u32]);
     /// Pattern of the lower triangle of the Hessian of the Lagrangian: rows and columns.
@@ -41,6 +43,18 @@ pub trait Nlp {
     fn hessian(&mut self, x: &[f64], sigma: f64, lambda: &[f64], out: &mut [f64]) -> Option<()>;
     /// Number of evaluations that failed so far.
     fn failures(&self) -> u64;
+
+    /// Start multipliers of the lower and upper bounds; 1 where nothing is known.
+    fn start_bounds(&self, lower: &mut [f64], upper: &mut [f64]) {
+        let Some(reduced) = self.start_reduced() else {
+            lower.fill(1.0);
+            upper.fill(1.0);
+            return;
+        };
+        for ((l, u), r) in lower.iter_mut().zip(upper).zip(reduced) {
+            (*l, *u) = (r.max(0.0), (-r).max(0.0));
+        }
+    }
 
     /// Jacobian of g: row, column, value.
     fn jacobian_entries(&mut self, x: &[f64]) -> Option<Vec<Entry>> {
@@ -106,6 +120,7 @@ pub struct Problem {
     row_upper: Vec<f64>,
     start: Vec<f64>,
     start_multipliers: Option<Vec<f64>>,
+    start_reduced: Option<Vec<f64>>,
     jacobian_row: Vec<u32>,
     jacobian_column: Vec<u32>,
     jacobian_from: Vec<u32>,
@@ -244,6 +259,7 @@ impl Problem {
             row_upper,
             start: start_point,
             start_multipliers: None,
+            start_reduced: None,
             jacobian_row: jr,
             jacobian_column: jc,
             jacobian_from: jf,
@@ -275,7 +291,7 @@ impl Problem {
         self.start = x;
     }
 
-    /// Uses the marginals of the instance's rows as start multipliers.
+    /// Uses the marginals of the instance's rows and columns as start multipliers.
     pub fn use_marginals(&mut self, instance: &Instance) {
         let s = self.sign;
         let lambda = self
@@ -284,6 +300,12 @@ impl Problem {
             .map(|&i| -s * instance.rows.marginal[i as usize])
             .collect();
         self.start_multipliers = Some(lambda);
+        let reduced = self
+            .columns
+            .iter()
+            .map(|&j| s * instance.columns.marginal[j as usize])
+            .collect();
+        self.start_reduced = Some(reduced);
     }
 
     /// The full point of the instance: fixed columns filled in, the objective column computed.
@@ -386,6 +408,10 @@ impl Nlp for Problem {
 
     fn start_multipliers(&self) -> Option<&[f64]> {
         self.start_multipliers.as_deref()
+    }
+
+    fn start_reduced(&self) -> Option<&[f64]> {
+        self.start_reduced.as_deref()
     }
 
     fn jacobian_pattern(&self) -> (&[u32], &[u32]) {
