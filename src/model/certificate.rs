@@ -519,6 +519,7 @@ mod tests {
             solver: "test",
             ray: ray.to_vec(),
             message: None,
+            basis: None,
         }
     }
 

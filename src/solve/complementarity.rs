@@ -341,5 +341,6 @@ pub fn solve(
         solver: "bmcp",
         ray: Vec::new(),
         message: (!out.message.is_empty()).then_some(out.message),
+        basis: None,
     })
 }

@@ -156,6 +156,7 @@ impl Solver for Kkt {
             ray: Vec::new(),
             message: (!solved)
                 .then(|| "the optimality conditions were not solved: the model may be infeasible or unbounded".into()),
+            basis: None,
         })
     }
 }

@@ -149,6 +149,8 @@ pub struct Outcome {
     pub ray: Vec<f64>,
     /// One line for the person where there is more to say.
     pub message: Option<String>,
+    /// For linear programs solved to a vertex: the basis, a state per column and row of [`lp::form::Problem`].
+    pub basis: Option<lp::simplex::Basis>,
 }
 
 /// Limits and switches common to all solvers.

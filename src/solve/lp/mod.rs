@@ -17,7 +17,7 @@ use crate::model::instance::Instance;
 use form::{Form, Point, Problem};
 use interior::Aim;
 use scale::Scaling;
-use simplex::Simplex;
+use simplex::{Basis, Simplex};
 
 /// How a method ended, in the units of the problem it was given.
 #[derive(Clone, Debug, PartialEq)]
@@ -170,6 +170,8 @@ struct Answer {
     almost: bool,
     /// What is not unique about the solution.
     remark: Option<&'static str>,
+    /// Of a vertex.
+    basis: Option<Basis>,
 }
 
 fn solve(
@@ -247,6 +249,7 @@ fn solve(
         solver: answer.solver,
         ray,
         message: answer.remark.map(str::to_string),
+        basis: answer.basis,
     })
 }
 
@@ -305,6 +308,7 @@ fn simplex_answer(mut simplex: Simplex, ended: Ended) -> Answer {
         (Ended::Solved, Some(_)) => simplex.others(),
         _ => (false, false),
     };
+    let basis = (ended == Ended::Solved).then(|| simplex.basis());
     Answer {
         ended: if point.is_none() {
             Ended::Failed
@@ -315,6 +319,7 @@ fn simplex_answer(mut simplex: Simplex, ended: Ended) -> Answer {
         iterations: simplex.iterations,
         solver: "simplex",
         almost: false,
+        basis,
         remark: match others {
             (true, true) => Some("neither the solution nor its marginals are unique"),
             (true, false) => Some("the solution is not unique"),
@@ -336,6 +341,7 @@ fn interior_only(p: &Problem, aim: Aim, limits: &Limits, monitor: &mut dyn Monit
         solver: "clarabel",
         almost: run.almost,
         remark: None,
+        basis: None,
     }
 }
 

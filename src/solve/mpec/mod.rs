@@ -369,6 +369,7 @@ impl Search<'_> {
             solver: "bmpec",
             ray: Vec::new(),
             message: None,
+            basis: None,
         };
         let found = Found {
             pieces,

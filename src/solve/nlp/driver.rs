@@ -711,6 +711,7 @@ impl Driver<'_> {
                 solver: self.solver,
                 ray: Vec::new(),
                 message,
+                basis: None,
             },
             best.residuals,
             status,

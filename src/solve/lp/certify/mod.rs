@@ -27,7 +27,7 @@ mod system;
 use super::crossover;
 use super::form::{Form, Point, Problem};
 use super::scale::Scaling;
-use super::simplex::{Simplex, Wide};
+use super::simplex::{Simplex, State, Wide};
 use super::{Ended, Limits, SolveError, watch};
 use crate::model::instance::Instance;
 use crate::solve::interval::{Interval, WideSum, two_sum};
@@ -148,7 +148,9 @@ pub(super) fn certify_by(
             (upper, lower) = (value.upper, value.lower);
         }
         let near = scaling.carry(form.near(outcome));
-        let [x, y] = vertex(&p, near, &limits, monitor);
+        let basis = outcome.basis.as_deref();
+        let basis = basis.filter(|b| b.len() == p.n() + p.m());
+        let [x, y] = vertex(&p, near, basis, &limits, monitor);
         if upper.is_err() {
             upper = side(&p, &Polyhedron::primal(&p), x, &limits, monitor, true);
         }
@@ -201,15 +203,26 @@ pub(super) fn certify_by(
 /// The vertex at a point (if there are several optimal ones, a vertex of the same value), to nearly
 /// twice the working precision: what rounding violates is not in the way then. The point itself
 /// where none is found.
-fn vertex(p: &Problem, near: Point, limits: &Limits, monitor: &mut dyn Monitor) -> [Wide; 2] {
-    let start = crossover::start(p, &near, None);
+fn vertex(
+    p: &Problem,
+    near: Point,
+    basis: Option<&[State]>,
+    limits: &Limits,
+    monitor: &mut dyn Monitor,
+) -> [Wide; 2] {
     let mut simplex = Simplex::new(p);
     // A few pivots settle which of the columns at 0 are basic.
     let most = Limits {
         iterations: limits.iterations.min((p.m() + p.n()) as u64),
         ..*limits
     };
-    let _ = simplex.push(&start, &mut watch(&most, monitor));
+    match basis {
+        Some(basis) => simplex.set_basis(basis),
+        None => {
+            let start = crossover::start(p, &near, None);
+            let _ = simplex.push(&start, &mut watch(&most, monitor));
+        }
+    }
     let solved = simplex.solve(&mut watch(&most, monitor)) == Ended::Solved;
     if solved {
         let tolerances = [
