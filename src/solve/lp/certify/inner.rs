@@ -10,6 +10,9 @@
 //! Where that gives t = 0, some inequalities hold with equality at every point. Then each has its
 //! own t_i ≤ 1 and their sum is maximised (Freund, Roundy & Todd 1985): what is still without slack
 //! is held as an equation.
+//!
+//! How much must be mixed in depends on the inequalities that do not hold yet, and those are few: a second point
+//! gives room in proportion to what they lack, often a thousand times as much ([`room_for`]).
 
 use super::super::form::{Problem, Sparse};
 use super::super::interior::{self, Aim};
@@ -30,18 +33,55 @@ pub fn point(
     let value: f64 = poly.cost.iter().zip(near).map(|(c, x)| c * x).sum();
     let limit = value + if value == 0.0 { 1.0 } else { value.abs() };
     for limit in [limit, f64::INFINITY] {
-        if let Some((x, slack)) = search(poly, false, limit, limits, interrupted)
+        if let Some((x, slack)) = search(poly, Room::Equal, limit, limits, interrupted)
             && slack > SLACK
         {
             return Some(x);
         }
     }
-    Some(search(poly, true, f64::INFINITY, limits, interrupted)?.0)
+    Some(search(poly, Room::Each, f64::INFINITY, limits, interrupted)?.0)
+}
+
+/// A point between `central`, which has room everywhere, and one that has the most room where `lack` (of the
+/// rows, then the columns) is largest.
+pub fn room_for(
+    lack: &[f64],
+    poly: &Polyhedron,
+    central: &[f64],
+    limits: &Limits,
+    interrupted: &mut dyn FnMut() -> bool,
+) -> Option<Vec<f64>> {
+    let most = lack.iter().fold(0.0f64, |t, &v| t.max(v));
+    if most <= 0.0 {
+        return None;
+    }
+    let share: Vec<f64> = lack.iter().map(|v| (v / most).max(LEAST)).collect();
+    let value: f64 = poly.cost.iter().zip(central).map(|(c, x)| c * x).sum();
+    let (x, slack) = search(poly, Room::Shares(&share), value, limits, interrupted)?;
+    let mix = |(a, b): (&f64, &f64)| a + CENTRAL * (b - a);
+    (slack > SLACK).then(|| x.iter().zip(central).map(mix).collect())
+}
+
+/// The least share of the room that [`room_for`] asks for.
+const LEAST: f64 = 1e-4;
+
+/// How much of the central point is in what [`room_for`] returns.
+const CENTRAL: f64 = 0.1;
+
+/// What is maximised.
+#[derive(Clone, Copy)]
+enum Room<'a> {
+    /// The smallest slack.
+    Equal,
+    /// The sum of slacks.
+    Each,
+    /// The smallest slack over share.
+    Shares(&'a [f64]),
 }
 
 fn search(
     poly: &Polyhedron,
-    each: bool,
+    room: Room<'_>,
     limit: f64,
     limits: &Limits,
     interrupted: &mut dyn FnMut() -> bool,
@@ -59,7 +99,7 @@ fn search(
         p.upper.push(side(poly.upper[j], f64::INFINITY));
     }
     let mut slack_columns = 0;
-    let mut line = |entries: Vec<(usize, f64)>, sides: [f64; 2], p: &mut Problem| {
+    let mut line = |k: usize, entries: Vec<(usize, f64)>, sides: [f64; 2], p: &mut Problem| {
         let [l, u] = sides;
         if l == u {
             p.rows.push(entries);
@@ -71,14 +111,18 @@ fn search(
             if side.is_infinite() {
                 continue;
             }
-            if each || slack_columns == 0 {
+            if matches!(room, Room::Each) || slack_columns == 0 {
                 p.cost.push(-1.0);
                 p.lower.push(0.0);
                 p.upper.push(1.0);
                 slack_columns += 1;
             }
             // Between two sides there may be less than 1 to share.
-            let share = (0.25 * (u - l)).min(1.0);
+            let share = (0.25 * (u - l)).min(1.0)
+                * match room {
+                    Room::Shares(share) => share[k],
+                    _ => 1.0,
+                };
             let mut e = entries.clone();
             e.push((p.cost.len() - 1, sign * share));
             p.rows.push(e);
@@ -89,12 +133,12 @@ fn search(
     };
     for i in 0..poly.m() {
         let entries = poly.rows.line(i).collect();
-        line(entries, [poly.row_lower[i], poly.row_upper[i]], &mut p);
+        line(i, entries, [poly.row_lower[i], poly.row_upper[i]], &mut p);
     }
     for j in 0..n {
         let sides = [poly.lower[j], poly.upper[j]];
         if sides[0] != sides[1] && sides.iter().any(|s| s.is_finite()) {
-            line(vec![(j, 1.0)], sides, &mut p);
+            line(poly.m() + j, vec![(j, 1.0)], sides, &mut p);
         }
     }
     if limit.is_finite() {

@@ -313,53 +313,85 @@ fn side(
         system.rows().len(),
         limits.start.elapsed().as_secs_f64()
     ));
-    let mut at = |theta: f64| {
+    // The value of a mixture; Err: what its rows, then its columns, lack (nothing: numbers broke down).
+    let mut at = |inner: &[f64], theta: f64| {
         let mut x = Enclosed {
             high: Vec::with_capacity(poly.n()),
             low: Vec::with_capacity(poly.n()),
             radius: vec![0.0; poly.n()],
             target: target.clone(),
         };
-        for ((&a, &a_low), &b) in near.iter().zip(&near_low).zip(&inner) {
+        for ((&a, &a_low), &b) in near.iter().zip(&near_low).zip(inner) {
             let (high, low) = two_sum(a, theta * (b - a));
             let (high, low) = two_sum(high, low + a_low);
             x.high.push(high);
             x.low.push(low);
         }
-        system.enclose(poly, &mut x).ok_or((None, None))?;
-        match outside(poly, &x, &system) {
-            None if primal => Ok(polyhedron::primal_value(p, &x)),
-            None => Ok(polyhedron::dual_value(p, &x)),
-            Some(place) => Err(place),
+        system.enclose(poly, &mut x).ok_or(Vec::new())?;
+        let lack = lack(poly, &x, &system);
+        match lack.iter().all(|&v| v == 0.0) {
+            true if primal => Ok(polyhedron::primal_value(p, &x)),
+            true => Ok(polyhedron::dual_value(p, &x)),
+            false => Err(lack),
         }
     };
+    let mut best = least(|theta| at(&inner, theta));
+    if !best.as_ref().is_ok_and(|b| b.0 <= LITTLE) {
+        let roomy = at(&inner, 0.0).err().and_then(|lack| {
+            inner::room_for(&lack, poly, &inner, limits, &mut || monitor.interrupted())
+        });
+        let second = roomy.map(|roomy| least(|theta| at(&roomy, theta)));
+        let better = |a: Interval, b: Interval| match primal {
+            true => a.high < b.high,
+            false => a.low > b.low,
+        };
+        best = match (best, second) {
+            (Ok(a), Some(Ok(b))) if better(b.1, a.1) => Ok(b),
+            (Err(_), Some(Ok(b))) => Ok(b),
+            (best, _) => best,
+        };
+    }
+    best.map(|b| b.1).or_else(|lack| {
+        let worst = (0..lack.len()).max_by(|&a, &b| lack[a].total_cmp(&lack[b]));
+        let row = worst.filter(|&k| k < poly.m());
+        let column = worst.and_then(|k| k.checked_sub(poly.m()));
+        match worst {
+            None => fail("the equations could not be solved reliably", None, None),
+            Some(_) => fail("rounding decides whether it holds", row, column),
+        }
+    })
+}
+
+/// A share of the inner point that costs nothing to speak of.
+const LITTLE: f64 = 1e-13;
+
+/// The least share of the inner point that will do, to a factor of 2 or so, and what it gives.
+fn least(
+    mut at: impl FnMut(f64) -> Result<Interval, Vec<f64>>,
+) -> Result<(f64, Interval), Vec<f64>> {
     let coarse = (0..24).map(|k| 2f64.powi(-92 + 4 * k));
-    let mut last = fail(nothing, None, None);
+    let mut last = Vec::new();
     for theta in std::iter::once(0.0).chain(coarse) {
         match at(theta) {
             Ok(value) => {
-                // What is mixed in costs; less of it may do.
-                let finer = [0.125, 0.25, 0.5].iter().find_map(|f| at(theta * f).ok());
-                return Ok(finer.unwrap_or(value));
+                let finer = [0.125, 0.25, 0.5].map(|f| theta * f);
+                let found = finer.iter().find_map(|&t| Some((t, at(t).ok()?)));
+                return Ok(found.unwrap_or((theta, value)));
             }
-            Err((row, column)) => last = fail("rounding decides whether it holds", row, column),
+            Err(lack) => last = lack,
         }
     }
-    last
+    Err(last)
 }
 
-/// The first row or column that the enclosed point is not proved to satisfy.
-fn outside(
-    poly: &Polyhedron,
-    x: &Enclosed,
-    system: &System,
-) -> Option<(Option<usize>, Option<usize>)> {
-    for j in 0..poly.n() {
-        let v = x.value(j);
-        if !(v.low >= poly.lower[j] && v.high <= poly.upper[j]) {
-            return Some((None, Some(j)));
-        }
-    }
+/// By how much each row, then each column, of the enclosed point may be outside its sides.
+fn lack(poly: &Polyhedron, x: &Enclosed, system: &System) -> Vec<f64> {
+    // What is not a number proves nothing.
+    let beyond = |low: f64, high: f64| match (low.is_nan(), high.is_nan()) {
+        (false, false) => low.max(high).max(0.0),
+        _ => f64::INFINITY,
+    };
+    let mut lack = vec![0.0; poly.m()];
     let mut solved = vec![false; poly.m()];
     system.rows().iter().for_each(|&i| solved[i] = true);
     for i in (0..poly.m()).filter(|&i| !solved[i]) {
@@ -367,23 +399,21 @@ fn outside(
         for (j, a) in poly.rows.line(i) {
             x.add_to(&mut sum, a, j);
         }
-        for (side, above) in [(poly.row_lower[i], true), (poly.row_upper[i], false)] {
-            if side.is_finite() {
-                let mut rest = sum;
-                rest.add(-side);
-                let rest = rest.value();
-                let holds = if above {
-                    rest.low >= 0.0
-                } else {
-                    rest.high <= 0.0
-                };
-                if !holds {
-                    return Some((Some(i), None));
-                }
-            }
-        }
+        let rest = |side: f64| {
+            let mut rest = sum;
+            rest.add(-side);
+            rest.value()
+        };
+        let (l, u) = (poly.row_lower[i], poly.row_upper[i]);
+        let low = if l.is_finite() { -rest(l).low } else { 0.0 };
+        let high = if u.is_finite() { rest(u).high } else { 0.0 };
+        lack[i] = beyond(low, high);
     }
-    None
+    lack.extend((0..poly.n()).map(|j| {
+        let v = x.value(j);
+        beyond(poly.lower[j] - v.low, v.high - poly.upper[j])
+    }));
+    lack
 }
 
 #[cfg(test)]
