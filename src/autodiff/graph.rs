@@ -483,3 +483,29 @@ fn key(e: &Element) -> Box<[u32]> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_subexpressions_are_one_node() {
+        // sin(xy) · y / sin(xy), where slots 0 and 1 are x and y
+        let product = [Op::Var(0), Op::Var(1), Op::Multiply];
+        let sine = [Op::Call(Function::Sin, 1)];
+        let mut ops: Vec<Op> = product.iter().chain(&sine).copied().collect();
+        ops.extend([Op::Var(1), Op::Multiply]);
+        ops.extend(product.iter().chain(&sine));
+        ops.push(Op::Divide);
+        let kernel = Kernel {
+            ops,
+            variables: 2,
+            constants: 0,
+        };
+        let graph = Graph::new(&kernel, &[], 0.0);
+        let count = |of: fn(&Element) -> bool| graph.elements.iter().filter(|e| of(e)).count();
+        assert_eq!(count(|e| matches!(e, Element::Call(Function::Sin, _))), 1);
+        assert_eq!(count(|e| matches!(e, Element::Multiply(..))), 2);
+        assert_eq!(count(|e| matches!(e, Element::Var(_))), 2);
+    }
+}
