@@ -75,6 +75,27 @@ impl Compiler {
         }
     }
 
+    /// Makes a symbol and the sets of its domain ready for data; a reader of these.
+    fn open_reader<'m>(
+        &mut self,
+        s: SymbolId,
+        body: Span,
+        name: Span,
+        defines: &[bool],
+        kind: DataKind,
+        map: &'m SourceMap,
+    ) -> Result<DataReader<'m>, Failed> {
+        let open = self.symbols.get(s).open;
+        self.open_data(s, name)?;
+        self.open_domains(s, defines, name)?;
+        let text = map.text(body);
+        if open {
+            self.shape_by_data(s, text, kind);
+        }
+        let dim = self.symbols.get(s).dim();
+        Ok(DataReader::new(text, body.lo, kind, self.modes.undf).with_arity(dim))
+    }
+
     pub(super) fn set_data(
         &mut self,
         s: SymbolId,
@@ -83,16 +104,9 @@ impl Compiler {
         defines: &[bool],
         map: &SourceMap,
     ) -> Result<(), Failed> {
-        let open = self.symbols.get(s).open;
-        self.open_data(s, name)?;
-        self.open_domains(s, defines, name)?;
-        if open {
-            self.shape_by_data(s, map.text(body), DataKind::Set);
-        }
+        let mut reader = self.open_reader(s, body, name, defines, DataKind::Set, map)?;
         let symbol = self.symbols.get(s).clone();
         let (table, dim) = (symbol.table, symbol.dim());
-        let mut reader = DataReader::new(map.text(body), body.lo, DataKind::Set, self.modes.undf)
-            .with_arity(dim);
         let mut last: Option<Label> = self.last_label(table, dim);
         let mut keys = Tuples::default();
         let mut unordered = symbol.unordered;
@@ -186,17 +200,9 @@ impl Compiler {
         defines: &[bool],
         map: &SourceMap,
     ) -> Result<(), Failed> {
-        let open = self.symbols.get(s).open;
-        self.open_data(s, name)?;
-        self.open_domains(s, defines, name)?;
-        let text = map.text(body);
-        if open {
-            self.shape_by_data(s, text, DataKind::Values);
-        }
+        let mut reader = self.open_reader(s, body, name, defines, DataKind::Values, map)?;
         let symbol = self.symbols.get(s).clone();
         let (table, dim) = (symbol.table, symbol.dim());
-        let mut reader =
-            DataReader::new(text, body.lo, DataKind::Values, self.modes.undf).with_arity(dim);
         let mut keys = Tuples::default();
         while let Some(record) = reader.next() {
             let record = match record {

@@ -335,11 +335,13 @@ fn side(
             false => Err(lack),
         }
     };
+    let lack = match at(&inner, 0.0) {
+        Ok(value) => return Ok(value),
+        Err(lack) => lack,
+    };
     let mut best = least(|theta| at(&inner, theta));
     if !best.as_ref().is_ok_and(|b| b.0 <= LITTLE) {
-        let roomy = at(&inner, 0.0).err().and_then(|lack| {
-            inner::room_for(&lack, poly, &inner, limits, &mut || monitor.interrupted())
-        });
+        let roomy = inner::room_for(&lack, poly, &inner, limits, &mut || monitor.interrupted());
         let second = roomy.map(|roomy| least(|theta| at(&roomy, theta)));
         let better = |a: Interval, b: Interval| match primal {
             true => a.high < b.high,
@@ -365,13 +367,13 @@ fn side(
 /// A share of the inner point that costs nothing to speak of.
 const LITTLE: f64 = 1e-13;
 
-/// The least share of the inner point that will do, to a factor of 2 or so, and what it gives.
+/// The least share of the inner point that will do where some is needed, to a factor of 2 or so, and what it gives.
 fn least(
     mut at: impl FnMut(f64) -> Result<Interval, Vec<f64>>,
 ) -> Result<(f64, Interval), Vec<f64>> {
     let coarse = (0..24).map(|k| 2f64.powi(-92 + 4 * k));
     let mut last = Vec::new();
-    for theta in std::iter::once(0.0).chain(coarse) {
+    for theta in coarse {
         match at(theta) {
             Ok(value) => {
                 let finer = [0.125, 0.25, 0.5].map(|f| theta * f);

@@ -66,7 +66,7 @@ impl Simplex {
 
     fn push_values(&mut self, stop: &mut dyn FnMut(u64) -> Option<Ended>) -> Result<(), Ended> {
         self.refactor().ok_or(Ended::Failed)?;
-        self.until_arrived(stop, Self::push_step)
+        self.until_arrived(stop, Self::push_values_step)
     }
 
     fn push_multipliers(
@@ -114,7 +114,7 @@ impl Simplex {
     }
 
     /// Moves all as far as the basic variables allow, and pivots there. True: all arrived.
-    fn push_step(&mut self) -> Option<bool> {
+    fn push_values_step(&mut self) -> Option<bool> {
         let moving: Vec<(usize, f64)> = (0..self.n + self.m)
             .map(|j| (j, self.way(j)))
             .filter(|w| w.1 != 0.0)
@@ -235,12 +235,13 @@ impl Simplex {
                 return None;
             }
             let free = l.is_infinite() && u.is_infinite();
-            let room = match self.is_low(j) {
+            let low = self.is_low(j);
+            let room = match low {
                 _ if free => -d[j].abs(),
                 true => d[j],
                 false => -d[j],
             };
-            let blocks = free || (rate[j] < 0.0) == self.is_low(j);
+            let blocks = free || (rate[j] < 0.0) == low;
             blocks.then_some((j, room, rate[j].abs()))
         });
         first(candidates, self.dual_tolerance)
