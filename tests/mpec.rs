@@ -213,11 +213,43 @@ fn load_factors_are_not_above_the_paper() {
     }
 }
 
+/// The only other local minimum of the branch y = 0 is (1, 0), with the value 1; no direction leads from it to (0, 1).
 #[test]
-fn pieces_are_refused_where_the_program_does_not_come_apart() {
+fn a_swap_leads_to_the_better_piece() {
+    for method in ["auto", "relaxation", "penalty", "pieces"] {
+        let all = text(
+            "swap",
+            &format!(
+                "Positive Variables x, y; Variable f; Equations cost, F_x;
+cost.. f =e= 0.5*sqr(x - 1) + sqr(y - 1);
+F_x.. x =g= 0;
+Model m / cost, F_x.y /; x.l = 1; option mpec_method = {method}, mpec_starts = 0;
+solve m using mpec minimizing f;"
+            ),
+        );
+        let [s] = &all[..] else { panic!("{all:?}") };
+        assert!(
+            (objective(s) - 0.5).abs() < 1e-8,
+            "{method}: {}",
+            objective(s)
+        );
+        assert_eq!(s.stationarity, Some("proved"), "{method}");
+        let message = s.message.clone().unwrap_or_default();
+        assert!(message.contains("no single swap of pieces"), "{message}");
+    }
+}
+
+/// All forty pairs are biactive at the solution and none is with another in a row: 2⁴⁰ branches together, two each.
+#[test]
+fn pairs_that_do_not_meet_are_searched_by_themselves() {
     let all = text(
-        "refused",
-        &format!("{CORNER} option mpec_method = pieces; solve m using mpec minimizing f;"),
+        "apart",
+        "Set i / 1*40 /; Positive Variables y(i); Variable f; Equations cost, F_y(i);
+cost.. f =e= sum(i, sqr(y(i) - 2));
+F_y(i).. y(i) =g= 0;
+Model m / cost, F_y.y /; solve m using mpec minimizing f;",
     );
-    assert!(all.iter().all(|s| s.solver.is_empty()), "{all:?}");
+    let [s] = &all[..] else { panic!("{all:?}") };
+    assert_eq!(s.stationarity, Some("proved"));
+    assert!((objective(s) - 160.0).abs() < 1e-6, "{}", objective(s));
 }

@@ -25,6 +25,7 @@ pub mod settings;
 pub mod split;
 pub mod stationarity;
 mod supports;
+mod swaps;
 mod tree;
 
 use super::answer::Answer;
@@ -132,24 +133,21 @@ impl Search<'_> {
                 let pieces = self.program.nearest(&start);
                 self.check_start(&start, pieces)?;
             }
-            Method::Penalty => {
-                self.relax(Kind::Penalty, &start)?;
-            }
-            Method::Pieces => {
-                return Err(SolveError::new(
-                    "the method `pieces` is for linear models whose pairs couple two systems that \
-                              have no equation in common",
-                ));
-            }
             _ => {
-                let kind = match self.options.aggregate {
-                    true => Kind::Aggregate,
-                    false => Kind::Scholtes,
+                let kind = match (method, self.options.aggregate) {
+                    (Method::Penalty, _) => Kind::Penalty,
+                    (_, true) => Kind::Aggregate,
+                    (_, false) => Kind::Scholtes,
                 };
-                self.relax(kind, &start)?;
-                if self.best.is_none() && !self.is_over() {
-                    self.relax(Kind::Penalty, &start)?;
+                if method == Method::Pieces {
+                    self.improve(&self.program.complete(start.clone()))?;
                 }
+                for kind in [kind, Kind::Penalty] {
+                    if self.best.is_none() && !self.is_over() {
+                        self.relax(kind, &start)?;
+                    }
+                }
+                self.explore(kind, &start)?;
             }
         }
         self.finish()
@@ -187,11 +185,22 @@ impl Search<'_> {
 
     /// Solves a branch and keeps what it gives. None if it was solved before or is not feasible.
     fn branch(&mut self, pieces: Vec<Piece>, start: &[f64]) -> Result<Option<Found>, SolveError> {
+        self.branch_within(pieces, start, u64::MAX)
+    }
+
+    /// The same, in so many iterations.
+    fn branch_within(
+        &mut self,
+        pieces: Vec<Piece>,
+        start: &[f64],
+        most: u64,
+    ) -> Result<Option<Found>, SolveError> {
         if !self.seen.insert(pieces.clone()) || self.is_over() {
             return Ok(None);
         }
         let instance = self.program.branch(&pieces, start);
-        let settings = self.sub_settings(&[("nlp_search", "no")]);
+        let mut settings = self.sub_settings(&[("nlp_search", "no")]);
+        settings.iteration_limit = settings.iteration_limit.min(most);
         let answer = match instance.is_linear() {
             true => super::answer::linear(&super::lp::Clarabel, &instance, &settings, self.monitor),
             false => super::nlp::answer(self.choice, &instance, &settings, self.monitor),
@@ -434,11 +443,23 @@ impl Search<'_> {
             }
             if usable && mu <= 1.01e-4 {
                 let pieces = self.program.nearest(&x);
-                if let Some(f) = self.branch(pieces, &x)? {
-                    let f = self.descend(f)?;
-                    if f.verdict == Some(Stationarity::Proved) && mu <= 1.01e-4 {
+                // What it leads to may be much worse: then it is not what this point is near to.
+                let value = self.program.objective(&x);
+                let settled = |f: &Found| {
+                    f.verdict == Some(Stationarity::Proved)
+                        && f.objective <= value + 1e-2 * f.objective.abs().max(1.0)
+                };
+                if self.seen.contains(&pieces) {
+                    if self.best.as_ref().is_some_and(settled) {
                         return Ok(());
                     }
+                    // From elsewhere another local solution of the branch may be reached.
+                    self.seen.remove(&pieces);
+                }
+                if let Some(f) = self.branch(pieces, &x)?
+                    && settled(&self.descend(f)?)
+                {
+                    return Ok(());
                 }
             }
             if self.is_over() || mu <= self.options.last {

@@ -206,7 +206,8 @@ pub fn sides(program: &Program) -> Option<Vec<bool>> {
     Some((0..n + m).map(on_a).collect())
 }
 
-fn root(parent: &mut [usize], mut k: usize) -> usize {
+/// The representative of k's set in a union of disjoint sets.
+pub(super) fn root(parent: &mut [usize], mut k: usize) -> usize {
     while parent[k] != k {
         parent[k] = parent[parent[k]];
         k = parent[k];

@@ -13,8 +13,13 @@
 //! without the products has the value 0: the point is then strongly stationary, and one linear program
 //! proves it. Otherwise branch and bound over the biactive pairs decides, up to a number of nodes. A
 //! direction with a negative value refutes, and names the branch in which the search continues.
+//!
+//! With the objective written in terms of the other columns the LPEC often comes apart: what no active row
+//! and no pair joins is searched by itself, for the value is the sum of the parts' values, and no part's is
+//! above 0. Ten pairs that do not meet then cost ten times three nodes, not 2¹⁰.
 
 use super::pairs::{Pair, Piece, Program};
+use super::split::root;
 use super::tree::{Limits, Lpcc};
 use crate::autodiff::Evaluator;
 use crate::model::instance::Relation;
@@ -58,30 +63,171 @@ pub fn check(
     let scale = problem.cost.iter().fold(1.0f64, |s, c| s.max(c.abs()))
         * program.objective(level).abs().max(1.0);
     let tolerance = SLOPE * scale;
-    let rhs = vec![0.0; pairs.len()];
-    let lpcc = Lpcc {
-        problem: &problem,
-        pairs: &pairs,
-        rhs: &rhs,
-    };
-    let limits = Limits {
-        nodes,
-        cutoff: -tolerance,
-        enough: -tolerance,
-        gap: 0.0,
-    };
-    let found = lpcc.search(&limits, None, stop);
-    match found.best {
-        Some((slope, direction)) => {
-            let pieces = pieces(program, level, &problem, &index, &direction);
-            Verdict::Refuted {
-                direction,
-                slope,
-                pieces,
+    let objective = program.instance.objective.map(|o| o.column as usize);
+    let defined = objective.and_then(|z| Defined::new(&problem, z));
+    let (mut slope, mut direction) = (0.0, vec![0.0; problem.n()]);
+    let (mut complete, mut left) = (true, nodes);
+    for part in Part::all(&problem, &pairs, defined.as_ref()) {
+        let rhs = vec![0.0; part.pairs.len()];
+        let lpcc = Lpcc {
+            problem: &part.problem,
+            pairs: &part.pairs,
+            rhs: &rhs,
+        };
+        let limits = Limits {
+            nodes: left,
+            cutoff: -tolerance,
+            enough: -tolerance,
+            gap: 0.0,
+        };
+        let found = lpcc.search(&limits, None, stop);
+        left = left.saturating_sub(found.nodes).max(1);
+        match found.best {
+            Some((value, d)) => {
+                slope += value;
+                let entries = part.columns.iter().zip(d);
+                entries.for_each(|(&j, d)| direction[j] = d);
+            }
+            None => complete &= found.complete,
+        }
+    }
+    if slope < 0.0 {
+        if let Some(defined) = defined {
+            direction[defined.column] = defined.value(&problem, &direction);
+        }
+        let pieces = pieces(program, level, &problem, &index, &direction);
+        return Verdict::Refuted {
+            direction,
+            slope,
+            pieces,
+        };
+    }
+    match complete {
+        true => Verdict::Proved,
+        false => Verdict::NotProved,
+    }
+}
+
+/// The objective's column, where one equation says what it is and its bounds are far.
+struct Defined {
+    column: usize,
+    row: usize,
+    coefficient: f64,
+}
+
+impl Defined {
+    fn new(problem: &Problem, column: usize) -> Option<Self> {
+        let mut rows = problem.columns.line(column);
+        let (row, coefficient) = rows.next()?;
+        let defines = rows.next().is_none()
+            && problem.row_lower[row] == problem.row_upper[row]
+            && problem.lower[column] < 0.0
+            && problem.upper[column] > 0.0;
+        defines.then_some(Self {
+            column,
+            row,
+            coefficient,
+        })
+    }
+
+    /// Its entry of a direction, from the others.
+    fn value(&self, problem: &Problem, d: &[f64]) -> f64 {
+        let others = problem.rows.line(self.row).filter(|e| e.0 != self.column);
+        -others.map(|(j, a)| a * d[j]).sum::<f64>() / self.coefficient
+    }
+}
+
+/// A part of the LPEC that no active row and no pair joins to the rest.
+struct Part {
+    problem: Problem,
+    pairs: Vec<Pair>,
+    /// Its columns in the whole.
+    columns: Vec<usize>,
+}
+
+impl Part {
+    /// The parts in which the objective can fall.
+    fn all(problem: &Problem, pairs: &[Pair], defined: Option<&Defined>) -> Vec<Self> {
+        let (m, n) = (problem.m(), problem.n());
+        let mut cost = problem.cost.clone();
+        if let Some(z) = defined {
+            for (j, a) in problem.rows.line(z.row) {
+                cost[j] -= problem.cost[z.column] * a / z.coefficient;
             }
         }
-        None if found.complete => Verdict::Proved,
-        None => Verdict::NotProved,
+        let leaves = |j: usize| problem.lower[j] == problem.upper[j];
+        // Rows of pairs count whatever their own bounds.
+        let finite =
+            |i: usize| problem.row_lower[i].is_finite() || problem.row_upper[i].is_finite();
+        let mut active: Vec<bool> = (0..m).map(finite).collect();
+        pairs.iter().for_each(|p| active[p.row] = true);
+        defined.iter().for_each(|z| active[z.row] = false);
+        let mut parent: Vec<usize> = (0..n + m).collect();
+        let mut join = |a: usize, b: usize| {
+            let (a, b) = (root(&mut parent, a), root(&mut parent, b));
+            parent[a] = b;
+        };
+        for i in (0..m).filter(|&i| active[i]) {
+            let moving = problem.rows.line(i).filter(|e| !leaves(e.0));
+            moving.for_each(|(j, _)| join(j, n + i));
+        }
+        pairs.iter().for_each(|p| join(p.column, n + p.row));
+        let mut number = vec![usize::MAX; n + m];
+        let mut parts: Vec<(Vec<usize>, Vec<usize>)> = Vec::new();
+        for j in (0..n).filter(|&j| cost[j] != 0.0 && !leaves(j)) {
+            let r = root(&mut parent, j);
+            if number[r] == usize::MAX {
+                number[r] = parts.len();
+                parts.push((Vec::new(), Vec::new()));
+            }
+        }
+        for k in (0..n + m).filter(|&k| k >= n || !leaves(k)) {
+            if let Some((columns, rows)) = parts.get_mut(number[root(&mut parent, k)]) {
+                if k < n {
+                    columns.push(k)
+                } else {
+                    rows.push(k - n)
+                }
+            }
+        }
+        let mut place = vec![usize::MAX; n + m];
+        for (columns, rows) in &parts {
+            columns.iter().enumerate().for_each(|(k, &j)| place[j] = k);
+            rows.iter().enumerate().for_each(|(k, &i)| place[n + i] = k);
+        }
+        let mut out: Vec<Self> = Vec::new();
+        for (columns, rows) in parts {
+            let pick = |v: &[f64], at: &[usize]| at.iter().map(|&k| v[k]).collect::<Vec<f64>>();
+            let mut lines = Sparse::new();
+            for &i in &rows {
+                let moving = problem.rows.line(i).filter(|e| !leaves(e.0));
+                lines.push(moving.map(|(j, a)| (place[j], a)));
+            }
+            out.push(Self {
+                problem: Problem {
+                    cost: pick(&cost, &columns),
+                    lower: pick(&problem.lower, &columns),
+                    upper: pick(&problem.upper, &columns),
+                    row_lower: pick(&problem.row_lower, &rows),
+                    row_upper: pick(&problem.row_upper, &rows),
+                    columns: lines.transpose(columns.len()),
+                    rows: lines,
+                    offset: 0.0,
+                },
+                pairs: Vec::new(),
+                columns,
+            });
+        }
+        for p in pairs {
+            if let Some(part) = out.get_mut(number[root(&mut parent, p.column)]) {
+                part.pairs.push(Pair {
+                    column: place[p.column],
+                    row: place[n + p.row],
+                    ..*p
+                });
+            }
+        }
+        out
     }
 }
 
