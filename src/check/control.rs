@@ -292,7 +292,8 @@ impl Compiler {
             let here = match base {
                 Some(base) => {
                     self.control_lag_base(base, out)?;
-                    lags.push((n, position));
+                    let base = self.lag_base(base, of, position)?;
+                    lags.push((n, base));
                     position += 1;
                     Vec::new()
                 }
@@ -301,8 +302,8 @@ impl Compiler {
             position += here.len();
             parts.push(here);
         }
-        for (n, position) in lags {
-            parts[n] = self.index(&indices[n], of, position)?;
+        for (n, base) in lags {
+            parts[n] = vec![self.lag(&indices[n], base)?];
         }
         let parts = parts.concat();
         if parts.len() != dim {
@@ -313,6 +314,16 @@ impl Compiler {
 
     fn control_lag_base(&mut self, base: &Expr, out: &mut Domain) -> Result<(), Failed> {
         if let ExprKind::Apply {
+            name,
+            attribute: Some(a),
+            arguments: None,
+        } = &base.kind
+            && a.name.eq_ignore_ascii_case("local")
+        {
+            let s = self.lookup_set(name)?;
+            self.used(s, name.span);
+            self.run_over(s, out);
+        } else if let ExprKind::Apply {
             name,
             attribute: None,
             arguments: None,

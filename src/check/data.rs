@@ -7,9 +7,9 @@ use super::{Compiler, Failed};
 use crate::data::universe::Label;
 use crate::data::value::{self, EPS};
 use crate::diag::Diagnostic;
-use crate::source::{SourceMap, Span};
+use crate::source::{Known, SourceMap, Span};
 use crate::syntax::ast::Ident;
-use crate::syntax::data::{DataKind, DataReader, KeyPart, Tail, width};
+use crate::syntax::data::{DataKind, DataReader, KeyPart, Tail, undf_refused, width};
 
 impl Compiler {
     /// The sets that data define, `p(i<)`, get theirs with them.
@@ -118,6 +118,16 @@ impl Compiler {
                     break;
                 }
             };
+            let spelled_out = set_prefix(record.key);
+            let parts = spelled_out.as_deref().unwrap_or(record.key);
+            // The elements of a set that is not ordered come in another order.
+            let all_of_unordered = parts.iter().any(|part| match part {
+                KeyPart::AllOf { set, .. } => self
+                    .symbols
+                    .find(set)
+                    .is_some_and(|set| self.symbols.get(self.symbols.root(set)).unordered),
+                _ => false,
+            });
             let text: Option<Box<str>> = match &record.value {
                 Tail::None => None,
                 Tail::Text(t, _) => Some((&**t).into()),
@@ -160,7 +170,7 @@ impl Compiler {
                     continue;
                 }
                 if dim == 1 {
-                    unordered |= last.is_some_and(|l| l > key[0]);
+                    unordered |= all_of_unordered || last.is_some_and(|l| l > key[0]);
                     last = Some(key[0]);
                 }
                 self.store.table_mut(table).set(key, 1.0);
@@ -221,6 +231,10 @@ impl Compiler {
                 // `/ 5 /` of a scalar comes as a lone label.
                 (Tail::None, [KeyPart::Label { text, span, .. }]) if dim == 0 => match number(text)
                 {
+                    Some(v) if value::is_undf(v) && !self.modes.undf => {
+                        self.report(undf_refused(*span));
+                        continue;
+                    }
                     Some(v) => {
                         self.put_value(s, table, &[], v, *span);
                         continue;
@@ -258,7 +272,7 @@ impl Compiler {
                 .expand(s, key, record.matched, span, defines, &mut keys)
                 .is_err()
             {
-                if self.error_count() >= super::MAX_ERRORS {
+                if self.errors() >= super::MAX_ERRORS {
                     break;
                 }
                 continue;
@@ -320,7 +334,6 @@ impl Compiler {
         body: Span,
         map: &SourceMap,
     ) -> Result<(), Failed> {
-        let symbol = self.symbols.get(s).clone();
         let mut reader =
             DataReader::new(map.text(body), body.lo, DataKind::Values, self.modes.undf);
         while let Some(record) = reader.next() {
@@ -343,16 +356,23 @@ impl Compiler {
                 continue;
             };
             let _ = self.attribute_data(s, record.key, v, record.span);
-            self.symbols.get_mut(s).assigned = true;
         }
-        for o in 0..attribute::COUNT {
-            self.store.table_mut(symbol.table + o).tidy();
-        }
+        self.attributes_given(s);
         Ok(())
     }
 
+    /// Data gave attributes of a variable or equation.
+    pub(super) fn attributes_given(&mut self, s: SymbolId) {
+        let symbol = self.symbols.get_mut(s);
+        symbol.assigned = true;
+        let table = symbol.table;
+        for o in 0..attribute::COUNT {
+            self.store.table_mut(table + o).tidy();
+        }
+    }
+
     /// One record, `a.lo 5`. The attribute stands last, perhaps in a group: `a.(lo 1, up 5)`.
-    fn attribute_data(
+    pub(super) fn attribute_data(
         &mut self,
         s: SymbolId,
         key: &[KeyPart],

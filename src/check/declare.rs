@@ -145,7 +145,7 @@ impl Compiler {
             .domain
             .as_ref()
             .is_none_or(|l| l.iter().all(|n| &*n.name.name == "*"))
-            && dim == usize::from(matches!(kind, SymbolKind::Set { .. }))
+            && dim <= usize::from(matches!(kind, SymbolKind::Set { .. }))
             && matches!(
                 kind,
                 SymbolKind::Set { .. }

@@ -206,15 +206,13 @@ impl Compiler {
                 let key = self.key(s, inner, e.span)?;
                 Ok(key.parts)
             }
-            ExprKind::Sum(terms) => self.lag(e, terms, of, position),
-            ExprKind::Binary(op @ (BinaryOp::CircularPlus | BinaryOp::CircularMinus), base, offset) => {
-                let (base_part, set) = self.lag_base(base, of, position)?;
-                let mut offset = self.expr(offset)?;
-                if *op == BinaryOp::CircularMinus {
-                    let span = offset.span;
-                    offset = Node::data(NodeKind::Negate(Box::new(offset)), span);
-                }
-                Ok(vec![Part::Lag(Rc::new(Lag { base: base_part, set, offset, circular: true }))])
+            ExprKind::Sum(terms) => {
+                let base = self.lag_base(&terms[0].1, of, position)?;
+                Ok(vec![self.lag(e, base)?])
+            }
+            ExprKind::Binary(BinaryOp::CircularPlus | BinaryOp::CircularMinus, base, _) => {
+                let base = self.lag_base(base, of, position)?;
+                Ok(vec![self.lag(e, base)?])
             }
             ExprKind::Number(x) => {
                 let text = x.to_string();
@@ -368,7 +366,7 @@ impl Compiler {
         self.fail(d)
     }
 
-    fn lag_base(
+    pub(super) fn lag_base(
         &mut self,
         base: &Expr,
         of: SymbolId,
@@ -377,9 +375,13 @@ impl Compiler {
         match &base.kind {
             ExprKind::Apply {
                 name,
-                attribute: None,
+                attribute,
                 arguments: None,
-            } => {
+            } if attribute
+                .as_ref()
+                // `i.local` was put under control before.
+                .is_none_or(|a| a.name.eq_ignore_ascii_case("local")) =>
+            {
                 let Some(s) = self.symbols.find(&name.name) else {
                     return self.unknown_index(name);
                 };
@@ -416,36 +418,44 @@ impl Compiler {
     }
 
     /// `t-1`, `t+k`.
-    fn lag(
-        &mut self,
-        e: &Expr,
-        terms: &[(Sign, Expr)],
-        of: SymbolId,
-        position: usize,
-    ) -> Result<Vec<Part>, Failed> {
-        let (base, set) = self.lag_base(&terms[0].1, of, position)?;
-        if terms.len() > 2 {
-            return self.fail(
-                Diagnostic::error("E0309", e.span, "an index takes one lag or lead")
-                    .label("several")
-                    .help("put the sum into parentheses: `t+(k+1)`"),
-            );
-        }
-        let mut offset = Vec::new();
-        for (sign, t) in &terms[1..] {
-            offset.push((*sign == Sign::Minus, self.expr(t)?));
-        }
-        let offset = match offset.len() {
-            1 if !offset[0].0 => offset.remove(0).1,
-            _ => Node::data(NodeKind::Sum(offset), e.span),
+    pub(super) fn lag(&mut self, e: &Expr, (base, set): (Part, TableId)) -> Result<Part, Failed> {
+        let (offset, circular) = match &e.kind {
+            ExprKind::Binary(op, _, offset) => {
+                let offset = self.expr(offset)?;
+                let span = offset.span;
+                let offset = match op {
+                    BinaryOp::CircularMinus => Node::data(NodeKind::Negate(Box::new(offset)), span),
+                    _ => offset,
+                };
+                (offset, true)
+            }
+            ExprKind::Sum(terms) => {
+                if terms.len() > 2 {
+                    return self.fail(
+                        Diagnostic::error("E0309", e.span, "an index takes one lag or lead")
+                            .label("several")
+                            .help("put the sum into parentheses: `t+(k+1)`"),
+                    );
+                }
+                let mut offset = Vec::new();
+                for (sign, t) in &terms[1..] {
+                    offset.push((*sign == Sign::Minus, self.expr(t)?));
+                }
+                let offset = match offset.len() {
+                    1 if !offset[0].0 => offset.remove(0).1,
+                    _ => Node::data(NodeKind::Sum(offset), e.span),
+                };
+                self.no_variable(&offset, "a lag")?;
+                (offset, false)
+            }
+            _ => unreachable!("lags are sums or circular"),
         };
-        self.no_variable(&offset, "a lag")?;
-        Ok(vec![Part::Lag(Rc::new(Lag {
+        Ok(Part::Lag(Rc::new(Lag {
             base,
             set,
             offset,
-            circular: false,
-        }))])
+            circular,
+        })))
     }
 
     /// An error unless the set has an order.

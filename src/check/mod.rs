@@ -118,12 +118,14 @@ pub fn compile(
                     }
                 }
                 let mut one = Vec::new();
-                let _ = c.statement(&stmt, parser.map(), &mut one);
-                code.append(&mut one);
+                // What is wrong is not run, should `$clearError` let the rest run.
+                if c.statement(&stmt, parser.map(), &mut one).is_ok() {
+                    code.append(&mut one);
+                }
             }
             Err(errors) => errors.into_iter().for_each(|d| c.report(d)),
         }
-        if c.error_count() >= MAX_ERRORS {
+        if c.errors() - parser.cleared_errors() >= MAX_ERRORS {
             let at = c.diagnostics.last().map_or_else(Span::default, |d| d.span);
             c.diagnostics.push(Diagnostic::error(
                 "E0300",
@@ -133,6 +135,7 @@ pub fn compile(
             break;
         }
     }
+    c.clear_errors(parser.cleared_errors());
     c.store.refresh_universe();
     // `$terminate`: nothing is run, which is no failure.
     if parser.ending() != Ending::Regular {
@@ -215,11 +218,13 @@ impl Compiler {
         }
     }
 
-    fn error_count(&self) -> usize {
-        self.diagnostics
-            .iter()
-            .filter(|d| d.severity == Severity::Error)
-            .count()
+    /// `$clearError`: the first `count` errors are warnings from now on.
+    fn clear_errors(&mut self, count: usize) {
+        let errors = self.diagnostics.iter_mut();
+        let errors = errors.filter(|d| d.severity == Severity::Error);
+        errors
+            .take(count)
+            .for_each(|d| d.severity = Severity::Warning);
     }
 
     /// Notes that a symbol's data are read; an error if it never got any.
@@ -270,6 +275,11 @@ impl Compiler {
 }
 
 impl Known for Compiler {
+    fn errors(&self) -> usize {
+        let errors = self.diagnostics.iter();
+        errors.filter(|d| d.severity == Severity::Error).count()
+    }
+
     fn set_text(&self, name: &str, what: &str) -> Option<String> {
         let s = self
             .symbols

@@ -5,7 +5,7 @@ use super::node::*;
 use super::symbols::{DomainPosition, SymbolKind};
 use super::{Compiler, Failed};
 use crate::diag::{Diagnostic, nearest};
-use crate::source::Span;
+use crate::source::{Known, Span};
 use crate::syntax::ast::{ModelItem, Solve, VariableKind};
 
 impl Compiler {
@@ -274,7 +274,7 @@ impl Compiler {
             mentions(&e.left, v) || mentions(&e.right, v)
         });
         // An equation that failed to compile may be the one that mentions it.
-        if !mentioned && self.error_count() == 0 {
+        if !mentioned && self.errors() == 0 {
             return self.fail(
                 Diagnostic::error(
                     "E0360",

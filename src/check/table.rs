@@ -6,17 +6,21 @@ use super::symbols::SymbolKind;
 use super::{Compiler, Failed, MAX_ERRORS};
 use crate::data::value::truth;
 use crate::diag::Diagnostic;
-use crate::source::{SourceMap, Span};
-use crate::syntax::ast::TableDecl;
+use crate::source::{Known, SourceMap, Span};
+use crate::syntax::ast::{TableDecl, TableOf, VariableKind};
 use crate::syntax::data::{KeyPart, Tail, width};
 use crate::syntax::table::{TableItem, TableReader};
 
 impl Compiler {
     pub(super) fn declare_table(&mut self, t: &TableDecl, map: &SourceMap) -> Result<(), Failed> {
-        // A set that is declared already may get its elements so: cells are `yes` or nothing.
+        // A symbol that is declared already may get its values so.
         let declared = self.symbols.find(&t.symbol.name.name);
-        let kind = match declared.map(|s| &self.symbols.get(s).kind) {
-            Some(kind @ SymbolKind::Set { .. }) => kind.clone(),
+        let kind = match (t.of, declared.map(|s| &self.symbols.get(s).kind)) {
+            (_, Some(kind @ SymbolKind::Set { .. })) => kind.clone(),
+            (TableOf::Set, _) => SymbolKind::Set { singleton: false },
+            (_, Some(SymbolKind::Variable(_))) | (TableOf::Variable(_), _) => {
+                return self.variable_table(t, map);
+            }
             _ => SymbolKind::Parameter { scalar: false },
         };
         let s = self.declare(&t.symbol, kind, |c, n| c.store.add_table(n, 0.0))?;
@@ -74,7 +78,7 @@ impl Compiler {
                 }
                 Err(d) => {
                     self.report(d);
-                    if self.error_count() >= MAX_ERRORS {
+                    if self.errors() >= MAX_ERRORS {
                         break;
                     }
                     continue;
@@ -103,12 +107,39 @@ impl Compiler {
             for (k, _) in keys.rows() {
                 if !symbol.is_set() {
                     self.put_value(s, symbol.table, k, value, cell.span);
-                } else if truth(value) {
-                    self.store.table_mut(symbol.table).set(k, 1.0);
+                } else {
+                    let member = f64::from(u8::from(truth(value)));
+                    self.store.table_mut(symbol.table).set(k, member);
                 }
             }
         }
         self.store.table_mut(symbol.table).tidy();
+        Ok(())
+    }
+
+    /// A table of a variable: the last label of each cell is an attribute.
+    fn variable_table(&mut self, t: &TableDecl, map: &SourceMap) -> Result<(), Failed> {
+        let kind = match t.of {
+            TableOf::Variable(kind) => kind,
+            _ => VariableKind::Unstated,
+        };
+        self.declare_variables(kind, std::slice::from_ref(&t.symbol), map)?;
+        let s = self.lookup(&t.symbol.name)?;
+        let dim = self.symbols.get(s).dim() + 1;
+        let mut reader = TableReader::new(map.expanded(), t.body, dim, self.modes.undf);
+        while let Some(item) = reader.next() {
+            match item {
+                Ok(TableItem::Cell(cell)) => {
+                    if let Tail::Number(v, _) = cell.value {
+                        let key = [cell.row, cell.column].concat();
+                        let _ = self.attribute_data(s, &key, v, cell.span);
+                    }
+                }
+                Ok(TableItem::Headings | TableItem::EmptyRow(_)) => {}
+                Err(d) => self.report(d),
+            }
+        }
+        self.attributes_given(s);
         Ok(())
     }
 

@@ -1,7 +1,7 @@
 //! Arithmetic with GAMS's special values. Source: GAMS 54.6, observed.
 
 use crate::check::node::BinaryOp;
-use crate::data::value::{EPS, NA, UNDF, is_eps, is_na, is_undf, number, truth};
+use crate::data::value::{EPS, NA, UNDF, as_acronym, is_eps, is_na, is_undf, number, truth};
 
 /// Why an operation has no value.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -17,6 +17,11 @@ pub enum ArithmeticError {
 /// Results of this size and more are not numbers any more.
 const HUGE: f64 = 1e300;
 
+/// Whether a number cannot be computed with: `undf` or an acronym.
+pub fn is_undefined(x: f64) -> bool {
+    x.is_nan() && !is_eps(x) && !is_na(x)
+}
+
 /// a + b
 #[inline]
 pub fn add(a: f64, b: f64) -> f64 {
@@ -26,7 +31,7 @@ pub fn add(a: f64, b: f64) -> f64 {
 
 #[cold]
 fn add_special(a: f64, b: f64) -> f64 {
-    if is_undf(a) || is_undf(b) {
+    if is_undefined(a) || is_undefined(b) {
         return UNDF;
     }
     if is_na(a) || is_na(b) {
@@ -49,7 +54,11 @@ fn add_special(a: f64, b: f64) -> f64 {
 /// −a
 #[inline]
 pub fn negate(a: f64) -> f64 {
-    if a.is_nan() { a } else { -a }
+    match a {
+        a if !a.is_nan() => -a,
+        a if as_acronym(a).is_some() => UNDF,
+        a => a,
+    }
 }
 
 /// a · b
@@ -65,7 +74,7 @@ pub fn multiply(a: f64, b: f64) -> Result<f64, ArithmeticError> {
 
 #[cold]
 fn multiply_special(a: f64, b: f64) -> Result<f64, ArithmeticError> {
-    if is_undf(a) || is_undf(b) {
+    if is_undefined(a) || is_undefined(b) {
         return Ok(UNDF);
     }
     if is_na(a) || is_na(b) {
@@ -109,32 +118,33 @@ pub fn divide_by_scalar(a: f64, b: f64) -> Result<f64, ArithmeticError> {
 
 #[cold]
 fn divide_special(a: f64, b: f64) -> Result<f64, ArithmeticError> {
-    if is_undf(a) || is_undf(b) {
+    if is_undefined(a) || is_undefined(b) {
         return Ok(UNDF);
-    }
-    if is_na(a) || is_na(b) {
-        return Ok(NA);
     }
     if b == 0.0 || is_eps(b) {
         return Err(ArithmeticError::DivisionByZero);
     }
-    if is_eps(a) {
-        return Ok(EPS);
+    if is_na(a) || is_na(b) {
+        return Ok(NA);
     }
     match (a.is_infinite(), b.is_infinite()) {
-        (true, true) => Ok(1.0),
+        (true, true) => Ok(a.signum() * b.signum()),
         (false, true) => Ok(0.0),
+        (false, false) if is_eps(a) => Ok(EPS),
         (true, false) => Ok(if b > 0.0 { a } else { -a }),
         _ if (a / b).abs() < HUGE => Ok(a / b),
         _ => Err(ArithmeticError::Overflow),
     }
 }
 
-/// A relation or logical operation: 1, 0, or `na`.
+/// A relation or logical operation: 1, 0, `na` or `undf`.
 pub fn relate(op: BinaryOp, a: f64, b: f64) -> f64 {
     let yes = |c: bool| f64::from(u8::from(c));
     match op {
         BinaryOp::And | BinaryOp::Or | BinaryOp::Xor | BinaryOp::Implies | BinaryOp::Equivalent => {
+            if is_undf(a) || is_undf(b) {
+                return UNDF;
+            }
             if is_na(a) || is_na(b) {
                 return NA;
             }
@@ -155,6 +165,14 @@ pub fn relate(op: BinaryOp, a: f64, b: f64) -> f64 {
             yes(compare(op, a.clamp(-1e299, 1e299), b.clamp(-1e299, 1e299)))
         }
     }
+}
+
+/// `not a`
+pub fn not(a: f64) -> f64 {
+    if is_undf(a) || is_na(a) {
+        return a;
+    }
+    f64::from(u8::from(!truth(a)))
 }
 
 fn compare(op: BinaryOp, a: f64, b: f64) -> bool {
@@ -193,7 +211,7 @@ fn relate_special(op: BinaryOp, a: f64, b: f64) -> f64 {
     match op {
         BinaryOp::Eq => yes(same),
         BinaryOp::Ne => yes(!same),
-        _ if is_undf(a) || is_undf(b) => UNDF,
+        _ if is_undefined(a) || is_undefined(b) => UNDF,
         _ => NA,
     }
 }
@@ -232,5 +250,15 @@ mod tests {
         same(relate(BinaryOp::Gt, NA, 1.0), NA);
         same(relate(BinaryOp::And, NA, 1.0), NA);
         same(relate(BinaryOp::And, EPS, 1.0), 1.0);
+        same(relate(BinaryOp::Or, NA, UNDF), UNDF);
+        same(not(NA), NA);
+        same(divide(f64::INFINITY, f64::NEG_INFINITY).unwrap(), -1.0);
+        same(divide(EPS, f64::INFINITY).unwrap(), 0.0);
+        assert_eq!(divide(NA, 0.0), Err(ArithmeticError::DivisionByZero));
+        let word = crate::data::value::acronym(3);
+        same(add(word, 1.0), UNDF);
+        same(negate(word), UNDF);
+        same(relate(BinaryOp::Le, word, NA), UNDF);
+        same(relate(BinaryOp::And, word, 1.0), 1.0);
     }
 }

@@ -5,16 +5,25 @@ use jiff::civil::{Date, date};
 
 const EPOCH: Date = date(1899, 12, 31);
 
-/// Day number of a date.
+/// The days that have a number: of the years 1 to 9999.
+const DAYS: std::ops::RangeInclusive<f64> = -693_594.0..=2_958_464.0;
+
+/// Day number of a date. Month and day may lie outside their year and month: `jdate(2005, 14, -3)`.
 pub fn jdate(year: f64, month: f64, day: f64) -> Option<f64> {
-    let d = Date::new(year as i16, month as i8, day as i8).ok()?;
-    Some(f64::from((d - EPOCH).get_days()))
+    let months = month.floor() - 1.0;
+    let year = year.floor() + (months / 12.0).floor();
+    let first = Date::new(year as i16, months.rem_euclid(12.0) as i8 + 1, 1).ok()?;
+    let number = f64::from((first - EPOCH).get_days()) + day.floor() - 1.0;
+    (year >= 1.0 && DAYS.contains(&number)).then_some(number)
 }
 
 /// A component of a day number.
 pub fn part(f: DataFunction, x: f64) -> Option<f64> {
     use DataFunction as D;
     let days = x.floor();
+    if !DAYS.contains(&days) {
+        return None;
+    }
     let d = EPOCH
         .checked_add(jiff::Span::new().try_days(days as i64).ok()?)
         .ok()?;
@@ -41,6 +50,11 @@ mod tests {
     fn day_numbers() {
         assert_eq!(jdate(1900.0, 1.0, 1.0), Some(1.0));
         assert_eq!(jdate(2000.0, 1.0, 1.0), Some(36525.0));
+        assert_eq!(jdate(2005.7, 22.0, 300.3), Some(39289.0));
+        assert_eq!(jdate(2005.0, -5.0, -10.7), Some(38156.0));
+        assert_eq!(jdate(9999.0, 13.0, 1.0), None);
+        assert_eq!(jdate(1.0, 1.0, 1.0), Some(-693594.0));
+        assert_eq!(part(DataFunction::GMonth, -693595.0), None);
         assert_eq!(part(DataFunction::GDow, 36525.0), Some(6.0));
         assert_eq!(part(DataFunction::GLeap, 36525.0), Some(1.0));
         assert_eq!(part(DataFunction::GYear, 36525.5), Some(2000.0));

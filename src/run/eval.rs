@@ -113,6 +113,20 @@ impl Machine<'_> {
         }
     }
 
+    /// A value to compute with: an acronym is none.
+    #[inline]
+    fn no_acronym(&self, v: f64, span: Span) -> f64 {
+        if v.is_nan() && value::as_acronym(v).is_some() {
+            return self.execution_error(
+                "E0408",
+                span,
+                "an acronym stands where a number is computed with".into(),
+                "acronyms can be assigned and compared with `=` and `<>`",
+            );
+        }
+        v
+    }
+
     /// Reports an execution error; the value is `undf`.
     pub(super) fn execution_error(
         &self,
@@ -143,7 +157,7 @@ impl Machine<'_> {
             NodeKind::Sum(terms) => {
                 let mut acc = 0.0;
                 for (k, (minus, t)) in terms.iter().enumerate() {
-                    let v = self.eval(t, frame);
+                    let v = self.no_acronym(self.eval(t, frame), t.span);
                     let v = if *minus { arithmetic::negate(v) } else { v };
                     acc = if k == 0 { v } else { arithmetic::add(acc, v) };
                 }
@@ -153,12 +167,12 @@ impl Machine<'_> {
                 let mut acc = 1.0;
                 for (k, (divide, f)) in factors.iter().enumerate() {
                     if let Some(b) = f.kind.reciprocal_of() {
-                        let v = self.eval(b, frame);
+                        let v = self.no_acronym(self.eval(b, frame), b.span);
                         let r = arithmetic::divide_by_scalar(if k == 0 { 1.0 } else { acc }, v);
                         acc = self.arithmetic(r, b.span);
                         continue;
                     }
-                    let v = self.eval(f, frame);
+                    let v = self.no_acronym(self.eval(f, frame), f.span);
                     acc = match (k, divide) {
                         (0, false) => v,
                         (_, true) => self.arithmetic(arithmetic::divide(acc, v), f.span),
@@ -167,8 +181,8 @@ impl Machine<'_> {
                 }
                 acc
             }
-            NodeKind::Negate(a) => arithmetic::negate(self.eval(a, frame)),
-            NodeKind::Not(a) => f64::from(u8::from(!truth(self.eval(a, frame)))),
+            NodeKind::Negate(a) => arithmetic::negate(self.no_acronym(self.eval(a, frame), a.span)),
+            NodeKind::Not(a) => arithmetic::not(self.eval(a, frame)),
             NodeKind::Binary(BinaryOp::Power, a, b) => {
                 let (a, b) = (self.eval(a, frame), self.eval(b, frame));
                 self.call(Function::RPower, &[a, b], n.span)
@@ -292,10 +306,26 @@ impl Machine<'_> {
                 }
             };
         }
-        if args.iter().any(|&x| is_undf(x)) {
-            return UNDF;
+        let takes_words = matches!(
+            f,
+            Function::IfThen
+                | Function::RelEq
+                | Function::RelNe
+                | Function::BoolAnd
+                | Function::BoolOr
+                | Function::BoolNot
+        );
+        let bad = if takes_words {
+            is_undf
+        } else {
+            arithmetic::is_undefined
+        };
+        if args.iter().any(|&x| bad(x)) {
+            let word = args.iter().find(|&&x| value::as_acronym(x).is_some());
+            return self.no_acronym(*word.unwrap_or(&UNDF), span);
         }
-        if args.iter().any(|&x| is_na(x)) {
+        let power = matches!(f, Function::Power | Function::RPower);
+        if args.iter().any(|&x| is_na(x)) && !(power && args[0] < 0.0) {
             return NA;
         }
         let eps = args.iter().any(|&x| is_eps(x));
@@ -308,7 +338,29 @@ impl Machine<'_> {
                 .iter()
                 .copied()
                 .fold(f64::NEG_INFINITY, |a, b| extreme(a, b, |a, b| a > b)),
-            Function::Abs | Function::Sqrt | Function::Sign | Function::Sqr if eps => EPS,
+            Function::Abs
+            | Function::Sqrt
+            | Function::Sign
+            | Function::Sqr
+            | Function::ArcTan
+            | Function::Sin
+                if eps =>
+            {
+                EPS
+            }
+            Function::Mod if is_eps(args[0]) && args[1].is_finite() && args[1] != 0.0 => EPS,
+            Function::Power | Function::RPower if is_eps(args[0]) && args[1] > 0.0 => {
+                if args[1].is_finite() { EPS } else { 0.0 }
+            }
+            Function::Power | Function::RPower if args[0] == 0.0 && args[1] == f64::INFINITY => 0.0,
+            Function::Power | Function::RPower if args[0] == f64::INFINITY && args[1] != 0.0 => {
+                if args[1] > 0.0 {
+                    args[0]
+                } else {
+                    0.0
+                }
+            }
+            Function::Round if eps || args.get(1) == Some(&f64::NEG_INFINITY) => 0.0,
             Function::Sign => args[0].signum(),
             Function::Floor | Function::Ceil | Function::Round | Function::Trunc => args[0],
             Function::IfThen => {
@@ -326,7 +378,7 @@ impl Machine<'_> {
             Function::RelGe => arithmetic::relate(BinaryOp::Ge, args[0], args[1]),
             Function::BoolAnd => arithmetic::relate(BinaryOp::And, args[0], args[1]),
             Function::BoolOr => arithmetic::relate(BinaryOp::Or, args[0], args[1]),
-            Function::BoolNot => f64::from(u8::from(!truth(args[0]))),
+            Function::BoolNot => arithmetic::not(args[0]),
             _ => {
                 let plain: Vec<f64> = args.iter().map(|&x| number(x)).collect();
                 match function_value(f, &plain) {
@@ -386,7 +438,13 @@ impl Machine<'_> {
             D::Pi => std::f64::consts::PI,
             D::JNow => self.now(),
             D::JStart => self.started,
-            D::JDate => super::calendar::jdate(a[0], a[1], a[2]).unwrap_or(UNDF),
+            D::JDate => match super::calendar::jdate(a[0], a[1], a[2]) {
+                Some(day) => day,
+                None => {
+                    drop(random);
+                    self.no_date(span)
+                }
+            },
             D::JTime => (a[0] * 3600.0 + a[1] * 60.0 + a[2]) / 86400.0,
             D::GYear
             | D::GMonth
@@ -396,7 +454,13 @@ impl Machine<'_> {
             | D::GHour
             | D::GMinute
             | D::GSecond
-            | D::GMillisec => super::calendar::part(f, a[0]).unwrap_or(UNDF),
+            | D::GMillisec => match super::calendar::part(f, a[0]) {
+                Some(part) => part,
+                None => {
+                    drop(random);
+                    self.no_date(span)
+                }
+            },
             D::TimeElapsed => self.elapsed(),
             D::ExecError => self.execution_error_count() as f64,
             D::ErrorLevel | D::Zero | D::Sleep => 0.0,
@@ -404,6 +468,15 @@ impl Machine<'_> {
             D::GamsVersion => 54.0,
             D::Mapval => unreachable!("handled above"),
         }
+    }
+
+    fn no_date(&self, span: Span) -> f64 {
+        self.execution_error(
+            "E0403",
+            span,
+            "this is no date".into(),
+            "days have numbers from the year 1 to the year 9999",
+        )
     }
 
     fn label_attribute(
@@ -500,7 +573,7 @@ pub(super) fn derived_value(d: Derived, is_equation: bool, l: f64, lo: f64, up: 
 /// The smaller or larger of two values: na and undf win, eps counts as 0.
 fn extreme(a: f64, b: f64, better: fn(f64, f64) -> bool) -> f64 {
     if a.is_nan() || b.is_nan() {
-        if is_undf(a) || is_undf(b) {
+        if arithmetic::is_undefined(a) || arithmetic::is_undefined(b) {
             return UNDF;
         }
         if is_na(a) || is_na(b) {

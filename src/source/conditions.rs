@@ -64,6 +64,11 @@ impl Preprocessor<'_> {
             at += text[at..].len() - text[at..].trim_start().len();
         }
         let rest = &text[at..];
+        if negate && rest.starts_with("==") {
+            return Err(
+                "`not ==` may mean the operator or the text `not`; put it in quotes".into(),
+            );
+        }
         let (truth, len) = match self.question(rest, known) {
             Some(found) => found?,
             None if flavour == Flavour::Numeric => {
@@ -136,7 +141,7 @@ impl Preprocessor<'_> {
                 let asked: f64 = number.parse().unwrap_or(f64::INFINITY);
                 Some(Ok((asked <= 540.0, len + n)))
             }
-            "errorfree" => Some(Ok((!self.had_errors, len))),
+            "errorfree" => Some(Ok((known.errors() == self.cleared_errors, len))),
             "warnings" => Some(Ok((!self.warnings.is_empty(), len))),
             "errorlevel" => {
                 let (_, n) = term(after, false);

@@ -65,8 +65,6 @@ const SILENT: &[&str] = &[
     "use205",
     "use225",
     "use999",
-    "clearerror",
-    "clearerrors",
     "showvariables",
     "splitoption",
     "version",
@@ -134,6 +132,7 @@ const OTHERS: &[&str] = &[
     "terminate",
     "abort",
     "error",
+    "clearerror",
     "macro",
     "ontext",
     "offtext",
@@ -548,6 +547,7 @@ impl Preprocessor<'_> {
                 }
                 return refuse(d);
             }
+            "clearerror" | "clearerrors" => self.cleared_errors = known.errors(),
             "macro" => return self.define_macro(rest, lo, hi),
             "eolcom" | "inlinecom" | "comment" | "dollar" => {
                 return self.set_mark(word, rest, lo, hi);
@@ -820,12 +820,26 @@ impl Preprocessor<'_> {
                 break;
             }
             let next = self.take_line();
+            // Comments may stand between the lines.
+            if next.text.as_bytes().first() == Some(&self.marks.comment) {
+                text.push('\\');
+                continue;
+            }
+            if let Some(start) = self.marks.directive(&next.text)
+                && next.text[start..][..word_len(&next.text[start..])]
+                    .eq_ignore_ascii_case("ontext")
+            {
+                self.comment_block(&next)?;
+                text.push('\\');
+                continue;
+            }
             hi = next.origin(0, next.text.len()).1;
             let next = self.substituted(next)?;
             text.push(' ');
             text.push_str(&next.text);
         }
-        self.macros.define(&text).map_err(|why| {
+        let replace = self.modes.last().is_some_and(|m| m.1.multi_replace);
+        self.macros.define(&text, replace).map_err(|why| {
             let span = self.place(lo, hi);
             Box::new(
                 Diagnostic::error("E0111", span, why).help("`$macro name(a,b) text with a and b`"),

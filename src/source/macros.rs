@@ -54,14 +54,19 @@ impl Macros {
         self.known.contains_key(&name.to_ascii_lowercase())
     }
 
-    /// `name(a,b) body`, the text after `$macro`.
-    pub(super) fn define(&mut self, text: &str) -> Result<(), String> {
+    /// `name(a,b) body`, the text after `$macro`. A name that is one already needs leave to be replaced.
+    pub(super) fn define(&mut self, text: &str, replace: bool) -> Result<(), String> {
         let text = text.trim_start();
         let len = word_len(text);
         if len == 0 {
             return Err("a macro needs a name: `$macro name(a,b) text`".into());
         }
         let name = text[..len].to_ascii_lowercase();
+        if !replace && self.known.contains_key(&name) {
+            return Err(format!(
+                "the macro `{name}` exists already; `$onMultiR` lets it be replaced"
+            ));
+        }
         let mut rest = &text[len..];
         let mut parameters = None;
         if let Some(inside) = rest.trim_start().strip_prefix('(') {
@@ -326,7 +331,7 @@ mod tests {
     fn expand(definitions: &[&str], line: &str) -> Result<String, String> {
         let mut m = Macros::default();
         for d in definitions {
-            m.define(d).unwrap();
+            m.define(d, false).unwrap();
         }
         let mut out = String::new();
         let mut at = 0;

@@ -58,6 +58,10 @@ pub trait Known {
     fn card(&self, name: &str) -> Option<usize>;
     /// Value of a scalar.
     fn scalar_value(&self, name: &str) -> Option<f64>;
+    /// Errors reported so far, cleared or not.
+    fn errors(&self) -> usize {
+        0
+    }
     /// What `$eval.set` asks of a set: the label (`tl`) or the text (`te`) of its first or last element,
     /// its own text (`ts`).
     fn set_text(&self, _name: &str, _what: &str) -> Option<String> {
@@ -179,7 +183,8 @@ pub(crate) struct Preprocessor<'h> {
     pub(super) title: Option<String>,
     pub(super) ending: Ending,
     pub(super) max_jumps: usize,
-    pub(super) had_errors: bool,
+    /// How many of the errors so far `$clearError` made warnings.
+    pub(super) cleared_errors: usize,
     /// `$if`s followed in the present line.
     pub(super) conditions_on_line: usize,
 }
@@ -217,7 +222,7 @@ impl<'h> Preprocessor<'h> {
             title: None,
             ending: Ending::Regular,
             max_jumps: 100,
-            had_errors: false,
+            cleared_errors: 0,
             conditions_on_line: 0,
         };
         p.names.set(variables::Reach::Global, "bmod", "1".into());
@@ -401,7 +406,6 @@ impl<'h> Preprocessor<'h> {
                         .substituted(line)
                         .and_then(|l| self.directive_line(&l, known));
                     if let Err(d) = outcome {
-                        self.had_errors = true;
                         return Err(vec![*d]);
                     }
                     continue;
@@ -436,7 +440,6 @@ impl<'h> Preprocessor<'h> {
                 }
             };
             if let Err(d) = outcome {
-                self.had_errors = true;
                 return Err(vec![*d]);
             }
         }
@@ -453,9 +456,9 @@ impl<'h> Preprocessor<'h> {
         self.on_end
     }
 
-    /// A statement did not parse (`$if errorFree`).
-    pub(crate) fn note_error(&mut self) {
-        self.had_errors = true;
+    /// How many of the errors so far `$clearError` made warnings.
+    pub(crate) fn cleared_errors(&self) -> usize {
+        self.cleared_errors
     }
 
     pub(crate) fn into_map(self) -> SourceMap {

@@ -176,9 +176,22 @@ pub struct ParameterDecl {
     pub scalar: bool,
 }
 
+/// What a table says it gives values to, where the symbol is new.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum TableOf {
+    /// `table`, `parameter table`.
+    Parameter,
+    /// `set table`: cells are `yes`, or nothing.
+    Set,
+    /// `variable table`: the columns are attributes.
+    Variable(VariableKind),
+}
+
 /// A table: the body is everything from the line after the header to the `;`.
 #[derive(Clone, Debug)]
 pub struct TableDecl {
+    /// What it gives values to.
+    pub of: TableOf,
     /// Name, domain, text (no data).
     pub symbol: SymbolDecl,
     /// The body's lines, to be read by the table lexer.

@@ -432,6 +432,11 @@ impl<'a> DataReader<'a> {
                 self.at += 1;
                 Ok(KeyPart::Universe(self.span(start, self.at)))
             }
+            // `set#i` is `#i`.
+            Some(b's' | b'S') if self.rest_begins("set#") => {
+                self.at += 3;
+                self.key_part(depth)
+            }
             _ => {
                 let (text, quoted) = self.label()?;
                 let end = self.at;
@@ -462,6 +467,11 @@ impl<'a> DataReader<'a> {
                 })
             }
         }
+    }
+
+    fn rest_begins(&self, word: &str) -> bool {
+        let rest = self.text.as_bytes().get(self.at..self.at + word.len());
+        rest.is_some_and(|rest| rest.eq_ignore_ascii_case(word.as_bytes()))
     }
 
     fn group(&mut self, depth: usize) -> Result<KeyPart<'a>, Box<Diagnostic>> {
@@ -682,10 +692,7 @@ impl<'a> DataReader<'a> {
         let span = self.span(start, self.at);
         match self.number_of(spelled) {
             Some(x) => Ok(Tail::Number(x, span)),
-            None if word.eq_ignore_ascii_case("undf") => Err(Box::new(
-                Diagnostic::error("E0246", span, "`undf` may be written only after `$onUndf`")
-                    .help("for a missing value write `na`"),
-            )),
+            None if word.eq_ignore_ascii_case("undf") => Err(Box::new(undf_refused(span))),
             None if word_start == start => Ok(Tail::Name(word, span)),
             None => Err(self.expected("a number", start)),
         }
@@ -788,6 +795,12 @@ fn set_suffix(bytes: &[u8]) -> Option<usize> {
     let s = bytes.get(..4)?;
     let ends = !bytes.get(4).is_some_and(|b| is_label(*b));
     (s.eq_ignore_ascii_case(b".set") && ends).then_some(4)
+}
+
+/// `undf` stands in data without `$onUndf`.
+pub fn undf_refused(span: Span) -> Diagnostic {
+    Diagnostic::error("E0246", span, "`undf` may be written only after `$onUndf`")
+        .help("for a missing value write `na`")
 }
 
 #[cfg(test)]

@@ -106,7 +106,6 @@ impl<'h> Parser<'h> {
 
     fn fail(&mut self, list: &[Diagnostic]) {
         self.errors += list.len();
-        self.text.note_error();
     }
 
     /// Parses a statement; where a `;` is missing, the rest is kept for the next calls.
@@ -224,6 +223,11 @@ impl<'h> Parser<'h> {
     /// The files and the expanded text, when parsing is done.
     pub fn into_map(self) -> SourceMap {
         self.text.into_map()
+    }
+
+    /// How many of the errors so far `$clearError` made warnings.
+    pub fn cleared_errors(&self) -> usize {
+        self.text.cleared_errors()
     }
 
     /// Warnings since the last call.

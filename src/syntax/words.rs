@@ -166,11 +166,24 @@ pub(super) fn begins_statement_in_table(text: &str, at: usize, end: usize) -> bo
     // `set  3 4` is a row.
     let rest = &text[end..];
     let line = rest.lines().next().unwrap_or("").trim_start();
-    !line.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | '+'))
+    !line.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | '+' | '#'))
 }
 
 /// The class of the statement that begins at `at`, and the end of its keyword.
 pub(super) fn classify(text: &str, at: usize) -> (Class, usize) {
+    let (class, end) = first_class(text, at);
+    // `set table`, `variable table`
+    if matches!(class, Class::Set | Class::Parameter | Class::Variable) {
+        let next = next_word(text, end);
+        if next.eq_ignore_ascii_case("table") || next.eq_ignore_ascii_case("tables") {
+            let start = next.as_ptr() as usize - text.as_ptr() as usize;
+            return (Class::Table, start + next.len());
+        }
+    }
+    (class, end)
+}
+
+fn first_class(text: &str, at: usize) -> (Class, usize) {
     let bytes = text.as_bytes();
     let end = word_end(bytes, at);
     let mut buffer = [0; 20];

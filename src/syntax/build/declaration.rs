@@ -80,18 +80,27 @@ impl Builder<'_> {
             }
             Rule::table_statement => {
                 let span = self.span(&pair);
-                let symbol = match parts(pair).next() {
-                    Some(p) => self.declaration(p)?,
-                    None => {
-                        return Err(Box::new(Diagnostic::error(
-                            "E0210",
-                            span,
-                            "a name was expected after `table`",
-                        )));
+                let (mut of, mut kind) = (TableOf::Parameter, VariableKind::Unstated);
+                let mut symbol = None;
+                for p in parts(pair) {
+                    match p.as_rule() {
+                        Rule::set_word => of = TableOf::Set,
+                        Rule::parameter_word => {}
+                        Rule::variable_kind => kind = variable_kind(p.as_str()),
+                        Rule::variable_word => of = TableOf::Variable(kind),
+                        _ => symbol = Some(self.declaration(p)?),
                     }
+                }
+                let Some(symbol) = symbol else {
+                    return Err(Box::new(Diagnostic::error(
+                        "E0210",
+                        span,
+                        "a name was expected after `table`",
+                    )));
                 };
                 match symbol.data {
                     Some(body) => Ok(StmtKind::Table(TableDecl {
+                        of,
                         symbol: SymbolDecl {
                             data: None,
                             ..symbol
