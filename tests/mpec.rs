@@ -136,10 +136,11 @@ fn options_are_checked() {
 }
 
 /// A wall of two courses on the ground, by the generic model.
-fn small_wall(then: &str) -> Vec<SolveReport> {
+fn small_wall(friction: f64, then: &str) -> Vec<SolveReport> {
     let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
     let model = format!(
-        "Sets course / k1*k2 /, pos / p1*p3 /;
+        "$set friction {friction}
+Sets course / k1*k2 /, pos / p1*p3 /;
 Table len(course,pos)
          p1    p2    p3
    k2     1     1
@@ -164,6 +165,7 @@ $include {}
 #[test]
 fn supports_and_relaxation_agree_on_a_small_wall() {
     let all = small_wall(
+        0.65,
         "solve static using lp maximizing alpha;
 solve least using mpec minimizing alpha;
 option mpec_method = relaxation;
@@ -179,6 +181,19 @@ solve least using mpec minimizing alpha;",
     assert!(objective(pieces) <= objective(lp) + 1e-9);
     assert!(objective(pieces) <= objective(relaxed) + 1e-7);
     assert!(relaxed.complementarity_sum.is_some_and(|s| s <= 1e-10));
+}
+
+/// With much friction the whole wall slides at 1.2; that one end of it overturns at 40/49 is far from there.
+/// `bound.blk -D friction=1.2` proves that nothing is below.
+#[test]
+fn a_local_mechanism_is_found_where_friction_is_high() {
+    let all = small_wall(1.2, "solve least using mpec minimizing alpha;");
+    let [s] = &all[..] else { panic!("{all:?}") };
+    assert!(
+        (objective(s) - 40.0 / 49.0).abs() < 1e-9,
+        "{}",
+        objective(s)
+    );
 }
 
 /// The paper's walls by `using mpec`. The sixth takes longer than a test should: `models/table1.sh` has all six.

@@ -10,7 +10,10 @@
 //!   the usual sense may lie on, is searched as far as single swaps reach.
 //! * **alternation**: A's program with the products penalised, B's with the products as its cost, in
 //!   turn, with a growing penalty, until the products vanish. Random penalties and costs (from a fixed
-//!   seed) give many starts.
+//!   seed) give many starts;
+//! * **below**: the alternation with the products alone as the cost, A's value capped below the best so far, from
+//!   random points of B. Most tries end at a local minimum of the products that is not 0, but what succeeds is
+//!   better, and the objective does not draw it to where few pairs hold.
 
 use super::pairs::{Piece, Program};
 use super::split::{Point, Retry, Side, Split, shifts};
@@ -273,15 +276,31 @@ impl Pieces {
         up.max(down)
     }
 
+    /// Random costs on the pairs, of different sizes, so that few of them differ from 0 at an optimum.
+    fn random_costs(&mut self) -> Vec<f64> {
+        let random: Vec<f64> = self.rhs.iter().map(|_| self.random.uniform()).collect();
+        // Signs keep the side bounded where one is.
+        let toward = |(w, &(l, _)): (f64, &(f64, f64))| if l.is_finite() { w } else { -w };
+        let sizes = random.iter().map(|w| 10f64.powf(-3.0 * w));
+        sizes.zip(&self.split.bounds).map(toward).collect()
+    }
+
+    /// From a random start to a point that satisfies the pairs and is better than `best`.
+    pub fn below(&mut self, best: f64, stop: Stop) -> Option<Solution> {
+        let costs = self.random_costs();
+        self.relax(false, None);
+        self.split.b.price(0.0, &costs);
+        let b = self.split.b.solve(&self.rhs, stop)?;
+        let step = 10f64.powf(-3.0 * self.random.uniform());
+        self.split.a.cap(best - step * best.abs().max(0.1));
+        let b = self.rounds(b, f64::INFINITY, stop);
+        self.split.a.cap(f64::INFINITY);
+        self.piece(b?, stop)
+    }
+
     /// From a random start to a point that satisfies the pairs.
     pub fn random_start(&mut self, stop: Stop) -> Option<Solution> {
-        let count = self.rhs.len();
-        let random: Vec<f64> = (0..count).map(|_| self.random.uniform()).collect();
-        // Random costs on the pairs, of different sizes, so that few of them differ from 0.
-        let random: Vec<f64> = random.iter().map(|w| 10f64.powf(-3.0 * w)).collect();
-        // Signs keep the side bounded where one is.
-        let toward = |(w, &(l, _)): (&f64, &(f64, f64))| if l.is_finite() { *w } else { -w };
-        let mut costs: Vec<f64> = random.iter().zip(&self.split.bounds).map(toward).collect();
+        let mut costs = self.random_costs();
         if self.random.uniform() < 0.5 {
             // Of A, and then the point of B nearest to complementary to it.
             self.relax(true, None);
@@ -303,15 +322,20 @@ impl Pieces {
         self.piece(b, stop)
     }
 
+    /// With ρ = ∞ A's cost is the products alone.
     fn rounds(&mut self, mut b: Point, mut rho: f64, stop: Stop) -> Option<Point> {
         let mut last = f64::INFINITY;
         for _ in 0..100 {
             let mut weights = self.split.weights(&self.split.b, &b);
             let total: f64 = weights.iter().map(|w| w.abs()).sum();
-            let scale = 10.0 * rho / total.max(1e-12);
+            let (own, scale) = match rho.is_finite() {
+                true => (1.0, 10.0 * rho),
+                false => (0.0, 1.0),
+            };
+            let scale = scale / total.max(1e-12);
             weights.iter_mut().for_each(|w| *w *= scale);
             self.relax(true, Some(&b));
-            self.split.a.price(1.0, &weights);
+            self.split.a.price(own, &weights);
             let a = self.split.a.solve(&self.rhs, stop)?;
             let weights = self.split.weights(&self.split.a, &a);
             self.relax(false, Some(&a));

@@ -386,6 +386,17 @@ impl Side {
         }
     }
 
+    /// Points with a greater value do not count.
+    pub fn cap(&mut self, value: f64) {
+        for (j, &c) in self.problem.cost.iter().enumerate().filter(|e| *e.1 != 0.0) {
+            let (l, u) = (self.problem.lower[j], self.problem.upper[j]);
+            match c > 0.0 {
+                true => self.simplex.set_bounds(j, l, u.min(value / c).max(l)),
+                false => self.simplex.set_bounds(j, l.max(value / c).min(u), u),
+            }
+        }
+    }
+
     /// The present state, to come back to.
     pub fn mark(&self) -> Simplex {
         self.simplex.clone()

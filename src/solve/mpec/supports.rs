@@ -5,8 +5,8 @@
 //! zero, without a crash. The path ends at a basic solution, whose support is small, where an
 //! interior crash ends in the middle of all solutions, with the largest support there is, and α falls as
 //! supports shrink. From the best of them the alternation, and from random starts the alternation and short
-//! swaps; from the best of all several descents by swaps in random order, and then swaps until none
-//! improves. All limits are counts of work, so a run can be repeated.
+//! swaps; then, where programs are small, many cheap tries below the best; from the best of all several descents
+//! by swaps in random order, and then swaps until none improves. All limits are counts of work, so a run can be repeated.
 
 use super::pieces::{Pieces, Round, Solution};
 use super::{Found, ModelStatus, Piece, Search, SolveError, Stationarity};
@@ -19,6 +19,11 @@ const SWAPS: u64 = 80_000;
 /// Random starts, in simplex iterations times rows and columns. On small programs they cost nothing, and there
 /// are more than were asked for; on large ones they seldom lead anywhere, and there are fewer.
 const STARTS: [u64; 2] = [1_000_000, 20_000_000];
+
+/// Tries to get below the best, in simplex iterations times the cube of rows and columns (on larger programs a
+/// try takes more iterations, these take longer, and fewer tries succeed), and at most so many for each start
+/// that was asked for.
+const BELOW: (u64, usize) = (8_000_000_000_000, 250);
 
 /// Columns of a program of which there is a descent for each start that was asked for.
 const DESCENTS: usize = 500;
@@ -83,6 +88,16 @@ impl Search<'_> {
             let short = [Round::Short];
             let next = next.map(|s| pieces.swaps(s, &short, SWAPS, &mut stop));
             keep("random start", next, &mut best);
+        }
+        let begun = pieces.iterations();
+        for _ in 0..starts * BELOW.1 {
+            let work = (pieces.iterations() - begun).saturating_mul(size.saturating_pow(3));
+            if work > BELOW.0 || stop(0).is_some() {
+                break;
+            }
+            let value = best.as_ref()?.a.value;
+            let next = pieces.below(value, &mut stop);
+            keep("below", next.filter(|s| s.a.value < value), &mut best);
         }
         // The larger the program, the fewer of the ways lead on.
         let from = best.clone()?;
