@@ -53,6 +53,9 @@ pub(super) fn crash(run: &mut Run, start: Point, history: &mut Vec<f64>) -> Resu
             break;
         }
         let basic: Vec<usize> = (0..run.n).filter(|&i| sets[i] == 0).collect();
+        if basic.is_empty() {
+            break;
+        }
         let Some(jacobian) = run.jacobian(&point.x) else {
             break;
         };
@@ -89,34 +92,40 @@ pub(super) fn crash(run: &mut Run, start: Point, history: &mut Vec<f64>) -> Resu
 }
 
 /// Solves (J_BB + ρI) d = −F_B, with a larger ρ as long as the matrix is singular.
-pub(super) fn direction(
+fn direction(
     run: &mut Run,
     jacobian: &SparseColMatrix,
     basic: &[usize],
     f: &[f64],
     prox: &mut f64,
 ) -> Result<Option<Vec<f64>>, Stop> {
-    if basic.is_empty() {
-        return Ok(None);
-    }
-    let mut position = vec![usize::MAX; run.n];
-    for (k, &i) in basic.iter().enumerate() {
-        position[i] = k;
-    }
-    let right: Vec<f64> = basic.iter().map(|&i| -f[i]).collect();
     for _ in 0..6 {
         run.check()?;
-        run.factorisations += 1;
-        let found = Factor::new(submatrix(jacobian, basic, &position, *prox), run.fill)
-            .and_then(|mut a| a.solve(&right));
-        if let Some(d) = found
-            && d.iter().all(|v| v.abs() <= DIRECTION_MAX)
-        {
+        if let Some(d) = newton(run, jacobian, basic, f, *prox) {
             return Ok(Some(d));
         }
         *prox = (10.0 * *prox).max(1e-4);
     }
     Ok(None)
+}
+
+/// Solves (J_BB + ρI) d = −F_B; None if the matrix is singular, or empty.
+pub(super) fn newton(
+    run: &mut Run,
+    jacobian: &SparseColMatrix,
+    basic: &[usize],
+    f: &[f64],
+    prox: f64,
+) -> Option<Vec<f64>> {
+    let mut position = vec![usize::MAX; run.n];
+    for (k, &i) in basic.iter().enumerate() {
+        position[i] = k;
+    }
+    let right: Vec<f64> = basic.iter().map(|&i| -f[i]).collect();
+    run.factorisations += 1;
+    Factor::new(submatrix(jacobian, basic, &position, prox), run.fill)
+        .and_then(|mut a| a.solve(&right))
+        .filter(|d| d.iter().all(|v| v.abs() <= DIRECTION_MAX))
 }
 
 /// J_BB + ρI.

@@ -20,7 +20,7 @@
 //! point need not be accurate: a bound is active where the slack is the larger of the two, and the
 //! path does the rest.
 
-use super::crash::direction;
+use super::active::active_sets;
 use super::factor::{Analysis, Factor, combine};
 use super::log;
 use super::run::{Point, Run, Stop};
@@ -45,8 +45,6 @@ const PROX_SHARE: f64 = 100.0;
 /// Violation of the equations against μ from which μ has to wait, or to grow, at most tenfold.
 const AHEAD: f64 = 3.0;
 const GROWTH: f64 = 10.0;
-/// ρ of the last step, which keeps a singular matrix regular.
-const PROX_FACE: f64 = 1e-9;
 /// Products below this are rounding errors.
 const PRODUCT_MIN: f64 = 1e-16;
 
@@ -195,34 +193,14 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
             prox = (0.1 * prox).max(PROX.0);
         }
     }
-    if let Some(found) = on_the_face(run, &best, snapped(run, &point.x, &state, &bounds))? {
-        best = found;
+    if let Some(last) = run.point(snapped(run, &point.x, &state, &bounds)) {
+        let found = active_sets(run, &last)?;
+        // Another point that is no solution either is no better to start from.
+        if run.converged(found.residual) && found.residual < best.residual {
+            best = found;
+        }
     }
     Ok((best.residual < start.residual).then_some(best))
-}
-
-/// A Newton step from x, whose active bounds stay, if it leads to a point better than `best`: putting
-/// variables onto their bounds has moved the equations of the others.
-fn on_the_face(run: &mut Run, best: &Point, x: Vec<f64>) -> Result<Option<Point>, Stop> {
-    let basic: Vec<usize> = (0..run.n)
-        .filter(|&i| x[i] != run.lower[i] && x[i] != run.upper[i])
-        .collect();
-    let Some(point) = run.point(x) else {
-        return Ok(None);
-    };
-    let Some(jacobian) = run.jacobian(&point.x) else {
-        return Ok(None);
-    };
-    let mut prox = PROX_FACE;
-    let Some(step) = direction(run, &jacobian, &basic, &point.f, &mut prox)? else {
-        return Ok(None);
-    };
-    let mut x = point.x;
-    for (&i, d) in basic.iter().zip(step) {
-        x[i] += d;
-    }
-    run.clip(&mut x);
-    Ok(run.point(x).filter(|p| p.residual < best.residual))
 }
 
 /// x with the bounds active whose slack is the larger.

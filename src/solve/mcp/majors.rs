@@ -31,7 +31,9 @@ const ARMIJO: f64 = 1e-4;
 /// Number of variables up to which the slack start is tried early.
 const SLACK_START: usize = 1000;
 /// Number of variables from which the crash is interior: one step of it replaces many pivots.
-pub(super) const LARGE: usize = 1000;
+pub(super) const INTERIOR: usize = 600;
+/// Number of variables from which long paths are avoided near a solution.
+const LARGE: usize = 1000;
 /// The least proximal term that is tried on a singular basis; steps that succeed make it smaller, down
 /// to the least that counts.
 const PROX_FIRST: f64 = 1e-7;
@@ -113,7 +115,8 @@ struct Majors {
     warm: Option<Vec<Kind>>,
     untested: usize,
     gradient_steps: usize,
-    /// A vertex of the face of solutions was looked for.
+    /// A vertex of the face of solutions shall be looked for, and was.
+    to_vertex: bool,
     at_vertex: bool,
     /// Steps in a row to solutions that may stand for rays.
     doubtful: usize,
@@ -134,6 +137,7 @@ impl Majors {
             warm: None,
             untested: 0,
             gradient_steps: 0,
+            to_vertex: false,
             at_vertex: false,
             doubtful: 0,
             seed: 1,
@@ -209,8 +213,8 @@ impl Majors {
                 );
                 if kind == '-' {
                     // The proximal term may be what keeps the digits away: at a vertex none is needed.
-                    if self.prox > 0.0 && !self.at_vertex {
-                        self.prox = 0.0;
+                    if prox > 0.0 && !std::mem::replace(&mut self.at_vertex, true) {
+                        (self.prox, self.to_vertex) = (0.0, true);
                         continue;
                     }
                     return Ok(End::Solved);
@@ -320,8 +324,7 @@ impl Majors {
                 if result.end == PathEnd::Singular
                     && level == 0
                     && self.point.residual <= VERTEX
-                    && polish
-                    && !std::mem::replace(&mut self.at_vertex, true)
+                    && std::mem::take(&mut self.to_vertex)
                     && let Some(at) = vertex(run, &linear, &start, limit)?
                 {
                     result = follow(run, &linear, &at, limit, self.seed)?;

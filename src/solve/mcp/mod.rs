@@ -30,8 +30,10 @@
 //! The module knows numbers only: no names, no language. It is deterministic: the random numbers
 //! it needs come from fixed seeds, and no decision depends on the clock but the time limit.
 
+mod active;
 mod basis;
 mod crash;
+
 mod factor;
 mod interior;
 mod linear;

@@ -9,7 +9,7 @@
 use std::time::{Duration, Instant};
 
 use super::log;
-use super::majors::{Crash, LARGE, majors};
+use super::majors::{Crash, INTERIOR, majors};
 use super::merit::natural_residual;
 use super::presolve::Reduced;
 use super::random::Random;
@@ -180,13 +180,13 @@ fn attempt(run: &mut Run, restarts: &mut usize) -> Result<(), Stop> {
     run.check()?;
     if let Some(start) = first_point(run) {
         let (crash, other) = match run.settings.crash_method {
-            true if run.n > LARGE => (Crash::Interior, Crash::Newton),
+            true if run.n > INTERIOR => (Crash::Interior, Crash::Newton),
             true => (Crash::Newton, Crash::None),
             false => (Crash::None, Crash::Newton),
         };
         let mut methods = vec![Method::Path { crash }];
         if run.settings.fallbacks {
-            if run.n > LARGE {
+            if run.n > INTERIOR {
                 methods.push(Method::Path { crash: other });
             }
             if run.problem.is_linear() {
@@ -199,7 +199,7 @@ fn attempt(run: &mut Run, restarts: &mut usize) -> Result<(), Stop> {
                     memory: 8,
                 },
                 Method::Path {
-                    crash: if run.n > LARGE { Crash::None } else { other },
+                    crash: if run.n > INTERIOR { Crash::None } else { other },
                 },
                 Method::Semismooth {
                     lambda: 0.8,
