@@ -70,7 +70,17 @@ impl Compiler {
         kind: SymbolKind,
         tables: impl FnOnce(&mut Self, usize) -> TableId,
     ) -> Result<SymbolId, Failed> {
-        let domain = self.positions(d.domain.as_deref().unwrap_or(&[]))?;
+        let mut names = std::borrow::Cow::Borrowed(d.domain.as_deref().unwrap_or(&[]));
+        if matches!(kind, SymbolKind::Set { .. }) && self.symbols.find(&d.name.name).is_none() {
+            // `set e(e)`: a set over itself is over the universe.
+            let itself = |n: &DomainName| n.name.name.eq_ignore_ascii_case(&d.name.name);
+            if names.iter().any(itself) {
+                let own = names.to_mut().iter_mut();
+                own.filter(|n| itself(n))
+                    .for_each(|n| n.name.name = "*".into());
+            }
+        }
+        let domain = self.positions(&names)?;
         if let Some(s) = self.symbols.find(&d.name.name) {
             let old = self.symbols.get(s).clone();
             if std::mem::discriminant(&old.kind) != std::mem::discriminant(&kind) || s == UNIVERSE {

@@ -202,7 +202,7 @@ impl Compiler {
     }
 
     /// An error if a membership stands where a number must.
-    fn number(&mut self, n: &Node) -> Result<(), Failed> {
+    pub(super) fn number(&mut self, n: &Node) -> Result<(), Failed> {
         if !n.member {
             return Ok(());
         }

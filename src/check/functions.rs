@@ -257,6 +257,7 @@ pub fn label_attribute(name: &str) -> Option<LabelAttribute> {
         "uel" => A::Uel,
         "len" => A::Len,
         "tlen" => A::TextLen,
+        "tval" => A::TextVal,
         "first" => A::First,
         "last" => A::Last,
         _ => return None,

@@ -274,6 +274,15 @@ impl Compiler {
     }
 }
 
+/// The kind of the symbols that are there from the start.
+fn predefined(name: &str) -> Option<&'static str> {
+    match name.to_lowercase().as_str() {
+        "sameas" => Some("set"),
+        "diag" => Some("parameter"),
+        _ => None,
+    }
+}
+
 impl Known for Compiler {
     fn errors(&self) -> usize {
         let errors = self.diagnostics.iter();
@@ -311,14 +320,22 @@ impl Known for Compiler {
         }
     }
 
+    fn is_function(&self, name: &str) -> bool {
+        functions::callee(&name.to_lowercase()).is_some()
+    }
+
     fn kind(&self, name: &str) -> Option<&'static str> {
-        self.symbols
-            .find(name)
-            .map(|s| self.symbols.get(s).kind_name())
+        match self.symbols.find(name) {
+            Some(s) => Some(self.symbols.get(s).kind_name()),
+            None => predefined(name),
+        }
     }
 
     fn is_defined(&self, name: &str) -> bool {
-        self.symbols.find(name).is_some_and(|s| {
+        let Some(s) = self.symbols.find(name) else {
+            return predefined(name).is_some();
+        };
+        Some(s).is_some_and(|s| {
             let s = self.symbols.get(s);
             s.has_data
                 || s.assigned
@@ -327,7 +344,10 @@ impl Known for Compiler {
     }
 
     fn dimension(&self, name: &str) -> Option<usize> {
-        self.symbols.find(name).map(|s| self.symbols.get(s).dim())
+        match self.symbols.find(name) {
+            Some(s) => Some(self.symbols.get(s).dim()),
+            None => predefined(name).map(|_| 2),
+        }
     }
 
     fn card(&self, name: &str) -> Option<usize> {

@@ -164,6 +164,8 @@ pub enum LabelAttribute {
     Uel,
     Len,
     TextLen,
+    /// `.tval`: the number that the text says.
+    TextVal,
     First,
     Last,
 }

@@ -453,6 +453,8 @@ impl Compiler {
                 (Ok(l), Ok(r)) => (l, r),
                 _ => return Err(Failed),
             };
+            c.number(&left)?;
+            c.number(&right)?;
             Ok(EquationDef {
                 symbol: s,
                 domain,

@@ -506,27 +506,32 @@ impl Machine<'_> {
                 .map_or(0.0, |t| t.chars().count() as f64),
             LabelAttribute::First => yes(r == 0.0),
             LabelAttribute::Last => yes(r + 1.0 == n),
-            LabelAttribute::Val => {
-                let text = self.store.universe.name(l);
-                let lower = text.to_lowercase();
-                match lower.as_str() {
-                    "inf" | "+inf" => return f64::INFINITY,
-                    "-inf" => return f64::NEG_INFINITY,
-                    "eps" => return EPS,
-                    "na" => return NA,
-                    _ => {}
-                }
-                let plain = text.strip_prefix('+').unwrap_or(text);
-                match fast_float2::parse::<f64, _>(plain) {
-                    Ok(v) if v.is_finite() => v,
-                    _ => self.execution_error(
-                        "E0405",
-                        span,
-                        format!("the label `{text}` is not a number"),
-                        "`.val` needs labels that are numbers",
-                    ),
-                }
-            }
+            LabelAttribute::Val => self.spelled(self.store.universe.name(l), "the label", span),
+            LabelAttribute::TextVal => match self.store.element_text(set, &[l]) {
+                Some(text) => self.spelled(&text, "the text", span),
+                None => 0.0,
+            },
+        }
+    }
+
+    /// The number that a label or a text says.
+    fn spelled(&self, text: &str, what: &str, span: Span) -> f64 {
+        match text.to_lowercase().as_str() {
+            "inf" | "+inf" => return f64::INFINITY,
+            "-inf" => return f64::NEG_INFINITY,
+            "eps" => return EPS,
+            "na" => return NA,
+            _ => {}
+        }
+        let plain = text.strip_prefix('+').unwrap_or(text);
+        match fast_float2::parse::<f64, _>(plain) {
+            Ok(v) if v.is_finite() => v,
+            _ => self.execution_error(
+                "E0405",
+                span,
+                format!("{what} `{text}` is not a number"),
+                "`.val` and `.tval` need numbers",
+            ),
         }
     }
 

@@ -95,7 +95,7 @@ impl Preprocessor<'_> {
                 {
                     // A jump may leave open blocks.
                     frame.ifs.clear();
-                    frame.pos = end;
+                    frame.pos = pos;
                     frame.forget_marks();
                     return Ok(());
                 }

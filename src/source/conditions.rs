@@ -57,7 +57,6 @@ impl Preprocessor<'_> {
         while let Some(word) = text.get(at..at + 3)
             && word.eq_ignore_ascii_case("not")
             && text[at + 3..].starts_with([' ', '\t', '('])
-            && !(flavour == Flavour::Numeric)
         {
             negate = !negate;
             at += 3;
@@ -71,10 +70,7 @@ impl Preprocessor<'_> {
         }
         let (truth, len) = match self.question(rest, known) {
             Some(found) => found?,
-            None if flavour == Flavour::Numeric => {
-                let (x, len) = evaluate(rest, known)?;
-                (x != 0.0, len)
-            }
+            None if flavour == Flavour::Numeric => numeric(rest, known)?,
             None => comparison(rest, flavour)?,
         };
         Ok((truth != negate, at + len))
@@ -135,7 +131,9 @@ impl Preprocessor<'_> {
             "acrtype" => of_kind(&["acronym"]),
             "xxxtype" => of_kind(&[]),
             "mactype" | "macro" => one(&mut |n| self.macros.contains(n)),
-            "funtype" | "pretype" => one(&mut |_| false),
+            "funtype" => one(&mut |n| known.is_function(n)),
+            "pretype" => one(&mut |n| ["sameas", "diag"].iter().any(|p| p.eq_ignore_ascii_case(n))),
+            "decla_ok" => Some(Ok((true, len))),
             "gamsversion" => {
                 let (number, n) = term(after, false);
                 let asked: f64 = number.parse().unwrap_or(f64::INFINITY);
@@ -238,12 +236,36 @@ impl Preprocessor<'_> {
     }
 }
 
+/// `expression`, or `expression == expression` up to rounding; each may stand in quotes.
+fn numeric(text: &str, known: &dyn Known) -> Result<(bool, usize), String> {
+    let side = |text: &str| -> Result<(f64, usize), String> {
+        let quoted = text.trim_start().starts_with(['\'', '"']);
+        let (inside, n) = term(text, false);
+        match quoted {
+            true => Ok((evaluate(inside, known)?.0, n)),
+            false => evaluate(text, known),
+        }
+    };
+    let (x, n) = side(text)?;
+    let rest = text[n..].trim_start();
+    let Some(right) = rest.strip_prefix("==") else {
+        return Ok((x != 0.0, n));
+    };
+    let (y, m) = side(right)?;
+    let same = x == y || (x - y).abs() / (1.0 + y.abs()) < 1e-12;
+    Ok((same, text.len() - right.len() + m))
+}
+
 /// `a == b`, with quotes or without.
 fn comparison(text: &str, flavour: Flavour) -> Result<(bool, usize), String> {
     let (left, n) = term(text, true);
     let rest = &text[n..];
     let blanks = rest.len() - rest.trim_start().len();
     let Some(after) = rest.trim_start().strip_prefix("==") else {
+        // A text in quotes that stands alone is compared with the empty text.
+        if text.trim_start().starts_with(['\'', '"']) {
+            return Ok((left.is_empty(), n));
+        }
         return Err(format!(
             "`{}` is no condition: `==` or a word like `set`, `exist`, `declared` was expected",
             text.trim()

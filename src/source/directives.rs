@@ -68,7 +68,6 @@ const SILENT: &[&str] = &[
     "showvariables",
     "splitoption",
     "version",
-    "escape",
     "warning",
     "compress",
     "decompress",
@@ -133,6 +132,7 @@ const OTHERS: &[&str] = &[
     "abort",
     "error",
     "clearerror",
+    "escape",
     "macro",
     "ontext",
     "offtext",
@@ -260,6 +260,19 @@ fn civil(now: f64) -> (i64, i64, i64) {
     let d = doy - (153 * mp + 2) / 5 + 1;
     let m = if mp < 10 { mp + 3 } else { mp - 9 };
     (yoe + era * 400 + i64::from(m <= 2), m, d)
+}
+
+/// What follows the first word and its blanks.
+fn behind_word(text: &str) -> &str {
+    let t = text.trim_start();
+    let end = t.find(char::is_whitespace).unwrap_or(t.len());
+    t[end..].trim_start()
+}
+
+/// The byte behind the closing quote of a value in quotes.
+fn quoted_value_end(value: &str) -> Option<usize> {
+    let q = value.chars().next().filter(|c| matches!(c, '\'' | '"'))?;
+    value[1..].find(q).map(|n| n + 2)
 }
 
 /// Blanks and semicolons may stand between and behind switches: `$offDigit;`.
@@ -436,7 +449,23 @@ impl Preprocessor<'_> {
                 });
             }
             "set" | "setlocal" | "setglobal" | "eval" | "evallocal" | "evalglobal" => {
-                return self.define(word, suffix == "set", rest, lo, hi, known);
+                // Behind a value in quotes the line goes on: `$set x 'a' $set y 'b'`.
+                let value = behind_word(rest);
+                let next = quoted_value_end(value).map(|n| text.len() - value.len() + n);
+                let next = next.filter(|&n| {
+                    text[n..]
+                        .trim_start()
+                        .starts_with(self.marks.dollar as char)
+                });
+                let end = next.map_or(rest.len(), |n| n - at);
+                self.define(word, suffix == "set", &rest[..end], lo, hi, known)?;
+                return match next {
+                    Some(n) => {
+                        let n = text.len() - text[n..].trim_start().len();
+                        self.directives(line, n + 1, known)
+                    }
+                    None => Ok(()),
+                };
             }
             "drop" | "droplocal" | "dropglobal" => {
                 let (name, _) = argument(rest);
@@ -519,7 +548,12 @@ impl Preprocessor<'_> {
                 }
             }
             "goto" => return self.goto(rest, lo, hi),
-            "label" => {}
+            "label" => {
+                let behind = behind_word(rest);
+                if behind.starts_with(self.marks.dollar as char) {
+                    return self.directives(line, text.len() - behind.len() + 1, known);
+                }
+            }
             "exit" => {
                 // What is left of the present file is not read.
                 if let Some(frame) = self.frames.last_mut() {
@@ -549,6 +583,10 @@ impl Preprocessor<'_> {
             }
             "clearerror" | "clearerrors" => self.cleared_errors = known.errors(),
             "macro" => return self.define_macro(rest, lo, hi),
+            "escape" => {
+                let mark = rest.trim().bytes().next();
+                self.marks.escape = mark.filter(|&c| c != b'%');
+            }
             "eolcom" | "inlinecom" | "comment" | "dollar" => {
                 return self.set_mark(word, rest, lo, hi);
             }
@@ -716,7 +754,12 @@ impl Preprocessor<'_> {
                 if let Some(f) = self.frames.last_mut() {
                     f.ifs.pop();
                 }
-                self.action(line, at, known)?;
+                // Only a directive may follow, with its `$` or without.
+                let behind = text[at..].trim_start();
+                if self.is_directive(behind) {
+                    let dollar = usize::from(behind.starts_with(self.marks.dollar as char));
+                    self.directives(line, text.len() - behind.len() + dollar, known)?;
+                }
                 Ok(true)
             }
             _ if open.taken => Ok(false),
@@ -781,7 +824,21 @@ impl Preprocessor<'_> {
                 }
             }
         } else if word.starts_with("eval") {
+            let value = match quoted_value_end(value) {
+                Some(end) if end == value.len() => unquoted(value),
+                _ => value,
+            };
             match evaluate(value, known) {
+                // Without a value it is UNDF, which only `$onUndf` lets pass.
+                Ok((x, _)) if x.is_nan() && self.modes.last().is_none_or(|m| !m.1.undf) => {
+                    self.names.set(reach(word), name, number_text(x));
+                    let span = self.place(lo, hi);
+                    let message = format!("`${word} {name}`: `{value}` has no value");
+                    return refuse(
+                        Diagnostic::error("E0115", span, message)
+                            .help("`%name%` stands for UNDF after it"),
+                    );
+                }
                 Ok((x, n))
                     if value[n..].trim().is_empty()
                         || self.starts_comment(value[n..].trim_start()) =>

@@ -29,7 +29,7 @@ pub(super) fn number_text(x: f64) -> String {
         return if x.is_nan() {
             "UNDF".into()
         } else if x > 0.0 {
-            "INF".into()
+            "+INF".into()
         } else {
             "-INF".into()
         };
@@ -73,7 +73,7 @@ const LEVELS: &[&[&str]] = &[
     &["or", "xor"],
     &["and"],
     &[
-        "<=", ">=", "<>", "==", "=", "<", ">", "eq", "ne", "lt", "le", "gt", "ge",
+        "<=", ">=", "<>", "=", "<", ">", "eq", "ne", "lt", "le", "gt", "ge",
     ],
     &["+", "-"],
     &["*", "/"],
@@ -108,7 +108,10 @@ impl<'a> Evaluator<'a> {
                 continue;
             }
             // `*` is not the first half of `**`, `<` not of `<=>`.
-            if op == "*" && next == b'*' || op == "-" && next == b'>' || op == "<=" && next == b'>'
+            if op == "=" && next == b'='
+                || op == "*" && next == b'*'
+                || op == "-" && next == b'>'
+                || op == "<=" && next == b'>'
             {
                 continue;
             }
@@ -121,7 +124,15 @@ impl<'a> Evaluator<'a> {
 
     fn level(&mut self, level: usize) -> Result<f64, String> {
         if level == LEVELS.len() {
-            return self.primary();
+            let mut x = self.primary()?;
+            // `x$c`; behind a blank `$` begins a directive.
+            while self.rest().starts_with('$') {
+                self.at += 1;
+                if self.primary()? == 0.0 {
+                    x = 0.0;
+                }
+            }
+            return Ok(x);
         }
         if level == 3 {
             // `not` is looser than relations, tighter than `and`.
@@ -179,7 +190,7 @@ impl<'a> Evaluator<'a> {
                 "or" => truth(x != 0.0 || y != 0.0),
                 "xor" => truth((x != 0.0) != (y != 0.0)),
                 "and" => truth(x != 0.0 && y != 0.0),
-                "=" | "==" | "eq" => truth(x == y),
+                "=" | "eq" => truth(x == y),
                 "<>" | "ne" => truth(x != y),
                 "<" | "lt" => truth(x < y),
                 "<=" | "le" => truth(x <= y),
@@ -188,7 +199,6 @@ impl<'a> Evaluator<'a> {
                 "+" => x + y,
                 "-" => x - y,
                 "*" => x * y,
-                "/" if y == 0.0 => return Err("division by zero".into()),
                 "/" => x / y,
                 _ => x.powf(y),
             };
@@ -267,7 +277,11 @@ impl<'a> Evaluator<'a> {
                 self.at += n + 2;
                 &rest[1..=n]
             }
-            None => self.name(),
+            None => {
+                let len = rest.find([',', ')', ']', '}']).unwrap_or(rest.len());
+                self.at += len;
+                rest[..len].trim_end()
+            }
         }
     }
 
@@ -285,6 +299,7 @@ impl<'a> Evaluator<'a> {
             self.at = before;
             return match lower.as_str() {
                 "inf" => Ok(f64::INFINITY),
+                "undf" => Ok(f64::NAN),
                 "pi" => Ok(std::f64::consts::PI),
                 "yes" | "true" => Ok(1.0),
                 "no" | "false" | "eps" => Ok(0.0),
@@ -424,7 +439,8 @@ mod tests {
     #[test]
     fn rubbish_is_an_error() {
         assert!(evaluate("", &NothingKnown).is_err());
-        assert!(evaluate("1/0", &NothingKnown).is_err());
+        assert_eq!(value("-1/0"), f64::NEG_INFINITY);
+        assert_eq!(value("3$1+2$0"), 3.0);
         assert!(evaluate(&"(".repeat(1000), &NothingKnown).is_err());
         assert_eq!(evaluate("3 $set", &NothingKnown).unwrap(), (3.0, 1));
     }

@@ -58,6 +58,10 @@ pub trait Known {
     fn card(&self, name: &str) -> Option<usize>;
     /// Value of a scalar.
     fn scalar_value(&self, name: &str) -> Option<f64>;
+    /// Whether the language has a function of this name.
+    fn is_function(&self, _name: &str) -> bool {
+        false
+    }
     /// Errors reported so far, cleared or not.
     fn errors(&self) -> usize {
         0
@@ -109,6 +113,8 @@ pub(super) struct Marks {
     pub(super) dollar: u8,
     /// First byte of a comment line.
     pub(super) comment: u8,
+    /// `$escape c`: `%c` is `%` and nothing to be replaced.
+    pub(super) escape: Option<u8>,
     pub(super) eol: Vec<u8>,
     pub(super) eol_on: bool,
     pub(super) inline: (Vec<u8>, Vec<u8>),
@@ -206,6 +212,7 @@ impl<'h> Preprocessor<'h> {
             marks: Marks {
                 dollar: b'$',
                 comment: b'*',
+                escape: None,
                 eol: b"!!".to_vec(),
                 eol_on: false,
                 inline: (b"/*".to_vec(), b"*/".to_vec()),
@@ -633,6 +640,11 @@ impl<'h> Preprocessor<'h> {
         let mut at = 0;
         while let Some(n) = memchr::memchr(b'%', &bytes[at..]) {
             let from = at + n;
+            if self.marks.escape.is_some() && bytes.get(from + 1).copied() == self.marks.escape {
+                changes.push((from, from + 2, "%".to_owned()));
+                at = from + 2;
+                continue;
+            }
             let name_end = bytes[from + 1..]
                 .iter()
                 .position(|&c| !c.is_ascii_alphanumeric() && c != b'_' && c != b'.' && c != b' ')

@@ -199,8 +199,14 @@ impl<'a> DataReader<'a> {
             match self.peek()? {
                 b',' => self.at += 1,
                 MARK => {
-                    if let Some(outcome) = self.delimited() {
-                        break (start, outcome);
+                    let (lo, hi) = self.marked_line();
+                    // Without a comma it is a record like any other.
+                    if has_comma(&self.text[lo..hi]) || self.lone_label(lo, hi) {
+                        if let Some(outcome) = self.delimited() {
+                            break (start, outcome);
+                        }
+                    } else {
+                        self.at = lo;
                     }
                 }
                 _ => break (start, self.record(start)),
@@ -257,6 +263,12 @@ impl<'a> DataReader<'a> {
             DataKind::Set => Ok(Tail::Text(Cow::Borrowed(text), span)),
             DataKind::Values => self.field_value(from, to),
         })
+    }
+
+    /// A line under `$onDelim` with one label: whatever stands in it.
+    fn lone_label(&self, lo: usize, hi: usize) -> bool {
+        let line = self.text[lo..hi].trim();
+        self.arity <= 1 && !line.is_empty() && !line.contains([' ', '\t', '\'', '"'])
     }
 
     /// Behind the mark of a line under `$onDelim`, up to its end.
@@ -740,6 +752,25 @@ pub(super) struct Fields<'t> {
     text: &'t str,
     at: Option<usize>,
     end: usize,
+    /// Blanks separate where no comma does.
+    blanks: bool,
+}
+
+/// Whether commas separate the fields of a line.
+fn has_comma(line: &str) -> bool {
+    let bytes = line.as_bytes();
+    let mut i = 0;
+    while i < bytes.len() {
+        match bytes[i] {
+            b',' => return true,
+            q @ (b'\'' | b'"') => {
+                i += memchr::memchr(q, &bytes[i + 1..]).map_or(0, |n| n + 1);
+            }
+            _ => {}
+        }
+        i += 1;
+    }
+    false
 }
 
 impl<'t> Fields<'t> {
@@ -750,6 +781,7 @@ impl<'t> Fields<'t> {
             text,
             at: (!empty).then_some(lo),
             end: hi,
+            blanks: !has_comma(&text[lo..hi]),
         }
     }
 }
@@ -770,7 +802,14 @@ impl Iterator for Fields<'_> {
             field = (from + 1, from + 1 + n);
             after = from + n + 2;
         }
-        let comma = memchr::memchr(b',', &bytes[after..self.end]).map(|n| after + n);
+        let comma = if self.blanks {
+            let rest = &bytes[after..self.end];
+            let n = rest.iter().position(|&b| is_space(b));
+            n.map(|n| after + n)
+                .filter(|&n| !self.text[n..self.end].trim().is_empty())
+        } else {
+            memchr::memchr(b',', &bytes[after..self.end]).map(|n| after + n)
+        };
         if after == from {
             let mut to = comma.unwrap_or(self.end);
             while to > from && is_space(bytes[to - 1]) {

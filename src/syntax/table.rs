@@ -199,11 +199,10 @@ impl<'a> TableReader<'a> {
         let (lo, hi) = self.reader.marked_line();
         let mut fields = Fields::new(self.line, lo, hi);
         let rows = self.dim.saturating_sub(1).max(1);
-        let first: Vec<_> = fields.by_ref().take(rows).collect();
-        if first.is_empty() {
-            return;
-        }
         if self.header {
+            if fields.by_ref().take(rows).count() == 0 {
+                return;
+            }
             self.header = false;
             self.columns.clear();
             for (from, to) in fields {
@@ -217,10 +216,22 @@ impl<'a> TableReader<'a> {
             self.headings = true;
             return;
         }
-        self.row = first
-            .iter()
-            .map(|&(from, to)| self.reader.field_label(from, to))
-            .collect();
+        self.row.clear();
+        while self.row.len() < rows {
+            let Some((mut from, to)) = fields.next() else {
+                return;
+            };
+            // Labels may have dots between as well: `a1.b1,5`.
+            let quoted = from > 0 && matches!(self.line.as_bytes()[from - 1], b'\'' | b'"');
+            while !quoted
+                && self.row.len() + 1 < rows
+                && let Some(n) = self.line[from..to].find('.')
+            {
+                self.row.push(self.reader.field_label(from, from + n));
+                from += n + 1;
+            }
+            self.row.push(self.reader.field_label(from, to));
+        }
         self.fields = fields
             .enumerate()
             .take(self.columns.len())
