@@ -508,7 +508,7 @@ impl Machine<'_> {
             LabelAttribute::Last => yes(r + 1.0 == n),
             LabelAttribute::Val => self.spelled(self.store.universe.name(l), "the label", span),
             LabelAttribute::TextVal => match self.store.element_text(set, &[l]) {
-                Some(text) => self.spelled(&text, "the text", span),
+                Some(text) => self.spelled(text, "the text", span),
                 None => 0.0,
             },
         }
