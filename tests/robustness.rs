@@ -135,6 +135,12 @@ fn found_by_damage() {
         5.0,
         2000,
     );
+    // A width that no formatter takes.
+    run(
+        "file out / wide.txt /;\nout.nw = 678000000; out.lw = 1e9; out.tw = inf;\nput out 1 'text' out.ts;\n",
+        5.0,
+        2000,
+    );
 }
 
 /// A word, a number, a text in quotes, blanks, or one other character.

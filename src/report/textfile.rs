@@ -10,9 +10,12 @@ use rustc_hash::FxHashMap;
 /// Stands for the number of the page in a title or header.
 pub const PAGE_NUMBER: char = '\u{1}';
 
+/// Widths, decimals and attributes beyond are cut to it.
+pub const WIDEST: f64 = 32_767.0;
+
 /// Attributes and their values before anything is assigned.
 const DEFAULTS: &[(&str, f64)] = &[
-    ("pw", 32767.0),
+    ("pw", WIDEST),
     ("ps", 60.0),
     ("pc", 2.0),
     ("nd", 2.0),
@@ -199,7 +202,7 @@ impl TextFile {
     }
 
     fn integer(&self, name: &str) -> i64 {
-        self.get(name).clamp(-1.0, 1e9) as i64
+        self.get(name).clamp(-1.0, WIDEST) as i64
     }
 
     fn block(&mut self, part: Part) -> &mut Block {

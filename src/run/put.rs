@@ -9,15 +9,12 @@ use crate::check::node::{DataFunction, Node, NodeKind, PutCode, SymbolId};
 use crate::check::symbols::SymbolKind;
 use crate::data::value::{as_acronym, is_na, number, truth};
 use crate::diag::Diagnostic;
-use crate::report::textfile::{Format, Item, Overflow, Part};
+use crate::report::textfile::{Format, Item, Overflow, Part, WIDEST};
 use crate::source::Span;
 
 const MONTHS: [&str; 12] = [
     "Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec",
 ];
-
-/// Widths and decimals beyond are cut to it.
-const WIDEST: f64 = 32_767.0;
 
 impl Machine<'_> {
     /// A statement.
