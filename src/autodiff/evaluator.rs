@@ -8,6 +8,7 @@
 //! Invariant: a pattern depends on the instance alone, never on the point.
 
 use super::blocks::{Block, compile};
+use super::fixed::without_fixed;
 use super::functions::{DomainError, ErrorKind, Operation};
 use super::program::{Sink, Workspace};
 use super::scalar;
@@ -81,6 +82,28 @@ pub struct Evaluator {
     hessian_row: Vec<u32>,
     hessian_column: Vec<u32>,
     hessian_places: Vec<Places>,
+    /// For points where a derivative with respect to a fixed column does not exist.
+    unfixed: Unfixed,
+}
+
+/// The terms without their fixed columns.
+#[derive(Debug)]
+enum Unfixed {
+    /// Not needed: there are none.
+    None,
+    /// Not compiled yet, and how kinks are rounded.
+    Terms(Box<Instance>, f64),
+    /// Ready.
+    Ready(Box<Part>),
+}
+
+/// An evaluator of a part of an instance's derivatives.
+#[derive(Debug)]
+struct Part {
+    evaluator: Evaluator,
+    /// Place in the whole Jacobian, and in the whole Hessian, of each entry.
+    jacobian: Vec<usize>,
+    hessian: Vec<usize>,
 }
 
 impl Evaluator {
@@ -91,6 +114,26 @@ impl Evaluator {
 
     /// The same with √(a² + δ²) for |a|, and min and max made from it: differentiable everywhere.
     pub fn smoothed(instance: &Instance, delta: f64) -> Self {
+        let mut e = Self::plain(instance, delta);
+        if let Some(i) = without_fixed(instance) {
+            e.unfixed = Unfixed::Terms(Box::new(i), delta);
+        }
+        e
+    }
+
+    /// The part without fixed columns.
+    fn part(&mut self) -> Option<&mut Part> {
+        if let Unfixed::Terms(instance, delta) = &self.unfixed {
+            let part = Part::new(self, Self::plain(instance, *delta));
+            self.unfixed = Unfixed::Ready(Box::new(part));
+        }
+        match &mut self.unfixed {
+            Unfixed::Ready(part) => Some(part),
+            _ => None,
+        }
+    }
+
+    fn plain(instance: &Instance, delta: f64) -> Self {
         let blocks = compile(instance, delta);
         let mut e = Self {
             columns: instance.column_count(),
@@ -103,6 +146,7 @@ impl Evaluator {
             hessian_row: Vec::new(),
             hessian_column: Vec::new(),
             hessian_places: Vec::new(),
+            unfixed: Unfixed::None,
         };
         e.find_jacobian(instance);
         e.find_hessian();
@@ -143,8 +187,29 @@ impl Evaluator {
 
     /// Values of the Jacobian in the order of its pattern.
     ///
-    /// Errors: as [`Self::rows`]; also a derivative that does not exist.
+    /// Errors: as [`Self::rows`]; also a derivative with respect to a column that is not fixed that does not exist.
     pub fn jacobian(&mut self, x: &[f64], values: &mut [f64]) -> Result<(), EvalFailure> {
+        let result = self.whole_jacobian(x, values);
+        if result.is_ok() {
+            return result;
+        }
+        let Some(part) = self.part() else {
+            return result;
+        };
+        let mut entries = vec![0.0; part.jacobian.len()];
+        if part.evaluator.whole_jacobian(x, &mut entries).is_err() {
+            return result;
+        }
+        values.fill(0.0);
+        scatter(&part.jacobian, &entries, values);
+        values
+            .iter_mut()
+            .zip(&self.jacobian_linear)
+            .for_each(|(v, a)| *v += a);
+        Ok(())
+    }
+
+    fn whole_jacobian(&mut self, x: &[f64], values: &mut [f64]) -> Result<(), EvalFailure> {
         values.copy_from_slice(&self.jacobian_linear);
         for (b, places) in self.blocks.iter().zip(&self.jacobian_places) {
             let mut sink = PlaceSink {
@@ -169,6 +234,29 @@ impl Evaluator {
     ///
     /// Errors: as [`Self::jacobian`].
     pub fn hessian(
+        &mut self,
+        x: &[f64],
+        lambda: &[f64],
+        values: &mut [f64],
+    ) -> Result<(), EvalFailure> {
+        let result = self.whole_hessian(x, lambda, values);
+        if result.is_ok() {
+            return result;
+        }
+        let Some(part) = self.part() else {
+            return result;
+        };
+        let mut entries = vec![0.0; part.hessian.len()];
+        let again = part.evaluator.whole_hessian(x, lambda, &mut entries);
+        if again.is_err() {
+            return result;
+        }
+        values.fill(0.0);
+        scatter(&part.hessian, &entries, values);
+        Ok(())
+    }
+
+    fn whole_hessian(
         &mut self,
         x: &[f64],
         lambda: &[f64],
@@ -339,6 +427,37 @@ impl Evaluator {
                 .extend(std::iter::repeat_n(i as u32, start[i + 1] - start[i]));
         }
         self.hessian_column = column;
+    }
+}
+
+impl Part {
+    fn new(whole: &Evaluator, part: Evaluator) -> Self {
+        // columns are sorted in each line
+        let find = |columns: &[u32], line: std::ops::Range<usize>, j: u32| {
+            line.start + columns[line].partition_point(|&k| k < j)
+        };
+        let line = |i: usize| whole.jacobian_start[i]..whole.jacobian_start[i + 1];
+        let rows = part.jacobian_start.windows(2).enumerate();
+        let rows = rows.flat_map(|(i, range)| (range[0]..range[1]).map(move |k| (i, k)));
+        let jacobian =
+            rows.map(|(i, k)| find(&whole.jacobian_column, line(i), part.jacobian_column[k]));
+        let entries = part.hessian_row.iter().zip(&part.hessian_column);
+        let hessian = entries.map(|(&i, &j)| {
+            let rows = &whole.hessian_row;
+            let line = rows.partition_point(|&r| r < i)..rows.partition_point(|&r| r <= i);
+            find(&whole.hessian_column, line, j)
+        });
+        Self {
+            jacobian: jacobian.collect(),
+            hessian: hessian.collect(),
+            evaluator: part,
+        }
+    }
+}
+
+fn scatter(place: &[usize], entries: &[f64], values: &mut [f64]) {
+    for (&k, v) in place.iter().zip(entries) {
+        values[k] = *v;
     }
 }
 

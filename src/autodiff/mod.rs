@@ -10,6 +10,7 @@
 mod blocks;
 mod derive;
 mod evaluator;
+mod fixed;
 pub mod functions;
 mod graph;
 pub mod partials;

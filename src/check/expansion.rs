@@ -181,10 +181,9 @@ fn letters(from: &str, to: &str) -> Option<Vec<String>> {
     if lo > hi || hi - lo > 1_000_000 {
         return None;
     }
-    let first = if from.as_bytes()[0].is_ascii_uppercase() {
-        b'A'
-    } else {
-        b'a'
+    let first = match from.as_bytes().first()? {
+        c if c.is_ascii_uppercase() => b'A',
+        _ => b'a',
     };
     let spell = |mut k: u64| {
         let mut s = Vec::new();

@@ -2,6 +2,7 @@
 
 use super::functions;
 use super::node::*;
+use super::symbols::SymbolKind;
 use super::{Compiler, Failed};
 use crate::diag::{Diagnostic, nearest};
 use crate::solve::OWN_OPTIONS;
@@ -220,6 +221,20 @@ impl Compiler {
         let (t, s) = (self.lookup(&item.name)?, self.lookup(source)?);
         self.used(s, source.span);
         let (target, from) = (self.symbols.get(t).clone(), self.symbols.get(s).clone());
+        if !target.is_set() && !matches!(target.kind, SymbolKind::Parameter { .. }) {
+            return self.fail(
+                Diagnostic::error(
+                    "E0331",
+                    item.name.span,
+                    format!(
+                        "`{}` is a {}: only sets and parameters are projected to",
+                        item.name.name,
+                        target.kind_name()
+                    ),
+                )
+                .other(target.declared, "declared here"),
+            );
+        }
         let positions: Vec<usize> = match (&item.indices, source_indices) {
             (Some(a), Some(b)) => {
                 let mut p = Vec::new();

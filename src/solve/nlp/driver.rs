@@ -23,9 +23,10 @@ use super::problem::{Nlp, Problem};
 use super::provider::{Control, Ended, Progress, Provider, Shared, Solution, lock};
 use super::quadratic::Quadratic;
 use super::schedule::{
-    AGREEMENT, BASE, BETTER, CHEAP, ELASTIC_AFTER, FINEST, From, MUCH, NEAR, NEARER, ROUNDING,
-    SCHEDULE, SHARP, SMALL,
+    AGREEMENT, BASE, BETTER, CHEAP, ELASTIC_AFTER, FINEST, FIRST_PATIENCE, From, MUCH, NEAR,
+    NEARER, PATIENCE, ROUNDING, SCHEDULE, SHARP, SMALL,
 };
+use super::slp;
 use super::trial::{Trial, active_set, clean, polished, residuals_at, tidy};
 use crate::autodiff::{ErrorKind, EvalFailure, Evaluator, has_kinks};
 use crate::model::certificate_nlp::{is_locally_infeasible, violations};
@@ -96,7 +97,7 @@ pub fn solve(
         iterations: 0,
         stopped: None,
         best: None,
-        patience: 3000,
+        patience: FIRST_PATIENCE,
     };
     driver.run(quadratic)
 }
@@ -174,14 +175,16 @@ impl Driver<'_> {
         self.attempt(From::Start, &[])?;
         if self.is_settled() {
             // there is an answer: to look for a better one may not take much longer
-            self.patience = (4 * self.iterations).clamp(100, 3000);
+            self.patience = (4 * self.iterations).clamp(100, PATIENCE);
         }
         self.leave_saddles()?;
         if self.is_settled() {
             self.search()?;
             return Ok(self.finish());
         }
-        if self.best.as_ref().is_some_and(Trial::is_nearly_optimal) {
+        self.patience = PATIENCE;
+        let sharper = |t: &Trial| t.is_nearly_optimal() && t.ended != Ended::Iterations;
+        if self.best.as_ref().is_some_and(sharper) {
             self.attempt(From::Start, SHARP)?;
         }
         if self.kinks.is_some() {
@@ -290,16 +293,13 @@ impl Driver<'_> {
             .then(|| self.begin + Duration::from_secs_f64(self.settings.time_limit.max(0.0)))
     }
 
-    /// None where this start is the same as the person's.
-    fn start_point(&self, from: From) -> Option<Vec<f64>> {
+    /// None where this start is the same as the person's, or is a solution.
+    fn start_point(&mut self, from: From) -> Option<Vec<f64>> {
         let (seed, by, anywhere) = match (from, &self.best) {
             (From::Best, Some(best)) => return Some(best.x.clone()),
             (From::Best, None) | (From::Start, _) => return Some(self.start.clone()),
-            (From::Consistent, _) => {
-                let problem = lock(&*self.problem);
-                let mut evaluator = Evaluator::new(self.instance);
-                return consistent_start(self.instance, &problem, &mut evaluator, &self.start);
-            }
+            (From::Consistent, _) => return self.consistent(),
+            (From::Linearised, _) => return self.linearised(),
             (From::Moved(by), _) => (12345, by, false),
             (From::Anywhere(seed), _) => (seed.wrapping_mul(7919), 1.0, true),
         };
@@ -315,6 +315,41 @@ impl Driver<'_> {
         };
         let all = self.start.iter().zip(lower.iter().zip(upper));
         Some(all.map(place).collect())
+    }
+
+    fn consistent(&self) -> Option<Vec<f64>> {
+        let problem = lock(&*self.problem);
+        let mut evaluator = Evaluator::new(self.instance);
+        consistent_start(self.instance, &problem, &mut evaluator, &self.start)
+    }
+
+    /// The point is judged and kept; None where it is an answer.
+    fn linearised(&mut self) -> Option<Vec<f64>> {
+        let start = self.consistent().unwrap_or_else(|| self.start.clone());
+        let mut problem = lock(&*self.problem);
+        problem.set_start(start);
+        let deadline = self.deadline();
+        let own = self
+            .settings
+            .option("max_iter")
+            .and_then(|n| n.parse().ok());
+        let left = self
+            .settings
+            .iteration_limit
+            .saturating_sub(self.iterations);
+        let most = slp::STEPS.min(left).min(own.unwrap_or(u64::MAX));
+        let run = slp::solve(&mut *problem, most, &mut || {
+            self.monitor.interrupted() || deadline.is_some_and(|d| Instant::now() > d)
+        })?;
+        drop(problem);
+        self.iterations += run.steps;
+        if self.settings.log {
+            self.monitor.log(&format!("{} linear programs", run.steps));
+        }
+        let trial = self.judge(run.x.clone(), run.lambda, Ended::Acceptable);
+        let optimal = trial.is_optimal();
+        self.keep(trial);
+        (!optimal).then_some(run.x)
     }
 
     /// One run of the provider, judged and kept if it is the best so far. The objective of the point if

@@ -18,6 +18,7 @@ pub mod problem;
 pub mod provider;
 pub mod quadratic;
 mod schedule;
+mod slp;
 mod symmetric;
 mod trial;
 

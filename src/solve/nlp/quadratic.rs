@@ -106,7 +106,7 @@ impl Quadratic {
 }
 
 /// Rows from entries ordered by row.
-fn by_rows(m: usize, entries: &[Entry]) -> Sparse {
+pub(super) fn by_rows(m: usize, entries: &[Entry]) -> Sparse {
     let mut out = Sparse::new();
     let mut lines = entries.chunk_by(|a, b| a.0 == b.0).peekable();
     for i in 0..m {

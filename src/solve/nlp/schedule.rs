@@ -23,6 +23,8 @@ pub(super) enum From {
     Start,
     /// The person's start, with the variables that the model defines computed.
     Consistent,
+    /// Where sequential linear programming leads to from there.
+    Linearised,
     /// The best point so far.
     Best,
     /// The person's start, moved by this fraction of its size (and at least by this much).
@@ -30,6 +32,10 @@ pub(super) enum From {
     /// Anywhere between the bounds, the start moved where there are none; the number is a seed.
     Anywhere(u64),
 }
+
+/// Iterations that one attempt may take; the first less, for what takes so many is better begun elsewhere.
+pub(super) const PATIENCE: u64 = 3000;
+pub(super) const FIRST_PATIENCE: u64 = 500;
 
 /// Options that keep an interior point near its start.
 pub(super) const NEAR: &[(&str, &str)] = &[
@@ -52,7 +58,8 @@ pub(super) const CENTRAL: &[(&str, &str)] = &[
 pub(super) const SHARP: &[(&str, &str)] = &[("tol", "1e-11"), ("compl_inf_tol", "1e-14")];
 
 /// What to try when an attempt has not led to a certified point.
-pub(super) const SCHEDULE: [(From, &[(&str, &str)]); 14] = [
+pub(super) const SCHEDULE: [(From, &[(&str, &str)]); 15] = [
+    (From::Linearised, NEAR),
     (From::Consistent, &[]),
     (From::Start, NEAR),
     (From::Moved(0.1), NEAR),
@@ -89,11 +96,12 @@ pub(super) const SCHEDULE: [(From, &[(&str, &str)]); 14] = [
 ];
 
 /// After so many attempts without a feasible point the elastic form has its turn.
-pub(super) const ELASTIC_AFTER: usize = 3;
+pub(super) const ELASTIC_AFTER: usize = 4;
 
 /// What to try to better a certified point of a small nonconvex problem. The first
 /// [`AGREEMENT`] are always tried; the others where these did not agree.
-pub(super) const BETTER: [(From, &[(&str, &str)]); 7] = [
+pub(super) const BETTER: [(From, &[(&str, &str)]); 8] = [
+    (From::Linearised, NEAR),
     (From::Consistent, NEAR),
     (From::Start, NEAR),
     (From::Moved(0.3), &[]),
@@ -102,7 +110,7 @@ pub(super) const BETTER: [(From, &[(&str, &str)]); 7] = [
     (From::Start, CENTRAL),
     (From::Anywhere(2), NEAR),
 ];
-pub(super) const AGREEMENT: usize = 4;
+pub(super) const AGREEMENT: usize = 5;
 
 /// Work (iterations times nonzeros) of the first attempts up to which a search for a better optimum is
 /// cheap: a tenth of a second. What was found in the corpus took at most 1e5.

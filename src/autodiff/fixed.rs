@@ -1,0 +1,117 @@
+//! Terms with fixed columns, as terms of the other columns only.
+//!
+//! √x has no derivative at 0, and a model that fixes x there does not need it. Where a derivative cannot be computed, it is
+//! computed once more with the values of the fixed columns put in as constants; derivatives with respect to
+//! these columns then count as 0.
+
+use crate::model::instance::{Instance, Kernel, KernelTerms, Op, SparseRows};
+use std::collections::BTreeMap;
+
+/// The nonlinear part of an instance without its fixed columns; None where these are in polynomials only.
+pub fn without_fixed(instance: &Instance) -> Option<Instance> {
+    let columns = &instance.columns;
+    let fixed = |j: u32| columns.lower[j as usize] == columns.upper[j as usize];
+    let may_fail = |op: &Op| matches!(op, Op::Call(..) | Op::Power | Op::Divide | Op::PowerInt(_));
+    let mut open = instance
+        .nonlinear
+        .iter()
+        .filter(|t| t.kernel.ops.iter().any(may_fail));
+    if !open.any(|t| t.columns.iter().any(|&j| fixed(j))) {
+        return None;
+    }
+    let mut nonlinear = Vec::new();
+    for terms in &instance.nonlinear {
+        let v = terms.kernel.variables as usize;
+        let mut groups: BTreeMap<Vec<bool>, Vec<usize>> = BTreeMap::new();
+        for t in 0..terms.row.len() {
+            let mask = terms.columns[t * v..(t + 1) * v].iter().map(|&j| fixed(j));
+            groups.entry(mask.collect()).or_default().push(t);
+        }
+        for (mask, members) in groups {
+            nonlinear.push(put_in(terms, &mask, &members, &columns.lower));
+        }
+    }
+    Some(Instance {
+        columns: columns.clone(),
+        rows: instance.rows.clone(),
+        matrix: SparseRows {
+            start: vec![0; instance.row_count() + 1],
+            ..SparseRows::default()
+        },
+        nonlinear,
+        ..Instance::default()
+    })
+}
+
+/// Some of the terms, with values in place of the masked variables.
+fn put_in(terms: &KernelTerms, mask: &[bool], members: &[usize], value: &[f64]) -> KernelTerms {
+    let (v, c) = (
+        terms.kernel.variables as usize,
+        terms.kernel.constants as usize,
+    );
+    // slots of variables keep their order, so that affine forms without fixed ones stay together
+    let place: Vec<u32> = (0..v)
+        .map(|k| match mask[k] {
+            true => c + mask[..k].iter().filter(|&&m| m).count(),
+            false => mask[..k].iter().filter(|&&m| !m).count(),
+        } as u32)
+        .collect();
+    let variable = |k: u32| match mask[k as usize] {
+        true => Op::Const(place[k as usize]),
+        false => Op::Var(place[k as usize]),
+    };
+    let mut ops = Vec::with_capacity(terms.kernel.ops.len());
+    for op in &terms.kernel.ops {
+        match *op {
+            Op::Var(k) => ops.push(variable(k)),
+            Op::Affine {
+                constant,
+                variable: first,
+                terms: n,
+            } => {
+                let slots = first..first + n;
+                if slots.clone().any(|k| mask[k as usize]) {
+                    ops.push(Op::Const(constant));
+                    for (m, k) in slots.enumerate() {
+                        ops.extend([
+                            Op::Const(constant + 1 + m as u32),
+                            variable(k),
+                            Op::Multiply,
+                        ]);
+                    }
+                    ops.push(Op::AddN(n + 1));
+                } else {
+                    let variable = place.get(first as usize).copied().unwrap_or(0);
+                    ops.push(Op::Affine {
+                        constant,
+                        variable,
+                        terms: n,
+                    });
+                }
+            }
+            other => ops.push(other),
+        }
+    }
+    let masked = mask.iter().filter(|&&m| m).count();
+    let mut out = KernelTerms {
+        kernel: Kernel {
+            ops,
+            variables: (v - masked) as u32,
+            constants: (c + masked) as u32,
+        },
+        ..KernelTerms::default()
+    };
+    for &t in members {
+        let columns = &terms.columns[t * v..(t + 1) * v];
+        out.row.push(terms.row[t]);
+        out.coef.push(terms.coef[t]);
+        out.constants.extend(&terms.constants[t * c..(t + 1) * c]);
+        for (&j, &masked) in columns.iter().zip(mask) {
+            match masked {
+                true => out.constants.push(value[j as usize]),
+                false => out.columns.push(j),
+            }
+        }
+    }
+    out
+}
