@@ -237,14 +237,12 @@ mod tests {
                 marginal: vec![0.0; 3],
                 scale: vec![1.0; 3],
                 kind: vec![ColumnKind::Continuous; 3],
-                ..Columns::default()
             },
             rows: Rows {
                 relation: vec![Relation::Equal, relation],
                 rhs: vec![0.0, 25.0],
                 marginal: vec![0.0; 2],
                 scale: vec![1.0; 2],
-                ..Rows::default()
             },
             matrix: SparseRows {
                 start: vec![0, 3, 3],
