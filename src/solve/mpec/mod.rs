@@ -80,6 +80,7 @@ pub fn answer(
         iterations: 0,
         best: None,
         reserve: None,
+        empty: false,
         seen: HashSet::new(),
         notes: Vec::new(),
         stopped: None,
@@ -109,6 +110,8 @@ struct Search<'a> {
     best: Option<Found>,
     /// The least infeasible of the points that are not feasible.
     reserve: Option<Found>,
+    /// No point satisfies all pairs, proved.
+    empty: bool,
     /// Branches that were solved.
     seen: HashSet<Vec<Piece>>,
     notes: Vec<String>,
@@ -249,7 +252,8 @@ impl Search<'_> {
             Some(old) => {
                 let margin = 1e-9 * old.objective.abs().max(1.0);
                 let optimal = |f: &Found| f.verdict == Some(Stationarity::Proved);
-                found.objective < old.objective - margin
+                let unbounded = |f: &Found| f.answer.status == ModelStatus::Unbounded;
+                !unbounded(old) && (unbounded(found) || found.objective < old.objective - margin)
                     || (found.objective <= old.objective + margin
                         && optimal(found)
                         && !optimal(old))
@@ -487,8 +491,10 @@ impl Search<'_> {
         let searched = self.options.method != Method::Check;
         if searched && self.best.is_none() && !self.is_over() {
             let settings = self.sub_settings(&[]);
-            if let Some(level) = bound::point(self.program, &settings, self.monitor) {
-                self.improve(&level)?;
+            match bound::any(self.program, &settings, self.monitor) {
+                bound::Any::Point(level) => self.improve(&level)?,
+                bound::Any::Empty => self.empty = true,
+                bound::Any::Unknown => {}
             }
         }
         let low = self.lower_bound()?;
@@ -571,11 +577,15 @@ impl Search<'_> {
                 a = r.answer;
             }
             a.status = match self.stopped {
+                _ if self.empty => ModelStatus::Infeasible,
                 Some(_) => ModelStatus::IntermediateInfeasible,
                 None => ModelStatus::LocallyInfeasible,
             };
-            self.notes
-                .push("no point that satisfies all pairs was found".into());
+            let note = match self.empty {
+                true => "no point satisfies all pairs, proved by branch and bound",
+                false => "no point that satisfies all pairs was found",
+            };
+            self.notes.push(note.into());
         }
         let judged = self.program.judge(&a.outcome.level);
         a.outcome.solver = "bmpec";

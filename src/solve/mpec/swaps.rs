@@ -10,7 +10,7 @@
 
 use super::pairs::Piece;
 use super::relaxation::Kind;
-use super::{Found, Search, SolveError};
+use super::{Found, ModelStatus, Search, SolveError};
 use crate::solve::random::Random;
 
 /// Swaps, and random starts, each in iterations times rows and columns.
@@ -42,6 +42,9 @@ impl Search<'_> {
     fn swaps(&mut self) -> Result<bool, SolveError> {
         let limit = self.iterations + WORK / self.size().max(1);
         'again: while let Some(best) = self.best.clone() {
+            if best.answer.status == ModelStatus::Unbounded {
+                break;
+            }
             for (k, piece) in self.order(&best) {
                 if self.iterations > limit || self.is_over() {
                     return Ok(false);

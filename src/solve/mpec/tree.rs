@@ -60,6 +60,13 @@ pub struct Found {
     pub iterations: u64,
 }
 
+impl Found {
+    /// There is no solution at all, if the cutoff was +∞.
+    pub fn is_empty(&self) -> bool {
+        self.complete && self.best.is_none() && self.bound == f64::INFINITY
+    }
+}
+
 struct Node {
     bound: f64,
     depth: usize,

@@ -120,14 +120,21 @@ pub fn lower(
     proof
 }
 
-/// A point that satisfies all pairs of a linear program, where the other methods find none.
-pub fn point(
-    program: &Program,
-    settings: &Settings,
-    monitor: &mut dyn Monitor,
-) -> Option<Vec<f64>> {
+/// What a search says that is content with any point.
+pub enum Any {
+    /// This one satisfies all pairs.
+    Point(Vec<f64>),
+    /// None does, proved.
+    Empty,
+    /// Neither was found.
+    Unknown,
+}
+
+/// A point that satisfies all pairs of a linear program, where the other methods find none; or a proof that there
+/// is none.
+pub fn any(program: &Program, settings: &Settings, monitor: &mut dyn Monitor) -> Any {
     if !program.envelope.is_linear() {
-        return None;
+        return Any::Unknown;
     }
     let limits = tree::Limits {
         nodes: NODES,
@@ -137,8 +144,16 @@ pub fn point(
     };
     let begin = Instant::now();
     let mut watch = |iterations| watch(iterations, begin, settings, monitor);
-    let found = search(program, &whole(program), &limits, None, &mut watch);
-    found.best.map(|b| b.1)
+    let problem = whole(program);
+    let found = search(program, &problem, &limits, None, &mut watch);
+    if let Some((_, level)) = found.best {
+        return Any::Point(level);
+    }
+    let prover: Option<Prover> = Some(&mut prove_node);
+    match found.complete && search(program, &problem, &limits, prover, &mut watch).is_empty() {
+        true => Any::Empty,
+        false => Any::Unknown,
+    }
 }
 
 fn search(
