@@ -14,6 +14,8 @@ pub enum Form {
     Scientific,
     /// 3: as many digits as fit.
     Widest,
+    /// 4: the digits it has, or as many as fit, with an exponent where that is shorter; no decimals are asked.
+    General,
 }
 
 impl Form {
@@ -23,6 +25,7 @@ impl Form {
             0 => Self::AsNeeded,
             2 => Self::Scientific,
             3 => Self::Widest,
+            4 => Self::General,
             _ => Self::Rounded,
         }
     }
@@ -35,6 +38,51 @@ const SCIENTIFIC: usize = 15;
 /// Digits that `.nr = 3` shows.
 const WIDEST: usize = 17;
 
+/// The most digits that fit, beginning with all that the number has.
+fn general(x: f64, room: usize) -> Option<String> {
+    if x == 0.0 {
+        return Some("0".into());
+    }
+    let digits = shortest(x).0.len();
+    (1..=digits)
+        .rev()
+        .map(|n| format!("{:.*e}", n - 1, x.abs()))
+        .filter_map(|text| shorter(&text, x < 0.0))
+        .find(|text| text.len() <= room)
+}
+
+/// `1.25e-4` without an exponent or with one, whichever is shorter.
+fn shorter(scientific: &str, negative: bool) -> Option<String> {
+    let (mantissa, exponent) = scientific.split_once('e')?;
+    let exponent: i32 = exponent.parse().ok()?;
+    let digits: String = mantissa.chars().filter(char::is_ascii_digit).collect();
+    let digits = match digits.trim_end_matches('0') {
+        "" => "0",
+        d => d,
+    };
+    let sign = if negative { "-" } else { "" };
+    let (first, rest) = digits.split_at(1);
+    let point = if rest.is_empty() { "" } else { "." };
+    let with = format!("{sign}{first}{point}{rest}E{exponent}");
+    if exponent.abs() > 20 {
+        return Some(with);
+    }
+    let n = digits.len() as i32;
+    let without = if exponent < 0 {
+        format!("{sign}0.{}{digits}", "0".repeat((-exponent - 1) as usize))
+    } else if n <= exponent + 1 {
+        format!("{sign}{digits}{}", "0".repeat((exponent + 1 - n) as usize))
+    } else {
+        let (whole, decimals) = digits.split_at((exponent + 1) as usize);
+        format!("{sign}{whole}.{decimals}")
+    };
+    Some(if with.len() < without.len() {
+        with
+    } else {
+        without
+    })
+}
+
 /// A finite number in at most `width` characters (0: as many as it needs), not padded; asterisks where
 /// it cannot be shown.
 pub fn number(x: f64, width: usize, decimals: usize, form: Form) -> String {
@@ -42,6 +90,7 @@ pub fn number(x: f64, width: usize, decimals: usize, form: Form) -> String {
     let negative = usize::from(x.is_sign_negative() && x != 0.0);
     let text = match form {
         Form::Scientific => scientific(x, room, decimals),
+        Form::General => general(x, room),
         Form::Widest => widest(x, room, negative).or_else(|| exponential(x, room)),
         Form::AsNeeded | Form::Rounded => {
             let decimals = decimals.min(room.saturating_sub(2 + negative));

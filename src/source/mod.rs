@@ -10,6 +10,7 @@ use crate::diag::Diagnostic;
 
 mod blocks;
 mod conditions;
+mod directive_names;
 mod directives;
 mod evaluate;
 mod line;

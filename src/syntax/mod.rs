@@ -13,6 +13,7 @@ pub mod ast;
 mod build;
 pub mod data;
 mod explain;
+mod fields;
 mod grammar;
 mod neighbours;
 mod split;

@@ -8,7 +8,8 @@
 //!
 //! Invariant: the reader always advances, so it ends on any text.
 
-use super::data::{DataKind, DataReader, Fields, KeyPart, MARK, Tail, width};
+use super::data::{DataKind, DataReader, KeyPart, Tail, width};
+use super::fields::{Fields, MARK};
 use crate::diag::Diagnostic;
 use crate::source::Span;
 
