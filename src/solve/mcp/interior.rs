@@ -40,7 +40,7 @@ const STEP_SHORT: f64 = 0.3;
 /// Relative residual of a step.
 const ENOUGH: f64 = 1e-9;
 /// ρ, least and largest, and the most it may be against μ.
-const PROX: (f64, f64) = (1e-11, 1e-2);
+const PROX: (f64, f64) = (1e-14, 1e-2);
 const PROX_SHARE: f64 = 100.0;
 /// Violation of the equations against μ from which μ has to wait, or to grow, at most tenfold.
 const AHEAD: f64 = 3.0;

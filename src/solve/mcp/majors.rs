@@ -212,8 +212,10 @@ impl Majors {
                     tries,
                 );
                 if kind == '-' {
-                    // The proximal term may be what keeps the digits away: at a vertex none is needed.
-                    if prox > 0.0 && !std::mem::replace(&mut self.at_vertex, true) {
+                    // The proximal term may be what keeps the digits away: at a vertex none is needed. The
+                    // way there is long, and not gone for the last two digits.
+                    let far = self.point.residual > 1e-2 * run.settings.convergence_tolerance;
+                    if far && prox > 0.0 && !std::mem::replace(&mut self.at_vertex, true) {
                         (self.prox, self.to_vertex) = (0.0, true);
                         continue;
                     }
