@@ -97,6 +97,8 @@ pub fn solve(
         iterations: 0,
         stopped: None,
         best: None,
+        ended: Ended::Broken,
+        at_saddle: false,
         patience: FIRST_PATIENCE,
     };
     driver.run(quadratic)
@@ -152,6 +154,10 @@ struct Driver<'a> {
     /// Why no further attempt may be made.
     stopped: Option<SolverStatus>,
     best: Option<Trial>,
+    /// How the last run of the provider ended.
+    ended: Ended,
+    /// The best point is a saddle from which a run went astray.
+    at_saddle: bool,
     /// Iterations one attempt may take.
     patience: u64,
 }
@@ -558,6 +564,7 @@ impl Driver<'_> {
         self.iterations += solution.iterations;
         self.stopped = stopped.or(self.stopped);
         self.note_end(solution.ended);
+        self.ended = solution.ended;
         if let Ended::InvalidOption = solution.ended {
             return Err(SolveError::new(format!(
                 "{} does not take one of the options",
@@ -639,6 +646,7 @@ impl Driver<'_> {
                 ],
             )?;
             let now = self.best.as_ref().map_or(before, |t| t.objective);
+            self.at_saddle = now == before && self.ended == Ended::Diverging;
             if now >= before - 1e-9 * before.abs().max(1.0) {
                 return Ok(());
             }
@@ -690,7 +698,9 @@ impl Driver<'_> {
             is_locally_infeasible(self.instance, problem.evaluator(), &t.level, y, 1e-4)
         };
         let mut best = best;
-        let status = if best.is_optimal() {
+        let status = if best.is_optimal() && self.at_saddle {
+            ModelStatus::Feasible
+        } else if best.is_optimal() {
             match self.convex {
                 Some(Convexity::Asked) => ModelStatus::Optimal,
                 _ => ModelStatus::LocallyOptimal,
@@ -724,9 +734,17 @@ impl Driver<'_> {
             },
             _ => SolverStatus::NormalCompletion,
         };
-        let message = self.message.take();
+        let message = match self.at_saddle {
+            true => Some(
+                "a saddle: the objective gets better beyond it, and what follows it there diverges"
+                    .into(),
+            ),
+            false => self.message.take(),
+        };
         let message = match (status, &problem.last_failure) {
-            (ModelStatus::Feasible | ModelStatus::IntermediateInfeasible, Some(f)) => {
+            (ModelStatus::Feasible | ModelStatus::IntermediateInfeasible, Some(f))
+                if !self.at_saddle =>
+            {
                 let row = self.monitor.row_name(f.row as usize);
                 Some(format!("the last evaluation that failed: {f} in {row}"))
             }

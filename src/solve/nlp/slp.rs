@@ -28,6 +28,8 @@ const MOST_PENALTY: f64 = 1e9;
 /// A step is taken from this part of the promised decrease on, and the trust region grows from the other on.
 const TAKEN: f64 = 0.05;
 const GOOD: f64 = 0.75;
+/// A point with a larger number is a start for nothing.
+const FARTHEST: f64 = 1e15;
 /// A trust region this small is none.
 const SMALLEST: f64 = 1e-9;
 
@@ -82,8 +84,8 @@ impl Slopes {
     }
 }
 
-/// Runs from the start point, by at most so many linear programs. None where the start has no values or derivatives, or
-/// the problem is too large.
+/// Runs from the start point, by at most so many linear programs. None where the start has no values or derivatives,
+/// where the problem is too large, and where it leads to infinity.
 pub fn solve(nlp: &mut dyn Nlp, most: u64, stop: &mut dyn FnMut() -> bool) -> Option<Run> {
     let (n, m) = nlp.size();
     if n + m > LARGEST {
@@ -145,6 +147,9 @@ pub fn solve(nlp: &mut dyn Nlp, most: u64, stop: &mut dyn FnMut() -> bool) -> Op
             break;
         };
         (x, here, slopes) = (next, values, derivatives);
+        if x.iter().any(|x| x.abs() > FARTHEST) {
+            return None;
+        }
     }
     run.x = x;
     Some(run)

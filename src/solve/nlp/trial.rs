@@ -186,7 +186,7 @@ pub(super) fn active_set(
     tolerance: f64,
 ) -> Active {
     let (lower, upper) = problem.bounds();
-    let near = |x: f64, b: f64| (x - b).abs() <= tolerance * b.abs().max(1.0);
+    let near = |x: f64, b: f64| b.is_finite() && (x - b).abs() <= tolerance * b.abs().max(1.0);
     let fixed =
         t.x.iter()
             .zip(lower.iter().zip(upper))
