@@ -131,15 +131,18 @@ pub(crate) const DELIMITED: &str = "\u{1e}";
 
 impl Marks {
     /// If a line is a directive, where its name begins: behind `$` in the first column, or behind `$$`
-    /// after blanks.
+    /// after blanks; blanks may follow either.
     pub(super) fn directive(&self, line: &str) -> Option<usize> {
         let bytes = line.as_bytes();
-        let first = bytes.iter().position(|b| !matches!(b, b' ' | b'\t'))?;
+        let blank = |b: &u8| matches!(b, b' ' | b'\t');
+        let first = bytes.iter().position(|b| !blank(b))?;
         let doubled = bytes[first] == self.dollar && bytes.get(first + 1) == Some(&self.dollar);
-        if doubled {
-            return Some(first + 2);
-        }
-        (bytes[0] == self.dollar).then_some(1)
+        let start = match doubled {
+            true => first + 2,
+            false if bytes[0] == self.dollar => 1,
+            false => return None,
+        };
+        Some(start + bytes[start..].iter().take_while(|b| blank(b)).count())
     }
 }
 

@@ -1,0 +1,119 @@
+"""The linear programs of Netlib, for docs/accuracy.md.
+
+    python3 benches/netlib.py BMOD FOLDER [NAME...]
+
+FOLDER is `benchmarks/benchmarks/linprog_benchmark_files` of SciPy's source distribution (pip download --no-deps --no-binary
+:all: scipy), which has the programs as arrays; numpy and scipy read them. Each is written as a model, solved by bmod with
+--certify and by HiGHS (through SciPy), and printed where the two disagree; the programs of the subfolder `infeasible` have to
+be called so. A run may take 100 s.
+"""
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import warnings
+
+import numpy
+from scipy.optimize import linprog
+from scipy.sparse import coo_matrix
+
+warnings.filterwarnings("ignore")
+SECONDS = 100
+
+
+def arrays(path):
+    """c, (A, b) of the inequalities, (A, b) of the equations, bounds as pairs."""
+    data = numpy.load(path, allow_pickle=True)
+    cost = data["c"].ravel()
+
+    def rows(matrix, side):
+        a = data[matrix]
+        a = a.item() if a.dtype == object else a
+        return None if a is None or not numpy.size(a) else (coo_matrix(a), numpy.atleast_1d(data[side]).ravel())
+
+    bounds = numpy.asarray(data["bounds"])
+    bounds = bounds.reshape(-1, 2) if bounds.size else [(0, None)] * len(cost)
+
+    def side(v, infinite):
+        return infinite if v is None or numpy.isnan(float(v)) else float(v)
+
+    bounds = [(side(l, -numpy.inf), side(u, numpy.inf)) for l, u in bounds]
+    return cost, rows("A_ub", "b_ub"), rows("A_eq", "b_eq"), bounds
+
+
+def spelled(v):
+    # eps is a zero that counts as data
+    return {numpy.inf: "inf", -numpy.inf: "-inf", 0: "eps"}.get(v, repr(float(v)))
+
+
+def parameter(name, domain, records):
+    lines = "\n".join(f"{key} {spelled(v)}" for key, v in records)
+    return f"parameter {name}({domain}) /\n{lines}\n/;\n" if lines else f"parameter {name}({domain}); {name}({domain}) = 0;\n"
+
+
+def model(cost, inequalities, equations, bounds):
+    text = [f"set j / 1*{len(cost)} /;\n"]
+    text.append(parameter("c", "j", [(j + 1, v) for j, v in enumerate(cost) if v]))
+    text.append("variable x(j), z; equation goal; goal.. z =e= sum(j, c(j)*x(j));\n")
+    for name, relation, rows in (("le", "=l=", inequalities), ("eq", "=e=", equations)):
+        if rows is None:
+            continue
+        a, b = rows
+        text.append(f"set {name} / 1*{a.shape[0]} /;\n")
+        entries = ((f"{i + 1}.{j + 1}", v) for i, j, v in zip(a.row, a.col, a.data) if v)
+        text.append(parameter(f"a{name}", f"{name},j", entries))
+        text.append(parameter(f"b{name}", name, [(i + 1, v) for i, v in enumerate(b) if v]))
+        text.append(f"equation r{name}({name}); r{name}({name}).. sum(j, a{name}({name},j)*x(j)) {relation} b{name}({name});\n")
+    text.append(parameter("lo", "j", [(j + 1, l) for j, (l, _) in enumerate(bounds) if l]))
+    text.append("x.lo(j) = lo(j);\n")
+    text.append(parameter("up", "j", [(j + 1, u) for j, (_, u) in enumerate(bounds) if numpy.isfinite(u)]))
+    text.append("x.up(j)$up(j) = up(j);\n")
+    text.append("model m / all /; solve m using lp minimizing z;\n")
+    return "".join(text)
+
+
+def highs(cost, inequalities, equations, bounds):
+    (a, b), (e, f) = inequalities or (None, None), equations or (None, None)
+    options = {"time_limit": SECONDS}
+    return linprog(cost, a, b, e, f, bounds, method="highs", options=options)
+
+
+def main():
+    program, folder, names = sys.argv[1], pathlib.Path(sys.argv[2]), sys.argv[3:]
+    files = sorted(folder.glob("*.npz")) + sorted(folder.glob("infeasible/*.npz"))
+    count, proved, mine, theirs = 0, 0, 0.0, 0.0
+    for path in files:
+        if path.stem.startswith("milp") or names and path.stem not in names:
+            continue
+        count += 1
+        data = arrays(path)
+        with tempfile.TemporaryDirectory() as place:
+            file = pathlib.Path(place) / "m.blk"
+            file.write_text(model(*data))
+            command = [program, "run", str(file), "--json", "-", "--out", place, "--time-limit", str(SECONDS)]
+            before = os.times().children_user
+            done = subprocess.run([*command, "--certify"], capture_output=True, text=True)
+            seconds = os.times().children_user - before
+        solve = json.loads(done.stdout)["solves"][-1]
+        status, objective = solve["model_status"]["name"], solve.get("objective")
+        before = os.times().user
+        other = highs(*data)
+        other_seconds = os.times().user - before
+        right = status == {0: "optimal", 2: "infeasible"}.get(other.status)
+        error = abs(objective - other.fun) / max(1, abs(other.fun)) if right and other.status == 0 else 0.0
+        bounds = solve.get("bounds")
+        proved += bounds is not None and all(isinstance(b, float) for b in bounds)
+        mine, theirs = mine + seconds, theirs + other_seconds
+        remark = "" if right and error < 1e-8 else "   <--"
+        print(
+            f"{path.stem:12} {status:12} {objective} error {error:.1e} interval {bounds} {seconds:.2f} s"
+            f" | HiGHS {other.status} {other.fun} {other_seconds:.2f} s{remark}",
+            flush=True,
+        )
+    print(f"{count} programs, {proved} with a proved interval; {mine:.1f} s with the proofs, HiGHS {theirs:.1f} s without")
+
+
+if __name__ == "__main__":
+    main()
