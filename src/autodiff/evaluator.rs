@@ -193,6 +193,7 @@ impl Evaluator {
         if result.is_ok() {
             return result;
         }
+        values.copy_from_slice(&self.jacobian_linear);
         let Some(part) = self.part() else {
             return result;
         };
@@ -200,12 +201,7 @@ impl Evaluator {
         if part.evaluator.whole_jacobian(x, &mut entries).is_err() {
             return result;
         }
-        values.fill(0.0);
         scatter(&part.jacobian, &entries, values);
-        values
-            .iter_mut()
-            .zip(&self.jacobian_linear)
-            .for_each(|(v, a)| *v += a);
         Ok(())
     }
 
@@ -455,9 +451,10 @@ impl Part {
     }
 }
 
+/// Adds entries at their places.
 fn scatter(place: &[usize], entries: &[f64], values: &mut [f64]) {
     for (&k, v) in place.iter().zip(entries) {
-        values[k] = *v;
+        values[k] += *v;
     }
 }
 

@@ -5,7 +5,7 @@
 //! these columns then count as 0.
 
 use crate::model::instance::{Instance, Kernel, KernelTerms, Op, SparseRows};
-use std::collections::BTreeMap;
+use rustc_hash::FxHashMap;
 
 /// The nonlinear part of an instance without its fixed columns; None where these are in polynomials only.
 pub fn without_fixed(instance: &Instance) -> Option<Instance> {
@@ -22,10 +22,20 @@ pub fn without_fixed(instance: &Instance) -> Option<Instance> {
     let mut nonlinear = Vec::new();
     for terms in &instance.nonlinear {
         let v = terms.kernel.variables as usize;
-        let mut groups: BTreeMap<Vec<bool>, Vec<usize>> = BTreeMap::new();
+        // terms by which of their variables are fixed, in order of appearance
+        let mut groups: Vec<(Vec<bool>, Vec<usize>)> = Vec::new();
+        let mut known: FxHashMap<Vec<bool>, usize> = FxHashMap::default();
+        let mut mask = Vec::with_capacity(v);
         for t in 0..terms.row.len() {
-            let mask = terms.columns[t * v..(t + 1) * v].iter().map(|&j| fixed(j));
-            groups.entry(mask.collect()).or_default().push(t);
+            mask.clear();
+            mask.extend(terms.columns[t * v..(t + 1) * v].iter().map(|&j| fixed(j)));
+            match known.get(&mask) {
+                Some(&g) => groups[g].1.push(t),
+                None => {
+                    known.insert(mask.clone(), groups.len());
+                    groups.push((mask.clone(), vec![t]));
+                }
+            }
         }
         for (mask, members) in groups {
             nonlinear.push(put_in(terms, &mask, &members, &columns.lower));
@@ -50,11 +60,14 @@ fn put_in(terms: &KernelTerms, mask: &[bool], members: &[usize], value: &[f64]) 
         terms.kernel.constants as usize,
     );
     // slots of variables keep their order, so that affine forms without fixed ones stay together
-    let place: Vec<u32> = (0..v)
-        .map(|k| match mask[k] {
-            true => c + mask[..k].iter().filter(|&&m| m).count(),
-            false => mask[..k].iter().filter(|&&m| !m).count(),
-        } as u32)
+    let (mut masked, mut free) = (0, 0);
+    let place: Vec<u32> = mask
+        .iter()
+        .map(|&m| {
+            let (next, first) = if m { (&mut masked, c) } else { (&mut free, 0) };
+            *next += 1;
+            (first + *next - 1) as u32
+        })
         .collect();
     let variable = |k: u32| match mask[k as usize] {
         true => Op::Const(place[k as usize]),
@@ -92,11 +105,10 @@ fn put_in(terms: &KernelTerms, mask: &[bool], members: &[usize], value: &[f64]) 
             other => ops.push(other),
         }
     }
-    let masked = mask.iter().filter(|&&m| m).count();
     let mut out = KernelTerms {
         kernel: Kernel {
             ops,
-            variables: (v - masked) as u32,
+            variables: free as u32,
             constants: (c + masked) as u32,
         },
         ..KernelTerms::default()

@@ -26,7 +26,7 @@ pub use model::walk as walk_node;
 
 use crate::diag::{Diagnostic, Severity};
 use crate::host::Host;
-use crate::source::{Ending, Known, PreprocessOptions, SourceMap, Span};
+use crate::source::{Ending, Known, PreprocessOptions, SourceMap, Span, predefined};
 use crate::syntax::Parser;
 use crate::syntax::ast::{Modes, StmtKind};
 use node::{Code, EquationDef, Part, Slot, SymbolId};
@@ -274,15 +274,6 @@ impl Compiler {
     }
 }
 
-/// The kind of the symbols that are there from the start.
-fn predefined(name: &str) -> Option<&'static str> {
-    match name.to_lowercase().as_str() {
-        "sameas" => Some("set"),
-        "diag" => Some("parameter"),
-        _ => None,
-    }
-}
-
 impl Known for Compiler {
     fn errors(&self) -> usize {
         let errors = self.diagnostics.iter();
@@ -335,12 +326,10 @@ impl Known for Compiler {
         let Some(s) = self.symbols.find(name) else {
             return predefined(name).is_some();
         };
-        Some(s).is_some_and(|s| {
-            let s = self.symbols.get(s);
-            s.has_data
-                || s.assigned
-                || matches!(s.kind, SymbolKind::Equation(Some(_)) | SymbolKind::Alias(_))
-        })
+        let s = self.symbols.get(s);
+        s.has_data
+            || s.assigned
+            || matches!(s.kind, SymbolKind::Equation(Some(_)) | SymbolKind::Alias(_))
     }
 
     fn dimension(&self, name: &str) -> Option<usize> {

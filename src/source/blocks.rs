@@ -1,6 +1,6 @@
 //! Directives that concern several lines: comments, `$goto`, `$onEcho`, `$onPut`.
 
-use super::directives::{unquoted, word_len};
+use super::directives::unquoted;
 use super::line::Line;
 use super::preprocess::Preprocessor;
 use super::{FileId, Outcome, refuse};
@@ -38,10 +38,8 @@ impl Preprocessor<'_> {
             }
             let end = self.line_end(pos);
             let raw = self.raw(pos, end);
-            let found = self.marks.directive(raw).is_some_and(|start| {
-                let t = raw[start..].trim_start();
-                t[..word_len(t)].eq_ignore_ascii_case(word)
-            });
+            let name = self.marks.directive_name(raw);
+            let found = name.is_some_and(|(name, _)| name.eq_ignore_ascii_case(word));
             if !found {
                 each(raw.trim_end_matches(['\n', '\r']), pos as u32);
             }
@@ -84,21 +82,16 @@ impl Preprocessor<'_> {
             let end =
                 memchr::memchr(b'\n', &text.as_bytes()[pos..]).map_or(text.len(), |n| pos + n + 1);
             let line = &text[pos..end];
-            if let Some(start) = marks.directive(line) {
-                let t = line[start..].trim_start();
-                let n = word_len(t);
-                if t[..n].eq_ignore_ascii_case("label")
-                    && t[n..]
-                        .split_whitespace()
-                        .next()
-                        .is_some_and(|l| l.eq_ignore_ascii_case(&label))
-                {
-                    // A jump may leave open blocks.
-                    frame.ifs.clear();
-                    frame.pos = pos;
-                    frame.forget_marks();
-                    return Ok(());
-                }
+            if let Some((name, at)) = marks.directive_name(line)
+                && name.eq_ignore_ascii_case("label")
+                && let Some(l) = line[at..].split_whitespace().next()
+                && l.eq_ignore_ascii_case(&label)
+            {
+                // A jump may leave open blocks.
+                frame.ifs.clear();
+                frame.pos = pos;
+                frame.forget_marks();
+                return Ok(());
             }
             pos = end;
         }

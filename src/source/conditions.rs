@@ -1,5 +1,6 @@
 //! `$if`, `$ifThen … $elseIf … $else … $endIf`: conditions and the lines they leave out.
 
+use super::directives::quoted;
 use super::evaluate::evaluate;
 use super::preprocess::{Known, Preprocessor};
 use super::variables::Reach;
@@ -26,14 +27,21 @@ pub(super) enum Flavour {
     Numeric,
 }
 
+/// The kind of the symbols that are there from the start.
+pub(crate) fn predefined(name: &str) -> Option<&'static str> {
+    match name.to_ascii_lowercase().as_str() {
+        "sameas" => Some("set"),
+        "diag" => Some("parameter"),
+        _ => None,
+    }
+}
+
 /// A text in a condition: quoted, or up to a blank or an operator.
 fn term(text: &str, stop_at_equals: bool) -> (&str, usize) {
     let t = text.trim_start();
     let skipped = text.len() - t.len();
-    if let Some(q) = t.chars().next().filter(|c| *c == '\'' || *c == '"')
-        && let Some(n) = t[1..].find(q)
-    {
-        return (&t[1..1 + n], skipped + n + 2);
+    if let Some((inside, behind)) = quoted(t) {
+        return (inside, text.len() - behind.len());
     }
     let blank = t.find([' ', '\t']).unwrap_or(t.len());
     let end = if stop_at_equals {
@@ -132,7 +140,7 @@ impl Preprocessor<'_> {
             "xxxtype" => of_kind(&[]),
             "mactype" | "macro" => one(&mut |n| self.macros.contains(n)),
             "funtype" => one(&mut |n| known.is_function(n)),
-            "pretype" => one(&mut |n| ["sameas", "diag"].iter().any(|p| p.eq_ignore_ascii_case(n))),
+            "pretype" => one(&mut |n| predefined(n).is_some()),
             "decla_ok" => Some(Ok((true, len))),
             "gamsversion" => {
                 let (number, n) = term(after, false);
@@ -192,14 +200,11 @@ impl Preprocessor<'_> {
             let pos = frame.pos;
             let end = self.line_end(pos);
             let raw = self.raw(pos, end);
-            let Some(start) = self.marks.directive(raw) else {
+            let Some((word, _)) = self.marks.directive_name(raw) else {
                 self.advance(end);
                 continue;
             };
-            let word_end = raw[start..]
-                .find(|c: char| !c.is_ascii_alphanumeric())
-                .map_or(raw.len(), |n| n + start);
-            let word = raw[start..word_end].to_ascii_lowercase();
+            let word = word.to_ascii_lowercase();
             match word.as_str() {
                 "ontext" => {
                     let line = self.take_line();

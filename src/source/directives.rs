@@ -21,16 +21,19 @@ pub(super) fn word_len(text: &str) -> usize {
         .unwrap_or(text.len())
 }
 
+/// The quotes that a text begins with: what stands inside, and what follows them.
+pub(super) fn quoted(text: &str) -> Option<(&str, &str)> {
+    let q = text.chars().next().filter(|c| matches!(c, '\'' | '"'))?;
+    text[1..].split_once(q)
+}
+
 /// The next argument: quoted, or up to a blank; and what follows it.
 fn argument(text: &str) -> (&str, &str) {
     let t = text.trim_start();
-    if let Some(q) = t.chars().next().filter(|c| *c == '\'' || *c == '"')
-        && let Some(n) = t[1..].find(q)
-    {
-        return (&t[1..1 + n], &t[n + 2..]);
-    }
-    let end = t.find([' ', '\t']).unwrap_or(t.len());
-    (&t[..end], &t[end..])
+    quoted(t).unwrap_or_else(|| {
+        let end = t.find([' ', '\t']).unwrap_or(t.len());
+        t.split_at(end)
+    })
 }
 
 /// A text without the quotes around it.
@@ -68,19 +71,6 @@ fn civil(now: f64) -> (i64, i64, i64) {
     let d = doy - (153 * mp + 2) / 5 + 1;
     let m = if mp < 10 { mp + 3 } else { mp - 9 };
     (yoe + era * 400 + i64::from(m <= 2), m, d)
-}
-
-/// What follows the first word and its blanks.
-fn behind_word(text: &str) -> &str {
-    let t = text.trim_start();
-    let end = t.find(char::is_whitespace).unwrap_or(t.len());
-    t[end..].trim_start()
-}
-
-/// The byte behind the closing quote of a value in quotes.
-fn quoted_value_end(value: &str) -> Option<usize> {
-    let q = value.chars().next().filter(|c| matches!(c, '\'' | '"'))?;
-    value[1..].find(q).map(|n| n + 2)
 }
 
 /// Blanks and semicolons may stand between and behind switches: `$offDigit;`.
@@ -258,20 +248,13 @@ impl Preprocessor<'_> {
             }
             "set" | "setlocal" | "setglobal" | "eval" | "evallocal" | "evalglobal" => {
                 // Behind a value in quotes the line goes on: `$set x 'a' $set y 'b'`.
-                let value = behind_word(rest);
-                let next = quoted_value_end(value).map(|n| text.len() - value.len() + n);
-                let next = next.filter(|&n| {
-                    text[n..]
-                        .trim_start()
-                        .starts_with(self.marks.dollar as char)
-                });
-                let end = next.map_or(rest.len(), |n| n - at);
+                let next = quoted(argument(rest).1.trim_start())
+                    .map(|(_, behind)| behind)
+                    .filter(|b| b.trim_start().starts_with(self.marks.dollar as char));
+                let end = rest.len() - next.map_or(0, str::len);
                 self.define(word, suffix == "set", &rest[..end], lo, hi, known)?;
                 return match next {
-                    Some(n) => {
-                        let n = text.len() - text[n..].trim_start().len();
-                        self.directives(line, n + 1, known)
-                    }
+                    Some(b) => self.directives(line, text.len() - b.trim_start().len() + 1, known),
                     None => Ok(()),
                 };
             }
@@ -357,7 +340,7 @@ impl Preprocessor<'_> {
             }
             "goto" => return self.goto(rest, lo, hi),
             "label" => {
-                let behind = behind_word(rest);
+                let behind = argument(rest).1.trim_start();
                 if behind.starts_with(self.marks.dollar as char) {
                     return self.directives(line, text.len() - behind.len() + 1, known);
                 }
@@ -509,10 +492,8 @@ impl Preprocessor<'_> {
     /// `$else`, `$elseIf`, `$endIf`: whether the lines that follow count.
     pub(super) fn branch(&mut self, line: &Line, known: &dyn Known) -> Outcome<bool> {
         let text = line.text.as_str();
-        let start = self.marks.directive(text).unwrap_or(1);
-        let len = word_len(&text[start..]);
-        let word = text[start..start + len].to_ascii_lowercase();
-        let mut at = start + len;
+        let (word, mut at) = self.marks.directive_name(text).unwrap_or_default();
+        let word = word.to_ascii_lowercase();
         let mut tag = String::new();
         if text[at..].starts_with('.') {
             let n = word_len(&text[at + 1..]);
@@ -632,8 +613,8 @@ impl Preprocessor<'_> {
                 }
             }
         } else if word.starts_with("eval") {
-            let value = match quoted_value_end(value) {
-                Some(end) if end == value.len() => unquoted(value),
+            let value = match quoted(value) {
+                Some((inside, "")) => inside,
                 _ => value,
             };
             match evaluate(value, known) {
@@ -690,10 +671,8 @@ impl Preprocessor<'_> {
                 text.push('\\');
                 continue;
             }
-            if let Some(start) = self.marks.directive(&next.text)
-                && next.text[start..][..word_len(&next.text[start..])]
-                    .eq_ignore_ascii_case("ontext")
-            {
+            let name = self.marks.directive_name(&next.text);
+            if name.is_some_and(|(name, _)| name.eq_ignore_ascii_case("ontext")) {
                 self.comment_block(&next)?;
                 text.push('\\');
                 continue;

@@ -3,6 +3,7 @@
 //! Invariant: depth is bounded, and text that is no expression is an error with the place where it
 //! stops being one.
 
+use super::directives::quoted;
 use super::preprocess::Known;
 
 /// Parentheses inside parentheses.
@@ -271,11 +272,10 @@ impl<'a> Evaluator<'a> {
     fn text(&mut self) -> &'a str {
         self.blanks();
         let rest = self.rest();
-        let quote = rest.chars().next().filter(|c| matches!(c, '\'' | '"'));
-        match quote.and_then(|q| rest[1..].find(q)) {
-            Some(n) => {
-                self.at += n + 2;
-                &rest[1..=n]
+        match quoted(rest) {
+            Some((inside, behind)) => {
+                self.at += rest.len() - behind.len();
+                inside
             }
             None => {
                 let len = rest.find([',', ')', ']', '}']).unwrap_or(rest.len());

@@ -19,6 +19,7 @@ mod map;
 mod preprocess;
 mod variables;
 
+pub(crate) use conditions::predefined;
 pub use map::{FileId, Place, SourceFile, SourceMap};
 pub use preprocess::{Ending, Known, NothingKnown, PreprocessOptions, SymbolKindName};
 pub(crate) use preprocess::{Preprocessor, quoted_end};

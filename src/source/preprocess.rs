@@ -16,6 +16,7 @@ use std::path::{Path, PathBuf};
 use rustc_hash::FxHashMap;
 
 use super::conditions::If;
+use super::directives::word_len;
 use super::line::Line;
 use super::macros::Macros;
 use super::variables::{self, Variables};
@@ -143,6 +144,13 @@ impl Marks {
             false => return None,
         };
         Some(start + bytes[start..].iter().take_while(|b| blank(b)).count())
+    }
+
+    /// If a line is a directive, its name and where that ends.
+    pub(super) fn directive_name<'a>(&self, line: &'a str) -> Option<(&'a str, usize)> {
+        let start = self.directive(line)?;
+        let end = start + word_len(&line[start..]);
+        Some((&line[start..end], end))
     }
 }
 

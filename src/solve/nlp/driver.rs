@@ -294,6 +294,12 @@ impl Driver<'_> {
         }
     }
 
+    fn iterations_left(&self) -> u64 {
+        self.settings
+            .iteration_limit
+            .saturating_sub(self.iterations)
+    }
+
     fn deadline(&self) -> Option<Instant> {
         (self.settings.time_limit < 1e9)
             .then(|| self.begin + Duration::from_secs_f64(self.settings.time_limit.max(0.0)))
@@ -339,11 +345,9 @@ impl Driver<'_> {
             .settings
             .option("max_iter")
             .and_then(|n| n.parse().ok());
-        let left = self
-            .settings
-            .iteration_limit
-            .saturating_sub(self.iterations);
-        let most = slp::STEPS.min(left).min(own.unwrap_or(u64::MAX));
+        let most = slp::STEPS
+            .min(self.iterations_left())
+            .min(own.unwrap_or(u64::MAX));
         let run = slp::solve(&mut *problem, most, &mut || {
             self.monitor.interrupted() || deadline.is_some_and(|d| Instant::now() > d)
         })?;
@@ -508,10 +512,7 @@ impl Driver<'_> {
                 put(k, v);
             }
         }
-        let left = self
-            .settings
-            .iteration_limit
-            .saturating_sub(self.iterations);
+        let left = self.iterations_left();
         let cap = if options.iter().any(|(k, _)| k == "max_iter") {
             u64::MAX
         } else {
@@ -626,6 +627,7 @@ impl Driver<'_> {
 
     /// While the best point is a saddle: follow the negative curvature and solve again.
     fn leave_saddles(&mut self) -> Result<(), SolveError> {
+        self.at_saddle = false;
         for _ in 0..3 {
             let Some(best) = self.best.clone().filter(Trial::is_optimal) else {
                 return Ok(());
@@ -734,24 +736,19 @@ impl Driver<'_> {
             },
             _ => SolverStatus::NormalCompletion,
         };
-        let message = match self.at_saddle {
-            true => Some(
+        let message = match (status, &problem.last_failure) {
+            (ModelStatus::Feasible, _) if best.is_optimal() => Some(
                 "a saddle: the objective gets better beyond it, and what follows it there diverges"
                     .into(),
             ),
-            false => self.message.take(),
-        };
-        let message = match (status, &problem.last_failure) {
-            (ModelStatus::Feasible | ModelStatus::IntermediateInfeasible, Some(f))
-                if !self.at_saddle =>
-            {
+            (ModelStatus::Feasible | ModelStatus::IntermediateInfeasible, Some(f)) => {
                 let row = self.monitor.row_name(f.row as usize);
                 Some(format!("the last evaluation that failed: {f} in {row}"))
             }
             (ModelStatus::LocallyOptimal, _) if self.convex.is_some() => {
                 Some("convex: a local optimum is a global one".into())
             }
-            _ => message,
+            _ => self.message.take(),
         };
         Answer::new(
             Outcome {
