@@ -19,6 +19,7 @@ use super::Convexity;
 use super::consistent::consistent_start;
 use super::curvature::negative_curvature;
 use super::elastic::Elastic;
+use super::growth::Growth;
 use super::problem::{Nlp, Problem};
 use super::provider::{Control, Ended, Progress, Provider, Shared, Solution, lock};
 use super::quadratic::Quadratic;
@@ -74,33 +75,14 @@ pub fn solve(
         Convexity::Ignored => None,
         Convexity::Used | Convexity::Asked => Quadratic::new(&mut problem),
     };
-    let message = (convexity == Convexity::Asked && quadratic.is_none()).then(|| {
+    let mut driver = Driver::new(instance, problem, provider, settings, monitor);
+    driver.message = (convexity == Convexity::Asked && quadratic.is_none()).then(|| {
         let name = provider.name();
         format!(
             "not a convex quadratic program with linear rows: solved by {name}, not by clarabel"
         )
     });
-    let kinks = has_kinks(instance).then(|| Evaluator::smoothed(instance, FINEST));
-    let mut driver = Driver {
-        kinks,
-        infeasibility: None,
-        instance,
-        provider,
-        settings,
-        monitor,
-        convex: quadratic.is_some().then_some(convexity),
-        solver: provider.name(),
-        message,
-        start,
-        problem: Arc::new(Mutex::new(problem)),
-        begin: Instant::now(),
-        iterations: 0,
-        stopped: None,
-        best: None,
-        ended: Ended::Broken,
-        at_saddle: false,
-        patience: FIRST_PATIENCE,
-    };
+    driver.convex = quadratic.is_some().then_some(convexity);
     driver.run(quadratic)
 }
 
@@ -132,34 +114,68 @@ fn start_failure(e: &EvalFailure) -> SolveError {
     }
 }
 
-struct Driver<'a> {
+pub(super) struct Driver<'a> {
     /// For instances with kinks: derivatives a hair beside them.
     kinks: Option<Evaluator>,
     /// A minimum of the violations, and multipliers of all rows that may prove it.
     infeasibility: Option<(Trial, Vec<f64>)>,
-    instance: &'a Instance,
-    provider: &'a dyn Provider,
-    settings: &'a Settings,
-    monitor: &'a mut dyn Monitor,
+    pub(super) instance: &'a Instance,
+    pub(super) provider: &'a dyn Provider,
+    pub(super) settings: &'a Settings,
+    pub(super) monitor: &'a mut dyn Monitor,
     /// A point that satisfies the KKT conditions is a global optimum.
     convex: Option<Convexity>,
     /// Name of who found the answer.
     solver: &'static str,
     /// What the person is to hear in any case.
     message: Option<String>,
-    start: Vec<f64>,
-    problem: Arc<Mutex<Problem>>,
-    begin: Instant,
-    iterations: u64,
+    pub(super) start: Vec<f64>,
+    pub(super) problem: Arc<Mutex<Problem>>,
+    pub(super) begin: Instant,
+    pub(super) iterations: u64,
     /// Why no further attempt may be made.
-    stopped: Option<SolverStatus>,
-    best: Option<Trial>,
+    pub(super) stopped: Option<SolverStatus>,
+    pub(super) best: Option<Trial>,
     /// How the last run of the provider ended.
     ended: Ended,
     /// The best point is a saddle from which a run went astray.
     at_saddle: bool,
     /// Iterations one attempt may take.
     patience: u64,
+    /// What is done about runs that lead far away.
+    pub(super) growth: Growth,
+}
+
+impl<'a> Driver<'a> {
+    pub(super) fn new(
+        instance: &'a Instance,
+        problem: Problem,
+        provider: &'a dyn Provider,
+        settings: &'a Settings,
+        monitor: &'a mut dyn Monitor,
+    ) -> Self {
+        Self {
+            kinks: has_kinks(instance).then(|| Evaluator::smoothed(instance, FINEST)),
+            infeasibility: None,
+            instance,
+            provider,
+            settings,
+            monitor,
+            convex: None,
+            solver: provider.name(),
+            message: None,
+            start: problem.start().to_vec(),
+            problem: Arc::new(Mutex::new(problem)),
+            begin: Instant::now(),
+            iterations: 0,
+            stopped: None,
+            best: None,
+            ended: Ended::Broken,
+            at_saddle: false,
+            patience: FIRST_PATIENCE,
+            growth: Growth::Watched(0),
+        }
+    }
 }
 
 impl Driver<'_> {
@@ -185,6 +201,7 @@ impl Driver<'_> {
         }
         self.leave_saddles()?;
         if self.is_settled() {
+            self.growth = Growth::Ignored;
             self.search()?;
             return Ok(self.finish());
         }
@@ -280,7 +297,7 @@ impl Driver<'_> {
     }
 
     /// Nothing more needs to be tried.
-    fn is_settled(&self) -> bool {
+    pub(super) fn is_settled(&self) -> bool {
         self.stopped.is_some()
             || self
                 .best
@@ -288,10 +305,11 @@ impl Driver<'_> {
                 .is_some_and(|t| t.is_optimal() || self.is_unbounded(t))
     }
 
-    fn is_unbounded(&self, t: &Trial) -> bool {
-        t.is_feasible() && !t.is_optimal() && t.objective < -LARGE && {
-            t.objective < -UNBOUNDED / 10.0 || t.ended == Ended::Diverging
-        }
+    pub(super) fn is_unbounded(&self, t: &Trial) -> bool {
+        t.unbounded
+            || t.is_feasible() && !t.is_optimal() && t.objective < -LARGE && {
+                t.objective < -UNBOUNDED / 10.0 || t.ended == Ended::Diverging
+            }
     }
 
     fn iterations_left(&self) -> u64 {
@@ -364,7 +382,7 @@ impl Driver<'_> {
 
     /// One run of the provider, judged and kept if it is the best so far. The objective of the point if
     /// it is optimal.
-    fn attempt(&mut self, from: From, extra: &[(&str, &str)]) -> Result<Option<f64>, SolveError> {
+    pub(super) fn attempt(&mut self, from: From, extra: &[(&str, &str)]) -> Result<Option<f64>, SolveError> {
         match self.start_point(from) {
             Some(x) => self.attempt_from(x, extra),
             None => Ok(None),
@@ -376,7 +394,7 @@ impl Driver<'_> {
         x: Vec<f64>,
         extra: &[(&str, &str)],
     ) -> Result<Option<f64>, SolveError> {
-        lock(&*self.problem).set_start(x);
+        lock(&*self.problem).set_start(x.clone());
         let shared: Shared = self.problem.clone();
         let solution = self.call(shared, extra)?;
         if solution.ended == Ended::TooFewDegrees && self.stopped.is_none() {
@@ -384,6 +402,7 @@ impl Driver<'_> {
             return Ok(None);
         }
         let trial = self.judge(solution.x, solution.lambda, solution.ended);
+        let trial = self.follow(x, trial)?;
         let objective = trial.is_optimal().then_some(trial.objective);
         self.keep(trial);
         Ok(objective)
@@ -576,7 +595,7 @@ impl Driver<'_> {
     }
 
     /// Puts a point into the bounds and computes its residuals.
-    fn judge(&mut self, mut x: Vec<f64>, lambda: Vec<f64>, ended: Ended) -> Trial {
+    pub(super) fn judge(&mut self, mut x: Vec<f64>, lambda: Vec<f64>, ended: Ended) -> Trial {
         let mut problem = lock(&*self.problem);
         let kinks = &mut self.kinks;
         {
@@ -615,6 +634,10 @@ impl Driver<'_> {
     fn keep(&mut self, trial: Trial) {
         let better = match &self.best {
             None => true,
+            // a local optimum stays one, whatever lies elsewhere
+            Some(old) if old.is_optimal() && self.growth == Growth::Ignored => {
+                trial.is_optimal() && trial.better(old)
+            }
             // a proof of unboundedness is not replaced by a worse point
             Some(old) => {
                 !self.is_unbounded(old) && (self.is_unbounded(&trial) || trial.better(old))
@@ -626,7 +649,7 @@ impl Driver<'_> {
     }
 
     /// While the best point is a saddle: follow the negative curvature and solve again.
-    fn leave_saddles(&mut self) -> Result<(), SolveError> {
+    pub(super) fn leave_saddles(&mut self) -> Result<(), SolveError> {
         self.at_saddle = false;
         for _ in 0..3 {
             let Some(best) = self.best.clone().filter(Trial::is_optimal) else {

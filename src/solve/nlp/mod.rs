@@ -9,6 +9,7 @@ pub mod consistent;
 pub mod curvature;
 pub mod driver;
 pub mod elastic;
+mod growth;
 #[cfg(feature = "ipopt")]
 pub mod ipopt;
 pub mod polish;

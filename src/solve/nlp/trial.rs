@@ -8,6 +8,11 @@ use crate::model::certificate::{Linearised, Residuals, TOLERANCE, primal};
 use crate::model::certificate_nlp::{kkt_residual, linearise, residuals};
 use crate::model::instance::{Instance, Relation};
 
+/// Numbers from here on are large for a model that has a solution.
+pub(super) const FAR: f64 = 1e7;
+/// A change of the objective that matters, relative to its size.
+pub(super) const CONSIDERABLE: f64 = 0.01;
+
 /// A point that was judged.
 #[derive(Clone)]
 pub(super) struct Trial {
@@ -20,11 +25,20 @@ pub(super) struct Trial {
     pub(super) ended: Ended,
     /// Minimised.
     pub(super) objective: f64,
+    /// Stationary to the tolerance only because it is far away: the objective still changes there.
+    pub(super) receding: bool,
+    /// The objective gets better without limit.
+    pub(super) unbounded: bool,
 }
 
 impl Trial {
     pub(super) fn is_optimal(&self) -> bool {
-        self.residuals.is_feasible(TOLERANCE) && self.residuals.dual_relative <= TOLERANCE
+        self.is_stationary() && !self.receding
+    }
+
+    /// Satisfies the conditions of first order.
+    pub(super) fn is_stationary(&self) -> bool {
+        self.is_feasible() && self.residuals.dual_relative <= TOLERANCE
     }
 
     pub(super) fn is_feasible(&self) -> bool {
@@ -79,6 +93,7 @@ pub(super) fn residuals_at(
             &mut at,
         );
     }
+    let receding = is_receding(instance, &level, &at.reduced, objective);
     Trial {
         x,
         lambda,
@@ -88,7 +103,27 @@ pub(super) fn residuals_at(
         residuals,
         ended,
         objective,
+        receding,
+        unbounded: false,
     }
+}
+
+/// Whether a variable beyond [`FAR`] promises a considerable change of the objective if it goes on as far again:
+/// where everything flattens out towards infinity, derivatives alone say little.
+fn is_receding(instance: &Instance, level: &[f64], reduced: &[f64], objective: f64) -> bool {
+    let columns = &instance.columns;
+    let sign = instance.sign();
+    let promise = |j: usize| {
+        let slope = sign * reduced[j];
+        let bound = if slope > 0.0 {
+            columns.lower[j]
+        } else {
+            columns.upper[j]
+        };
+        slope.abs() * (level[j] - bound).abs().min(level[j].abs())
+    };
+    let considerable = CONSIDERABLE * objective.abs().max(1.0);
+    (0..level.len()).any(|j| level[j].abs() >= FAR && promise(j) > considerable)
 }
 
 /// At a kink the derivative is any number between the one-sided ones: takes the one that the rounded

@@ -1,0 +1,148 @@
+//! Programs without a finite optimum.
+//!
+//! An interior point that is led to infinity loses the rows on the way: where x y = 1 and x grows, y falls below
+//! every tolerance. What its last point says is then worth nothing, but a program confined to a box,
+//! |xⱼ| ≤ R for what has no nearer bound, is solved like any other. So where a run diverges, or ends where the objective
+//! still changes ([`Trial::receding`]), the program is solved in two boxes:
+//!
+//! * an optimum that the box does not touch is one of the program itself;
+//! * an objective that is considerably better in the larger box, for which variables are as far as they may go, has
+//!   no limit that a number in a model stands for: the program is called unbounded;
+//! * otherwise nothing was found out.
+
+use super::driver::Driver;
+use super::problem::{Nlp, ObjectiveForm, Problem};
+use super::provider::{Ended, lock};
+use super::schedule::{From, NEAR};
+use super::trial::{CONSIDERABLE, FAR, Trial};
+use crate::model::instance::Instance;
+use crate::solve::SolveError;
+
+/// Half the widths R of the boxes.
+const BOXES: [f64; 2] = [1e5, 1e10];
+/// The rows hold to this relative to their terms where growth is shown.
+const EXACT: f64 = 1e-8;
+/// How often it is looked for.
+const TIMES: u8 = 2;
+
+/// What is done about runs that lead far away.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Growth {
+    /// Boxes are tried; so often they were.
+    Watched(u8),
+    /// Nothing: there is a local optimum already, or a box.
+    Ignored,
+}
+
+impl Driver<'_> {
+    /// What a run from a start led to, or what was found out about where it was going.
+    pub(super) fn follow(&mut self, start: Vec<f64>, trial: Trial) -> Result<Trial, SolveError> {
+        let Growth::Watched(times) = self.growth else {
+            return Ok(trial);
+        };
+        let far = trial.is_feasible() && is_far(self.instance, &trial.level, FAR);
+        let astray = trial.ended == Ended::Diverging || trial.receding || far;
+        if trial.is_optimal() || !astray || times == TIMES || self.stopped.is_some() {
+            return Ok(trial);
+        }
+        self.growth = Growth::Watched(times + 1);
+        let found = self.boxes(start)?;
+        let better = |t: &Trial| t.unbounded || t.better(&trial);
+        Ok(match found.filter(better) {
+            Some(found) => found,
+            // it is as good as stationary
+            None => Trial {
+                receding: false,
+                ..trial
+            },
+        })
+    }
+
+    /// The optimum, or a point that shows that there is none, if one of them is found.
+    fn boxes(&mut self, start: Vec<f64>) -> Result<Option<Trial>, SolveError> {
+        let mut before: Option<f64> = None;
+        let mut start = start;
+        for reach in BOXES {
+            if self.stopped.is_some() {
+                break;
+            }
+            let Some(inside) = self.confined(&start, reach)? else {
+                continue;
+            };
+            let trial = self.judge(inside.x.clone(), inside.lambda, inside.ended);
+            if trial.is_optimal() || self.is_unbounded(&trial) {
+                return Ok(Some(trial));
+            }
+            let exact = trial.residuals.is_feasible(EXACT);
+            let considerable = |f: f64| trial.objective < f - CONSIDERABLE * f.abs().max(1.0);
+            if exact && is_far(self.instance, &trial.level, FAR) && before.is_some_and(considerable) {
+                return Ok(Some(Trial {
+                    unbounded: true,
+                    ..trial
+                }));
+            }
+            if exact {
+                before = Some(trial.objective);
+            }
+            start = inside.x;
+        }
+        Ok(None)
+    }
+
+    /// A certified point of the program in a box.
+    fn confined(&mut self, start: &[f64], reach: f64) -> Result<Option<Trial>, SolveError> {
+        if self.settings.log {
+            self.monitor.log(&format!("within ±{reach:e}"));
+        }
+        let eliminated = match lock(&*self.problem).form() {
+            ObjectiveForm::Row { column, .. } => Some(column),
+            _ => None,
+        };
+        let mut instance = self.instance.clone();
+        let columns = &mut instance.columns;
+        for j in (0..columns.lower.len()).filter(|&j| Some(j) != eliminated) {
+            if columns.lower[j] < -reach && columns.upper[j] > -reach {
+                columns.lower[j] = -reach;
+            }
+            if columns.upper[j] > reach && columns.lower[j] < reach {
+                columns.upper[j] = reach;
+            }
+        }
+        let mut problem = Problem::new(&instance);
+        let (lower, upper) = problem.bounds();
+        let inside = start.iter().zip(lower.iter().zip(upper));
+        let start = inside.map(|(x, (&l, &u))| x.max(l).min(u)).collect();
+        problem.set_start(start);
+        let (provider, settings) = (self.provider, self.settings);
+        let mut inner = Driver::new(&instance, problem, provider, settings, self.monitor);
+        inner.growth = Growth::Ignored;
+        inner.begin = self.begin;
+        inner.iterations = self.iterations;
+        inner.attempt(From::Start, &[])?;
+        inner.leave_saddles()?;
+        if !inner.is_settled() {
+            inner.attempt(From::Linearised, NEAR)?;
+            inner.leave_saddles()?;
+        }
+        let best = inner.best.take();
+        let found = best.filter(|t| t.is_stationary() || inner.is_unbounded(t));
+        (self.iterations, self.stopped) = (inner.iterations, inner.stopped);
+        Ok(found)
+    }
+}
+
+/// Whether a variable is this far away, and not because of its bounds.
+fn is_far(instance: &Instance, level: &[f64], distance: f64) -> bool {
+    let columns = &instance.columns;
+    let objective = instance.objective.map(|o| o.column as usize);
+    let beyond = |j: usize| {
+        let x = level[j];
+        let bound = if x > 0.0 {
+            columns.upper[j]
+        } else {
+            columns.lower[j]
+        };
+        x.abs() >= distance && (x - bound).abs() > 1e-6 * x.abs() && Some(j) != objective
+    };
+    (0..level.len()).any(beyond)
+}
