@@ -296,7 +296,7 @@ fn infeasible_models_are_called_infeasible() {
     let x = m.var(FREE, 3.0);
     m.objective(&[(x, 1.0)], &[], 0.0);
     m.row(&[], &[(1.0, &[Var(x), PowerInt(2)])], Relation::Equal, -1.0);
-    expect(&m, LocallyInfeasible, None);
+    expect(&m, Infeasible, None);
 }
 
 #[test]
@@ -333,10 +333,10 @@ fn fixed_variables_have_marginals() {
     let mut m = Model::new(Sense::Minimize);
     let x = m.var((3.0, 3.0), 0.0);
     m.objective(&[], &[(1.0, &[Var(x), PowerInt(2)])], 0.0);
-    expect(&m, LocallyOptimal, Some(9.0));
+    expect(&m, Optimal, Some(9.0));
     // everything fixed, and a row that cannot hold
     m.row(&[], &[(1.0, &[Var(x), PowerInt(2)])], Relation::Less, 8.0);
-    expect(&m, LocallyInfeasible, None);
+    expect(&m, Infeasible, None);
 }
 
 /// As many equations as variables, and more.

@@ -30,14 +30,11 @@ use super::schedule::{
 use super::slp;
 use super::trial::{Trial, active_set, clean, polished, residuals_at, tidy};
 use crate::autodiff::{ErrorKind, EvalFailure, Evaluator, has_kinks};
-use crate::model::certificate_nlp::{is_locally_infeasible, violations};
+use crate::model::certificate_nlp::is_locally_infeasible;
 use crate::model::instance::Instance;
 use crate::solve::lp::Limits;
 use crate::solve::random::Random;
-use crate::solve::{
-    Claim, ModelStatus, Monitor, OWN_OPTIONS, Outcome, Settings, SolveError, SolverStatus,
-    answer::Answer,
-};
+use crate::solve::{Monitor, OWN_OPTIONS, Settings, SolveError, SolverStatus, answer::Answer};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
@@ -118,17 +115,17 @@ pub(super) struct Driver<'a> {
     /// For instances with kinks: derivatives a hair beside them.
     kinks: Option<Evaluator>,
     /// A minimum of the violations, and multipliers of all rows that may prove it.
-    infeasibility: Option<(Trial, Vec<f64>)>,
+    pub(super) infeasibility: Option<(Trial, Vec<f64>)>,
     pub(super) instance: &'a Instance,
     pub(super) provider: &'a dyn Provider,
     pub(super) settings: &'a Settings,
     pub(super) monitor: &'a mut dyn Monitor,
     /// A point that satisfies the KKT conditions is a global optimum.
-    convex: Option<Convexity>,
+    pub(super) convex: Option<Convexity>,
     /// Name of who found the answer.
-    solver: &'static str,
+    pub(super) solver: &'static str,
     /// What the person is to hear in any case.
-    message: Option<String>,
+    pub(super) message: Option<String>,
     pub(super) start: Vec<f64>,
     pub(super) problem: Arc<Mutex<Problem>>,
     pub(super) begin: Instant,
@@ -139,7 +136,9 @@ pub(super) struct Driver<'a> {
     /// How the last run of the provider ended.
     ended: Ended,
     /// The best point is a saddle from which a run went astray.
-    at_saddle: bool,
+    pub(super) at_saddle: bool,
+    /// There is no feasible point.
+    pub(super) impossible: bool,
     /// Iterations one attempt may take.
     patience: u64,
     /// What is done about runs that lead far away.
@@ -172,6 +171,7 @@ impl<'a> Driver<'a> {
             best: None,
             ended: Ended::Broken,
             at_saddle: false,
+            impossible: false,
             patience: FIRST_PATIENCE,
             growth: Growth::Watched(0),
         }
@@ -185,6 +185,7 @@ impl Driver<'_> {
             let x = self.start.clone();
             let trial = self.judge(x, vec![0.0; m], Ended::Solved);
             self.keep(trial);
+            self.is_impossible();
             return Ok(self.finish());
         }
         if let Some(quadratic) = quadratic {
@@ -203,6 +204,9 @@ impl Driver<'_> {
         if self.is_settled() {
             self.growth = Growth::Ignored;
             self.search()?;
+            return Ok(self.finish());
+        }
+        if self.is_impossible() {
             return Ok(self.finish());
         }
         self.patience = PATIENCE;
@@ -382,7 +386,11 @@ impl Driver<'_> {
 
     /// One run of the provider, judged and kept if it is the best so far. The objective of the point if
     /// it is optimal.
-    pub(super) fn attempt(&mut self, from: From, extra: &[(&str, &str)]) -> Result<Option<f64>, SolveError> {
+    pub(super) fn attempt(
+        &mut self,
+        from: From,
+        extra: &[(&str, &str)],
+    ) -> Result<Option<f64>, SolveError> {
         match self.start_point(from) {
             Some(x) => self.attempt_from(x, extra),
             None => Ok(None),
@@ -709,86 +717,5 @@ impl Driver<'_> {
             }
         }
         None
-    }
-
-    /// Turns the best trial into an answer.
-    fn finish(&mut self) -> Answer {
-        let best = self.best.take().unwrap_or_else(|| {
-            let m = lock(&*self.problem).size().1;
-            self.judge(self.start.clone(), vec![0.0; m], Ended::Broken)
-        });
-        let unbounded = self.is_unbounded(&best);
-        let mut problem = lock(&*self.problem);
-        let mut proved = |t: &Trial, y: &[f64]| {
-            is_locally_infeasible(self.instance, problem.evaluator(), &t.level, y, 1e-4)
-        };
-        let mut best = best;
-        let status = if best.is_optimal() && self.at_saddle {
-            ModelStatus::Feasible
-        } else if best.is_optimal() {
-            match self.convex {
-                Some(Convexity::Asked) => ModelStatus::Optimal,
-                _ => ModelStatus::LocallyOptimal,
-            }
-        } else if unbounded {
-            ModelStatus::Unbounded
-        } else if best.is_feasible() {
-            ModelStatus::Feasible
-        } else if let Some((t, y)) = self.infeasibility.take()
-            && proved(&t, &y)
-        {
-            best = t;
-            ModelStatus::LocallyInfeasible
-        } else if proved(&best, &violations(self.instance, &best.at.activity)) {
-            ModelStatus::LocallyInfeasible
-        } else {
-            ModelStatus::IntermediateInfeasible
-        };
-        let claim = match status {
-            ModelStatus::Optimal | ModelStatus::LocallyOptimal => Claim::Solved,
-            ModelStatus::Unbounded => Claim::Unbounded,
-            ModelStatus::LocallyInfeasible => Claim::Infeasible,
-            _ => Claim::Unfinished,
-        };
-        let solver_status = match (claim, self.stopped) {
-            (Claim::Unfinished, Some(s)) => s,
-            (Claim::Unfinished, None) => match best.ended {
-                Ended::Iterations => SolverStatus::IterationInterrupt,
-                Ended::Broken => SolverStatus::InternalSolverFailure,
-                _ => SolverStatus::TerminatedBySolver,
-            },
-            _ => SolverStatus::NormalCompletion,
-        };
-        let message = match (status, &problem.last_failure) {
-            (ModelStatus::Feasible, _) if best.is_optimal() => Some(
-                "a saddle: the objective gets better beyond it, and what follows it there diverges"
-                    .into(),
-            ),
-            (ModelStatus::Feasible | ModelStatus::IntermediateInfeasible, Some(f)) => {
-                let row = self.monitor.row_name(f.row as usize);
-                Some(format!("the last evaluation that failed: {f} in {row}"))
-            }
-            (ModelStatus::LocallyOptimal, _) if self.convex.is_some() => {
-                Some("convex: a local optimum is a global one".into())
-            }
-            _ => self.message.take(),
-        };
-        Answer::new(
-            Outcome {
-                column_marginal: best.at.reduced.clone(),
-                level: best.level,
-                row_marginal: best.row_marginal,
-                claim,
-                status: solver_status,
-                iterations: self.iterations,
-                solver: self.solver,
-                ray: Vec::new(),
-                message,
-                basis: None,
-            },
-            best.residuals,
-            status,
-            best.at.activity,
-        )
     }
 }

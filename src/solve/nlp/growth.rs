@@ -75,7 +75,8 @@ impl Driver<'_> {
             }
             let exact = trial.residuals.is_feasible(EXACT);
             let considerable = |f: f64| trial.objective < f - CONSIDERABLE * f.abs().max(1.0);
-            if exact && is_far(self.instance, &trial.level, FAR) && before.is_some_and(considerable) {
+            if exact && is_far(self.instance, &trial.level, FAR) && before.is_some_and(considerable)
+            {
                 return Ok(Some(Trial {
                     unbounded: true,
                     ..trial

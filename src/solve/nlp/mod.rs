@@ -18,10 +18,12 @@ pub mod pounce;
 pub mod problem;
 pub mod provider;
 pub mod quadratic;
+mod relaxation;
 mod schedule;
 mod slp;
 mod symmetric;
 mod trial;
+mod verdict;
 
 use super::answer::Answer;
 use super::{Monitor, Outcome, Settings, SolveError, Solver};
