@@ -2,6 +2,7 @@
 
 use super::Machine;
 use super::arithmetic::{self, ArithmeticError};
+use super::plan::Wanted;
 use crate::autodiff::functions::function_value;
 use crate::check::node::*;
 use crate::check::symbols::{SymbolKind, attribute};
@@ -32,13 +33,26 @@ impl Machine<'_> {
 
     fn lag(&self, lag: &Lag, frame: &mut Frame) -> Option<Label> {
         let base = self.part(&lag.base, frame)?;
+        self.shift(lag, base, 1, frame)
+    }
+
+    /// The label whose part is this one: the way back through a lag.
+    pub(super) fn unlag(&self, p: &Part, label: Label, frame: &mut Frame) -> Option<Label> {
+        match p {
+            Part::Lag(lag) => self.shift(lag, label, -1, frame),
+            _ => Some(label),
+        }
+    }
+
+    /// The label that stands `times` offsets after another in the set of a lag.
+    fn shift(&self, lag: &Lag, from: Label, times: i64, frame: &mut Frame) -> Option<Label> {
         let offset = number(self.eval(&lag.offset, frame));
         if !offset.is_finite() {
             return None;
         }
-        let offset = offset.round() as i64;
+        let offset = times * offset.round() as i64;
         let set = self.store.table(lag.set);
-        let at = i64::from(set.find(&[base])?);
+        let at = i64::from(set.find(&[from])?);
         let n = set.len() as i64;
         let to = if lag.circular {
             (at + offset).rem_euclid(n.max(1))
@@ -268,7 +282,7 @@ impl Machine<'_> {
 
     fn aggregate(&self, op: AggregateOp, d: &Domain, body: &Node, frame: &mut Frame) -> f64 {
         let zero_matters = !matches!(op, AggregateOp::Sum | AggregateOp::Sor);
-        let plan = self.plan(d, if zero_matters { None } else { Some(body) });
+        let plan = self.plan(d, Wanted::nonzero((!zero_matters).then_some(body)));
         let mut acc = match op {
             AggregateOp::Sum | AggregateOp::Sor => 0.0,
             AggregateOp::Prod | AggregateOp::Sand => 1.0,

@@ -1,12 +1,12 @@
 //! Statements.
 
-use super::plan::{Pick, Plan};
+use super::plan::Wanted;
 use super::random::Random;
 use super::{Flow, Frame, Machine, scan};
 use crate::check::expansion::Tuples;
 use crate::check::node::*;
 use crate::check::symbols::{SymbolKind, attribute};
-use crate::data::sort::{sort_records, sort_tuples};
+use crate::data::sort::sort_records;
 use crate::data::table::Table;
 use crate::data::universe::Label;
 use crate::data::value::{number, truth};
@@ -164,7 +164,7 @@ impl Machine<'_> {
     fn run_loop(&mut self, d: &Domain, body: &[Code], frame: &mut Frame) -> Flow {
         if d.slots.is_empty() {
             // Everything is under control already: once, if the tuple is there.
-            let plan = self.plan(d, None);
+            let plan = self.plan(d, Wanted::default());
             let mut once = false;
             self.run_plan(d, &plan, frame, &mut |_| {
                 once = true;
@@ -274,59 +274,28 @@ impl Machine<'_> {
             return;
         }
         let Some(symbol) = symbol else { return };
-        let impure = has_random(value) || domain.conditions.iter().any(has_random);
-        let alternatives = if impure {
-            None
-        } else {
-            self.sparse_alternatives(domain, target, key, value, covers)
+        // Where the value is the target's default it need be written over what is stored only.
+        let table = match target {
+            Target::Table(t) | Target::Set(t) => Some(t),
+            _ => None,
         };
-        let alternatives = alternatives.map(|drivers| {
-            for d in drivers.iter().flatten() {
-                self.store.tables[d.table as usize].tidy();
-            }
-            drivers
-                .iter()
-                .map(|d| self.make_plan(domain, None, d, Pick::Cheapest))
-                .collect::<Vec<Plan>>()
-        });
+        let wanted = Wanted {
+            value: table.map(|_| value),
+            rest: table.map_or(0.0, |t| self.store.table(t).default_value()),
+            stored: table.filter(|_| !covers).map(|t| (t, key)),
+        };
+        let plan = self.plan(domain, wanted);
+        for t in plan.scanned() {
+            self.store.tables[t as usize].tidy();
+        }
         let mut out = Records {
             keys: Vec::new(),
             values: Vec::new(),
         };
-        match alternatives {
-            Some(plans) => {
-                let d = domain.slots.len();
-                let mut tuples = Vec::new();
-                for p in &plans {
-                    self.run_plan(domain, p, frame, &mut |f| {
-                        tuples.extend(domain.slots.iter().map(|&s| f[s as usize]));
-                        self.keep_going()
-                    });
-                }
-                let simple = plans.len() == 1 && plans[0].ordered;
-                let tuples = if simple {
-                    tuples
-                } else {
-                    sort_tuples(tuples, d, true)
-                };
-                for t in tuples.chunks_exact(d) {
-                    for (&s, &l) in domain.slots.iter().zip(t) {
-                        frame[s as usize] = l;
-                    }
-                    self.evaluate(symbol, target, key, value, frame, &mut out);
-                    if !self.keep_going() {
-                        return;
-                    }
-                }
-            }
-            None => {
-                let plan = self.plan_for(domain, None, impure);
-                self.run_plan(domain, &plan, frame, &mut |f| {
-                    self.evaluate(symbol, target, key, value, f, &mut out);
-                    self.keep_going()
-                });
-            }
-        }
+        self.run_plan(domain, &plan, frame, &mut |f| {
+            self.evaluate(symbol, target, key, value, f, &mut out);
+            self.keep_going()
+        });
         *self.current.borrow_mut() = None;
         if self.stopped() {
             return;
@@ -414,55 +383,6 @@ impl Machine<'_> {
         let v = self.eval(value, frame);
         out.keys.extend_from_slice(&k[..n]);
         out.values.push(v);
-    }
-
-    /// Drivers of plans that together find every tuple for which the right side, or what is stored now, is
-    /// not 0; None when running over the whole domain is as good.
-    fn sparse_alternatives(
-        &self,
-        domain: &Domain,
-        target: Target,
-        key: &Key,
-        value: &Node,
-        covers: bool,
-    ) -> Option<Vec<Vec<Driver>>> {
-        let table = match target {
-            Target::Table(t) if self.store.table(t).default_value() == 0.0 => t,
-            Target::Set(t) => t,
-            _ => return None,
-        };
-        let mut alternatives = self.support(value, false)?;
-        let mut whole = 1.0;
-        for &s in &domain.sets {
-            whole *= self.store.table(s).len() as f64;
-        }
-        for m in &domain.members {
-            if m.key.parts.len() > 1 && m.key.is_plain() {
-                whole = whole.min(self.store.table(m.table).len() as f64);
-            }
-        }
-        let size = |conj: &[Driver]| {
-            conj.iter()
-                .map(|m| self.store.table(m.table).len())
-                .max()
-                .unwrap_or(usize::MAX) as f64
-        };
-        let stored = self.store.table(table).len() as f64;
-        let sparse: f64 =
-            alternatives.iter().map(|a| size(a)).sum::<f64>() + if covers { 0.0 } else { stored };
-        if whole < 64.0 || sparse * 3.0 > whole {
-            return None;
-        }
-        if !covers {
-            if !key.is_plain() {
-                return None;
-            }
-            alternatives.push(vec![Driver {
-                table,
-                key: key.clone(),
-            }]);
-        }
-        Some(alternatives)
     }
 
     /// Stores records; they are sorted.

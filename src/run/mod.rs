@@ -24,6 +24,7 @@ mod put;
 mod scan;
 mod show;
 mod solve;
+mod support;
 
 pub use eval::Frame;
 pub use generate::{GenerateOptions, Generated};

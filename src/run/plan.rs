@@ -11,27 +11,38 @@
 
 use super::Machine;
 use super::exec::has_random;
+use super::support::{Analysis, Premise, Sparse, product};
 use crate::check::node::*;
 use crate::check::symbols::DomainPosition;
 use crate::data::sort::sort_tuples;
 use crate::data::universe::Label;
-use crate::model::instance::Function;
 use std::rc::Rc;
 
 /// How to enumerate a domain.
 #[derive(Debug)]
 pub struct Plan {
+    /// The tuples of all branches count.
+    branches: Vec<Branch>,
+    /// What it takes for granted.
+    premises: Vec<Premise>,
+}
+
+/// A nest of scans and tests that finds tuples.
+#[derive(Debug)]
+struct Branch {
     /// Steps, outermost first.
-    pub steps: Vec<Step>,
+    steps: Vec<Step>,
     /// Whether tuples come in label order of the domain's slots.
-    pub ordered: bool,
-    /// Sizes of the tables when the plan was made.
-    sizes: Vec<(TableId, usize)>,
+    ordered: bool,
+    /// Whether it runs over indices of inner sums too, so that a tuple may come several times.
+    projects: bool,
+    /// Records that are visited, about.
+    work: f64,
 }
 
 /// A step of a plan.
 #[derive(Debug)]
-pub enum Step {
+enum Step {
     /// For each record of a table that agrees with what is bound.
     Scan {
         /// The table.
@@ -42,8 +53,10 @@ pub enum Step {
         mask: u32,
         /// Position and slot of what it binds.
         bind: Box<[(u8, Slot)]>,
-        /// Positions that must equal a slot bound by the same record.
-        equal: Box<[(u8, Slot)]>,
+        /// The same where the key has a lag of the slot.
+        unlag: Box<[(u8, Slot)]>,
+        /// Positions that must equal what the same record binds.
+        equal: Box<[u8]>,
     },
     /// A record must be there.
     Member(TableId, Key),
@@ -52,6 +65,7 @@ pub enum Step {
 }
 
 /// A table whose record must be nonzero for the tuple to count.
+#[derive(Clone)]
 struct Candidate {
     table: TableId,
     key: Key,
@@ -60,56 +74,183 @@ struct Candidate {
     done: bool,
 }
 
-/// Alternatives, each a conjunction of drivers; None: anything may be nonzero.
-pub type Support = Option<Vec<Vec<Driver>>>;
+/// Which tuples of a domain are wanted.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Wanted<'n> {
+    /// Those for which this is not `rest`; all without it.
+    pub value: Option<&'n Node>,
+    /// What the value is to be different from.
+    pub rest: f64,
+    /// And those that are stored now: an assignment changes them too.
+    pub stored: Option<(TableId, &'n Key)>,
+}
+
+impl<'n> Wanted<'n> {
+    /// Those for which a body is not 0, if it matters.
+    pub(super) fn nonzero(value: Option<&'n Node>) -> Self {
+        Self {
+            value,
+            ..Self::default()
+        }
+    }
+}
 
 /// Which table is scanned next.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Pick {
+enum Pick {
     /// The one with the smallest fan-out.
     Cheapest,
     /// One that keeps the tuples in the order of the slots: where random numbers are drawn.
     InOrder,
 }
 
-/// More alternatives than this are not followed.
-const MAX_ALTERNATIVES: usize = 8;
+/// Gathering and sorting a tuple costs so many times what visiting it does.
+const GATHERING: f64 = 3.0;
+/// A further branch costs as much as visiting so many records.
+const BRANCHING: f64 = 16.0;
 
-impl Machine<'_> {
-    /// The plan of a domain; `body` is what is summed, if a zero of it does not matter.
-    pub(super) fn plan(&self, d: &Domain, body: Option<&Node>) -> Rc<Plan> {
-        self.plan_for(d, body, body.is_some_and(has_random))
+impl Plan {
+    /// Whether tuples can be used as they are found.
+    fn direct(&self) -> Option<&Branch> {
+        match self.branches.as_slice() {
+            [one] if !one.projects => Some(one),
+            _ => None,
+        }
     }
 
-    /// The plan of a domain; `drawing`: what is done for each tuple draws random numbers.
-    pub(super) fn plan_for(&self, d: &Domain, body: Option<&Node>, drawing: bool) -> Rc<Plan> {
-        if let Some(p) = &*d.plan.borrow() {
-            let stale = p.sizes.iter().any(|&(t, n)| {
-                let now = self.store.table(t).len();
-                now > 4 * n + 64 || n > 4 * now + 64
-            });
-            if !stale {
-                return p.clone();
-            }
+    /// Tables that are scanned: they must be tidy.
+    pub(super) fn scanned(&self) -> impl Iterator<Item = TableId> {
+        let steps = self.branches.iter().flat_map(|b| &b.steps);
+        steps.filter_map(|s| match s {
+            Step::Scan { table, .. } => Some(*table),
+            _ => None,
+        })
+    }
+}
+
+/// What so many branches cost.
+fn cost(branches: &[Branch]) -> f64 {
+    match branches {
+        [one] if !one.projects => one.work,
+        _ => branches
+            .iter()
+            .map(|b| BRANCHING + GATHERING * b.work)
+            .sum(),
+    }
+}
+
+impl Machine<'_> {
+    /// The plan of a domain.
+    pub(super) fn plan(&self, d: &Domain, wanted: Wanted) -> Rc<Plan> {
+        if let Some(p) = &*d.plan.borrow()
+            && p.premises.iter().all(|p| self.holds_still(p))
+        {
+            return p.clone();
         }
-        let pick = if drawing || d.conditions.iter().any(has_random) {
-            Pick::InOrder
-        } else {
-            Pick::Cheapest
-        };
-        let p = Rc::new(self.make_plan(d, body, &[], pick));
+        let p = Rc::new(self.make_plan(d, wanted));
         *d.plan.borrow_mut() = Some(p.clone());
         p
     }
 
-    /// Plans a domain with additional drivers (and perhaps additional slots that those bind).
-    pub(super) fn make_plan(
+    fn make_plan(&self, d: &Domain, wanted: Wanted) -> Plan {
+        let pick = if d.conditions.iter().chain(wanted.value).any(has_random) {
+            Pick::InOrder
+        } else {
+            Pick::Cheapest
+        };
+        let mut analysis = Analysis::new(self);
+        let mut supports: Vec<Sparse> = Vec::new();
+        if !d.slots.is_empty() {
+            supports.extend(
+                d.conditions
+                    .iter()
+                    .filter_map(|c| analysis.nonzero(c, false)),
+            );
+            if let Some(v) = wanted.value
+                && let Some(mut s) = analysis.resting_at(wanted.rest, v, v.has_var)
+            {
+                s.support.extend(wanted.stored.map(|(table, key)| {
+                    let key = key.clone();
+                    vec![Driver { table, key }]
+                }));
+                supports.push(s);
+            }
+        }
+        // Records that every tuple needs drive the first branch; the alternatives replace it where that is
+        // less work.
+        let mut open: Vec<(bool, Vec<Vec<Candidate>>)> = Vec::new();
+        let mut branches: Vec<Vec<Candidate>> = vec![Vec::new()];
+        for s in supports {
+            let inner = |c: &Candidate| slots_of_key(&c.key).iter().any(|&s| is_inner(s, d));
+            let candidate = |m: Driver| {
+                let mut c = Candidate {
+                    table: m.table,
+                    key: m.key,
+                    required: false,
+                    done: false,
+                };
+                c.required = s.forced && !inner(&c);
+                c
+            };
+            let alternatives: Vec<Vec<Candidate>> = s
+                .support
+                .into_iter()
+                .map(|a| a.into_iter().map(candidate).collect())
+                .collect();
+            if let [one] = alternatives.as_slice() {
+                branches[0].extend(one.iter().filter(|c| !inner(c)).cloned());
+                if !one.iter().any(inner) {
+                    continue;
+                }
+            }
+            open.push((s.forced, alternatives));
+        }
+        let quiet: Vec<bool> = d.conditions.iter().map(|c| analysis.is_quiet(c)).collect();
+        let make = |list: &[Vec<Candidate>]| -> Vec<Branch> {
+            let branches = list.iter();
+            branches
+                .map(|c| self.branch(d, &quiet, c, pick, wanted.stored.map(|s| s.0)))
+                .collect()
+        };
+        let mut premises = analysis.premises;
+        let mut tables: Vec<TableId> = d.members.iter().map(|m| m.table).collect();
+        let named = open.iter().flat_map(|(_, o)| o).chain(&branches).flatten();
+        tables.extend(named.map(|c| c.table));
+        tables.sort_unstable();
+        tables.dedup();
+        premises.extend(
+            tables
+                .iter()
+                .map(|&t| Premise::Size(t, self.store.table(t).len())),
+        );
+        let mut made = make(&branches);
+        open.retain(|_| pick == Pick::Cheapest);
+        open.sort_by_key(|(forced, _)| !forced);
+        for (forced, alternatives) in open {
+            let Some(wider) = product(&branches, &alternatives) else {
+                continue;
+            };
+            let other = make(&wider);
+            if forced || cost(&other) < cost(&made) {
+                (branches, made) = (wider, other);
+            }
+        }
+        Plan {
+            branches: made,
+            premises,
+        }
+    }
+
+    /// One nest of scans, driven by what must be there. `changing`: the table that the statement writes to,
+    /// whose order must be made anew each time.
+    fn branch(
         &self,
         d: &Domain,
-        body: Option<&Node>,
-        extra: &[Driver],
+        quiet: &[bool],
+        drivers: &[Candidate],
         pick: Pick,
-    ) -> Plan {
+        changing: Option<TableId>,
+    ) -> Branch {
         let mut free: Vec<Slot> = d.slots.clone();
         let mut candidates: Vec<Candidate> = d
             .members
@@ -121,48 +262,27 @@ impl Machine<'_> {
                 done: false,
             })
             .collect();
-        let soft = |candidates: &mut Vec<Candidate>, drivers: &[Driver], inner_too: bool| {
-            for m in drivers {
-                // A driver that mentions an index of a sum inside cannot be scanned out here.
-                let inner = |p: &Part| matches!(p, Part::Slot(s) if self.is_inner(*s, d));
-                if inner_too || !m.key.parts.iter().any(inner) {
-                    candidates.push(Candidate {
-                        table: m.table,
-                        key: m.key.clone(),
-                        required: false,
-                        done: false,
-                    });
+        candidates.extend_from_slice(drivers);
+        // Indices of inner sums are run over too where they lead to one of the domain.
+        let used: Vec<Vec<Slot>> = drivers.iter().map(|c| slots_of_key(&c.key)).collect();
+        loop {
+            let before = free.len();
+            for slots in &used {
+                if slots.iter().any(|s| free.contains(s)) {
+                    for &s in slots {
+                        if is_inner(s, d) && !free.contains(&s) {
+                            free.push(s);
+                        }
+                    }
                 }
             }
-        };
-        for c in &d.conditions {
-            if let Some(alternatives) = self.support(c, false)
-                && let [one] = alternatives.as_slice()
-            {
-                soft(&mut candidates, one, false);
+            if free.len() == before {
+                break;
             }
         }
-        if let Some(b) = body
-            && let Some(alternatives) = self.support(b, b.has_var)
-            && let [one] = alternatives.as_slice()
-        {
-            soft(&mut candidates, one, false);
-        }
-        soft(&mut candidates, extra, true);
-        // Slots that only the extra drivers know are enumerated too.
-        for m in extra {
-            for p in &m.key.parts {
-                if let Part::Slot(s) = p
-                    && !free.contains(s)
-                    && self.is_inner(*s, d)
-                {
-                    free.push(*s);
-                }
-            }
-        }
-        candidates.retain(|c| c.key.is_plain() || c.required);
         let mut steps = Vec::new();
         let mut order: Vec<Slot> = Vec::new();
+        let (mut in_order, mut rows_so_far, mut work) = (true, 1.0, 1.0);
         // What a slot's label is known to be a member of, by the tables that bound it.
         let mut known: Vec<(Slot, TableId)> = Vec::new();
         let mut filters: Vec<(usize, Vec<Slot>)> = d
@@ -180,15 +300,15 @@ impl Machine<'_> {
                 (i, used)
             })
             .collect();
+        // What may fail is tested last.
+        filters.sort_by_key(|(i, _)| !quiet[*i]);
         let settle = |free: &[Slot],
                       candidates: &mut Vec<Candidate>,
                       filters: &mut Vec<(usize, Vec<Slot>)>,
                       known: &[(Slot, TableId)],
                       steps: &mut Vec<Step>| {
             for c in candidates.iter_mut().filter(|c| !c.done && c.required) {
-                let mut used = Vec::new();
-                c.key.parts.iter().for_each(|p| slots_of_part(p, &mut used));
-                if used.iter().any(|s| free.contains(s)) {
+                if slots_of_key(&c.key).iter().any(|s| free.contains(s)) {
                     continue;
                 }
                 c.done = true;
@@ -213,72 +333,64 @@ impl Machine<'_> {
             });
         };
         settle(&free, &mut candidates, &mut filters, &known, &mut steps);
-        while !free.is_empty() {
-            let mut best: Option<(f64, usize)> = None;
-            for (i, c) in candidates.iter().enumerate() {
-                if c.done
-                    || !c.key.is_plain()
-                    || !c
-                        .key
-                        .parts
-                        .iter()
-                        .any(|p| matches!(p, Part::Slot(s) if free.contains(s)))
-                {
+        while d.slots.iter().any(|s| free.contains(s)) {
+            let mut best: Option<(f64, f64, usize)> = None;
+            for (i, c) in candidates.iter().enumerate().filter(|(_, c)| !c.done) {
+                let Some(new) = binds(&c.key, &free) else {
+                    continue;
+                };
+                let plain = c.key.is_plain();
+                if pick == Pick::InOrder && (new != free[..new.len()] || !plain) {
                     continue;
                 }
                 let t = self.store.table(c.table);
                 let rows = t.len() as f64;
                 let mut groups = 1.0;
-                if t.dim() > 1 {
+                if t.dim() > 1 && t.is_tidy() && changing != Some(c.table) {
                     let distinct = t.distinct();
                     for (p, part) in c.key.parts.iter().enumerate() {
-                        if !matches!(part, Part::Slot(s) if free.contains(s)) {
+                        if !slots_of_part_any(part, &free) {
                             groups *= f64::from(distinct[p]);
                         }
                     }
                 }
-                let mut new = Vec::new();
-                c.key.parts.iter().for_each(|p| {
-                    if let Part::Slot(s) = p
-                        && free.contains(s)
-                        && !new.contains(s)
-                    {
-                        new.push(*s);
-                    }
-                });
-                if pick == Pick::InOrder && new != free[..new.len()] {
-                    continue;
-                }
                 // Fan-out per slot that it binds.
                 let fan = (rows / groups.clamp(1.0, rows.max(1.0))).max(1e-3);
-                let cost = fan.powf(1.0 / new.len() as f64);
-                if best.is_none_or(|(b, _)| cost < b * 0.999) {
-                    best = Some((cost, i));
+                let each = fan.powf(1.0 / new.len() as f64);
+                if best.is_none_or(|(b, ..)| each < b * 0.999) {
+                    best = Some((each, fan, i));
                 }
             }
-            let Some((_, i)) = best else {
+            let Some((_, fan, i)) = best else {
                 // A slot that no table binds: cannot happen, since every controlled index has its set.
                 debug_assert!(false, "a slot without a driver");
                 break;
             };
+            rows_so_far *= fan;
+            work += rows_so_far;
             let c = &mut candidates[i];
             c.done = true;
-            let (mut mask, mut bind, mut equal) = (0u32, Vec::new(), Vec::new());
-            for (p, part) in c.key.parts.iter().enumerate() {
-                match part {
-                    Part::Slot(s) if free.contains(s) => {
-                        if bind.iter().any(|&(_, b)| b == *s) {
-                            equal.push((p as u8, *s));
-                        } else {
-                            bind.push((p as u8, *s));
-                        }
+            let (mut mask, mut bind, mut unlag, mut equal) =
+                (0u32, Vec::new(), Vec::new(), Vec::new());
+            for lagged in [false, true] {
+                for (p, part) in c.key.parts.iter().enumerate() {
+                    if matches!(part, Part::Lag(_)) != lagged {
+                        continue;
                     }
-                    _ => mask |= 1 << p,
+                    let list = if lagged { &mut unlag } else { &mut bind };
+                    match base_slot(part).filter(|s| free.contains(s)) {
+                        Some(s) if order.contains(&s) => equal.push(p as u8),
+                        Some(s) => {
+                            list.push((p as u8, s));
+                            order.push(s);
+                        }
+                        None => mask |= 1 << p,
+                    }
                 }
             }
-            free.retain(|s| !bind.iter().any(|(_, b)| b == s));
+            free.retain(|s| !order.contains(s));
+            in_order &= unlag.is_empty();
             for &(p, s) in &bind {
-                order.push(s);
                 if self.store.table(c.table).dim() == 1 {
                     known.push((s, c.table));
                 }
@@ -291,26 +403,30 @@ impl Machine<'_> {
                 key: c.key.parts.clone().into(),
                 mask,
                 bind: bind.into(),
+                unlag: unlag.into(),
                 equal: equal.into(),
             });
             settle(&free, &mut candidates, &mut filters, &known, &mut steps);
         }
-        let mut sizes: Vec<(TableId, usize)> = candidates
-            .iter()
-            .map(|c| (c.table, self.store.table(c.table).len()))
-            .collect();
-        sizes.dedup();
-        Plan {
+        // Inner indices that are left are for the filters to run over.
+        settle(&[], &mut candidates, &mut filters, &known, &mut steps);
+        Branch {
             steps,
-            ordered: order == d.slots,
-            sizes,
+            ordered: in_order && order == d.slots,
+            projects: order.len() > d.slots.len(),
+            work,
         }
     }
 
-    /// Whether a condition is "this record is not 0" of a record that a step scans: then it holds.
+    /// Whether a condition holds because a step scans the record that must not be 0.
     fn scanned_by(&self, condition: &Node, steps: &[Step]) -> bool {
-        let NodeKind::Data(t, wanted) = &condition.kind else {
-            return false;
+        let (t, wanted) = match &condition.kind {
+            NodeKind::Data(t, wanted) => (t, wanted),
+            NodeKind::Binary(BinaryOp::Or, a, b) => {
+                // `na` on one side is `na`, which counts as true as well.
+                return self.scanned_by(a, steps) || self.scanned_by(b, steps);
+            }
+            _ => return false,
         };
         let same = |(a, b): (&Part, &Part)| match (a, b) {
             (Part::Slot(a), Part::Slot(b)) => a == b,
@@ -324,11 +440,6 @@ impl Machine<'_> {
                 }
                 _ => false,
             })
-    }
-
-    /// Whether a slot belongs to a sum inside the expression, not to the statement around.
-    fn is_inner(&self, slot: Slot, d: &Domain) -> bool {
-        d.slots.iter().max().is_some_and(|&m| slot > m)
     }
 
     /// The set that a table's position runs over, by its declaration.
@@ -355,188 +466,6 @@ impl Machine<'_> {
         }
     }
 
-    /// When can an expression be nonzero? With `symbolic`, in an equation: a zero factor removes the term.
-    pub(super) fn support(&self, n: &Node, symbolic: bool) -> Support {
-        match &n.kind {
-            NodeKind::Const(x) if *x == 0.0 => Some(Vec::new()),
-            NodeKind::Data(t, key) => {
-                let table = self.store.table(*t);
-                (table.default_value() == 0.0 && !key.parts.is_empty() && key.is_plain()).then(
-                    || {
-                        vec![vec![Driver {
-                            table: *t,
-                            key: key.clone(),
-                        }]]
-                    },
-                )
-            }
-            NodeKind::Negate(a) => self.support(a, symbolic),
-            NodeKind::Sum(terms) => {
-                let mut out = Vec::new();
-                for (_, t) in terms {
-                    out.extend(self.support(t, symbolic)?);
-                    if out.len() > MAX_ALTERNATIVES {
-                        return None;
-                    }
-                }
-                Some(out)
-            }
-            NodeKind::Product(factors) => {
-                let mut out: Support = None;
-                for (i, (divide, f)) in factors.iter().enumerate() {
-                    if *divide {
-                        continue;
-                    }
-                    let Some(s) = self.support(f, symbolic) else {
-                        continue;
-                    };
-                    let others_safe = symbolic
-                        || factors.iter().enumerate().all(|(k, (d, g))| {
-                            k == i
-                                || if *d {
-                                    self.safe_divisor(g)
-                                } else {
-                                    self.safe(g)
-                                }
-                        });
-                    if others_safe {
-                        out = both(out, Some(s));
-                    }
-                }
-                out
-            }
-            NodeKind::Dollar(a, c) => both(self.support(c, false), self.support(a, symbolic)),
-            NodeKind::Aggregate(AggregateOp::Sum | AggregateOp::Sor, d, body) => {
-                let members: Vec<Driver> = d
-                    .members
-                    .iter()
-                    .filter(|m| m.key.is_plain())
-                    .cloned()
-                    .collect();
-                let mut out: Support = Some(vec![members]);
-                for c in &d.conditions {
-                    out = both(out, self.support(c, false));
-                }
-                out = both(out, self.support(body, symbolic));
-                // Members alone say nothing about the slots outside unless they mention one.
-                let outside = out.as_ref().is_some_and(|o| {
-                    o.iter().all(|conj| {
-                        conj.iter().any(|m| {
-                            m.key
-                                .parts
-                                .iter()
-                                .any(|p| matches!(p, Part::Slot(s) if !d.slots.contains(s)))
-                        })
-                    })
-                });
-                if outside { out } else { None }
-            }
-            NodeKind::Binary(BinaryOp::And, a, b) => {
-                both(self.support(a, false), self.support(b, false))
-            }
-            NodeKind::Binary(BinaryOp::Or, a, b) => {
-                let (mut a, b) = (self.support(a, false)?, self.support(b, false)?);
-                a.extend(b);
-                (a.len() <= MAX_ALTERNATIVES).then_some(a)
-            }
-            NodeKind::Binary(
-                op @ (BinaryOp::Gt
-                | BinaryOp::Ge
-                | BinaryOp::Lt
-                | BinaryOp::Le
-                | BinaryOp::Ne
-                | BinaryOp::Eq),
-                a,
-                b,
-            ) => {
-                // Is the relation false when the data side is 0?
-                let (data, c, op) = match (&a.kind, &b.kind) {
-                    (_, NodeKind::Const(c)) => (a, *c, *op),
-                    (NodeKind::Const(c), _) => (b, *c, mirror(*op)),
-                    _ => return None,
-                };
-                let false_at_zero = match op {
-                    BinaryOp::Gt => 0.0 <= c,
-                    BinaryOp::Ge => 0.0 < c,
-                    BinaryOp::Lt => 0.0 >= c,
-                    BinaryOp::Le => 0.0 > c,
-                    BinaryOp::Ne => c == 0.0,
-                    BinaryOp::Eq => c != 0.0,
-                    _ => false,
-                };
-                if false_at_zero {
-                    self.support(data, false)
-                } else {
-                    None
-                }
-            }
-            NodeKind::Call(
-                Function::Abs
-                | Function::Sqr
-                | Function::Sign
-                | Function::Floor
-                | Function::Ceil
-                | Function::Round
-                | Function::Trunc,
-                a,
-            ) if a.len() == 1 && !symbolic => self.support(&a[0], false),
-            _ => None,
-        }
-    }
-
-    /// Whether an expression is always an ordinary number, so that 0 times it is 0.
-    fn safe(&self, n: &Node) -> bool {
-        match &n.kind {
-            NodeKind::Const(x) => x.is_finite(),
-            NodeKind::Data(t, key) => {
-                let t = self.store.table(*t);
-                !t.has_special()
-                    && t.default_value() == 0.0
-                    && key.parts.iter().all(|p| !matches!(p, Part::Singleton(..)))
-            }
-            NodeKind::Ord(..) | NodeKind::Card(_) | NodeKind::SameAs(..) => true,
-            NodeKind::Negate(a) => self.safe(a),
-            NodeKind::Sum(t) => t.iter().all(|(_, x)| self.safe(x)),
-            NodeKind::Product(t) => t.iter().all(|(d, x)| {
-                if *d {
-                    self.safe_divisor(x)
-                } else {
-                    self.safe(x)
-                }
-            }),
-            NodeKind::Dollar(a, c) => self.safe(a) && self.safe(c),
-            NodeKind::Binary(op, a, b) => *op != BinaryOp::Power && self.safe(a) && self.safe(b),
-            NodeKind::Not(a) => self.safe(a),
-            NodeKind::Aggregate(AggregateOp::Sum, d, b) => {
-                self.safe(b) && d.conditions.iter().all(|c| self.safe(c))
-            }
-            NodeKind::Call(
-                Function::Abs
-                | Function::Sqr
-                | Function::Sign
-                | Function::Min
-                | Function::Max
-                | Function::Floor
-                | Function::Ceil,
-                a,
-            ) => a.iter().all(|x| self.safe(x)),
-            _ => false,
-        }
-    }
-
-    /// Whether dividing by it is always fine: a number or scalar that is not 0.
-    fn safe_divisor(&self, n: &Node) -> bool {
-        match &n.kind {
-            NodeKind::Const(x) => x.is_finite() && *x != 0.0,
-            NodeKind::Data(t, key) if key.parts.is_empty() => {
-                let v = self.store.table(*t).get(&[]);
-                v.is_finite() && v != 0.0
-            }
-            NodeKind::Card(t) => !self.store.table(*t).is_empty(),
-            _ => false,
-        }
-    }
-
     /// Runs a plan: `f` is called for each tuple with the frame filled in; it returns false to stop.
     pub(super) fn run_plan(
         &self,
@@ -545,7 +474,31 @@ impl Machine<'_> {
         frame: &mut Vec<Label>,
         f: &mut dyn FnMut(&mut Vec<Label>) -> bool,
     ) -> bool {
-        self.run_steps(d, &plan.steps, frame, f)
+        if let Some(one) = plan.direct() {
+            return self.run_steps(d, &one.steps, frame, f);
+        }
+        let tuples = self.gather(d, plan, frame);
+        tuples.chunks_exact(d.slots.len()).all(|t| {
+            for (&s, &l) in d.slots.iter().zip(t) {
+                frame[s as usize] = l;
+            }
+            f(frame)
+        })
+    }
+
+    /// All tuples of a plan, flat, each once, in label order.
+    fn gather(&self, d: &Domain, plan: &Plan, frame: &mut Vec<Label>) -> Vec<Label> {
+        let mut out = Vec::new();
+        for b in &plan.branches {
+            self.run_steps(d, &b.steps, frame, &mut |f| {
+                out.extend(d.slots.iter().map(|&s| f[s as usize]));
+                self.keep_going()
+            });
+        }
+        match plan.direct() {
+            Some(one) if one.ordered => out,
+            one => sort_tuples(out, d.slots.len(), one.is_none()),
+        }
     }
 
     fn run_steps(
@@ -576,6 +529,7 @@ impl Machine<'_> {
                 key,
                 mask,
                 bind,
+                unlag,
                 equal,
             } => {
                 let t = self.store.table(*table);
@@ -584,12 +538,11 @@ impl Machine<'_> {
                     t.all()
                 } else {
                     let mut k = [0; 20];
-                    for (p, part) in key.iter().enumerate() {
-                        k[p] = match part {
-                            Part::Slot(s) => frame[*s as usize],
-                            Part::Label(l) => *l,
-                            _ => 0,
-                        };
+                    for (p, part) in key.iter().enumerate().filter(|(p, _)| mask >> p & 1 == 1) {
+                        match self.part(part, frame) {
+                            Some(l) => k[p] = l,
+                            None => return true,
+                        }
                     }
                     order = t.order(*mask);
                     t.group(&order, &k[..key.len()])
@@ -600,9 +553,15 @@ impl Machine<'_> {
                     for &(p, s) in bind.iter() {
                         frame[s as usize] = record[p as usize];
                     }
-                    if !equal
+                    if !unlag.iter().all(|&(p, s)| {
+                        let label = self.unlag(&key[p as usize], record[p as usize], frame);
+                        label.is_some_and(|l| {
+                            frame[s as usize] = l;
+                            true
+                        })
+                    }) || !equal
                         .iter()
-                        .all(|&(p, s)| frame[s as usize] == record[p as usize])
+                        .all(|&p| self.part(&key[p as usize], frame) == Some(record[p as usize]))
                     {
                         continue;
                     }
@@ -622,49 +581,54 @@ impl Machine<'_> {
 
     /// All tuples of a domain, flat, in label order.
     pub(super) fn tuples(&self, d: &Domain, frame: &mut Vec<Label>) -> Vec<Label> {
-        let plan = self.plan(d, None);
-        let mut out = Vec::new();
-        self.run_plan(d, &plan, frame, &mut |f| {
-            out.extend(d.slots.iter().map(|&s| f[s as usize]));
-            self.keep_going()
-        });
-        if plan.ordered {
-            out
-        } else {
-            sort_tuples(out, d.slots.len(), false)
-        }
+        let plan = self.plan(d, Wanted::default());
+        self.gather(d, &plan, frame)
     }
 }
 
-fn mirror(op: BinaryOp) -> BinaryOp {
-    match op {
-        BinaryOp::Gt => BinaryOp::Lt,
-        BinaryOp::Ge => BinaryOp::Le,
-        BinaryOp::Lt => BinaryOp::Gt,
-        BinaryOp::Le => BinaryOp::Ge,
-        other => other,
+/// Whether a slot belongs to a sum inside the expression, not to the statement around.
+fn is_inner(slot: Slot, d: &Domain) -> bool {
+    d.slots.iter().max().is_some_and(|&m| slot > m)
+}
+
+/// The slot whose label a record's label at this part gives.
+fn base_slot(p: &Part) -> Option<Slot> {
+    match p {
+        Part::Slot(s) => Some(*s),
+        Part::Lag(l) => base_slot(&l.base),
+        _ => None,
     }
 }
 
-/// Both must be nonzero: pairs of alternatives.
-fn both(a: Support, b: Support) -> Support {
-    match (a, b) {
-        (None, x) | (x, None) => x,
-        (Some(a), Some(b)) => {
-            if a.len() * b.len() > MAX_ALTERNATIVES {
-                return Some(if a.len() <= b.len() { a } else { b });
+/// The free slots that scanning a key binds; None when it binds none, or a lag is not known by then.
+fn binds(key: &Key, free: &[Slot]) -> Option<Vec<Slot>> {
+    let mut new = Vec::new();
+    for p in &key.parts {
+        if let Part::Lag(l) = p {
+            let mut offset = Vec::new();
+            slots_of(&l.offset, &mut offset);
+            if offset.iter().any(|s| free.contains(s)) || matches!(l.base, Part::Lag(_)) {
+                return None;
             }
-            let mut out = Vec::new();
-            for x in &a {
-                for y in &b {
-                    let mut z = x.clone();
-                    z.extend(y.iter().cloned());
-                    out.push(z);
-                }
-            }
-            Some(out)
+        }
+        if let Some(s) = base_slot(p).filter(|s| free.contains(s) && !new.contains(s)) {
+            new.push(s);
         }
     }
+    (!new.is_empty()).then_some(new)
+}
+
+fn slots_of_key(key: &Key) -> Vec<Slot> {
+    let mut out = Vec::new();
+    key.parts.iter().for_each(|p| slots_of_part(p, &mut out));
+    out
+}
+
+/// Whether a part mentions one of the slots.
+fn slots_of_part_any(p: &Part, slots: &[Slot]) -> bool {
+    let mut used = Vec::new();
+    slots_of_part(p, &mut used);
+    used.iter().any(|s| slots.contains(s))
 }
 
 /// Slots that an expression reads from outside of its own sums.

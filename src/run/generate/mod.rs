@@ -10,6 +10,7 @@
 mod finish;
 mod terms;
 
+use super::plan::Wanted;
 use super::{Frame, Machine, scan};
 use crate::check::node::*;
 use crate::check::symbols::{DomainPosition, attribute};
@@ -183,7 +184,7 @@ impl Builder<'_, '_> {
         // Tuples first (in label order), then rows: the order of rows is what a person sees.
         let d = e.domain.slots.len();
         let tuples = if d == 0 {
-            let plan = self.m.plan(&e.domain, None);
+            let plan = self.m.plan(&e.domain, Wanted::default());
             let mut any = false;
             self.m.run_plan(&e.domain, &plan, frame, &mut |_| {
                 any = true;

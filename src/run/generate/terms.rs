@@ -7,6 +7,7 @@ use super::{Builder, EPS_COEFFICIENT, Row};
 use crate::check::node::*;
 use crate::data::value::{is_eps, truth};
 use crate::model::instance::*;
+use crate::run::plan::Wanted;
 use crate::run::{Frame, constant};
 
 /// A nonlinear term in the making.
@@ -76,7 +77,7 @@ impl Builder<'_, '_> {
             }
             NodeKind::Aggregate(AggregateOp::Sum, d, body) => {
                 let m = self.m;
-                let plan = m.plan(d, Some(body));
+                let plan = m.plan(d, Wanted::nonzero(Some(body)));
                 m.run_plan(d, &plan, frame, &mut |f| {
                     self.emit(body, coef, f, row);
                     !self.failed && m.keep_going()
@@ -360,7 +361,7 @@ impl Builder<'_, '_> {
     ) {
         let m = self.m;
         let sum = op == AggregateOp::Sum;
-        let plan = m.plan(d, if sum { Some(body) } else { None });
+        let plan = m.plan(d, Wanted::nonzero(sum.then_some(body)));
         let mut count = 0u32;
         m.run_plan(d, &plan, frame, &mut |f| {
             self.build(body, f, tape);

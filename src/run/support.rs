@@ -1,0 +1,459 @@
+//! Where an expression is anything but its *rest*: the number that it has nearly everywhere.
+//!
+//! A table rests at its default value, away from its records. A function of resting arguments rests where
+//! all of them do; a product rests at 0 where any factor does, `and` and `$` likewise. What remains, the
+//! *support*, is written as alternatives, each a conjunction of records that must be there; the planner
+//! scans those instead of the whole domain.
+//!
+//! Invariant: where no alternative holds, evaluation gives exactly the rest and reports no error. One
+//! exception is GAMS's: a division inside a factor is not carried out where another factor has no record
+//! (`a(i)*(1/b(i))`); such a support is [`Sparse::forced`], that is, used even where it saves nothing.
+//!
+//! What is said of an expression can change with the data: [`Premise`]s tell when.
+
+use super::exec::has_random;
+use super::{Machine, arithmetic};
+use crate::autodiff::functions::function_value;
+use crate::check::node::*;
+use crate::check::symbols::DomainPosition;
+use crate::model::instance::Function;
+
+/// Alternatives, each a conjunction of records that must be there.
+pub(super) type Alternatives = Vec<Vec<Driver>>;
+
+/// More alternatives than this are not followed.
+const MAX_ALTERNATIVES: usize = 32;
+
+/// What is known about the values of an expression.
+pub(super) struct Sparse {
+    /// Its value away from the support.
+    pub rest: f64,
+    /// Where it may have another.
+    pub support: Alternatives,
+    /// Evaluation elsewhere could fail although the value is the rest.
+    pub forced: bool,
+}
+
+/// What a plan takes for granted.
+#[derive(Debug, PartialEq)]
+pub(super) enum Premise {
+    /// About so many records: the choice of the plan rests on it, not its result.
+    Size(TableId, usize),
+    /// No value is infinite, `na`, `eps` or `undf`.
+    Plain(TableId),
+    /// There is a record.
+    Filled(TableId),
+    /// There is a record for every key of the domain.
+    Full(TableId),
+    /// A scalar has this value (its bits).
+    Scalar(TableId, u64),
+}
+
+/// How a factor behaves where another one is 0.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Care {
+    /// An ordinary number, always.
+    Quiet,
+    /// An ordinary number, or a division by zero.
+    MayFail,
+}
+
+/// Finds supports, and notes what they rest on.
+pub(super) struct Analysis<'m, 'h> {
+    m: &'m Machine<'h>,
+    pub premises: Vec<Premise>,
+}
+
+impl Machine<'_> {
+    /// Whether a premise still holds.
+    pub(super) fn holds_still(&self, p: &Premise) -> bool {
+        match *p {
+            Premise::Size(t, n) => {
+                let now = self.store.table(t).len();
+                now <= 4 * n + 64 && n <= 4 * now + 64
+            }
+            Premise::Plain(t) => !self.store.table(t).has_special(),
+            Premise::Filled(t) => !self.store.table(t).is_empty(),
+            Premise::Full(t) => self.is_full(t),
+            Premise::Scalar(t, bits) => self.store.table(t).get(&[]).to_bits() == bits,
+        }
+    }
+
+    /// Whether a table has a record for every key that its declaration allows.
+    fn is_full(&self, table: TableId) -> bool {
+        let Some(symbol) = self.table_symbol(table).map(|s| self.symbols.get(s)) else {
+            return false;
+        };
+        let size = symbol.domain.iter().try_fold(1usize, |n, p| match p {
+            DomainPosition::Set(d) => {
+                let set = self.store.table(self.symbols.get(*d).table);
+                (set.dim() == 1).then(|| n.saturating_mul(set.len()))
+            }
+            _ => None,
+        });
+        size == Some(self.store.table(table).len())
+    }
+}
+
+impl<'m, 'h> Analysis<'m, 'h> {
+    pub fn new(m: &'m Machine<'h>) -> Self {
+        Self {
+            m,
+            premises: Vec::new(),
+        }
+    }
+
+    /// What is taken for granted so far and from now on.
+    fn premise(&mut self, p: Premise) {
+        if !self.premises.contains(&p) {
+            self.premises.push(p);
+        }
+    }
+
+    /// The support of an expression that rests at 0.
+    pub fn nonzero(&mut self, n: &Node, symbolic: bool) -> Option<Sparse> {
+        self.resting_at(0.0, n, symbolic)
+    }
+
+    /// The support of an expression that rests at a value.
+    pub fn resting_at(&mut self, rest: f64, n: &Node, symbolic: bool) -> Option<Sparse> {
+        let before = self.premises.len();
+        let found = self.sparse(n, symbolic).filter(|s| s.rest == rest);
+        if found.is_none() {
+            // Nothing is concluded from what was looked at.
+            self.premises.truncate(before);
+        }
+        found
+    }
+
+    /// Rest and support; with `symbolic`, in an equation: a zero factor removes the term.
+    fn sparse(&mut self, n: &Node, symbolic: bool) -> Option<Sparse> {
+        match &n.kind {
+            NodeKind::Const(x) => Some(at_rest(*x)),
+            NodeKind::Data(t, key) => self.data(*t, key),
+            NodeKind::Negate(a) => self.together(&[(symbolic, a)], |v| arithmetic::negate(v[0])),
+            NodeKind::Not(a) => self.together(&[(false, a)], |v| arithmetic::not(v[0])),
+            NodeKind::Sum(terms) => {
+                let parts: Vec<(bool, &Node)> = terms.iter().map(|(_, t)| (symbolic, t)).collect();
+                self.together(&parts, |v| {
+                    let signed =
+                        v.iter().zip(terms).map(
+                            |(&x, (minus, _))| {
+                                if *minus { arithmetic::negate(x) } else { x }
+                            },
+                        );
+                    signed.reduce(arithmetic::add).unwrap_or(0.0)
+                })
+            }
+            NodeKind::Product(factors) => self.product(factors, symbolic),
+            NodeKind::Dollar(a, c) => {
+                let condition = self.nonzero(c, false);
+                let value = self.nonzero(a, symbolic);
+                match (condition, value) {
+                    (Some(c), Some(a)) => Some(meet(c, a)),
+                    (Some(c), None) => Some(c),
+                    // Random numbers are drawn for every tuple.
+                    (None, Some(_)) if has_random(c) => None,
+                    (None, Some(a)) => {
+                        let care = self.care(c);
+                        Some(Sparse {
+                            forced: a.forced || care != Some(Care::Quiet),
+                            ..a
+                        })
+                    }
+                    (None, None) => None,
+                }
+            }
+            NodeKind::Binary(BinaryOp::And, a, b) => self.both(n, a, b),
+            NodeKind::Binary(BinaryOp::Power, a, b) => {
+                self.call(Function::RPower, &[(symbolic, a), (symbolic, b)])
+            }
+            NodeKind::Binary(op, a, b) => self.together(&[(false, a), (false, b)], |v| {
+                arithmetic::relate(*op, v[0], v[1])
+            }),
+            NodeKind::Call(f, args) => {
+                let args: Vec<(bool, &Node)> = args.iter().map(|a| (symbolic, a)).collect();
+                self.call(*f, &args)
+            }
+            NodeKind::Aggregate(op, d, body) => self.aggregate(*op, d, body, symbolic),
+            _ => None,
+        }
+    }
+
+    fn data(&mut self, t: TableId, key: &Key) -> Option<Sparse> {
+        let table = self.m.store.table(t);
+        if key.parts.is_empty() {
+            let value = table.get(&[]);
+            self.premise(Premise::Scalar(t, value.to_bits()));
+            return Some(at_rest(value));
+        }
+        let rest = table.default_value();
+        // A lag that leaves its set gives 0, whatever the default.
+        (rest == 0.0 || key.is_plain()).then(|| Sparse {
+            rest,
+            support: vec![vec![Driver {
+                table: t,
+                key: key.clone(),
+            }]],
+            forced: false,
+        })
+    }
+
+    /// Something of several expressions that rests where all of them do.
+    fn together(
+        &mut self,
+        parts: &[(bool, &Node)],
+        value: impl Fn(&[f64]) -> f64,
+    ) -> Option<Sparse> {
+        let mut out = at_rest(0.0);
+        let mut rests = Vec::with_capacity(parts.len());
+        for &(symbolic, n) in parts {
+            let s = self.sparse(n, symbolic)?;
+            rests.push(s.rest);
+            out.support.extend(s.support);
+            out.forced |= s.forced;
+            if out.support.len() > MAX_ALTERNATIVES {
+                return None;
+            }
+        }
+        out.rest = value(&rests);
+        Some(out)
+    }
+
+    fn call(&mut self, f: Function, args: &[(bool, &Node)]) -> Option<Sparse> {
+        let value = |v: &[f64]| {
+            let finite = v.iter().all(|x| x.is_finite());
+            let value = finite.then(|| function_value(f, v).ok()).flatten();
+            value.filter(|x| x.is_finite()).unwrap_or(f64::NAN)
+        };
+        self.together(args, value).filter(|s| !s.rest.is_nan())
+    }
+
+    fn product(&mut self, factors: &[(bool, Node)], symbolic: bool) -> Option<Sparse> {
+        // A term of an equation whose coefficient is 0 is not looked at; else a divisor must not be 0.
+        if !symbolic
+            && !factors
+                .iter()
+                .all(|(divide, f)| !divide || self.is_divisor(f))
+        {
+            return None;
+        }
+        let mut out: Option<Sparse> = None;
+        for (i, (_, f)) in factors
+            .iter()
+            .enumerate()
+            .filter(|(_, (divide, _))| !divide)
+        {
+            let Some(mut s) = self.nonzero(f, symbolic) else {
+                continue;
+            };
+            if !symbolic {
+                let others = factors
+                    .iter()
+                    .enumerate()
+                    .filter(|(k, (d, _))| *k != i && !d);
+                let care = others.map(|(_, (_, g))| self.care(g)).min_by_key(careless);
+                match care.unwrap_or(Some(Care::Quiet)) {
+                    Some(Care::Quiet) => {}
+                    Some(Care::MayFail) => s.forced = true,
+                    None => continue,
+                }
+            }
+            out = Some(match out {
+                Some(o) => meet(o, s),
+                None => s,
+            });
+        }
+        out
+    }
+
+    /// `a and b`
+    fn both(&mut self, n: &Node, a: &Node, b: &Node) -> Option<Sparse> {
+        let mut out: Option<Sparse> = None;
+        for (x, y) in [(a, b), (b, a)] {
+            if let Some(mut s) = self.nonzero(x, false)
+                && let Some(care) = self.care(y)
+            {
+                s.forced |= care == Care::MayFail;
+                out = Some(match out {
+                    Some(o) => meet(o, s),
+                    None => s,
+                });
+            }
+        }
+        if out.is_some() {
+            return out;
+        }
+        let NodeKind::Binary(op, ..) = &n.kind else {
+            return None;
+        };
+        self.together(&[(false, a), (false, b)], |v| {
+            arithmetic::relate(*op, v[0], v[1])
+        })
+    }
+
+    fn aggregate(
+        &mut self,
+        op: AggregateOp,
+        d: &Domain,
+        body: &Node,
+        symbolic: bool,
+    ) -> Option<Sparse> {
+        if !matches!(op, AggregateOp::Sum | AggregateOp::Sor) {
+            // Over nothing these are not 0.
+            let whole = d.conditions.is_empty()
+                && d.members.iter().all(|m| {
+                    matches!(m.key.parts.as_slice(), [Part::Slot(s)] if d.slots.contains(s))
+                        && !self.m.store.table(m.table).is_empty()
+                });
+            if !whole || symbolic && body.has_var {
+                return None;
+            }
+            for m in &d.members {
+                self.premise(Premise::Filled(m.table));
+            }
+        }
+        if d.conditions.iter().any(has_random) {
+            return None;
+        }
+        let mut out = Sparse {
+            rest: 0.0,
+            support: vec![d.members.clone()],
+            forced: false,
+        };
+        for c in &d.conditions {
+            if let Some(s) = self.nonzero(c, false) {
+                out = meet(out, s);
+            }
+        }
+        if let Some(s) = self.nonzero(body, symbolic) {
+            out = meet(out, s);
+        } else if !matches!(op, AggregateOp::Sum | AggregateOp::Sor) {
+            return None;
+        }
+        Some(out)
+    }
+
+    /// How an expression behaves where nobody wants its value; None: it may be infinite, `na` or `undf`.
+    fn care(&mut self, n: &Node) -> Option<Care> {
+        match &n.kind {
+            NodeKind::Const(x) => x.is_finite().then_some(Care::Quiet),
+            NodeKind::Data(t, _) => {
+                let table = self.m.store.table(*t);
+                if table.has_special() || !table.default_value().is_finite() {
+                    return None;
+                }
+                self.premise(Premise::Plain(*t));
+                Some(Care::Quiet)
+            }
+            NodeKind::Ord(..) | NodeKind::Card(_) | NodeKind::SameAs(..) => Some(Care::Quiet),
+            NodeKind::Negate(a) | NodeKind::Not(a) => self.care(a),
+            NodeKind::Sum(t) => self.cares(t.iter().map(|(_, x)| x)),
+            NodeKind::Product(t) => {
+                let mut worst = Care::Quiet;
+                for (divide, x) in t {
+                    if *divide && !self.is_divisor(x) {
+                        worst = Care::MayFail;
+                    }
+                    worst = worst.max(self.care(x)?);
+                }
+                Some(worst)
+            }
+            NodeKind::Binary(op, a, b) if *op != BinaryOp::Power => self.cares([&**a, &**b]),
+            NodeKind::Dollar(a, b) => self.cares([&**a, &**b]),
+            NodeKind::Aggregate(op, d, b)
+                if !matches!(op, AggregateOp::Smin | AggregateOp::Smax) =>
+            {
+                self.cares(d.conditions.iter().chain([&**b]))
+            }
+            NodeKind::Call(
+                Function::Abs
+                | Function::Sqr
+                | Function::Sign
+                | Function::Min
+                | Function::Max
+                | Function::Floor
+                | Function::Ceil
+                | Function::Round
+                | Function::Trunc,
+                a,
+            ) => self.cares(a),
+            _ => None,
+        }
+    }
+
+    fn cares<'n>(&mut self, list: impl IntoIterator<Item = &'n Node>) -> Option<Care> {
+        list.into_iter()
+            .try_fold(Care::Quiet, |worst, n| Some(worst.max(self.care(n)?)))
+    }
+
+    /// Whether evaluation never reports an error and never gives `undf`.
+    pub fn is_quiet(&mut self, n: &Node) -> bool {
+        self.care(n) == Some(Care::Quiet)
+    }
+
+    /// Whether dividing by it is always fine.
+    fn is_divisor(&mut self, n: &Node) -> bool {
+        match &n.kind {
+            NodeKind::Const(x) => x.is_finite() && *x != 0.0,
+            NodeKind::Data(t, key) if key.parts.is_empty() => {
+                let v = self.m.store.table(*t).get(&[]);
+                self.premise(Premise::Scalar(*t, v.to_bits()));
+                v.is_finite() && v != 0.0
+            }
+            NodeKind::Data(t, key) if key.is_plain() => {
+                let table = self.m.store.table(*t);
+                let full =
+                    table.default_value() == 0.0 && !table.has_special() && self.m.is_full(*t);
+                if full {
+                    self.premise(Premise::Full(*t));
+                    self.premise(Premise::Plain(*t));
+                }
+                full
+            }
+            NodeKind::Card(t) => {
+                self.premise(Premise::Filled(*t));
+                !self.m.store.table(*t).is_empty()
+            }
+            _ => false,
+        }
+    }
+}
+
+fn careless(c: &Option<Care>) -> u8 {
+    match c {
+        None => 0,
+        Some(Care::MayFail) => 1,
+        Some(Care::Quiet) => 2,
+    }
+}
+
+/// The same value everywhere.
+fn at_rest(rest: f64) -> Sparse {
+    Sparse {
+        rest,
+        support: Vec::new(),
+        forced: false,
+    }
+}
+
+/// Both must be away from rest.
+fn meet(a: Sparse, b: Sparse) -> Sparse {
+    Sparse {
+        rest: 0.0,
+        support: product(&a.support, &b.support).unwrap_or(if a.support.len() <= b.support.len() {
+            a.support
+        } else {
+            b.support
+        }),
+        forced: a.forced || b.forced,
+    }
+}
+
+/// Pairs of alternatives; None when they are too many.
+pub(super) fn product<T: Clone>(a: &[Vec<T>], b: &[Vec<T>]) -> Option<Vec<Vec<T>>> {
+    let pairs = a
+        .iter()
+        .flat_map(|x| b.iter().map(|y| [&x[..], &y[..]].concat()));
+    (a.len() * b.len() <= MAX_ALTERNATIVES).then(|| pairs.collect())
+}
