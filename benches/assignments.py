@@ -14,6 +14,7 @@ CASES = [
     ("sums.blk", "rows"), ("sums.blk", "columns"), ("sums.blk", "all"),
     ("sums.blk", "loop"), ("sums.blk", "transpose"), ("sums.blk", "insert"),
     ("join.blk", "good"), ("join.blk", "bad"),
+    *(("conditions.blk", form) for form in "either sum rest lag most largest diagonal together loop".split()),
     ("scalar_loop.blk", None), ("labels.blk", None),
 ]
 

@@ -16,6 +16,7 @@ use crate::check::node::*;
 use crate::check::symbols::DomainPosition;
 use crate::data::sort::sort_tuples;
 use crate::data::universe::Label;
+use crate::data::value::truth;
 use std::rc::Rc;
 
 /// How to enumerate a domain.
@@ -60,8 +61,9 @@ enum Step {
     },
     /// A record must be there.
     Member(TableId, Key),
-    /// A conjunct of the condition (by number) must be true.
-    Filter(usize),
+    /// A conjunct of the condition (by number) must be true. Its own sums leave these slots changed, which
+    /// scans around still read.
+    Filter(usize, Box<[Slot]>),
 }
 
 /// A table whose record must be nonzero for the tuple to count.
@@ -285,6 +287,7 @@ impl Machine<'_> {
         let (mut in_order, mut rows_so_far, mut work) = (true, 1.0, 1.0);
         // What a slot's label is known to be a member of, by the tables that bound it.
         let mut known: Vec<(Slot, TableId)> = Vec::new();
+        let indices = free.clone();
         let mut filters: Vec<(usize, Vec<Slot>)> = d
             .conditions
             .iter()
@@ -327,7 +330,10 @@ impl Machine<'_> {
                     return true;
                 }
                 if !self.scanned_by(&d.conditions[*i], steps) {
-                    steps.push(Step::Filter(*i));
+                    let mut changed = Vec::new();
+                    slots_of(&d.conditions[*i], &mut changed);
+                    changed.retain(|s| is_inner(*s, d) && indices.contains(s));
+                    steps.push(Step::Filter(*i, changed.into()));
                 }
                 false
             });
@@ -349,7 +355,7 @@ impl Machine<'_> {
                 if t.dim() > 1 && t.is_tidy() && changing != Some(c.table) {
                     let distinct = t.distinct();
                     for (p, part) in c.key.parts.iter().enumerate() {
-                        if !slots_of_part_any(part, &free) {
+                        if !mentions(part, &free) {
                             groups *= f64::from(distinct[p]);
                         }
                     }
@@ -512,8 +518,13 @@ impl Machine<'_> {
             return f(frame);
         };
         match step {
-            Step::Filter(i) => {
-                if !crate::data::value::truth(self.eval(&d.conditions[*i], frame)) {
+            Step::Filter(i, changed) => {
+                let before: Vec<Label> = changed.iter().map(|&s| frame[s as usize]).collect();
+                let holds = truth(self.eval(&d.conditions[*i], frame));
+                for (&s, l) in changed.iter().zip(before) {
+                    frame[s as usize] = l;
+                }
+                if !holds {
                     return true;
                 }
                 self.run_steps(d, rest, frame, f)
@@ -625,7 +636,7 @@ fn slots_of_key(key: &Key) -> Vec<Slot> {
 }
 
 /// Whether a part mentions one of the slots.
-fn slots_of_part_any(p: &Part, slots: &[Slot]) -> bool {
+fn mentions(p: &Part, slots: &[Slot]) -> bool {
     let mut used = Vec::new();
     slots_of_part(p, &mut used);
     used.iter().any(|s| slots.contains(s))
