@@ -1,8 +1,144 @@
-//! Kernels that are simpler than they look: numbers (all sums empty, all variables held fixed) and
-//! affine forms (a product in which all but one variable are held fixed).
+//! Kernels that are simpler than they look: numbers (all sums empty, all variables held fixed), products with
+//! a 0 that is found only now (a sum over nothing), and affine forms (a product in which all but one variable
+//! are held fixed).
 
 use crate::autodiff::functions::{self, DomainError, function_value};
 use crate::model::instance::Op;
+
+/// A nonlinear term in the making.
+#[derive(Default)]
+pub struct Tape {
+    /// The program, in postfix form.
+    pub ops: Vec<Op>,
+    /// Column of each variable slot.
+    pub columns: Vec<u32>,
+    /// Value of each constant slot.
+    pub constants: Vec<f64>,
+}
+
+/// A value on the stack of [`Tape::folded`].
+enum Part {
+    Number(f64),
+    Code(Tape),
+}
+
+impl Tape {
+    /// Appends a number.
+    pub fn number(&mut self, x: f64) {
+        self.ops.push(Op::Const(self.constants.len() as u32));
+        self.constants.push(x);
+    }
+
+    /// Whether 0 stands in it as a number.
+    pub fn has_zero(&self) -> bool {
+        let zero = |op: &Op| matches!(*op, Op::Const(k) if self.constants[k as usize] == 0.0);
+        self.ops.iter().any(zero)
+    }
+
+    /// Appends a program with slots of its own.
+    fn append(&mut self, part: Part) {
+        let part = match part {
+            Part::Number(x) => return self.number(x),
+            Part::Code(part) => part,
+        };
+        let (c, v) = (self.constants.len() as u32, self.columns.len() as u32);
+        self.ops.extend(part.ops.into_iter().map(|op| match op {
+            Op::Const(k) => Op::Const(k + c),
+            Op::Var(k) => Op::Var(k + v),
+            Op::Affine {
+                constant,
+                variable,
+                terms,
+            } => Op::Affine {
+                constant: constant + c,
+                variable: variable + v,
+                terms,
+            },
+            op => op,
+        }));
+        self.constants.extend(part.constants);
+        self.columns.extend(part.columns);
+    }
+
+    /// The same with functions of numbers computed, and without products with 0 and 0 divided by something: such
+    /// variables do not occur, as in GAMS.
+    pub fn folded(&self) -> Result<Self, DomainError> {
+        let mut stack: Vec<Part> = Vec::new();
+        for &op in &self.ops {
+            let args = stack.split_off(stack.len().saturating_sub(arguments(op)));
+            let number = |p: &Part| match p {
+                Part::Number(x) => Some(*x),
+                Part::Code(_) => None,
+            };
+            let numbers: Option<Vec<f64>> = args.iter().map(number).collect();
+            let zero = |p: &Part| number(p) == Some(0.0);
+            let value = match (op, numbers) {
+                (Op::Const(k), _) => Part::Number(self.constants[k as usize]),
+                (Op::Multiply | Op::MultiplyN(_), _) if args.iter().any(zero) => Part::Number(0.0),
+                (Op::Divide, None) if zero(&args[0]) => Part::Number(0.0),
+                (Op::Var(k), _) => Part::Code(Self {
+                    ops: vec![Op::Var(0)],
+                    columns: vec![self.columns[k as usize]],
+                    constants: Vec::new(),
+                }),
+                (
+                    Op::Affine {
+                        constant,
+                        variable,
+                        terms,
+                    },
+                    _,
+                ) => {
+                    let (c, v, n) = (constant as usize, variable as usize, terms as usize);
+                    Part::Code(Self {
+                        ops: vec![Op::Affine {
+                            constant: 0,
+                            variable: 0,
+                            terms,
+                        }],
+                        columns: self.columns[v..v + n].to_vec(),
+                        constants: self.constants[c..=c + n].to_vec(),
+                    })
+                }
+                (op, Some(numbers)) => Part::Number(value(op, &numbers)?),
+                (op, None) => {
+                    let mut code = Self::default();
+                    args.into_iter().for_each(|a| code.append(a));
+                    code.ops.push(op);
+                    Part::Code(code)
+                }
+            };
+            stack.push(value);
+        }
+        let mut out = Self::default();
+        stack.into_iter().for_each(|p| out.append(p));
+        Ok(out)
+    }
+}
+
+/// How many values an operation takes off the stack.
+fn arguments(op: Op) -> usize {
+    match op {
+        Op::Const(_) | Op::Affine { .. } | Op::Var(_) => 0,
+        Op::Negate | Op::PowerInt(_) => 1,
+        Op::AddN(n) | Op::MultiplyN(n) | Op::Call(_, n) => n as usize,
+        Op::Add | Op::Subtract | Op::Multiply | Op::Divide | Op::Power => 2,
+    }
+}
+
+/// What an operation makes of numbers.
+fn value(op: Op, a: &[f64]) -> Result<f64, DomainError> {
+    Ok(match (op, a) {
+        (Op::Divide, &[a, b]) => functions::divide(a, b)?,
+        (Op::Power, &[a, b]) => functions::real_power(a, b)?,
+        (Op::PowerInt(n), &[a]) => functions::whole_power(a, n)?,
+        (Op::Call(f, _), a) => function_value(f, a)?,
+        (Op::Subtract, &[a, b]) => a - b,
+        (Op::Negate, &[a]) => -a,
+        (Op::Multiply | Op::MultiplyN(_), a) => a.iter().product(),
+        (_, a) => a.iter().sum(),
+    })
+}
 
 /// A constant and coefficients of variable slots, in the order in which they were met.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -63,13 +199,7 @@ pub fn affine(ops: &[Op], constants: &[f64]) -> Result<Option<Affine>, DomainErr
     // None is anything else.
     let mut stack: Vec<Option<Affine>> = Vec::new();
     for op in ops {
-        let count = match *op {
-            Op::Const(_) | Op::Affine { .. } | Op::Var(_) => 0,
-            Op::Negate | Op::PowerInt(_) => 1,
-            Op::AddN(n) | Op::MultiplyN(n) | Op::Call(_, n) => n as usize,
-            Op::Add | Op::Subtract | Op::Multiply | Op::Divide | Op::Power => 2,
-        };
-        let args = stack.split_off(stack.len().saturating_sub(count));
+        let args = stack.split_off(stack.len().saturating_sub(arguments(*op)));
         let numbers: Option<Vec<f64>> = args
             .iter()
             .map(|a| a.as_ref().and_then(Affine::as_number))
@@ -102,7 +232,9 @@ pub fn affine(ops: &[Op], constants: &[f64]) -> Result<Option<Affine>, DomainErr
             },
             (Op::Negate, _) => args.into_iter().flatten().next().map(|a| a.scaled(-1.0)),
             (Op::Multiply | Op::MultiplyN(_), _) => product(&args),
-            (Op::Divide, Some(&[a, b])) => Some(Affine::number(functions::divide(a, b)?)),
+            (op @ (Op::Divide | Op::Power | Op::PowerInt(_) | Op::Call(..)), Some(a)) => {
+                Some(Affine::number(value(op, a)?))
+            }
             (Op::Divide, _) => match <[_; 2]>::try_from(args) {
                 Ok([Some(a), Some(b)]) => match b.as_number() {
                     Some(b) => Some(a.scaled(functions::divide(1.0, b)?)),
@@ -110,9 +242,6 @@ pub fn affine(ops: &[Op], constants: &[f64]) -> Result<Option<Affine>, DomainErr
                 },
                 _ => None,
             },
-            (Op::Power, Some(&[a, b])) => Some(Affine::number(functions::real_power(a, b)?)),
-            (Op::PowerInt(n), Some(&[a])) => Some(Affine::number(functions::whole_power(a, n)?)),
-            (Op::Call(f, _), Some(a)) => Some(Affine::number(function_value(f, a)?)),
             (Op::Power | Op::PowerInt(_) | Op::Call(..), _) => None,
         };
         stack.push(value);

@@ -4,19 +4,13 @@
 //! only share their kernel.
 
 use super::{Builder, EPS_COEFFICIENT, Row};
+use crate::autodiff::functions::DomainError;
 use crate::check::node::*;
 use crate::data::value::{is_eps, truth};
 use crate::model::instance::*;
+use crate::run::Frame;
+use crate::run::constant::{self, Affine, Tape};
 use crate::run::plan::Wanted;
-use crate::run::{Frame, constant};
-
-/// A nonlinear term in the making.
-#[derive(Default)]
-struct Tape {
-    ops: Vec<Op>,
-    columns: Vec<u32>,
-    constants: Vec<f64>,
-}
 
 impl Builder<'_, '_> {
     fn add(&mut self, column: u32, coef: f64, row: &mut Row) {
@@ -133,17 +127,23 @@ impl Builder<'_, '_> {
         }
         let mut tape = Tape::default();
         self.build(n, frame, &mut tape);
-        // Without variables, or with some held fixed, it may be a number or linear after all.
-        if tape.columns.is_empty() || self.options.hold_fixed {
-            match constant::affine(&tape.ops, &tape.constants) {
-                Ok(Some(a)) => {
+        // With zeros in it, or with variables held fixed, it may be a number or linear after all. A
+        // kernel that is there already is neither.
+        let zero = tape.has_zero();
+        let mut known = self.kernels.get(&tape.ops).copied();
+        if zero || self.options.hold_fixed || known.is_none() {
+            match simplified(tape, zero) {
+                Ok((Some(a), tape)) => {
                     row.constant += coef * a.constant;
                     for (v, c) in a.terms {
                         self.add(tape.columns[v as usize], coef * c, row);
                     }
                     return;
                 }
-                Ok(None) => {}
+                Ok((None, simpler)) => {
+                    known = self.kernels.get(&simpler.ops).copied();
+                    tape = simpler;
+                }
                 Err(e) => {
                     self.m.execution_error(
                         "E0403",
@@ -155,8 +155,8 @@ impl Builder<'_, '_> {
                 }
             }
         }
-        let k = match self.kernels.get(&tape.ops) {
-            Some(&k) => k,
+        let k = match known {
+            Some(k) => k,
             None => {
                 let k = self.instance.nonlinear.len();
                 self.kernels.insert(tape.ops.clone(), k);
@@ -179,16 +179,11 @@ impl Builder<'_, '_> {
         terms.constants.extend_from_slice(&tape.constants);
     }
 
-    fn constant(&self, x: f64, tape: &mut Tape) {
-        tape.ops.push(Op::Const(tape.constants.len() as u32));
-        tape.constants.push(x);
-    }
-
     /// Appends an affine expression.
     fn affine(&mut self, part: Row, tape: &mut Tape) {
         let terms: Vec<(u32, f64)> = part.terms.iter().copied().filter(|t| t.1 != 0.0).collect();
         match terms.as_slice() {
-            [] => self.constant(part.constant, tape),
+            [] => tape.number(part.constant),
             [(c, v)] if *v == 1.0 && part.constant == 0.0 => {
                 tape.ops.push(Op::Var(tape.columns.len() as u32));
                 tape.columns.push(*c);
@@ -219,7 +214,7 @@ impl Builder<'_, '_> {
     fn build(&mut self, n: &Node, frame: &mut Frame, tape: &mut Tape) {
         if !n.has_var {
             let v = self.value(n, frame);
-            self.constant(v, tape);
+            tape.number(v);
             return;
         }
         if n.linear {
@@ -260,7 +255,7 @@ impl Builder<'_, '_> {
                 if truth(self.m.eval(c, frame)) {
                     self.build(a, frame, tape);
                 } else {
-                    self.constant(0.0, tape);
+                    tape.number(0.0);
                 }
             }
             NodeKind::Binary(op, a, b) => self.build_binary(*op, a, b, frame, tape),
@@ -290,17 +285,17 @@ impl Builder<'_, '_> {
                 }
             },
             NodeKind::Aggregate(op, d, body) => self.build_aggregate(*op, d, body, frame, tape),
-            _ => self.constant(0.0, tape),
+            _ => tape.number(0.0),
         }
     }
 
     fn build_product(&mut self, factors: &[(bool, Node)], frame: &mut Frame, tape: &mut Tape) {
         let Some((c, _)) = self.split(factors, frame) else {
-            self.constant(0.0, tape);
+            tape.number(0.0);
             return;
         };
         if c == 0.0 {
-            self.constant(0.0, tape);
+            tape.number(0.0);
             return;
         }
         let mut count = 0;
@@ -309,7 +304,7 @@ impl Builder<'_, '_> {
             count += 1;
         }
         if c != 1.0 || count == 0 {
-            self.constant(c, tape);
+            tape.number(c);
             count += 1;
         }
         multiply_n(count, tape);
@@ -371,13 +366,13 @@ impl Builder<'_, '_> {
         match op {
             AggregateOp::Sum => {
                 if count == 0 {
-                    self.constant(0.0, tape);
+                    tape.number(0.0);
                 }
                 add_n(count, tape);
             }
             AggregateOp::Prod => {
                 if count == 0 {
-                    self.constant(1.0, tape);
+                    tape.number(1.0);
                 }
                 multiply_n(count, tape);
             }
@@ -388,7 +383,7 @@ impl Builder<'_, '_> {
                     (Function::Max, f64::NEG_INFINITY)
                 };
                 match count {
-                    0 => self.constant(none, tape),
+                    0 => tape.number(none),
                     1 => {}
                     n => tape.ops.push(Op::Call(f, n)),
                 }
@@ -400,7 +395,7 @@ impl Builder<'_, '_> {
                     (Function::BoolOr, 0.0)
                 };
                 if count == 0 {
-                    self.constant(none, tape);
+                    tape.number(none);
                 }
                 for _ in 1..count {
                     tape.ops.push(Op::Call(f, 2));
@@ -408,6 +403,12 @@ impl Builder<'_, '_> {
             }
         }
     }
+}
+
+/// The tape, folded if there is a zero in it, and its affine form if it has one.
+fn simplified(tape: Tape, zero: bool) -> Result<(Option<Affine>, Tape), DomainError> {
+    let tape = if zero { tape.folded()? } else { tape };
+    Ok((constant::affine(&tape.ops, &tape.constants)?, tape))
 }
 
 fn add_n(n: u32, tape: &mut Tape) {
