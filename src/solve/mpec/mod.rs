@@ -78,6 +78,7 @@ pub fn answer(
         monitor,
         begin: Instant::now(),
         iterations: 0,
+        enough: u64::MAX,
         best: None,
         reserve: None,
         empty: false,
@@ -87,6 +88,10 @@ pub fn answer(
     };
     search.run()
 }
+
+/// Until there is a feasible point: in iterations times rows and columns, and iterations in any case.
+const FIRST_WORK: u64 = 300_000;
+const FIRST_ITERATIONS: u64 = 3_000;
 
 /// A feasible point: the solution of a branch.
 #[derive(Clone)]
@@ -107,6 +112,8 @@ struct Search<'a> {
     monitor: &'a mut dyn Monitor,
     begin: Instant,
     iterations: u64,
+    /// Iterations after which no further nonlinear program of the present phase is begun or continued.
+    enough: u64,
     best: Option<Found>,
     /// The least infeasible of the points that are not feasible.
     reserve: Option<Found>,
@@ -145,6 +152,7 @@ impl Search<'_> {
                 if method == Method::Pieces {
                     self.improve(&self.program.complete(start.clone()))?;
                 }
+                self.allow(FIRST_WORK.max(FIRST_ITERATIONS * self.size()));
                 for kind in [kind, Kind::Penalty] {
                     if self.best.is_none() && !self.is_over() {
                         self.relax(kind, &start)?;
@@ -169,6 +177,21 @@ impl Search<'_> {
         self.stopped.is_some()
     }
 
+    /// Limits the phase that begins, in iterations times rows and columns.
+    fn allow(&mut self, work: u64) {
+        self.enough = self.iterations + work / self.size();
+    }
+
+    /// Rows and columns, what an iteration costs.
+    fn size(&self) -> u64 {
+        let instance = self.program.instance;
+        (instance.row_count() + instance.column_count()).max(1) as u64
+    }
+
+    fn is_spent(&mut self) -> bool {
+        self.iterations >= self.enough || self.is_over()
+    }
+
     fn seconds_left(&self) -> f64 {
         (self.settings.time_limit - self.begin.elapsed().as_secs_f64()).max(0.0)
     }
@@ -183,6 +206,15 @@ impl Search<'_> {
         // The person's options come last and win.
         s.options = extra.iter().map(own).collect();
         s.options.extend(self.settings.options.iter().cloned());
+        s
+    }
+
+    /// The same for a nonlinear program, within the present phase.
+    fn program_settings(&self, extra: &[(&str, &str)]) -> Settings {
+        let short = [("nlp_search", "no"), ("nlp_attempts", "few")];
+        let mut s = self.sub_settings(&[&short, extra].concat());
+        let left = self.enough.saturating_sub(self.iterations);
+        s.iteration_limit = s.iteration_limit.min(left);
         s
     }
 
@@ -202,11 +234,17 @@ impl Search<'_> {
             return Ok(None);
         }
         let instance = self.program.branch(&pieces, start);
-        let mut settings = self.sub_settings(&[("nlp_search", "no")]);
-        settings.iteration_limit = settings.iteration_limit.min(most);
         let answer = match instance.is_linear() {
-            true => super::answer::linear(&super::lp::Clarabel, &instance, &settings, self.monitor),
-            false => super::nlp::answer(self.choice, &instance, &settings, self.monitor),
+            true => {
+                let mut settings = self.sub_settings(&[]);
+                settings.iteration_limit = settings.iteration_limit.min(most);
+                super::answer::linear(&super::lp::Clarabel, &instance, &settings, self.monitor)
+            }
+            false => {
+                let mut settings = self.program_settings(&[]);
+                settings.iteration_limit = settings.iteration_limit.min(most);
+                super::nlp::answer(self.choice, &instance, &settings, self.monitor)
+            }
         };
         let answer = match answer {
             Ok(a) => a,
@@ -425,12 +463,8 @@ impl Search<'_> {
         let mut mu = self.options.mu;
         loop {
             relaxed.tighten(self.program, mu, &x);
-            let settings = self.sub_settings(&[
-                ("nlp_search", "no"),
-                ("nlp_attempts", "few"),
-                ("bound_relax_factor", "0"),
-                ("mu_strategy", "adaptive"),
-            ]);
+            let settings =
+                self.program_settings(&[("bound_relax_factor", "0"), ("mu_strategy", "adaptive")]);
             let a = super::nlp::answer(self.choice, &relaxed.instance, &settings, self.monitor)?;
             self.iterations += a.outcome.iterations;
             let y = &a.outcome.level[..n];
@@ -466,7 +500,7 @@ impl Search<'_> {
                     return Ok(());
                 }
             }
-            if self.is_over() || mu <= self.options.last {
+            if self.is_spent() || mu <= self.options.last {
                 break;
             }
             mu = (mu * self.options.factor).max(self.options.last);
@@ -562,7 +596,8 @@ impl Search<'_> {
 
     /// No feasible point was found: is there none?
     fn infeasible(&mut self) -> Result<Answer, SolveError> {
-        let settings = self.sub_settings(&[("nlp_search", "no")]);
+        self.allow(FIRST_WORK.max(FIRST_ITERATIONS * self.size()));
+        let settings = self.program_settings(&[("nlp_attempts", "all")]);
         let envelope = &self.program.envelope;
         let mut a = match envelope.is_linear() {
             true => super::answer::linear(&super::lp::Clarabel, envelope, &settings, self.monitor)?,

@@ -32,21 +32,15 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// Rows and columns, what an iteration costs.
-    fn size(&self) -> u64 {
-        let instance = self.program.instance;
-        (instance.row_count() + instance.column_count()) as u64
-    }
-
     /// Swaps from the best point until none improves; false if the work was done before.
     fn swaps(&mut self) -> Result<bool, SolveError> {
-        let limit = self.iterations + WORK / self.size().max(1);
+        self.allow(WORK);
         'again: while let Some(best) = self.best.clone() {
             if best.answer.status == ModelStatus::Unbounded {
                 break;
             }
             for (k, piece) in self.order(&best) {
-                if self.iterations > limit || self.is_over() {
+                if self.is_spent() {
                     return Ok(false);
                 }
                 let mut pieces = best.pieces.clone();
@@ -89,11 +83,11 @@ impl Search<'_> {
 
     /// The relaxation from points around the start.
     fn random_starts(&mut self, kind: Kind, start: &[f64]) -> Result<(), SolveError> {
-        let limit = self.iterations + WORK / self.size().max(1);
+        self.allow(WORK);
         let mut random = Random(0x5eed);
         let columns = &self.program.instance.columns;
         for _ in 0..self.options.starts {
-            if self.iterations > limit || self.is_over() {
+            if self.is_spent() {
                 break;
             }
             let spread = 10f64.powf(1.5 * random.uniform());
