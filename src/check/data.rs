@@ -57,7 +57,9 @@ impl Compiler {
     /// A symbol declared without a domain has as many indices as its first record. A dot behind a
     /// blank begins a number there.
     fn shape_by_data(&mut self, s: SymbolId, text: &str, kind: DataKind) {
-        let mut reader = DataReader::new(text, 0, kind, true).with_arity(1);
+        let mut reader = DataReader::new(text, 0, kind, true)
+            .with_arity(1)
+            .with_constants(self);
         if let Some(Ok(r)) = reader.next()
             && (kind == DataKind::Set || !matches!(r.value, Tail::None))
         {
@@ -93,7 +95,11 @@ impl Compiler {
             self.shape_by_data(s, text, kind);
         }
         let dim = self.symbols.get(s).dim();
-        Ok(DataReader::new(text, body.lo, kind, self.modes.undf).with_arity(dim))
+        let reader = DataReader::new(text, body.lo, kind, self.modes.undf).with_arity(dim);
+        Ok(match kind {
+            DataKind::Set => reader,
+            DataKind::Values => reader.with_constants(self),
+        })
     }
 
     pub(super) fn set_data(
@@ -335,7 +341,8 @@ impl Compiler {
         map: &SourceMap,
     ) -> Result<(), Failed> {
         let mut reader =
-            DataReader::new(map.text(body), body.lo, DataKind::Values, self.modes.undf);
+            DataReader::new(map.text(body), body.lo, DataKind::Values, self.modes.undf)
+                .with_constants(self);
         while let Some(record) = reader.next() {
             let record = match record {
                 Ok(r) => r,

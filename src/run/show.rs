@@ -46,7 +46,7 @@ impl Page {
 impl Machine<'_> {
     /// Shows symbols and texts.
     pub(super) fn display(&mut self, items: &[Shown], span: Span) {
-        let line = self.map.line(span);
+        let line = self.map.listing_line(span);
         let mut page = Page {
             text: String::new(),
             line,

@@ -351,7 +351,7 @@ impl Machine<'_> {
             ("domusd", 0.0),
             ("marginals", 1.0),
             ("number", f64::from(self.report.solves.len() as u32 + 1)),
-            ("line", self.map.line(self.options.at.get()) as f64),
+            ("line", self.map.listing_line(self.options.at.get()) as f64),
             ("linkused", 0.0),
         ];
         let state: &mut ModelState = self.models.entry(s.model).or_default();

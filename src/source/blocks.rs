@@ -58,6 +58,7 @@ impl Preprocessor<'_> {
             .to_ascii_lowercase();
         let marks = self.marks.clone();
         let limit = self.max_jumps;
+        let listed = self.listed();
         let Some(frame) = self.frames.last_mut() else {
             return Ok(());
         };
@@ -89,8 +90,11 @@ impl Preprocessor<'_> {
             {
                 // A jump may leave open blocks.
                 frame.ifs.clear();
+                // A label that ends the skipping is not listed.
+                let ends = i64::from(pos >= frame.pos);
                 frame.pos = pos;
                 frame.forget_marks();
+                self.set_listed(listed - ends);
                 return Ok(());
             }
             pos = end;

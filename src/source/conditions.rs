@@ -189,6 +189,7 @@ impl Preprocessor<'_> {
     /// lines up to the next branch that is taken, or to `$endIf`.
     pub(super) fn leave_out(&mut self, known: &dyn Known) -> Outcome<()> {
         let mut depth = 0usize;
+        let listed = self.listed();
         loop {
             let Some(frame) = self.frames.last() else {
                 return Ok(());
@@ -231,6 +232,7 @@ impl Preprocessor<'_> {
                     // Let the directive itself decide.
                     let line = self.take_line();
                     let line = self.substituted(line)?;
+                    self.set_listed(listed);
                     if self.branch(&line, known)? {
                         return Ok(());
                     }

@@ -347,10 +347,12 @@ impl Preprocessor<'_> {
             }
             "exit" => {
                 // What is left of the present file is not read.
+                let listed = self.listed();
                 if let Some(frame) = self.frames.last_mut() {
                     frame.pos = frame.len;
                     frame.ifs.clear();
                 }
+                self.set_listed(listed);
             }
             "stop" => self.stop(Ending::Regular),
             "terminate" => self.stop(Ending::NoRun),

@@ -15,9 +15,23 @@ pub(super) fn evaluate(text: &str, known: &dyn Known) -> Result<(f64, usize), St
         text,
         at: 0,
         depth: 0,
+        words: true,
         known,
     };
     let value = e.level(0)?;
+    Ok((value, e.at))
+}
+
+/// Evaluates the expression between the bracket or brace that opens `text` and its partner; the same.
+pub(crate) fn constant(text: &str, known: &dyn Known) -> Result<(f64, usize), String> {
+    let mut e = Evaluator {
+        text,
+        at: 0,
+        depth: 0,
+        words: false,
+        known,
+    };
+    let value = e.primary()?;
     Ok((value, e.at))
 }
 
@@ -65,6 +79,8 @@ struct Evaluator<'a> {
     text: &'a str,
     at: usize,
     depth: usize,
+    /// `inf`, `pi` and their kin are numbers.
+    words: bool,
     known: &'a dyn Known,
 }
 
@@ -285,6 +301,11 @@ impl<'a> Evaluator<'a> {
         }
     }
 
+    fn scalar(&self, name: &str) -> Result<f64, String> {
+        let value = self.known.scalar_value(name);
+        value.ok_or_else(|| format!("`{name}` has no value here"))
+    }
+
     fn word(&mut self) -> Result<f64, String> {
         let name = self.name();
         let lower = name.to_ascii_lowercase();
@@ -298,15 +319,13 @@ impl<'a> Evaluator<'a> {
         let Some(open) = open else {
             self.at = before;
             return match lower.as_str() {
+                _ if !self.words => self.scalar(name),
                 "inf" => Ok(f64::INFINITY),
                 "undf" => Ok(f64::NAN),
                 "pi" => Ok(std::f64::consts::PI),
                 "yes" | "true" => Ok(1.0),
                 "no" | "false" | "eps" => Ok(0.0),
-                _ => self
-                    .known
-                    .scalar_value(name)
-                    .ok_or_else(|| format!("`{name}` has no value here")),
+                _ => self.scalar(name),
             };
         };
         self.enter()?;

@@ -47,6 +47,8 @@ pub struct SourceMap {
     files: Vec<SourceFile>,
     expanded: String,
     segments: Vec<Segment>,
+    /// From which byte of the expanded text on how many lines a listing counts more than the file.
+    listing: Vec<(u32, i64)>,
     /// Files that `$echo` and `$onEcho` wrote, by lower-case name. They are on no disk.
     pub echoed: FxHashMap<String, String>,
 }
@@ -170,6 +172,23 @@ impl SourceMap {
             lo: lo.min(end),
             hi: hi.clamp(lo.min(end), end),
         })
+    }
+
+    /// From here on a listing, which counts lines as they are read, is this many lines ahead of the file.
+    pub(super) fn shift_listing(&mut self, shift: i64) {
+        self.listing.push((self.expanded.len() as u32, shift));
+    }
+
+    /// How far a listing is ahead of the file at the end of the expanded text.
+    pub(super) fn listing_shift(&self) -> i64 {
+        self.listing.last().map_or(0, |l| l.1)
+    }
+
+    /// Line of a listing in which a span begins: lines of included files count, lines left out do not.
+    pub fn listing_line(&self, span: Span) -> usize {
+        let n = self.listing.partition_point(|l| l.0 <= span.lo);
+        let shift = n.checked_sub(1).map_or(0, |n| self.listing[n].1);
+        usize::try_from(self.line(span) as i64 + shift).unwrap_or(0)
     }
 
     /// Line (from 1) of the original text in which a span begins.

@@ -20,6 +20,7 @@ mod preprocess;
 mod variables;
 
 pub(crate) use conditions::predefined;
+pub(crate) use evaluate::constant;
 pub use map::{FileId, Place, SourceFile, SourceMap};
 pub use preprocess::{Ending, Known, NothingKnown, PreprocessOptions, SymbolKindName};
 pub(crate) use preprocess::{Preprocessor, quoted_end};

@@ -286,6 +286,7 @@ impl<'h> Preprocessor<'h> {
         };
         let len = text.len();
         let bom = if text.starts_with('\u{feff}') { 3 } else { 0 };
+        let listed = self.listed();
         let file = self.map.add_file(name, text);
         self.names.enter();
         self.frames.push(Frame {
@@ -299,6 +300,26 @@ impl<'h> Preprocessor<'h> {
             ahead: [0; 5],
             asked,
         });
+        self.set_listed(listed);
+    }
+
+    /// Lines that a listing shows up to here.
+    pub(super) fn listed(&self) -> i64 {
+        let Some(frame) = self.frames.last() else {
+            return 0;
+        };
+        let file = self.map.file(frame.file);
+        let last_without_end = frame.pos == frame.len && !file.text.ends_with('\n');
+        let read = file.line(frame.pos as u32) - 1 + usize::from(last_without_end);
+        read as i64 + self.map.listing_shift()
+    }
+
+    /// Reading goes on elsewhere: a listing numbers the next line behind the `listed`th.
+    pub(super) fn set_listed(&mut self, listed: i64) {
+        let ahead = listed - self.listed();
+        if ahead != 0 {
+            self.map.shift_listing(self.map.listing_shift() + ahead);
+        }
     }
 
     /// `$include` and its kin: opens a file from the present one. `lo..hi` is the directive's place.
@@ -616,7 +637,9 @@ impl<'h> Preprocessor<'h> {
         self.end_line(pos);
         let open = self.frames.last_mut().and_then(|f| f.ifs.drain(..).next());
         let comment = self.in_comment.take();
+        let listed = self.listed();
         self.frames.pop();
+        self.set_listed(listed);
         self.names.leave();
         if let Some(open) = open {
             return refuse(

@@ -9,10 +9,11 @@
 
 use std::borrow::Cow;
 
+use super::constants::Constants;
 use super::fields::{Fields, MARK, has_comma};
 use crate::data::value::{EPS, NA, UNDF};
 use crate::diag::Diagnostic;
-use crate::source::Span;
+use crate::source::{Known, Span};
 
 /// What the data belong to: only texts of sets are read to the end of the line.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -100,6 +101,7 @@ pub struct DataReader<'a> {
     matched: Vec<KeyPart<'a>>,
     /// The key has factors.
     factors: bool,
+    constants: Constants,
 }
 
 /// Groups inside groups.
@@ -138,7 +140,14 @@ impl<'a> DataReader<'a> {
             key: Vec::with_capacity(8),
             matched: Vec::new(),
             factors: false,
+            constants: Constants::default(),
         }
+    }
+
+    /// Constant expressions in the text stand for their values.
+    pub fn with_constants(mut self, known: &dyn Known) -> Self {
+        self.constants = Constants::of(self.text, known);
+        self
     }
 
     /// Keys have this many positions: what follows them is a value, also if it begins with a dot.
@@ -306,10 +315,13 @@ impl<'a> DataReader<'a> {
     }
 
     fn record(&mut self, start: usize) -> Result<Tail<'a>, Box<Diagnostic>> {
-        if self.kind == DataKind::Values
-            && let Some(value) = self.bare_number(start)
-        {
-            return Ok(value);
+        if self.kind == DataKind::Values {
+            if let Some(value) = self.bare_number(start) {
+                return Ok(value);
+            }
+            if matches!(self.peek(), Some(b'[' | b'{')) {
+                return self.value();
+            }
         }
         self.factors = false;
         let mut key = std::mem::take(&mut self.key);
@@ -647,6 +659,13 @@ impl<'a> DataReader<'a> {
             b'\'' | b'"' => {
                 let (text, _) = self.label()?;
                 return Ok(Tail::Text(Cow::Borrowed(text), self.span(start, self.at)));
+            }
+            b'[' | b'{' => {
+                if let Some(constant) = self.constants.at(start, self.base) {
+                    let (x, end) = constant?;
+                    self.at = end;
+                    return Ok(Tail::Number(x, self.span(start, end)));
+                }
             }
             _ => {}
         }

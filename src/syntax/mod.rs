@@ -11,6 +11,7 @@
 
 pub mod ast;
 mod build;
+mod constants;
 pub mod data;
 mod explain;
 mod fields;

@@ -12,6 +12,7 @@
 //! unclosed parenthesis ends at the next `;` outside blocks, an unclosed block at the next
 //! declaration.
 
+use super::constants::end_of_constant;
 use super::words::{self, Class, Word};
 use crate::diag::Diagnostic;
 use crate::source::{Span, quoted_end};
@@ -679,6 +680,12 @@ impl Splitter {
             };
             let at = i + n;
             if bytes[at] == b'/' {
+                if self.class.has_values()
+                    && let Some(end) = end_of_constant(bytes, self.body_start, at)
+                {
+                    i = end;
+                    continue;
+                }
                 // A `;` in numbers, or before a keyword: the slash was forgotten.
                 if let Some(stop) = self.forgotten_slash(text, at) {
                     self.unclosed_body(self.body_start, stop);

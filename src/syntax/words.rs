@@ -21,6 +21,11 @@ pub(super) enum Class {
 }
 
 impl Class {
+    /// Its data are numbers.
+    pub(super) fn has_values(self) -> bool {
+        matches!(self, Class::Parameter | Class::Variable | Class::Equation)
+    }
+
     /// Statements with names, texts and data.
     pub(super) fn declares(self) -> bool {
         !matches!(
