@@ -54,6 +54,17 @@ impl Compiler {
         Ok(())
     }
 
+    /// `$clear`, `$kill`: the data so far are forgotten while the text is read.
+    pub(super) fn forget(&mut self, kill: bool, names: &[Ident]) -> Result<(), Failed> {
+        for name in names {
+            let s = self.lookup(name)?;
+            let root = self.symbols.root(s);
+            self.store.clear(self.symbols.get(root), None);
+            self.symbols.get_mut(root).has_data &= !kill;
+        }
+        Ok(())
+    }
+
     /// A symbol declared without a domain has as many indices as its first record. A dot behind a
     /// blank begins a number there.
     fn shape_by_data(&mut self, s: SymbolId, text: &str, kind: DataKind) {

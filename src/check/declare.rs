@@ -6,7 +6,8 @@ use super::{Compiler, Failed};
 use crate::diag::Diagnostic;
 use crate::source::SourceMap;
 use crate::syntax::ast::{
-    DomainName, Ident, ModelDecl, ModelItem, ParameterDecl, SetDecl, SymbolDecl, VariableKind,
+    DomainName, FileDecl, Ident, ModelDecl, ModelItem, ParameterDecl, SetDecl, SymbolDecl,
+    VariableKind,
 };
 use std::rc::Rc;
 
@@ -523,15 +524,11 @@ impl Compiler {
         Ok(())
     }
 
-    pub(super) fn declare_files(
-        &mut self,
-        list: &[(Ident, Option<Box<str>>)],
-    ) -> Result<(), Failed> {
-        for (name, outside) in list {
-            let outside = outside
-                .clone()
-                .unwrap_or_else(|| format!("{}.put", name.name).into());
-            let _ = self.declare_plain(name, SymbolKind::File(outside), None);
+    pub(super) fn declare_files(&mut self, list: &[FileDecl]) -> Result<(), Failed> {
+        for f in list {
+            let path = f.path.clone();
+            let path = path.unwrap_or_else(|| format!("{}.put", f.name.name).into());
+            let _ = self.declare_plain(&f.name, SymbolKind::File(path), f.text.as_deref());
         }
         Ok(())
     }

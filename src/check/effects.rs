@@ -50,7 +50,7 @@ impl Effects {
                     arms.iter().for_each(|(_, b)| self.add(b, symbols));
                     self.add(otherwise, symbols);
                 }
-                CodeKind::Clear(s) => {
+                CodeKind::Clear(s, _) => {
                     let t = first(*s);
                     self.tables.extend(t..t + attribute::COUNT);
                 }

@@ -433,8 +433,8 @@ pub enum CodeKind {
     Solve(Box<SolveCode>),
     /// `option name = value`
     Option(Box<str>, OptionCode),
-    /// `option clear = p`
-    Clear(SymbolId),
+    /// `option clear = p`, `option clear = x.lo`: the offset of the attribute
+    Clear(SymbolId, Option<u32>),
     /// `option p:d:r:c`
     Format(SymbolId, Vec<i64>),
     /// `option p < q`

@@ -2,6 +2,7 @@
 
 use super::functions;
 use super::node::*;
+use super::output::{display_attribute, shown_offset};
 use super::symbols::SymbolKind;
 use super::{Compiler, Failed};
 use crate::diag::{Diagnostic, nearest};
@@ -120,11 +121,35 @@ impl Compiler {
             OptionForm::Assign(OptionValue::Text(t, span))
                 if lower == "clear" || lower == "kill" =>
             {
+                let (name, attribute) = match t.split_once('.') {
+                    Some((name, a)) => (name, Some(a)),
+                    None => (&**t, None),
+                };
                 let s = self.lookup(&Ident {
-                    name: t.clone(),
+                    name: name.into(),
                     span: *span,
                 })?;
-                Ok(Some(CodeKind::Clear(s)))
+                let offset = match attribute {
+                    None => None,
+                    Some(a) => match display_attribute(a).and_then(shown_offset) {
+                        Some(o) if self.symbols.get(s).has_attributes() => Some(o),
+                        _ => {
+                            let symbol = self.symbols.get(s);
+                            let (kind, name) = (symbol.kind_name(), symbol.name.clone());
+                            let a = Ident {
+                                name: a.into(),
+                                span: *span,
+                            };
+                            return self.unknown_attribute(
+                                &a,
+                                &name,
+                                kind,
+                                "l, m, lo, up, scale, prior",
+                            );
+                        }
+                    },
+                };
+                Ok(Some(CodeKind::Clear(s, offset)))
             }
             OptionForm::Assign(v) => {
                 if !is_statement_option(&lower) && !OWN_OPTIONS.contains(&lower.as_str()) {

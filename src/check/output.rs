@@ -173,7 +173,7 @@ impl Compiler {
 }
 
 /// Attribute as `display` shows it.
-fn display_attribute(name: &str) -> Option<&'static str> {
+pub(super) fn display_attribute(name: &str) -> Option<&'static str> {
     Some(match name.to_lowercase().as_str() {
         "l" => "L",
         "m" => "M",

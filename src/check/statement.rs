@@ -7,7 +7,7 @@ use super::symbols::{DomainPosition, SymbolKind, attribute};
 use super::{Compiler, Failed};
 use crate::diag::Diagnostic;
 use crate::source::{SourceMap, Span};
-use crate::syntax::ast::{self, Assign, Equate, Expr, ExprKind, Stmt, StmtKind};
+use crate::syntax::ast::{self, Assign, DisplayItem, Equate, Expr, ExprKind, Stmt, StmtKind};
 
 impl Compiler {
     /// Checks a statement and appends its code.
@@ -30,7 +30,7 @@ impl Compiler {
         out: &mut Vec<Code>,
     ) -> Result<(), Failed> {
         self.modes = stmt.modes;
-        let span = stmt.span;
+        let mut span = stmt.span;
         if self.nesting > 0 {
             self.no_declaration(stmt)?;
         }
@@ -45,6 +45,7 @@ impl Compiler {
             StmtKind::Acronym(list) => return self.declare_acronyms(list),
             StmtKind::File(list) => return self.declare_files(list),
             StmtKind::Figure(f) => return self.declare_figure(f),
+            StmtKind::Clear { kill, names } => return self.forget(*kill, names),
             StmtKind::Empty => return Ok(()),
             StmtKind::Assign(a) => {
                 let code = self.assign(a);
@@ -130,17 +131,21 @@ impl Compiler {
             StmtKind::Break(c, loops) => CodeKind::Break(self.optional(c.as_ref())?, *loops),
             StmtKind::Continue(c) => CodeKind::Continue(self.optional(c.as_ref())?),
             StmtKind::Display(c, items) => {
+                span = from_first_item(items, span);
                 CodeKind::Display(self.optional(c.as_ref())?, self.shown(items)?)
             }
             StmtKind::Abort {
                 condition,
                 items,
                 no_error,
-            } => CodeKind::Abort {
-                condition: self.optional(condition.as_ref())?,
-                items: self.shown(items)?,
-                no_error: *no_error,
-            },
+            } => {
+                span = from_first_item(items, span);
+                CodeKind::Abort {
+                    condition: self.optional(condition.as_ref())?,
+                    items: self.shown(items)?,
+                    no_error: *no_error,
+                }
+            }
             StmtKind::Option(items) => {
                 for item in items {
                     if let Ok(Some(kind)) = self.option(item) {
@@ -501,4 +506,14 @@ impl Compiler {
             }
         }
     }
+}
+
+/// What is displayed stands in the line of the first item.
+fn from_first_item(items: &[DisplayItem], span: Span) -> Span {
+    let first = match items.first() {
+        Some(DisplayItem::Text(_, at)) => *at,
+        Some(DisplayItem::Symbol(r)) => r.span,
+        None => span,
+    };
+    Span::new(first.lo, span.hi)
 }

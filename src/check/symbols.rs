@@ -126,6 +126,11 @@ impl Symbol {
         }
     }
 
+    /// Whether it has levels, marginals and bounds.
+    pub fn has_attributes(&self) -> bool {
+        matches!(self.kind, SymbolKind::Variable(_) | SymbolKind::Equation(_))
+    }
+
     /// Whether it is a set or an alias of one.
     pub fn is_set(&self) -> bool {
         matches!(self.kind, SymbolKind::Set { .. } | SymbolKind::Alias(_))
@@ -157,6 +162,22 @@ impl Store {
     /// A table to write to.
     pub fn table_mut(&mut self, id: TableId) -> &mut Table {
         &mut self.tables[id as usize]
+    }
+
+    /// Gives a symbol, or one attribute of it, its default values.
+    pub fn clear(&mut self, symbol: &Symbol, attribute: Option<u32>) {
+        let offsets = match (&symbol.kind, attribute) {
+            (_, Some(offset)) => offset..offset + 1,
+            (SymbolKind::Variable(_) | SymbolKind::Equation(_), None) => 0..attribute::COUNT,
+            (
+                SymbolKind::Set { .. } | SymbolKind::Alias(_) | SymbolKind::Parameter { .. },
+                None,
+            ) => 0..1,
+            _ => return,
+        };
+        for o in offsets {
+            self.table_mut(symbol.table + o).clear();
+        }
     }
 
     /// Adds a table.

@@ -36,6 +36,8 @@ const DEFAULTS: &[(&str, f64)] = &[
 pub enum Item {
     /// A number, to be formatted.
     Number(f64),
+    /// `eps`: a zero, but by name where `.nz` is 0.
+    Eps,
     /// A special value or an acronym, by name.
     Special(String),
     /// A label of a set.
@@ -162,7 +164,7 @@ impl TextFile {
             "tlcc" => count(self.title.column + 1),
             "tlcr" => count(self.title.row + 1),
             "tlll" => count(self.title.lines.len()),
-            "lp" => count(self.pages),
+            "lp" => count(self.pages - usize::from(self.begun.is_some())),
             "ws" => count(self.capacity()),
             _ => match self.attributes.get(name) {
                 Some(&v) => v,
@@ -289,7 +291,14 @@ impl TextFile {
         self.begin(part);
         let pc = self.integer("pc");
         let mut trouble = Ok(());
+        let (eps, zero) = (Item::Special("EPS".into()), Item::Number(0.0));
+        let item = match item {
+            Item::Eps if self.get("nz") == 0.0 => &eps,
+            Item::Eps => &zero,
+            item => item,
+        };
         let mut text = match item {
+            Item::Eps => String::new(),
             Item::Number(x) => {
                 let width = match format.width {
                     Some(w) => w.max(0) as usize,
@@ -348,7 +357,7 @@ impl TextFile {
             }
         } else {
             let (width, align) = match item {
-                Item::Number(_) | Item::Special(_) => ("nw", "nj"),
+                Item::Number(_) | Item::Special(_) | Item::Eps => ("nw", "nj"),
                 Item::Label(_) => ("lw", "lj"),
                 Item::Member(_) => ("sw", "sj"),
                 Item::Text(_) | Item::Page => ("tw", "tj"),
@@ -399,6 +408,12 @@ impl TextFile {
         }
     }
 
+    /// Text from elsewhere, between pages.
+    pub fn insert(&mut self, text: &str) {
+        self.end_page();
+        self.done.push_str(text);
+    }
+
     fn finish_page(&mut self) {
         let Some(above) = self.begun.take() else {
             return;
@@ -406,6 +421,7 @@ impl TextFile {
         let body = std::mem::take(&mut self.body);
         let (pc, width) = (self.integer("pc"), self.integer("pw").max(0) as usize);
         let top = self.integer("tm").max(0) as usize;
+        let margin = self.integer("lm").max(0) as usize;
         let mut lines = 0;
         let mut emit = |out: &mut String, line: &str| {
             match (pc, lines) {
@@ -415,6 +431,9 @@ impl TextFile {
                 _ => {}
             }
             let line = line.trim_end_matches(' ');
+            if !line.is_empty() {
+                out.extend(std::iter::repeat_n(' ', margin));
+            }
             out.push_str(line);
             if pc == 7 {
                 let n = line.chars().count();

@@ -223,6 +223,7 @@ impl Machine<'_> {
             values.push(match self.put_item(n, frame) {
                 None => Value::Text(String::new()),
                 Some(Item::Number(x)) => Value::number(x),
+                Some(Item::Eps) => Value::number(0.0),
                 Some(Item::Special(name)) => Value::Number(f64::NAN, Some(name)),
                 Some(Item::Label(t) | Item::Text(t)) => Value::Text(t),
                 Some(Item::Member(yes)) => Value::Text(if yes { "yes" } else { "no" }.into()),

@@ -5,7 +5,7 @@ use super::random::Random;
 use super::{Flow, Frame, Machine, scan};
 use crate::check::expansion::Tuples;
 use crate::check::node::*;
-use crate::check::symbols::{SymbolKind, attribute};
+use crate::check::symbols::attribute;
 use crate::data::sort::sort_records;
 use crate::data::table::Table;
 use crate::data::universe::Label;
@@ -120,7 +120,7 @@ impl Machine<'_> {
             }
             CodeKind::Solve(s) => return self.solve(s, c.span, frame),
             CodeKind::Option(name, value) => self.set_option(name, value),
-            CodeKind::Clear(s) => self.clear(*s),
+            CodeKind::Clear(s, attribute) => self.store.clear(self.symbols.get(*s), *attribute),
             CodeKind::Format(s, numbers) => {
                 // Decimals alone leave the layout as it is.
                 let format = self.formats.entry(*s).or_default();
@@ -469,20 +469,6 @@ impl Machine<'_> {
             *self.random.borrow_mut() = Random::new(*x as i64);
         }
         self.options.assign(name, value);
-    }
-
-    fn clear(&mut self, s: SymbolId) {
-        let symbol = self.symbols.get(s);
-        let (t, n) = match symbol.kind {
-            SymbolKind::Variable(_) | SymbolKind::Equation(_) => (symbol.table, attribute::COUNT),
-            SymbolKind::Set { .. } | SymbolKind::Alias(_) | SymbolKind::Parameter { .. } => {
-                (symbol.table, 1)
-            }
-            _ => return,
-        };
-        for o in 0..n {
-            self.store.table_mut(t + o).clear();
-        }
     }
 
     /// `option m(i:j,k)`

@@ -21,6 +21,7 @@ mod generate;
 mod option_file;
 mod options;
 mod put;
+mod put_utility;
 mod scan;
 mod show;
 mod solve;

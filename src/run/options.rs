@@ -152,6 +152,8 @@ pub struct PutState {
 pub struct PutFile {
     /// What is being written, and the attributes.
     pub text: TextFile,
+    /// Its name since `put_utility 'ren'`.
+    pub name: Option<String>,
     /// What was written and closed before.
     pub closed: String,
     /// Selected since it was last closed.

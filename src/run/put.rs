@@ -7,7 +7,7 @@
 use super::{Frame, Machine, calendar};
 use crate::check::node::{DataFunction, Node, NodeKind, PutCode, SymbolId};
 use crate::check::symbols::SymbolKind;
-use crate::data::value::{as_acronym, is_na, number, truth};
+use crate::data::value::{as_acronym, is_eps, is_na, number, truth};
 use crate::diag::Diagnostic;
 use crate::report::textfile::{Format, Item, Overflow, Part, WIDEST};
 use crate::source::Span;
@@ -101,32 +101,8 @@ impl Machine<'_> {
         }
     }
 
-    /// `put_utility 'log' / 'text'`: a message is printed; what asks for other programs is not done.
-    fn put_utility(&mut self, items: &[PutCode], frame: &mut Frame, span: Span) {
-        let mut words = Vec::new();
-        for item in items {
-            if let PutCode::Item { value, .. } = item
-                && let Some(Item::Text(t) | Item::Label(t)) = self.put_item(value, frame)
-            {
-                words.push(t);
-            }
-        }
-        match words.split_first() {
-            Some((what, text)) if matches!(what.to_lowercase().as_str(), "log" | "msg" | "msglog") => {
-                if !self.options.quiet {
-                    self.print(&format!("{}\n", text.concat()));
-                }
-            }
-            _ => self.note(
-                Diagnostic::warning("E0474", span, "`put_utility` is not carried out")
-                    .label("asks for what is outside of the model")
-                    .help("a model run by bmod writes its own files; `put_utility 'log' / 'text'` prints a message"),
-            ),
-        }
-    }
-
     /// Makes a file the current one; one that was closed begins again.
-    fn open_put_file(&mut self, s: SymbolId) {
+    pub(super) fn open_put_file(&mut self, s: SymbolId) {
         self.put.current = Some(s);
         let f = self.put.files.entry(s).or_default();
         if !f.open {
@@ -142,7 +118,7 @@ impl Machine<'_> {
     }
 
     /// The current file; a diagnostic if there is none.
-    fn put_file(&mut self, span: Span) -> Option<&mut super::options::PutFile> {
+    pub(super) fn put_file(&mut self, span: Span) -> Option<&mut super::options::PutFile> {
         let Some(s) = self.put.current else {
             self.note(
                 Diagnostic::execution("E0472", span, "no file is open to write to")
@@ -183,14 +159,15 @@ impl Machine<'_> {
     }
 
     /// Writes a file, if anything was put into it, and forgets its cursor.
-    fn close_put_file(&mut self, s: SymbolId, span: Span) {
+    pub(super) fn close_put_file(&mut self, s: SymbolId, span: Span) {
         let SymbolKind::File(name) = &self.symbols.get(s).kind else {
             return;
         };
-        let name = name.clone();
+        let declared = name.clone();
         let Some(f) = self.put.files.get_mut(&s).filter(|f| f.open) else {
             return;
         };
+        let name = f.name.clone().unwrap_or_else(|| declared.into());
         f.open = false;
         if f.text.is_empty() {
             return;
@@ -283,8 +260,9 @@ impl Machine<'_> {
                 self.put_item(a, frame)?
             }
             _ => {
-                let v = number(self.eval(n, frame));
+                let v = self.eval(n, frame);
                 match v {
+                    v if is_eps(v) => Item::Eps,
                     v if v.is_finite() => Item::Number(v),
                     f64::INFINITY => Item::Special("+INF".into()),
                     f64::NEG_INFINITY => Item::Special("-INF".into()),

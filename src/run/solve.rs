@@ -315,7 +315,7 @@ impl Machine<'_> {
             ("modelstat", f64::from(a.status as u8)),
             ("solvestat", f64::from(a.outcome.status as u8)),
             ("objval", objective),
-            ("objest", objective),
+            ("objest", crate::data::value::NA),
             ("iterusd", a.outcome.iterations as f64),
             ("resusd", seconds.solve),
             ("etsolve", seconds.total),

@@ -69,7 +69,8 @@ impl Macros {
         }
         let mut rest = &text[len..];
         let mut parameters = None;
-        if let Some(inside) = rest.trim_start().strip_prefix('(') {
+        // Behind a blank the parenthesis belongs to the text.
+        if let Some(inside) = rest.strip_prefix('(') {
             let Some(close) = inside.find(')') else {
                 return Err("the parameters of the macro are not closed by `)`".into());
             };

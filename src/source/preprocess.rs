@@ -337,15 +337,24 @@ impl<'h> Preprocessor<'h> {
                     .help("write `$include 'file.gms'`"),
             );
         }
-        if let Some(text) = self.map.echoed.get(&name.to_lowercase()) {
+        // The name as it is, then with GAMS's ending.
+        let longer = Path::new(name)
+            .extension()
+            .is_none()
+            .then(|| format!("{name}.gms"));
+        let names = || [Some(name), longer.as_deref()].into_iter().flatten();
+        if let Some(text) = names().find_map(|n| self.map.echoed.get(&n.to_lowercase())) {
             let text = text.clone();
             self.open(PathBuf::from(name), name, text, arguments, asked);
             return Ok(());
         }
         let from = self.frames.last().map(|f| f.path.clone());
-        let mut read = self.host.read(name, from.as_deref());
-        if matches!(read, Err(HostError::NotFound)) && !name.contains('.') {
-            read = self.host.read(&format!("{name}.gms"), from.as_deref());
+        let mut read = Err(HostError::NotFound);
+        for n in names() {
+            read = self.host.read(n, from.as_deref());
+            if !matches!(read, Err(HostError::NotFound)) {
+                break;
+            }
         }
         let (path, text) = match read {
             Ok(found) => found,
@@ -729,7 +738,7 @@ impl<'h> Preprocessor<'h> {
         }
         if let Some(item) = lower.strip_prefix("gams.") {
             return Some(match item {
-                "workdir" | "wdir" | "curdir" => "./".into(),
+                "workdir" | "wdir" | "curdir" | "scrdir" | "sdir" => "./".into(),
                 "limrow" | "limcol" => "3".into(),
                 "pw" | "pagewidth" => "255".into(),
                 "input" => self.system("fn", lo)? + &self.system("fe", lo)?,
@@ -768,6 +777,7 @@ impl<'h> Preprocessor<'h> {
                 _ => "./".into(),
             },
             "ifile" | "sfile" | "incname" => self.frames.last()?.path.display().to_string(),
+            "incparentl" => self.map.line(self.frames.last()?.asked).to_string(),
             "incparent" => self
                 .frames
                 .iter()

@@ -65,10 +65,17 @@ pub enum StmtKind {
     Equation(Vec<SymbolDecl>),
     /// `model`.
     Model(Vec<ModelDecl>),
+    /// `$clear p`, `$kill p`: what data statements gave is forgotten, with `$kill` also that there were any.
+    Clear {
+        /// Written `$kill`.
+        kill: bool,
+        /// The symbols.
+        names: Vec<Ident>,
+    },
     /// `acronym`.
     Acronym(Vec<SymbolDecl>),
     /// `file f 'text' / out.txt /;` the name of the file is None where none is given.
-    File(Vec<(Ident, Option<Box<str>>)>),
+    File(Vec<FileDecl>),
     /// `p(i)$c = e;` also to attributes and sets.
     Assign(Assign),
     /// `e(i)$c .. l =e= r;`
@@ -486,6 +493,17 @@ pub enum AggregateOp {
     Sand,
     /// `sor`
     Sor,
+}
+
+/// A file of `put`.
+#[derive(Clone, Debug)]
+pub struct FileDecl {
+    /// Its name in the model.
+    pub name: Ident,
+    /// Explanatory text.
+    pub text: Option<Box<str>>,
+    /// Its name outside.
+    pub path: Option<Box<str>>,
 }
 
 /// One item of `display` and `abort`.

@@ -211,7 +211,10 @@ impl<'a> DataReader<'a> {
                 MARK => {
                     let (lo, hi) = self.marked_line();
                     // Without a comma it is a record like any other.
-                    if has_comma(&self.text[lo..hi]) || self.lone_label(lo, hi) {
+                    if has_comma(&self.text[lo..hi])
+                        || self.lone_label(lo, hi)
+                        || self.only_fields(lo, hi)
+                    {
                         if let Some(outcome) = self.delimited() {
                             break (start, outcome);
                         }
@@ -266,12 +269,21 @@ impl<'a> DataReader<'a> {
         let Some((from, to)) = fields.next() else {
             return Some(Ok(Tail::None));
         };
-        let text = &self.text[from..to];
-        let span = self.span(from, to);
         Some(match self.kind {
-            DataKind::Set if text.is_empty() => Ok(Tail::None),
-            DataKind::Set => Ok(Tail::Text(Cow::Borrowed(text), span)),
             DataKind::Values => self.field_value(from, to),
+            DataKind::Set => {
+                // A text without quotes runs to the end of the line.
+                let quoted = matches!(self.text.as_bytes()[from - 1], b'\'' | b'"');
+                let to = match quoted {
+                    true => to,
+                    false => from + self.text[from..hi].trim_end().len(),
+                };
+                let text = &self.text[from..to];
+                match text.is_empty() {
+                    true => Ok(Tail::None),
+                    false => Ok(Tail::Text(Cow::Borrowed(text), self.span(from, to))),
+                }
+            }
         })
     }
 
@@ -279,6 +291,19 @@ impl<'a> DataReader<'a> {
     fn lone_label(&self, lo: usize, hi: usize) -> bool {
         let line = self.text[lo..hi].trim();
         self.arity <= 1 && !line.is_empty() && !line.contains([' ', '\t', '\'', '"'])
+    }
+
+    /// A line under `$onDelim` with blanks between all labels and the value: `a b 5`.
+    fn only_fields(&self, lo: usize, hi: usize) -> bool {
+        let mut fields = Fields::new(self.text, lo, hi);
+        let labels = fields
+            .by_ref()
+            .take(self.arity)
+            .map(|f| &self.text[f.0..f.1]);
+        self.kind == DataKind::Values
+            && (2..=20).contains(&self.arity)
+            && labels.filter(|l| !l.contains(['.', '(', '#', '*'])).count() == self.arity
+            && fields.count() == 1
     }
 
     /// Behind the mark of a line under `$onDelim`, up to its end.

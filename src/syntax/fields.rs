@@ -1,17 +1,15 @@
-//! Lines of data under `$onDelim`: fields with commas between them.
+//! Lines of data under `$onDelim`: fields with a comma or blanks between them.
 
 use super::data::is_space;
 
 /// Marks a line of data under `$onDelim`.
 pub(super) const MARK: u8 = crate::source::DELIMITED.as_bytes()[0];
 
-/// The fields of a line with commas between them: without blanks around them and without quotes.
+/// The fields of a line, without blanks around them and without quotes; between two commas an empty one.
 pub(super) struct Fields<'t> {
     text: &'t str,
     at: Option<usize>,
     end: usize,
-    /// Blanks separate where no comma does.
-    blanks: bool,
 }
 
 /// Whether commas separate the fields of a line.
@@ -39,7 +37,6 @@ impl<'t> Fields<'t> {
             text,
             at: (!empty).then_some(lo),
             end: hi,
-            blanks: !has_comma(&text[lo..hi]),
         }
     }
 }
@@ -47,35 +44,34 @@ impl<'t> Fields<'t> {
 impl Iterator for Fields<'_> {
     type Item = (usize, usize);
 
-    fn next(&mut self) -> Option<(usize, usize)> {
-        let mut from = self.at?;
-        let bytes = self.text.as_bytes();
-        while from < self.end && is_space(bytes[from]) {
-            from += 1;
-        }
-        let (mut field, mut after) = ((from, from), from);
-        if let Some(&q @ (b'\'' | b'"')) = bytes[..self.end].get(from)
-            && let Some(n) = memchr::memchr(q, &bytes[from + 1..self.end])
-        {
-            field = (from + 1, from + 1 + n);
-            after = from + n + 2;
-        }
-        let comma = if self.blanks {
-            let rest = &bytes[after..self.end];
-            let n = rest.iter().position(|&b| is_space(b));
-            n.map(|n| after + n)
-                .filter(|&n| !self.text[n..self.end].trim().is_empty())
-        } else {
-            memchr::memchr(b',', &bytes[after..self.end]).map(|n| after + n)
-        };
-        if after == from {
-            let mut to = comma.unwrap_or(self.end);
-            while to > from && is_space(bytes[to - 1]) {
-                to -= 1;
+    fn next(&mut self) -> Option<Self::Item> {
+        let bytes = &self.text.as_bytes()[..self.end];
+        let blanks = |mut at: usize| {
+            while bytes.get(at).is_some_and(|b| is_space(*b)) {
+                at += 1;
             }
-            field = (from, to);
-        }
-        self.at = comma.map(|c| c + 1);
+            at
+        };
+        let from = blanks(self.at?);
+        let quoted = match bytes.get(from) {
+            Some(&q @ (b'\'' | b'"')) => memchr::memchr(q, &bytes[from + 1..]),
+            _ => None,
+        };
+        let (field, after) = match quoted {
+            Some(n) => ((from + 1, from + 1 + n), from + n + 2),
+            None => {
+                let rest = &bytes[from..];
+                let n = rest.iter().position(|&b| is_space(b) || b == b',');
+                let to = from + n.unwrap_or(rest.len());
+                ((from, to), to)
+            }
+        };
+        let next = blanks(after);
+        self.at = match bytes.get(next) {
+            Some(b',') => Some(next + 1),
+            Some(_) => Some(next),
+            None => None,
+        };
         Some(field)
     }
 }

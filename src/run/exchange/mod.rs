@@ -15,12 +15,18 @@ use crate::data::value::{as_acronym, is_eps, is_na};
 use crate::diag::Diagnostic;
 use crate::source::Span;
 use crate::syntax::ast::Exchange;
+use rustc_hash::FxHashMap;
 
 /// Where `$unload` writes to.
 #[derive(Clone, Debug, Default)]
 pub struct ExchangeState {
     /// The file that `$gdxOut` named, and what `$unload` asked for.
     output: Option<(String, Span, Vec<Wanted>)>,
+    /// Files that `put_utility` named for the next unload and load without a name.
+    pub(super) unload_to: Option<String>,
+    pub(super) load_from: Option<String>,
+    /// What this run wrote, by name: it may be read again.
+    written: FxHashMap<String, String>,
 }
 
 impl Machine<'_> {
@@ -40,7 +46,14 @@ impl Machine<'_> {
                     Ok(items) => items,
                     Err(d) => return self.note(*d),
                 };
-                match (&x.file, &mut self.transfer.output) {
+                let named = match k.starts_with("execute") {
+                    true => self.transfer.unload_to.clone().map(|f| (f.into(), span)),
+                    false => None,
+                };
+                match (
+                    x.file.as_ref().or(named.as_ref()),
+                    &mut self.transfer.output,
+                ) {
                     (Some((file, at)), _) => {
                         let items = if items.is_empty() {
                             self.everything(span)
@@ -58,9 +71,13 @@ impl Machine<'_> {
                     Ok(items) => items,
                     Err(d) => return self.note(*d),
                 };
-                let Some((file, at)) = &x.file else {
+                let named = self.transfer.load_from.clone().map(|f| (f.into(), span));
+                let Some((file, at)) = x.file.as_ref().or(named.as_ref()) else {
                     return self.note(*no_file(span, "execute_load 'data.csv', p;"));
                 };
+                let instead =
+                    instead_of_gdx(file).filter(|f| self.transfer.written.contains_key(f));
+                let file = instead.as_deref().unwrap_or(file);
                 self.load(&Request {
                     file,
                     at: *at,
@@ -75,9 +92,15 @@ impl Machine<'_> {
     fn load(&mut self, request: &Request<'_>) {
         let mut symbols = std::mem::take(&mut self.symbols);
         let mut store = std::mem::take(&mut self.store);
-        let done = load(&mut symbols, &mut store, request, &mut |name, at| {
-            self.read_file(name, at)
-        });
+        let done = load(
+            &mut symbols,
+            &mut store,
+            request,
+            &mut |name, at| match self.transfer.written.get(name) {
+                Some(text) => Ok(text.clone()),
+                None => self.read_file(name, at),
+            },
+        );
         (self.symbols, self.store) = (symbols, store);
         if let Err(d) = done {
             self.note(*d);
@@ -105,30 +128,19 @@ impl Machine<'_> {
         .collect()
     }
 
-    /// What a model writes for GAMS as `results.gdx` is written as `results.json`, with a warning.
-    fn instead_of_gdx(&self, file: &str, span: Span) -> Option<String> {
-        let path = std::path::Path::new(file);
-        let gdx = path
-            .extension()
-            .is_none_or(|e| e.eq_ignore_ascii_case("gdx"));
-        if !gdx || file.ends_with('/') {
-            return None;
-        }
-        let other = path.with_extension("json").to_string_lossy().into_owned();
-        self.note(
-            Diagnostic::warning(
-                "E0476",
-                span,
-                format!("`{other}` is written in place of the GDX file `{file}`"),
-            )
-            .label("GDX is GAMS's own binary format")
-            .help("name a file that ends in `.csv` or `.json` to choose the format"),
-        );
-        Some(other)
-    }
-
     fn unload(&mut self, file: &str, items: &[Wanted], span: Span) {
-        let instead = self.instead_of_gdx(file, span);
+        let instead = instead_of_gdx(file);
+        if let Some(other) = &instead {
+            self.note(
+                Diagnostic::warning(
+                    "E0476",
+                    span,
+                    format!("`{other}` is written in place of the GDX file `{file}`"),
+                )
+                .label("GDX is GAMS's own binary format")
+                .help("name a file that ends in `.csv` or `.json` to choose the format"),
+            );
+        }
         let file = instead.as_deref().unwrap_or(file);
         let kind = match format_of(file, span) {
             Ok(kind) => kind,
@@ -149,21 +161,28 @@ impl Machine<'_> {
         match kind {
             Kind::Csv => {
                 let text = self.csv_of(items);
-                self.write_file(file, text.as_bytes(), span);
+                self.written(file.to_string(), text, span);
             }
             Kind::Json => {
                 let text = self.json_of(items);
-                self.write_file(file, text.as_bytes(), span);
+                self.written(file.to_string(), text, span);
             }
             Kind::Folder => {
                 for w in items {
                     let text = self.csv_of(std::slice::from_ref(w));
-                    if !self.write_file(&format!("{file}{}.csv", w.name), text.as_bytes(), span) {
+                    if !self.written(format!("{file}{}.csv", w.name), text, span) {
                         return;
                     }
                 }
             }
         }
+    }
+
+    /// Writes a file, which may be loaded again.
+    fn written(&mut self, name: String, text: String, span: Span) -> bool {
+        let done = self.write_file(&name, text.as_bytes(), span);
+        self.transfer.written.insert(name, text);
+        done
     }
 
     /// A value as files hold it.
@@ -177,6 +196,15 @@ impl Machine<'_> {
             },
         }
     }
+}
+
+/// What a model writes for GAMS as `results.gdx`, or without an ending, is `results.json` here.
+fn instead_of_gdx(file: &str) -> Option<String> {
+    let path = std::path::Path::new(file);
+    let gdx = path
+        .extension()
+        .is_none_or(|e| e.eq_ignore_ascii_case("gdx"));
+    (gdx && !file.ends_with('/')).then(|| path.with_extension("json").to_string_lossy().into())
 }
 
 /// The name of a special value.

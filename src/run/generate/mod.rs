@@ -336,6 +336,16 @@ impl Builder<'_, '_> {
             return;
         }
         let kept = || row.terms.iter().filter(|t| t.1 != 0.0);
+        // `x =l= inf` never binds.
+        let unlimited = match relation {
+            Relation::Less => rhs == f64::INFINITY,
+            Relation::Greater => rhs == f64::NEG_INFINITY,
+            _ => false,
+        };
+        let (relation, rhs) = match unlimited && !paired {
+            true => (Relation::Free, 0.0),
+            false => (relation, rhs),
+        };
         let part = if !rhs.is_finite() {
             Some("the constant")
         } else {

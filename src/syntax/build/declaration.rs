@@ -62,7 +62,7 @@ impl Builder<'_> {
                 let mut list = Vec::new();
                 for p in parts(pair) {
                     let d = self.declaration(p)?;
-                    let file = d.data.map(|s| {
+                    let path = d.data.map(|s| {
                         let t = self
                             .expanded
                             .get(s.lo as usize..s.hi as usize)
@@ -74,7 +74,11 @@ impl Builder<'_> {
                             .unwrap_or(t);
                         t.trim().into()
                     });
-                    list.push((d.name, file));
+                    list.push(FileDecl {
+                        name: d.name,
+                        text: d.text,
+                        path,
+                    });
                 }
                 Ok(StmtKind::File(list))
             }

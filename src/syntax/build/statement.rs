@@ -604,17 +604,10 @@ impl Builder<'_> {
             span: self.span(&word),
         };
         if word.as_rule() == Rule::clear_word {
-            let items = inner
-                .map(|p| {
-                    let span = self.span(&p);
-                    OptionItem {
-                        name: keyword.clone(),
-                        indices: None,
-                        form: OptionForm::Assign(OptionValue::Text(p.as_str().into(), span)),
-                    }
-                })
-                .collect();
-            return Ok(StmtKind::Option(items));
+            return Ok(StmtKind::Clear {
+                kill: &*keyword.name == "kill",
+                names: inner.map(|p| self.ident(&p)).collect(),
+            });
         }
         let (mut file, mut items) = (None, Vec::new());
         for p in inner {

@@ -1,0 +1,78 @@
+//! `put_utility`: what a model asks of the system by `put`.
+//!
+//! The items are lines: a command, its argument, the next command … A page that has begun ends first, as in
+//! GAMS. What would start a program is not done.
+
+use super::{Frame, Machine};
+use crate::check::node::PutCode;
+use crate::diag::Diagnostic;
+use crate::report::textfile::Item;
+use crate::source::Span;
+
+impl Machine<'_> {
+    /// A statement.
+    pub(super) fn put_utility(&mut self, items: &[PutCode], frame: &mut Frame, span: Span) {
+        let mut lines = vec![String::new()];
+        for item in items {
+            match item {
+                PutCode::File(s) => self.open_put_file(*s),
+                PutCode::NewLine => lines.push(String::new()),
+                PutCode::Item { value, .. } => {
+                    if let Some(Item::Text(t) | Item::Label(t)) = self.put_item(value, frame) {
+                        lines.last_mut().expect("one at least").push_str(&t);
+                    }
+                }
+                _ => {}
+            }
+        }
+        if self.put.current.is_some()
+            && let Some(f) = self.put_file(span)
+        {
+            f.text.end_page();
+        }
+        for pair in lines.chunks(2) {
+            let command = pair[0].trim().to_lowercase();
+            let argument = pair.get(1).map_or("", String::as_str);
+            if !command.is_empty() {
+                self.utility(&command, argument, span);
+            }
+        }
+    }
+
+    fn utility(&mut self, command: &str, argument: &str, span: Span) {
+        match command {
+            "log" | "msg" | "msglog" | "stdout" => {
+                if !self.options.quiet {
+                    self.print(&format!("{argument}\n"));
+                }
+            }
+            "ren" => {
+                let Some(s) = self.put.current else { return };
+                self.close_put_file(s, span);
+                if let Some(f) = self.put.files.get_mut(&s) {
+                    f.name = Some(argument.trim().into());
+                }
+                self.open_put_file(s);
+            }
+            "inc" => match self.read_file(argument.trim(), span) {
+                Ok(text) => {
+                    if let Some(f) = self.put_file(span) {
+                        f.text.insert(&text);
+                    }
+                }
+                Err(d) => self.note(*d),
+            },
+            "gdxout" => self.transfer.unload_to = Some(argument.trim().into()),
+            "gdxin" => self.transfer.load_from = Some(argument.trim().into()),
+            _ => self.note(
+                Diagnostic::warning(
+                    "E0474",
+                    span,
+                    format!("`{command}` of `put_utility` is not carried out"),
+                )
+                .label("asks for what is outside of the model")
+                .help("`log`, `msg`, `ren`, `inc`, `gdxOut` and `gdxIn` are known"),
+            ),
+        }
+    }
+}
