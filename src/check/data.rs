@@ -1,8 +1,8 @@
 //! Data statements: elements of sets, numbers of parameters, attributes of variables.
 
-use super::expansion::{Tuples, set_prefix};
+use super::expansion::{Tuples, record_bytes, set_prefix};
 use super::node::{SymbolId, TableId};
-use super::symbols::{DomainPosition, SymbolKind, attribute};
+use super::symbols::{DomainPosition, Store, SymbolKind, Symbols, attribute};
 use super::{Compiler, Failed};
 use crate::data::universe::Label;
 use crate::data::value::{self, EPS};
@@ -231,7 +231,19 @@ impl Compiler {
         let symbol = self.symbols.get(s).clone();
         let (table, dim) = (symbol.table, symbol.dim());
         let mut keys = Tuples::default();
-        while let Some(record) = reader.next() {
+        let mut familiar = Familiar::new(&self.symbols, s);
+        loop {
+            if dim > 0 {
+                while let Some((v, span)) =
+                    reader.plain(|p, text| familiar.find(&mut self.store, p, text))
+                {
+                    if self.take(1, record_bytes(dim), span).is_err() {
+                        break;
+                    }
+                    self.put_value(s, table, &familiar.key, v, span);
+                }
+            }
+            let Some(record) = reader.next() else { break };
             let record = match record {
                 Ok(r) => r,
                 Err(d) => {
@@ -444,6 +456,51 @@ impl Compiler {
             }
         }
         Ok(())
+    }
+}
+
+/// Labels of the record before, by position: in data the next label is mostly the same one or the next one.
+struct Familiar {
+    key: Vec<Label>,
+    /// The set of each position; None: any label.
+    sets: Vec<Option<TableId>>,
+}
+
+impl Familiar {
+    fn new(symbols: &Symbols, s: SymbolId) -> Self {
+        let domain = &symbols.get(s).domain;
+        let set = |p: &DomainPosition| match p {
+            DomainPosition::Set(d) => Some(symbols.get(symbols.root(*d)).table),
+            _ => None,
+        };
+        Self {
+            key: vec![Label::MAX; domain.len()],
+            sets: domain.iter().map(set).collect(),
+        }
+    }
+
+    /// Puts the label at its position; false if it is not allowed there.
+    #[inline]
+    fn find(&mut self, store: &mut Store, position: usize, text: &str) -> bool {
+        let before = self.key[position];
+        let known = &store.universe;
+        let spelled = |l: Label| (l as usize) < known.len() && known.name(l) == text;
+        if spelled(before) {
+            return true;
+        }
+        let next = before.wrapping_add(1);
+        let label = match self.sets[position] {
+            _ if spelled(next) => Some(next),
+            None => Some(store.universe.intern(text)),
+            Some(_) => store.universe.get(text),
+        };
+        let member = |l: &Label| match self.sets[position] {
+            Some(t) => store.table(t).find(&[*l]).is_some(),
+            None => true,
+        };
+        let found = label.filter(member);
+        self.key[position] = found.unwrap_or(Label::MAX);
+        found.is_some()
     }
 }
 

@@ -14,7 +14,7 @@ use crate::syntax::data::KeyPart;
 const LABEL_BYTES: usize = 128;
 
 /// What a record takes, about.
-fn record_bytes(dim: usize) -> usize {
+pub(super) fn record_bytes(dim: usize) -> usize {
     24 + 8 * dim
 }
 

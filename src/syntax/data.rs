@@ -118,8 +118,19 @@ pub fn width(key: &[KeyPart<'_>]) -> usize {
         .sum()
 }
 
+/// [`is_label`] of every byte.
+const LABEL: [bool; 256] = {
+    let mut table = [false; 256];
+    let mut b = 0;
+    while b < 256 {
+        table[b] = is_label(b as u8);
+        b += 1;
+    }
+    table
+};
+
 /// Bytes of unquoted labels.
-fn is_label(b: u8) -> bool {
+const fn is_label(b: u8) -> bool {
     b.is_ascii_alphanumeric() || matches!(b, b'_' | b'-' | b'+') || b >= 0x80
 }
 
@@ -339,6 +350,63 @@ impl<'a> DataReader<'a> {
         }
     }
 
+    /// The next record if it is as most are: labels without quotes, dots between them, an ordinary number.
+    /// `label` is told each one with its position, and may refuse. Then, or if the record is another, nothing
+    /// is read, and [`DataReader::next`] takes it, with the same outcome.
+    pub fn plain(&mut self, mut label: impl FnMut(usize, &'a str) -> bool) -> Option<(f64, Span)> {
+        let bytes = self.text.as_bytes();
+        // The first record may be a bare number.
+        if self.at == 0 || self.kind != DataKind::Values {
+            return None;
+        }
+        let is = |i: usize, class: fn(u8) -> bool| bytes.get(i).is_some_and(|&b| class(b));
+        let mut i = self.at;
+        while is(i, |b| is_space(b) || b == b',') {
+            i += 1;
+        }
+        let start = i;
+        for p in 0..self.arity {
+            if p > 0 {
+                if bytes.get(i) != Some(&b'.') {
+                    return None;
+                }
+                i += 1;
+            }
+            let from = i;
+            while bytes.get(i).is_some_and(|&b| LABEL[b as usize]) {
+                i += 1;
+            }
+            let text = &self.text[from..i];
+            if text.is_empty()
+                || text.starts_with(['-', '+'])
+                || text.eq_ignore_ascii_case("set")
+                || !label(p, text)
+            {
+                return None;
+            }
+        }
+        if !is(i, |b| matches!(b, b' ' | b'\t')) {
+            return None;
+        }
+        while is(i, |b| matches!(b, b' ' | b'\t')) {
+            i += 1;
+        }
+        let from = i;
+        let minus = bytes.get(i) == Some(&b'-');
+        i += usize::from(minus);
+        if !is(i, |b| b.is_ascii_digit()) {
+            return None;
+        }
+        let (x, n) = fast_float2::parse_partial::<f64, _>(&bytes[i..]).ok()?;
+        let end = i + n;
+        if is(end, |b| is_label(b) || b == b'.') {
+            return None;
+        }
+        self.at = end;
+        let x = ordinary(x, minus, &self.text[from..end]);
+        Some((x, self.span(start, end)))
+    }
+
     fn record(&mut self, start: usize) -> Result<Tail<'a>, Box<Diagnostic>> {
         if self.kind == DataKind::Values {
             if let Some(value) = self.bare_number(start) {
@@ -400,14 +468,7 @@ impl<'a> DataReader<'a> {
         let first = *unsigned.as_bytes().first()?;
         if first.is_ascii_digit() || first == b'.' {
             let x = fast_float2::parse::<f64, _>(unsigned).ok()?;
-            let x = if x.is_infinite() {
-                UNDF
-            } else if x == 0.0 && is_tiny(unsigned) {
-                EPS
-            } else {
-                x
-            };
-            return Some(if minus && !x.is_nan() { -x } else { x });
+            return Some(ordinary(x, minus, unsigned));
         }
         if unsigned.len() > 4 {
             return None;
@@ -721,16 +782,10 @@ impl<'a> DataReader<'a> {
             }
             self.at = end;
             let digits = &self.text[i..end];
-            let x = if x.is_infinite() {
-                UNDF
-            } else if x == 0.0 && is_tiny(digits) {
-                EPS
-            } else if minus {
-                -x
-            } else {
-                x
-            };
-            return Ok(Tail::Number(x, self.span(start, end)));
+            return Ok(Tail::Number(
+                ordinary(x, minus, digits),
+                self.span(start, end),
+            ));
         }
         let word_start = i;
         self.at = i;
@@ -789,6 +844,19 @@ impl<'a> DataReader<'a> {
     }
 }
 
+/// The value of a number without its sign: too large is `undf`, too small `eps`.
+fn ordinary(x: f64, minus: bool, digits: &str) -> f64 {
+    if x.is_infinite() {
+        UNDF
+    } else if x == 0.0 && is_tiny(digits) {
+        EPS
+    } else if minus {
+        -x
+    } else {
+        x
+    }
+}
+
 /// Whether a number's digits are not all zero: then 0 is too small a number.
 fn is_tiny(text: &str) -> bool {
     text.bytes()
@@ -810,122 +878,4 @@ pub fn undf_refused(span: Span) -> Diagnostic {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn all(text: &str, kind: DataKind) -> Vec<String> {
-        fn part(p: &KeyPart<'_>) -> String {
-            match p {
-                KeyPart::Label {
-                    text, quoted: true, ..
-                } => format!("'{text}'"),
-                KeyPart::Label { text, .. } => (*text).to_owned(),
-                KeyPart::Range { from, to, .. } => format!("{from}*{to}"),
-                KeyPart::AllOf { set, .. } => format!("#{set}"),
-                KeyPart::Universe(_) => "*".into(),
-                KeyPart::Factor(x) => x.to_string(),
-                KeyPart::Group(g) => format!(
-                    "({})",
-                    g.iter().map(|k| key(k)).collect::<Vec<_>>().join(",")
-                ),
-            }
-        }
-        fn key(k: &[KeyPart<'_>]) -> String {
-            k.iter().map(part).collect::<Vec<_>>().join(".")
-        }
-        let mut r = DataReader::new(text, 0, kind, false);
-        let mut out = Vec::new();
-        while let Some(x) = r.next() {
-            out.push(match x {
-                Ok(r) => {
-                    let colon = r.matched.map_or(String::new(), |m| format!(":{}", key(m)));
-                    let tail = match &r.value {
-                        Tail::None => String::new(),
-                        Tail::Number(x, _) => format!("={x}"),
-                        Tail::Text(t, _) => format!(" \"{t}\""),
-                        Tail::Name(n, _) => format!("~{n}"),
-                    };
-                    format!("{}{colon}{tail}", key(r.key))
-                }
-                Err(d) => format!("!{}", d.code),
-            });
-        }
-        out
-    }
-
-    #[test]
-    fn sets() {
-        let read = |t| all(t, DataKind::Set);
-        assert_eq!(read("a, b\nc  "), ["a", "b", "c"]);
-        assert_eq!(
-            read(" a  first one, b 'the second',\n'c d'   it's third\n"),
-            [
-                "a \"first one\"",
-                "b \"the second\"",
-                "'c d' \"it's third\""
-            ]
-        );
-        assert_eq!(
-            read("i1*i10, 1990*1992, 't 1'*'t 3'"),
-            ["i1*i10", "1990*1992", "t 1*t 3"]
-        );
-        assert_eq!(
-            read("a.b, c.(d,e) two, (f,g*h).(i.j,k), p . q"),
-            ["a.b", "c.(d,e) \"two\"", "(f,g*h).(i.j,k)", "p.q"]
-        );
-        assert_eq!(
-            read("#i.#j, set.set, k.set, a-1, b+2"),
-            ["#i.#j", "#set", "#k", "a-1", "b+2"]
-        );
-        assert_eq!(read("#a:#b, (x,y):(u,v)"), ["#a:#b", "(x,y):(u,v)"]);
-        assert_eq!(read("a (x=y) $ %;\nb"), ["a \"(x=y) $ %;\"", "b"]);
-        assert_eq!(read("a%b, c"), ["!E0243", "c"]);
-        assert_eq!(read(""), Vec::<String>::new());
-    }
-
-    #[test]
-    fn values() {
-        let read = |t| all(t, DataKind::Values);
-        assert_eq!(read("a 1, b 2.5\nc -3e2"), ["a=1", "b=2.5", "c=-300"]);
-        assert_eq!(
-            read("a.b = 3, (a,b).c 3.5, a.b.c -inf"),
-            ["a.b=3", "(a,b).c=3.5", "a.b.c=-inf"]
-        );
-        assert_eq!(read(" 5 "), ["=5"]);
-        assert_eq!(read("-.5e1"), ["=-5"]);
-        assert_eq!(read("- 5"), ["=-5"]);
-        assert_eq!(read("inf"), ["=inf"]);
-        assert_eq!(read("1 2, 2 3"), ["1=2", "2=3"]);
-        assert_eq!(read("1990 5\n1991 6.5"), ["1990=5", "1991=6.5"]);
-        assert_eq!(read("a.lo 5, b.l 3"), ["a.lo=5", "b.l=3"]);
-        assert_eq!(read("a mon, b +inf, c yes"), ["a~mon", "b=inf", "c=1"]);
-        assert_eq!(read("a 1x, b 2"), ["!E0245", "b=2"]);
-        assert_eq!(read("1.2.3 4"), ["1.2.3=4"]);
-        assert_eq!(read("a\n 7"), ["a=7"]);
-        let mut one = DataReader::new("a .5", 0, DataKind::Values, false).with_arity(1);
-        match one.next() {
-            Some(Ok(r)) => assert!(matches!(r.value, Tail::Number(0.5, _))),
-            other => panic!("{other:?}"),
-        }
-        assert_eq!(read("i1*i3 4"), ["i1*i3=4"]);
-        assert_eq!(read("(a,b 2"), ["!E0241"]);
-    }
-
-    #[test]
-    fn special_values() {
-        let value = |t: &str| {
-            let text = format!("a {t}");
-            let mut r = DataReader::new(&text, 0, DataKind::Values, true);
-            match r.next() {
-                Some(Ok(Record {
-                    value: Tail::Number(x, _),
-                    ..
-                })) => x,
-                other => panic!("{other:?}"),
-            }
-        };
-        use crate::data::value::*;
-        assert!(is_eps(value("eps")) && is_eps(value("1e-400")));
-        assert!(is_na(value("NA")) && is_undf(value("undf")) && is_undf(value("1e400")));
-    }
-}
+mod tests;

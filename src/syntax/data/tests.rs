@@ -1,0 +1,173 @@
+//! Tests of the reader of data.
+
+use super::*;
+
+fn all(text: &str, kind: DataKind) -> Vec<String> {
+    fn part(p: &KeyPart<'_>) -> String {
+        match p {
+            KeyPart::Label {
+                text, quoted: true, ..
+            } => format!("'{text}'"),
+            KeyPart::Label { text, .. } => (*text).to_owned(),
+            KeyPart::Range { from, to, .. } => format!("{from}*{to}"),
+            KeyPart::AllOf { set, .. } => format!("#{set}"),
+            KeyPart::Universe(_) => "*".into(),
+            KeyPart::Factor(x) => x.to_string(),
+            KeyPart::Group(g) => format!(
+                "({})",
+                g.iter().map(|k| key(k)).collect::<Vec<_>>().join(",")
+            ),
+        }
+    }
+    fn key(k: &[KeyPart<'_>]) -> String {
+        k.iter().map(part).collect::<Vec<_>>().join(".")
+    }
+    let mut r = DataReader::new(text, 0, kind, false);
+    let mut out = Vec::new();
+    while let Some(x) = r.next() {
+        out.push(match x {
+            Ok(r) => {
+                let colon = r.matched.map_or(String::new(), |m| format!(":{}", key(m)));
+                let tail = match &r.value {
+                    Tail::None => String::new(),
+                    Tail::Number(x, _) => format!("={x}"),
+                    Tail::Text(t, _) => format!(" \"{t}\""),
+                    Tail::Name(n, _) => format!("~{n}"),
+                };
+                format!("{}{colon}{tail}", key(r.key))
+            }
+            Err(d) => format!("!{}", d.code),
+        });
+    }
+    out
+}
+
+#[test]
+fn sets() {
+    let read = |t| all(t, DataKind::Set);
+    assert_eq!(read("a, b\nc  "), ["a", "b", "c"]);
+    assert_eq!(
+        read(" a  first one, b 'the second',\n'c d'   it's third\n"),
+        [
+            "a \"first one\"",
+            "b \"the second\"",
+            "'c d' \"it's third\""
+        ]
+    );
+    assert_eq!(
+        read("i1*i10, 1990*1992, 't 1'*'t 3'"),
+        ["i1*i10", "1990*1992", "t 1*t 3"]
+    );
+    assert_eq!(
+        read("a.b, c.(d,e) two, (f,g*h).(i.j,k), p . q"),
+        ["a.b", "c.(d,e) \"two\"", "(f,g*h).(i.j,k)", "p.q"]
+    );
+    assert_eq!(
+        read("#i.#j, set.set, k.set, a-1, b+2"),
+        ["#i.#j", "#set", "#k", "a-1", "b+2"]
+    );
+    assert_eq!(read("#a:#b, (x,y):(u,v)"), ["#a:#b", "(x,y):(u,v)"]);
+    assert_eq!(read("a (x=y) $ %;\nb"), ["a \"(x=y) $ %;\"", "b"]);
+    assert_eq!(read("a%b, c"), ["!E0243", "c"]);
+    assert_eq!(read(""), Vec::<String>::new());
+}
+
+#[test]
+fn values() {
+    let read = |t| all(t, DataKind::Values);
+    assert_eq!(read("a 1, b 2.5\nc -3e2"), ["a=1", "b=2.5", "c=-300"]);
+    assert_eq!(
+        read("a.b = 3, (a,b).c 3.5, a.b.c -inf"),
+        ["a.b=3", "(a,b).c=3.5", "a.b.c=-inf"]
+    );
+    assert_eq!(read(" 5 "), ["=5"]);
+    assert_eq!(read("-.5e1"), ["=-5"]);
+    assert_eq!(read("- 5"), ["=-5"]);
+    assert_eq!(read("inf"), ["=inf"]);
+    assert_eq!(read("1 2, 2 3"), ["1=2", "2=3"]);
+    assert_eq!(read("1990 5\n1991 6.5"), ["1990=5", "1991=6.5"]);
+    assert_eq!(read("a.lo 5, b.l 3"), ["a.lo=5", "b.l=3"]);
+    assert_eq!(read("a mon, b +inf, c yes"), ["a~mon", "b=inf", "c=1"]);
+    assert_eq!(read("a 1x, b 2"), ["!E0245", "b=2"]);
+    assert_eq!(read("1.2.3 4"), ["1.2.3=4"]);
+    assert_eq!(read("a\n 7"), ["a=7"]);
+    let mut one = DataReader::new("a .5", 0, DataKind::Values, false).with_arity(1);
+    match one.next() {
+        Some(Ok(r)) => assert!(matches!(r.value, Tail::Number(0.5, _))),
+        other => panic!("{other:?}"),
+    }
+    assert_eq!(read("i1*i3 4"), ["i1*i3=4"]);
+    assert_eq!(read("(a,b 2"), ["!E0241"]);
+}
+
+/// Records as text, with places; `plainly`: those that can be read by [`DataReader::plain`] are.
+fn records(text: &str, arity: usize, plainly: bool) -> Vec<String> {
+    let mut r = DataReader::new(text, 7, DataKind::Values, false).with_arity(arity);
+    let mut out = Vec::new();
+    loop {
+        let mut labels: Vec<&str> = Vec::new();
+        let label = |p: usize, text| {
+            labels.truncate(p);
+            labels.push(text);
+            plainly && text != "b"
+        };
+        if let Some((x, span)) = r.plain(label) {
+            out.push(format!("{labels:?} {:x} {span:?}", x.to_bits()));
+            continue;
+        }
+        out.push(match r.next() {
+            None => return out,
+            Some(Err(d)) => format!("{d:?}"),
+            Some(Ok(r)) => {
+                let label = |p: &KeyPart<'_>| match p {
+                    KeyPart::Label { text, .. } => (*text).to_owned(),
+                    p => format!("{p:?}"),
+                };
+                let key: Vec<String> = r.key.iter().map(label).collect();
+                match &r.value {
+                    Tail::Number(x, _) if r.matched.is_none() => {
+                        format!("{key:?} {:x} {:?}", x.to_bits(), r.span)
+                    }
+                    value => format!("{key:?} {value:?} {:?} {:?}", r.matched, r.span),
+                }
+            }
+        });
+    }
+}
+
+proptest::proptest! {
+    #![proptest_config(proptest::prelude::ProptestConfig::with_cases(4000))]
+    /// The short way reads what the long way reads.
+    #[test]
+    fn plain_records_are_records(
+        text in proptest::collection::vec(
+            proptest::sample::select(vec![
+                "a", "b", "i1", "set", ".", ".", ".", " ", " ", "1", "2.5", "0", "1e400", "1e-400", "e", "-", "+", ",",
+                "\n", "\n", "'q r'", "(", ")", "*", ":", "=", "#", "inf", "é", "\u{1e}", "a.i1 3\n", "a 4,", "i1.a.a -2",
+            ]),
+            0..14,
+        ),
+        arity in 1usize..4,
+    ) {
+        let text = text.concat();
+        proptest::prop_assert_eq!(records(&text, arity, true), records(&text, arity, false));
+    }
+}
+
+#[test]
+fn special_values() {
+    let value = |t: &str| {
+        let text = format!("a {t}");
+        let mut r = DataReader::new(&text, 0, DataKind::Values, true);
+        match r.next() {
+            Some(Ok(Record {
+                value: Tail::Number(x, _),
+                ..
+            })) => x,
+            other => panic!("{other:?}"),
+        }
+    };
+    use crate::data::value::*;
+    assert!(is_eps(value("eps")) && is_eps(value("1e-400")));
+    assert!(is_na(value("NA")) && is_undf(value("undf")) && is_undf(value("1e400")));
+}
