@@ -472,12 +472,13 @@ pub fn linear_status(instance: &Instance, outcome: &Outcome, r: &Residuals) -> M
     }
 }
 
-/// Model status of a complementarity model: solved or not.
-pub fn complementarity_status(r: &Residuals) -> ModelStatus {
-    if r.natural_relative <= TOLERANCE {
-        ModelStatus::Optimal
-    } else {
-        ModelStatus::IntermediateInfeasible
+/// Model status of a complementarity model: solved, given up after all methods from all starts (as GAMS calls
+/// it, locally infeasible), or stopped before.
+pub fn complementarity_status(r: &Residuals, claim: Claim) -> ModelStatus {
+    match claim {
+        _ if r.natural_relative <= TOLERANCE => ModelStatus::Optimal,
+        Claim::Infeasible => ModelStatus::LocallyInfeasible,
+        _ => ModelStatus::IntermediateInfeasible,
     }
 }
 
@@ -636,18 +637,23 @@ mod tests {
         };
         let r = at(&[2.0, 0.0, 1.0]);
         assert_eq!(r.natural, Some(0.0));
-        assert_eq!(complementarity_status(&r), ModelStatus::Optimal);
+        assert_eq!(
+            complementarity_status(&r, Claim::Solved),
+            ModelStatus::Optimal
+        );
         let r = at(&[2.0, 0.5, 1.0]);
         assert_eq!(r.natural, Some(0.5));
         assert_eq!(r.complementarity, Some(0.75));
         assert_eq!(r.worst_row, Some(1));
-        assert_eq!(
-            complementarity_status(&r),
-            ModelStatus::IntermediateInfeasible
-        );
+        for (claim, status) in [
+            (Claim::Solved, ModelStatus::IntermediateInfeasible),
+            (Claim::Infeasible, ModelStatus::LocallyInfeasible),
+        ] {
+            assert_eq!(complementarity_status(&r, claim), status);
+        }
         assert_eq!(at(&[2.0, 0.0, 1.25]).natural, Some(0.25));
         assert_eq!(
-            complementarity_status(&at(&[f64::NAN, 0., 1.])),
+            complementarity_status(&at(&[f64::NAN, 0., 1.]), Claim::Solved),
             ModelStatus::IntermediateInfeasible
         );
     }

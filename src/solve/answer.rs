@@ -10,7 +10,7 @@ use super::{
 };
 use crate::autodiff::Evaluator;
 use crate::model::certificate::{self, Linearised, Residuals, TOLERANCE};
-use crate::model::certificate_nlp::{is_locally_infeasible, linearise, violations};
+use crate::model::certificate_nlp::linearise;
 use crate::model::instance::Instance;
 
 /// A solver's point with its certificate.
@@ -130,7 +130,7 @@ fn complementary(
         .map(|(a, b)| a - b)
         .collect();
     let residuals = certificate::complementarity(instance, &outcome.level, &f);
-    let status = certificate::complementarity_status(&residuals);
+    let status = certificate::complementarity_status(&residuals, outcome.claim);
     Ok(Answer::new(outcome, residuals, status, activity))
 }
 
@@ -157,17 +157,9 @@ fn square(
         ModelStatus::Solved
     } else if certificate::is_beyond_bounds(instance) {
         ModelStatus::Infeasible
-    } else if outcome.claim == Claim::Solved
-        || is_locally_infeasible(
-            instance,
-            &mut evaluator,
-            &outcome.level,
-            &violations(instance, &at.activity),
-            1e-4,
-        )
-    {
-        // Either the rows hold and the point they determine is beyond a bound, or nothing nearby
-        // makes the rows' violation smaller.
+    } else if outcome.claim != Claim::Unfinished {
+        // Either the rows hold and the point they determine is beyond a bound, or no method from any start
+        // found a point where they hold.
         ModelStatus::LocallyInfeasible
     } else {
         ModelStatus::IntermediateInfeasible

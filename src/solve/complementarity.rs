@@ -281,8 +281,8 @@ pub(super) fn run(
         mcp::Status::Solved => SolverStatus::NormalCompletion,
         mcp::Status::IterationLimit => SolverStatus::IterationInterrupt,
         mcp::Status::TimeLimit => SolverStatus::ResourceInterrupt,
-        mcp::Status::Interrupted => SolverStatus::UserInterrupt,
         mcp::Status::NoSolution => SolverStatus::TerminatedBySolver,
+        mcp::Status::Interrupted => SolverStatus::UserInterrupt,
         mcp::Status::EvaluationFailed
         | mcp::Status::InvalidBounds
         | mcp::Status::InvalidProblem => SolverStatus::InternalSolverFailure,
@@ -326,16 +326,17 @@ pub fn solve(
             }
         }
     }
-    let solved = out.status == mcp::Status::Solved;
+    let (claim, status) = match out.status {
+        mcp::Status::Solved => (Claim::Solved, status),
+        // That all methods from all starts failed is what GAMS calls locally infeasible.
+        mcp::Status::NoSolution => (Claim::Infeasible, SolverStatus::NormalCompletion),
+        _ => (Claim::Unfinished, status),
+    };
     Ok(Outcome {
         level: out.x,
         row_marginal,
         column_marginal,
-        claim: if solved {
-            Claim::Solved
-        } else {
-            Claim::Unfinished
-        },
+        claim,
         status,
         iterations: (out.majors + out.pivots) as u64,
         solver: "bmcp",
