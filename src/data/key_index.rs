@@ -91,7 +91,7 @@ enum Shape {
 
 /// Whether two keys of the same length are equal, without a call for the usual lengths.
 #[inline]
-fn same(a: &[Label], b: &[Label]) -> bool {
+pub(super) fn same(a: &[Label], b: &[Label]) -> bool {
     match (a, b) {
         ([a], [b]) => a == b,
         ([a0, a1], [b0, b1]) => a0 == b0 && a1 == b1,
@@ -233,6 +233,13 @@ impl KeyIndex {
             self.fill_hash(keys, records.len() + 1, records.into_iter());
         }
         if let Shape::Hash(t) = &mut self.shape {
+            if t.is_empty() && self.dim == 1 {
+                // A set that grows label by label is a box that grows.
+                if let Some(b) = LabelBox::around(key, 1) {
+                    self.shape = Shape::Dense(b, vec![record + 1]);
+                }
+                return;
+            }
             let d = self.dim;
             t.insert_unique(hash_key(key), record, |&r| {
                 hash_key(&keys[r as usize * d..][..d])

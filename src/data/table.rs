@@ -8,11 +8,11 @@
 //! label order. An index by key and *orders* (records grouped by some positions) are built when first
 //! needed and dropped when records move.
 
-use super::key_index::KeyIndex;
+use super::key_index::{KeyIndex, same};
 use super::sort::sort_records;
 use super::universe::Label;
 use hashbrown::HashTable;
-use std::cell::{OnceCell, RefCell};
+use std::cell::{Cell, OnceCell, RefCell};
 use std::hash::Hasher;
 use std::rc::Rc;
 
@@ -31,6 +31,8 @@ pub struct Table {
     orders: RefCell<Vec<(u32, Rc<Order>)>>,
     distinct: OnceCell<Vec<u32>>,
     special: bool,
+    /// The record that a scan has come to: it is mostly the one that is asked for.
+    visited: Cell<u32>,
 }
 
 /// Records grouped by their labels at some positions.
@@ -104,6 +106,7 @@ impl Table {
             orders: RefCell::default(),
             distinct: OnceCell::new(),
             special: false,
+            visited: Cell::new(0),
         }
     }
 
@@ -151,6 +154,13 @@ impl Table {
         &self.keys[at..at + self.dim]
     }
 
+    /// Labels of a stored record that a scan comes to.
+    #[inline]
+    pub fn visit(&self, row: u32) -> &[Label] {
+        self.visited.set(row);
+        self.key(row)
+    }
+
     /// Labels of all stored records, one after the other; among them may be removed ones.
     pub fn all_keys(&self) -> &[Label] {
         &self.keys
@@ -180,11 +190,21 @@ impl Table {
         debug_assert_eq!(key.len(), self.dim);
         match self.dim {
             0 => (!self.values.is_empty() && self.values[0] != self.default).then_some(0),
-            _ => self
-                .index
-                .get_or_init(|| self.build_index())
-                .find(key, &self.keys),
+            _ => {
+                let r = self.visited.get();
+                if self.value_of(r).is_some_and(|v| v != self.default) && same(self.key(r), key) {
+                    return Some(r);
+                }
+                self.index
+                    .get_or_init(|| self.build_index())
+                    .find(key, &self.keys)
+            }
         }
+    }
+
+    #[inline]
+    fn value_of(&self, row: u32) -> Option<f64> {
+        self.values.get(row as usize).copied()
     }
 
     /// The value for this key, the default where nothing is stored.

@@ -352,11 +352,10 @@ impl Machine<'_> {
                 let t = self.store.table(c.table);
                 let rows = t.len() as f64;
                 let mut groups = 1.0;
-                if t.dim() > 1 && t.is_tidy() && changing != Some(c.table) {
-                    let distinct = t.distinct();
+                if t.is_tidy() && changing != Some(c.table) {
                     for (p, part) in c.key.parts.iter().enumerate() {
                         if !mentions(part, &free) {
-                            groups *= f64::from(distinct[p]);
+                            groups *= f64::from(t.distinct()[p]);
                         }
                     }
                 }
@@ -519,11 +518,16 @@ impl Machine<'_> {
         };
         match step {
             Step::Filter(i, changed) => {
-                let before: Vec<Label> = changed.iter().map(|&s| frame[s as usize]).collect();
-                let holds = truth(self.eval(&d.conditions[*i], frame));
-                for (&s, l) in changed.iter().zip(before) {
-                    frame[s as usize] = l;
-                }
+                let holds = if changed.is_empty() {
+                    truth(self.eval(&d.conditions[*i], frame))
+                } else {
+                    let before: Vec<Label> = changed.iter().map(|&s| frame[s as usize]).collect();
+                    let holds = truth(self.eval(&d.conditions[*i], frame));
+                    for (&s, l) in changed.iter().zip(before) {
+                        frame[s as usize] = l;
+                    }
+                    holds
+                };
                 if !holds {
                     return true;
                 }
@@ -560,7 +564,7 @@ impl Machine<'_> {
                 };
                 let last = rest.is_empty();
                 for r in 0..rows.len() {
-                    let record = t.key(rows.get(r));
+                    let record = t.visit(rows.get(r));
                     for &(p, s) in bind.iter() {
                         frame[s as usize] = record[p as usize];
                     }

@@ -376,11 +376,11 @@ impl<'a> DataReader<'a> {
             while bytes.get(i).is_some_and(|&b| LABEL[b as usize]) {
                 i += 1;
             }
-            let text = &self.text[from..i];
+            let text = &bytes[from..i];
             if text.is_empty()
-                || text.starts_with(['-', '+'])
-                || text.eq_ignore_ascii_case("set")
-                || !label(p, text)
+                || matches!(text[0], b'-' | b'+')
+                || text.len() == 3 && text.eq_ignore_ascii_case(b"set")
+                || !label(p, &self.text[from..i])
             {
                 return None;
             }
