@@ -24,6 +24,10 @@ pub trait Host {
     fn read(&mut self, path: &str, from: Option<&Path>) -> Result<(PathBuf, String), HostError>;
     /// Whether a file may be read and is there (`$if exist`).
     fn exists(&mut self, path: &str, from: Option<&Path>) -> bool;
+    /// Whether there is a folder whose files may be read (`$if dExist`).
+    fn folder_exists(&mut self, _path: &str, _from: Option<&Path>) -> bool {
+        false
+    }
     /// Writes a whole file inside the output folder, or nothing.
     fn write(&mut self, path: &str, bytes: &[u8]) -> Result<PathBuf, HostError>;
     /// Text for the person who runs the model (display, summaries, logs).

@@ -6,7 +6,7 @@ use super::symbols::{DomainPosition, SymbolKind};
 use super::{Compiler, Failed};
 use crate::diag::{Diagnostic, nearest};
 use crate::source::{Known, Span};
-use crate::syntax::ast::{ModelItem, Solve, VariableKind};
+use crate::syntax::ast::{Ident, ModelItem, Solve, VariableKind};
 
 impl Compiler {
     pub(super) fn solve(&mut self, s: &Solve, span: Span) -> Result<CodeKind, Failed> {
@@ -111,12 +111,40 @@ impl Compiler {
         for i in ids {
             self.symbols.get_mut(i).assigned = true;
         }
+        let scenario = match &s.scenario {
+            Some(name) => Some(self.dictionary(name)?),
+            None => None,
+        };
         Ok(CodeKind::Solve(Box::new(SolveCode {
             model,
             equations: rows,
             using,
             objective,
+            scenario,
         })))
+    }
+
+    /// The set behind `scenario`; the parameters it names get values in the solve.
+    fn dictionary(&mut self, name: &Ident) -> Result<SymbolId, Failed> {
+        let s = self.lookup_set(name)?;
+        if self.symbols.get(s).dim() != 3 {
+            return self.wrong_dimension(s, name.span, 3);
+        }
+        let table = self.symbols.get(self.symbols.root(s)).table;
+        self.store.table_mut(table).tidy();
+        let names: Vec<Box<str>> = self
+            .store
+            .table(table)
+            .iter()
+            .map(|(k, _)| self.store.universe.name(k[2]).into())
+            .collect();
+        for n in names {
+            if let Some(s) = self.symbols.find(&n) {
+                let root = self.symbols.root(s);
+                self.symbols.get_mut(root).assigned = true;
+            }
+        }
+        Ok(s)
     }
 
     /// Rows of a list of model items, in order.

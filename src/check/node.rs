@@ -314,6 +314,8 @@ pub struct SolveCode {
     pub using: &'static str,
     /// Direction and objective variable.
     pub objective: Option<(Sense, SymbolId)>,
+    /// The dictionary of the scenarios.
+    pub scenario: Option<SymbolId>,
 }
 
 /// One equation of a model.

@@ -100,13 +100,7 @@ impl SystemHost {
     /// an allowed folder, whichever has it first.
     fn find(&self, path: &str, from: Option<&Path>) -> Result<(PathBuf, PathBuf), HostError> {
         let mut outside = None;
-        let folders = [from.and_then(Path::parent), Some(&*self.model_folder)];
-        let folders = folders.into_iter().flatten();
-        let folders = folders
-            .chain([Path::new("")])
-            .chain(self.allowed.iter().map(|d| &**d));
-        for folder in folders {
-            let known = tidy(&folder.join(path));
+        for known in self.places(path, from) {
             let Ok(real) = known.canonicalize() else {
                 continue;
             };
@@ -122,6 +116,20 @@ impl SystemHost {
             }
         }
         Err(outside.map_or(HostError::NotFound, HostError::Outside))
+    }
+
+    /// Where a file may be, in the order in which it is looked for.
+    fn places<'a>(
+        &'a self,
+        path: &'a str,
+        from: Option<&'a Path>,
+    ) -> impl Iterator<Item = PathBuf> + 'a {
+        let folders = [from.and_then(Path::parent), Some(&*self.model_folder)];
+        let folders = folders.into_iter().flatten();
+        folders
+            .chain([Path::new("")])
+            .chain(self.allowed.iter().map(|d| &**d))
+            .map(move |folder| tidy(&folder.join(path)))
     }
 
     fn clear_progress(&mut self) {
@@ -221,6 +229,13 @@ impl Host for SystemHost {
 
     fn exists(&mut self, path: &str, from: Option<&Path>) -> bool {
         self.find(path, from).is_ok()
+    }
+
+    fn folder_exists(&mut self, path: &str, from: Option<&Path>) -> bool {
+        let mut real = self
+            .places(path, from)
+            .filter_map(|p| p.canonicalize().ok());
+        real.any(|p| p.is_dir() && self.may_read(&p))
     }
 
     fn write(&mut self, path: &str, bytes: &[u8]) -> Result<PathBuf, HostError> {

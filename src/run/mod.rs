@@ -23,6 +23,7 @@ mod options;
 mod put;
 mod put_utility;
 mod scan;
+mod scenarios;
 mod show;
 mod solve;
 mod support;

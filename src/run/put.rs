@@ -81,14 +81,10 @@ impl Machine<'_> {
                     width,
                     decimals,
                 } => {
-                    let mut whole = |n: &Option<Node>| {
-                        let x = number(self.eval(n.as_ref()?, frame));
-                        Some(x.round().clamp(0.0, WIDEST) as i64)
-                    };
                     let format = Format {
                         align: *align,
-                        width: whole(width),
-                        decimals: whole(decimals),
+                        width: self.put_size(width.as_ref(), frame),
+                        decimals: self.put_size(decimals.as_ref(), frame),
                     };
                     let Some(item) = self.put_item(value, frame) else {
                         continue;
@@ -99,6 +95,12 @@ impl Machine<'_> {
                 }
             }
         }
+    }
+
+    /// A width or a number of decimals.
+    pub(super) fn put_size(&self, n: Option<&Node>, frame: &mut Frame) -> Option<i64> {
+        let x = number(self.eval(n?, frame));
+        Some(x.round().clamp(0.0, WIDEST) as i64)
     }
 
     /// Makes a file the current one; one that was closed begins again.

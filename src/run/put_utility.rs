@@ -6,20 +6,31 @@
 use super::{Frame, Machine};
 use crate::check::node::PutCode;
 use crate::diag::Diagnostic;
-use crate::report::textfile::Item;
+use crate::report::textfile::{Format, Part, TextFile};
 use crate::source::Span;
 
 impl Machine<'_> {
     /// A statement.
     pub(super) fn put_utility(&mut self, items: &[PutCode], frame: &mut Frame, span: Span) {
-        let mut lines = vec![String::new()];
+        let mut lines = TextFile::default();
         for item in items {
             match item {
                 PutCode::File(s) => self.open_put_file(*s),
-                PutCode::NewLine => lines.push(String::new()),
-                PutCode::Item { value, .. } => {
-                    if let Some(Item::Text(t) | Item::Label(t)) = self.put_item(value, frame) {
-                        lines.last_mut().expect("one at least").push_str(&t);
+                PutCode::NewLine => lines.new_line(Part::Body),
+                PutCode::Item {
+                    value,
+                    align,
+                    width,
+                    decimals,
+                } => {
+                    let format = Format {
+                        align: *align,
+                        width: self.put_size(width.as_ref(), frame),
+                        decimals: self.put_size(decimals.as_ref(), frame),
+                    };
+                    if let Some(item) = self.put_item(value, frame) {
+                        // What does not fit is marked in the text.
+                        let _ = lines.item(Part::Body, &item, format);
                     }
                 }
                 _ => {}
@@ -30,9 +41,10 @@ impl Machine<'_> {
         {
             f.text.end_page();
         }
+        let lines: Vec<&str> = lines.finish().lines().collect();
         for pair in lines.chunks(2) {
             let command = pair[0].trim().to_lowercase();
-            let argument = pair.get(1).map_or("", String::as_str);
+            let argument = pair.get(1).copied().unwrap_or("");
             if !command.is_empty() {
                 self.utility(&command, argument, span);
             }

@@ -60,6 +60,13 @@ impl Machine<'_> {
     }
 
     pub(super) fn solve(&mut self, s: &SolveCode, span: Span, frame: &mut Frame) -> Flow {
+        match s.scenario {
+            Some(dict) => self.scenarios(dict, s, span, frame),
+            None => self.solve_once(s, span, frame),
+        }
+    }
+
+    pub(super) fn solve_once(&mut self, s: &SolveCode, span: Span, frame: &mut Frame) -> Flow {
         if self.execution_error_count() > 0 {
             self.note(
                 Diagnostic::execution(

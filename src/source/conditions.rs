@@ -110,7 +110,15 @@ impl Preprocessor<'_> {
             Some(Ok((kind.is_some_and(|k| kinds.contains(&k)), len + n)))
         };
         match word.as_str() {
-            "exist" | "dexist" | "readable" => {
+            "dexist" => {
+                let (name, n) = term(after, false);
+                let from = self.frames.last().map(|f| f.path.clone());
+                Some(Ok((
+                    self.host.folder_exists(name, from.as_deref()),
+                    len + n,
+                )))
+            }
+            "exist" | "readable" => {
                 let (name, n) = term(after, false);
                 let from = self.frames.last().map(|f| f.path.clone());
                 let found = self.map.echoed.contains_key(&name.to_lowercase())

@@ -341,6 +341,8 @@ pub struct Solve {
     pub using: Ident,
     /// Direction and objective variable.
     pub objective: Option<(Sense, Ident)>,
+    /// The dictionary of `scenario dict`.
+    pub scenario: Option<Ident>,
 }
 
 /// What a loop, a sum or a figure element runs over: `(i, arc(j,k))$c`.

@@ -43,10 +43,6 @@ pub(super) fn whole_statement(f: &Failure<'_>) -> Option<Diagnostic> {
             "`subject to` is not written",
             "declare `equation e;`, define it with `e.. a*x =l= b;` and list it in a model",
         ),
-        ("solve", _) if text.to_ascii_lowercase().contains(" scenario ") => say(
-            "one solve statement does not run through scenarios here",
-            "put the solve into a loop: assign a scenario's data, solve, keep the results",
-        ),
         ("such", "that") | ("constraint", _) if !is_name => say(
             "constraints are equations here",
             "declare `equation e;` and define it: `e.. a*x =l= b;`",

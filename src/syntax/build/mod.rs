@@ -147,6 +147,7 @@ fn is_keyword(rule: Rule) -> bool {
             | kw_figure
             | kw_draw
             | kw_using
+            | kw_scenario
     )
 }
 

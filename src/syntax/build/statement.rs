@@ -393,7 +393,7 @@ impl Builder<'_> {
         let at = self.span(&pair);
         let mut inner = parts(pair);
         let model = self.ident(&need(&mut inner, at, "a model")?);
-        let (mut using, mut objective) = (None, None);
+        let (mut using, mut objective, mut scenario) = (None, None, None);
         for p in inner {
             let place = self.span(&p);
             match p.as_rule() {
@@ -408,6 +408,7 @@ impl Builder<'_> {
                     }
                     using = name;
                 }
+                Rule::scenario => scenario = parts(p).next().map(|n| self.ident(&n)),
                 _ => {
                     let mut sides = parts(p);
                     let word = need(&mut sides, place, "a direction")?;
@@ -435,6 +436,7 @@ impl Builder<'_> {
                 model,
                 using,
                 objective,
+                scenario,
             })),
             None => Err(Box::new(
                 Diagnostic::error(

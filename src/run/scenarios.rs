@@ -1,0 +1,230 @@
+//! `solve m using lp min z scenario dict;`: a model is solved once as it stands and once for each scenario of a set.
+//!
+//! The records of `dict` say `symbol.role.other`: a parameter, or the `lower`, `upper`, `fixed` of a variable, takes
+//! the scenario's part of `other`; `level` and `marginal` are collected in `other`; `opt` names options
+//! (`updateType`, `skipBaseCase`) and where the attributes of the model go. What has no value in a scenario is 0, unless
+//! `updateType` is 1 (as in the base case) or 2 (as in the scenario before).
+//!
+//! Invariant: behind the solve all symbols are as the base case left them, but those that collect results.
+
+use super::{Flow, Frame, Machine};
+use crate::check::node::{SolveCode, SymbolId, TableId};
+use crate::check::symbols::{SymbolKind, attribute};
+use crate::data::table::Table;
+use crate::data::universe::Label;
+use crate::data::value::EPS;
+use crate::diag::Diagnostic;
+use crate::source::Span;
+
+/// Attributes of a model that are reported where a label has their name.
+const REPORTED: &[&str] = &[
+    "domusd",
+    "iterusd",
+    "objest",
+    "nodusd",
+    "modelstat",
+    "numnopt",
+    "numinfes",
+    "objval",
+    "resusd",
+    "solvestat",
+    "suminfes",
+];
+
+/// A dictionary, read.
+#[derive(Default)]
+struct Plan {
+    scenarios: Option<TableId>,
+    /// Tables that take a scenario's part of the last one.
+    inputs: Vec<(Vec<TableId>, TableId)>,
+    /// A table and the one that collects it.
+    outputs: Vec<(TableId, TableId)>,
+    options: Option<TableId>,
+    report: Option<TableId>,
+}
+
+impl Machine<'_> {
+    /// The solves of a statement.
+    pub(super) fn scenarios(
+        &mut self,
+        dict: SymbolId,
+        s: &SolveCode,
+        span: Span,
+        frame: &mut Frame,
+    ) -> Flow {
+        self.store.tables.iter_mut().for_each(Table::tidy);
+        let (plan, set) = match self.scenario_plan(dict) {
+            Ok(Plan {
+                scenarios: None, ..
+            }) => return self.no_plan("no record has the role `scenario`".into(), span),
+            Err(why) => return self.no_plan(why, span),
+            Ok(plan) => {
+                let set = plan.scenarios.unwrap_or_default();
+                (plan, set)
+            }
+        };
+        let skip = self.scenario_option(&plan, "skipbasecase") != 0.0;
+        let update = self.scenario_option(&plan, "updatetype");
+        if !skip && let Flow::Stop = self.solve_once(s, span, frame) {
+            return Flow::Stop;
+        }
+        self.store.tables.iter_mut().for_each(Table::tidy);
+        let base = self.store.tables.clone();
+        let state = self.models.get(&s.model).cloned();
+        let collect =
+            |t: TableId| Table::new(base[t as usize].dim(), base[t as usize].default_value());
+        let mut results: Vec<Table> = plan.outputs.iter().map(|o| collect(o.1)).collect();
+        let mut report = plan.report.map(collect);
+        for scenario in base[set as usize]
+            .all_keys()
+            .chunks_exact(base[set as usize].dim().max(1))
+        {
+            for (n, table) in base.iter().enumerate() {
+                let input = plan.inputs.iter().any(|i| i.0.contains(&(n as TableId)));
+                if update != 2.0 || !input {
+                    self.store.tables[n] = table.clone();
+                }
+            }
+            for (targets, source) in &plan.inputs {
+                for &t in targets {
+                    let target = self.store.table_mut(t);
+                    if update == 0.0 {
+                        target.clear();
+                        target.set_default(0.0);
+                    }
+                    for (key, v) in base[*source as usize].iter() {
+                        if let Some(rest) = key.strip_prefix(scenario) {
+                            target.set(rest, v);
+                        }
+                    }
+                }
+            }
+            if let Flow::Stop = self.solve_once(s, span, frame) {
+                return Flow::Stop;
+            }
+            for ((from, _), to) in plan.outputs.iter().zip(&mut results) {
+                let from = self.store.table_mut(*from);
+                from.tidy();
+                if from.dim() == 0 {
+                    to.set(scenario, from.get(&[]));
+                } else {
+                    from.iter()
+                        .for_each(|(k, v)| to.set(&[scenario, k].concat(), v));
+                }
+            }
+            for name in REPORTED {
+                if let (Some(report), Some(label)) = (&mut report, self.store.universe.get(name)) {
+                    let v = self
+                        .models
+                        .get(&s.model)
+                        .and_then(|m| m.get(name))
+                        .unwrap_or(0.0);
+                    report.set(
+                        &[scenario, &[label]].concat(),
+                        if v == 0.0 { EPS } else { v },
+                    );
+                }
+            }
+        }
+        self.store.tables = base;
+        self.models.extend(state.map(|state| (s.model, state)));
+        for ((_, to), table) in plan.outputs.iter().zip(results) {
+            *self.store.table_mut(*to) = table;
+        }
+        if let (Some(to), Some(table)) = (plan.report, report) {
+            *self.store.table_mut(to) = table;
+        }
+        Flow::Next
+    }
+
+    fn no_plan(&self, why: String, span: Span) -> Flow {
+        self.note(
+            Diagnostic::execution(
+                "E0424",
+                span,
+                format!("the dictionary of the scenarios cannot be used: {why}"),
+            )
+            .label("not solved")
+            .help("its records look like `s.scenario.''`, `demand.param.demands`, `x.level.xs`"),
+        );
+        Flow::Stop
+    }
+
+    fn scenario_option(&self, plan: &Plan, name: &str) -> f64 {
+        let label = self.store.universe.get(name);
+        match (plan.options, label) {
+            (Some(t), Some(label)) => self.store.table(t).get(&[label]),
+            _ => 0.0,
+        }
+    }
+
+    fn scenario_plan(&self, dict: SymbolId) -> Result<Plan, String> {
+        let mut plan = Plan::default();
+        let dict = self
+            .store
+            .table(self.symbols.get(self.symbols.root(dict)).table);
+        let name = |l: Label| self.store.universe.name(l);
+        let depth = dict
+            .iter()
+            .find(|(k, _)| name(k[1]).eq_ignore_ascii_case("scenario"))
+            .and_then(|(k, _)| self.symbols.find(name(k[0])))
+            .map_or(1, |s| self.symbols.get(s).dim());
+        for (key, _) in dict.iter() {
+            let find = |l: Label| match self.symbols.find(name(l)) {
+                Some(s) => Ok(self.symbols.get(self.symbols.root(s))),
+                None => Err(format!("`{}` is not known", name(l))),
+            };
+            let first = find(key[0])?;
+            let role = name(key[1]).to_lowercase();
+            if role == "scenario" {
+                plan.scenarios = first.is_set().then_some(first.table);
+                continue;
+            }
+            if role == "opt" {
+                plan.options = Some(first.table);
+                plan.report = find(key[2])
+                    .ok()
+                    .filter(|s| s.dim() == depth + 1)
+                    .map(|s| s.table);
+                continue;
+            }
+            let other = find(key[2])?;
+            let of = |offsets: &[u32]| offsets.iter().map(|o| first.table + o).collect::<Vec<_>>();
+            let input = match role.as_str() {
+                "param" => Some(of(&[0])),
+                "lower" => Some(of(&[attribute::LO])),
+                "upper" => Some(of(&[attribute::UP])),
+                "fixed" => Some(of(&[attribute::LO, attribute::UP])),
+                _ => None,
+            };
+            let output = match role.as_str() {
+                "level" => Some(first.table + attribute::L),
+                "marginal" => Some(first.table + attribute::M),
+                _ => None,
+            };
+            let parameter =
+                |s: &crate::check::symbols::Symbol| matches!(s.kind, SymbolKind::Parameter { .. });
+            let fits = if role == "param" {
+                parameter(first)
+            } else {
+                first.has_attributes()
+            };
+            if !fits || !parameter(other) || other.dim() != first.dim() + depth {
+                return Err(format!(
+                    "`{}.{role}.{}` does not fit",
+                    first.name, other.name
+                ));
+            }
+            plan.inputs
+                .extend(input.map(|targets| (targets, other.table)));
+            plan.outputs.extend(output.map(|from| (from, other.table)));
+            if !matches!(
+                role.as_str(),
+                "param" | "lower" | "upper" | "fixed" | "level" | "marginal"
+            ) {
+                return Err(format!("there is no role `{role}`"));
+            }
+        }
+        Ok(plan)
+    }
+}
