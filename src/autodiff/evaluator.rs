@@ -35,17 +35,25 @@ impl fmt::Display for EvalFailure {
 
 impl std::error::Error for EvalFailure {}
 
-/// Whether some term of an instance has a kink (abs, min, max) that [`Evaluator::smoothed`] rounds.
-pub fn has_kinks(instance: &Instance) -> bool {
-    use crate::model::instance::{Function, Op};
-    let kink = |op: &Op| {
-        matches!(
-            op,
-            Op::Call(Function::Abs | Function::Max | Function::Min, _)
-        )
+/// What [`Evaluator::smoothed`] rounds.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub enum Kinks {
+    /// Roots, which have one at 0 only.
+    Roots,
+    /// abs, min, max.
+    Anywhere,
+}
+
+/// The worst kinks in the terms of an instance.
+pub fn kinks(instance: &Instance) -> Option<Kinks> {
+    use crate::model::instance::{Function::*, Op};
+    let kink = |op: &Op| match op {
+        Op::Call(Abs | Max | Min, _) => Some(Kinks::Anywhere),
+        Op::Call(Sqrt | EDist, _) => Some(Kinks::Roots),
+        _ => None,
     };
-    let mut used = instance.nonlinear.iter().filter(|t| !t.row.is_empty());
-    used.any(|t| t.kernel.ops.iter().any(kink))
+    let used = instance.nonlinear.iter().filter(|t| !t.row.is_empty());
+    used.flat_map(|t| &t.kernel.ops).filter_map(kink).max()
 }
 
 /// How a row depends on the columns.

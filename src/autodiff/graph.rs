@@ -76,7 +76,7 @@ impl Graph {
     /// A kernel that is no well-formed program (the stack runs empty) gives a graph whose value is
     /// undefined (NaN), so that its evaluation fails instead of the process.
     ///
-    /// With a smoothing δ > 0, |a| becomes √(a² + δ²), and min and max follow from it.
+    /// With a smoothing δ > 0, |a| becomes √(a² + δ²), √a √(a + δ²), and min and max follow from |a|.
     pub fn new(kernel: &Kernel, uniform: &[Option<f64>], smoothing: f64) -> Self {
         let mut b = Builder {
             smoothing,
@@ -415,6 +415,8 @@ impl Builder<'_> {
         if self.smoothing > 0.0 && args.iter().any(|&a| self.is_active(a)) {
             match f {
                 Function::Abs => return self.smooth_abs(args[0]),
+                Function::Sqrt => return self.smooth_root(args[0]),
+                Function::EDist => return self.smooth_distance(args),
                 Function::Max | Function::Min => return self.smooth_extreme(f, &args),
                 _ => {}
             }
@@ -430,8 +432,21 @@ impl Builder<'_> {
 
     /// √(a² + δ²)
     fn smooth_abs(&mut self, a: Id) -> Id {
-        let delta = self.number(self.smoothing);
-        self.node(Element::Call(Function::EDist, vec![a, delta]))
+        self.smooth_distance(vec![a])
+    }
+
+    /// √(a² + b² + … + δ²)
+    fn smooth_distance(&mut self, mut args: Vec<Id>) -> Id {
+        args.push(self.number(self.smoothing));
+        self.node(Element::Call(Function::EDist, args))
+    }
+
+    /// √(a + δ²): the root of a sum of squares is a distance.
+    fn smooth_root(&mut self, a: Id) -> Id {
+        let square = self.number(self.smoothing * self.smoothing);
+        let sum = self.sum(Item::Node(a), Item::Node(square));
+        let sum = self.settle(sum);
+        self.node(Element::Call(Function::Sqrt, vec![sum]))
     }
 
     /// max(a, b) = (a + b + |a − b|)/2, min with the other sign; several arguments one after the other.

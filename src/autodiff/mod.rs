@@ -19,5 +19,5 @@ mod scalar;
 pub mod special;
 mod steps;
 
-pub use evaluator::{Degree, EvalFailure, Evaluator, has_kinks};
+pub use evaluator::{Degree, EvalFailure, Evaluator, Kinks, kinks};
 pub use functions::{DomainError, ErrorKind, Operation, function_value};

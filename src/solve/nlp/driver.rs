@@ -24,12 +24,12 @@ use super::problem::{Nlp, Problem};
 use super::provider::{Control, Ended, Progress, Provider, Shared, Solution, lock};
 use super::quadratic::Quadratic;
 use super::schedule::{
-    AGREEMENT, BASE, BETTER, CHEAP, ELASTIC_AFTER, FINEST, FIRST_PATIENCE, From, MUCH, NEAR,
-    NEARER, PATIENCE, ROUNDING, SCHEDULE, SHARP, SMALL,
+    AGREEMENT, BASE, BETTER, CHEAP, ELASTIC_AFTER, ENOUGH, FINEST, FIRST_PATIENCE, From, NEAR,
+    NEARER, OVERHEAD, PATIENCE, ROUNDING, SCHEDULE, SHARP, SMALL, TIMES,
 };
 use super::slp;
 use super::trial::{Trial, active_set, clean, polished, residuals_at, tidy};
-use crate::autodiff::{ErrorKind, EvalFailure, Evaluator, has_kinks};
+use crate::autodiff::{ErrorKind, EvalFailure, Evaluator, Kinks, kinks};
 use crate::model::certificate_nlp::is_locally_infeasible;
 use crate::model::instance::Instance;
 use crate::solve::lp::Limits;
@@ -139,6 +139,8 @@ pub(super) struct Driver<'a> {
     pub(super) at_saddle: bool,
     /// There is no feasible point.
     pub(super) impossible: bool,
+    /// Work after which no further attempt is begun.
+    enough: f64,
     /// Iterations one attempt may take.
     patience: u64,
     /// What is done about runs that lead far away.
@@ -154,7 +156,7 @@ impl<'a> Driver<'a> {
         monitor: &'a mut dyn Monitor,
     ) -> Self {
         Self {
-            kinks: has_kinks(instance).then(|| Evaluator::smoothed(instance, FINEST)),
+            kinks: kinks(instance).map(|_| Evaluator::smoothed(instance, FINEST)),
             infeasibility: None,
             instance,
             provider,
@@ -172,6 +174,7 @@ impl<'a> Driver<'a> {
             ended: Ended::Broken,
             at_saddle: false,
             impossible: false,
+            enough: f64::INFINITY,
             patience: FIRST_PATIENCE,
             growth: Growth::Watched(0),
         }
@@ -196,6 +199,7 @@ impl Driver<'_> {
             }
         }
         self.attempt(From::Start, &[])?;
+        self.enough = ENOUGH.max(TIMES * self.work());
         if self.is_settled() {
             // there is an answer: to look for a better one may not take much longer
             self.patience = (4 * self.iterations).clamp(100, PATIENCE);
@@ -214,12 +218,13 @@ impl Driver<'_> {
         if self.best.as_ref().is_some_and(sharper) {
             self.attempt(From::Start, SHARP)?;
         }
-        if self.kinks.is_some() {
+        let kinks = kinks(self.instance);
+        if kinks == Some(Kinks::Anywhere) {
             self.round_kinks()?;
         }
         let attempts = self.attempts();
         for (k, (from, options)) in SCHEDULE.into_iter().enumerate() {
-            if self.is_settled() || self.work() > MUCH {
+            if self.is_settled() || self.work() > self.enough {
                 break;
             }
             if k >= attempts {
@@ -233,9 +238,12 @@ impl Driver<'_> {
                 }
             }
             self.attempt(from, options)?;
+            if k == 0 && kinks == Some(Kinks::Roots) && !self.is_settled() {
+                self.round_kinks()?;
+            }
             self.leave_saddles()?;
         }
-        if !self.is_settled() && self.infeasibility.is_none() && self.work() <= MUCH {
+        if !self.is_settled() && self.infeasibility.is_none() && self.work() <= self.enough {
             self.attempt_elastic()?;
         }
         self.leave_saddles()?;
@@ -245,10 +253,14 @@ impl Driver<'_> {
     /// Iterations times nonzeros so far: what decides how much is tried. Time would make the answer
     /// depend on the machine.
     fn work(&self) -> f64 {
+        self.iterations as f64 * self.work_of_iteration()
+    }
+
+    fn work_of_iteration(&self) -> f64 {
         let problem = lock(&*self.problem);
         let (n, m) = problem.size();
         let size = n + m + problem.jacobian_pattern().0.len() + problem.hessian_pattern().0.len();
-        self.iterations as f64 * size as f64
+        size as f64 + OVERHEAD
     }
 
     /// Looks for a better local optimum where that is cheap.
@@ -456,10 +468,23 @@ impl Driver<'_> {
             if solution.x.iter().all(|v| v.is_finite()) {
                 x.clone_from(&solution.x);
                 let trial = self.judge(solution.x, solution.lambda, solution.ended);
-                self.keep(trial);
+                self.keep(trial.clone());
+                self.finish_rounded(&trial, delta);
             }
         }
         Ok(())
+    }
+
+    /// The last digits of a solution with rounded kinks, which are not smooth enough for a solver's last steps.
+    fn finish_rounded(&mut self, trial: &Trial, delta: f64) {
+        if delta > FINEST || trial.is_optimal() || !trial.is_feasible() {
+            return;
+        }
+        let mut rounded = Problem::smoothed(self.instance, delta);
+        if let Some(t) = polished(self.instance, &mut rounded, &mut None, trial, 1e-6) {
+            let trial = self.judge(t.x, t.lambda, t.ended);
+            self.keep(trial);
+        }
     }
 
     fn attempt_elastic(&mut self) -> Result<(), SolveError> {
@@ -543,7 +568,9 @@ impl Driver<'_> {
         let cap = if options.iter().any(|(k, _)| k == "max_iter") {
             u64::MAX
         } else {
-            self.patience
+            // an attempt begun late is not cut off at once
+            let affordable = (self.enough - self.work()) / self.work_of_iteration();
+            self.patience.min(affordable.max(100.0) as u64)
         };
         let deadline = self.deadline();
         let (monitor, log) = (&mut *self.monitor, self.settings.log);
@@ -693,7 +720,13 @@ impl Driver<'_> {
         let (lower, upper) = (problem.bounds().0.to_vec(), problem.bounds().1.to_vec());
         let active = active_set(self.instance, &problem, t, 1e-6);
         let (fixed, binding) = (&active.fixed, &active.binding);
-        let d = negative_curvature(&mut *problem, &t.x, &t.lambda, fixed, binding)?;
+        let curvature = |p: &mut Problem| negative_curvature(p, &t.x, &t.lambda, fixed, binding);
+        // a kink that points upwards shows once it is rounded
+        let rounded = || Problem::smoothed(self.instance, FINEST);
+        let d = match curvature(&mut problem) {
+            None if self.kinks.is_some() => curvature(&mut rounded())?,
+            d => d?,
+        };
         let unit = d.iter().fold(0.0f64, |s, v| s.max(v.abs()));
         let scale = t.x.iter().fold(1.0f64, |s, v| s.max(v.abs()));
         // the first point along ±d that can be evaluated, has a lower objective and is nearly feasible

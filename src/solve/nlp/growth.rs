@@ -6,8 +6,8 @@
 //! still changes ([`Trial::receding`]), the program is solved in two boxes:
 //!
 //! * an optimum that the box does not touch is one of the program itself;
-//! * an objective that is considerably better in the larger box, for which variables are as far as they may go, has
-//!   no limit that a number in a model stands for: the program is called unbounded;
+//! * an objective that is considerably better in the larger box (or that has no optimum in the smaller one), and would change
+//!   beyond it, has no limit that a number in a model stands for: the program is called unbounded;
 //! * otherwise nothing was found out.
 
 use super::driver::Driver;
@@ -40,9 +40,11 @@ impl Driver<'_> {
         let Growth::Watched(times) = self.growth else {
             return Ok(trial);
         };
-        let far = trial.is_feasible() && is_far(self.instance, &trial.level, FAR);
+        let far = trial.is_feasible() && is_far(self.instance, self.eliminated(), &trial.level);
         let astray = trial.ended == Ended::Diverging || trial.receding || far;
-        if trial.is_optimal() || !astray || times == TIMES || self.stopped.is_some() {
+        // a second time only for points that the rows allow
+        let tried = times == TIMES || times > 0 && !trial.is_feasible();
+        if trial.is_optimal() || !astray || tried || self.stopped.is_some() {
             return Ok(trial);
         }
         self.growth = Growth::Watched(times + 1);
@@ -75,8 +77,7 @@ impl Driver<'_> {
             }
             let exact = trial.residuals.is_feasible(EXACT);
             let considerable = |f: f64| trial.objective < f - CONSIDERABLE * f.abs().max(1.0);
-            if exact && is_far(self.instance, &trial.level, FAR) && before.is_some_and(considerable)
-            {
+            if exact && trial.receding && before.is_none_or(considerable) {
                 return Ok(Some(Trial {
                     unbounded: true,
                     ..trial
@@ -90,15 +91,20 @@ impl Driver<'_> {
         Ok(None)
     }
 
+    /// The objective variable, if the solver does not see it.
+    fn eliminated(&self) -> Option<usize> {
+        match lock(&*self.problem).form() {
+            ObjectiveForm::Row { column, .. } => Some(column),
+            _ => None,
+        }
+    }
+
     /// A certified point of the program in a box.
     fn confined(&mut self, start: &[f64], reach: f64) -> Result<Option<Trial>, SolveError> {
         if self.settings.log {
             self.monitor.log(&format!("within ±{reach:e}"));
         }
-        let eliminated = match lock(&*self.problem).form() {
-            ObjectiveForm::Row { column, .. } => Some(column),
-            _ => None,
-        };
+        let eliminated = self.eliminated();
         let mut instance = self.instance.clone();
         let columns = &mut instance.columns;
         for j in (0..columns.lower.len()).filter(|&j| Some(j) != eliminated) {
@@ -132,10 +138,9 @@ impl Driver<'_> {
     }
 }
 
-/// Whether a variable is this far away, and not because of its bounds.
-fn is_far(instance: &Instance, level: &[f64], distance: f64) -> bool {
+/// Whether a variable is beyond [`FAR`], and not because of its bounds; the eliminated one may be.
+fn is_far(instance: &Instance, eliminated: Option<usize>, level: &[f64]) -> bool {
     let columns = &instance.columns;
-    let objective = instance.objective.map(|o| o.column as usize);
     let beyond = |j: usize| {
         let x = level[j];
         let bound = if x > 0.0 {
@@ -143,7 +148,7 @@ fn is_far(instance: &Instance, level: &[f64], distance: f64) -> bool {
         } else {
             columns.lower[j]
         };
-        x.abs() >= distance && (x - bound).abs() > 1e-6 * x.abs() && Some(j) != objective
+        x.abs() >= FAR && (x - bound).abs() > 1e-6 * x.abs() && Some(j) != eliminated
     };
     (0..level.len()).any(beyond)
 }

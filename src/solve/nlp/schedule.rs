@@ -116,6 +116,9 @@ pub(super) const AGREEMENT: usize = 5;
 /// cheap: a tenth of a second. What was found in the corpus took at most 1e5.
 pub(super) const CHEAP: f64 = 2e5;
 /// Work up to which an infeasibility that is proved is doubted.
-pub(super) const SMALL: f64 = 1e6;
-/// Work after which no further attempt is begun: some minutes.
-pub(super) const MUCH: f64 = 3e8;
+pub(super) const SMALL: f64 = 3e6;
+/// Work after which no further attempt is begun: some seconds, or so many times that of the first attempt.
+pub(super) const ENOUGH: f64 = 1e7;
+pub(super) const TIMES: f64 = 10.0;
+/// What an iteration takes however small the program is, in nonzeros.
+pub(super) const OVERHEAD: f64 = 300.0;

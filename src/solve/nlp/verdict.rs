@@ -66,7 +66,10 @@ impl Driver<'_> {
         let solver_status = match (claim, self.stopped) {
             (Claim::Unfinished, Some(s)) => s,
             (Claim::Unfinished, None) => match best.ended {
-                Ended::Iterations => SolverStatus::IterationInterrupt,
+                // the limit was the person's, not that of an attempt
+                Ended::Iterations if self.settings.option("max_iter").is_some() => {
+                    SolverStatus::IterationInterrupt
+                }
                 Ended::Broken => SolverStatus::InternalSolverFailure,
                 _ => SolverStatus::TerminatedBySolver,
             },
