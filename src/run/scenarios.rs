@@ -3,7 +3,7 @@
 //! The records of `dict` say `symbol.role.other`: a parameter, or the `lower`, `upper`, `fixed` of a variable, takes
 //! the scenario's part of `other`; `level` and `marginal` are collected in `other`; `opt` names options
 //! (`updateType`, `skipBaseCase`) and where the attributes of the model go. What has no value in a scenario is 0, unless
-//! `updateType` is 1 (as in the base case) or 2 (as in the scenario before).
+//! `updateType` is 1 (as in the base case) or 2 (as in the scenario before). A scenario without any value is left out.
 //!
 //! Invariant: behind the solve all symbols are as the base case left them, but those that collect results.
 
@@ -85,6 +85,7 @@ impl Machine<'_> {
                     self.store.tables[n] = table.clone();
                 }
             }
+            let mut given = plan.inputs.is_empty();
             for (targets, source) in &plan.inputs {
                 for &t in targets {
                     let target = self.store.table_mut(t);
@@ -95,9 +96,13 @@ impl Machine<'_> {
                     for (key, v) in base[*source as usize].iter() {
                         if let Some(rest) = key.strip_prefix(scenario) {
                             target.set(rest, v);
+                            given = true;
                         }
                     }
                 }
+            }
+            if !given {
+                continue;
             }
             if let Flow::Stop = self.solve_once(s, span, frame) {
                 return Flow::Stop;
