@@ -149,7 +149,9 @@ const FUNCTIONS: &[(&str, Callee, usize, usize)] = {
         ("gamsrelease", Data(D::GamsVersion), 0, 0),
         ("gamsversion", Data(D::GamsVersion), 0, 0),
         ("handlecollect", Data(D::Zero), 1, 1),
+        ("handledelete", Data(D::Zero), 1, 1),
         ("handlestatus", Data(D::Zero), 1, 1),
+        ("handlesubmit", Data(D::Zero), 1, 1),
         ("sleep", Data(D::Sleep), 1, 1),
     ]
 };

@@ -53,6 +53,7 @@ const OPTIONS: &[&str] = &[
     "integer4",
     "integer5",
     "subsystems",
+    "sparseval",
     "on115",
     "zerores",
     "zeroresrep",

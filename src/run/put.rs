@@ -177,6 +177,13 @@ impl Machine<'_> {
         f.closed.push_str(f.text.finish());
         f.text.reopen();
         let text = std::mem::take(&mut f.closed);
+        if name.trim().is_empty() {
+            // `file log / '' /` is the log.
+            if !self.options.quiet {
+                self.print(&text);
+            }
+            return;
+        }
         self.write_file(&name, text.as_bytes(), span);
         if let Some(f) = self.put.files.get_mut(&s) {
             f.closed = text;

@@ -248,7 +248,7 @@ fn options(settings: &Settings) -> Result<mcp::Settings, SolveError> {
                     "cumulative_iteration_limit" => &mut s.cumulative_iteration_limit,
                     "minor_iteration_limit" => &mut s.minor_iteration_limit,
                     "nms_memory_size" => &mut s.nms_memory_size,
-                    "restart_limit" => &mut s.restart_limit,
+                    "restart_limit" => s.restart_limit.insert(0),
                     // Options of PATH that mean nothing here.
                     _ => continue,
                 };

@@ -114,8 +114,9 @@ pub struct Settings {
     pub watchdog_limit: usize,
     /// Memory of the nonmonotone reference value. Default 10.
     pub nms_memory_size: usize,
-    /// Random restarts, after all methods failed from the given start. Default 6.
-    pub restart_limit: usize,
+    /// Random restarts, after all methods failed from the given start. Default: 6, and up to 30 while the work done is
+    /// small.
+    pub restart_limit: Option<usize>,
     /// Wall-clock seconds. Default 1000.
     pub time_limit: f64,
     /// Whether simple rows are turned into bounds and fixed variables removed first. Default true.
@@ -146,7 +147,7 @@ impl Default for Settings {
             proximal_perturbation: 0.0,
             watchdog_limit: 10,
             nms_memory_size: 10,
-            restart_limit: 6,
+            restart_limit: None,
             time_limit: 1000.0,
             preprocess: true,
             fallbacks: true,

@@ -123,6 +123,11 @@ pub(super) fn solve(
     outcome
 }
 
+/// Random restarts in any case, and while no more than [`CHEAP`] was done.
+const RESTARTS: [usize; 2] = [6, 30];
+/// Factorisations times unknowns: a second or so.
+const CHEAP: usize = 300_000;
+
 fn deadline(settings: &Settings) -> Option<Instant> {
     // Durations beyond a century overflow; they mean no limit.
     let seconds = settings.time_limit;
@@ -217,7 +222,12 @@ fn attempt(run: &mut Run, restarts: &mut usize) -> Result<(), Stop> {
         return Ok(());
     }
     let mut random = Random::new(20);
-    for k in 0..run.settings.restart_limit {
+    let most = run.settings.restart_limit.unwrap_or(RESTARTS[1]);
+    for k in 0..most {
+        let expensive = run.factorisations * run.n > CHEAP;
+        if run.settings.restart_limit.is_none() && k >= RESTARTS[0] && expensive {
+            break;
+        }
         *restarts += 1;
         let spread = 10f64.powf(random.between(-2.0, 1.0));
         let x = random_point(run, &mut random, spread);
@@ -252,16 +262,20 @@ fn succeeds(run: &mut Run, method: Method, start: Point) -> Result<bool, Stop> {
     if !run.converged(best.residual) {
         return Ok(false);
     }
-    if !matches!(method, Method::Path { .. } | Method::Starts) {
-        let mut x = best.x;
-        run.clip(&mut x);
-        if let Some(point) = run.point(x)
-            && run.converged(point.residual)
-        {
-            majors(run, point, Crash::None)?;
+    // A hair outside of the bounds a residual may be small that is not so within: where multipliers grow without
+    // limit. Only what is inside counts.
+    let mut x = best.x;
+    run.clip(&mut x);
+    run.best = None;
+    match run.point(x) {
+        Some(point) if run.converged(point.residual) => {
+            if !matches!(method, Method::Path { .. } | Method::Starts) {
+                majors(run, point, Crash::None)?;
+            }
+            Ok(true)
         }
+        _ => Ok(false),
     }
-    Ok(true)
 }
 
 /// The start within the bounds, or a point near it where F is defined.
