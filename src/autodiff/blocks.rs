@@ -185,13 +185,7 @@ fn split_sum(terms: &KernelTerms) -> Option<Vec<KernelTerms>> {
 fn addends(ops: &[Op], n: usize) -> Option<Vec<Addend>> {
     let mut starts: Vec<usize> = Vec::new();
     for (i, op) in ops.iter().enumerate() {
-        let takes = match *op {
-            Op::Var(_) | Op::Const(_) | Op::Affine { .. } => 0,
-            Op::Negate | Op::PowerInt(_) => 1,
-            Op::Add | Op::Subtract | Op::Multiply | Op::Divide | Op::Power => 2,
-            Op::AddN(k) | Op::MultiplyN(k) | Op::Call(_, k) => k as usize,
-        };
-        let keep = starts.len().checked_sub(takes)?;
+        let keep = starts.len().checked_sub(op.arguments())?;
         let start = starts.get(keep).copied().unwrap_or(i);
         starts.truncate(keep);
         starts.push(start);

@@ -121,6 +121,18 @@ pub enum Op {
     Call(Function, u32),
 }
 
+impl Op {
+    /// How many values it pops.
+    pub fn arguments(self) -> usize {
+        match self {
+            Self::Var(_) | Self::Const(_) | Self::Affine { .. } => 0,
+            Self::Negate | Self::PowerInt(_) => 1,
+            Self::Add | Self::Subtract | Self::Multiply | Self::Divide | Self::Power => 2,
+            Self::AddN(n) | Self::MultiplyN(n) | Self::Call(_, n) => n as usize,
+        }
+    }
+}
+
 /// Functions that may stand in an equation with a variable argument.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 #[allow(missing_docs)]

@@ -65,7 +65,7 @@ impl Tape {
     pub fn folded(&self) -> Result<Self, DomainError> {
         let mut stack: Vec<Part> = Vec::new();
         for &op in &self.ops {
-            let args = stack.split_off(stack.len().saturating_sub(arguments(op)));
+            let args = stack.split_off(stack.len().saturating_sub(op.arguments()));
             let number = |p: &Part| match p {
                 Part::Number(x) => Some(*x),
                 Part::Code(_) => None,
@@ -113,16 +113,6 @@ impl Tape {
         let mut out = Self::default();
         stack.into_iter().for_each(|p| out.append(p));
         Ok(out)
-    }
-}
-
-/// How many values an operation takes off the stack.
-fn arguments(op: Op) -> usize {
-    match op {
-        Op::Const(_) | Op::Affine { .. } | Op::Var(_) => 0,
-        Op::Negate | Op::PowerInt(_) => 1,
-        Op::AddN(n) | Op::MultiplyN(n) | Op::Call(_, n) => n as usize,
-        Op::Add | Op::Subtract | Op::Multiply | Op::Divide | Op::Power => 2,
     }
 }
 
@@ -199,7 +189,7 @@ pub fn affine(ops: &[Op], constants: &[f64]) -> Result<Option<Affine>, DomainErr
     // None is anything else.
     let mut stack: Vec<Option<Affine>> = Vec::new();
     for op in ops {
-        let args = stack.split_off(stack.len().saturating_sub(arguments(*op)));
+        let args = stack.split_off(stack.len().saturating_sub(op.arguments()));
         let numbers: Option<Vec<f64>> = args
             .iter()
             .map(|a| a.as_ref().and_then(Affine::as_number))

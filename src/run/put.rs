@@ -75,18 +75,8 @@ impl Machine<'_> {
                     let r = f.text.row(part, row);
                     self.put_trouble(r, place);
                 }
-                PutCode::Item {
-                    value,
-                    align,
-                    width,
-                    decimals,
-                } => {
-                    let format = Format {
-                        align: *align,
-                        width: self.put_size(width.as_ref(), frame),
-                        decimals: self.put_size(decimals.as_ref(), frame),
-                    };
-                    let Some(item) = self.put_item(value, frame) else {
+                PutCode::Item { value, .. } => {
+                    let Some((item, format)) = self.put_formatted(item, frame) else {
                         continue;
                     };
                     let Some(f) = self.put_file(span) else { return };
@@ -97,10 +87,31 @@ impl Machine<'_> {
         }
     }
 
-    /// A width or a number of decimals.
-    pub(super) fn put_size(&self, n: Option<&Node>, frame: &mut Frame) -> Option<i64> {
-        let x = number(self.eval(n?, frame));
-        Some(x.round().clamp(0.0, WIDEST) as i64)
+    /// `x:<10:2`; None for what is no item, or hidden by a condition.
+    pub(super) fn put_formatted(
+        &self,
+        code: &PutCode,
+        frame: &mut Frame,
+    ) -> Option<(Item, Format)> {
+        let PutCode::Item {
+            value,
+            align,
+            width,
+            decimals,
+        } = code
+        else {
+            return None;
+        };
+        let [width, decimals] = [width, decimals].map(|n| {
+            let x = number(self.eval(n.as_ref()?, frame));
+            Some(x.round().clamp(0.0, WIDEST) as i64)
+        });
+        let format = Format {
+            align: *align,
+            width,
+            decimals,
+        };
+        Some((self.put_item(value, frame)?, format))
     }
 
     /// Makes a file the current one; one that was closed begins again.

@@ -6,7 +6,7 @@
 use super::{Frame, Machine};
 use crate::check::node::PutCode;
 use crate::diag::Diagnostic;
-use crate::report::textfile::{Format, Part, TextFile};
+use crate::report::textfile::{Part, TextFile};
 use crate::source::Span;
 
 impl Machine<'_> {
@@ -17,23 +17,12 @@ impl Machine<'_> {
             match item {
                 PutCode::File(s) => self.open_put_file(*s),
                 PutCode::NewLine => lines.new_line(Part::Body),
-                PutCode::Item {
-                    value,
-                    align,
-                    width,
-                    decimals,
-                } => {
-                    let format = Format {
-                        align: *align,
-                        width: self.put_size(width.as_ref(), frame),
-                        decimals: self.put_size(decimals.as_ref(), frame),
-                    };
-                    if let Some(item) = self.put_item(value, frame) {
+                item => {
+                    if let Some((item, format)) = self.put_formatted(item, frame) {
                         // What does not fit is marked in the text.
                         let _ = lines.item(Part::Body, &item, format);
                     }
                 }
-                _ => {}
             }
         }
         if self.put.current.is_some()

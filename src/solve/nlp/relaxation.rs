@@ -89,13 +89,7 @@ fn relax(instance: &Instance) -> Instance {
 fn range(terms: &KernelTerms, at: &[Interval], constants: &[f64]) -> Interval {
     let mut stack: Vec<Interval> = Vec::new();
     for op in &terms.kernel.ops {
-        let count = match *op {
-            Op::Const(_) | Op::Affine { .. } | Op::Var(_) => 0,
-            Op::Negate | Op::PowerInt(_) => 1,
-            Op::AddN(n) | Op::MultiplyN(n) | Op::Call(_, n) => n as usize,
-            Op::Add | Op::Subtract | Op::Multiply | Op::Divide | Op::Power => 2,
-        };
-        let a = stack.split_off(stack.len().saturating_sub(count));
+        let a = stack.split_off(stack.len().saturating_sub(op.arguments()));
         let value = match (*op, a.as_slice()) {
             (Op::Const(k), _) => Interval::point(constants[k as usize]),
             (Op::Var(v), _) => at[v as usize],
