@@ -7,7 +7,7 @@
 //!
 //! Invariant: a plan never changes *which* tuples count, only how they are found; the order of the
 //! indices in the text does not matter for speed. Where a person sees the order, tuples come in
-//! label order ([`Plan::ordered`], or sorted after).
+//! label order ([`Branch::ordered`], or sorted after).
 
 use super::Machine;
 use super::exec::has_random;
