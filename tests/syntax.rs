@@ -607,7 +607,7 @@ fn compile_time_data() {
     assert!(
         matches!(&s[2].kind, StmtKind::Exchange(e) if e.items.len() == 2 && e.items[1].1.is_some())
     );
-    assert!(matches!(&s[4].kind, StmtKind::Option(o) if o.len() == 2));
+    assert!(matches!(&s[4].kind, StmtKind::Clear { kill: true, names } if names.len() == 2));
     assert_eq!(s.len(), 6);
 }
 

@@ -105,12 +105,9 @@ impl Compiler {
                 let symbol = self.symbols.get_mut(s);
                 symbol.domain = domain;
                 symbol.open = false;
-                return Ok(s);
-            }
-            if d.domain.is_some() && domain.len() != old.dim() {
+            } else if d.domain.is_some() && domain.len() != old.dim() {
                 return self.wrong_dimension(s, d.name.span, domain.len());
-            }
-            if d.domain.is_some()
+            } else if d.domain.is_some()
                 && domain != old.domain
                 && !matches!(old.kind, SymbolKind::Equation(Some(_)))
             {

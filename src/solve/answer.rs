@@ -5,13 +5,15 @@
 
 use super::lp::certify::{Proof, Unproved};
 use super::mpec::Stationarity;
+use super::mpec::pairs::Program;
+use super::nlp::relaxation::is_infeasible;
 use super::{
     Claim, ModelStatus, Monitor, Outcome, Settings, SolveError, Solver, complementarity, lp,
 };
 use crate::autodiff::Evaluator;
 use crate::model::certificate::{self, Linearised, Residuals, TOLERANCE};
 use crate::model::certificate_nlp::linearise;
-use crate::model::instance::Instance;
+use crate::model::instance::{Instance, Relation};
 
 /// A solver's point with its certificate.
 #[derive(Clone, Debug)]
@@ -130,8 +132,29 @@ fn complementary(
         .map(|(a, b)| a - b)
         .collect();
     let residuals = certificate::complementarity(instance, &outcome.level, &f);
-    let status = certificate::complementarity_status(&residuals, outcome.claim);
+    let status = match certificate::complementarity_status(&residuals, outcome.claim) {
+        ModelStatus::LocallyInfeasible if is_impossible(instance, settings, monitor)? => {
+            ModelStatus::Infeasible
+        }
+        status => status,
+    };
     Ok(Answer::new(outcome, residuals, status, activity))
+}
+
+/// Whether the linear rows and the bounds alone, what the pairs imply without their products, have no solution.
+/// That is what GAMS's solvers call infeasible; a nonlinear row that cannot hold is locally infeasible there.
+fn is_impossible(
+    instance: &Instance,
+    settings: &Settings,
+    monitor: &mut dyn Monitor,
+) -> Result<bool, SolveError> {
+    let mut rows = Program::new(instance)?.envelope;
+    for (relation, nonlinear) in rows.rows.relation.iter_mut().zip(instance.nonlinear_rows()) {
+        if nonlinear {
+            *relation = Relation::Free;
+        }
+    }
+    Ok(is_infeasible(&rows, settings, monitor))
 }
 
 fn square(

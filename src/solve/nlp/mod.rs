@@ -18,7 +18,7 @@ pub mod pounce;
 pub mod problem;
 pub mod provider;
 pub mod quadratic;
-mod relaxation;
+pub mod relaxation;
 mod schedule;
 mod slp;
 mod symmetric;
