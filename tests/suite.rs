@@ -84,10 +84,11 @@ fn claims(text: &str) -> Claims {
             lines.push(text.trim_end().to_string());
         } else if let Some(r) = rest("*@") {
             let words: Vec<&str> = r.split_whitespace().collect();
-            if let ["-D", define] = words[..] {
-                let (name, value) = define.split_once('=').expect("NAME=VALUE");
-                c.defines.push((name.into(), value.into()));
-            }
+            let ["-D", define] = words[..] else {
+                panic!("line {}: {line}", n + 1);
+            };
+            let (name, value) = define.split_once('=').expect("NAME=VALUE");
+            c.defines.push((name.into(), value.into()));
         }
     }
     c

@@ -277,10 +277,14 @@ impl Driver<'_> {
         if self.convex.is_some() || self.work() > CHEAP || !self.wants_search() {
             return Ok(());
         }
+        let square = self.is_square();
         let mut agreed = true;
         for (k, (from, options)) in BETTER.into_iter().enumerate() {
             if self.stopped.is_some() || (k >= AGREEMENT && agreed) || self.work() > 5.0 * CHEAP {
                 break;
+            }
+            if square && matches!(from, From::Linearised) {
+                continue;
             }
             let before = optimal(self);
             let found = self.attempt(from, options)?;
@@ -291,6 +295,15 @@ impl Driver<'_> {
             }
         }
         Ok(())
+    }
+
+    /// As many equations as variables, as in a general equilibrium that is written as a nonlinear program: linear
+    /// programs would have nothing to choose.
+    fn is_square(&self) -> bool {
+        let problem = lock(&*self.problem);
+        let (lower, upper) = problem.sides();
+        let equations = lower.iter().zip(upper).filter(|(l, u)| l == u).count();
+        equations >= problem.size().0
     }
 
     /// Whether there may be several local optima, and the person lets us look for them.

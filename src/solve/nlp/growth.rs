@@ -40,21 +40,23 @@ impl Driver<'_> {
         let Growth::Watched(times) = self.growth else {
             return Ok(trial);
         };
-        let far = trial.is_feasible() && is_far(self.instance, self.eliminated(), &trial.level);
+        let is_far = |reach| is_far(self.instance, self.eliminated(), &trial.level, reach);
+        let far = trial.is_feasible() && is_far(FAR);
         let astray = trial.ended == Ended::Diverging || trial.receding || far;
         // a second time only for points that the rows allow
         let tried = times == TIMES || times > 0 && !trial.is_feasible();
         if trial.is_optimal() || !astray || tried || self.stopped.is_some() {
             return Ok(trial);
         }
+        let beyond = is_far(BOXES[1]);
         self.growth = Growth::Watched(times + 1);
         let found = self.boxes(start)?;
         let better = |t: &Trial| t.unbounded || t.better(&trial);
         Ok(match found.filter(better) {
             Some(found) => found,
-            // it is as good as stationary
+            // it is as good as stationary, if it is not beyond all boxes
             None => Trial {
-                receding: false,
+                receding: trial.receding && beyond,
                 ..trial
             },
         })
@@ -138,8 +140,8 @@ impl Driver<'_> {
     }
 }
 
-/// Whether a variable is beyond [`FAR`], and not because of its bounds; the eliminated one may be.
-fn is_far(instance: &Instance, eliminated: Option<usize>, level: &[f64]) -> bool {
+/// Whether a variable is this far out, and not because of its bounds; the eliminated one may be.
+fn is_far(instance: &Instance, eliminated: Option<usize>, level: &[f64], reach: f64) -> bool {
     let columns = &instance.columns;
     let beyond = |j: usize| {
         let x = level[j];
@@ -148,7 +150,7 @@ fn is_far(instance: &Instance, eliminated: Option<usize>, level: &[f64]) -> bool
         } else {
             columns.lower[j]
         };
-        x.abs() >= FAR && (x - bound).abs() > 1e-6 * x.abs() && Some(j) != eliminated
+        x.abs() >= reach && (x - bound).abs() > 1e-6 * x.abs() && Some(j) != eliminated
     };
     (0..level.len()).any(beyond)
 }
