@@ -43,6 +43,19 @@ pub struct Columns {
     pub kind: Vec<ColumnKind>,
 }
 
+impl Columns {
+    /// Appends a continuous column at level 0; its number.
+    pub fn push(&mut self, lower: f64, upper: f64) -> usize {
+        self.lower.push(lower);
+        self.upper.push(upper);
+        self.level.push(0.0);
+        self.marginal.push(0.0);
+        self.scale.push(1.0);
+        self.kind.push(ColumnKind::Continuous);
+        self.lower.len() - 1
+    }
+}
+
 /// Rows, one entry per equation.
 #[derive(Clone, Default, Debug)]
 pub struct Rows {

@@ -291,10 +291,15 @@ impl TextFile {
         self.begin(part);
         let pc = self.integer("pc");
         let mut trouble = Ok(());
-        let (eps, zero) = (Item::Special("EPS".into()), Item::Number(0.0));
+        let eps;
         let item = match item {
-            Item::Eps if self.get("nz") == 0.0 => &eps,
-            Item::Eps => &zero,
+            Item::Eps => {
+                eps = match self.get("nz") == 0.0 {
+                    true => Item::Special("EPS".into()),
+                    false => Item::Number(0.0),
+                };
+                &eps
+            }
             item => item,
         };
         let mut text = match item {

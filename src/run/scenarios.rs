@@ -34,7 +34,8 @@ const REPORTED: &[&str] = &[
 /// A dictionary, read.
 #[derive(Default)]
 struct Plan {
-    scenarios: Option<TableId>,
+    /// The set of the scenarios.
+    scenarios: TableId,
     /// Tables that take a scenario's part of the last one.
     inputs: Vec<(Vec<TableId>, TableId)>,
     /// A table and the one that collects it.
@@ -53,15 +54,9 @@ impl Machine<'_> {
         frame: &mut Frame,
     ) -> Flow {
         self.store.tables.iter_mut().for_each(Table::tidy);
-        let (plan, set) = match self.scenario_plan(dict) {
-            Ok(Plan {
-                scenarios: None, ..
-            }) => return self.no_plan("no record has the role `scenario`".into(), span),
+        let plan = match self.scenario_plan(dict) {
+            Ok(plan) => plan,
             Err(why) => return self.no_plan(why, span),
-            Ok(plan) => {
-                let set = plan.scenarios.unwrap_or_default();
-                (plan, set)
-            }
         };
         let skip = self.scenario_option(&plan, "skipbasecase") != 0.0;
         let update = self.scenario_option(&plan, "updatetype");
@@ -75,10 +70,8 @@ impl Machine<'_> {
             |t: TableId| Table::new(base[t as usize].dim(), base[t as usize].default_value());
         let mut results: Vec<Table> = plan.outputs.iter().map(|o| collect(o.1)).collect();
         let mut report = plan.report.map(collect);
-        for scenario in base[set as usize]
-            .all_keys()
-            .chunks_exact(base[set as usize].dim().max(1))
-        {
+        let set = &base[plan.scenarios as usize];
+        for scenario in set.all_keys().chunks_exact(set.dim().max(1)) {
             for (n, table) in base.iter().enumerate() {
                 let input = plan.inputs.iter().any(|i| i.0.contains(&(n as TableId)));
                 if update != 2.0 || !input {
@@ -164,7 +157,7 @@ impl Machine<'_> {
     }
 
     fn scenario_plan(&self, dict: SymbolId) -> Result<Plan, String> {
-        let mut plan = Plan::default();
+        let (mut plan, mut found) = (Plan::default(), None);
         let dict = self
             .store
             .table(self.symbols.get(self.symbols.root(dict)).table);
@@ -182,7 +175,7 @@ impl Machine<'_> {
             let first = find(key[0])?;
             let role = name(key[1]).to_lowercase();
             if role == "scenario" {
-                plan.scenarios = first.is_set().then_some(first.table);
+                found = first.is_set().then_some(first.table);
                 continue;
             }
             if role == "opt" {
@@ -194,18 +187,14 @@ impl Machine<'_> {
                 continue;
             }
             let other = find(key[2])?;
-            let of = |offsets: &[u32]| offsets.iter().map(|o| first.table + o).collect::<Vec<_>>();
-            let input = match role.as_str() {
-                "param" => Some(of(&[0])),
-                "lower" => Some(of(&[attribute::LO])),
-                "upper" => Some(of(&[attribute::UP])),
-                "fixed" => Some(of(&[attribute::LO, attribute::UP])),
-                _ => None,
-            };
-            let output = match role.as_str() {
-                "level" => Some(first.table + attribute::L),
-                "marginal" => Some(first.table + attribute::M),
-                _ => None,
+            let (input, offsets): (bool, &[u32]) = match role.as_str() {
+                "param" => (true, &[0]),
+                "lower" => (true, &[attribute::LO]),
+                "upper" => (true, &[attribute::UP]),
+                "fixed" => (true, &[attribute::LO, attribute::UP]),
+                "level" => (false, &[attribute::L]),
+                "marginal" => (false, &[attribute::M]),
+                _ => return Err(format!("there is no role `{role}`")),
             };
             let parameter =
                 |s: &crate::check::symbols::Symbol| matches!(s.kind, SymbolKind::Parameter { .. });
@@ -220,16 +209,15 @@ impl Machine<'_> {
                     first.name, other.name
                 ));
             }
-            plan.inputs
-                .extend(input.map(|targets| (targets, other.table)));
-            plan.outputs.extend(output.map(|from| (from, other.table)));
-            if !matches!(
-                role.as_str(),
-                "param" | "lower" | "upper" | "fixed" | "level" | "marginal"
-            ) {
-                return Err(format!("there is no role `{role}`"));
+            let tables = offsets.iter().map(|o| first.table + o);
+            match input {
+                true => plan.inputs.push((tables.collect(), other.table)),
+                false => plan.outputs.extend(tables.map(|t| (t, other.table))),
             }
         }
-        Ok(plan)
+        match found {
+            Some(scenarios) => Ok(Plan { scenarios, ..plan }),
+            None => Err("no record has the role `scenario`".into()),
+        }
     }
 }

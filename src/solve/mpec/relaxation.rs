@@ -12,7 +12,7 @@
 
 use super::pairs::Program;
 use crate::model::instance::{
-    ColumnKind, Instance, Kernel, KernelTerms, Objective, Op, Relation, Sense, SparseRows,
+    Instance, Kernel, KernelTerms, Objective, Op, Relation, Sense, SparseRows,
 };
 
 /// What takes the place of the products.
@@ -68,7 +68,7 @@ impl Relaxed {
             out.rows.relation[p.row] = Relation::Equal;
             let sides = [(p.lower, -1.0), (p.upper, 1.0)];
             for (bound, sign) in sides.into_iter().filter(|s| s.0.is_finite()) {
-                let slack = push_column(&mut out, 0.0);
+                let slack = out.columns.push(0.0, f64::INFINITY);
                 extra[p.row].push((slack, sign));
                 let row = match kind {
                     Kind::Scholtes => first + terms.row.len(),
@@ -88,7 +88,7 @@ impl Relaxed {
         let mut last = Vec::new();
         if kind == Kind::Penalty {
             // penalised = ± objective + ρ·sum
-            let penalised = push_column(&mut out, f64::NEG_INFINITY);
+            let penalised = out.columns.push(f64::NEG_INFINITY, f64::INFINITY);
             if let Some(o) = out.objective {
                 last.push((o.column as usize, -program.sign()));
             }
@@ -151,16 +151,6 @@ impl Relaxed {
             }
         }
     }
-}
-
-fn push_column(out: &mut Instance, lower: f64) -> usize {
-    out.columns.lower.push(lower);
-    out.columns.upper.push(f64::INFINITY);
-    out.columns.level.push(0.0);
-    out.columns.marginal.push(0.0);
-    out.columns.scale.push(1.0);
-    out.columns.kind.push(ColumnKind::Continuous);
-    out.column_count() - 1
 }
 
 fn push_row(matrix: &mut SparseRows, entries: impl Iterator<Item = (usize, f64)>) {

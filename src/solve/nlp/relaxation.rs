@@ -6,9 +6,7 @@
 //! bounds of the variables gives; if this linear program is infeasible (by multipliers that are checked), so is the program.
 
 use crate::model::certificate::proves_infeasible;
-use crate::model::instance::{
-    ColumnKind, Function, Instance, KernelTerms, Op, Relation, SparseRows,
-};
+use crate::model::instance::{Function, Instance, KernelTerms, Op, Relation, SparseRows};
 use crate::solve::interval::Interval;
 use crate::solve::lp::Clarabel;
 use crate::solve::{Claim, Monitor, Settings, Solver};
@@ -70,15 +68,9 @@ fn relax(instance: &Instance) -> Instance {
             if low == f64::NEG_INFINITY && high == f64::INFINITY {
                 relaxed.rows.relation[i] = Relation::Free;
             }
-            let columns = &mut relaxed.columns;
-            relaxed.matrix.column.push(columns.lower.len() as u32);
+            let column = relaxed.columns.push(low, high);
+            relaxed.matrix.column.push(column as u32);
             relaxed.matrix.value.push(1.0);
-            columns.lower.push(low);
-            columns.upper.push(high);
-            columns.level.push(0.0);
-            columns.marginal.push(0.0);
-            columns.scale.push(1.0);
-            columns.kind.push(ColumnKind::Continuous);
         }
         relaxed.matrix.start.push(relaxed.matrix.column.len());
     }
