@@ -274,11 +274,13 @@ impl Machine<'_> {
             return;
         }
         let Some(symbol) = symbol else { return };
-        // Where the value is the target's default it need be written over what is stored only.
+        // Where the value is the target's default it need be written over what is stored only; and not even there
+        // in a table that is made anew.
         let table = match target {
             Target::Table(t) | Target::Set(t) => Some(t),
             _ => None,
         };
+        let covers = covers && matches!(target, Target::Table(_));
         let wanted = Wanted {
             value: table.map(|_| value),
             rest: table.map_or(0.0, |t| self.store.table(t).default_value()),
