@@ -409,17 +409,14 @@ impl Compiler {
         }
     }
 
+    /// Some types have no discrete variables at all; for the others the solve decides.
     fn check_discrete(
         &mut self,
         rows: &[ModelRow],
         using: &str,
         solve: Span,
     ) -> Result<(), Failed> {
-        if !matches!(
-            using,
-            "lp" | "nlp" | "dnlp" | "qcp" | "mcp" | "cns" | "mpec"
-        ) && !matches!(using, "mip" | "minlp" | "miqcp")
-        {
+        if !matches!(using, "lp" | "nlp" | "dnlp" | "qcp" | "mcp" | "cns") {
             return Ok(());
         }
         let mut discrete = None;
@@ -449,23 +446,6 @@ impl Compiler {
             self.symbols.get(v).name.clone(),
             self.symbols.get(v).declared,
         );
-        if matches!(using, "mip" | "minlp" | "miqcp") {
-            let relaxed = match using {
-                "mip" => "rmip",
-                "minlp" => "rminlp",
-                _ => "rmiqcp",
-            };
-            return self.fail(
-                Diagnostic::error(
-                    "E0363",
-                    solve,
-                    format!("there is no solver for `{using}` with discrete variables"),
-                )
-                .label("not there")
-                .other(declared, format!("`{name}` is discrete"))
-                .help(format!("`solve … using {relaxed}` solves the relaxation")),
-            );
-        }
         let relaxed = match using {
             "lp" => "rmip",
             "qcp" => "rmiqcp",

@@ -22,8 +22,14 @@ pub enum ColumnKind {
     /// Continuous.
     #[default]
     Continuous,
-    /// Any kind of discrete variable, relaxed.
-    Discrete,
+    /// Binary or integer.
+    Integer,
+    /// Zero, or within its bounds; the stored lower bound is not above 0.
+    SemiContinuous,
+    /// Zero, or an integer within its bounds; the stored lower bound is not above 0.
+    SemiInteger,
+    /// Member of a special ordered set.
+    OrderedSet,
 }
 
 /// Columns, one entry per variable.
@@ -44,6 +50,12 @@ pub struct Columns {
 }
 
 impl Columns {
+    /// The first column that bounds leave a discrete choice: a relaxation is no solution for it.
+    pub fn first_undecided(&self) -> Option<usize> {
+        (0..self.kind.len())
+            .find(|&j| self.kind[j] != ColumnKind::Continuous && self.lower[j] < self.upper[j])
+    }
+
     /// Appends a continuous column at level 0; its number.
     pub fn push(&mut self, lower: f64, upper: f64) -> usize {
         self.lower.push(lower);

@@ -6,7 +6,7 @@ use super::{Flow, Frame, Machine, ModelState};
 use crate::check::node::*;
 use crate::check::symbols::attribute;
 use crate::diag::Diagnostic;
-use crate::model::instance::{Instance, Relation};
+use crate::model::instance::{ColumnKind, Instance, Relation};
 use crate::model::origin::{Blocks, Origin};
 use crate::report::names::Names;
 use crate::report::why::{Explanation, explain};
@@ -109,6 +109,10 @@ impl Machine<'_> {
             self.report.solves.push(self.not_solved(s, &generated));
             return Flow::Next;
         }
+        if !self.decided(s, &generated, span) {
+            self.report.solves.push(self.not_solved(s, &generated));
+            return Flow::Stop;
+        }
         let mut settings = self.settings(s.model);
         let mut options = self.option_file(s.model, s.using, span);
         // The command line has the last word.
@@ -191,6 +195,34 @@ impl Machine<'_> {
                 Flow::Stop
             }
         }
+    }
+
+    /// Whether no column of a discrete type is left to be decided. Only the generated columns tell: conditions
+    /// may leave none, and bounds may fix them all.
+    fn decided(&self, s: &SolveCode, g: &Generated, span: Span) -> bool {
+        let relaxation = match s.using {
+            "mip" => "rmip",
+            "minlp" => "rminlp",
+            "miqcp" => "rmiqcp",
+            "mpec" => "rmpec",
+            _ => return true,
+        };
+        let Some(column) = g.instance.columns.first_undecided() else {
+            return true;
+        };
+        let name = self.origin_name(&g.origin.columns, column);
+        let message = format!(
+            "there is no solver for `{}` with discrete variables, and {name} is not fixed",
+            s.using
+        );
+        self.note(
+            Diagnostic::execution("E0425", span, message)
+                .label("not solved")
+                .help(format!(
+                    "`solve … using {relaxation}` solves the relaxation; the run ends here"
+                )),
+        );
+        false
     }
 
     fn settings(&self, model: SymbolId) -> Settings {
@@ -352,7 +384,7 @@ impl Machine<'_> {
                     .columns
                     .kind
                     .iter()
-                    .filter(|k| **k != crate::model::instance::ColumnKind::Continuous)
+                    .filter(|k| !matches!(k, ColumnKind::Continuous | ColumnKind::OrderedSet))
                     .count() as f64,
             ),
             ("domusd", 0.0),

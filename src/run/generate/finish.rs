@@ -235,18 +235,17 @@ impl Builder<'_, '_> {
             let symbol = self.m.symbols.get(b.symbol);
             let t = symbol.table;
             let kind = match symbol.kind {
-                SymbolKind::Variable(
-                    VariableKind::Free
-                    | VariableKind::Positive
-                    | VariableKind::Negative
-                    | VariableKind::Unstated,
-                ) => ColumnKind::Continuous,
-                _ => ColumnKind::Discrete,
+                SymbolKind::Variable(VariableKind::Binary | VariableKind::Integer) => {
+                    ColumnKind::Integer
+                }
+                SymbolKind::Variable(VariableKind::SemiContinuous) => ColumnKind::SemiContinuous,
+                SymbolKind::Variable(VariableKind::SemiInteger) => ColumnKind::SemiInteger,
+                SymbolKind::Variable(VariableKind::Sos1 | VariableKind::Sos2) => {
+                    ColumnKind::OrderedSet
+                }
+                _ => ColumnKind::Continuous,
             };
-            let semi = matches!(
-                symbol.kind,
-                SymbolKind::Variable(VariableKind::SemiContinuous | VariableKind::SemiInteger)
-            );
+            let semi = matches!(kind, ColumnKind::SemiContinuous | ColumnKind::SemiInteger);
             let get = |o: u32, key: &[Label]| number(self.m.store.table(t + o).get(key));
             for i in b.start..b.start + b.len {
                 let key = b.key(i);
@@ -287,7 +286,8 @@ impl Builder<'_, '_> {
                     name()
                 ))
             } else {
-                None
+                let kind = self.instance.columns.kind[i];
+                broken_kind(kind, lo, up).map(|rule| format!("{rule}: {} has {lo} … {up}", name()))
             };
             if let Some(message) = problem {
                 self.m.note(
@@ -326,5 +326,20 @@ impl Builder<'_, '_> {
             })
             .count();
         (m.column.len() + pairs.len() - both, pairs.len())
+    }
+}
+
+/// What bounds of a discrete variable must not be, relaxed or not.
+fn broken_kind(kind: ColumnKind, lower: f64, upper: f64) -> Option<&'static str> {
+    // As far as GAMS lets a bound be away from an integer.
+    let whole = |x: f64| x.is_infinite() || (x - x.round()).abs() <= 1e-8;
+    match kind {
+        ColumnKind::Integer | ColumnKind::SemiInteger if !(whole(lower) && whole(upper)) => {
+            Some("the bounds of a discrete variable must be integers")
+        }
+        ColumnKind::SemiContinuous | ColumnKind::SemiInteger if lower < 0.0 => {
+            Some("the lower bound of a semicontinuous variable must not be negative")
+        }
+        _ => None,
     }
 }
