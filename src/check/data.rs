@@ -4,12 +4,38 @@ use super::expansion::{Tuples, record_bytes, set_prefix};
 use super::node::{SymbolId, TableId};
 use super::symbols::{DomainPosition, Store, SymbolKind, Symbols, attribute};
 use super::{Compiler, Failed};
+use crate::data::table::Table;
 use crate::data::universe::Label;
 use crate::data::value::{self, EPS};
 use crate::diag::Diagnostic;
 use crate::source::{Known, SourceMap, Span};
 use crate::syntax::ast::Ident;
 use crate::syntax::data::{DataKind, DataReader, KeyPart, Tail, undf_refused, width};
+
+/// A symbol that a data statement fills.
+pub(super) struct Filling {
+    symbol: SymbolId,
+    table: TableId,
+    /// Records of this statement, where the symbol had some before it: none may come twice.
+    own: Option<Table>,
+}
+
+impl Filling {
+    /// Whether the statement gave this record already; from now on it did.
+    pub(super) fn repeats(&mut self, store: &mut Store, key: &[Label]) -> bool {
+        match &mut self.own {
+            None => {
+                let t = &store.tables[self.table as usize];
+                !t.is_after_last(key) && t.find(key).is_some()
+            }
+            Some(own) => {
+                let repeated = own.find(key).is_some();
+                own.set(key, 1.0);
+                repeated
+            }
+        }
+    }
+}
 
 impl Compiler {
     /// The sets that data define, `p(i<)`, get theirs with them.
@@ -28,17 +54,18 @@ impl Compiler {
         Ok(())
     }
 
-    /// Whether a symbol may get data now; clears it for `$onMultiR`.
-    pub(super) fn open_data(&mut self, s: SymbolId, span: Span) -> Result<(), Failed> {
+    /// An error if a symbol may get no data now; clears it for `$onMultiR`.
+    pub(super) fn open_data(&mut self, s: SymbolId, span: Span) -> Result<Filling, Failed> {
         self.symbols.get_mut(s).open = false;
         let symbol = self.symbols.get(s);
+        let modes = self.modes.at(span);
         let (had, declared, name, table) = (
             symbol.has_data,
             symbol.declared,
             symbol.name.clone(),
             symbol.table,
         );
-        if had && !self.modes.multi && !self.modes.multi_replace {
+        if had && !modes.multi {
             return self.fail(
                 Diagnostic::error("E0340", span, format!("`{name}` has data already"))
                     .label("second data statement")
@@ -46,12 +73,17 @@ impl Compiler {
                     .help("assign instead (`p(i) = …;`), or allow merging with `$onMulti`"),
             );
         }
-        if had && self.modes.multi_replace {
+        if had && modes.multi_replace {
             self.store.table_mut(table).clear();
             self.store.texts.remove(&table);
         }
         self.symbols.get_mut(s).has_data = true;
-        Ok(())
+        let old = self.store.table(table);
+        Ok(Filling {
+            symbol: s,
+            table,
+            own: (!old.is_empty()).then(|| Table::new(old.dim(), 0.0)),
+        })
     }
 
     /// `$clear`, `$kill`: the data so far are forgotten while the text is read.
@@ -97,20 +129,22 @@ impl Compiler {
         defines: &[bool],
         kind: DataKind,
         map: &'m SourceMap,
-    ) -> Result<DataReader<'m>, Failed> {
+    ) -> Result<(Filling, DataReader<'m>), Failed> {
         let open = self.symbols.get(s).open;
-        self.open_data(s, name)?;
+        let filling = self.open_data(s, name)?;
         self.open_domains(s, defines, name)?;
         let text = map.text(body);
         if open {
             self.shape_by_data(s, text, kind);
         }
         let dim = self.symbols.get(s).dim();
-        let reader = DataReader::new(text, body.lo, kind, self.modes.undf).with_arity(dim);
-        Ok(match kind {
+        let undf = self.modes.at(body).undf;
+        let reader = DataReader::new(text, body.lo, kind, undf).with_arity(dim);
+        let reader = match kind {
             DataKind::Set => reader,
             DataKind::Values => reader.with_constants(self),
-        })
+        };
+        Ok((filling, reader))
     }
 
     pub(super) fn set_data(
@@ -121,7 +155,8 @@ impl Compiler {
         defines: &[bool],
         map: &SourceMap,
     ) -> Result<(), Failed> {
-        let mut reader = self.open_reader(s, body, name, defines, DataKind::Set, map)?;
+        let (mut filling, mut reader) =
+            self.open_reader(s, body, name, defines, DataKind::Set, map)?;
         let symbol = self.symbols.get(s).clone();
         let (table, dim) = (symbol.table, symbol.dim());
         let mut last: Option<Label> = self.last_label(table, dim);
@@ -159,34 +194,38 @@ impl Compiler {
                 continue;
             }
             for (key, _) in keys.rows() {
-                if self.store.table(table).find(key).is_some() {
-                    if !self.modes.multi {
-                        let label = self.key_text(key);
-                        self.report(
-                            Diagnostic::error(
-                                "E0341",
-                                span,
-                                format!("the element {label} of `{}` appears twice", symbol.name),
-                            )
-                            .label("second time"),
-                        );
-                    }
+                if filling.repeats(&mut self.store, key) {
+                    let label = self.key_text(key);
+                    self.report(
+                        Diagnostic::error(
+                            "E0341",
+                            span,
+                            format!("the element {label} of `{}` appears twice", symbol.name),
+                        )
+                        .label("second time"),
+                    );
                     continue;
                 }
                 if matches!(symbol.kind, SymbolKind::Set { singleton: true })
                     && !self.store.table(table).is_empty()
                 {
-                    self.report(
-                        Diagnostic::error(
-                            "E0342",
-                            span,
-                            format!("`{}` is a singleton: it has one element", symbol.name),
-                        )
-                        .label("second element"),
-                    );
-                    continue;
+                    let first = filling.own.as_ref().is_some_and(|own| own.len() == 1);
+                    if !first {
+                        self.report(
+                            Diagnostic::error(
+                                "E0342",
+                                span,
+                                format!("`{}` is a singleton: it has one element", symbol.name),
+                            )
+                            .label("second element"),
+                        );
+                        continue;
+                    }
+                    // `$onMulti`: the later element counts.
+                    self.store.clear(&symbol, None);
                 }
-                if dim == 1 {
+                let new = filling.own.is_none() || self.store.table(table).find(key).is_none();
+                if dim == 1 && new {
                     unordered |= all_of_unordered || last.is_some_and(|l| l > key[0]);
                     last = Some(key[0]);
                 }
@@ -227,9 +266,10 @@ impl Compiler {
         defines: &[bool],
         map: &SourceMap,
     ) -> Result<(), Failed> {
-        let mut reader = self.open_reader(s, body, name, defines, DataKind::Values, map)?;
+        let (mut filling, mut reader) =
+            self.open_reader(s, body, name, defines, DataKind::Values, map)?;
         let symbol = self.symbols.get(s).clone();
-        let (table, dim) = (symbol.table, symbol.dim());
+        let dim = symbol.dim();
         let mut keys = Tuples::default();
         let mut familiar = Familiar::new(&self.symbols, s);
         loop {
@@ -240,7 +280,7 @@ impl Compiler {
                     if self.take(1, record_bytes(dim), span).is_err() {
                         break;
                     }
-                    self.put_value(s, table, &familiar.key, v, span);
+                    self.put_value(&mut filling, &familiar.key, v, span);
                 }
             }
             let Some(record) = reader.next() else { break };
@@ -260,17 +300,17 @@ impl Compiler {
                 // `/ 5 /` of a scalar comes as a lone label.
                 (Tail::None, [KeyPart::Label { text, span, .. }]) if dim == 0 => match number(text)
                 {
-                    Some(v) if value::is_undf(v) && !self.modes.undf => {
+                    Some(v) if value::is_undf(v) && !self.modes.at(*span).undf => {
                         self.report(undf_refused(*span));
                         continue;
                     }
                     Some(v) => {
-                        self.put_value(s, table, &[], v, *span);
+                        self.put_value(&mut filling, &[], v, *span);
                         continue;
                     }
                     None => match self.acronym(text, *span) {
                         Ok(v) => {
-                            self.put_value(s, table, &[], v, *span);
+                            self.put_value(&mut filling, &[], v, *span);
                             continue;
                         }
                         Err(Failed) => continue,
@@ -307,14 +347,14 @@ impl Compiler {
                 continue;
             }
             if dim == 0 {
-                self.put_value(s, table, &[], v, span);
+                self.put_value(&mut filling, &[], v, span);
                 continue;
             }
             for (k, factor) in keys.rows() {
-                self.put_value(s, table, k, scaled(v, factor), span);
+                self.put_value(&mut filling, k, scaled(v, factor), span);
             }
         }
-        self.store.table_mut(table).tidy();
+        self.store.table_mut(filling.table).tidy();
         Ok(())
     }
 
@@ -331,18 +371,21 @@ impl Compiler {
         )
     }
 
-    /// Stores a value of a data statement; an error if the record is there already.
-    pub(super) fn put_value(
-        &mut self,
-        s: SymbolId,
-        table: TableId,
-        key: &[Label],
-        v: f64,
-        span: Span,
-    ) {
-        let v = if v == 0.0 && self.modes.eps { EPS } else { v };
-        let t = &mut self.store.tables[table as usize];
-        if !self.modes.multi && !t.is_after_last(key) && t.find(key).is_some() {
+    /// What a number in data is stored as.
+    pub(super) fn stored(&self, v: f64, span: Span) -> f64 {
+        if v == 0.0 && self.modes.at(span).eps {
+            EPS
+        } else {
+            v
+        }
+    }
+
+    /// Stores a value of a data statement; an error if the statement gave the record already. As in
+    /// GAMS a zero gives none.
+    pub(super) fn put_value(&mut self, filling: &mut Filling, key: &[Label], v: f64, span: Span) {
+        let v = self.stored(v, span);
+        if v != 0.0 && filling.repeats(&mut self.store, key) {
+            let s = filling.symbol;
             let label = self.key_text(key);
             let name = self.symbols.get(s).name.clone();
             let what = if key.is_empty() {
@@ -353,7 +396,7 @@ impl Compiler {
             self.report(Diagnostic::error("E0341", span, what).label("second time"));
             return;
         }
-        t.set(key, v);
+        self.store.tables[filling.table as usize].set(key, v);
     }
 
     /// `variable x(i) / a.lo 5 /`.
@@ -363,9 +406,13 @@ impl Compiler {
         body: Span,
         map: &SourceMap,
     ) -> Result<(), Failed> {
-        let mut reader =
-            DataReader::new(map.text(body), body.lo, DataKind::Values, self.modes.undf)
-                .with_constants(self);
+        let mut reader = DataReader::new(
+            map.text(body),
+            body.lo,
+            DataKind::Values,
+            self.modes.at(body).undf,
+        )
+        .with_constants(self);
         while let Some(record) = reader.next() {
             let record = match record {
                 Ok(r) => r,

@@ -406,7 +406,7 @@ impl Compiler {
                     });
             let given = m.items.as_ref().map(|i| self.expand_all(i));
             let items = match (&given, old.flatten()) {
-                (Some(new), Some(mut old)) if self.modes.multi => {
+                (Some(new), Some(mut old)) if self.modes.at(m.name.span).multi => {
                     old.extend(new.iter().cloned());
                     Some(old)
                 }

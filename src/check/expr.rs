@@ -331,7 +331,7 @@ impl Compiler {
                             member: false,
                         })
                     }
-                    None if is_variable && self.modes.dot_l => {
+                    None if is_variable && self.modes.at(span).dot_l => {
                         let key = self.key(s, indices, span)?;
                         Ok(Node::data(
                             NodeKind::Data(symbol.table + attribute::L, key),

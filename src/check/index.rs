@@ -20,7 +20,10 @@ impl Compiler {
         let DomainPosition::Set(d) = self.symbols.get(of).domain[position] else {
             return Ok(());
         };
-        if self.modes.universal || self.symbols.is_subset(a, d) || self.symbols.get(a).dim() > 1 {
+        if self.modes.at(span).universal
+            || self.symbols.is_subset(a, d)
+            || self.symbols.get(a).dim() > 1
+        {
             return Ok(());
         }
         let (an, dn) = (
@@ -460,7 +463,7 @@ impl Compiler {
 
     /// An error unless the set has an order.
     pub(super) fn ordered(&mut self, s: SymbolId, span: Span, what: &str) -> Result<(), Failed> {
-        if self.modes.off_order {
+        if self.modes.at(span).off_order {
             return Ok(());
         }
         let root = self.symbols.get(self.symbols.root(s));

@@ -28,7 +28,7 @@ use crate::diag::{Diagnostic, Severity};
 use crate::host::Host;
 use crate::source::{Ending, Known, PreprocessOptions, SourceMap, Span, predefined};
 use crate::syntax::Parser;
-use crate::syntax::ast::{Modes, StmtKind};
+use crate::syntax::ast::{StmtKind, Switches};
 use node::{Code, EquationDef, Part, Slot, SymbolId};
 use symbols::{DomainPosition, Store, Symbol, SymbolKind, Symbols, UNIVERSE};
 
@@ -90,7 +90,7 @@ pub(crate) struct Compiler {
     /// What data may take, and what they took so far, in bytes.
     max_memory: Option<usize>,
     taken: usize,
-    modes: Modes,
+    modes: Switches,
 }
 
 /// Compiles a file: parses, checks and carries out its data statements.
@@ -188,7 +188,7 @@ impl Compiler {
             put_named: false,
             max_memory: None,
             taken: 0,
-            modes: Modes::default(),
+            modes: Switches::default(),
         }
     }
 }
@@ -231,7 +231,7 @@ impl Compiler {
     fn used(&mut self, id: SymbolId, span: Span) {
         let root = self.symbols.root(id);
         let s = self.symbols.get(root);
-        if self.in_equation || self.modes.implicit_assign || s.has_data || s.assigned {
+        if self.in_equation || self.modes.at(span).implicit_assign || s.has_data || s.assigned {
             return;
         }
         // A statement that could not be read may be the one that gives it values.

@@ -29,7 +29,7 @@ impl Compiler {
         map: &SourceMap,
         out: &mut Vec<Code>,
     ) -> Result<(), Failed> {
-        self.modes = stmt.modes;
+        self.modes = stmt.modes.clone();
         let mut span = stmt.span;
         if self.nesting > 0 {
             self.no_declaration(stmt)?;
@@ -434,7 +434,7 @@ impl Compiler {
         };
         if let Some(d) = defined {
             let first = self.equations[d].span;
-            if !self.modes.multi {
+            if !self.modes.at(e.name.span).multi_replace {
                 return self.fail(
                     Diagnostic::error(
                         "E0327",

@@ -1,15 +1,43 @@
 //! `table` declarations.
 
-use super::expansion::{Tuples, set_prefix};
+use rustc_hash::FxHashSet;
+
+use super::expansion::{Tuples, record_bytes, set_prefix};
 use super::node::SymbolId;
 use super::symbols::SymbolKind;
 use super::{Compiler, Failed, MAX_ERRORS};
+use crate::data::universe::Label;
 use crate::data::value::truth;
 use crate::diag::Diagnostic;
 use crate::source::{Known, SourceMap, Span};
 use crate::syntax::ast::{TableDecl, TableOf, VariableKind};
 use crate::syntax::data::{KeyPart, Tail, width};
 use crate::syntax::table::{TableItem, TableReader};
+
+/// What the label of a row or column stands for.
+#[derive(Default)]
+enum Line {
+    /// A label that may not stand there.
+    Refused,
+    /// One label at each position.
+    Labels(Vec<Label>),
+    /// Several.
+    Many(Tuples),
+    /// It defines a set, where a value stands.
+    #[default]
+    Open,
+}
+
+/// The labels of a table as far as it is read.
+#[derive(Default)]
+struct Lines {
+    columns: Vec<Line>,
+    row: Line,
+    /// All columns so far, and the rows since the last headings: none may come twice.
+    headings: FxHashSet<Box<[Label]>>,
+    rows: FxHashSet<Box<[Label]>>,
+    key: Vec<Label>,
+}
 
 impl Compiler {
     pub(super) fn declare_table(&mut self, t: &TableDecl, map: &SourceMap) -> Result<(), Failed> {
@@ -27,10 +55,11 @@ impl Compiler {
         let open = self.symbols.get(s).open;
         let name = t.symbol.name.span;
         let defines = t.symbol.defines();
-        self.open_data(s, name)?;
+        let mut filling = self.open_data(s, name)?;
         self.open_domains(s, &defines, name)?;
         if open {
-            let mut reader = TableReader::new(map.expanded(), t.body, 1, self.modes.undf);
+            let mut reader =
+                TableReader::new(map.expanded(), t.body, 1, self.modes.at(t.body).undf);
             while let Some(item) = reader.next() {
                 if let Ok(TableItem::Cell(c)) = item {
                     self.set_dimension(s, width(c.row) + width(c.column));
@@ -54,26 +83,28 @@ impl Compiler {
                 .help("use a `parameter` with a list instead"),
             );
         }
-        let mut reader = TableReader::new(map.expanded(), t.body, dim, self.modes.undf);
-        let (mut keys, mut parts) = (Tuples::default(), Vec::new());
-        // Columns whose labels were refused.
-        let mut refused: Vec<bool> = Vec::new();
+        let mut reader = TableReader::new(map.expanded(), t.body, dim, self.modes.at(t.body).undf);
+        let mut lines = Lines::default();
+        let mut keys = Tuples::default();
         while let Some(item) = reader.next() {
             let cell = match item {
                 Ok(TableItem::Cell(c)) => c,
                 // Labels count even where nothing stands under or behind them: they are checked, and
                 // take their place in the universe.
                 Ok(TableItem::Headings) => {
-                    refused.clear();
-                    for key in reader.columns() {
+                    lines.columns.clear();
+                    lines.rows.clear();
+                    for (key, span) in reader.columns() {
                         let at = dim.saturating_sub(width(key));
-                        let label = self.table_label(s, at, key, &defines, name);
-                        refused.push(label.is_err());
+                        let line = self.table_line(s, at, key, &defines, name);
+                        let line = self.not_again(line, &mut lines.headings, span, "column");
+                        lines.columns.push(line);
                     }
                     continue;
                 }
-                Ok(TableItem::EmptyRow(key)) => {
-                    let _ = self.table_label(s, 0, key, &defines, name);
+                Ok(TableItem::EmptyRow(key, span)) => {
+                    let line = self.table_line(s, 0, key, &defines, name);
+                    self.not_again(line, &mut lines.rows, span, "row");
                     continue;
                 }
                 Err(d) => {
@@ -84,8 +115,9 @@ impl Compiler {
                     continue;
                 }
             };
-            if refused.get(cell.place) == Some(&true) {
-                continue;
+            if cell.first {
+                let row = self.table_line(s, 0, cell.row, &defines, name);
+                lines.row = self.not_again(row, &mut lines.rows, cell.row_span, "row");
             }
             let value = match cell.value {
                 Tail::Number(v, _) => v,
@@ -95,9 +127,24 @@ impl Compiler {
                 },
                 _ => continue,
             };
-            parts.clear();
-            parts.extend_from_slice(cell.row);
-            parts.extend_from_slice(cell.column);
+            let value = match symbol.is_set() {
+                true => f64::from(u8::from(truth(value))),
+                false => self.stored(value, cell.span),
+            };
+            match (&lines.row, &lines.columns[cell.place]) {
+                (Line::Refused, _) | (_, Line::Refused) => continue,
+                (Line::Labels(row), Line::Labels(column)) if row.len() + column.len() == dim => {
+                    self.take(1, record_bytes(dim), cell.span)?;
+                    lines.key.clear();
+                    lines.key.extend_from_slice(row);
+                    lines.key.extend_from_slice(column);
+                    // Neither its row nor its column comes twice, so it does not.
+                    self.store.tables[symbol.table as usize].set(&lines.key, value);
+                    continue;
+                }
+                _ => {}
+            }
+            let parts = [cell.row, cell.column].concat();
             if self
                 .expand(s, &parts, None, cell.span, &defines, &mut keys)
                 .is_err()
@@ -105,11 +152,10 @@ impl Compiler {
                 continue;
             }
             for (k, _) in keys.rows() {
-                if !symbol.is_set() {
-                    self.put_value(s, symbol.table, k, value, cell.span);
+                if symbol.is_set() {
+                    self.store.table_mut(symbol.table).set(k, value);
                 } else {
-                    let member = f64::from(u8::from(truth(value)));
-                    self.store.table_mut(symbol.table).set(k, member);
+                    self.put_value(&mut filling, k, value, cell.span);
                 }
             }
         }
@@ -126,7 +172,7 @@ impl Compiler {
         self.declare_variables(kind, std::slice::from_ref(&t.symbol), map)?;
         let s = self.lookup(&t.symbol.name)?;
         let dim = self.symbols.get(s).dim() + 1;
-        let mut reader = TableReader::new(map.expanded(), t.body, dim, self.modes.undf);
+        let mut reader = TableReader::new(map.expanded(), t.body, dim, self.modes.at(t.body).undf);
         while let Some(item) = reader.next() {
             match item {
                 Ok(TableItem::Cell(cell)) => {
@@ -135,7 +181,7 @@ impl Compiler {
                         let _ = self.attribute_data(s, &key, v, cell.span);
                     }
                 }
-                Ok(TableItem::Headings | TableItem::EmptyRow(_)) => {}
+                Ok(TableItem::Headings | TableItem::EmptyRow(..)) => {}
                 Err(d) => self.report(d),
             }
         }
@@ -143,26 +189,68 @@ impl Compiler {
         Ok(())
     }
 
-    /// Checks the label of a row or column that begins at an index position. A set that the table
+    /// Looks up the label of a row or column that begins at an index position. A set that the table
     /// defines gets labels from values only.
-    fn table_label(
+    fn table_line(
         &mut self,
         s: SymbolId,
         position: usize,
         key: &[KeyPart],
         defines: &[bool],
         span: Span,
-    ) -> Result<(), Failed> {
+    ) -> Line {
         let spelled_out = set_prefix(key);
-        let mut at = position;
-        for part in spelled_out.as_deref().unwrap_or(key) {
-            let part = std::slice::from_ref(part);
-            let end = at + width(part);
-            if !defines.iter().take(end).skip(at).any(|&d| d) {
-                self.products(s, at, part, span, &[])?;
-            }
-            at = end;
+        let key = spelled_out.as_deref().unwrap_or(key);
+        let ends = key.iter().scan(position, |at, part| {
+            let from = *at;
+            *at += width(std::slice::from_ref(part));
+            Some((from, *at))
+        });
+        let opens = |(from, to): (usize, usize)| (from..to).any(|p| defines.get(p) == Some(&true));
+        if !ends.clone().any(opens) {
+            return match self.products(s, position, key, span, &[]) {
+                Err(Failed) => Line::Refused,
+                Ok(t) if t.len() == 1 => Line::Labels(t.labels),
+                Ok(t) => Line::Many(t),
+            };
         }
-        Ok(())
+        for (part, place) in key.iter().zip(ends).filter(|(_, place)| !opens(*place)) {
+            let part = std::slice::from_ref(part);
+            if self.products(s, place.0, part, span, &[]).is_err() {
+                return Line::Refused;
+            }
+        }
+        Line::Open
+    }
+
+    /// The labels of a row or column, refused if they came before.
+    fn not_again(
+        &mut self,
+        line: Line,
+        before: &mut FxHashSet<Box<[Label]>>,
+        at: Span,
+        what: &str,
+    ) -> Line {
+        let mut again = None;
+        let tuples: Box<dyn Iterator<Item = &[Label]>> = match &line {
+            Line::Labels(l) => Box::new(std::iter::once(l.as_slice())),
+            Line::Many(t) => Box::new(t.rows().map(|r| r.0)),
+            Line::Open | Line::Refused => return line,
+        };
+        for key in tuples {
+            if !before.insert(key.into()) {
+                again = Some(self.key_text(key));
+            }
+        }
+        let Some(label) = again else { return line };
+        self.report(
+            Diagnostic::error(
+                "E0341",
+                at,
+                format!("the {what} {label} appears twice in this table"),
+            )
+            .label("second time"),
+        );
+        Line::Refused
     }
 }

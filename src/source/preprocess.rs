@@ -23,7 +23,7 @@ use super::variables::{self, Variables};
 use super::{FileId, Outcome, SourceMap, Span, refuse};
 use crate::diag::Diagnostic;
 use crate::host::{Host, HostError};
-use crate::syntax::ast::Modes;
+use crate::syntax::ast::{Modes, Switches};
 
 /// Files included by files.
 const DEEPEST_INCLUDE: usize = 40;
@@ -493,10 +493,12 @@ impl<'h> Preprocessor<'h> {
         }
     }
 
-    /// The switches in force at a byte of the expanded text.
-    pub(crate) fn modes_at(&self, at: u32) -> Modes {
-        let later = self.modes.partition_point(|(from, _)| *from <= at);
-        self.modes[later.max(1) - 1].1
+    /// The switches in force over a part of the expanded text.
+    pub(crate) fn switches(&self, part: Span) -> Switches {
+        let first = self.modes.partition_point(|(from, _)| *from <= part.lo);
+        let end = self.modes.partition_point(|(from, _)| *from < part.hi);
+        let first = first.max(1) - 1;
+        Switches::new(&self.modes[first..end.max(first + 1)])
     }
 
     /// `$onEnd` is in force.

@@ -3,6 +3,8 @@
 //! What the grammar cannot tell apart is kept as one node until names are known: `p(i+1)` is an
 //! [`Expr`] of kind [`ExprKind::Apply`] whether `p` is a parameter with a lead or a function of a sum.
 
+use std::rc::Rc;
+
 use crate::source::Span;
 
 /// A name as it was spelled. Names are compared without regard to case.
@@ -14,7 +16,7 @@ pub struct Ident {
     pub span: Span,
 }
 
-/// Switches set by `$on…`/`$off…` directives, as they stood at the start of a statement.
+/// Switches set by `$on…`/`$off…` directives.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
 pub struct Modes {
     /// `$onMulti`: a symbol may get data more than once (merged).
@@ -37,6 +39,31 @@ pub struct Modes {
     pub dot_l: bool,
 }
 
+/// The switches over the text of a statement: directives may stand inside it.
+#[derive(Clone, Debug)]
+pub struct Switches(Rc<[(u32, Modes)]>);
+
+impl Switches {
+    /// From where in the expanded text which switches are in force; the first holds from the start.
+    pub fn new(changes: &[(u32, Modes)]) -> Self {
+        Self(changes.into())
+    }
+
+    /// The switches where something begins.
+    pub fn at(&self, place: Span) -> Modes {
+        let later = self.0.partition_point(|(from, _)| *from <= place.lo);
+        self.0
+            .get(later.saturating_sub(1))
+            .map_or(Modes::default(), |m| m.1)
+    }
+}
+
+impl Default for Switches {
+    fn default() -> Self {
+        Self::new(&[(0, Modes::default())])
+    }
+}
+
 /// A statement.
 #[derive(Clone, Debug)]
 pub struct Stmt {
@@ -45,7 +72,7 @@ pub struct Stmt {
     /// From its first word to its `;`.
     pub span: Span,
     /// Switches in force.
-    pub modes: Modes,
+    pub modes: Switches,
 }
 
 /// The kinds of statements.

@@ -172,12 +172,12 @@ impl<'h> Parser<'h> {
             Class::Algebra => Rule::whole_algebra,
             Class::Directive | Class::Other => Rule::whole_other,
         };
-        let modes = self.text.modes_at(raw.span.lo);
+        let modes = self.text.switches(raw.span);
         let builder = Builder {
             condensed: &condensed,
             expanded,
             holes: &raw.holes,
-            modes,
+            modes: modes.clone(),
         };
         let built = match Grammar::parse(rule, text) {
             Ok(mut pairs) => match pairs.next() {

@@ -18,8 +18,8 @@ use crate::source::Span;
 pub enum TableItem<'r, 'a> {
     /// A new line of column labels, see [`TableReader::columns`].
     Headings,
-    /// The label of a row without values.
-    EmptyRow(&'r [KeyPart<'a>]),
+    /// The label of a row without values, and its place.
+    EmptyRow(&'r [KeyPart<'a>], Span),
     /// A value.
     Cell(Cell<'r, 'a>),
 }
@@ -29,6 +29,10 @@ pub enum TableItem<'r, 'a> {
 pub struct Cell<'r, 'a> {
     /// Key of the row.
     pub row: &'r [KeyPart<'a>],
+    /// Place of the row's label.
+    pub row_span: Span,
+    /// The first value of its row.
+    pub first: bool,
     /// Key of the column.
     pub column: &'r [KeyPart<'a>],
     /// Which of the present columns that is.
@@ -61,6 +65,10 @@ pub struct TableReader<'a> {
     row_span: Span,
     /// Column position of the first byte of the present line.
     offset: usize,
+    /// The present line has a byte a position.
+    even: bool,
+    /// Columns up to here lie before the next value.
+    passed: usize,
     line: &'a str,
     line_base: u32,
     /// Byte and column position last computed in the present line.
@@ -91,6 +99,8 @@ impl<'a> TableReader<'a> {
             row: Vec::new(),
             row_span: body,
             offset: 0,
+            even: true,
+            passed: 0,
             line: "",
             line_base: 0,
             known: (0, 0),
@@ -103,9 +113,9 @@ impl<'a> TableReader<'a> {
         }
     }
 
-    /// Keys of the columns of the present block, in order.
-    pub fn columns(&self) -> impl Iterator<Item = &[KeyPart<'a>]> {
-        self.columns.iter().map(|c| c.key.as_slice())
+    /// Keys of the columns of the present block, in order, and their places.
+    pub fn columns(&self) -> impl Iterator<Item = (&[KeyPart<'a>], Span)> {
+        self.columns.iter().map(|c| (c.key.as_slice(), c.span))
     }
 
     /// The next item. After an error, reading goes on with the next value or line.
@@ -117,32 +127,19 @@ impl<'a> TableReader<'a> {
             }
             if let Some((column, from, to)) = self.fields.pop() {
                 return Some(match self.reader.field_value(from, to) {
-                    Ok(value) => Ok(TableItem::Cell(Cell {
-                        row: &self.row,
-                        column: &self.columns[column].key,
-                        place: column,
-                        value,
-                        span: self.span(from, to),
-                    })),
+                    Ok(value) => Ok(self.item(column, value, self.span(from, to))),
                     Err(d) => Err(*d),
                 });
             }
             if self.in_row && self.reader.more() {
-                self.empty = false;
                 return Some(match self.cell() {
-                    Ok((column, value, span)) => Ok(TableItem::Cell(Cell {
-                        row: &self.row,
-                        column: &self.columns[column].key,
-                        place: column,
-                        value,
-                        span,
-                    })),
+                    Ok((column, value, span)) => Ok(self.item(column, value, span)),
                     Err(d) => Err(*d),
                 });
             }
             self.in_row = false;
             if std::mem::take(&mut self.empty) {
-                return Some(Ok(TableItem::EmptyRow(&self.row)));
+                return Some(Ok(TableItem::EmptyRow(&self.row, self.row_span)));
             }
             if self.at >= self.end {
                 return None;
@@ -151,6 +148,18 @@ impl<'a> TableReader<'a> {
                 return Some(Err(*d));
             }
         }
+    }
+
+    fn item(&mut self, column: usize, value: Tail<'a>, span: Span) -> TableItem<'_, 'a> {
+        TableItem::Cell(Cell {
+            row: &self.row,
+            row_span: self.row_span,
+            first: std::mem::take(&mut self.empty),
+            column: &self.columns[column].key,
+            place: column,
+            value,
+            span,
+        })
     }
 
     /// Takes the next line: column labels, or the label of a row.
@@ -183,6 +192,8 @@ impl<'a> TableReader<'a> {
         self.line = &self.text[from..stop];
         self.line_base = from as u32;
         self.known = (0, self.offset);
+        self.even = even(self.line);
+        self.passed = 0;
         self.reader.restart(self.line, self.line_base);
         if self.header {
             self.header = false;
@@ -222,6 +233,7 @@ impl<'a> TableReader<'a> {
             let Some((mut from, to)) = fields.next() else {
                 return;
             };
+            self.row_span = self.span(from, to);
             // Labels may have dots between as well: `a1.b1,5`.
             let quoted = from > 0 && matches!(self.line.as_bytes()[from - 1], b'\'' | b'"');
             while !quoted
@@ -240,6 +252,7 @@ impl<'a> TableReader<'a> {
             .map(|(c, (from, to))| (c, from, to))
             .collect();
         self.fields.reverse();
+        self.empty = true;
     }
 
     fn read_header(&mut self) -> Result<(), Box<Diagnostic>> {
@@ -312,7 +325,11 @@ impl<'a> TableReader<'a> {
             )));
         }
         let (left, right) = (self.column(from), self.column(to));
-        let first = self.columns.partition_point(|c| c.to <= left);
+        let mut first = self.passed;
+        while self.columns.get(first).is_some_and(|c| c.to <= left) {
+            first += 1;
+        }
+        self.passed = first;
         let under = self.columns[first..]
             .iter()
             .take_while(|c| c.from < right)
@@ -355,7 +372,8 @@ impl<'a> TableReader<'a> {
         while !self.line.is_char_boundary(to) {
             to += 1;
         }
-        self.known = (0, self.column(to));
+        self.offset = self.column(to);
+        self.known = (0, self.offset);
         self.line = &self.line[to..];
         self.line_base += to as u32;
         self.reader.restart(self.line, self.line_base);
@@ -367,6 +385,9 @@ impl<'a> TableReader<'a> {
 
     /// Column position of a byte of the present line.
     fn column(&mut self, byte: usize) -> usize {
+        if self.even {
+            return self.offset + byte;
+        }
         let (at, column) = if self.known.0 <= byte {
             self.known
         } else {
@@ -378,9 +399,14 @@ impl<'a> TableReader<'a> {
     }
 }
 
+/// Whether each byte of a text takes one position.
+fn even(text: &str) -> bool {
+    text.is_ascii() && memchr::memchr(b'\t', text.as_bytes()).is_none()
+}
+
 /// The column position behind a text that begins at `column`.
 fn column_after(text: &str, column: usize) -> usize {
-    if text.is_ascii() && !text.as_bytes().contains(&b'\t') {
+    if even(text) {
         return column + text.len();
     }
     text.chars().fold(column, |c, ch| match ch {
@@ -415,7 +441,7 @@ mod tests {
         while let Some(c) = t.next() {
             out.push(match c {
                 Ok(TableItem::Headings) => continue,
-                Ok(TableItem::EmptyRow(r)) => format!("{}|", key(r)),
+                Ok(TableItem::EmptyRow(r, _)) => format!("{}|", key(r)),
                 Ok(TableItem::Cell(c)) => {
                     let v = match c.value {
                         Tail::Number(x, _) => x.to_string(),
@@ -464,15 +490,15 @@ mod tests {
     fn misplaced_values() {
         assert_eq!(
             cells("\n       aa      bb\nr1    1\nr2         2\n"),
-            ["!E0250", "!E0250"]
+            ["!E0250", "r1|", "!E0250", "r2|"]
         );
         assert_eq!(
             cells("\n       aa      bb\nr1 1234567890123\nr2 x   3 "),
-            ["!E0251", "!E0250", "r2|aa=3"]
+            ["!E0251", "r1|", "!E0250", "r2|aa=3"]
         );
         assert_eq!(
             cells("\n     x     y\nb  1234     1\nc  7        .5\nd         2\n"),
-            ["b|x=1234", "!E0250", "c|x=7", "!E0250", "!E0250"]
+            ["b|x=1234", "!E0250", "c|x=7", "!E0250", "!E0250", "d|"]
         );
         assert_eq!(cells("\n       aa\nr1 5x   3 "), ["!E0245", "r1|aa=3"]);
     }

@@ -416,7 +416,7 @@ impl Builder<'_> {
                 "inf" => f64::INFINITY,
                 "eps" => value::EPS,
                 "na" => value::NA,
-                "undf" if self.modes.undf => value::UNDF,
+                "undf" if self.modes.at(name.span).undf => value::UNDF,
                 _ => return Ok(None),
             },
         )))

@@ -156,8 +156,8 @@ pub(super) struct Builder<'a> {
     pub(super) condensed: &'a Condensed,
     pub(super) expanded: &'a str,
     pub(super) holes: &'a [Hole],
-    /// Switches in force where the statement begins.
-    pub(super) modes: Modes,
+    /// Switches in force over the statement.
+    pub(super) modes: Switches,
 }
 
 impl Builder<'_> {

@@ -133,7 +133,7 @@ impl Builder<'_> {
             list.push(Stmt {
                 kind: self.action(p)?,
                 span,
-                modes: self.modes,
+                modes: self.modes.clone(),
             });
         }
         Ok(list)
@@ -589,7 +589,7 @@ impl Builder<'_> {
                     vec![Stmt {
                         kind: statement,
                         span: at,
-                        modes: self.modes,
+                        modes: self.modes.clone(),
                     }],
                 )],
                 Vec::new(),
