@@ -239,7 +239,7 @@ pub enum Function {
 }
 
 /// One expression with slots.
-#[derive(Clone, PartialEq, Default, Debug)]
+#[derive(Clone, PartialEq, Eq, Hash, Default, Debug)]
 pub struct Kernel {
     /// The program. Leaves exactly one value.
     pub ops: Vec<Op>,

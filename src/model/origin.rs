@@ -52,8 +52,16 @@ pub struct Blocks {
 impl Blocks {
     /// The block of row or column `i`.
     pub fn of(&self, i: u32) -> &Block {
-        let k = self.list.partition_point(|b| b.start + b.len <= i);
-        &self.list[k]
+        &self.list[self.position(i)]
+    }
+
+    /// The block of row or column `i`; None for one that a method added.
+    pub fn get(&self, i: u32) -> Option<&Block> {
+        self.list.get(self.position(i))
+    }
+
+    fn position(&self, i: u32) -> usize {
+        self.list.partition_point(|b| b.start + b.len <= i)
     }
 
     /// The block of a symbol.

@@ -46,8 +46,10 @@ impl Monitor for RunMonitor<'_, '_> {
 impl Machine<'_> {
     /// `equil('b3','x')`
     pub fn origin_name(&self, blocks: &Blocks, i: usize) -> String {
-        let b = blocks.of(i as u32);
-        self.record_name(b.symbol, b.key(i as u32))
+        match blocks.get(i as u32) {
+            Some(b) => self.record_name(b.symbol, b.key(i as u32)),
+            None => "an auxiliary row or column".into(),
+        }
     }
 
     /// A model option: the model's own attribute, the `option` statement, or the default.

@@ -18,21 +18,18 @@
 use super::Convexity;
 use super::consistent::consistent_start;
 use super::curvature::negative_curvature;
-use super::elastic::Elastic;
 use super::growth::Growth;
 use super::problem::{Nlp, Problem};
 use super::provider::{Control, Ended, Progress, Provider, Shared, Solution, lock};
 use super::quadratic::Quadratic;
 use super::schedule::{
-    AGREEMENT, BASE, BETTER, CHEAP, ELASTIC_AFTER, ENOUGH, FINEST, FIRST_PATIENCE, From, NEAR,
-    NEARER, OVERHEAD, PATIENCE, ROUNDING, SCHEDULE, SHARP, SMALL, TIMES,
+    AGREEMENT, BASE, BETTER, CHEAP, ELASTIC_AFTER, ENOUGH, EXACT, FINEST, FIRST_PATIENCE, From,
+    OVERHEAD, PATIENCE, SCHEDULE, SHARP, SMALL, TIMES,
 };
 use super::slp;
 use super::trial::{Trial, active_set, clean, polished, residuals_at, tidy};
 use crate::autodiff::{ErrorKind, EvalFailure, Evaluator, Kinks, kinks};
-use crate::model::certificate_nlp::is_locally_infeasible;
 use crate::model::instance::Instance;
-use crate::solve::lp::Limits;
 use crate::solve::random::Random;
 use crate::solve::{Monitor, OWN_OPTIONS, Settings, SolveError, SolverStatus, answer::Answer};
 use std::sync::{Arc, Mutex};
@@ -81,6 +78,33 @@ pub fn solve(
     });
     driver.convex = quadratic.is_some().then_some(convexity);
     driver.run(quadratic)
+}
+
+/// Whether the person, the time or evaluations that failed (0: any number may) end the solve.
+pub(super) fn why_stop(
+    interrupted: bool,
+    deadline: Option<Instant>,
+    limit: u64,
+    failures: u64,
+) -> Option<SolverStatus> {
+    if interrupted {
+        Some(SolverStatus::UserInterrupt)
+    } else if deadline.is_some_and(|d| Instant::now() > d) {
+        Some(SolverStatus::ResourceInterrupt)
+    } else {
+        (limit > 0 && failures > limit).then_some(SolverStatus::EvaluationInterrupt)
+    }
+}
+
+/// What to do about a point that is all but a solution.
+fn nearly(t: &Trial) -> Option<&'static [(&'static str, &'static str)]> {
+    let solved = matches!(t.ended, Ended::Solved | Ended::Acceptable);
+    match (t.is_nearly_optimal(), t.is_feasible() && solved) {
+        _ if t.is_stationary() => None,
+        (true, _) if t.ended != Ended::Iterations => Some(SHARP),
+        (_, true) => Some(EXACT),
+        _ => None,
+    }
 }
 
 /// The start point must have values; derivatives may be missing there.
@@ -139,6 +163,10 @@ pub(super) struct Driver<'a> {
     pub(super) at_saddle: bool,
     /// There is no feasible point.
     pub(super) impossible: bool,
+    /// What was all but a solution was solved for once more.
+    repeated: bool,
+    /// The elastic form was solved.
+    pub(super) elastic_tried: bool,
     /// Work after which no further attempt is begun.
     enough: f64,
     /// Iterations one attempt may take.
@@ -174,6 +202,8 @@ impl<'a> Driver<'a> {
             ended: Ended::Broken,
             at_saddle: false,
             impossible: false,
+            repeated: false,
+            elastic_tried: false,
             enough: f64::INFINITY,
             patience: FIRST_PATIENCE,
             growth: Growth::Watched(0),
@@ -198,6 +228,13 @@ impl Driver<'_> {
                 return Ok(self.finish());
             }
         }
+        if self.is_square() {
+            self.attempt_newton();
+            self.leave_saddles()?;
+            if self.is_settled() {
+                return Ok(self.finish());
+            }
+        }
         self.attempt(From::Start, &[])?;
         self.enough = ENOUGH.max(TIMES * self.work());
         if self.is_settled() {
@@ -214,10 +251,6 @@ impl Driver<'_> {
             return Ok(self.finish());
         }
         self.patience = PATIENCE;
-        let sharper = |t: &Trial| t.is_nearly_optimal() && t.ended != Ended::Iterations;
-        if self.best.as_ref().is_some_and(sharper) {
-            self.attempt(From::Start, SHARP)?;
-        }
         let kinks = kinks(self.instance);
         if kinks == Some(Kinks::Anywhere) {
             self.round_kinks()?;
@@ -347,7 +380,7 @@ impl Driver<'_> {
             .saturating_sub(self.iterations)
     }
 
-    fn deadline(&self) -> Option<Instant> {
+    pub(super) fn deadline(&self) -> Option<Instant> {
         (self.settings.time_limit < 1e9)
             .then(|| self.begin + Duration::from_secs_f64(self.settings.time_limit.max(0.0)))
     }
@@ -422,7 +455,7 @@ impl Driver<'_> {
         }
     }
 
-    fn attempt_from(
+    pub(super) fn attempt_from(
         &mut self,
         x: Vec<f64>,
         extra: &[(&str, &str)],
@@ -431,31 +464,32 @@ impl Driver<'_> {
         let shared: Shared = self.problem.clone();
         let solution = self.call(shared, extra)?;
         if solution.ended == Ended::TooFewDegrees && self.stopped.is_none() {
-            self.attempt_elastic()?;
+            if !self.elastic_tried {
+                self.attempt_elastic()?;
+            }
             return Ok(None);
         }
-        let trial = self.judge(solution.x, solution.lambda, solution.ended);
+        let mut trial = self.judge(solution.x, solution.lambda, solution.ended);
+        if let Some(options) = nearly(&trial)
+            && !self.repeated
+            && self.stopped.is_none()
+        {
+            self.repeated = true;
+            let shared: Shared = self.problem.clone();
+            let solution = self.call(shared, options)?;
+            let again = self.judge(solution.x, solution.lambda, solution.ended);
+            if again.better(&trial) {
+                trial = again;
+            }
+        }
         let trial = self.follow(x, trial)?;
         let objective = trial.is_optimal().then_some(trial.objective);
         self.keep(trial);
         Ok(objective)
     }
 
-    fn attempt_quadratic(&mut self, quadratic: &Quadratic) {
-        let limits = Limits {
-            start: self.begin,
-            seconds: self.settings.time_limit,
-            iterations: self.settings.iteration_limit,
-        };
-        let solution = quadratic.solve(&limits, &mut || self.monitor.interrupted());
-        self.iterations += solution.iterations;
-        self.note_end(solution.ended);
-        let trial = self.judge(solution.x, solution.lambda, solution.ended);
-        self.keep(trial);
-    }
-
     /// Whether how a solver ended leaves room for a further attempt.
-    fn note_end(&mut self, ended: Ended) {
+    pub(super) fn note_end(&mut self, ended: Ended) {
         self.stopped = match ended {
             _ if self.stopped.is_some() => self.stopped,
             Ended::Stopped if self.monitor.interrupted() => Some(SolverStatus::UserInterrupt),
@@ -467,103 +501,11 @@ impl Driver<'_> {
         };
     }
 
-    /// Solves with rounded kinks, each time from the last point.
-    fn round_kinks(&mut self) -> Result<(), SolveError> {
-        let mut x = self.start.clone();
-        for (k, delta) in ROUNDING.into_iter().enumerate() {
-            if self.stopped.is_some() {
-                break;
-            }
-            let mut problem = Problem::smoothed(self.instance, delta);
-            problem.set_start(x.clone());
-            let options = if k == 0 { &[][..] } else { NEARER };
-            let solution = self.call(Arc::new(Mutex::new(problem)), options)?;
-            if solution.x.iter().all(|v| v.is_finite()) {
-                x.clone_from(&solution.x);
-                let trial = self.judge(solution.x, solution.lambda, solution.ended);
-                self.keep(trial.clone());
-                self.finish_rounded(&trial, delta);
-            }
-        }
-        Ok(())
-    }
-
-    /// The last digits of a solution with rounded kinks, which are not smooth enough for a solver's last steps.
-    fn finish_rounded(&mut self, trial: &Trial, delta: f64) {
-        if delta > FINEST || trial.is_optimal() || !trial.is_feasible() {
-            return;
-        }
-        let mut rounded = Problem::smoothed(self.instance, delta);
-        if let Some(t) = polished(self.instance, &mut rounded, &mut None, trial, 1e-6) {
-            let trial = self.judge(t.x, t.lambda, t.ended);
-            self.keep(trial);
-        }
-    }
-
-    fn attempt_elastic(&mut self) -> Result<(), SolveError> {
-        let start = self.start.clone();
-        for rho in [1e3, 1e6] {
-            lock(&*self.problem).set_start(start.clone());
-            let trial = self.elastic(rho, 1.0)?;
-            let optimal = trial.is_optimal();
-            self.note_infeasibility(&trial);
-            self.keep(trial);
-            if optimal || self.stopped.is_some() {
-                return Ok(());
-            }
-        }
-        if self.infeasibility.is_some() {
-            return Ok(());
-        }
-        self.minimise_violation()
-    }
-
-    /// Keeps an elastic solution whose multipliers prove that there is no feasible point nearby.
-    fn note_infeasibility(&mut self, trial: &Trial) {
-        let mut problem = lock(&*self.problem);
-        // the constraints push with −λ
-        let mut y = vec![0.0; self.instance.row_count()];
-        for (&i, l) in problem.rows.iter().zip(&trial.lambda) {
-            y[i as usize] = -l;
-        }
-        let evaluator = problem.evaluator();
-        let proved = is_locally_infeasible(self.instance, evaluator, &trial.level, &y, 1e-4);
-        if !trial.is_feasible() && self.infeasibility.is_none() && proved {
-            self.infeasibility = Some((trial.clone(), y));
-        }
-    }
-
-    fn elastic(&mut self, rho: f64, weight: f64) -> Result<Trial, SolveError> {
-        let elastic = Elastic::new(self.problem.clone(), rho, weight);
-        let n = elastic.original_variables();
-        let solution = self.call(Arc::new(Mutex::new(elastic)), &[])?;
-        let mut x = solution.x;
-        x.truncate(n);
-        Ok(self.judge(x, solution.lambda, solution.ended))
-    }
-
-    /// The nearest point to feasibility: a start for the problem itself, or evidence that there is
-    /// none.
-    fn minimise_violation(&mut self) -> Result<(), SolveError> {
-        let Some(best) = self.best.clone().filter(|t| !t.is_feasible()) else {
-            return Ok(());
-        };
-        lock(&*self.problem).set_start(best.x);
-        let trial = self.elastic(1.0, 0.0)?;
-        if trial.is_feasible() {
-            let x = trial.x.clone();
-            self.keep(trial);
-            if self.stopped.is_none() {
-                self.attempt_from(x, NEAR)?;
-            }
-            return Ok(());
-        }
-        self.note_infeasibility(&trial);
-        self.keep(trial);
-        Ok(())
-    }
-
-    fn call(&mut self, nlp: Shared, extra: &[(&str, &str)]) -> Result<Solution, SolveError> {
+    pub(super) fn call(
+        &mut self,
+        nlp: Shared,
+        extra: &[(&str, &str)],
+    ) -> Result<Solution, SolveError> {
         let mut options: Vec<(String, String)> = Vec::new();
         let mut put = |k: &str, v: &str| {
             options.retain(|(old, _)| !old.eq_ignore_ascii_case(k));
@@ -611,13 +553,8 @@ impl Driver<'_> {
                     p.step
                 ));
             }
-            if monitor.interrupted() {
-                stopped = Some(SolverStatus::UserInterrupt);
-            } else if deadline.is_some_and(|d| Instant::now() > d) {
-                stopped = Some(SolverStatus::ResourceInterrupt);
-            } else if limit > 0 && lock(&*nlp).failures() > limit {
-                stopped = Some(SolverStatus::EvaluationInterrupt);
-            }
+            let failures = lock(&*nlp).failures();
+            stopped = stopped.or(why_stop(monitor.interrupted(), deadline, limit, failures));
             let unbounded = p.objective < -UNBOUNDED && p.primal < 1e-3 && !p.restoration;
             stopped.is_none() && !unbounded
         };
@@ -679,7 +616,7 @@ impl Driver<'_> {
         best
     }
 
-    fn keep(&mut self, trial: Trial) {
+    pub(super) fn keep(&mut self, trial: Trial) {
         let better = match &self.best {
             None => true,
             // a local optimum stays one, whatever lies elsewhere

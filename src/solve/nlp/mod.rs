@@ -5,13 +5,16 @@
 //! quadratic program ([`quadratic`]); [`driver`] judges the point by the
 //! KKT residuals of the instance, tries again where they are not small, and says what is known.
 
+mod attempts;
 pub mod consistent;
 pub mod curvature;
 pub mod driver;
 pub mod elastic;
+mod epigraph;
 mod growth;
 #[cfg(feature = "ipopt")]
 pub mod ipopt;
+mod newton;
 pub mod polish;
 #[cfg(feature = "pounce")]
 pub mod pounce;
@@ -25,9 +28,10 @@ mod symmetric;
 mod trial;
 mod verdict;
 
-use super::answer::Answer;
-use super::{Monitor, Outcome, Settings, SolveError, Solver};
+use super::answer::{Answer, linear};
+use super::{Monitor, Outcome, Settings, SolveError, Solver, lp};
 use crate::model::instance::Instance;
+use epigraph::Epigraph;
 use provider::Provider;
 
 /// Name of the threads on which providers run that may panic.
@@ -61,12 +65,21 @@ pub fn answer(
         // a name that no solver of ours bears is some other solver of the same model type in GAMS
         _ => Convexity::Used,
     };
-    match named.or(all.first()) {
-        Some(p) => driver::solve(instance, *p, convexity, settings, monitor),
-        None => Err(SolveError::new(
-            "there is no solver for nonlinear models in this build",
-        )),
+    let Some(&provider) = named.or(all.first()) else {
+        let message = "there is no solver for nonlinear models in this build";
+        return Err(SolveError::new(message));
+    };
+    if let Some(epigraph) = Epigraph::new(instance) {
+        let smooth = &epigraph.instance;
+        let answer = match smooth.is_linear() {
+            true => linear(&lp::Clarabel, smooth, settings, monitor),
+            false => driver::solve(smooth, provider, convexity, settings, monitor),
+        };
+        if let Some(answer) = answer.ok().and_then(|a| epigraph.restore(instance, a)) {
+            return Ok(answer);
+        }
     }
+    driver::solve(instance, provider, convexity, settings, monitor)
 }
 
 /// What is made of a convex quadratic program.

@@ -57,6 +57,9 @@ pub(super) const CENTRAL: &[(&str, &str)] = &[
 /// A smaller last barrier, for variables that are neither clearly at a bound nor clearly off it.
 pub(super) const SHARP: &[(&str, &str)] = &[("tol", "1e-11"), ("compl_inf_tol", "1e-14")];
 
+/// Bounds as they are, where a solution owes its objective to their relaxation.
+pub(super) const EXACT: &[(&str, &str)] = &[("bound_relax_factor", "0")];
+
 /// What to try when an attempt has not led to a certified point.
 pub(super) const SCHEDULE: [(From, &[(&str, &str)]); 15] = [
     (From::Linearised, NEAR),

@@ -1,0 +1,153 @@
+//! Attempts other than a plain run of the provider: Newton's method on the equations, Clarabel for convex quadratic programs,
+//! rounded kinks, and the elastic form.
+
+use super::driver::{Driver, why_stop};
+use super::elastic::Elastic;
+use super::newton;
+use super::problem::Problem;
+use super::provider::Ended;
+use super::provider::lock;
+use super::quadratic::Quadratic;
+use super::schedule::{FINEST, NEAR, NEARER, ROUNDING};
+use super::trial::{Trial, polished};
+use crate::model::certificate_nlp::is_locally_infeasible;
+use crate::solve::SolveError;
+use crate::solve::lp::Limits;
+use std::sync::{Arc, Mutex};
+
+impl Driver<'_> {
+    /// Newton's method on the equations, where they leave nothing to choose.
+    pub(super) fn attempt_newton(&mut self) {
+        let deadline = self.deadline();
+        let limit = self.settings.evaluation_error_limit;
+        let mut problem = lock(&*self.problem);
+        let mut stopped = None;
+        let run = newton::solve(&mut *problem, &mut |failures| {
+            stopped = why_stop(self.monitor.interrupted(), deadline, limit, failures);
+            stopped.is_some()
+        });
+        drop(problem);
+        self.stopped = stopped.or(self.stopped);
+        if let Some(run) = run {
+            self.iterations += run.steps;
+            if self.settings.log {
+                self.monitor
+                    .log(&format!("{} steps of Newton's method", run.steps));
+            }
+            let trial = self.judge(run.x, run.lambda, Ended::Acceptable);
+            self.keep(trial);
+        }
+    }
+
+    pub(super) fn attempt_quadratic(&mut self, quadratic: &Quadratic) {
+        let limits = Limits {
+            start: self.begin,
+            seconds: self.settings.time_limit,
+            iterations: self.settings.iteration_limit,
+        };
+        let solution = quadratic.solve(&limits, &mut || self.monitor.interrupted());
+        self.iterations += solution.iterations;
+        self.note_end(solution.ended);
+        let trial = self.judge(solution.x, solution.lambda, solution.ended);
+        self.keep(trial);
+    }
+
+    /// Solves with rounded kinks, each time from the last point.
+    pub(super) fn round_kinks(&mut self) -> Result<(), SolveError> {
+        let mut x = self.start.clone();
+        for (k, delta) in ROUNDING.into_iter().enumerate() {
+            if self.stopped.is_some() {
+                break;
+            }
+            let mut problem = Problem::smoothed(self.instance, delta);
+            problem.set_start(x.clone());
+            let options = if k == 0 { &[][..] } else { NEARER };
+            let solution = self.call(Arc::new(Mutex::new(problem)), options)?;
+            if solution.x.iter().all(|v| v.is_finite()) {
+                x.clone_from(&solution.x);
+                let trial = self.judge(solution.x, solution.lambda, solution.ended);
+                self.keep(trial.clone());
+                self.finish_rounded(&trial, delta);
+            }
+        }
+        Ok(())
+    }
+
+    /// The last digits of a solution with rounded kinks, which are not smooth enough for a solver's last steps.
+    fn finish_rounded(&mut self, trial: &Trial, delta: f64) {
+        if delta > FINEST || trial.is_optimal() || !trial.is_feasible() {
+            return;
+        }
+        let mut rounded = Problem::smoothed(self.instance, delta);
+        if let Some(t) = polished(self.instance, &mut rounded, &mut None, trial, 1e-6) {
+            let trial = self.judge(t.x, t.lambda, t.ended);
+            self.keep(trial);
+        }
+    }
+
+    /// The elastic form from the person's start, once; then, without a verdict, the least violation.
+    pub(super) fn attempt_elastic(&mut self) -> Result<(), SolveError> {
+        let weights: &[f64] = if self.elastic_tried { &[] } else { &[1e3, 1e6] };
+        self.elastic_tried = true;
+        let start = self.start.clone();
+        for &rho in weights {
+            lock(&*self.problem).set_start(start.clone());
+            let trial = self.elastic(rho, 1.0)?;
+            let optimal = trial.is_optimal();
+            self.note_infeasibility(&trial);
+            self.keep(trial);
+            if optimal || self.stopped.is_some() {
+                return Ok(());
+            }
+        }
+        if self.infeasibility.is_some() {
+            return Ok(());
+        }
+        self.minimise_violation()
+    }
+
+    /// Keeps an elastic solution whose multipliers prove that there is no feasible point nearby.
+    fn note_infeasibility(&mut self, trial: &Trial) {
+        let mut problem = lock(&*self.problem);
+        // the constraints push with −λ
+        let mut y = vec![0.0; self.instance.row_count()];
+        for (&i, l) in problem.rows.iter().zip(&trial.lambda) {
+            y[i as usize] = -l;
+        }
+        let evaluator = problem.evaluator();
+        let proved = is_locally_infeasible(self.instance, evaluator, &trial.level, &y, 1e-4);
+        if !trial.is_feasible() && self.infeasibility.is_none() && proved {
+            self.infeasibility = Some((trial.clone(), y));
+        }
+    }
+
+    fn elastic(&mut self, rho: f64, weight: f64) -> Result<Trial, SolveError> {
+        let elastic = Elastic::new(self.problem.clone(), rho, weight);
+        let n = elastic.original_variables();
+        let solution = self.call(Arc::new(Mutex::new(elastic)), &[])?;
+        let mut x = solution.x;
+        x.truncate(n);
+        Ok(self.judge(x, solution.lambda, solution.ended))
+    }
+
+    /// The nearest point to feasibility: a start for the problem itself, or evidence that there is
+    /// none.
+    fn minimise_violation(&mut self) -> Result<(), SolveError> {
+        let Some(best) = self.best.clone().filter(|t| !t.is_feasible()) else {
+            return Ok(());
+        };
+        lock(&*self.problem).set_start(best.x);
+        let trial = self.elastic(1.0, 0.0)?;
+        if trial.is_feasible() {
+            let x = trial.x.clone();
+            self.keep(trial);
+            if self.stopped.is_none() {
+                self.attempt_from(x, NEAR)?;
+            }
+            return Ok(());
+        }
+        self.note_infeasibility(&trial);
+        self.keep(trial);
+        Ok(())
+    }
+}

@@ -1,0 +1,185 @@
+//! Terms taken apart: a kernel as a weighted sum of constants, variables and what cannot be split further.
+
+use crate::model::instance::{Function, Kernel, Op};
+
+/// An expression: a program, the columns and constants in its slots.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Expression {
+    pub(super) kernel: Kernel,
+    pub(super) columns: Vec<u32>,
+    pub(super) constants: Vec<f64>,
+}
+
+/// A weighted sum.
+#[derive(Debug, Default)]
+pub(super) struct Parts {
+    pub(super) constant: f64,
+    pub(super) linear: Vec<(u32, f64)>,
+    /// Anything else, with its weight.
+    pub(super) nonlinear: Vec<(f64, Expression)>,
+}
+
+impl Expression {
+    /// `weight` times the expression, split.
+    pub(super) fn parts(&self, weight: f64) -> Parts {
+        let mut parts = Parts::default();
+        let tree = Tree::new(self);
+        tree.split(self.kernel.ops.len() - 1, weight, &mut parts);
+        parts
+    }
+
+    /// Function and arguments, if a function with kinks comes last.
+    pub(super) fn kink(&self) -> Option<(Function, Vec<Expression>)> {
+        let last = self.kernel.ops.len() - 1;
+        match self.kernel.ops[last] {
+            Op::Call(f @ (Function::Max | Function::Min | Function::Abs), _) => {
+                let tree = Tree::new(self);
+                let arguments = tree.arguments(last).into_iter();
+                Some((f, arguments.map(|p| tree.cut(p)).collect()))
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether a function with kinks stands anywhere in it.
+    pub(super) fn has_kink(&self) -> bool {
+        has_kink(&self.kernel)
+    }
+}
+
+pub(super) fn has_kink(kernel: &Kernel) -> bool {
+    let kink = |op: &Op| {
+        matches!(
+            op,
+            Op::Call(Function::Max | Function::Min | Function::Abs, _)
+        )
+    };
+    kernel.ops.iter().any(kink)
+}
+
+/// Where the subexpression that ends at each operation begins.
+struct Tree<'e> {
+    whole: &'e Expression,
+    begin: Vec<usize>,
+}
+
+impl<'e> Tree<'e> {
+    fn new(whole: &'e Expression) -> Self {
+        let mut begin: Vec<usize> = Vec::with_capacity(whole.kernel.ops.len());
+        for (p, op) in whole.kernel.ops.iter().enumerate() {
+            let first = (0..op.arguments()).fold(p, |end, _| begin[end - 1]);
+            begin.push(first);
+        }
+        Self { whole, begin }
+    }
+
+    /// Ends of the arguments of the operation at p, in order.
+    fn arguments(&self, p: usize) -> Vec<usize> {
+        let mut ends = Vec::new();
+        let mut next = p;
+        for _ in 0..self.whole.kernel.ops[p].arguments() {
+            ends.push(next - 1);
+            next = self.begin[next - 1];
+        }
+        ends.reverse();
+        ends
+    }
+
+    /// The number that the subexpression ending at p is, if it is one.
+    fn number(&self, p: usize) -> Option<f64> {
+        match self.whole.kernel.ops[p] {
+            Op::Const(k) => Some(self.whole.constants[k as usize]),
+            Op::Negate => Some(-self.number(p - 1)?),
+            _ => None,
+        }
+    }
+
+    fn split(&self, p: usize, weight: f64, out: &mut Parts) {
+        let (columns, constants) = (&self.whole.columns, &self.whole.constants);
+        let arguments = self.arguments(p);
+        match (self.whole.kernel.ops[p], &arguments[..]) {
+            (Op::Const(k), _) => out.constant += weight * constants[k as usize],
+            (Op::Var(k), _) => out.linear.push((columns[k as usize], weight)),
+            (
+                Op::Affine {
+                    constant,
+                    variable,
+                    terms,
+                },
+                _,
+            ) => {
+                let (c, v, n) = (constant as usize, variable as usize, terms as usize);
+                out.constant += weight * constants[c];
+                let slopes = columns[v..v + n].iter().zip(&constants[c + 1..c + 1 + n]);
+                out.linear.extend(slopes.map(|(&j, a)| (j, weight * a)));
+            }
+            (Op::Add | Op::AddN(_), all) => all.iter().for_each(|&a| self.split(a, weight, out)),
+            (Op::Subtract, &[a, b]) => {
+                self.split(a, weight, out);
+                self.split(b, -weight, out);
+            }
+            (Op::Negate, &[a]) => self.split(a, -weight, out),
+            (Op::Divide, &[a, b]) if self.number(b).is_some_and(|c| c != 0.0) => {
+                self.split(a, weight / self.number(b).unwrap_or(1.0), out);
+            }
+            (Op::Multiply | Op::MultiplyN(_), all) => {
+                let numbers = all.iter().filter_map(|&a| self.number(a));
+                let rest: Vec<usize> = all
+                    .iter()
+                    .copied()
+                    .filter(|&a| self.number(a).is_none())
+                    .collect();
+                match rest[..] {
+                    [a] => self.split(a, weight * numbers.product::<f64>(), out),
+                    _ => out.nonlinear.push((weight, self.cut(p))),
+                }
+            }
+            _ => out.nonlinear.push((weight, self.cut(p))),
+        }
+    }
+
+    /// The subexpression that ends at p, with slots of its own.
+    fn cut(&self, p: usize) -> Expression {
+        let (mut columns, mut constants) = (Vec::new(), Vec::new());
+        let mut ops = Vec::with_capacity(p + 1 - self.begin[p]);
+        let column = |k: u32| self.whole.columns[k as usize];
+        let number = |k: u32| self.whole.constants[k as usize];
+        for &op in &self.whole.kernel.ops[self.begin[p]..=p] {
+            ops.push(match op {
+                Op::Var(k) => {
+                    columns.push(column(k));
+                    Op::Var(columns.len() as u32 - 1)
+                }
+                Op::Const(k) => {
+                    constants.push(number(k));
+                    Op::Const(constants.len() as u32 - 1)
+                }
+                Op::Affine {
+                    constant,
+                    variable,
+                    terms,
+                } => {
+                    let at = (constants.len() as u32, columns.len() as u32);
+                    constants.extend((constant..=constant + terms).map(number));
+                    columns.extend((variable..variable + terms).map(column));
+                    Op::Affine {
+                        constant: at.0,
+                        variable: at.1,
+                        terms,
+                    }
+                }
+                other => other,
+            });
+        }
+        let kernel = Kernel {
+            ops,
+            variables: columns.len() as u32,
+            constants: constants.len() as u32,
+        };
+        Expression {
+            kernel,
+            columns,
+            constants,
+        }
+    }
+}
