@@ -3,7 +3,7 @@
 //! At an optimum that is not degenerate the basic variables are those strictly between their
 //! bounds. An interior point blurs that: a variable counts as basic the more, the farther it is
 //! from its bounds compared with its reduced cost. The m best are offered as a basis; dependent
-//! ones among them are replaced when it is factorised.
+//! ones among them are replaced when it is factorised, those at their bounds before those inside.
 //!
 //! Where more than m are strictly inside, the optimal points are a face of that many dimensions more, the
 //! interior point is in its middle, and every dimension costs a push. If there are thousands, a second
@@ -119,6 +119,7 @@ pub fn start(p: &Problem, point: &Point, of_face: Option<&Point>) -> Start {
         basis: Vec::with_capacity(m + n),
         value: Vec::with_capacity(m + n),
         held: Vec::with_capacity(m + n),
+        inside: Vec::with_capacity(m + n),
         y: point.y.clone(),
     };
     let mut order: Vec<(bool, f64, usize)> = Vec::with_capacity(m + n);
@@ -141,6 +142,7 @@ pub fn start(p: &Problem, point: &Point, of_face: Option<&Point>) -> Start {
         });
         start.value.push(v.value);
         start.held.push(held);
+        start.inside.push(!held && !v.is_held());
         order.push((of_face.is_some() && held, v.score(), j));
     }
     let last = |a: &(bool, f64, usize), b: &(bool, f64, usize)| {

@@ -69,6 +69,12 @@ impl Limits {
     pub fn seconds_left(&self) -> f64 {
         (self.seconds - self.start.elapsed().as_secs_f64()).max(0.0)
     }
+
+    /// A line of the log that ends with the seconds so far.
+    fn log(&self, monitor: &mut dyn Monitor, line: &str) {
+        let seconds = self.start.elapsed().as_secs_f64();
+        monitor.log(&format!("{line}, {seconds:.2} s"));
+    }
 }
 
 /// The solver of linear programs, `option lp = clarabel`: small programs by the simplex method,
@@ -198,6 +204,7 @@ fn solve(
     let form = Form::new(instance)?;
     let scaling = Scaling::new(&form.problem);
     let scaled = scaling.apply(&form.problem);
+    limits.log(monitor, "scaling");
     let small = scaled.m() + scaled.n() <= SMALL;
     let answer = match (method, accuracy) {
         (Method::Interior, _) => {
@@ -297,9 +304,8 @@ fn tighten(simplex: &mut Simplex, accuracy: Accuracy, limits: &Limits, monitor: 
     }
     let pivots = simplex.iterations - before;
     let word = if tight { "" } else { "not " };
-    monitor.log(&format!(
-        "tightened after {pivots} pivots: {word}to rounding"
-    ));
+    let line = format!("tightened after {pivots} pivots: {word}to rounding");
+    limits.log(monitor, &line);
 }
 
 fn simplex_answer(mut simplex: Simplex, ended: Ended) -> Answer {
@@ -395,24 +401,21 @@ fn finished(p: &Problem, accuracy: Accuracy, limits: &Limits, monitor: &mut dyn 
             if let Some(f) = &of_face {
                 answer.iterations += f.iterations;
             }
-            monitor.log(&format!(
-                "interior point: {} iterations{}",
-                answer.iterations,
-                if of_face.is_some() {
-                    ", face included"
-                } else {
-                    ""
-                }
-            ));
+            let word = if of_face.is_some() {
+                ", face included"
+            } else {
+                ""
+            };
+            let line = format!("interior point: {} iterations{word}", answer.iterations);
+            limits.log(monitor, &line);
             let of_face = of_face.as_ref().map(|f| &f.point);
             let start = crossover::start(p, &answer.point, of_face);
             let end = simplex.push(&start, &mut watch(limits, monitor));
             let count = simplex.iterations;
             let word = if end.is_ok() { "" } else { ", incomplete" };
             let outside = simplex.violation();
-            monitor.log(&format!(
-                "crossover: {count} pushes{word}, bounds hold to {outside:.0e}"
-            ));
+            let line = format!("crossover: {count} pushes{word}, bounds hold to {outside:.0e}");
+            limits.log(monitor, &line);
         }
         // A direction is no point: the simplex method finds one from which it leads on.
         Ended::Unbounded(_) | Ended::Failed => {}
@@ -425,10 +428,8 @@ fn finished(p: &Problem, accuracy: Accuracy, limits: &Limits, monitor: &mut dyn 
     }
     let ended = simplex.solve(&mut watch(&cut, monitor));
     let pivots = simplex.iterations;
-    monitor.log(&format!(
-        "simplex: {} after {pivots} iterations in all",
-        ended.word()
-    ));
+    let line = format!("simplex: {} after {pivots} iterations in all", ended.word());
+    limits.log(monitor, &line);
     let useful = matches!(
         ended,
         Ended::Solved | Ended::Infeasible(_) | Ended::Unbounded(_)

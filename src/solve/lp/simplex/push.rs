@@ -1,7 +1,8 @@
 //! From an interior point to a vertex: the push phase of a crossover (Megiddo 1991; Bixby &
 //! Saltzman 1994).
 //!
-//! Two pushes lead from a point on the optimal face and multipliers for it to an optimal basis.
+//! Two pushes lead from a point on the optimal face and multipliers for it to an optimal basis. Near a vertex
+//! of the face they are short if all that is strictly between its bounds is basic, so that comes first.
 //!
 //! *Values*: the nonbasic variables that are not at a bound move to their nearest ones, all together: most
 //! of them have hardly any way to go, and one solve with the basis moves thousands. Where a basic variable
@@ -13,18 +14,23 @@
 //! nonbasic variable would change its sign first, the variable enters the basis for one of them, which is at
 //! its bound: the vertex stays where it is.
 
-use super::factor::ZERO;
+use super::factor::{Entries, Factor, Failure, ZERO};
 use super::{Basis, NONBASIC, PIVOT, SAFE_PIVOT, Simplex};
 use crate::solve::lp::Ended;
 
 /// What violates its bound, or its sign, by more does not block: it is left to the simplex method.
 const OUTSIDE: f64 = 1e-6;
 
+/// Weight of a row whose logical may well be basic.
+const UNHELD: f64 = 1.0 / 4096.0;
+
 /// Where a crossover begins: one entry per column, then one per row.
 #[derive(Clone, Debug)]
 pub struct Start {
     /// The basis.
     pub basis: Basis,
+    /// What is between its bounds, and should be basic if it can.
+    pub inside: Vec<bool>,
     /// Values, near a solution of the equations.
     pub value: Vec<f64>,
     /// What stays at its nearest bound.
@@ -54,7 +60,11 @@ impl Simplex {
         // Where there is far to go, a basis that is nearly dependent leads astray.
         let far = (0..self.n + self.m).any(|j| self.way(j).abs() > self.tolerance);
         self.crossing = Some(if far { SAFE_PIVOT } else { ZERO });
-        let mut done = self.push_values(stop);
+        let ready = self.refactor().and_then(|()| self.bring_inside(start));
+        let mut done = ready.ok_or(Ended::Failed);
+        if done.is_ok() {
+            done = self.push_values(stop);
+        }
         self.work_lower.copy_from_slice(&self.lower);
         self.work_upper.copy_from_slice(&self.upper);
         if done.is_ok() {
@@ -64,8 +74,45 @@ impl Simplex {
         done
     }
 
+    /// Where variables at their bounds have displaced some from inside, which depend on them, those from inside
+    /// take the basis alone, and the logicals of the rows that they leave complete it: what is out of the
+    /// basis has far to go otherwise, and every step of its way is blocked.
+    fn bring_inside(&mut self, start: &Start) -> Option<()> {
+        let all = || (0..self.n + self.m).filter(|&j| start.inside[j]);
+        let displaced = all().any(|j| self.slot[j] == NONBASIC);
+        let inside: Vec<u32> = all().map(|j| j as u32).collect();
+        if !displaced || inside.len() >= self.m {
+            return Some(());
+        }
+        // A row is left the rather if no multiplier holds its logical at a bound: its pivots look small.
+        let weight = |i: usize| if start.held[self.n + i] { 1.0 } else { UNHELD };
+        let weighted = |&j: &u32| -> Entries {
+            let column = self.column(j as usize).into_iter();
+            column.map(|(i, a)| (i, a * weight(i))).collect()
+        };
+        let mut columns: Vec<Entries> = inside.iter().map(weighted).collect();
+        columns.resize(self.m, Vec::new());
+        let left = match Factor::new(self.m, &columns) {
+            Err(Failure::Dependent(left)) => left,
+            // No column can stand in for an empty one.
+            Ok(_) | Err(Failure::Numbers) => return None,
+        };
+        if left.iter().any(|&(_, row)| start.inside[self.n + row]) {
+            return Some(());
+        }
+        self.head = inside;
+        self.head.resize(self.m, NONBASIC);
+        for (slot, row) in left {
+            self.head[slot] = (self.n + row) as u32;
+        }
+        self.slot.fill(NONBASIC);
+        for (slot, &j) in self.head.iter().enumerate() {
+            self.slot[j as usize] = slot as u32;
+        }
+        self.refactor()
+    }
+
     fn push_values(&mut self, stop: &mut dyn FnMut(u64) -> Option<Ended>) -> Result<(), Ended> {
-        self.refactor().ok_or(Ended::Failed)?;
         self.until_arrived(stop, Self::push_values_step)
     }
 
