@@ -50,7 +50,7 @@ pub fn run(
     inspect(&mut machine);
     let end = match () {
         () if machine.aborted() => RunStatus::Aborted,
-        () if machine.execution_error_count() > 0 => RunStatus::ExecutionError,
+        () if machine.failed() => RunStatus::ExecutionError,
         () => RunStatus::Ok,
     };
     diagnostics.extend(machine.take_diagnostics());

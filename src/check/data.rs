@@ -108,7 +108,7 @@ impl Compiler {
         {
             let spelled_out = set_prefix(r.key);
             let key = spelled_out.as_deref().unwrap_or(r.key);
-            let dim = width(key) + r.matched.map_or(0, width);
+            let dim = width(key);
             self.set_dimension(s, dim);
         }
     }
@@ -188,7 +188,7 @@ impl Compiler {
             };
             let span = record.span;
             if self
-                .expand(s, record.key, record.matched, span, defines, &mut keys)
+                .expand(s, record.key, span, defines, &mut keys)
                 .is_err()
             {
                 continue;
@@ -337,10 +337,7 @@ impl Compiler {
                 }
             };
             let (span, key) = (record.span, record.key);
-            if self
-                .expand(s, key, record.matched, span, defines, &mut keys)
-                .is_err()
-            {
+            if self.expand(s, key, span, defines, &mut keys).is_err() {
                 if self.errors() >= super::MAX_ERRORS {
                     break;
                 }
@@ -383,7 +380,11 @@ impl Compiler {
     /// Stores a value of a data statement; an error if the statement gave the record already. As in
     /// GAMS a zero gives none.
     pub(super) fn put_value(&mut self, filling: &mut Filling, key: &[Label], v: f64, span: Span) {
-        let v = self.stored(v, span);
+        // `$onEps` leaves scalars alone.
+        let v = match key {
+            [] => v,
+            _ => self.stored(v, span),
+        };
         if v != 0.0 && filling.repeats(&mut self.store, key) {
             let s = filling.symbol;
             let label = self.key_text(key);
@@ -474,7 +475,7 @@ impl Compiler {
         let symbol = self.symbols.get(s).clone();
         let mut keys = Tuples::default();
         if symbol.dim() > 0 {
-            self.expand(s, key, None, span, &[], &mut keys)?;
+            self.expand(s, key, span, &[], &mut keys)?;
         }
         let offsets: &[u32] = match text.to_lowercase().as_str() {
             "l" => &[attribute::L],

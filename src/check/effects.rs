@@ -37,7 +37,7 @@ impl Effects {
                             .extend([attribute::L, attribute::LO, attribute::UP].map(|o| t + o));
                     }
                     Target::Object(..) => self.objects = true,
-                    Target::Seed | Target::Errors | Target::Ignored => {}
+                    Target::Seed | Target::Errors | Target::MostErrors | Target::Ignored => {}
                 },
                 CodeKind::Loop(_, b) | CodeKind::While(_, b) | CodeKind::Repeat(b, _) => {
                     self.add(b, symbols);

@@ -203,7 +203,6 @@ impl Compiler {
         &mut self,
         s: SymbolId,
         parts: &[KeyPart],
-        matched: Option<&[KeyPart]>,
         span: Span,
         defines: &[bool],
         out: &mut Tuples,
@@ -216,7 +215,7 @@ impl Compiler {
         let spelled_out = [parts].into_iter().find_map(set_prefix);
         let parts = spelled_out.as_deref().unwrap_or(parts);
         // One label per position is what data mostly are.
-        if matched.is_none() && parts.iter().all(|p| matches!(p, KeyPart::Label { .. })) {
+        if parts.iter().all(|p| matches!(p, KeyPart::Label { .. })) {
             if parts.len() != dim {
                 return self.wrong_dimension(s, span, parts.len());
             }
@@ -230,19 +229,8 @@ impl Compiler {
             }
             return Ok(());
         }
-        let mut rows = self.products(s, 0, parts, span, defines)?;
+        let rows = self.products(s, 0, parts, span, defines)?;
         self.take(rows.len(), record_bytes(dim), span)?;
-        if let Some(other) = matched {
-            let behind = self.products(s, rows.width, other, span, defines)?;
-            if rows.len() != behind.len() {
-                self.report(
-                    Diagnostic::warning("E0347", span, format!("`:` matches one by one, but there are {} on the left and {} on the right", rows.len(), behind.len()))
-                        .label("what is left over on one side is dropped")
-                        .help("a dot instead of the colon makes all combinations"),
-                );
-            }
-            rows = rows.beside(&behind);
-        }
         if rows.len() > 0 && rows.width != dim {
             return self.wrong_dimension(s, span, rows.width);
         }
@@ -373,6 +361,21 @@ impl Compiler {
                 Ok(out)
             }
             KeyPart::Factor(_) => Ok(Tuples::default()),
+            KeyPart::Matched(first, other) => {
+                let spelled_out = [set_prefix(first), set_prefix(other)];
+                let first = spelled_out[0].as_deref().unwrap_or(first);
+                let other = spelled_out[1].as_deref().unwrap_or(other);
+                let rows = self.products(s, position, first, whole, defines)?;
+                let behind = self.products(s, position + rows.width, other, whole, defines)?;
+                if rows.len() != behind.len() {
+                    self.report(
+                        Diagnostic::warning("E0347", whole, format!("`:` matches one by one, but there are {} on the left and {} on the right", rows.len(), behind.len()))
+                            .label("what is left over on one side is dropped")
+                            .help("a dot instead of the colon makes all combinations"),
+                    );
+                }
+                Ok(rows.beside(&behind))
+            }
         }
     }
 

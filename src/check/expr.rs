@@ -29,7 +29,7 @@ impl Compiler {
 
     /// The symbol of a name, or an "unknown symbol" error with the nearest name.
     pub(super) fn lookup(&mut self, id: &Ident) -> Result<SymbolId, Failed> {
-        if let Some(s) = self.symbols.find(&id.name) {
+        if let Some(s) = self.named(id) {
             return Ok(s);
         }
         let near = nearest(&id.name, self.symbols.iter().skip(1).map(|(_, s)| &*s.name))
@@ -42,6 +42,15 @@ impl Compiler {
                 "declare it first: names must be declared above the place where they are used",
             ),
         })
+    }
+
+    /// A symbol by name; `file` stands for the file that `put` named last.
+    fn named(&self, id: &Ident) -> Option<SymbolId> {
+        let file = || {
+            let last = self.put_named;
+            last.filter(|_| id.name.eq_ignore_ascii_case("file"))
+        };
+        self.symbols.find(&id.name).or_else(file)
     }
 
     /// A set by name.
@@ -267,7 +276,7 @@ impl Compiler {
         arguments: Option<&[Expr]>,
         span: Span,
     ) -> Result<Node, Failed> {
-        let Some(s) = self.symbols.find(&name.name) else {
+        let Some(s) = self.named(name) else {
             return self.function(name, attr, arguments, span);
         };
         let symbol = self.symbols.get(s).clone();

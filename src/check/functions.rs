@@ -137,7 +137,7 @@ const FUNCTIONS: &[(&str, Callee, usize, usize)] = {
         ("heapfree", Data(D::Zero), 0, 0),
         ("heaplimit", Data(D::Zero), 0, 0),
         ("execerror", Data(D::ExecError), 0, 0),
-        ("maxexecerror", Data(D::Zero), 0, 0),
+        ("maxexecerror", Data(D::MaxExecError), 0, 0),
         ("errorlevel", Data(D::ErrorLevel), 0, 0),
         ("numcores", Data(D::One), 0, 0),
         ("mathlastrc", Data(D::Zero), 0, 0),

@@ -85,8 +85,8 @@ pub(crate) struct Compiler {
     texts_allowed: bool,
     /// Depth of loops and ifs.
     nesting: usize,
-    /// A `put` above names a file.
-    put_named: bool,
+    /// The file that a `put` above names last.
+    put_named: Option<SymbolId>,
     /// What data may take, and what they took so far, in bytes.
     max_memory: Option<usize>,
     taken: usize,
@@ -185,7 +185,7 @@ impl Compiler {
             new_labels: false,
             texts_allowed: false,
             nesting: 0,
-            put_named: false,
+            put_named: None,
             max_memory: None,
             taken: 0,
             modes: Switches::default(),

@@ -199,6 +199,7 @@ pub enum DataFunction {
     GLeap,
     TimeElapsed,
     ExecError,
+    MaxExecError,
     ErrorLevel,
     /// Machine and licence facts that have no meaning here: 0.
     Zero,
@@ -268,7 +269,9 @@ pub enum Target {
     Seed,
     /// `execerror = n`
     Errors,
-    /// `maxexecerror`, `heaplimit`: limits of a GAMS installation.
+    /// `maxexecerror = n`
+    MostErrors,
+    /// `heaplimit`: a limit of a GAMS installation.
     Ignored,
 }
 

@@ -88,9 +88,12 @@ impl Compiler {
         let r = self.put_items(&p.items);
         self.texts_allowed = false;
         if let Ok(items) = &r {
-            self.put_named |= items.iter().any(|i| matches!(i, PutCode::File(_)));
-            if !self.put_named && !p.keyword.starts_with("put_util") {
-                self.put_named = true;
+            let named = items.iter().rev().find_map(|i| match i {
+                PutCode::File(s) => Some(*s),
+                _ => None,
+            });
+            self.put_named = named.or(self.put_named);
+            if self.put_named.is_none() && !p.keyword.starts_with("put_util") {
                 return self.fail(
                     Diagnostic::error("E0374", span, "no file is named to write to")
                         .label("which file?")

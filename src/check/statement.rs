@@ -254,7 +254,8 @@ impl Compiler {
         let counter = match t.name.name.to_lowercase().as_str() {
             "execseed" => Some(Target::Seed),
             "execerror" => Some(Target::Errors),
-            "maxexecerror" | "heaplimit" => Some(Target::Ignored),
+            "maxexecerror" => Some(Target::MostErrors),
+            "heaplimit" => Some(Target::Ignored),
             _ => None,
         };
         if let Some(target) = counter

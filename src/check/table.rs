@@ -146,7 +146,7 @@ impl Compiler {
             }
             let parts = [cell.row, cell.column].concat();
             if self
-                .expand(s, &parts, None, cell.span, &defines, &mut keys)
+                .expand(s, &parts, cell.span, &defines, &mut keys)
                 .is_err()
             {
                 continue;

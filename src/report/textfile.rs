@@ -325,9 +325,14 @@ impl TextFile {
             Item::Member(yes) => if *yes { "YES" } else { "NO" }.into(),
             Item::Page => PAGE_NUMBER.to_string(),
         };
-        match self.integer("case") {
-            1 => text = text.to_uppercase(),
-            2 => text = text.to_lowercase(),
+        // Labels have an attribute of their own, which counts the other way.
+        let case = match item {
+            Item::Label(_) => -self.integer("lcase"),
+            _ => self.integer("case"),
+        };
+        match case {
+            1 | -2 => text = text.to_uppercase(),
+            2 | -1 => text = text.to_lowercase(),
             _ => {}
         }
         if *item == Item::Page && part == Part::Body {

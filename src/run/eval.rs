@@ -476,7 +476,8 @@ impl Machine<'_> {
                 }
             },
             D::TimeElapsed => self.elapsed(),
-            D::ExecError => self.execution_error_count() as f64,
+            D::ExecError => self.statements_failed() as f64,
+            D::MaxExecError => self.most_errors as f64,
             D::ErrorLevel | D::Zero | D::Sleep => 0.0,
             D::One => 1.0,
             D::GamsVersion => 54.0,

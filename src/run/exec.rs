@@ -237,7 +237,11 @@ impl Machine<'_> {
         match target {
             Target::Table(t) | Target::Set(t) | Target::Singleton(t) => Some(t),
             Target::Fix(s) => Some(self.symbols.get(s).table + attribute::L),
-            Target::Object(..) | Target::Seed | Target::Errors | Target::Ignored => None,
+            Target::Object(..)
+            | Target::Seed
+            | Target::Errors
+            | Target::MostErrors
+            | Target::Ignored => None,
         }
     }
 
@@ -266,7 +270,10 @@ impl Machine<'_> {
             };
             let v = self.eval(value, frame);
             match target {
-                Target::Errors => self.errors.set(number(v).clamp(0.0, 1e9) as usize),
+                Target::Errors => self
+                    .failed_statements
+                    .set(number(v).clamp(0.0, 1e9) as usize),
+                Target::MostErrors => self.most_errors = number(v).clamp(0.0, 1e9) as usize,
                 Target::Seed => *self.random.borrow_mut() = Random::new(number(v) as i64),
                 Target::Object(s, a) => self.set_object_attribute(s, a, v, text),
                 _ => {}
@@ -443,7 +450,11 @@ impl Machine<'_> {
                     self.store.table_mut(t + o).merge(&out.keys, &out.values);
                 }
             }
-            Target::Object(..) | Target::Seed | Target::Errors | Target::Ignored => {}
+            Target::Object(..)
+            | Target::Seed
+            | Target::Errors
+            | Target::MostErrors
+            | Target::Ignored => {}
         }
     }
 

@@ -24,11 +24,23 @@ impl Machine<'_> {
         }
     }
 
+    /// Writes what `$echo` said while the text was read. A name outside the output folder is passed over: the
+    /// run itself finds the text without it.
+    pub(super) fn write_echoed(&mut self) {
+        let files: Vec<_> = self.map.echoed.values().cloned().collect();
+        for (name, text) in files.iter().filter(|f| !f.0.is_empty()) {
+            let written = self.host().write(name, text.as_bytes());
+            if let Ok(path) = written {
+                self.report.files.push(path.display().to_string());
+            }
+        }
+    }
+
     /// Whether there is such a file: written by `$echo`, or one that may be read.
     pub(super) fn file_exists(&self, name: &str, span: Span) -> bool {
         let from = self.map.place(span);
         let from = from.map(|p| self.map.file(p.file).name.clone());
-        self.map.echoed.contains_key(&name.to_lowercase())
+        self.map.echoed(name).is_some()
             || self
                 .host()
                 .exists(name, from.as_deref().map(std::path::Path::new))
@@ -36,8 +48,8 @@ impl Machine<'_> {
 
     /// Reads a text; a diagnostic if that is not possible.
     pub(super) fn read_file(&mut self, name: &str, span: Span) -> Result<String, Box<Diagnostic>> {
-        if let Some(text) = self.map.echoed.get(&name.to_lowercase()) {
-            return Ok(text.clone());
+        if let Some(text) = self.map.echoed(name) {
+            return Ok(text.to_owned());
         }
         let from = self
             .map

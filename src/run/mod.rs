@@ -87,7 +87,12 @@ pub struct Machine<'h> {
     host: RefCell<&'h mut dyn Host>,
     random: RefCell<Random>,
     diagnostics: RefCell<Vec<Diagnostic>>,
+    /// Execution errors, each record's.
     errors: Cell<usize>,
+    /// Statements that had some, as `execError` counts them.
+    failed_statements: Cell<usize>,
+    /// So many of them the run may have and go on: `maxExecError`.
+    most_errors: usize,
     /// What is assigned just now, for messages.
     current: RefCell<Option<(SymbolId, Vec<Label>)>>,
     ticks: Cell<u32>,
@@ -133,6 +138,8 @@ impl<'h> Machine<'h> {
             random: RefCell::new(Random::default()),
             diagnostics: RefCell::new(Vec::new()),
             errors: Cell::new(0),
+            failed_statements: Cell::new(0),
+            most_errors: 0,
             current: RefCell::new(None),
             ticks: Cell::new(0),
             stop: Cell::new(false),
@@ -146,6 +153,7 @@ impl<'h> Machine<'h> {
     /// Runs all statements.
     pub fn run(&mut self, code: &[Code]) -> Flow {
         let mut frame = vec![0; self.slots];
+        self.write_echoed();
         let flow = self.block(code, &mut frame);
         self.close_put_files();
         self.finish_unload();
@@ -159,13 +167,17 @@ impl<'h> Machine<'h> {
 
     /// Adds a diagnostic.
     pub(crate) fn note(&self, d: Diagnostic) {
+        let mut list = self.diagnostics.borrow_mut();
+        let again = list.iter().any(|e| e.code == d.code && e.span == d.span);
         if d.severity == Severity::Execution {
             self.errors.set(self.errors.get() + 1);
+            let failed = self.failed_statements.get();
+            // A statement counts once, and again when `execError` was set back.
+            if !again || failed == 0 {
+                self.failed_statements.set(failed + 1);
+            }
         }
-        let mut list = self.diagnostics.borrow_mut();
-        if list.len() < MAX_KEPT_ERRORS
-            && !list.iter().any(|e| e.code == d.code && e.span == d.span)
-        {
+        if list.len() < MAX_KEPT_ERRORS && !again {
             list.push(d);
         }
     }
@@ -178,6 +190,16 @@ impl<'h> Machine<'h> {
     /// Number of execution errors so far.
     pub fn execution_error_count(&self) -> usize {
         self.errors.get()
+    }
+
+    /// Statements that had execution errors, since `execError` was set last.
+    pub(crate) fn statements_failed(&self) -> usize {
+        self.failed_statements.get()
+    }
+
+    /// Whether there were more execution errors than `maxExecError` lets pass.
+    pub fn failed(&self) -> bool {
+        self.statements_failed() > self.most_errors
     }
 
     /// The symbol of a table.

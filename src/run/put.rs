@@ -24,9 +24,10 @@ impl Machine<'_> {
             "puthd" => Part::Header,
             _ => Part::Body,
         };
-        // `putclose f` alone closes f; it does not open it.
+        // `putclose f` alone closes f, which is the current file then; it does not open it.
         if let ("putclose", [PutCode::File(s)]) = (keyword, items) {
             self.close_put_file(*s, span);
+            self.put.current = Some(*s);
             return;
         }
         if keyword.starts_with("put_util") {
@@ -117,10 +118,17 @@ impl Machine<'_> {
     /// Makes a file the current one; one that was closed begins again.
     pub(super) fn open_put_file(&mut self, s: SymbolId) {
         self.put.current = Some(s);
+        let declared = match &self.symbols.get(s).kind {
+            SymbolKind::File(name) => name,
+            _ => "",
+        };
         let f = self.put.files.entry(s).or_default();
         if !f.open {
             if f.text.get("ap") == 0.0 {
                 f.closed.clear();
+            } else if f.closed.is_empty() {
+                let name = f.name.as_deref().unwrap_or(declared);
+                f.closed.push_str(self.map.echoed(name).unwrap_or_default());
             }
             f.text.reopen();
             f.open = true;

@@ -69,7 +69,10 @@ impl Machine<'_> {
     }
 
     pub(super) fn solve_once(&mut self, s: &SolveCode, span: Span, frame: &mut Frame) -> Flow {
-        if self.execution_error_count() > 0 {
+        if self.statements_failed() > 0 && !self.failed() {
+            return self.skip(s, span);
+        }
+        if self.failed() {
             self.note(
                 Diagnostic::execution(
                     "E0420",
@@ -92,6 +95,9 @@ impl Machine<'_> {
         // Equations have slots of their own: the loop around the solve keeps its labels.
         let mut own = frame.clone();
         let Some(generated) = self.generate(s, options, &mut own) else {
+            if !self.stopped() && !self.failed() {
+                return self.skip(s, span);
+            }
             if !self.stopped() {
                 self.note(
                     Diagnostic::execution(
@@ -197,6 +203,27 @@ impl Machine<'_> {
                 Flow::Stop
             }
         }
+    }
+
+    /// Passes over a solve after errors that `maxExecError` lets pass.
+    fn skip(&mut self, s: &SolveCode, span: Span) -> Flow {
+        self.note(
+            Diagnostic::warning(
+                "E0420",
+                span,
+                "the solve is skipped because of an error before",
+            )
+            .label("not solved"),
+        );
+        let state = self.models.entry(s.model).or_default();
+        state
+            .attributes
+            .insert("modelstat", f64::from(ModelStatus::NoSolution as u8));
+        state.attributes.insert(
+            "solvestat",
+            f64::from(SolverStatus::ProcessingSkipped as u8),
+        );
+        Flow::Next
     }
 
     /// Whether no column of a discrete type is left to be decided. Only the generated columns tell: conditions

@@ -97,6 +97,8 @@ pub enum SolverStatus {
     UserInterrupt = 8,
     /// Something failed inside.
     InternalSolverFailure = 11,
+    /// It was not asked, because of errors before.
+    ProcessingSkipped = 12,
 }
 
 impl SolverStatus {
@@ -111,6 +113,7 @@ impl SolverStatus {
             Self::CapabilityProblems => "capability problems",
             Self::UserInterrupt => "user interrupt",
             Self::InternalSolverFailure => "internal solver failure",
+            Self::ProcessingSkipped => "solve processing skipped",
         }
     }
 }

@@ -110,13 +110,14 @@ impl Preprocessor<'_> {
         )
     }
 
-    /// Remembers what `$echo` writes: a later `$include`, and the run, may read it. Nothing is written to disk.
+    /// Remembers what `$echo` writes: a later `$include`, and the run, may read it; the run writes it.
     pub(super) fn echo(&mut self, file: &str, text: &str, append: bool) {
-        let entry = self
-            .map
-            .echoed
-            .entry(file.trim().to_lowercase())
-            .or_default();
+        let name = file.trim();
+        let files = &mut self.map.echoed;
+        let (spelled, entry) = files.entry(name.to_lowercase()).or_default();
+        if spelled.is_empty() {
+            *spelled = name.to_owned();
+        }
         if !append {
             entry.clear();
         }
@@ -164,7 +165,7 @@ impl Preprocessor<'_> {
         for (t, at) in lines {
             let len = t.len() as u32;
             let line = Line::new(file, at, &t);
-            let t = if word == "onputs" || word == "onput" {
+            let t = if word == "onputs" {
                 self.substituted(line)?.text
             } else {
                 t

@@ -35,7 +35,6 @@ pub(super) const SILENT_SWITCHES: &[&str] = &[
     "strictdomain",
     "case",
     "localvars",
-    "nestcom",
     "margin",
     "float",
     "textmode",
@@ -191,4 +190,6 @@ pub(super) const OTHERS: &[&str] = &[
     "onimplicitassign",
     "onstrictsingleton",
     "onembeddedcode",
+    "onnestcom",
+    "offnestcom",
 ];

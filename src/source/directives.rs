@@ -185,6 +185,7 @@ impl Preprocessor<'_> {
                 self.marks.delimited = on;
                 self.marks_changed();
             }
+            "nestcom" => self.marks.nested = on,
             "inline" => {
                 self.marks.inline_on = on;
                 self.marks_changed();

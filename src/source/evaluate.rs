@@ -67,7 +67,7 @@ pub(super) fn number_text(x: f64) -> String {
             &digits[whole as usize..]
         );
     }
-    if (-5..0).contains(&exponent) {
+    if (-4..0).contains(&exponent) {
         return format!("{sign}0.{}{digits}", "0".repeat((-exponent - 1) as usize));
     }
     let (first, rest) = digits.split_at(1);

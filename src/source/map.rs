@@ -1,7 +1,7 @@
 //! From the expanded text back to the files.
 
 use super::Span;
-use rustc_hash::FxHashMap;
+use std::collections::BTreeMap;
 
 /// Number of a file in a [`SourceMap`].
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -49,11 +49,17 @@ pub struct SourceMap {
     segments: Vec<Segment>,
     /// From which byte of the expanded text on how many lines a listing counts more than the file.
     listing: Vec<(u32, i64)>,
-    /// Files that `$echo` and `$onEcho` wrote, by lower-case name. They are on no disk.
-    pub echoed: FxHashMap<String, String>,
+    /// Files that `$echo` and `$onEcho` wrote, by lower-case name: their names as spelled, and texts.
+    pub(crate) echoed: BTreeMap<String, (String, String)>,
 }
 
 impl SourceMap {
+    /// The text of a file that `$echo` wrote.
+    pub fn echoed(&self, name: &str) -> Option<&str> {
+        let found = self.echoed.get(&name.to_lowercase());
+        found.map(|(_, text)| text.as_str())
+    }
+
     /// Adds a file.
     pub fn add_file(&mut self, name: impl Into<String>, text: String) -> FileId {
         let mut lines = vec![0];

@@ -120,6 +120,8 @@ pub(super) struct Marks {
     pub(super) eol_on: bool,
     pub(super) inline: (Vec<u8>, Vec<u8>),
     pub(super) inline_on: bool,
+    /// `$onNestCom`: inline comments may stand inside each other.
+    pub(super) nested: bool,
     pub(super) slashes: bool,
     /// `$onDelim`: lines of data are lists with commas; each is marked by [`DELIMITED`].
     pub(super) delimited: bool,
@@ -195,6 +197,8 @@ pub(crate) struct Preprocessor<'h> {
     pub(super) on_end: bool,
     /// Inside an inline comment that runs over lines.
     in_comment: Option<Span>,
+    /// Comments open inside it.
+    comment_depth: usize,
     pub(super) warnings: Vec<Diagnostic>,
     pub(super) log: Vec<String>,
     pub(super) title: Option<String>,
@@ -228,6 +232,7 @@ impl<'h> Preprocessor<'h> {
                 eol_on: false,
                 inline: (b"/*".to_vec(), b"*/".to_vec()),
                 inline_on: false,
+                nested: false,
                 slashes: options.slash_comments,
                 delimited: false,
                 columns: (1, usize::MAX),
@@ -235,6 +240,7 @@ impl<'h> Preprocessor<'h> {
             modes: vec![(0, Modes::default())],
             on_end: false,
             in_comment: None,
+            comment_depth: 0,
             warnings: Vec::new(),
             log: Vec::new(),
             title: None,
@@ -343,8 +349,8 @@ impl<'h> Preprocessor<'h> {
             .is_none()
             .then(|| format!("{name}.gms"));
         let names = || [Some(name), longer.as_deref()].into_iter().flatten();
-        if let Some(text) = names().find_map(|n| self.map.echoed.get(&n.to_lowercase())) {
-            let text = text.clone();
+        if let Some(text) = names().find_map(|n| self.map.echoed(n)) {
+            let text = text.to_owned();
             self.open(PathBuf::from(name), name, text, arguments, asked);
             return Ok(());
         }
@@ -385,8 +391,8 @@ impl<'h> Preprocessor<'h> {
 
     /// The text of a data file, looked for beside the file that asks for it.
     pub(crate) fn read(&mut self, name: &str, at: Span) -> Result<String, Box<Diagnostic>> {
-        if let Some(text) = self.map.echoed.get(&name.to_lowercase()) {
-            return Ok(text.clone());
+        if let Some(text) = self.map.echoed(name) {
+            return Ok(text.to_owned());
         }
         let asking = self
             .map
@@ -648,6 +654,7 @@ impl<'h> Preprocessor<'h> {
         self.end_line(pos);
         let open = self.frames.last_mut().and_then(|f| f.ifs.drain(..).next());
         let comment = self.in_comment.take();
+        self.comment_depth = 0;
         let listed = self.listed();
         self.frames.pop();
         self.set_listed(listed);
@@ -707,12 +714,17 @@ impl<'h> Preprocessor<'h> {
                 .take_while(|c| c.is_ascii_digit())
                 .count();
             if digits > 0
-                && let Some(args) = self.frames.last().and_then(|f| f.arguments.as_ref())
+                && let Some(frame) = self.frames.last()
             {
+                // What `$batInclude` did not give is empty; `%0` is the file itself.
                 let end = from + 1 + digits;
                 let number: usize = line.text[from + 1..end].parse().unwrap_or(usize::MAX);
-                let value = number.checked_sub(1).and_then(|n| args.get(n)).cloned();
-                changes.push((from, end, value.unwrap_or_default()));
+                let value = match (number.checked_sub(1), &frame.arguments) {
+                    (None, _) => frame.path.display().to_string(),
+                    (Some(n), Some(args)) => args.get(n).cloned().unwrap_or_default(),
+                    _ => String::new(),
+                };
+                changes.push((from, end, value));
                 at = end;
                 continue;
             }
@@ -863,7 +875,20 @@ impl<'h> Preprocessor<'h> {
         let mut opened_at = None;
         while i < bytes.len() {
             if let Some(start) = open {
-                match memchr::memmem::find(&bytes[i..], &m.inline.1) {
+                let find = |mark: &[u8]| memchr::memmem::find(&bytes[i..], mark);
+                let close = find(&m.inline.1);
+                if let Some(n) =
+                    find(&m.inline.0).filter(|n| m.nested && close.is_none_or(|c| *n < c))
+                {
+                    self.comment_depth += 1;
+                    i += n + m.inline.0.len();
+                    continue;
+                }
+                match close {
+                    Some(n) if self.comment_depth > 0 => {
+                        self.comment_depth -= 1;
+                        i += n + m.inline.1.len();
+                    }
                     Some(n) => {
                         i += n + m.inline.1.len();
                         blanks.push((start, i));

@@ -56,6 +56,8 @@ pub enum KeyPart<'a> {
     Group(Vec<Vec<KeyPart<'a>>>),
     /// `*`
     Universe(Span),
+    /// `key:key`: matched one by one instead of multiplied out.
+    Matched(Vec<KeyPart<'a>>, Vec<KeyPart<'a>>),
     /// The number behind an alternative of a group, `a.(x 1, y 2)`: a factor of the record's value. It
     /// takes no position.
     Factor(f64),
@@ -79,8 +81,6 @@ pub enum Tail<'a> {
 pub struct Record<'r, 'a> {
     /// The parts between the dots; empty for a bare number.
     pub key: &'r [KeyPart<'a>],
-    /// `key:key`: matched position by position instead of multiplied out; the parts behind the colon.
-    pub matched: Option<&'r [KeyPart<'a>]>,
     /// What follows.
     pub value: Tail<'a>,
     /// From the key to the value.
@@ -98,7 +98,6 @@ pub struct DataReader<'a> {
     /// Positions of a key, if known: then in `a .5` the number is not taken for a label.
     arity: usize,
     key: Vec<KeyPart<'a>>,
-    matched: Vec<KeyPart<'a>>,
     /// The key has factors.
     factors: bool,
     constants: Constants,
@@ -113,6 +112,7 @@ pub fn width(key: &[KeyPart<'_>]) -> usize {
         .map(|p| match p {
             KeyPart::Group(g) => g.first().map_or(1, |k| width(k)),
             KeyPart::Factor(_) => 0,
+            KeyPart::Matched(a, b) => width(a) + width(b),
             _ => 1,
         })
         .sum()
@@ -149,7 +149,6 @@ impl<'a> DataReader<'a> {
             undf,
             arity: usize::MAX,
             key: Vec::with_capacity(8),
-            matched: Vec::new(),
             factors: false,
             constants: Constants::default(),
         }
@@ -216,7 +215,6 @@ impl<'a> DataReader<'a> {
             self.blanks(true);
             let start = self.at;
             self.key.clear();
-            self.matched.clear();
             match self.peek()? {
                 b',' => self.at += 1,
                 MARK => {
@@ -241,11 +239,6 @@ impl<'a> DataReader<'a> {
                 let span = self.span(start, self.at);
                 Some(Ok(Record {
                     key: &self.key,
-                    matched: if self.matched.is_empty() {
-                        None
-                    } else {
-                        Some(&self.matched)
-                    },
                     value,
                     span,
                 }))
@@ -418,19 +411,9 @@ impl<'a> DataReader<'a> {
         }
         self.factors = false;
         let mut key = std::mem::take(&mut self.key);
-        let outcome = self.key_parts(&mut key, 0);
+        let outcome = self.whole_key(&mut key, 0);
         self.key = key;
         outcome?;
-        self.blanks(false);
-        if self.peek() == Some(b':') {
-            self.at += 1;
-            self.blanks(false);
-            let mut matched = std::mem::take(&mut self.matched);
-            let outcome = self.key_parts(&mut matched, 0);
-            self.matched = matched;
-            outcome?;
-            self.blanks(false);
-        }
         match self.kind {
             DataKind::Set => self.element_text(),
             // Factors are value enough.
@@ -580,6 +563,26 @@ impl<'a> DataReader<'a> {
         }
     }
 
+    /// The parts of a key, and what is matched with them behind a colon.
+    fn whole_key(
+        &mut self,
+        key: &mut Vec<KeyPart<'a>>,
+        depth: usize,
+    ) -> Result<(), Box<Diagnostic>> {
+        self.key_parts(key, depth)?;
+        self.blanks(false);
+        if self.peek() == Some(b':') {
+            self.at += 1;
+            self.blanks(false);
+            let mut other = Vec::new();
+            self.key_parts(&mut other, depth)?;
+            self.blanks(false);
+            let first = std::mem::take(key);
+            key.push(KeyPart::Matched(first, other));
+        }
+        Ok(())
+    }
+
     fn rest_begins(&self, word: &str) -> bool {
         let rest = self.text.as_bytes().get(self.at..self.at + word.len());
         rest.is_some_and(|rest| rest.eq_ignore_ascii_case(word.as_bytes()))
@@ -607,8 +610,7 @@ impl<'a> DataReader<'a> {
                 Some(b',') => self.at += 1,
                 Some(_) => {
                     let mut key = Vec::new();
-                    self.key_parts(&mut key, depth + 1)?;
-                    self.blanks(false);
+                    self.whole_key(&mut key, depth + 1)?;
                     if self.kind == DataKind::Values
                         && !matches!(self.peek(), None | Some(b',' | b')' | b'\n'))
                     {

@@ -428,6 +428,7 @@ mod tests {
                     KeyPart::AllOf { set, .. } => format!("#{set}"),
                     KeyPart::Universe(_) => "*".into(),
                     KeyPart::Factor(x) => x.to_string(),
+                    KeyPart::Matched(a, b) => format!("{}:{}", key(a), key(b)),
                     KeyPart::Group(g) => format!(
                         "({})",
                         g.iter().map(|k| key(k)).collect::<Vec<_>>().join(",")

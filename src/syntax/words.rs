@@ -132,6 +132,11 @@ fn is_variable_kind(word: &[u8]) -> bool {
     )
 }
 
+/// `file.nd`: the word means the file that `put` names last.
+fn has_attribute(text: &str, end: usize) -> bool {
+    text[end..].trim_start().starts_with('.')
+}
+
 /// The word after the blanks behind `end`.
 fn next_word(text: &str, end: usize) -> &str {
     let bytes = text.as_bytes();
@@ -147,6 +152,9 @@ pub(super) fn statement_word(text: &str, at: usize, end: usize) -> Option<Word> 
     let mut buffer = [0; 20];
     let n = lower(&text[at..end], &mut buffer)?;
     let word = &buffer[..n];
+    if word == b"file" && has_attribute(text, end) {
+        return None;
+    }
     if let Some((kind, _)) = kind(word) {
         return Some(kind);
     }
@@ -196,6 +204,9 @@ fn first_class(text: &str, at: usize) -> (Class, usize) {
         return (Class::Algebra, end);
     };
     let word = &buffer[..n];
+    if word == b"file" && has_attribute(text, end) {
+        return (Class::Algebra, end);
+    }
     if let Some((_, class)) = kind(word) {
         return (class, end);
     }

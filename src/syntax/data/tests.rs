@@ -13,6 +13,10 @@ fn all(text: &str, kind: DataKind) -> Vec<String> {
             KeyPart::AllOf { set, .. } => format!("#{set}"),
             KeyPart::Universe(_) => "*".into(),
             KeyPart::Factor(x) => x.to_string(),
+            KeyPart::Matched(a, b) => {
+                let key = |k: &[KeyPart<'_>]| k.iter().map(part).collect::<Vec<_>>().join(".");
+                format!("{}:{}", key(a), key(b))
+            }
             KeyPart::Group(g) => format!(
                 "({})",
                 g.iter().map(|k| key(k)).collect::<Vec<_>>().join(",")
@@ -27,14 +31,13 @@ fn all(text: &str, kind: DataKind) -> Vec<String> {
     while let Some(x) = r.next() {
         out.push(match x {
             Ok(r) => {
-                let colon = r.matched.map_or(String::new(), |m| format!(":{}", key(m)));
                 let tail = match &r.value {
                     Tail::None => String::new(),
                     Tail::Number(x, _) => format!("={x}"),
                     Tail::Text(t, _) => format!(" \"{t}\""),
                     Tail::Name(n, _) => format!("~{n}"),
                 };
-                format!("{}{colon}{tail}", key(r.key))
+                format!("{}{tail}", key(r.key))
             }
             Err(d) => format!("!{}", d.code),
         });
@@ -125,10 +128,10 @@ fn records(text: &str, arity: usize, plainly: bool) -> Vec<String> {
                 };
                 let key: Vec<String> = r.key.iter().map(label).collect();
                 match &r.value {
-                    Tail::Number(x, _) if r.matched.is_none() => {
+                    Tail::Number(x, _) => {
                         format!("{key:?} {:x} {:?}", x.to_bits(), r.span)
                     }
-                    value => format!("{key:?} {value:?} {:?} {:?}", r.matched, r.span),
+                    value => format!("{key:?} {value:?} {:?}", r.span),
                 }
             }
         });
