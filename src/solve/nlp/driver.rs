@@ -23,8 +23,8 @@ use super::problem::{Nlp, Problem};
 use super::provider::{Control, Ended, Progress, Provider, Shared, Solution, lock};
 use super::quadratic::Quadratic;
 use super::schedule::{
-    AGREEMENT, BASE, BETTER, CHEAP, ELASTIC_AFTER, ENOUGH, EXACT, FINEST, FIRST_PATIENCE, From,
-    OVERHEAD, PATIENCE, SCHEDULE, SHARP, SMALL, TIMES,
+    AGREEMENT, BASE, BESIDE, BETTER, CHEAP, ELASTIC_AFTER, ENOUGH, EXACT, FINEST, FIRST_PATIENCE,
+    From, OVERHEAD, PATIENCE, SCHEDULE, SHARP, SMALL, TIMES,
 };
 use super::slp;
 use super::trial::{Trial, active_set, clean, polished, residuals_at, tidy};
@@ -78,6 +78,20 @@ pub fn solve(
     });
     driver.convex = quadratic.is_some().then_some(convexity);
     driver.run(quadratic)
+}
+
+/// x moved by up to this fraction of its size (at least by this much); or, where that is asked for, anywhere between near bounds.
+fn placed(nlp: &dyn Nlp, x: &[f64], by: f64, anywhere: bool, seed: u64) -> Vec<f64> {
+    let (lower, upper) = nlp.bounds();
+    let mut random = Random(seed);
+    let place = |(&x, (&l, &u)): (&f64, (&f64, &f64))| {
+        let r = random.uniform();
+        if anywhere && u - l <= 1e4 {
+            return l + r * (u - l);
+        }
+        (x + (2.0 * r - 1.0) * by * x.abs().max(1.0)).max(l).min(u)
+    };
+    x.iter().zip(lower.iter().zip(upper)).map(place).collect()
 }
 
 /// Whether the person, the time or evaluations that failed (0: any number may) end the solve.
@@ -239,7 +253,7 @@ impl Driver<'_> {
         self.enough = ENOUGH.max(TIMES * self.work());
         if self.is_settled() {
             // there is an answer: to look for a better one may not take much longer
-            self.patience = (4 * self.iterations).clamp(100, PATIENCE);
+            self.patience = (4 * self.iterations).clamp(50, PATIENCE);
         }
         self.leave_saddles()?;
         if self.is_settled() {
@@ -396,17 +410,17 @@ impl Driver<'_> {
             (From::Anywhere(seed), _) => (seed.wrapping_mul(7919), 1.0, true),
         };
         let problem = lock(&*self.problem);
-        let (lower, upper) = problem.bounds();
-        let mut random = Random(seed);
-        let place = |(&x, (&l, &u)): (&f64, (&f64, &f64))| {
-            let r = random.uniform();
-            if anywhere && u - l <= 1e4 {
-                return l + r * (u - l);
-            }
-            (x + (2.0 * r - 1.0) * by * x.abs().max(1.0)).max(l).min(u)
-        };
-        let all = self.start.iter().zip(lower.iter().zip(upper));
-        Some(all.map(place).collect())
+        Some(placed(&*problem, &self.start, by, anywhere, seed))
+    }
+
+    /// A point near x with derivatives, where x has none: √ of a sum of squares that is 0 has a value only.
+    fn beside(&self, x: &[f64]) -> Option<Vec<f64>> {
+        let mut problem = lock(&*self.problem);
+        let all = BESIDE.map(|by| placed(&*problem, x, by, false, 1));
+        all.into_iter().find(|x| {
+            let mut gradient = vec![0.0; x.len()];
+            problem.gradient(x, &mut gradient).is_some() && problem.jacobian_entries(x).is_some()
+        })
     }
 
     fn consistent(&self) -> Option<Vec<f64>> {
@@ -462,7 +476,14 @@ impl Driver<'_> {
     ) -> Result<Option<f64>, SolveError> {
         lock(&*self.problem).set_start(x.clone());
         let shared: Shared = self.problem.clone();
-        let solution = self.call(shared, extra)?;
+        let mut solution = self.call(shared.clone(), extra)?;
+        if solution.ended == Ended::InvalidNumber
+            && self.stopped.is_none()
+            && let Some(beside) = self.beside(&x)
+        {
+            lock(&*self.problem).set_start(beside);
+            solution = self.call(shared, extra)?;
+        }
         if solution.ended == Ended::TooFewDegrees && self.stopped.is_none() {
             if !self.elastic_tried {
                 self.attempt_elastic()?;

@@ -33,6 +33,9 @@ pub(super) enum From {
     Anywhere(u64),
 }
 
+/// How far a start without derivatives is moved, relative to its size.
+pub(super) const BESIDE: [f64; 3] = [1e-6, 1e-4, 1e-2];
+
 /// Iterations that one attempt may take; the first less, for what takes so many is better begun elsewhere.
 pub(super) const PATIENCE: u64 = 3000;
 pub(super) const FIRST_PATIENCE: u64 = 500;

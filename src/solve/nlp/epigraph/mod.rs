@@ -63,14 +63,16 @@ impl Epigraph {
     /// None where there is nothing to replace, or something that does not stand convexly.
     pub(super) fn new(instance: &Instance) -> Option<Self> {
         instance.objective?;
-        let has_kinks = |t: &KernelTerms| !t.row.is_empty() && has_kink(&t.kernel);
+        let columns = &instance.columns;
+        let varies = |&j: &u32| columns.lower[j as usize] != columns.upper[j as usize];
+        let has_kinks = |t: &KernelTerms| has_kink(&t.kernel) && t.columns.iter().any(varies);
         if !instance.nonlinear.iter().any(has_kinks) {
             return None;
         }
         let mut builder = Builder::new(instance);
         let mut directions = None;
         for (row, coefficient, term) in expressions(instance) {
-            if !term.has_kink() {
+            if !term.has_kink() || !term.columns.iter().any(varies) {
                 builder.push_term(row, coefficient, term);
                 continue;
             }
