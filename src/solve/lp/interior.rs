@@ -127,7 +127,7 @@ pub fn solve(
         verbose: false,
         max_iter: u32::try_from(limits.iterations.min(500)).unwrap_or(500),
         time_limit: limits.seconds_left(),
-        direct_solve_method: "qdldl".into(),
+        direct_solve_method: "auto".into(),
         max_threads: 1,
         // Clarabel's own presolve drops rows with |b| ≥ 1e20; infinite sides are not sent.
         presolve_enable: false,

@@ -7,6 +7,7 @@
 //! * [`lift`]: where the program comes apart into two sides, products of their rows.
 
 mod lift;
+mod multipliers;
 mod products;
 pub mod weak;
 
@@ -84,7 +85,8 @@ pub fn lower(
         begin,
         iterations: 0,
     };
-    let low = products.bound(program, cutoff, level, most);
+    let mut problem = whole(program);
+    let low = products.bound(program, &mut problem, cutoff, level, most);
     proof.iterations += products.iterations;
     if is_closed(low, best) {
         proof.value = Some(low);
@@ -97,7 +99,6 @@ pub fn lower(
         gap: 0.5 * GAP * unit,
     };
     let mut watch = |iterations| watch(iterations, begin, &settings, monitor);
-    let mut problem = whole(program);
     proof.iterations += weak::derive(&mut problem, cutoff, level, &mut watch);
     let found = search(
         program,
@@ -186,16 +187,26 @@ fn watch(
     }
 }
 
-/// What can be proved about a node: by its multipliers, or else in rational arithmetic if it is small.
+/// Multipliers this small beside the largest may be rounding. They price columns that have no bounds.
+const NOISE: f64 = 1e-9;
+
+/// What can be proved about a node: by its multipliers, by those that are not small, or else in rational arithmetic
+/// if it is small.
 fn prove_node(p: &Problem, y: &[f64], empty: bool) -> f64 {
     let none = f64::NEG_INFINITY;
-    let by_multipliers = match empty {
+    let by = |y: &[f64]| match empty {
         true if weak::is_empty(p, y) => f64::INFINITY,
         true => none,
         false => weak::bound(p, &p.cost, y) + p.offset,
     };
-    if by_multipliers > none {
-        return by_multipliers;
+    let mut proved = by(y);
+    if proved == none {
+        let top = y.iter().fold(0.0f64, |t, v| t.max(v.abs()));
+        let large = |&v: &f64| if v.abs() <= NOISE * top { 0.0 } else { v };
+        proved = by(&y.iter().map(large).collect::<Vec<_>>());
+    }
+    if proved > none {
+        return proved;
     }
     match empty {
         true if certify::exact_low(&weak::elastic(p)) > 0.0 => f64::INFINITY,
