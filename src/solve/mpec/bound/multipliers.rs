@@ -189,7 +189,8 @@ impl<'p> Multipliers<'p> {
                 break;
             }
             before = size;
-            self.factor.solve_in_place(ColMut::from_slice_mut(&mut rest).as_mat_mut());
+            self.factor
+                .solve_in_place(ColMut::from_slice_mut(&mut rest).as_mat_mut());
             for k in 0..high.len() {
                 let w: f64 = self.terms.line(k).map(|(e, a)| a * rest[e]).sum();
                 let (s, e) = two_sum(high[k], w * self.weight[k]);
@@ -238,7 +239,8 @@ fn central(
         let scale = if signed { e.sign } else { 1.0 };
         for share in if signed { &[true, false][..] } else { &[false] } {
             by_column.push(terms.line(k).map(|(e, a)| (e, scale * a)));
-            q.cost.push(-PRICE * scale * price[k] - f64::from(u8::from(*share)));
+            q.cost
+                .push(-PRICE * scale * price[k] - f64::from(u8::from(*share)));
             q.lower.push(if signed { 0.0 } else { f64::NEG_INFINITY });
             q.upper.push(if *share { 1.0 } else { f64::INFINITY });
         }

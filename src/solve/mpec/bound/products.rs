@@ -157,7 +157,8 @@ impl Products<'_> {
 
     fn log(&mut self, what: &str) {
         let seconds = self.begin.elapsed().as_secs_f64();
-        self.monitor.log(&format!("products: {what}, {seconds:.1} s"));
+        self.monitor
+            .log(&format!("products: {what}, {seconds:.1} s"));
     }
 
     /// Runs with the limits.
