@@ -248,6 +248,8 @@ impl Compiler {
         span: Span,
         defines: &[bool],
     ) -> Result<Tuples, Failed> {
+        let spelled_out = set_prefix(parts);
+        let parts = spelled_out.as_deref().unwrap_or(parts);
         let mut rows: Option<Tuples> = None;
         for part in parts {
             if let (KeyPart::Factor(x), Some(rows)) = (part, &mut rows) {
@@ -362,9 +364,6 @@ impl Compiler {
             }
             KeyPart::Factor(_) => Ok(Tuples::default()),
             KeyPart::Matched(first, other) => {
-                let spelled_out = [set_prefix(first), set_prefix(other)];
-                let first = spelled_out[0].as_deref().unwrap_or(first);
-                let other = spelled_out[1].as_deref().unwrap_or(other);
                 let rows = self.products(s, position, first, whole, defines)?;
                 let behind = self.products(s, position + rows.width, other, whole, defines)?;
                 if rows.len() != behind.len() {

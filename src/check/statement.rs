@@ -285,6 +285,11 @@ impl Compiler {
             SymbolKind::Alias(root) if t.attribute.is_none() => {
                 Target::Set(self.symbols.get(*root).table)
             }
+            SymbolKind::Variable(_)
+                if t.attribute.is_none() && self.modes.at(t.name.span).dot_l =>
+            {
+                Target::Table(symbol.table + attribute::L)
+            }
             SymbolKind::Variable(_) | SymbolKind::Equation(_) => {
                 let Some(attr) = &t.attribute else {
                     let what = symbol.kind_name();

@@ -211,11 +211,11 @@ impl Machine<'_> {
             return Flow::Next;
         }
         // The current value of the scalar counts, so that the body may change it.
+        // Steps are added up and compared as they are: 0.1 to 0.3 by 0.1 ends before 0.30000000000000004.
         self.store.table_mut(table).set(&[], from);
-        let limit = to + if down { -1e-9 * by } else { 1e-9 * by };
         loop {
             let k = number(self.store.table(table).get(&[]));
-            if (down && k < limit) || (!down && k > limit) || k.is_nan() {
+            if (down && k < to) || (!down && k > to) || k.is_nan() {
                 return Flow::Next;
             }
             if let ControlFlow::Break(flow) = self.turn(body, frame) {
@@ -328,11 +328,13 @@ impl Machine<'_> {
                 .iter()
                 .all(|m| self.is_member(m.table, &m.key, frame))
         {
+            self.empty_singleton(target);
             return;
         }
         let mut k = [0; 20];
         let n = key.parts.len();
         if !self.key(key, frame, &mut k) {
+            self.empty_singleton(target);
             return;
         }
         if n > 0 {
@@ -359,6 +361,13 @@ impl Machine<'_> {
                 },
                 false,
             ),
+        }
+    }
+
+    /// An assignment to a singleton set takes its element out even where no element is assigned.
+    fn empty_singleton(&mut self, target: Target) {
+        if let Target::Singleton(t) = target {
+            self.store.table_mut(t).clear();
         }
     }
 
@@ -420,18 +429,12 @@ impl Machine<'_> {
             }
             Target::Singleton(t) => {
                 let dim = self.store.table(t).dim();
-                let mut chosen: Vec<&[Label]> = Vec::new();
-                for (k, &v) in out.keys.chunks_exact(dim).zip(&out.values) {
-                    if truth(v) {
-                        chosen.push(k);
-                    } else if self.store.table(t).find(k).is_some() {
-                        self.store.table_mut(t).clear();
-                    }
-                }
+                let records = out.keys.chunks_exact(dim).zip(&out.values);
+                let chosen: Vec<_> = records.filter(|r| truth(*r.1)).map(|r| r.0).collect();
+                // Whatever is assigned, and whether anything is: the old element goes.
+                self.store.table_mut(t).clear();
                 if let Some(first) = chosen.first() {
-                    let table = self.store.table_mut(t);
-                    table.clear();
-                    table.set(first, 1.0);
+                    self.store.table_mut(t).set(first, 1.0);
                     if chosen.len() > 1 && self.options.number("strictsingleton") != Some(0.0) {
                         let n = chosen.len();
                         self.execution_error(

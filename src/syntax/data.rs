@@ -869,7 +869,8 @@ fn is_tiny(text: &str) -> bool {
 /// Length of `.set` at the start, if it stands there.
 fn set_suffix(bytes: &[u8]) -> Option<usize> {
     let s = bytes.get(..4)?;
-    let ends = !bytes.get(4).is_some_and(|b| is_label(*b));
+    // In `a.set.j` the word belongs to what follows.
+    let ends = !bytes.get(4).is_some_and(|b| is_label(*b) || *b == b'.');
     (s.eq_ignore_ascii_case(b".set") && ends).then_some(4)
 }
 
