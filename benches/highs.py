@@ -18,8 +18,8 @@ def value(v):
     return {"+INF": highspy.kHighsInf, "-INF": -highspy.kHighsInf}.get(v, v)
 
 
-def load(path):
-    solve = json.load(open(path))["solves"][0]
+def load(path, which=0):
+    solve = json.load(open(path))["solves"][which]
     lp = highspy.HighsLp()
     rows, columns = solve["rows"], solve["columns"]
     lp.num_col_, lp.num_row_ = len(columns), len(rows)
@@ -66,4 +66,5 @@ def main():
             print(f"| {name} | {tolerance:.0e} | {status} | {seconds:.3f} | {error:.1e} | {v:.12f} |")
 
 
-main()
+if __name__ == "__main__":
+    main()
