@@ -45,6 +45,9 @@ pub struct Residuals {
     pub complementarity_sum: Option<f64>,
     /// max |x − mid(l, u, x − F)|.
     pub natural: Option<f64>,
+    /// For mcp: the largest |F| times the distance to the bound that F's sign asks for, if that is below 1. GAMS gives
+    /// it as the objective value.
+    pub pairs: Option<f64>,
     /// |primal − dual objective|.
     pub gap: Option<f64>,
     /// Row of the largest residual (primal; for mcp natural), if it is a row's.
@@ -324,6 +327,7 @@ pub fn complementarity(instance: &Instance, x: &[f64], f: &[f64]) -> Residuals {
     let matched = instance.matched.as_ref().unwrap_or(&nothing);
     let (mut row, mut column) = (Worst::default(), Worst::default());
     let (mut product, mut sum) = (0.0f64, Sum::default());
+    let mut pairs = 0.0f64;
     let mut natural_relative = 0.0f64;
     let mut taken = vec![false; instance.row_count()];
     for (j, &x) in x.iter().enumerate() {
@@ -345,6 +349,7 @@ pub fn complementarity(instance: &Instance, x: &[f64], f: &[f64]) -> Residuals {
         let r = natural / x.abs().max(1.0);
         natural_relative = natural_relative.max(if r.is_nan() { f64::INFINITY } else { r });
         let bound = if step > 0.0 { l } else { u };
+        pairs = pairs.max(step.abs() * (x - bound).abs().min(1.0));
         if step != 0.0 && bound.is_finite() {
             let p = (step * (x - bound)).abs();
             product = product.max(p);
@@ -354,10 +359,12 @@ pub fn complementarity(instance: &Instance, x: &[f64], f: &[f64]) -> Residuals {
     for i in (0..instance.row_count()).filter(|&i| !taken[i]) {
         let v = row_violation(instance.rows.relation[i], f[i], 0.0);
         row.see(v, i);
+        pairs = pairs.max(v);
         natural_relative = natural_relative.max(if v.is_nan() { f64::INFINITY } else { v });
     }
     Residuals {
         natural: Some(row.value.max(column.value)),
+        pairs: Some(pairs),
         complementarity: Some(product),
         complementarity_sum: Some(sum.value()),
         worst_row: row.place.filter(|_| row.value >= column.value),

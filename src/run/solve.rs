@@ -365,9 +365,10 @@ impl Machine<'_> {
     fn remember(&mut self, s: &SolveCode, g: &Generated, a: &Answer, seconds: json::Seconds) {
         let r = &a.residuals;
         let instance: &Instance = &g.instance;
-        let objective = instance
-            .objective
-            .map_or(0.0, |o| a.outcome.level[o.column as usize]);
+        let objective = match instance.objective {
+            Some(o) => a.outcome.level[o.column as usize],
+            None => r.pairs.unwrap_or(0.0),
+        };
         let infeasible = !r.is_feasible(crate::model::certificate::TOLERANCE);
         let count = if infeasible {
             r.infeasible_count as f64

@@ -61,7 +61,9 @@ pub(super) fn solve(
     }
     let deadline = deadline(settings);
     let statistics = monitor.wants_log() && settings.output_final_statistics;
-    let mut reduced = Reduced::new(problem, settings.preprocess);
+    // Without iterations the start is judged as it is, which the presolve would move.
+    let preprocess = settings.preprocess && settings.cumulative_iteration_limit > 0;
+    let mut reduced = Reduced::new(problem, preprocess);
     if statistics {
         let line = format!(
             "{} variables, {} nonzeros; after presolve {} (rows turned into bounds: {})",
