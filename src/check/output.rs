@@ -5,7 +5,7 @@ use super::symbols::{SymbolKind, attribute};
 use super::{Compiler, Failed};
 use crate::diag::Diagnostic;
 use crate::source::Span;
-use crate::syntax::ast::{DisplayItem, ExprKind, Ident, Put, PutItem};
+use crate::syntax::ast::{DisplayItem, Expr, ExprKind, Ident, Put, PutItem};
 
 impl Compiler {
     pub(super) fn shown(&mut self, items: &[DisplayItem]) -> Result<Vec<Shown>, Failed> {
@@ -117,55 +117,97 @@ impl Compiler {
                     width,
                     decimals,
                 } => {
-                    if let ExprKind::Apply {
-                        name,
-                        attribute,
-                        arguments: None,
-                    } = &value.kind
-                    {
-                        if name.name.eq_ignore_ascii_case("system") {
-                            let what = attribute.as_ref().map_or("", |a| &*a.name).to_lowercase();
-                            let value = Node::data(
-                                NodeKind::Text(format!("%system.{what}%").into()),
-                                value.span,
-                            );
-                            out.push(PutCode::Item {
-                                value,
-                                align: *align,
-                                width: self.optional(width.as_ref())?,
-                                decimals: self.optional(decimals.as_ref())?,
-                            });
-                            continue;
+                    let apart = self.two_items(value);
+                    let last = match &apart {
+                        Some((first, last)) => {
+                            out.push(self.put_item(first, (None, None, None))?);
+                            last
                         }
-                        if let (Some(s), None) = (self.file(name), attribute) {
-                            out.push(PutCode::File(s));
-                            continue;
-                        }
-                    }
-                    let mut value = value;
-                    // `put out (a + b)` reads like a symbol with an index.
-                    if let ExprKind::Apply {
-                        name,
-                        attribute: None,
-                        arguments: Some(arguments),
-                    } = &value.kind
-                        && let [one] = arguments.as_slice()
-                        && let Some(s) = self.file(name)
-                    {
-                        out.push(PutCode::File(s));
-                        value = one;
-                    }
-                    PutCode::Item {
-                        value: self.expr(value)?,
-                        align: *align,
-                        width: self.optional(width.as_ref())?,
-                        decimals: self.optional(decimals.as_ref())?,
-                    }
+                        None => value,
+                    };
+                    let width = self.optional(width.as_ref())?;
+                    let decimals = self.optional(decimals.as_ref())?;
+                    self.put_item(last, (*align, width, decimals))?
                 }
             };
             out.push(code);
         }
         Ok(out)
+    }
+
+    fn put_item(
+        &mut self,
+        value: &Expr,
+        (align, width, decimals): (Option<char>, Option<Node>, Option<Node>),
+    ) -> Result<PutCode, Failed> {
+        if let ExprKind::Apply {
+            name,
+            attribute: None,
+            arguments: None,
+        } = &value.kind
+            && let Some(s) = self.file(name)
+        {
+            return Ok(PutCode::File(s));
+        }
+        let value = match &value.kind {
+            ExprKind::Apply {
+                name,
+                attribute,
+                arguments: None,
+            } if name.name.eq_ignore_ascii_case("system") => {
+                let what = attribute.as_ref().map_or("", |a| &*a.name).to_lowercase();
+                Node::data(
+                    NodeKind::Text(format!("%system.{what}%").into()),
+                    value.span,
+                )
+            }
+            _ => self.expr(value)?,
+        };
+        Ok(PutCode::Item {
+            value,
+            align,
+            width,
+            decimals,
+        })
+    }
+
+    /// `put out (a + b)`, `put s (2*s)`, `put i.tl (p(i)*2)` read like a name with an index, but there is none to give:
+    /// they are two items.
+    fn two_items(&self, value: &Expr) -> Option<(Expr, Expr)> {
+        if let ExprKind::Dollar(value, condition) = &value.kind {
+            let (first, last) = self.two_items(value)?;
+            let span = last.span.to(condition.span);
+            let kind = ExprKind::Dollar(Box::new(last), condition.clone());
+            return Some((first, Expr { kind, span }));
+        }
+        let ExprKind::Apply {
+            name,
+            attribute,
+            arguments: Some(arguments),
+        } = &value.kind
+        else {
+            return None;
+        };
+        let [last] = arguments.as_slice() else {
+            return None;
+        };
+        let symbol = self.symbols.get(self.symbols.find(&name.name)?);
+        let text = |a: &Ident| matches!(&*a.name.to_lowercase(), "tl" | "ts");
+        let without = match attribute {
+            Some(a) if text(a) => true,
+            _ if symbol.dim() > 0 => false,
+            Some(_) => true,
+            None => !symbol.is_set(),
+        };
+        let first = Expr {
+            kind: ExprKind::Apply {
+                name: name.clone(),
+                attribute: attribute.clone(),
+                arguments: None,
+            },
+            span: name.span,
+        };
+        without.then(|| (first, last.clone()))
     }
 
     /// The file of this name, if it is one.

@@ -183,6 +183,7 @@ impl Builder<'_, '_> {
         let restrict = item.restrict.map(|s| self.m.symbols.get(s).table);
         // Tuples first (in label order), then rows: the order of rows is what a person sees.
         let d = e.domain.slots.len();
+        let errors = self.m.execution_error_count();
         let tuples = if d == 0 {
             let plan = self.m.plan(&e.domain, Wanted::default());
             let mut any = false;
@@ -190,13 +191,18 @@ impl Builder<'_, '_> {
                 any = true;
                 false
             });
-            if !any {
+            if !any && self.m.execution_error_count() == errors {
                 return;
             }
             Vec::new()
         } else {
             self.m.tuples(&e.domain, frame)
         };
+        // Which rows there are is not known then.
+        if self.m.execution_error_count() > errors {
+            self.failed = true;
+            return;
+        }
         let plain = e.key.is_plain() && {
             let slots: Vec<Slot> = e
                 .key
