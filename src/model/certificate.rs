@@ -64,7 +64,7 @@ pub struct Residuals {
     pub dual_relative: f64,
     /// The gap relative to the data.
     pub gap_relative: f64,
-    /// The natural residual relative to max(1, |x_j|).
+    /// The natural residual relative to max(1, |x_j|), that of rows without a variable to max(1, |a_ij x_j|).
     pub natural_relative: f64,
     /// Number of rows and columns that violate the relative tolerance (`.numinfes`).
     pub infeasible_count: usize,
@@ -360,7 +360,9 @@ pub fn complementarity(instance: &Instance, x: &[f64], f: &[f64]) -> Residuals {
         let v = row_violation(instance.rows.relation[i], f[i], 0.0);
         row.see(v, i);
         pairs = pairs.max(v);
-        natural_relative = natural_relative.max(if v.is_nan() { f64::INFINITY } else { v });
+        let terms = instance.matrix.row(i).map(|(j, a)| (a * x[j]).abs());
+        let r = v / terms.fold(1.0, f64::max);
+        natural_relative = natural_relative.max(if r.is_nan() { f64::INFINITY } else { r });
     }
     Residuals {
         natural: Some(row.value.max(column.value)),

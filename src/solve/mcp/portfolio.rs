@@ -66,11 +66,12 @@ pub(super) fn solve(
     let mut reduced = Reduced::new(problem, preprocess);
     if statistics {
         let line = format!(
-            "{} variables, {} nonzeros; after presolve {} (rows turned into bounds: {})",
+            "{} variables, {} nonzeros; after presolve {} (rows turned into bounds: {}, variables that only report: {})",
             reduced.total(),
             reduced.total_nonzeros(),
             reduced.kept.len(),
-            reduced.dropped()
+            reduced.dropped(),
+            reduced.reports()
         );
         monitor.log(&line);
     }
