@@ -24,10 +24,7 @@ use pounce_restoration::resto_inner_solver::{
 };
 use std::cell::RefCell;
 use std::rc::Rc;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
-use std::time::Duration;
+use std::sync::mpsc::{Receiver, Sender, channel};
 
 /// `option nlp = pounce`.
 #[derive(Clone, Copy, Debug, Default)]
@@ -44,25 +41,18 @@ impl Provider for Pounce {
             options.push(("max_wall_time".into(), format!("{s:.6}")));
         }
         let (send, receive) = channel();
-        let stop = Arc::new(AtomicBool::new(false));
+        let (reply, on) = channel();
         let thread = {
-            let (nlp, stop) = (nlp.clone(), stop.clone());
+            let nlp = nlp.clone();
             std::thread::Builder::new()
                 .name(super::THREAD.into())
                 .stack_size(64 << 20)
-                .spawn(move || run(nlp, &options, send, stop))
+                .spawn(move || run(nlp, &options, send, on))
                 .map_err(|e| format!("no thread could be started: {e}"))?
         };
-        loop {
-            match receive.recv_timeout(Duration::from_millis(50)) {
-                Ok(progress) => {
-                    if !(control.watch)(&progress) {
-                        stop.store(true, Ordering::Relaxed);
-                    }
-                }
-                Err(RecvTimeoutError::Disconnected) => break,
-                Err(RecvTimeoutError::Timeout) => {}
-            }
+        for progress in receive {
+            // Nobody listens: the run has ended by itself.
+            let _ = reply.send((control.watch)(&progress));
         }
         match thread.join() {
             Ok(result) => result,
@@ -85,7 +75,7 @@ fn run(
     nlp: Shared,
     options: &[(String, String)],
     progress: Sender<Progress>,
-    stop: Arc<AtomicBool>,
+    on: Receiver<bool>,
 ) -> Result<Solution, String> {
     let mut app = IpoptApplication::new();
     for (k, v) in options {
@@ -109,7 +99,7 @@ fn run(
     let adapter = Rc::new(RefCell::new(Adapter {
         nlp,
         progress,
-        stop,
+        on,
         lambda: vec![0.0; m],
         solution: Solution {
             ended: Ended::Broken,
@@ -148,7 +138,7 @@ fn ended(status: Status) -> Ended {
 struct Adapter {
     nlp: Shared,
     progress: Sender<Progress>,
-    stop: Arc<AtomicBool>,
+    on: Receiver<bool>,
     lambda: Vec<f64>,
     solution: Solution,
 }
@@ -272,7 +262,8 @@ impl TNLP for Adapter {
     }
 
     fn intermediate_callback(&mut self, s: IterStats, _: &IpoptData, _: &IpoptCq) -> bool {
-        // a closed channel means that nobody waits any more
+        // The answer is waited for: how far a run gets must not depend on how fast the threads are. A closed channel
+        // means that nobody listens any more.
         let sent = self.progress.send(Progress {
             iteration: u64::try_from(s.iter).unwrap_or(0),
             objective: s.obj_value,
@@ -282,6 +273,6 @@ impl TNLP for Adapter {
             step: s.alpha_pr,
             restoration: s.mode == AlgorithmMode::RestorationPhaseMode,
         });
-        sent.is_ok() && !self.stop.load(Ordering::Relaxed)
+        sent.is_ok() && self.on.recv().unwrap_or(false)
     }
 }
