@@ -41,3 +41,11 @@ fn a_large_wall_has_the_load_factor_of_the_linear_program() {
     let nonassociated = run(15, 8, 0.65, false);
     assert!(nonassociated.x[0] < associated.x[0]);
 }
+
+/// Far from monotone: the interior crash meets folds of its path, and goes around them.
+#[test]
+fn a_wall_whose_path_has_folds() {
+    let outcome = run(8, 8, 1.0, false);
+    assert!(outcome.x[0] < run(8, 8, 1.0, true).x[0]);
+    assert!(outcome.pivots < 100, "{} pivots", outcome.pivots);
+}

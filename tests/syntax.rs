@@ -309,10 +309,7 @@ fn declared(text: &str) -> Vec<String> {
             StmtKind::Set(l) => l.into_iter().map(|d| d.symbol).collect(),
             StmtKind::Parameter(l) => l.into_iter().map(|d| d.symbol).collect(),
             StmtKind::Variable(_, l) | StmtKind::Equation(l) | StmtKind::Acronym(l) => l,
-            StmtKind::Table(t) => vec![SymbolDecl {
-                data: Some(t.body),
-                ..t.symbol
-            }],
+            StmtKind::Table(t) => t.symbols,
             _ => vec![],
         };
         for d in symbols {
@@ -338,7 +335,7 @@ fn declared(text: &str) -> Vec<String> {
 fn declarations_with_texts() {
     let found = declared(
         "Sets i  canning plants / seattle, san-diego /\n j(*)  'markets' / a, b / , k;\n\
-         Scalar x producer's cost (in $ per ton) /3/, y \"it's\" /4/\n  z /5/ w /6/;\n\
+         Scalar x producer's cost (in $ per ton) /3/, y \"it's\" /4/\n  z /5/, w /6/;\n\
          parameters a(i)  (in tons) = text. /seattle 1/\n\n b(i,j)\n  /seattle.a 2/\n c(i<,*) -one\n;\n\
          variables x1, x2 second one\n x3(i) /seattle.l 3/; positive variable x1;\n\
          equation e text of e, f(i) ;\n set k2 /a people's republic, b 'x / y' \n c/ ",
@@ -370,13 +367,15 @@ fn declarations_with_texts() {
 #[test]
 fn tables_end_at_a_semicolon_or_a_keyword() {
     let found = declared(
-        "table t(i,j) cost, in $/ton; yes\n   a b\nset 1 2\nx 3 4\nscalar s /1/;\n\
+        "table e(i) none; table n(i), t(i,j) cost in $/ton\n   a b\nset 1 2\nx 3 4\nscalar s /1/;\n\
          table u(*,*) 'text'\n  'a;b'\nx 1;\nTable\n v(*,*)\n a\nb 1\n;",
     );
     assert_eq!(
         found,
         [
-            "t(i,j) [cost, in $/ton; yes] /a b\nset 1 2\nx 3 4/",
+            "e(i) [none] //",
+            "n(i) [] //",
+            "t(i,j) [cost in $/ton] /a b\nset 1 2\nx 3 4/",
             "s() [] /1/",
             "u(*,*) [text] /'a;b'\nx 1/",
             "v(*,*) [] /a\nb 1/",

@@ -28,7 +28,7 @@ impl Declared {
             StmtKind::Set(list) => list.iter().for_each(|d| name(&d.symbol)),
             StmtKind::Parameter(list) => list.iter().for_each(|d| name(&d.symbol)),
             StmtKind::Variable(_, list) | StmtKind::Equation(list) => list.iter().for_each(name),
-            StmtKind::Table(t) => name(&t.symbol),
+            StmtKind::Table(t) => t.symbols.iter().for_each(name),
             _ => {}
         }
     }
@@ -77,15 +77,14 @@ fn read_data(parser: &Parser<'_>, s: &Stmt) -> Vec<String> {
             .for_each(|d| symbols(std::slice::from_ref(&d.symbol), DataKind::Values)),
         StmtKind::Variable(_, list) | StmtKind::Equation(list) => symbols(list, DataKind::Values),
         StmtKind::Table(t) => {
-            let mut reader = TableReader::new(
-                parser.map().expanded(),
-                t.body,
-                t.symbol.domain.as_ref().map_or(2, Vec::len),
-                true,
-            );
-            while let Some(cell) = reader.next() {
-                if let Err(d) = cell {
-                    wrong.push(d.message);
+            for d in &t.symbols {
+                let Some(body) = d.data else { continue };
+                let dim = d.domain.as_ref().map_or(2, Vec::len);
+                let mut reader = TableReader::new(parser.map().expanded(), body, dim, true);
+                while let Some(cell) = reader.next() {
+                    if let Err(d) = cell {
+                        wrong.push(d.message);
+                    }
                 }
             }
         }

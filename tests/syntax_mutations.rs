@@ -104,12 +104,15 @@ fn read_everything(text: &str) {
                     symbols(list, DataKind::Values)
                 }
                 StmtKind::Table(t) => {
-                    let mut reader = TableReader::new(parser.map().expanded(), t.body, 2, false);
+                    let Some(lines) = t.symbols.last().and_then(|d| d.data) else {
+                        continue;
+                    };
+                    let mut reader = TableReader::new(parser.map().expanded(), lines, 2, false);
                     let mut n = 0;
                     while let Some(r) = reader.next() {
                         n += 1;
                         assert!(
-                            n <= 10 + (t.body.hi - t.body.lo) as usize,
+                            n <= 10 + (lines.hi - lines.lo) as usize,
                             "the table reader does not end"
                         );
                         drop(r);

@@ -2,7 +2,7 @@
 
 use super::expansion::{Tuples, record_bytes, set_prefix};
 use super::node::{SymbolId, TableId};
-use super::symbols::{DomainPosition, Store, SymbolKind, Symbols, attribute};
+use super::symbols::{DomainPosition, Store, Symbol, SymbolKind, Symbols, attribute};
 use super::{Compiler, Failed};
 use crate::data::table::Table;
 use crate::data::universe::Label;
@@ -12,12 +12,44 @@ use crate::source::{Known, SourceMap, Span};
 use crate::syntax::ast::Ident;
 use crate::syntax::data::{DataKind, DataReader, KeyPart, Tail, undf_refused, width};
 
+/// Keys that came already: none may come twice. Keys in label order cost no index.
+#[derive(Default)]
+pub(super) struct Seen(Option<Table>);
+
+impl Seen {
+    /// Whether a key came before; from now on it did.
+    pub(super) fn again(&mut self, key: &[Label]) -> bool {
+        let table = self.0.get_or_insert_with(|| Table::new(key.len(), 0.0));
+        // Keys of another length are refused elsewhere.
+        if table.dim() != key.len() {
+            return false;
+        }
+        let again = !table.is_after_last(key) && table.find(key).is_some();
+        table.set(key, 1.0);
+        again
+    }
+
+    /// How many.
+    fn len(&self) -> usize {
+        self.0.as_ref().map_or(0, Table::len)
+    }
+}
+
+/// The set that a data statement fills, and the order of what it has.
+struct Elements {
+    filling: Filling,
+    symbol: Symbol,
+    last: Option<Label>,
+    /// Labels came in another order than that of the universe.
+    unordered: bool,
+}
+
 /// A symbol that a data statement fills.
 pub(super) struct Filling {
     symbol: SymbolId,
     table: TableId,
     /// Records of this statement, where the symbol had some before it: none may come twice.
-    own: Option<Table>,
+    own: Option<Seen>,
 }
 
 impl Filling {
@@ -28,11 +60,7 @@ impl Filling {
                 let t = &store.tables[self.table as usize];
                 !t.is_after_last(key) && t.find(key).is_some()
             }
-            Some(own) => {
-                let repeated = own.find(key).is_some();
-                own.set(key, 1.0);
-                repeated
-            }
+            Some(own) => own.again(key),
         }
     }
 }
@@ -82,7 +110,7 @@ impl Compiler {
         Ok(Filling {
             symbol: s,
             table,
-            own: (!old.is_empty()).then(|| Table::new(old.dim(), 0.0)),
+            own: (!old.is_empty()).then(Seen::default),
         })
     }
 
@@ -155,19 +183,34 @@ impl Compiler {
         defines: &[bool],
         map: &SourceMap,
     ) -> Result<(), Failed> {
-        let (mut filling, mut reader) =
-            self.open_reader(s, body, name, defines, DataKind::Set, map)?;
+        let (filling, mut reader) = self.open_reader(s, body, name, defines, DataKind::Set, map)?;
         let symbol = self.symbols.get(s).clone();
-        let (table, dim) = (symbol.table, symbol.dim());
-        let mut last: Option<Label> = self.last_label(table, dim);
+        let mut elements = Elements {
+            last: self.last_label(symbol.table, symbol.dim()),
+            unordered: symbol.unordered,
+            filling,
+            symbol,
+        };
         let mut keys = Tuples::default();
-        let mut unordered = symbol.unordered;
-        while let Some(record) = reader.next() {
+        let mut familiar = Familiar::new(&self.symbols, s);
+        loop {
+            while let Some((_, span)) =
+                reader.plain(|p, text| familiar.find(&mut self.store, p, text))
+            {
+                if self
+                    .take(1, record_bytes(familiar.key.len()), span)
+                    .is_err()
+                {
+                    break;
+                }
+                self.put_element(&mut elements, &familiar.key, None, span);
+            }
+            let Some(record) = reader.next() else { break };
             let record = match record {
                 Ok(r) => r,
                 Err(d) => {
                     self.report(d);
-                    break;
+                    continue;
                 }
             };
             let spelled_out = set_prefix(record.key);
@@ -180,11 +223,11 @@ impl Compiler {
                     .is_some_and(|set| self.symbols.get(self.symbols.root(set)).unordered),
                 _ => false,
             });
-            let text: Option<Box<str>> = match &record.value {
+            let text = match &record.value {
                 Tail::None => None,
-                Tail::Text(t, _) => Some((&**t).into()),
-                Tail::Number(_, span) => Some(map.text(*span).into()),
-                Tail::Name(n, _) => Some((*n).into()),
+                Tail::Text(t, _) => Some(&**t),
+                Tail::Number(_, span) => Some(map.text(*span)),
+                Tail::Name(n, _) => Some(*n),
             };
             let span = record.span;
             if self
@@ -193,55 +236,49 @@ impl Compiler {
             {
                 continue;
             }
+            elements.unordered |= all_of_unordered && elements.symbol.dim() == 1 && keys.len() > 0;
             for (key, _) in keys.rows() {
-                if filling.repeats(&mut self.store, key) {
-                    let label = self.key_text(key);
-                    self.report(
-                        Diagnostic::error(
-                            "E0341",
-                            span,
-                            format!("the element {label} of `{}` appears twice", symbol.name),
-                        )
-                        .label("second time"),
-                    );
-                    continue;
-                }
-                if matches!(symbol.kind, SymbolKind::Set { singleton: true })
-                    && !self.store.table(table).is_empty()
-                {
-                    let first = filling.own.as_ref().is_some_and(|own| own.len() == 1);
-                    if !first {
-                        self.report(
-                            Diagnostic::error(
-                                "E0342",
-                                span,
-                                format!("`{}` is a singleton: it has one element", symbol.name),
-                            )
-                            .label("second element"),
-                        );
-                        continue;
-                    }
-                    // `$onMulti`: the later element counts.
-                    self.store.clear(&symbol, None);
-                }
-                let new = filling.own.is_none() || self.store.table(table).find(key).is_none();
-                if dim == 1 && new {
-                    unordered |= all_of_unordered || last.is_some_and(|l| l > key[0]);
-                    last = Some(key[0]);
-                }
-                self.store.table_mut(table).set(key, 1.0);
-                if let Some(t) = &text {
-                    self.store
-                        .texts
-                        .entry(table)
-                        .or_default()
-                        .insert(key.into(), t.clone());
-                }
+                self.put_element(&mut elements, key, text, span);
             }
         }
-        self.store.table_mut(table).tidy();
-        self.symbols.get_mut(s).unordered = unordered;
+        self.store.table_mut(elements.symbol.table).tidy();
+        self.symbols.get_mut(s).unordered = elements.unordered;
         Ok(())
+    }
+
+    /// Stores an element of a data statement; an error if the statement gave it already.
+    fn put_element(&mut self, to: &mut Elements, key: &[Label], text: Option<&str>, span: Span) {
+        let table = to.symbol.table;
+        if to.filling.repeats(&mut self.store, key) {
+            let label = self.key_text(key);
+            let message = format!("the element {label} of `{}` appears twice", to.symbol.name);
+            self.report(Diagnostic::error("E0341", span, message).label("second time"));
+            return;
+        }
+        if matches!(to.symbol.kind, SymbolKind::Set { singleton: true })
+            && !self.store.table(table).is_empty()
+        {
+            let own = to.filling.own.as_ref();
+            if own.is_none_or(|own| own.len() != 1) {
+                let message = format!("`{}` is a singleton: it has one element", to.symbol.name);
+                self.report(Diagnostic::error("E0342", span, message).label("second element"));
+                return;
+            }
+            // `$onMulti`: the later element counts.
+            self.store.clear(&to.symbol, None);
+        }
+        let own = &to.filling.own;
+        if let [label] = *key
+            && (own.is_none() || self.store.table(table).find(key).is_none())
+        {
+            to.unordered |= to.last.is_some_and(|l| l > label);
+            to.last = Some(label);
+        }
+        self.store.tables[table as usize].set(key, 1.0);
+        if let Some(t) = text {
+            let texts = self.store.texts.entry(table).or_default();
+            texts.insert(key.into(), t.into());
+        }
     }
 
     fn last_label(&self, table: TableId, dim: usize) -> Option<Label> {
@@ -288,7 +325,7 @@ impl Compiler {
                 Ok(r) => r,
                 Err(d) => {
                     self.report(d);
-                    break;
+                    continue;
                 }
             };
             let v = match (&record.value, record.key) {
@@ -508,14 +545,15 @@ impl Compiler {
 }
 
 /// Labels of the record before, by position: in data the next label is mostly the same one or the next one.
-struct Familiar {
-    key: Vec<Label>,
+pub(super) struct Familiar {
+    /// What was found, by position.
+    pub(super) key: Vec<Label>,
     /// The set of each position; None: any label.
     sets: Vec<Option<TableId>>,
 }
 
 impl Familiar {
-    fn new(symbols: &Symbols, s: SymbolId) -> Self {
+    pub(super) fn new(symbols: &Symbols, s: SymbolId) -> Self {
         let domain = &symbols.get(s).domain;
         let set = |p: &DomainPosition| match p {
             DomainPosition::Set(d) => Some(symbols.get(symbols.root(*d)).table),
@@ -529,7 +567,7 @@ impl Familiar {
 
     /// Puts the label at its position; false if it is not allowed there.
     #[inline]
-    fn find(&mut self, store: &mut Store, position: usize, text: &str) -> bool {
+    pub(super) fn find(&mut self, store: &mut Store, position: usize, text: &str) -> bool {
         let before = self.key[position];
         let known = &store.universe;
         let spelled = |l: Label| (l as usize) < known.len() && known.name(l) == text;

@@ -167,6 +167,7 @@ impl Compiler {
             Ok(code)
         })();
         self.in_equation = false;
+        self.reads.clear();
         r
     }
 

@@ -72,6 +72,9 @@ pub(crate) struct Compiler {
     symbols: Symbols,
     store: Store,
     equations: Vec<EquationDef>,
+    /// Sets and parameters without data that the equation at hand reads, where it does; and each of the equations.
+    reads: Vec<(SymbolId, Span)>,
+    without_data: Vec<Vec<(SymbolId, Span)>>,
     diagnostics: Vec<Diagnostic>,
     /// Sets under control, innermost last.
     scope: Vec<(SymbolId, Vec<Part>)>,
@@ -182,6 +185,8 @@ impl Compiler {
             next_slot: 0,
             slots: 0,
             in_equation: false,
+            reads: Vec::new(),
+            without_data: Vec::new(),
             new_labels: false,
             texts_allowed: false,
             nesting: 0,
@@ -231,7 +236,17 @@ impl Compiler {
     fn used(&mut self, id: SymbolId, span: Span) {
         let root = self.symbols.root(id);
         let s = self.symbols.get(root);
-        if self.in_equation || self.modes.at(span).implicit_assign || s.has_data || s.assigned {
+        if self.modes.at(span).implicit_assign || s.has_data || s.assigned {
+            return;
+        }
+        if self.in_equation {
+            // They are needed when it is solved.
+            if matches!(
+                s.kind,
+                SymbolKind::Set { .. } | SymbolKind::Parameter { .. }
+            ) {
+                self.reads.push((root, span));
+            }
             return;
         }
         // A statement that could not be read may be the one that gives it values.

@@ -115,6 +115,11 @@ impl Compiler {
             Some(name) => Some(self.dictionary(name)?),
             None => None,
         };
+        for r in &rows {
+            for (symbol, at) in std::mem::take(&mut self.without_data[r.definition]) {
+                self.used(symbol, at);
+            }
+        }
         Ok(CodeKind::Solve(Box::new(SolveCode {
             model,
             equations: rows,

@@ -53,6 +53,7 @@ const OPTIONS: &[&str] = &[
     "integer4",
     "integer5",
     "subsystems",
+    "sparserun",
     "sparseval",
     "on115",
     "zerores",
@@ -97,6 +98,9 @@ const OPTIONS: &[&str] = &[
     "sys18",
     "sys19",
 ];
+
+/// Options whose value is a whole number.
+const WHOLE: &[&str] = &["decimals", "domlim", "iterlim", "limcol", "limrow", "seed"];
 
 /// Whether an option is the language's and not a solver's: a problem type (`nlp = ipopt`), a limit, a
 /// switch.
@@ -170,6 +174,7 @@ impl Compiler {
                         ),
                     });
                 }
+                self.fitting_value(item, &lower, v)?;
                 let value = match v {
                     OptionValue::Number(x) => OptionCode::Number(*x),
                     OptionValue::Text(t, _) => OptionCode::Text(t.clone()),
@@ -185,6 +190,31 @@ impl Compiler {
                 Ok(None)
             }
         }
+    }
+
+    /// An error for a value that the option cannot have.
+    fn fitting_value(
+        &mut self,
+        item: &OptionItem,
+        option: &str,
+        value: &OptionValue,
+    ) -> Result<(), Failed> {
+        let expected = match (option, value) {
+            ("decimals", OptionValue::Number(x)) if !(0.0..=8.0).contains(x) => {
+                "a whole number from 0 to 8"
+            }
+            (o, OptionValue::Number(x)) if WHOLE.contains(&o) && x.fract() != 0.0 => {
+                "a whole number"
+            }
+            (o, OptionValue::Text(..)) if WHOLE.contains(&o) => "a whole number",
+            _ => return Ok(()),
+        };
+        let span = match value {
+            OptionValue::Text(_, span) => *span,
+            OptionValue::Number(_) => item.name.span,
+        };
+        let message = format!("the value of `option {option}` is {expected}");
+        self.fail(Diagnostic::error("E0329", span, message).label("not such a value"))
     }
 
     fn unknown_option<T>(&mut self, item: &OptionItem) -> Result<T, Failed> {

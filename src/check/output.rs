@@ -154,7 +154,7 @@ impl Compiler {
                 name,
                 attribute,
                 arguments: None,
-            } if name.name.eq_ignore_ascii_case("system") => {
+            } if is_system(name) => {
                 let what = attribute.as_ref().map_or("", |a| &*a.name).to_lowercase();
                 Node::data(
                     NodeKind::Text(format!("%system.{what}%").into()),
@@ -191,13 +191,14 @@ impl Compiler {
         let [last] = arguments.as_slice() else {
             return None;
         };
-        let symbol = self.symbols.get(self.symbols.find(&name.name)?);
         let text = |a: &Ident| matches!(&*a.name.to_lowercase(), "tl" | "ts");
+        let symbol = || Some(self.symbols.get(self.symbols.find(&name.name)?));
         let without = match attribute {
+            _ if is_system(name) => true,
             Some(a) if text(a) => true,
-            _ if symbol.dim() > 0 => false,
+            _ if symbol()?.dim() > 0 => false,
             Some(_) => true,
-            None => !symbol.is_set(),
+            None => !symbol()?.is_set(),
         };
         let first = Expr {
             kind: ExprKind::Apply {
@@ -248,4 +249,9 @@ pub fn shown_offset(attr: &str) -> Option<u32> {
         "Stage" => attribute::STAGE,
         _ => return None,
     })
+}
+
+/// `system.date` and the like.
+fn is_system(name: &Ident) -> bool {
+    name.name.eq_ignore_ascii_case("system")
 }

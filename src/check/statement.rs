@@ -38,7 +38,7 @@ impl Compiler {
             StmtKind::Set(list) => return self.declare_sets(list, map),
             StmtKind::Alias(groups) => return self.declare_aliases(groups),
             StmtKind::Parameter(list) => return self.declare_parameters(list, map),
-            StmtKind::Table(t) => return self.declare_table(t, map),
+            StmtKind::Table(t) => return self.declare_tables(t, map),
             StmtKind::Variable(kind, list) => return self.declare_variables(*kind, list, map),
             StmtKind::Equation(list) => return self.declare_equations(list, map),
             StmtKind::Model(list) => return self.declare_models(list),
@@ -477,6 +477,7 @@ impl Compiler {
             })
         });
         self.in_equation = false;
+        self.without_data.push(std::mem::take(&mut self.reads));
         // Defined, even if wrongly: one mistake, one message.
         let index = self.equations.len();
         let sym = self.symbols.get_mut(s);

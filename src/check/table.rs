@@ -1,7 +1,6 @@
 //! `table` declarations.
 
-use rustc_hash::FxHashSet;
-
+use super::data::{Familiar, Seen};
 use super::expansion::{Tuples, record_bytes, set_prefix};
 use super::node::SymbolId;
 use super::symbols::SymbolKind;
@@ -10,7 +9,7 @@ use crate::data::universe::Label;
 use crate::data::value::truth;
 use crate::diag::Diagnostic;
 use crate::source::{Known, SourceMap, Span};
-use crate::syntax::ast::{TableDecl, TableOf, VariableKind};
+use crate::syntax::ast::{ParameterDecl, SetDecl, SymbolDecl, TableDecl, TableOf, VariableKind};
 use crate::syntax::data::{KeyPart, Tail, width};
 use crate::syntax::table::{TableItem, TableReader};
 
@@ -29,37 +28,62 @@ enum Line {
 }
 
 /// The labels of a table as far as it is read.
-#[derive(Default)]
 struct Lines {
     columns: Vec<Line>,
     row: Line,
     /// All columns so far, and the rows since the last headings: none may come twice.
-    headings: FxHashSet<Box<[Label]>>,
-    rows: FxHashSet<Box<[Label]>>,
+    headings: Seen,
+    rows: Seen,
     key: Vec<Label>,
+    familiar: Familiar,
 }
 
 impl Compiler {
-    pub(super) fn declare_table(&mut self, t: &TableDecl, map: &SourceMap) -> Result<(), Failed> {
+    pub(super) fn declare_tables(&mut self, t: &TableDecl, map: &SourceMap) -> Result<(), Failed> {
+        for d in &t.symbols {
+            let mut symbol = d.clone();
+            match (symbol.data.take(), t.of) {
+                (Some(body), of) => self.declare_table(of, &symbol, body, map)?,
+                (None, TableOf::Set) => {
+                    let singleton = false;
+                    self.declare_sets(&[SetDecl { symbol, singleton }], map)?;
+                }
+                (None, TableOf::Variable(kind)) => self.declare_variables(kind, &[symbol], map)?,
+                (None, TableOf::Parameter) => {
+                    let scalar = false;
+                    self.declare_parameters(&[ParameterDecl { symbol, scalar }], map)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn declare_table(
+        &mut self,
+        of: TableOf,
+        d: &SymbolDecl,
+        body: Span,
+        map: &SourceMap,
+    ) -> Result<(), Failed> {
         // A symbol that is declared already may get its values so.
-        let declared = self.symbols.find(&t.symbol.name.name);
-        let kind = match (t.of, declared.map(|s| &self.symbols.get(s).kind)) {
+        let declared = self.symbols.find(&d.name.name);
+        let kind = match (of, declared.map(|s| &self.symbols.get(s).kind)) {
             (_, Some(kind @ SymbolKind::Set { .. })) => kind.clone(),
             (TableOf::Set, _) => SymbolKind::Set { singleton: false },
-            (_, Some(SymbolKind::Variable(_))) | (TableOf::Variable(_), _) => {
-                return self.variable_table(t, map);
+            (TableOf::Variable(kind), _) => return self.variable_table(kind, d, body, map),
+            (_, Some(SymbolKind::Variable(_))) => {
+                return self.variable_table(VariableKind::Unstated, d, body, map);
             }
             _ => SymbolKind::Parameter { scalar: false },
         };
-        let s = self.declare(&t.symbol, kind, |c, n| c.store.add_table(n, 0.0))?;
+        let s = self.declare(d, kind, |c, n| c.store.add_table(n, 0.0))?;
         let open = self.symbols.get(s).open;
-        let name = t.symbol.name.span;
-        let defines = t.symbol.defines();
+        let name = d.name.span;
+        let defines = d.defines();
         let mut filling = self.open_data(s, name)?;
         self.open_domains(s, &defines, name)?;
         if open {
-            let mut reader =
-                TableReader::new(map.expanded(), t.body, 1, self.modes.at(t.body).undf);
+            let mut reader = self.table_reader(body, 1, map);
             while let Some(item) = reader.next() {
                 if let Ok(TableItem::Cell(c)) = item {
                     self.set_dimension(s, width(c.row) + width(c.column));
@@ -83,8 +107,15 @@ impl Compiler {
                 .help("use a `parameter` with a list instead"),
             );
         }
-        let mut reader = TableReader::new(map.expanded(), t.body, dim, self.modes.at(t.body).undf);
-        let mut lines = Lines::default();
+        let mut reader = self.table_reader(body, dim, map);
+        let mut lines = Lines {
+            columns: Vec::new(),
+            row: Line::Open,
+            headings: Seen::default(),
+            rows: Seen::default(),
+            key: Vec::new(),
+            familiar: Familiar::new(&self.symbols, s),
+        };
         let mut keys = Tuples::default();
         while let Some(item) = reader.next() {
             let cell = match item {
@@ -93,7 +124,7 @@ impl Compiler {
                 // take their place in the universe.
                 Ok(TableItem::Headings) => {
                     lines.columns.clear();
-                    lines.rows.clear();
+                    lines.rows = Seen::default();
                     for (key, span) in reader.columns() {
                         let at = dim.saturating_sub(width(key));
                         let line = self.table_line(s, at, key, &defines, name);
@@ -108,7 +139,7 @@ impl Compiler {
                     continue;
                 }
                 Err(d) => {
-                    self.report(d);
+                    self.report(*d);
                     if self.errors() >= MAX_ERRORS {
                         break;
                     }
@@ -116,7 +147,10 @@ impl Compiler {
                 }
             };
             if cell.first {
-                let row = self.table_line(s, 0, cell.row, &defines, name);
+                let row = match self.familiar_line(&mut lines.familiar, cell.row, &defines) {
+                    Some(labels) => Line::Labels(labels),
+                    None => self.table_line(s, 0, cell.row, &defines, name),
+                };
                 lines.row = self.not_again(row, &mut lines.rows, cell.row_span, "row");
             }
             let value = match cell.value {
@@ -163,16 +197,22 @@ impl Compiler {
         Ok(())
     }
 
+    fn table_reader<'a>(&self, body: Span, dim: usize, map: &'a SourceMap) -> TableReader<'a> {
+        TableReader::new(map.expanded(), body, dim, self.modes.at(body).undf).with_constants(self)
+    }
+
     /// A table of a variable: the last label of each cell is an attribute.
-    fn variable_table(&mut self, t: &TableDecl, map: &SourceMap) -> Result<(), Failed> {
-        let kind = match t.of {
-            TableOf::Variable(kind) => kind,
-            _ => VariableKind::Unstated,
-        };
-        self.declare_variables(kind, std::slice::from_ref(&t.symbol), map)?;
-        let s = self.lookup(&t.symbol.name)?;
+    fn variable_table(
+        &mut self,
+        kind: VariableKind,
+        d: &SymbolDecl,
+        body: Span,
+        map: &SourceMap,
+    ) -> Result<(), Failed> {
+        self.declare_variables(kind, std::slice::from_ref(d), map)?;
+        let s = self.lookup(&d.name)?;
         let dim = self.symbols.get(s).dim() + 1;
-        let mut reader = TableReader::new(map.expanded(), t.body, dim, self.modes.at(t.body).undf);
+        let mut reader = self.table_reader(body, dim, map);
         while let Some(item) = reader.next() {
             match item {
                 Ok(TableItem::Cell(cell)) => {
@@ -182,7 +222,7 @@ impl Compiler {
                     }
                 }
                 Ok(TableItem::Headings | TableItem::EmptyRow(..)) => {}
-                Err(d) => self.report(d),
+                Err(d) => self.report(*d),
             }
         }
         self.attributes_given(s);
@@ -223,14 +263,30 @@ impl Compiler {
         Line::Open
     }
 
-    /// The labels of a row or column, refused if they came before.
-    fn not_again(
+    /// The labels of a row that has one at each position, and none that is new to its set.
+    fn familiar_line(
         &mut self,
-        line: Line,
-        before: &mut FxHashSet<Box<[Label]>>,
-        at: Span,
-        what: &str,
-    ) -> Line {
+        familiar: &mut Familiar,
+        key: &[KeyPart],
+        defines: &[bool],
+    ) -> Option<Vec<Label>> {
+        if set_prefix(key).is_some() || key.len() > familiar.key.len() {
+            return None;
+        }
+        for (p, part) in key.iter().enumerate() {
+            let known = match part {
+                KeyPart::Label { text, .. } => familiar.find(&mut self.store, p, text),
+                _ => false,
+            };
+            if !known || defines.get(p) == Some(&true) {
+                return None;
+            }
+        }
+        Some(familiar.key[..key.len()].to_vec())
+    }
+
+    /// The labels of a row or column, refused if they came before.
+    fn not_again(&mut self, line: Line, before: &mut Seen, at: Span, what: &str) -> Line {
         let mut again = None;
         let tuples: Box<dyn Iterator<Item = &[Label]>> = match &line {
             Line::Labels(l) => Box::new(std::iter::once(l.as_slice())),
@@ -238,7 +294,7 @@ impl Compiler {
             Line::Open | Line::Refused => return line,
         };
         for key in tuples {
-            if !before.insert(key.into()) {
+            if before.again(key) {
                 again = Some(self.key_text(key));
             }
         }

@@ -14,10 +14,12 @@ pub type Label = u32;
 pub struct Universe {
     text: String,
     ends: Vec<u32>,
+    /// By label: growing the index and passing over others does not read the texts again.
+    hashes: Vec<u32>,
     index: HashTable<Label>,
 }
 
-fn hash(label: &str) -> u64 {
+fn hash(label: &str) -> u32 {
     let mut h = rustc_hash::FxHasher::default();
     let bytes = label.as_bytes();
     let mut chunks = bytes.chunks_exact(8);
@@ -28,7 +30,13 @@ fn hash(label: &str) -> u64 {
     let mut last = [0u8; 8];
     last[..chunks.remainder().len()].copy_from_slice(chunks.remainder());
     h.write_u64(fold(u64::from_le_bytes(last)) ^ (bytes.len() as u64) << 56);
-    h.finish()
+    let h = h.finish();
+    (h ^ h >> 32) as u32
+}
+
+/// A hash as the index wants it, with all bits in use.
+fn spread(hash: u32) -> u64 {
+    u64::from(hash).wrapping_mul(0x9e37_79b9_7f4a_7c15)
 }
 
 /// Sets bit 5 of every byte: equal for letters that differ in case only.
@@ -57,26 +65,29 @@ impl Universe {
     /// The label with this spelling, if there is one.
     pub fn get(&self, label: &str) -> Option<Label> {
         let label = label.trim_end();
-        self.index
-            .find(hash(label), |&l| self.name(l).eq_ignore_ascii_case(label))
-            .copied()
+        self.find(label, hash(label))
+    }
+
+    fn find(&self, label: &str, hash: u32) -> Option<Label> {
+        let is =
+            |l: Label| self.hashes[l as usize] == hash && self.name(l).eq_ignore_ascii_case(label);
+        self.index.find(spread(hash), |&l| is(l)).copied()
     }
 
     /// The label with this spelling; a new one goes to the end.
     pub fn intern(&mut self, label: &str) -> Label {
         let label = label.trim_end();
-        if let Some(l) = self.get(label) {
+        let hash = hash(label);
+        if let Some(l) = self.find(label, hash) {
             return l;
         }
         let new = self.ends.len() as Label;
         self.text.push_str(label);
         self.ends.push(self.text.len() as u32);
-        let (text, ends) = (&self.text, &self.ends);
-        self.index.insert_unique(hash(label), new, |&l| {
-            let i = l as usize;
-            let lo = if i == 0 { 0 } else { ends[i - 1] as usize };
-            hash(&text[lo..ends[i] as usize])
-        });
+        self.hashes.push(hash);
+        let hashes = &self.hashes;
+        self.index
+            .insert_unique(spread(hash), new, |&l| spread(hashes[l as usize]));
         new
     }
 }

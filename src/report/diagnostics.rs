@@ -241,7 +241,9 @@ impl Excerpt {
                 None => wanted.push((from, to)),
             }
         }
-        wanted.sort_unstable();
+        // The first place is what the message is about: its lines come first.
+        let about = places.first().map_or(0, |p| file.line(p.0).max(1) - 1);
+        wanted.sort_unstable_by_key(|w| (!(w.0..w.1).contains(&about), *w));
         let mut shown: Vec<(usize, usize, usize)> = Vec::new(); // file offsets lo..hi, excerpt offset
         for (from, to) in wanted {
             let start = excerpt.text.len();
@@ -270,8 +272,9 @@ impl Excerpt {
             });
         }
         let find = |p: usize| {
-            let k = shown.iter().rposition(|s| s.0 <= p).unwrap_or(0);
-            shown.get(k).map_or(0, |s| s.2 + p.clamp(s.0, s.1) - s.0)
+            let before = shown.iter().filter(|s| s.0 <= p);
+            let line = before.max_by_key(|s| s.0).or(shown.first());
+            line.map_or(0, |s| s.2 + p.clamp(s.0, s.1) - s.0)
         };
         let found = places.iter().map(|&(lo, hi)| {
             let (lo, hi) = (lo as usize, hi as usize);
@@ -483,18 +486,18 @@ mod tests {
 E0301
 
   x `p` takes 1 index, not 2
+   ,-[wall.blk:9:5]
+ 8 | scalar s;
+ 9 | s = p('a','b');
+   :     ^^^^^|^^^^
+   :          `-- 2 indices here
+   `----
    ,-[wall.blk:2:11]
  1 | set i / a, b /;
  2 | parameter p(i);
    :           ^^|^
    :             `-- declared here with 1 index
  3 | 
-   `----
-   ,-[wall.blk:9:5]
- 8 | scalar s;
- 9 | s = p('a','b');
-   :     ^^^^^|^^^^
-   :          `-- 2 indices here
    `----
   help: write p('a')
 "#);

@@ -320,14 +320,22 @@ impl Machine<'_> {
                 }
             };
         }
+        // These look at some of their arguments only, or at what they are and not how large.
+        match f {
+            Function::IfThen if is_undf(args[0]) || is_na(args[0]) => return args[0],
+            Function::IfThen => return args[if truth(args[0]) { 1 } else { 2 }],
+            Function::RelEq => return arithmetic::relate(BinaryOp::Eq, args[0], args[1]),
+            Function::RelNe => return arithmetic::relate(BinaryOp::Ne, args[0], args[1]),
+            _ => {}
+        }
         let takes_words = matches!(
             f,
-            Function::IfThen
-                | Function::RelEq
-                | Function::RelNe
-                | Function::BoolAnd
+            Function::BoolAnd
                 | Function::BoolOr
                 | Function::BoolNot
+                | Function::BoolXor
+                | Function::BoolEqv
+                | Function::BoolImp
         );
         let bad = if takes_words {
             is_undf
@@ -377,21 +385,15 @@ impl Machine<'_> {
             Function::Round if eps || args.get(1) == Some(&f64::NEG_INFINITY) => 0.0,
             Function::Sign => args[0].signum(),
             Function::Floor | Function::Ceil | Function::Round | Function::Trunc => args[0],
-            Function::IfThen => {
-                if truth(args[0]) {
-                    args[1]
-                } else {
-                    args[2]
-                }
-            }
-            Function::RelEq => arithmetic::relate(BinaryOp::Eq, args[0], args[1]),
-            Function::RelNe => arithmetic::relate(BinaryOp::Ne, args[0], args[1]),
             Function::RelLt => arithmetic::relate(BinaryOp::Lt, args[0], args[1]),
             Function::RelLe => arithmetic::relate(BinaryOp::Le, args[0], args[1]),
             Function::RelGt => arithmetic::relate(BinaryOp::Gt, args[0], args[1]),
             Function::RelGe => arithmetic::relate(BinaryOp::Ge, args[0], args[1]),
             Function::BoolAnd => arithmetic::relate(BinaryOp::And, args[0], args[1]),
             Function::BoolOr => arithmetic::relate(BinaryOp::Or, args[0], args[1]),
+            Function::BoolXor => arithmetic::relate(BinaryOp::Xor, args[0], args[1]),
+            Function::BoolEqv => arithmetic::relate(BinaryOp::Equivalent, args[0], args[1]),
+            Function::BoolImp => arithmetic::relate(BinaryOp::Implies, args[0], args[1]),
             Function::BoolNot => arithmetic::not(args[0]),
             _ => {
                 let plain: Vec<f64> = args.iter().map(|&x| number(x)).collect();

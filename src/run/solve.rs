@@ -323,11 +323,16 @@ impl Machine<'_> {
         write(&g.origin.columns, attribute::L, &a.outcome.level);
         write(&g.origin.columns, attribute::M, &a.outcome.column_marginal);
         let rows = &g.instance.rows;
-        // A row without relation has its constant inside its level.
+        // A row without relation has its constant inside its level; one that binds is at its right side, not a hair beside it.
         let levels: Vec<f64> = (0..rows.rhs.len())
-            .map(|i| match rows.relation[i] {
-                Relation::Free => a.activity[i] - rows.rhs[i],
-                _ => a.activity[i],
+            .map(|i| {
+                let (level, b) = (a.activity[i], rows.rhs[i]);
+                let binds = rows.relation[i] == Relation::Equal || a.outcome.row_marginal[i] != 0.0;
+                match rows.relation[i] {
+                    Relation::Free => level - b,
+                    _ if binds && (level - b).abs() <= 1e-9 * b.abs().max(1.0) => b,
+                    _ => level,
+                }
             })
             .collect();
         write(&g.origin.rows, attribute::L, &levels);

@@ -55,7 +55,7 @@ pub enum Reference {
     Best(f64),
     /// Zero: natural residuals.
     Residual,
-    /// Nothing: no way gave a point.
+    /// Nothing: no way gave a solution.
     None,
 }
 
@@ -95,6 +95,10 @@ pub fn ways(using: &str, instance: &Instance) -> Vec<Way> {
             }
         }
         "mpec" | "rmpec" => {
+            for starts in ["0", "4"] {
+                let options = [("mpec_starts", starts)];
+                out.push(way("bmod, random starts", starts, None, &options));
+            }
             for factor in ["0.01", "0.1", "0.5"] {
                 let family = match factor {
                     "0.01" => "factor 0.01",
@@ -231,17 +235,20 @@ pub fn study(
 
 /// Smaller is better: whether it is a solution, then its residuals.
 fn merit(a: &Answer) -> (bool, f64) {
-    let solved = matches!(
+    let r = &a.residuals;
+    let worst = [r.primal, r.dual, r.complementarity, r.natural];
+    let worst = worst.iter().flatten().fold(0.0f64, |t, v| t.max(*v));
+    (!is_solution(a), worst)
+}
+
+fn is_solution(a: &Answer) -> bool {
+    matches!(
         a.status,
         ModelStatus::Optimal
             | ModelStatus::LocallyOptimal
             | ModelStatus::Solved
             | ModelStatus::SolvedUnique
-    );
-    let r = &a.residuals;
-    let worst = [r.primal, r.dual, r.complementarity, r.natural];
-    let worst = worst.iter().flatten().fold(0.0f64, |t, v| t.max(*v));
-    (!solved, worst)
+    )
 }
 
 fn reference(
@@ -264,6 +271,9 @@ fn reference(
         && p.high.is_finite()
     {
         return Reference::Proved(p.low, p.high);
+    }
+    if !is_solution(best) && best.status != ModelStatus::Feasible {
+        return Reference::None;
     }
     Reference::Best(best.outcome.level[objective.column as usize])
 }

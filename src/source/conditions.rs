@@ -71,7 +71,9 @@ impl Preprocessor<'_> {
             at += text[at..].len() - text[at..].trim_start().len();
         }
         let rest = &text[at..];
-        if negate && rest.starts_with("==") {
+        // `not ==x` has an empty text on the left; with a blank behind `==` it may be the text `not`.
+        let ambiguous = |right: &str| right.is_empty() || right.starts_with([' ', '\t']);
+        if negate && rest.strip_prefix("==").is_some_and(ambiguous) {
             return Err(
                 "`not ==` may mean the operator or the text `not`; put it in quotes".into(),
             );

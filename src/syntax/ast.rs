@@ -221,15 +221,14 @@ pub enum TableOf {
     Variable(VariableKind),
 }
 
-/// A table: the body is everything from the line after the header to the `;`.
+/// Tables: the data of the last is everything from the line after its header to the `;`, to be read by the table
+/// lexer. Those before it, and the last where no lines follow, are only declared.
 #[derive(Clone, Debug)]
 pub struct TableDecl {
-    /// What it gives values to.
+    /// What they give values to.
     pub of: TableOf,
-    /// Name, domain, text (no data).
-    pub symbol: SymbolDecl,
-    /// The body's lines, to be read by the table lexer.
-    pub body: Span,
+    /// Name, domain, text, lines.
+    pub symbols: Vec<SymbolDecl>,
 }
 
 /// Kinds of variables.

@@ -6,7 +6,7 @@
 use crate::diag::Diagnostic;
 use crate::source::{Known, Span, constant, quoted_end};
 
-/// The constant expressions of one body of data, by the place where they begin.
+/// The constant expressions of one body of data, by their places in the expanded text.
 #[derive(Clone, Default)]
 pub(super) struct Constants(Vec<Constant>);
 
@@ -18,8 +18,8 @@ struct Constant {
 }
 
 impl Constants {
-    /// Evaluates all of them in a body.
-    pub(super) fn of(text: &str, known: &dyn Known) -> Self {
+    /// Evaluates all of them in a body that begins at `base`.
+    pub(super) fn of(text: &str, base: u32, known: &dyn Known) -> Self {
         let bytes = text.as_bytes();
         let mut found = Vec::new();
         let mut i = 0;
@@ -36,14 +36,18 @@ impl Constants {
                 Ok((x, n)) => (Ok(x), lo + n),
                 Err(why) => (Err(why), closing(bytes, lo, end).unwrap_or(end)),
             };
-            found.push(Constant { lo, hi, value });
+            found.push(Constant {
+                lo: base as usize + lo,
+                hi: base as usize + hi,
+                value,
+            });
             i = hi;
         }
         Self(found)
     }
 
-    /// The value of the one that begins at `at`, and where it ends; `base` is the place of the body.
-    pub(super) fn at(&self, at: usize, base: u32) -> Option<Result<(f64, usize), Box<Diagnostic>>> {
+    /// The value of the one that begins at `at`, and where it ends.
+    pub(super) fn at(&self, at: usize) -> Option<Result<(f64, usize), Box<Diagnostic>>> {
         let n = self.0.binary_search_by_key(&at, |c| c.lo).ok()?;
         let c = &self.0[n];
         Some(match &c.value {
@@ -51,7 +55,7 @@ impl Constants {
             Err(why) => Err(Box::new(
                 Diagnostic::error(
                     "E0247",
-                    Span::new(base + c.lo as u32, base + c.hi as u32),
+                    Span::new(c.lo as u32, c.hi as u32),
                     format!("this constant expression cannot be evaluated: {why}"),
                 )
                 .help("numbers, operators, functions, `card(set)` and scalars with data can stand here, on one line"),

@@ -9,6 +9,7 @@
 
 use std::borrow::Cow;
 
+use self::plain::Gap;
 use super::constants::Constants;
 use super::fields::{Fields, MARK, has_comma};
 use crate::data::value::{EPS, NA, UNDF};
@@ -100,6 +101,8 @@ pub struct DataReader<'a> {
     key: Vec<KeyPart<'a>>,
     /// The key has factors.
     factors: bool,
+    /// What stands before the next record needs no comma, or its error is known.
+    excused: bool,
     constants: Constants,
 }
 
@@ -117,17 +120,6 @@ pub fn width(key: &[KeyPart<'_>]) -> usize {
         })
         .sum()
 }
-
-/// [`is_label`] of every byte.
-const LABEL: [bool; 256] = {
-    let mut table = [false; 256];
-    let mut b = 0;
-    while b < 256 {
-        table[b] = is_label(b as u8);
-        b += 1;
-    }
-    table
-};
 
 /// Bytes of unquoted labels.
 const fn is_label(b: u8) -> bool {
@@ -150,13 +142,14 @@ impl<'a> DataReader<'a> {
             arity: usize::MAX,
             key: Vec::with_capacity(8),
             factors: false,
+            excused: false,
             constants: Constants::default(),
         }
     }
 
     /// Constant expressions in the text stand for their values.
     pub fn with_constants(mut self, known: &dyn Known) -> Self {
-        self.constants = Constants::of(self.text, known);
+        self.constants = Constants::of(self.text, self.base, known);
         self
     }
 
@@ -212,11 +205,18 @@ impl<'a> DataReader<'a> {
     #[allow(clippy::should_implement_trait)]
     pub fn next(&mut self) -> Option<Result<Record<'_, 'a>, Diagnostic>> {
         let (start, outcome) = loop {
-            self.blanks(true);
+            let gap = Gap::at(self.text.as_bytes(), self.at);
+            if !std::mem::take(&mut self.excused)
+                && let Some((at, message)) = gap.problem()
+            {
+                // The record behind it is read by the next call.
+                self.excused = true;
+                return Some(Err(*self.error("E0248", at, at + 1, message)));
+            }
+            self.at = gap.end;
             let start = self.at;
             self.key.clear();
             match self.peek()? {
-                b',' => self.at += 1,
                 MARK => {
                     let (lo, hi) = self.marked_line();
                     // Without a comma it is a record like any other.
@@ -229,6 +229,7 @@ impl<'a> DataReader<'a> {
                         }
                     } else {
                         self.at = lo;
+                        self.excused = true;
                     }
                 }
                 _ => break (start, self.record(start)),
@@ -341,63 +342,6 @@ impl<'a> DataReader<'a> {
                     .help("under `$onDelim` the value stands behind the last comma"),
             )),
         }
-    }
-
-    /// The next record if it is as most are: labels without quotes, dots between them, an ordinary number.
-    /// `label` is told each one with its position, and may refuse. Then, or if the record is another, nothing
-    /// is read, and [`DataReader::next`] takes it, with the same outcome.
-    pub fn plain(&mut self, mut label: impl FnMut(usize, &'a str) -> bool) -> Option<(f64, Span)> {
-        let bytes = self.text.as_bytes();
-        // The first record may be a bare number.
-        if self.at == 0 || self.kind != DataKind::Values {
-            return None;
-        }
-        let is = |i: usize, class: fn(u8) -> bool| bytes.get(i).is_some_and(|&b| class(b));
-        let mut i = self.at;
-        while is(i, |b| is_space(b) || b == b',') {
-            i += 1;
-        }
-        let start = i;
-        for p in 0..self.arity {
-            if p > 0 {
-                if bytes.get(i) != Some(&b'.') {
-                    return None;
-                }
-                i += 1;
-            }
-            let from = i;
-            while bytes.get(i).is_some_and(|&b| LABEL[b as usize]) {
-                i += 1;
-            }
-            let text = &bytes[from..i];
-            if text.is_empty()
-                || matches!(text[0], b'-' | b'+')
-                || text.len() == 3 && text.eq_ignore_ascii_case(b"set")
-                || !label(p, &self.text[from..i])
-            {
-                return None;
-            }
-        }
-        if !is(i, |b| matches!(b, b' ' | b'\t')) {
-            return None;
-        }
-        while is(i, |b| matches!(b, b' ' | b'\t')) {
-            i += 1;
-        }
-        let from = i;
-        let minus = bytes.get(i) == Some(&b'-');
-        i += usize::from(minus);
-        if !is(i, |b| b.is_ascii_digit()) {
-            return None;
-        }
-        let (x, n) = fast_float2::parse_partial::<f64, _>(&bytes[i..]).ok()?;
-        let end = i + n;
-        if is(end, |b| is_label(b) || b == b'.') {
-            return None;
-        }
-        self.at = end;
-        let x = ordinary(x, minus, &self.text[from..end]);
-        Some((x, self.span(start, end)))
     }
 
     fn record(&mut self, start: usize) -> Result<Tail<'a>, Box<Diagnostic>> {
@@ -600,15 +544,27 @@ impl<'a> DataReader<'a> {
         }
         self.at += 1;
         let mut list = Vec::new();
+        // A comma or a line end stands between two alternatives.
+        let mut between = true;
         loop {
+            let before = self.at;
             self.blanks(true);
+            let line_end = self.text[before..self.at].contains('\n');
             match self.peek() {
-                Some(b')') => {
+                Some(b')') if list.is_empty() || !between => {
                     self.at += 1;
                     return Ok(KeyPart::Group(list));
                 }
-                Some(b',') => self.at += 1,
+                Some(b',') if !between => {
+                    self.at += 1;
+                    between = true;
+                }
+                Some(b',' | b')') => return Err(self.expected("a label", self.at)),
+                Some(_) if !between && !line_end => {
+                    return Err(self.expected("a comma or `)`", self.at));
+                }
                 Some(_) => {
+                    between = false;
                     let mut key = Vec::new();
                     self.whole_key(&mut key, depth + 1)?;
                     if self.kind == DataKind::Values
@@ -749,8 +705,10 @@ impl<'a> DataReader<'a> {
                 return Ok(Tail::Text(Cow::Borrowed(text), self.span(start, self.at)));
             }
             b'[' | b'{' => {
-                if let Some(constant) = self.constants.at(start, self.base) {
+                let base = self.base as usize;
+                if let Some(constant) = self.constants.at(base + start) {
                     let (x, end) = constant?;
+                    let end = end - base;
                     self.at = end;
                     return Ok(Tail::Number(x, self.span(start, end)));
                 }
@@ -880,5 +838,6 @@ pub fn undf_refused(span: Span) -> Diagnostic {
         .help("for a missing value write `na`")
 }
 
+mod plain;
 #[cfg(test)]
 mod tests;

@@ -356,14 +356,8 @@ fn in_declaration(f: &Failure<'_>, token: &str) -> Option<Diagnostic> {
         let word = &after[..words::word_end(after.as_bytes(), 0)];
         if !word.is_empty() && words::statement_word(after, 0, word.len()).is_some() {
             let lo = f.expanded.len() - after.len();
-            return Some(
-                Diagnostic::error(
-                    "E0205",
-                    Span::new(lo as u32, (lo + word.len()) as u32),
-                    format!("`{word}` is a word of the language and cannot be a name"),
-                )
-                .help("choose another name; as a label it can stand in quotes"),
-            );
+            let span = Span::new(lo as u32, (lo + word.len()) as u32);
+            return Some(words::reserved(word, span));
         }
     }
     None

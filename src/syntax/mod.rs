@@ -126,7 +126,8 @@ impl<'h> Parser<'h> {
                 vec![e.diagnostic]
             })
         } else {
-            if problems.iter().all(|p| p.code == "E0201") {
+            let legible = |p: &Diagnostic| matches!(p.code, "E0201" | "E0206" | "E0223");
+            if problems.iter().all(legible) {
                 self.pending = Some(raw);
             }
             Err(problems)

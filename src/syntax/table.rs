@@ -11,7 +11,7 @@
 use super::data::{DataKind, DataReader, KeyPart, Tail, width};
 use super::fields::{Fields, MARK};
 use crate::diag::Diagnostic;
-use crate::source::Span;
+use crate::source::{Known, Span};
 
 /// What comes next in a table.
 #[derive(Debug)]
@@ -69,6 +69,8 @@ pub struct TableReader<'a> {
     even: bool,
     /// Columns up to here lie before the next value.
     passed: usize,
+    /// Columns up to here have their value in the present row.
+    filled: usize,
     line: &'a str,
     line_base: u32,
     /// Byte and column position last computed in the present line.
@@ -101,16 +103,23 @@ impl<'a> TableReader<'a> {
             offset: 0,
             even: true,
             passed: 0,
+            filled: 0,
             line: "",
             line_base: 0,
             known: (0, 0),
-            reader: DataReader::new("", 0, DataKind::Values, undf),
+            reader: DataReader::new(&expanded[lo.min(hi)..hi], body.lo, DataKind::Values, undf),
             in_row: false,
             empty: false,
             headings: false,
             dim,
             fields: Vec::new(),
         }
+    }
+
+    /// Constant expressions in the table stand for their values.
+    pub fn with_constants(self, known: &dyn Known) -> Self {
+        let reader = self.reader.with_constants(known);
+        Self { reader, ..self }
     }
 
     /// Keys of the columns of the present block, in order, and their places.
@@ -120,7 +129,7 @@ impl<'a> TableReader<'a> {
 
     /// The next item. After an error, reading goes on with the next value or line.
     #[allow(clippy::should_implement_trait)]
-    pub fn next(&mut self) -> Option<Result<TableItem<'_, 'a>, Diagnostic>> {
+    pub fn next(&mut self) -> Option<Result<TableItem<'_, 'a>, Box<Diagnostic>>> {
         loop {
             if std::mem::take(&mut self.headings) {
                 return Some(Ok(TableItem::Headings));
@@ -128,13 +137,13 @@ impl<'a> TableReader<'a> {
             if let Some((column, from, to)) = self.fields.pop() {
                 return Some(match self.reader.field_value(from, to) {
                     Ok(value) => Ok(self.item(column, value, self.span(from, to))),
-                    Err(d) => Err(*d),
+                    Err(d) => Err(d),
                 });
             }
             if self.in_row && self.reader.more() {
                 return Some(match self.cell() {
                     Ok((column, value, span)) => Ok(self.item(column, value, span)),
-                    Err(d) => Err(*d),
+                    Err(d) => Err(d),
                 });
             }
             self.in_row = false;
@@ -145,7 +154,7 @@ impl<'a> TableReader<'a> {
                 return None;
             }
             if let Err(d) = self.begin_line() {
-                return Some(Err(*d));
+                return Some(Err(d));
             }
         }
     }
@@ -194,6 +203,7 @@ impl<'a> TableReader<'a> {
         self.known = (0, self.offset);
         self.even = even(self.line);
         self.passed = 0;
+        self.filled = 0;
         self.reader.restart(self.line, self.line_base);
         if self.header {
             self.header = false;
@@ -245,12 +255,12 @@ impl<'a> TableReader<'a> {
             }
             self.row.push(self.reader.field_label(from, to));
         }
-        self.fields = fields
-            .enumerate()
-            .take(self.columns.len())
-            .filter(|(_, (from, to))| to > from)
-            .map(|(c, (from, to))| (c, from, to))
-            .collect();
+        let cells = fields.enumerate().take(self.columns.len());
+        self.fields.extend(
+            cells
+                .filter(|(_, (from, to))| to > from)
+                .map(|(c, (from, to))| (c, from, to)),
+        );
         self.fields.reverse();
         self.empty = true;
     }
@@ -335,7 +345,13 @@ impl<'a> TableReader<'a> {
             .take_while(|c| c.from < right)
             .count();
         match under {
+            1 if first < self.filled => Err(Box::new(
+                Diagnostic::error("E0253", span, "a second value stands under this column")
+                    .other(self.columns[first].span, "the column")
+                    .help("move it under the label of its own column"),
+            )),
             1 => {
+                self.filled = first + 1;
                 // As in GAMS a column is as wide as its label and the values under it so far.
                 let column = &mut self.columns[first];
                 column.from = column.from.min(left);

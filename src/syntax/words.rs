@@ -1,5 +1,8 @@
 //! The words that begin statements, and how the bytes of a text are classed.
 
+use crate::diag::Diagnostic;
+use crate::source::Span;
+
 /// The kinds of statements that the splitter tells apart.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Class {
@@ -240,4 +243,25 @@ fn first_class(text: &str, at: usize) -> (Class, usize) {
 /// `figure`, whose block stands in braces.
 pub(super) fn is_figure(word: &str) -> bool {
     word.eq_ignore_ascii_case("figure")
+}
+
+/// Words with a meaning of their own in expressions, lists and declarations. (Those that begin statements never
+/// come as names.)
+pub(super) fn is_reserved(name: &str) -> bool {
+    const WORDS: [&str; 14] = [
+        "all", "card", "eps", "inf", "na", "no", "not", "ord", "prod", "smax", "smin", "sum",
+        "system", "yes",
+    ];
+    let name = name.to_ascii_lowercase();
+    WORDS.contains(&name.as_str()) || is_variable_kind(name.as_bytes())
+}
+
+/// A word of the language stands where a name is declared.
+pub(super) fn reserved(word: &str, span: Span) -> Diagnostic {
+    Diagnostic::error(
+        "E0205",
+        span,
+        format!("`{word}` is a word of the language and cannot be a name"),
+    )
+    .help("choose another name; as a label it can stand in quotes")
 }

@@ -102,6 +102,7 @@ impl Builder<'_, '_> {
         }
         if matches!(solve.using, "mcp" | "mpec" | "rmpec" | "cns") {
             self.match_columns(&rows, &columns, &matched_rows);
+            self.fix_unlimited(&rows, &matched_rows);
         }
         let (nonzeros, nonlinear_nonzeros) = self.count();
         Origin {
@@ -139,6 +140,29 @@ impl Builder<'_, '_> {
             *slot = Some(r);
         }
         self.instance.matched = Some(matched);
+    }
+
+    /// `k =g= q` with k = ∞ holds at any q, and F = ∞: its column is at its lower bound.
+    fn fix_unlimited(&mut self, rows: &Blocks, pairs: &[(u32, u32)]) {
+        let never_bind = std::mem::take(&mut self.never_bind);
+        let unlimited = |p: &&(u32, u32)| never_bind.binary_search(&p.1).is_ok();
+        for &(c, r) in pairs.iter().filter(unlimited) {
+            let columns = &mut self.instance.columns;
+            let c = c as usize;
+            let bound = match self.instance.rows.relation[r as usize] {
+                Relation::Less => columns.upper[c],
+                _ => columns.lower[c],
+            };
+            if bound.is_finite() {
+                columns.lower[c] = bound;
+                columns.upper[c] = bound;
+                columns.level[c] = bound;
+            } else {
+                let block = rows.of(r);
+                let name = self.m.record_name(block.symbol, block.key(r));
+                self.not_finite("the constant", &name, self.span);
+            }
+        }
     }
 
     /// A pair whose row is empty, or whose column stands in no row (`alone`), decides nothing: an error,

@@ -93,6 +93,8 @@ struct Builder<'m, 'h> {
     /// Position + 1 of a column in the row at hand.
     place: Vec<u32>,
     row: u32,
+    /// Rows of pairs whose constant says that they never bind: the column is at the bound that F = ±∞ asks for.
+    never_bind: Vec<u32>,
     failed: bool,
     span: Span,
 }
@@ -143,6 +145,7 @@ impl Machine<'_> {
             nonlinear_terms: 0,
             place: Vec::new(),
             row: 0,
+            never_bind: Vec::new(),
             failed: false,
             span: Span::default(),
         };
@@ -348,9 +351,13 @@ impl Builder<'_, '_> {
             Relation::Greater => rhs == f64::NEG_INFINITY,
             _ => false,
         };
-        let (relation, rhs) = match unlimited && !paired {
-            true => (Relation::Free, 0.0),
-            false => (relation, rhs),
+        let (relation, rhs) = match (unlimited, paired) {
+            (true, false) => (Relation::Free, 0.0),
+            (true, true) => {
+                self.never_bind.push(self.row);
+                (relation, 0.0)
+            }
+            (false, _) => (relation, rhs),
         };
         let part = if !rhs.is_finite() {
             Some("the constant")
@@ -360,13 +367,7 @@ impl Builder<'_, '_> {
         };
         if let Some(part) = part {
             let name = self.m.record_name(e.symbol, key);
-            let message = format!("{part} of the row {name} is not a finite number");
-            self.m.note(
-                Diagnostic::execution("E0411", e.span, message)
-                    .label("not finite")
-                    .help("look for inf, na or undf in the data of this equation"),
-            );
-            self.failed = true;
+            self.not_finite(part, &name, e.span);
             return;
         }
         let matrix = &mut self.instance.matrix;
@@ -389,6 +390,16 @@ impl Builder<'_, '_> {
         rows.scale.push(scale);
         block.keys.extend_from_slice(key);
         self.row += 1;
+    }
+
+    fn not_finite(&mut self, part: &str, row: &str, span: Span) {
+        let message = format!("{part} of the row {row} is not a finite number");
+        self.m.note(
+            Diagnostic::execution("E0411", span, message)
+                .label("not finite")
+                .help("look for inf, na or undf in the data of this equation"),
+        );
+        self.failed = true;
     }
 
     /// Provisional number of a column.

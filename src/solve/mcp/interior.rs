@@ -10,10 +10,8 @@
 //! with p = q = σμ less the products of the predictor's steps (Mehrotra 1992), or without them where
 //! they shorten the step, and then with outliers among the products pulled in (Gondzio 1996).
 //!
-//! Where J is not monotone, steps may get short far from a solution. Then the proximal term ρ grows, a
-//! hundredfold each time, up to 100 μ: it lets the equations be violated, and the products must not
-//! run ahead of them, so σ aims at μ as large as the violation until that is gone. The crash leaves such a
-//! place with products well centred, where it would have stayed.
+//! Where J is not monotone, steps may get short far from a solution: the central path has folds. [`arc`](super::arc)
+//! goes around them.
 //!
 //! For monotone problems the number of steps hardly grows with n, while the path makes at least a pivot
 //! for every index that a crash got wrong; for others this is a heuristic like any crash. Its
@@ -21,6 +19,7 @@
 //! path does the rest.
 
 use super::active::active_sets;
+use super::arc::around;
 use super::factor::{Analysis, Factor, combine};
 use super::log;
 use super::run::{Point, Run, Stop};
@@ -29,7 +28,7 @@ use super::run::{Point, Run, Stop};
 const LIMIT: usize = 100;
 /// Share of the way to the boundary.
 const DAMPING: f64 = 0.995;
-/// A step shorter than this is a bad one: ρ grows.
+/// A step shorter than this says that a fold is near.
 const STEP_BAD: f64 = 0.1;
 /// Steps in a row without progress that end the crash.
 const PATIENCE: usize = 20;
@@ -39,22 +38,18 @@ const CORRECTIONS: usize = 3;
 const STEP_SHORT: f64 = 0.3;
 /// Relative residual of a step.
 const ENOUGH: f64 = 1e-9;
-/// ρ, least and largest, and the most it may be against μ.
-const PROX: (f64, f64) = (1e-14, 1e-2);
-const PROX_SHARE: f64 = 100.0;
-/// Violation of the equations against μ from which μ has to wait, or to grow, at most tenfold.
-const AHEAD: f64 = 3.0;
-const GROWTH: f64 = 10.0;
+/// ρ, least and largest.
+pub(super) const PROX: (f64, f64) = (1e-14, 1e-2);
 /// Products below this are rounding errors.
 const PRODUCT_MIN: f64 = 1e-16;
 
 /// Distances from the bounds and the slacks that go with them; 1 and 0 for a bound that is not there.
 #[derive(Clone)]
-struct State {
-    a: Vec<f64>,
-    w: Vec<f64>,
-    b: Vec<f64>,
-    v: Vec<f64>,
+pub(super) struct State {
+    pub(super) a: Vec<f64>,
+    pub(super) w: Vec<f64>,
+    pub(super) b: Vec<f64>,
+    pub(super) v: Vec<f64>,
 }
 
 /// A step: of x, w and v.
@@ -67,9 +62,9 @@ struct Step {
 }
 
 /// Which bounds are finite.
-struct Bounds {
-    lower: Vec<bool>,
-    upper: Vec<bool>,
+pub(super) struct Bounds {
+    pub(super) lower: Vec<bool>,
+    pub(super) upper: Vec<bool>,
     count: usize,
 }
 
@@ -140,8 +135,6 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
         {
             break;
         }
-        // What rounding leaves of the equations is no violation.
-        let violation = if run.converged(10.0 * off) { 0.0 } else { off };
         let Some(jacobian) = run.jacobian(&point.x) else {
             break;
         };
@@ -152,7 +145,7 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
         );
         run.factorisations += 1;
         let step = Factor::analysed(matrix, run.fill, &mut analysis)
-            .and_then(|mut factor| step(&mut factor, &state, &bounds, &r, (mu, violation)));
+            .and_then(|mut factor| step(&mut factor, &state, &bounds, &r, mu));
         let Some(step) = step else {
             if prox >= PROX.1 {
                 break;
@@ -188,7 +181,11 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
             .zip(&step.v)
             .for_each(|(v, d)| *v += t * d);
         if t < STEP_BAD {
-            prox = (100.0 * prox).min(PROX.1).min(PROX_SHARE * mu).max(PROX.0);
+            state.distances(run, &bounds, &point.x);
+            let Some(found) = around(run, (&point, &state), &bounds, &mut analysis)? else {
+                break;
+            };
+            ((point, state), idle, least) = (found, 0, f64::INFINITY);
         } else if t > 0.5 {
             prox = (0.1 * prox).max(PROX.0);
         }
@@ -220,7 +217,7 @@ fn snapped(run: &Run, x: &[f64], state: &State, bounds: &Bounds) -> Vec<f64> {
 
 impl State {
     /// a and b at x.
-    fn distances(&mut self, run: &Run, bounds: &Bounds, x: &[f64]) {
+    pub(super) fn distances(&mut self, run: &Run, bounds: &Bounds, x: &[f64]) {
         for (i, x) in x.iter().enumerate() {
             if bounds.lower[i] {
                 self.a[i] = x - run.lower[i];
@@ -305,13 +302,7 @@ impl State {
 }
 
 /// Predictor, corrector, corrections of outliers.
-fn step(
-    factor: &mut Factor,
-    state: &State,
-    bounds: &Bounds,
-    r: &[f64],
-    (mu, off): (f64, f64),
-) -> Option<Step> {
+fn step(factor: &mut Factor, state: &State, bounds: &Bounds, r: &[f64], mu: f64) -> Option<Step> {
     let n = r.len();
     let zero = vec![0.0; n];
     let predictor = state.newton(factor, bounds, r, &zero, &zero)?;
@@ -323,12 +314,7 @@ fn step(
         })
         .sum::<f64>()
         / bounds.count as f64;
-    let mut sigma = if off > AHEAD * mu {
-        // The equations come first.
-        (off / mu).min(GROWTH)
-    } else {
-        (after / mu).clamp(0.0, 1.0).powi(3)
-    };
+    let mut sigma = (after / mu).clamp(0.0, 1.0).powi(3);
     let mut p: Vec<f64> = (0..n)
         .map(|i| sigma * mu - predictor.x[i] * predictor.w[i])
         .collect();

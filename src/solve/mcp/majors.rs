@@ -48,8 +48,10 @@ const STAGNATION: usize = 60;
 const STAGNATION_NEAR: usize = 4;
 /// Steps in a row to solutions ~ 1/v before the run is called stuck: it follows a ray.
 const DOUBTFUL_LIMIT: usize = 8;
-/// Pivots spent on improving what is a solution already, or a share 1/10 of n.
-const POLISH_LIMIT: usize = 200;
+/// Pivots on a path near a solution, or a share 1/10 of n.
+const NEAR_LIMIT: usize = 200;
+/// Pivots on a path from a solution to a better one, times n: a second or so where directions are full.
+const POLISH_WORK: usize = 6_000_000;
 /// Major iterations spent on that, as long as each takes a digit off the residual.
 const POLISH_STEPS: usize = 5;
 /// Gradient steps before the run is called stuck.
@@ -286,7 +288,8 @@ impl Majors {
         let near = run.n > LARGE && self.point.residual <= run.settings.acceptable_tolerance;
         let limit = match run.settings.minor_iteration_limit {
             // A solution is at hand: not worth many pivots.
-            0 if polish || near => POLISH_LIMIT.max(run.n / 10),
+            0 if polish => (POLISH_WORK / run.n).min(NEAR_LIMIT.max(run.n / 10)),
+            0 if near => NEAR_LIMIT.max(run.n / 10),
             0 => pivot_limit(run.n),
             given => given,
         };

@@ -31,9 +31,9 @@
 //! it needs come from fixed seeds, and no decision depends on the clock but the time limit.
 
 mod active;
+mod arc;
 mod basis;
 mod crash;
-
 mod factor;
 mod interior;
 mod linear;

@@ -28,6 +28,9 @@ const BELOW: (u64, usize) = (8_000_000_000_000, 250);
 /// Columns of a program of which there is a descent for each start that was asked for.
 const DESCENTS: usize = 500;
 
+/// Share of the time left that the search may take: the branch that it ends on has to be solved in the rest.
+const SEARCH: f64 = 0.9;
+
 impl Search<'_> {
     /// False if the method does not apply or finds nothing.
     pub(super) fn supports(&mut self, start: &[f64]) -> Result<bool, SolveError> {
@@ -50,7 +53,7 @@ impl Search<'_> {
     }
 
     fn best_support(&mut self, pieces: &mut Pieces, levels: &[Vec<f64>]) -> Option<Solution> {
-        let (left, begin) = (self.seconds_left(), Instant::now());
+        let (left, begin) = (SEARCH * self.seconds_left(), Instant::now());
         let (monitor, log) = (&mut *self.monitor, self.settings.log);
         let sign = self.program.sign();
         let mut stop = |_| (begin.elapsed().as_secs_f64() > left).then_some(Ended::Time);

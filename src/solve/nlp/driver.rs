@@ -27,7 +27,7 @@ use super::schedule::{
     From, OVERHEAD, PATIENCE, SCHEDULE, SHARP, SMALL, TIMES,
 };
 use super::slp;
-use super::trial::{Trial, active_set, clean, polished, residuals_at, tidy};
+use super::trial::{Trial, active_set, clean, polished, residuals_at, tidy, without_noise};
 use crate::autodiff::{ErrorKind, EvalFailure, Evaluator, Kinks, kinks};
 use crate::model::instance::Instance;
 use crate::solve::random::Random;
@@ -244,8 +244,12 @@ impl Driver<'_> {
         }
         if self.is_square() {
             self.attempt_newton();
+            let newton = self.iterations;
             self.leave_saddles()?;
             if self.is_settled() {
+                if self.iterations == newton {
+                    self.solver = "newton";
+                }
                 return Ok(self.finish());
             }
         }
@@ -625,6 +629,9 @@ impl Driver<'_> {
             && let Some(t) = polished(self.instance, &mut problem, kinks, &best, 1e-6)
             && residual(&t) < residual(&best)
         {
+            best = t;
+        }
+        if let Some(t) = without_noise(self.instance, &mut problem, kinks, &best) {
             best = t;
         }
         clean(self.instance, &mut best);

@@ -10,7 +10,7 @@
 //! min f + λᵀg, the row's marginal is −λ for a minimum and +λ for a maximum; the marginals of all
 //! columns, fixed ones too, follow from stationarity: r = e_z − Jᵀm.
 
-use crate::autodiff::{Degree, EvalFailure, Evaluator};
+use crate::autodiff::{EvalFailure, Evaluator};
 use crate::model::instance::{Instance, Relation};
 
 /// What a provider needs of a nonlinear program.
@@ -338,17 +338,6 @@ impl Problem {
     /// The evaluator of the whole instance.
     pub fn evaluator(&mut self) -> &mut Evaluator {
         &mut self.evaluator
-    }
-
-    /// How the objective and the constraints depend on the columns.
-    pub fn degrees(&self) -> impl Iterator<Item = Degree> {
-        let all = self.evaluator.degrees();
-        let objective = match self.form {
-            ObjectiveForm::Row { row, .. } => Some(row as u32),
-            _ => None,
-        };
-        let rows = self.rows.iter().copied().chain(objective);
-        rows.map(move |i| all[i as usize])
     }
 
     fn place(&mut self, x: &[f64]) {

@@ -3,7 +3,7 @@
 use super::polish::{Active, polish};
 use super::problem::{Nlp, Problem};
 use super::provider::Ended;
-use crate::autodiff::Evaluator;
+use crate::autodiff::{Degree, Evaluator};
 use crate::model::certificate::{Linearised, Residuals, TOLERANCE, primal};
 use crate::model::certificate_nlp::{kkt_residual, linearise, residuals};
 use crate::model::instance::{Instance, Relation};
@@ -12,6 +12,9 @@ use crate::model::instance::{Instance, Relation};
 pub(super) const FAR: f64 = 1e7;
 /// A change of the objective that matters, relative to its size.
 pub(super) const CONSIDERABLE: f64 = 0.01;
+
+/// What is closer to 0 than this is 0, unless a residual shows otherwise.
+const NOISE: f64 = 1e-14;
 
 /// A point that was judged.
 #[derive(Clone)]
@@ -174,8 +177,8 @@ fn failed(instance: &Instance, problem: &mut Problem, level: &[f64]) -> (Residua
     (residuals, at)
 }
 
-/// An interior point stops short of the bounds by a hair. Puts such variables on their bounds, and
-/// multipliers of slack rows and reduced costs of variables between their bounds to 0.
+/// An interior point stops short of the bounds by a hair. Puts such variables on their bounds, also on those that
+/// linear rows of one variable are, and multipliers of slack rows and reduced costs of variables between their bounds to 0.
 pub(super) fn tidy(
     instance: &Instance,
     problem: &mut Problem,
@@ -184,14 +187,30 @@ pub(super) fn tidy(
 ) -> Option<Trial> {
     let (lower, upper) = (problem.bounds().0.to_vec(), problem.bounds().1.to_vec());
     let mut x = t.x.clone();
+    // on the bound if it is near, and nearer than its multiplier is to 0
+    let place = |v: &mut f64, b: f64, multiplier: f64| {
+        let distance = (*v - b).abs();
+        if distance <= 1e-6 * b.abs().max(1.0) && distance <= 1e3 * multiplier.abs() {
+            *v = b;
+        }
+    };
     for (k, v) in x.iter_mut().enumerate() {
         let r = t.at.reduced[problem.columns[k] as usize];
-        for b in [lower[k], upper[k]] {
-            let distance = (*v - b).abs();
-            // on the bound if it is near, and nearer than the reduced cost is to 0
-            if distance <= 1e-6 * b.abs().max(1.0) && distance <= 1e3 * r.abs() {
-                *v = b;
-            }
+        place(v, lower[k], r);
+        place(v, upper[k], r);
+    }
+    let degrees = problem.evaluator().degrees();
+    for (k, l) in t.lambda.iter().enumerate() {
+        let i = problem.rows[k] as usize;
+        let mut entries = instance.matrix.row(i);
+        let (Some((j, a)), None, Degree::Linear) = (entries.next(), entries.next(), degrees[i])
+        else {
+            continue;
+        };
+        let certain = instance.rows.relation[i] == Relation::Equal;
+        let multiplier = if certain { f64::INFINITY } else { l * a };
+        if let Ok(v) = problem.columns.binary_search(&(j as u32)) {
+            place(&mut x[v], instance.rows.rhs[i] / a, multiplier);
         }
     }
     let mut lambda = t.lambda.clone();
@@ -211,6 +230,29 @@ pub(super) fn tidy(
     let fine = tidied.residuals.primal_relative <= t.residuals.primal_relative.max(1e-9)
         && tidied.residuals.dual_relative <= t.residuals.dual_relative.max(1e-9);
     fine.then_some(tidied)
+}
+
+/// The trial without values that are nothing but noise around 0, if it is worth as much.
+pub(super) fn without_noise(
+    instance: &Instance,
+    problem: &mut Problem,
+    kinks: &mut Option<Evaluator>,
+    t: &Trial,
+) -> Option<Trial> {
+    let (lower, upper) = problem.bounds();
+    let noise = |k: usize| t.x[k].abs() <= NOISE && lower[k] <= 0.0 && upper[k] >= 0.0;
+    let x: Vec<f64> = (0..t.x.len())
+        .map(|k| if noise(k) { 0.0 } else { t.x[k] })
+        .collect();
+    if x == t.x {
+        return None;
+    }
+    let lambda = t.lambda.clone();
+    let quiet = residuals_at(instance, problem, kinks, x, lambda, t.ended);
+    let (before, now) = (&t.residuals, &quiet.residuals);
+    let fine = now.primal_relative <= before.primal_relative.max(NOISE)
+        && now.dual_relative <= before.dual_relative.max(NOISE);
+    fine.then_some(quiet)
 }
 
 /// Variables at a bound and rows that bind, to a relative tolerance.

@@ -2,12 +2,13 @@
 
 use super::Convexity;
 use super::driver::Driver;
-use super::problem::{Nlp, Problem};
+use super::problem::Nlp;
 use super::provider::{Ended, lock};
 use super::relaxation;
 use super::trial::Trial;
-use crate::autodiff::Degree;
+use crate::autodiff::{Degree, Evaluator};
 use crate::model::certificate_nlp::{is_locally_infeasible, violations};
+use crate::model::instance::{Instance, Relation};
 use crate::solve::{Claim, ModelStatus, Outcome, SolverStatus, answer::Answer};
 
 impl Driver<'_> {
@@ -28,7 +29,7 @@ impl Driver<'_> {
         });
         let unbounded = self.is_unbounded(&best);
         let mut problem = lock(&*self.problem);
-        let affine = is_affine(&problem);
+        let affine = is_affine(self.instance, problem.evaluator(), &best.level);
         let mut proved = |t: &Trial, y: &[f64]| {
             is_locally_infeasible(self.instance, problem.evaluator(), &t.level, y, 1e-4)
         };
@@ -109,9 +110,65 @@ impl Driver<'_> {
     }
 }
 
-/// Whether only linear terms are left once the fixed variables are numbers: what is optimal is so everywhere.
-fn is_affine(problem: &Problem) -> bool {
-    let polynomial = |d: Degree| d <= Degree::Quadratic;
-    problem.size().0 == 0
-        || problem.hessian_pattern().0.is_empty() && problem.degrees().all(polynomial)
+/// Whether only linear terms are left once the variables that equations determine one after the other, each linearly, are
+/// numbers like the fixed ones: what is optimal is so everywhere.
+fn is_affine(instance: &Instance, evaluator: &mut Evaluator, level: &[f64]) -> bool {
+    let (n, m) = (instance.column_count(), instance.row_count());
+    let degrees = evaluator.degrees();
+    let polynomial = |i: usize| degrees[i] <= Degree::Quadratic;
+    let mut inside: Vec<Vec<u32>> = vec![Vec::new(); m];
+    for terms in &instance.nonlinear {
+        let v = terms.kernel.variables as usize;
+        for (k, &i) in terms.row.iter().enumerate() {
+            inside[i as usize].extend(&terms.columns[k * v..(k + 1) * v]);
+        }
+    }
+    let (first, second) = evaluator.hessian_pattern();
+    let pairs: Vec<(u32, u32)> = first.iter().copied().zip(second.iter().copied()).collect();
+    let mut squared = vec![false; n];
+    for &(j, _) in pairs.iter().filter(|(i, j)| i == j) {
+        squared[j as usize] = true;
+    }
+    let mut value = vec![0.0; evaluator.jacobian_pattern().1.len()];
+    if evaluator.jacobian(level, &mut value).is_err() {
+        return false;
+    }
+    let (start, column) = evaluator.jacobian_pattern();
+    let columns = &instance.columns;
+    let mut known: Vec<bool> = (0..n)
+        .map(|j| columns.lower[j] == columns.upper[j])
+        .collect();
+    // rows by column; how many of a row's entries are not known: a row is looked at when one is left
+    let mut rows: Vec<Vec<usize>> = vec![Vec::new(); n];
+    let mut open = vec![0; m];
+    for i in 0..m {
+        for &j in &column[start[i]..start[i + 1]] {
+            if !known[j as usize] {
+                rows[j as usize].push(i);
+                open[i] += 1;
+            }
+        }
+    }
+    let mut single: Vec<usize> = (0..m).filter(|&i| open[i] == 1).collect();
+    while let Some(i) = single.pop() {
+        let mut entries = start[i]..start[i + 1];
+        let Some(k) = entries.find(|&k| !known[column[k] as usize]) else {
+            continue;
+        };
+        let j = column[k] as usize;
+        let linear = !inside[i].contains(&column[k]) || polynomial(i) && !squared[j];
+        if instance.rows.relation[i] != Relation::Equal || value[k] == 0.0 || !linear {
+            continue;
+        }
+        known[j] = true;
+        for &r in &rows[j] {
+            open[r] -= 1;
+            if open[r] == 1 {
+                single.push(r);
+            }
+        }
+    }
+    let known = |j: &u32| known[*j as usize];
+    pairs.iter().all(|(i, j)| known(i) || known(j))
+        && (0..m).all(|i| polynomial(i) || inside[i].iter().all(known))
 }

@@ -6,6 +6,7 @@ use super::{Builder, Built, parts};
 use crate::diag::Diagnostic;
 use crate::syntax::ast::*;
 use crate::syntax::grammar::Rule;
+use crate::syntax::words;
 
 impl Builder<'_> {
     /// A whole statement, given its top rule.
@@ -83,40 +84,18 @@ impl Builder<'_> {
                 Ok(StmtKind::File(list))
             }
             Rule::table_statement => {
-                let span = self.span(&pair);
                 let (mut of, mut kind) = (TableOf::Parameter, VariableKind::Unstated);
-                let mut symbol = None;
+                let mut symbols = Vec::new();
                 for p in parts(pair) {
                     match p.as_rule() {
                         Rule::set_word => of = TableOf::Set,
                         Rule::parameter_word => {}
                         Rule::variable_kind => kind = variable_kind(p.as_str()),
                         Rule::variable_word => of = TableOf::Variable(kind),
-                        _ => symbol = Some(self.declaration(p)?),
+                        _ => symbols.push(self.declaration(p)?),
                     }
                 }
-                let Some(symbol) = symbol else {
-                    return Err(Box::new(Diagnostic::error(
-                        "E0210",
-                        span,
-                        "a name was expected after `table`",
-                    )));
-                };
-                match symbol.data {
-                    Some(body) => Ok(StmtKind::Table(TableDecl {
-                        of,
-                        symbol: SymbolDecl {
-                            data: None,
-                            ..symbol
-                        },
-                        body,
-                    })),
-                    // A table without lines declares a parameter.
-                    None => Ok(StmtKind::Parameter(vec![ParameterDecl {
-                        symbol,
-                        scalar: false,
-                    }])),
-                }
+                Ok(StmtKind::Table(TableDecl { of, symbols }))
             }
             Rule::alias_statement => {
                 let mut groups = Vec::new();
@@ -151,7 +130,7 @@ impl Builder<'_> {
             )));
         };
         let mut d = SymbolDecl {
-            name: self.ident(&name),
+            name: self.free_name(&name)?,
             domain: None,
             text: None,
             data: None,
@@ -169,6 +148,15 @@ impl Builder<'_> {
             }
         }
         Ok(d)
+    }
+
+    /// A name that is declared: no word of the language.
+    fn free_name(&self, pair: &Pair<'_, Rule>) -> Built<Ident> {
+        let name = self.ident(pair);
+        match words::is_reserved(&name.name) {
+            true => Err(Box::new(words::reserved(&name.name, name.span))),
+            false => Ok(name),
+        }
     }
 
     fn domain_names(&self, pair: Pair<'_, Rule>) -> Vec<DomainName> {
@@ -215,7 +203,7 @@ impl Builder<'_> {
             )));
         };
         let mut model = ModelDecl {
-            name: self.ident(&name),
+            name: self.free_name(&name)?,
             text: None,
             items: None,
         };

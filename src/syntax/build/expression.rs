@@ -462,16 +462,16 @@ impl Builder<'_> {
     pub(super) fn domain(&self, pair: Pair<'_, Rule>) -> Built<Domain> {
         let span = self.span(&pair);
         let mut items = Vec::new();
-        let mut conditions = Vec::new();
+        let mut condition = None;
         for p in pair.into_inner() {
             match p.as_rule() {
-                Rule::condition => conditions.push(p),
+                Rule::condition => condition = Some(self.condition(p)?),
                 _ => items.push(self.domain_item(p)?),
             }
         }
         Ok(Domain {
             items,
-            condition: self.conditions(conditions)?,
+            condition,
             span,
         })
     }
@@ -502,32 +502,18 @@ impl Builder<'_> {
         }
     }
 
-    /// `$a$b`: one condition.
-    pub(super) fn conditions(&self, pairs: Vec<Pair<'_, Rule>>) -> Built<Option<Expr>> {
-        let mut all: Option<Expr> = None;
-        for (n, pair) in pairs.into_iter().enumerate() {
-            if n > 100 {
-                return Err(Box::new(too_deep(self.span(&pair))));
+    /// `$c`
+    pub(super) fn condition(&self, pair: Pair<'_, Rule>) -> Built<Expr> {
+        let span = self.span(&pair);
+        let mut operand = None;
+        for p in pair.into_inner() {
+            if p.as_rule() == Rule::not_sign {
+                return Err(Box::new(two_operators(self.span(&p))));
             }
-            let mut condition = None;
-            for p in pair.into_inner() {
-                if p.as_rule() == Rule::not_sign {
-                    return Err(Box::new(two_operators(self.span(&p))));
-                }
-                condition = Some(self.operand(p)?);
-            }
-            all = match (all, condition) {
-                (Some(a), Some(b)) => {
-                    let span = a.span.to(b.span);
-                    Some(Expr {
-                        kind: ExprKind::Dollar(Box::new(a), Box::new(b)),
-                        span,
-                    })
-                }
-                (a, b) => a.or(b),
-            };
+            operand = Some(self.operand(p)?);
         }
-        Ok(all)
+        operand
+            .ok_or_else(|| Box::new(Diagnostic::error("E0210", span, "a condition was expected")))
     }
 }
 

@@ -162,12 +162,11 @@ impl Builder<'_> {
         let at = self.span(&pair);
         let mut inner = parts(pair);
         let target = self.reference(need(&mut inner, at, "a name")?)?;
-        let mut conditions = Vec::new();
+        let mut condition = None;
         for p in inner {
             match p.as_rule() {
-                Rule::condition => conditions.push(p),
+                Rule::condition => condition = Some(self.condition(p)?),
                 Rule::definition => {
-                    let condition = self.conditions(conditions)?;
                     let mut sides = parts(p);
                     let left = self.expression(need(&mut sides, at, "an expression")?)?;
                     let relation = self.relation(&need(&mut sides, at, "a relation")?)?;
@@ -197,7 +196,6 @@ impl Builder<'_> {
                         Some(e) => self.expression(e)?,
                         None => break,
                     };
-                    let mut condition = self.conditions(conditions)?;
                     if conditional {
                         // `a $= b` is `a$b = b`.
                         let span = value.span;
@@ -282,11 +280,11 @@ impl Builder<'_> {
 
     /// The condition of `break` and `continue`, and the number of loops.
     fn jump(&self, pair: Pair<'_, Rule>) -> Built<(Option<Expr>, u32)> {
-        let mut conditions = Vec::new();
+        let mut condition = None;
         let mut loops = 1;
         for p in parts(pair) {
             match p.as_rule() {
-                Rule::condition => conditions.push(p),
+                Rule::condition => condition = Some(self.condition(p)?),
                 _ => {
                     loops = p.as_str().parse().ok().filter(|n| *n > 0).ok_or_else(|| {
                         Box::new(
@@ -301,22 +299,22 @@ impl Builder<'_> {
                 }
             }
         }
-        Ok((self.conditions(conditions)?, loops))
+        Ok((condition, loops))
     }
 
     fn display(&self, pair: Pair<'_, Rule>) -> Built<(Option<Expr>, Vec<DisplayItem>, bool)> {
-        let mut conditions = Vec::new();
+        let mut condition = None;
         let mut items = Vec::new();
         let mut no_error = false;
         for p in parts(pair) {
             match p.as_rule() {
-                Rule::condition => conditions.push(p),
+                Rule::condition => condition = Some(self.condition(p)?),
                 Rule::no_error => no_error = true,
                 Rule::quoted => items.push(DisplayItem::Text(Self::unquote(&p), self.span(&p))),
                 _ => items.push(DisplayItem::Symbol(self.reference(p)?)),
             }
         }
-        Ok((self.conditions(conditions)?, items, no_error))
+        Ok((condition, items, no_error))
     }
 
     fn option_item(&self, pair: Pair<'_, Rule>) -> Built<OptionItem> {
@@ -462,12 +460,12 @@ impl Builder<'_> {
             .as_str()
             .to_ascii_lowercase()
             .into();
-        let mut conditions = Vec::new();
+        let mut condition = None;
         let mut items = Vec::new();
         for p in inner {
             let place = self.span(&p);
             match p.as_rule() {
-                Rule::condition => conditions.push(p),
+                Rule::condition => condition = Some(self.condition(p)?),
                 Rule::new_line => items.push(PutItem::NewLine),
                 Rule::put_column | Rule::put_row => {
                     let column = p.as_rule() == Rule::put_column;
@@ -484,7 +482,7 @@ impl Builder<'_> {
         }
         Ok(StmtKind::Put(Put {
             keyword,
-            condition: self.conditions(conditions)?,
+            condition,
             items,
         }))
     }
@@ -503,10 +501,10 @@ impl Builder<'_> {
             _ => self.operand(first)?,
         };
         let (mut align, mut width, mut decimals) = (None, None, None);
-        let mut conditions = Vec::new();
+        let mut condition = None;
         for p in inner {
             match p.as_rule() {
-                Rule::condition => conditions.push(p),
+                Rule::condition => condition = Some(self.condition(p)?),
                 Rule::align => {
                     align = Some(if p.as_str() == "<>" {
                         '='
@@ -521,7 +519,7 @@ impl Builder<'_> {
                 }
             }
         }
-        if let Some(c) = self.conditions(conditions)? {
+        if let Some(c) = condition {
             let span = value.span.to(c.span);
             value = Expr {
                 kind: ExprKind::Dollar(Box::new(value), Box::new(c)),
@@ -542,7 +540,7 @@ impl Builder<'_> {
         let inner = need(&mut parts(pair), span, "a width")?;
         if inner.as_rule() == Rule::digits {
             return Ok(Expr {
-                kind: ExprKind::Number(inner.as_str().parse().unwrap_or(0.0)),
+                kind: ExprKind::Number(inner.as_str().parse().map_or(0.0, f64::round)),
                 span,
             });
         }
@@ -557,11 +555,11 @@ impl Builder<'_> {
             name: word.as_str().to_ascii_lowercase().into(),
             span: self.span(&word),
         };
-        let (mut file, mut items, mut conditions) = (None, Vec::new(), Vec::new());
+        let (mut file, mut items, mut condition) = (None, Vec::new(), None);
         for p in inner {
             let span = self.span(&p);
             match p.as_rule() {
-                Rule::condition => conditions.push(p),
+                Rule::condition => condition = Some(self.condition(p)?),
                 Rule::exchange_file => {
                     file = p.into_inner().next().map(|q| (Self::unquote(&q), span))
                 }
@@ -581,7 +579,7 @@ impl Builder<'_> {
             file,
             items,
         });
-        Ok(match self.conditions(conditions)? {
+        Ok(match condition {
             None => statement,
             Some(c) => StmtKind::If(
                 vec![(
@@ -666,7 +664,7 @@ impl Builder<'_> {
         let span = self.span(&pair);
         let mut inner = parts(pair);
         let kind = self.ident(&need(&mut inner, span, "an element")?);
-        let (mut domain, mut conditions, mut arguments) = (None, Vec::new(), Vec::new());
+        let (mut domain, mut condition, mut arguments) = (None, None, Vec::new());
         for p in inner {
             let place = self.span(&p);
             match p.as_rule() {
@@ -681,7 +679,7 @@ impl Builder<'_> {
                         span: place,
                     });
                 }
-                Rule::condition => conditions.push(p),
+                Rule::condition => condition = Some(self.condition(p)?),
                 _ => {
                     let mut name = None;
                     for q in p.into_inner() {
@@ -693,7 +691,7 @@ impl Builder<'_> {
                 }
             }
         }
-        if let Some(c) = self.conditions(conditions)? {
+        if let Some(c) = condition {
             match &mut domain {
                 Some(d) => {
                     d.span = d.span.to(c.span);

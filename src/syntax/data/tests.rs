@@ -104,8 +104,8 @@ fn values() {
 }
 
 /// Records as text, with places; `plainly`: those that can be read by [`DataReader::plain`] are.
-fn records(text: &str, arity: usize, plainly: bool) -> Vec<String> {
-    let mut r = DataReader::new(text, 7, DataKind::Values, false).with_arity(arity);
+fn records(text: &str, kind: DataKind, arity: usize, plainly: bool) -> Vec<String> {
+    let mut r = DataReader::new(text, 7, kind, false).with_arity(arity);
     let mut out = Vec::new();
     loop {
         let mut labels: Vec<&str> = Vec::new();
@@ -115,7 +115,10 @@ fn records(text: &str, arity: usize, plainly: bool) -> Vec<String> {
             plainly && text != "b"
         };
         if let Some((x, span)) = r.plain(label) {
-            out.push(format!("{labels:?} {:x} {span:?}", x.to_bits()));
+            out.push(match kind {
+                DataKind::Values => format!("{labels:?} {:x} {span:?}", x.to_bits()),
+                DataKind::Set => format!("{labels:?} {:?} {span:?}", Tail::None),
+            });
             continue;
         }
         out.push(match r.next() {
@@ -147,13 +150,15 @@ proptest::proptest! {
             proptest::sample::select(vec![
                 "a", "b", "i1", "set", ".", ".", ".", " ", " ", "1", "2.5", "0", "1e400", "1e-400", "e", "-", "+", ",",
                 "\n", "\n", "'q r'", "(", ")", "*", ":", "=", "#", "inf", "é", "\u{1e}", "a.i1 3\n", "a 4,", "i1.a.a -2",
+                "'a'", "'a'.\"b c\" 7\n", "a . i1", "\n\u{1e}a,i1,5\n", "\n\u{1e}'a b' , -3\n", "i1.a\n", "a,",
             ]),
             0..14,
         ),
         arity in 1usize..4,
+        kind in proptest::sample::select(vec![DataKind::Set, DataKind::Values]),
     ) {
         let text = text.concat();
-        proptest::prop_assert_eq!(records(&text, arity, true), records(&text, arity, false));
+        proptest::prop_assert_eq!(records(&text, kind, arity, true), records(&text, kind, arity, false));
     }
 }
 

@@ -1,0 +1,457 @@
+//! Declarations: names, domains, explanatory texts, data between slashes, and the lines of tables.
+
+use super::{Declare, Hole, HoleKind, Splitter, span};
+use crate::diag::Diagnostic;
+use crate::source::{Span, quoted_end};
+use crate::syntax::constants::end_of_constant;
+use crate::syntax::words::{self, Class};
+
+impl Splitter {
+    pub(super) fn declaration(&mut self, text: &str) -> bool {
+        let bytes = text.as_bytes();
+        loop {
+            match self.declare {
+                Declare::Body => {
+                    if !self.body(text) {
+                        return false;
+                    }
+                    if self.start.is_some() && self.problems.iter().any(|p| p.code == "E0203") {
+                        return true;
+                    }
+                    continue;
+                }
+                Declare::Table => return self.table(text),
+                _ => {}
+            }
+            let i = self.pos;
+            let Some(&b) = bytes.get(i) else { return false };
+            match b {
+                b' ' | b'\t' | b'\r' => {
+                    self.pos += 1;
+                    continue;
+                }
+                b'\n' => {
+                    self.pos += 1;
+                    self.new_line = true;
+                    let named = matches!(self.declare, Declare::AfterName | Declare::AfterText);
+                    if named && self.class == Class::Table {
+                        self.begin_table(i);
+                    } else if named {
+                        self.declare = Declare::AfterText;
+                    }
+                    continue;
+                }
+                b'$' if i > 0 && bytes[i - 1] == b'\n' => return true,
+                _ => {}
+            }
+            if self.declare == Declare::Domain {
+                match b {
+                    b')' | b']' | b'}' => self.declare = Declare::AfterName,
+                    b';' => {
+                        // The parser says what is missing.
+                        self.pos += 1;
+                        return true;
+                    }
+                    _ => {}
+                }
+                self.pos = quoted_end(bytes, i).unwrap_or(i + 1);
+                self.last_end = self.pos;
+                continue;
+            }
+            match b {
+                b';' => {
+                    self.trailing_comma();
+                    self.pos += 1;
+                    return true;
+                }
+                b',' => {
+                    if self.declare == Declare::Name {
+                        self.stray(
+                            i,
+                            i + 1,
+                            "a name was expected here, not `,`",
+                            "one comma stands between two names",
+                        );
+                    }
+                    self.declare = Declare::Name;
+                    self.pos += 1;
+                    self.last_end = self.pos;
+                }
+                b'/' if self.class == Class::Acronym => {
+                    self.pos += 1;
+                    self.last_end = self.pos;
+                }
+                b'/' => {
+                    self.declare = Declare::Body;
+                    self.body_start = i + 1;
+                    self.searched = i + 1;
+                    self.pos = i + 1;
+                }
+                b'(' | b'[' | b'{' if self.declare != Declare::Name && !self.has_domain(bytes) => {
+                    self.declare = Declare::Domain;
+                    self.pos += 1;
+                    self.last_end = self.pos;
+                }
+                b'\'' | b'"' if self.declare != Declare::Name => match line_quote(bytes, i) {
+                    Some(end) => {
+                        self.hole(HoleKind::Text, span(i + 1, end - 1), span(i, end));
+                        self.pos = end;
+                        self.last_end = end;
+                        self.declare = Declare::AfterText;
+                        self.new_line = false;
+                    }
+                    None => {
+                        self.problems.push(unclosed_quote(i));
+                        self.unquoted_text(text, i)
+                    }
+                },
+                _ if self.declare == Declare::AfterName && !text_cannot_start(bytes, i) => {
+                    if i == self.last_end {
+                        self.stray(
+                            i,
+                            i + 1,
+                            "a blank is missing before the text",
+                            "or is this a sign too many?",
+                        );
+                    }
+                    self.unquoted_text(text, i)
+                }
+                _ if words::is_letter(b) => {
+                    let end = words::word_end(bytes, i);
+                    if words::statement_word(text, i, end).is_some() {
+                        // A keyword: the next statement.
+                        self.trailing_comma();
+                        return true;
+                    }
+                    if self.declare == Declare::AfterText && !self.new_line && self.names > 0 {
+                        self.stray(
+                            i,
+                            end,
+                            "a comma is missing before this name",
+                            "on one line commas stand between names",
+                        );
+                    }
+                    self.name(bytes, i, end);
+                }
+                b'.' | b'=' | b'$' | b':'
+                    if self.declare == Declare::AfterText || self.declare == Declare::AfterName =>
+                {
+                    if self.missing_semicolon(text, i) {
+                        return true;
+                    }
+                    self.pos += 1;
+                    self.last_end = self.pos;
+                }
+                _ => {
+                    self.pos += text[i..].chars().next().map_or(1, char::len_utf8);
+                    self.last_end = self.pos;
+                }
+            }
+        }
+    }
+
+    /// Something that does not belong between the parts of a declaration; its names can be read.
+    fn stray(&mut self, lo: usize, hi: usize, message: &str, help: &str) {
+        self.problems
+            .push(Diagnostic::error("E0223", span(lo, hi), message).help(help));
+    }
+
+    /// The declaration ends: behind a comma a name is expected.
+    fn trailing_comma(&mut self) {
+        if self.declare == Declare::Name && self.names > 0 {
+            let comma = self.last_end - 1;
+            self.stray(
+                comma,
+                comma + 1,
+                "a name was expected behind this comma",
+                "leave it out before the `;`",
+            );
+        }
+    }
+
+    fn name(&mut self, bytes: &[u8], i: usize, end: usize) {
+        self.last_name = i;
+        self.names += 1;
+        self.declare = Declare::AfterName;
+        self.pos = end;
+        self.last_end = end;
+        self.new_line = false;
+        // `scalar x.l /1/`, `set i-j` and the like are left to the parser, in one piece.
+        while let Some(&b) = bytes.get(self.pos) {
+            if words::is_blank(b)
+                || matches!(
+                    b,
+                    b',' | b';' | b'/' | b'(' | b'[' | b'{' | b'\'' | b'"' | b'=' | b'.' | b'$'
+                )
+            {
+                break;
+            }
+            self.pos += 1;
+            self.last_end = self.pos;
+        }
+    }
+
+    /// Between the last name and here stands a closed domain already.
+    fn has_domain(&self, bytes: &[u8]) -> bool {
+        matches!(
+            bytes.get(self.last_end.wrapping_sub(1)),
+            Some(b')' | b']' | b'}')
+        ) || self.declare == Declare::AfterText && !self.new_line
+    }
+
+    fn hole(&mut self, kind: HoleKind, inside: Span, outside: Span) {
+        self.holes.push(Hole {
+            kind,
+            inside,
+            outside,
+        });
+    }
+
+    /// A text without quotes: to the end of the line, `,`, `;`, or `/` where data may stand.
+    fn unquoted_text(&mut self, text: &str, i: usize) {
+        let bytes = text.as_bytes();
+        let line = memchr::memchr(b'\n', &bytes[i..]).map_or(bytes.len(), |n| i + n);
+        let data = if self.class == Class::Table {
+            b','
+        } else {
+            b'/'
+        };
+        let end = memchr::memchr3(b',', data, b';', &bytes[i..line]).map_or(line, |n| i + n);
+        let trimmed = i + text[i..end].trim_end().len();
+        self.hole(HoleKind::Text, span(i, trimmed), span(i, trimmed));
+        self.pos = end;
+        self.last_end = trimmed;
+        self.declare = Declare::AfterText;
+        self.new_line = false;
+    }
+
+    /// `e..` or `x =` on a new line after a declaration: the `;` before it is missing.
+    fn missing_semicolon(&mut self, text: &str, i: usize) -> bool {
+        let bytes = text.as_bytes();
+        let definition = bytes[i..].starts_with(b"..");
+        let assignment = bytes[i] == b'='
+            || bytes[i] == b':'
+            || bytes[i] == b'$'
+            || bytes[i] == b'.' && bytes.get(i + 1).is_some_and(|b| words::is_letter(*b));
+        if !definition && !assignment || self.names < 2 {
+            return false;
+        }
+        let line_start = memchr::memrchr(b'\n', &bytes[..self.last_name]).map_or(0, |n| n + 1);
+        let first_on_line = bytes[line_start..self.last_name]
+            .iter()
+            .all(|b| words::is_blank(*b));
+        let start = self.start.unwrap_or(0);
+        if !first_on_line || line_start <= start {
+            return false;
+        }
+        let before = text[start..self.last_name].trim_end_matches([' ', '\t', '\r', '\n']);
+        let end = start + before.len();
+        let name_end = words::word_end(bytes, self.last_name);
+        self.problems.push(
+            Diagnostic::error(
+                "E0201",
+                span(end.saturating_sub(1).max(start), end),
+                "`;` is missing at the end of this declaration",
+            )
+            .label("missing `;`")
+            .other(
+                span(self.last_name, name_end),
+                "the next statement begins here",
+            ),
+        );
+        self.pos = self.last_name;
+        self.last_end = end;
+        true
+    }
+
+    /// Inside `/ … /`. True once it is closed.
+    fn body(&mut self, text: &str) -> bool {
+        let bytes = text.as_bytes();
+        let mut i = self.pos;
+        loop {
+            let Some(n) = memchr::memchr3(b'/', b'\'', b'"', &bytes[i..]) else {
+                i = bytes.len();
+                break;
+            };
+            let at = i + n;
+            if bytes[at] == b'/' {
+                if self.class.has_values()
+                    && let Some(end) = end_of_constant(bytes, self.body_start, at)
+                {
+                    i = end;
+                    continue;
+                }
+                // A `;` in numbers, or before a keyword: the slash was forgotten.
+                if let Some(stop) = self.forgotten_slash(text, at) {
+                    self.unclosed_body(self.body_start, stop);
+                    self.pos = stop + 1;
+                    return true;
+                }
+                let body = span(self.body_start, at);
+                if self.class == Class::File
+                    && let Some(quote) = lone_quote(&text[self.body_start..at])
+                {
+                    self.problems.push(unclosed_quote(self.body_start + quote));
+                }
+                if self.class == Class::Model {
+                    // The grammar reads a model's list.
+                } else {
+                    self.hole(HoleKind::Body, body, span(self.body_start - 1, at + 1));
+                }
+                self.pos = at + 1;
+                self.last_end = at + 1;
+                self.declare = Declare::AfterText;
+                self.new_line = false;
+                return true;
+            }
+            i = quoted_end(bytes, at).unwrap_or(at + 1);
+        }
+        if let Some(stop) = self.forgotten_slash(text, i) {
+            self.unclosed_body(self.body_start, stop);
+            self.pos = stop + 1;
+            return true;
+        }
+        self.pos = i;
+        false
+    }
+
+    /// The `;` that ends the statement inside data, if one does.
+    fn forgotten_slash(&mut self, text: &str, to: usize) -> Option<usize> {
+        let bytes = text.as_bytes();
+        let from = self.body_start;
+        let mut i = self.searched;
+        self.searched = to;
+        while let Some(n) = memchr::memchr(b';', &bytes[i..to]) {
+            let at = i + n;
+            i = at + 1;
+            let line = memchr::memrchr(b'\n', &bytes[..at])
+                .map_or(0, |n| n + 1)
+                .max(from);
+            let mut q = line;
+            let mut quoted = false;
+            while q < at {
+                match quoted_end(bytes, q) {
+                    Some(end) if end > at => {
+                        quoted = true;
+                        break;
+                    }
+                    Some(end) => q = end,
+                    None => q += 1,
+                }
+            }
+            if quoted {
+                continue;
+            }
+            if self.class != Class::Set {
+                return Some(at);
+            }
+            // In a set it may belong to a text: only a statement after it tells.
+            let rest = text[at + 1..to].trim_start();
+            if rest.is_empty() {
+                // More text may come.
+                self.searched = at;
+                return None;
+            }
+            let word_at = to - rest.len();
+            let end = words::word_end(bytes, word_at);
+            if end > word_at && words::statement_word(text, word_at, end).is_some() {
+                return Some(at);
+            }
+        }
+        None
+    }
+
+    fn begin_table(&mut self, at: usize) {
+        self.declare = Declare::Table;
+        self.body_start = at;
+        self.pos = at;
+    }
+
+    pub(super) fn end_table(&mut self, bytes: &[u8], end: usize) {
+        let end = end.max(self.body_start);
+        let trimmed = bytes[self.body_start..end]
+            .iter()
+            .rposition(|b| !words::is_blank(*b))
+            .map_or(self.body_start, |n| self.body_start + n + 1);
+        let body = span(self.body_start, trimmed);
+        self.hole(HoleKind::Body, body, body);
+        self.last_end = trimmed;
+    }
+
+    /// In the lines of a table, up to `;` or a line that begins with a statement's keyword.
+    fn table(&mut self, text: &str) -> bool {
+        let bytes = text.as_bytes();
+        while self.pos < bytes.len() {
+            let line = self.pos;
+            let end = memchr::memchr(b'\n', &bytes[line..]).map_or(bytes.len(), |n| line + n + 1);
+            if line > self.body_start {
+                if bytes[line] == b'$' {
+                    self.end_table(bytes, line);
+                    return true;
+                }
+                let first = line
+                    + bytes[line..end]
+                        .iter()
+                        .take_while(|b| words::is_blank(**b))
+                        .count();
+                if first < end && bytes[first].is_ascii_alphabetic() {
+                    let word_end = words::word_end(bytes, first);
+                    if words::begins_statement_in_table(text, first, word_end) {
+                        self.end_table(bytes, line);
+                        self.pos = first;
+                        return true;
+                    }
+                }
+            }
+            let mut i = line;
+            while let Some(n) = memchr::memchr3(b';', b'\'', b'"', &bytes[i..end]) {
+                let at = i + n;
+                if bytes[at] == b';' {
+                    self.end_table(bytes, at);
+                    self.pos = at + 1;
+                    return true;
+                }
+                i = quoted_end(bytes, at).unwrap_or(at + 1).min(end);
+            }
+            self.pos = end;
+        }
+        false
+    }
+}
+
+/// A text's quote that has no partner on its line.
+fn unclosed_quote(at: usize) -> Diagnostic {
+    Diagnostic::error(
+        "E0206",
+        span(at, at + 1),
+        "this quote is not closed on its line",
+    )
+    .label("opened here")
+}
+
+/// A quote that begins a file's name and does not end it.
+fn lone_quote(name: &str) -> Option<usize> {
+    let inside = name.trim();
+    let quote = inside.chars().next().filter(|c| matches!(c, '\'' | '"'))?;
+    let closed = inside.len() > 1 && inside.ends_with(quote);
+    (!closed).then(|| name.len() - name.trim_start().len())
+}
+
+/// The end of a quoted text that closes on its line.
+fn line_quote(bytes: &[u8], i: usize) -> Option<usize> {
+    let rest = &bytes[i + 1..];
+    let n = memchr::memchr2(bytes[i], b'\n', rest)?;
+    (rest[n] == bytes[i]).then_some(i + n + 2)
+}
+
+/// An explanatory text does not begin with `=`, `..` or `$`.
+fn text_cannot_start(bytes: &[u8], i: usize) -> bool {
+    match bytes[i] {
+        b'=' | b'$' => true,
+        b':' => bytes.get(i + 1) == Some(&b'='),
+        b'.' => bytes.get(i + 1).is_some_and(|b| {
+            *b == b'.' || words::is_letter(*b) && i > 0 && !words::is_blank(bytes[i - 1])
+        }),
+        _ => false,
+    }
+}
