@@ -1,9 +1,8 @@
 //! Bad input: what a person sees, as snapshots. None may panic, name a Rust type, or leave a file.
 
-mod common;
-
 use std::path::{Path, PathBuf};
 
+use crate::common;
 use bmod::diag::Diagnostic;
 use bmod::host::{Host, HostError};
 use bmod::report::diagnostics::{Look, render};

@@ -2,10 +2,9 @@
 //! named by BMOD_SHARED): every file compiles, its statistics are the reference's, and the linear
 //! programs have the reference's objective. Skipped, visibly, where the folder is not there.
 
-mod common;
-
 use std::path::{Path, PathBuf};
 
+use crate::common;
 use bmod::report::json::SolveReport;
 use bmod::run::{ListOptions, Options};
 use csv::StringRecord;

@@ -1,10 +1,7 @@
 //! The corpus of complementarity problems (`../shared/corpus/mcp`, or beside the folder BMOD_SHARED
 //! names), each file run as it is: all are solved, the seven that PATH stops at included.
 
-mod common;
-mod complementarity;
-
-use complementarity::{corpus, references, run};
+use crate::complementarity::{corpus, references, run};
 
 /// Problems whose solutions are singular and degenerate: the residual converges linearly.
 const SINGULAR: [&str; 3] = ["rsingdeg0", "rsingdeg1", "rsingdeg2"];

@@ -3,13 +3,11 @@
 //! Problems are written as closures over dense matrices: small, and readable next to the paper
 //! they come from. `F` is differentiated here by central differences where it is not linear.
 
-mod walls;
-
+use crate::walls::obstacle;
 use bmod::solve::mcp::{
     EvalError, Monitor, Outcome, Problem, Settings, Silent, Status, natural_residual, solve,
 };
 use proptest::prelude::*;
-use walls::obstacle;
 
 const INF: f64 = f64::INFINITY;
 

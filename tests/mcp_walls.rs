@@ -1,9 +1,7 @@
 //! Walls of blocks straight through the complementarity solver: large ones are in `benches/mcp.rs`.
 
-mod walls;
-
+use crate::walls::wall;
 use bmod::solve::mcp::{Outcome, Settings, Silent, Status, solve};
-use walls::wall;
 
 fn run(courses: usize, width: usize, friction: f64, associated: bool) -> Outcome {
     let outcome = solve(

@@ -2,10 +2,9 @@
 //! or the folder named by BMOD_SHARED; skipped, visibly, where it is not there), and the check of
 //! stationarity from the language to the report.
 
-mod common;
-
 use std::path::{Path, PathBuf};
 
+use crate::common;
 use bmod::report::json::SolveReport;
 
 fn solves(file: &Path, allowed: &[PathBuf]) -> Vec<SolveReport> {

@@ -1,10 +1,8 @@
 //! The planner never changes which tuples count: random sums and assignments, in random wordings, give
 //! what a nest of loops over whole sets gives.
 
-mod common;
-
+use crate::common::{self, Memory};
 use bmod::report::json::RunStatus;
-use common::Memory;
 
 /// Fixed stream of choices.
 struct Choice(u64);

@@ -1,15 +1,13 @@
 //! Scenes of `models/block_limit.blk`: pictures that show what the rates say, and scenes that cannot be
 //! meant.
 
-mod common;
-
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use crate::common::{self, Memory};
 use bmod::check::symbols::attribute;
 use bmod::run::{Machine, Options};
 use bmod::session::{self, Finished};
-use common::Memory;
 
 /// Runs a file below `models/`, or a text as if it stood there.
 fn run(

@@ -1,15 +1,14 @@
 //! The language suite: every file of `tests/suite` runs, and every claim in its comments holds (their
 //! form: `tests/suite/README.md`).
 //!
-//! `SUITE=put cargo test --test suite` runs the files whose path contains `put`.
-
-mod common;
+//! `SUITE=put cargo test --test all suite::` runs the files whose path contains `put`.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use crate::common::{Memory, files};
 use bmod::check::symbols::{SymbolKind, attribute};
 use bmod::data::value;
 use bmod::diag::Severity;
@@ -18,7 +17,6 @@ use bmod::report::why::Explanation;
 use bmod::run::{Machine, Options};
 use bmod::session;
 use bmod::source::PreprocessOptions;
-use common::{Memory, files};
 
 /// What the comments of a file claim.
 #[derive(Default)]

@@ -1,14 +1,12 @@
 //! From text to tree: what is read, and what is said about what cannot be read.
 
-mod common;
-
 use std::collections::BTreeMap;
 
+use crate::common::Memory;
 use bmod::diag::Diagnostic;
 use bmod::source::{Ending, NothingKnown, PreprocessOptions};
 use bmod::syntax::Parser;
 use bmod::syntax::ast::*;
-use common::Memory;
 
 /// Everything that came out of a text.
 struct Outcome {

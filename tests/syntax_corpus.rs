@@ -3,11 +3,10 @@
 //! The collection is not part of the project: it is looked for beside it (`../shared/corpus`) or where
 //! `BMOD_SHARED` says. Where it is not there, the test says so and passes.
 
-mod common;
-
 use std::collections::HashSet;
 use std::path::Path;
 
+use crate::common;
 use bmod::cli::host::{Output, SystemHost};
 use bmod::source::{Known, PreprocessOptions, Span, SymbolKindName};
 use bmod::syntax::Parser;

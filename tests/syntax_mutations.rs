@@ -1,15 +1,13 @@
 //! No text makes the reader panic or run without end: models with random damage.
 
-mod common;
-
 use std::collections::BTreeMap;
 
+use crate::common::Memory;
 use bmod::source::{NothingKnown, PreprocessOptions, Span};
 use bmod::syntax::Parser;
 use bmod::syntax::ast::{StmtKind, SymbolDecl};
 use bmod::syntax::data::{DataKind, DataReader};
 use bmod::syntax::table::TableReader;
-use common::Memory;
 use proptest::prelude::*;
 
 /// Texts that hold every construct at least once.

@@ -1,0 +1,21 @@
+//! All tests from outside in one program, built and linked once. `robustness.rs` is another: it measures the memory of its process.
+
+mod bad_input;
+mod certify;
+mod common;
+mod complementarity;
+mod corpus;
+mod derivatives;
+mod functions;
+mod mcp_corpus;
+mod mcp_solver;
+mod mcp_walls;
+mod mpec;
+mod nonlinear;
+mod planner;
+mod scenes;
+mod suite;
+mod syntax;
+mod syntax_corpus;
+mod syntax_mutations;
+mod walls;
