@@ -9,7 +9,8 @@
 //!
 //! * **dual** residual: the largest of these, in the model's units;
 //! * **complementarity**: the largest |multiplier · distance|;
-//! * **dual relative**: a reduced cost relative to max(1, max_i |m_i ∂a_i/∂x_j|), a distance relative
+//! * **dual relative**: a reduced cost relative to max(1, max_i |m_i ∂a_i/∂x_j|), with |m_i| at least η
+//!   (see [`super::certificate`]) in rows that bind, a distance relative
 //!   to max(1, |x_j|), a multiplier by the reduced costs it makes, a slack relative to its row's size.
 //!
 //! The primal residuals are those of [`super::certificate`], with |∂a_i/∂x_j · x_j| as the size of an
@@ -19,6 +20,9 @@ use super::certificate::{Linearised, Residuals, primal, units};
 use super::instance::{Instance, Relation};
 use super::sum::Sum;
 use crate::autodiff::{EvalFailure, Evaluator};
+
+/// A row binds where its slack is at most this, relative to its size.
+const BINDING: f64 = 1e-6;
 
 /// Values, reduced costs and sizes at a point.
 ///
@@ -45,7 +49,6 @@ pub fn linearise(
     }
     let nonlinear = instance.nonlinear_rows();
     for i in 0..m {
-        let multiplier = row_marginal[i];
         for k in start[i]..start[i + 1] {
             let (j, a) = (column[k] as usize, value[k]);
             // A slope that varies says little about the size of its row where the variable is small:
@@ -56,8 +59,17 @@ pub fn linearise(
                 a.abs() * xi
             };
             row_size[i] = row_size[i].max((a * x[j]).abs()).max(floor);
+        }
+        let multiplier = row_marginal[i];
+        // what is slack has no multiplier that could be wrong by a little
+        let gap = (activity[i] - instance.rows.rhs[i]).abs();
+        let binds = instance.rows.relation[i] == Relation::Equal
+            || gap <= BINDING * row_size[i].max(instance.rows.rhs[i].abs()).max(1.0);
+        let size = multiplier.abs().max(if binds { eta } else { 0.0 });
+        for k in start[i]..start[i + 1] {
+            let (j, a) = (column[k] as usize, value[k]);
             reduced[j].add_product(-multiplier, a);
-            column_size[j] = column_size[j].max((a * multiplier.abs().max(eta)).abs());
+            column_size[j] = column_size[j].max((a * size).abs());
         }
     }
     Ok(Linearised {

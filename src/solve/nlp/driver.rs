@@ -37,6 +37,8 @@ use std::time::{Duration, Instant};
 
 /// An objective better than this, at a feasible point, is called unbounded (GAMS's solvers: 1e15).
 const UNBOUNDED: f64 = 1e15;
+/// A run whose objective is worse than this has lost its way.
+const LOST: f64 = 1e17;
 /// A point is unbounded evidence from here on, if the provider stopped with diverging iterates.
 const LARGE: f64 = 1e10;
 
@@ -173,6 +175,8 @@ pub(super) struct Driver<'a> {
     pub(super) best: Option<Trial>,
     /// How the last run of the provider ended.
     ended: Ended,
+    /// How many runs ended at a minimum of the violations.
+    failures: usize,
     /// The best point is a saddle from which a run went astray.
     pub(super) at_saddle: bool,
     /// There is no feasible point.
@@ -214,6 +218,7 @@ impl<'a> Driver<'a> {
             stopped: None,
             best: None,
             ended: Ended::Broken,
+            failures: 0,
             at_saddle: false,
             impossible: false,
             repeated: false,
@@ -281,11 +286,20 @@ impl Driver<'_> {
             if k >= attempts {
                 return Ok(self.finish());
             }
-            if k == ELASTIC_AFTER && !self.best.as_ref().is_some_and(Trial::is_feasible) {
+            let has_point = self.best.as_ref().is_some_and(Trial::is_feasible);
+            let due = k >= ELASTIC_AFTER || self.failures > 1;
+            if due && !self.elastic_tried && !has_point {
                 self.attempt_elastic()?;
-                let proved = self.infeasibility.is_some();
-                if self.is_settled() || (proved && self.work() > SMALL) {
-                    break;
+            }
+            let proved = self.infeasibility.is_some() && !has_point;
+            if self.is_settled() || proved && self.work() > SMALL {
+                break;
+            }
+            if proved {
+                // it is doubted from elsewhere only
+                self.patience = FIRST_PATIENCE;
+                if !matches!(from, From::Moved(_) | From::Anywhere(_)) {
+                    continue;
                 }
             }
             self.attempt(from, options)?;
@@ -580,8 +594,9 @@ impl Driver<'_> {
             }
             let failures = lock(&*nlp).failures();
             stopped = stopped.or(why_stop(monitor.interrupted(), deadline, limit, failures));
-            let unbounded = p.objective < -UNBOUNDED && p.primal < 1e-3 && !p.restoration;
-            stopped.is_none() && !unbounded
+            let unbounded = p.objective < -UNBOUNDED && p.primal < 1e-3;
+            let astray = unbounded || p.objective > LOST;
+            stopped.is_none() && (p.restoration || !astray)
         };
         let mut control = Control {
             options,
@@ -595,6 +610,7 @@ impl Driver<'_> {
         self.stopped = stopped.or(self.stopped);
         self.note_end(solution.ended);
         self.ended = solution.ended;
+        self.failures += usize::from(solution.ended == Ended::Infeasible);
         if let Ended::InvalidOption = solution.ended {
             return Err(SolveError::new(format!(
                 "{} does not take one of the options",

@@ -19,7 +19,7 @@ use crate::model::instance::Instance;
 use crate::solve::SolveError;
 
 /// Half the widths R of the boxes.
-const BOXES: [f64; 2] = [1e5, 1e10];
+const BOXES: [f64; 2] = [1e5, 1e8];
 /// The rows hold to this relative to their terms where growth is shown.
 const EXACT: f64 = 1e-8;
 /// How often it is looked for.
@@ -88,7 +88,8 @@ impl Driver<'_> {
             if exact {
                 before = Some(trial.objective);
             }
-            start = inside.x;
+            // further along the way that it went
+            start = inside.x.iter().map(|x| x * BOXES[1] / BOXES[0]).collect();
         }
         Ok(None)
     }

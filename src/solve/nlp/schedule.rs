@@ -101,7 +101,8 @@ pub(super) const SCHEDULE: [(From, &[(&str, &str)]); 15] = [
     (From::Moved(10.0), NEAR),
 ];
 
-/// After so many attempts without a feasible point the elastic form has its turn.
+/// After so many attempts without a feasible point, or two that ended at a minimum of the violations, the elastic form has
+/// its turn.
 pub(super) const ELASTIC_AFTER: usize = 4;
 
 /// What to try to better a certified point of a small nonconvex problem. The first

@@ -4,7 +4,7 @@ use super::polish::{Active, polish};
 use super::problem::{Nlp, Problem};
 use super::provider::Ended;
 use crate::autodiff::{Degree, Evaluator};
-use crate::model::certificate::{Linearised, Residuals, TOLERANCE, primal};
+use crate::model::certificate::{Linearised, Residuals, TOLERANCE, primal, row_violation};
 use crate::model::certificate_nlp::{kkt_residual, linearise, residuals};
 use crate::model::instance::{Instance, Relation};
 
@@ -30,6 +30,8 @@ pub(super) struct Trial {
     pub(super) objective: f64,
     /// Stationary to the tolerance only because it is far away: the objective still changes there.
     pub(super) receding: bool,
+    /// Feasible to the tolerance only because it is far away: without what is violated, the objective would be another.
+    pub(super) hollow: bool,
     /// The objective gets better without limit.
     pub(super) unbounded: bool,
 }
@@ -45,7 +47,7 @@ impl Trial {
     }
 
     pub(super) fn is_feasible(&self) -> bool {
-        self.residuals.is_feasible(TOLERANCE)
+        self.residuals.is_feasible(TOLERANCE) && !self.hollow
     }
 
     /// Feasible, and stationary but for a little.
@@ -97,6 +99,7 @@ pub(super) fn residuals_at(
         );
     }
     let receding = is_receding(instance, &level, &at.reduced, objective);
+    let hollow = is_hollow(instance, &level, &row_marginal, &at, objective);
     Trial {
         x,
         lambda,
@@ -107,6 +110,7 @@ pub(super) fn residuals_at(
         ended,
         objective,
         receding,
+        hollow,
         unbounded: false,
     }
 }
@@ -127,6 +131,22 @@ fn is_receding(instance: &Instance, level: &[f64], reduced: &[f64], objective: f
     };
     let considerable = CONSIDERABLE * objective.abs().max(1.0);
     (0..level.len()).any(|j| level[j].abs() >= FAR && promise(j) > considerable)
+}
+
+/// Whether a variable is beyond [`FAR`], and violations within the tolerance are worth a considerable part of the objective:
+/// x y ≥ 10 and x + y ≤ 1 hold where x = −1e-9 stands for x ≥ 0, and y for −1e10.
+fn is_hollow(
+    instance: &Instance,
+    level: &[f64],
+    row_marginal: &[f64],
+    at: &Linearised,
+    objective: f64,
+) -> bool {
+    let rows = &instance.rows;
+    let violation = |i: usize| row_violation(rows.relation[i], at.activity[i], rows.rhs[i]);
+    let worth = |i: usize| row_marginal[i].abs() * violation(i);
+    level.iter().any(|x| x.abs() >= FAR)
+        && (0..row_marginal.len()).map(worth).sum::<f64>() > CONSIDERABLE * objective.abs().max(1.0)
 }
 
 /// At a kink the derivative is any number between the one-sided ones: takes the one that the rounded
