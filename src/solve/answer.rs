@@ -4,6 +4,7 @@
 //! from the solver's word.
 
 use super::lp::certify::{Proof, Unproved};
+use super::lp::least;
 use super::mpec::Stationarity;
 use super::mpec::pairs::Program;
 use super::nlp::relaxation::is_infeasible;
@@ -103,10 +104,15 @@ pub(super) fn linear(
     settings: &Settings,
     monitor: &mut dyn Monitor,
 ) -> Result<Answer, SolveError> {
-    let outcome = solver.solve(instance, settings, monitor)?;
-    let at = certificate::linearise(instance, &outcome);
-    let residuals = certificate::residuals(instance, &outcome, &at);
+    let mut outcome = solver.solve(instance, settings, monitor)?;
+    let mut at = certificate::linearise(instance, &outcome);
+    let mut residuals = certificate::residuals(instance, &outcome, &at);
     let status = certificate::linear_status(instance, &outcome, &residuals);
+    if status == ModelStatus::Infeasible {
+        least::report_least_violation(instance, settings, monitor, &mut outcome);
+        at = certificate::linearise(instance, &outcome);
+        residuals = certificate::residuals(instance, &outcome, &at);
+    }
     Ok(Answer::new(outcome, residuals, status, at.activity))
 }
 

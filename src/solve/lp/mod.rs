@@ -7,6 +7,7 @@ pub mod certify;
 pub mod crossover;
 pub mod form;
 pub mod interior;
+pub mod least;
 pub mod scale;
 pub mod simplex;
 
@@ -244,7 +245,8 @@ fn solve(
         }
         _ => Vec::new(),
     };
-    let point = scaling.restore(answer.point);
+    let mut point = scaling.restore(answer.point);
+    snap(&form.problem, &mut point.x);
     let (level, row_marginal, column_marginal) = form.point(instance, &point);
     Ok(Outcome {
         level,
@@ -258,6 +260,18 @@ fn solve(
         message: answer.remark.map(str::to_string),
         basis: answer.basis,
     })
+}
+
+/// What differs from a bound by rounding only, in numbers of this size, is at the bound.
+fn snap(p: &Problem, x: &mut [f64]) {
+    let rounding = ROUNDING * x.iter().fold(1.0, |s: f64, v| s.max(v.abs()));
+    for (v, (&l, &u)) in x.iter_mut().zip(p.lower.iter().zip(&p.upper)) {
+        for bound in [l, u] {
+            if (*v - bound).abs() <= rounding {
+                *v = bound;
+            }
+        }
+    }
 }
 
 /// Whether the simplex method must stop.
@@ -350,6 +364,9 @@ fn interior_only(p: &Problem, aim: Aim, limits: &Limits, monitor: &mut dyn Monit
         basis: None,
     }
 }
+
+/// Of the largest level: by so much a level of a vertex is wrong at least.
+const ROUNDING: f64 = 1e-14;
 
 /// Columns and rows together up to which the simplex method is tried first.
 const SMALL: usize = 600;
