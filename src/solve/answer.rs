@@ -9,7 +9,7 @@ use super::mpec::Stationarity;
 use super::mpec::pairs::Program;
 use super::nlp::relaxation::is_infeasible;
 use super::{
-    Claim, ModelStatus, Monitor, Outcome, Settings, SolveError, Solver, complementarity, lp,
+    Claim, ModelStatus, Monitor, Outcome, Settings, SolveError, Solver, complementarity, lp, noise,
 };
 use crate::autodiff::Evaluator;
 use crate::model::certificate::{self, Linearised, Residuals, TOLERANCE};
@@ -60,7 +60,7 @@ pub fn answer(
     settings: &Settings,
     monitor: &mut dyn Monitor,
 ) -> Result<Answer, SolveError> {
-    match using {
+    let mut found = match using {
         "mcp" => complementary(instance, settings, monitor),
         "cns" => square(instance, settings, monitor),
         "mpec" | "rmpec" => super::mpec::answer(choice, instance, settings, monitor),
@@ -69,7 +69,13 @@ pub fn answer(
             _ => linear(&lp::Clarabel, instance, settings, monitor),
         },
         _ => super::nlp::answer(choice, instance, settings, monitor),
+    }?;
+    noise::quiet(&mut found.outcome.column_marginal);
+    if using != "mcp" {
+        // there they are levels
+        noise::quiet(&mut found.outcome.row_marginal);
     }
+    Ok(found)
 }
 
 /// A proved interval for the optimal value of a linear instance, near its answer.
@@ -184,7 +190,9 @@ fn square(
     let residuals = certificate::primal(instance, &outcome.level, &at.activity, &at.row_size);
     let status = if residuals.is_feasible(TOLERANCE) {
         ModelStatus::Solved
-    } else if certificate::is_beyond_bounds(instance) {
+    } else if certificate::is_beyond_bounds(instance)
+        || outcome.claim != Claim::Unfinished && is_impossible(instance, settings, monitor)?
+    {
         ModelStatus::Infeasible
     } else if outcome.claim != Claim::Unfinished {
         // Either the rows hold and the point they determine is beyond a bound, or no method from any start

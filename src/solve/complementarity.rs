@@ -7,6 +7,7 @@ use super::pairing::{match_rows, refuse};
 use super::{Claim, Monitor, Outcome, Settings, SolveError, SolverStatus};
 use crate::autodiff::Evaluator;
 use crate::model::instance::Instance;
+use crate::solve::noise;
 
 /// Rows and columns put side by side.
 struct Square<'a> {
@@ -308,7 +309,8 @@ pub fn solve(
         ),
         None => monitor.column_name(j),
     };
-    let (out, status) = run(&mut problem, &names, settings, monitor)?;
+    let (mut out, status) = run(&mut problem, &names, settings, monitor)?;
+    noise::snap(&mut out.x, &instance.columns.lower, &instance.columns.upper);
     if out.status == mcp::Status::EvaluationFailed {
         let mut f = vec![0.0; instance.column_count()];
         let failure = mcp::Problem::function(&mut problem, &instance.columns.level, &mut f).err();

@@ -13,6 +13,7 @@ pub mod lp;
 pub mod mcp;
 pub mod mpec;
 pub mod nlp;
+mod noise;
 pub mod pairing;
 pub mod random;
 pub mod structure;

@@ -13,6 +13,7 @@ pub mod simplex;
 
 use std::time::Instant;
 
+use super::noise;
 use super::{Claim, Monitor, Outcome, Settings, SolveError, Solver, SolverStatus};
 use crate::model::instance::Instance;
 use form::{Form, Point, Problem};
@@ -246,7 +247,7 @@ fn solve(
         _ => Vec::new(),
     };
     let mut point = scaling.restore(answer.point);
-    snap(&form.problem, &mut point.x);
+    noise::snap(&mut point.x, &form.problem.lower, &form.problem.upper);
     let (level, row_marginal, column_marginal) = form.point(instance, &point);
     Ok(Outcome {
         level,
@@ -260,18 +261,6 @@ fn solve(
         message: answer.remark.map(str::to_string),
         basis: answer.basis,
     })
-}
-
-/// What differs from a bound by rounding only, in numbers of this size, is at the bound.
-fn snap(p: &Problem, x: &mut [f64]) {
-    let rounding = ROUNDING * x.iter().fold(1.0, |s: f64, v| s.max(v.abs()));
-    for (v, (&l, &u)) in x.iter_mut().zip(p.lower.iter().zip(&p.upper)) {
-        for bound in [l, u] {
-            if (*v - bound).abs() <= rounding {
-                *v = bound;
-            }
-        }
-    }
 }
 
 /// Whether the simplex method must stop.
@@ -364,9 +353,6 @@ fn interior_only(p: &Problem, aim: Aim, limits: &Limits, monitor: &mut dyn Monit
         basis: None,
     }
 }
-
-/// Of the largest level: by so much a level of a vertex is wrong at least.
-const ROUNDING: f64 = 1e-14;
 
 /// Columns and rows together up to which the simplex method is tried first.
 const SMALL: usize = 600;

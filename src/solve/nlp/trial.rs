@@ -7,6 +7,7 @@ use crate::autodiff::{Degree, Evaluator};
 use crate::model::certificate::{Linearised, Residuals, TOLERANCE, primal, row_violation};
 use crate::model::certificate_nlp::{kkt_residual, linearise, residuals};
 use crate::model::instance::{Instance, Relation};
+use crate::solve::noise;
 
 /// Numbers from here on are large for a model that has a solution.
 pub(super) const FAR: f64 = 1e7;
@@ -252,7 +253,7 @@ pub(super) fn tidy(
     fine.then_some(tidied)
 }
 
-/// The trial without values that are nothing but noise around 0, if it is worth as much.
+/// The trial without values that are nothing but noise around 0 or a bound, if it is worth as much.
 pub(super) fn without_noise(
     instance: &Instance,
     problem: &mut Problem,
@@ -260,10 +261,13 @@ pub(super) fn without_noise(
     t: &Trial,
 ) -> Option<Trial> {
     let (lower, upper) = problem.bounds();
-    let noise = |k: usize| t.x[k].abs() <= NOISE && lower[k] <= 0.0 && upper[k] >= 0.0;
-    let x: Vec<f64> = (0..t.x.len())
-        .map(|k| if noise(k) { 0.0 } else { t.x[k] })
-        .collect();
+    let mut x = t.x.clone();
+    noise::snap(&mut x, lower, upper);
+    for (v, (&l, &u)) in x.iter_mut().zip(lower.iter().zip(upper)) {
+        if v.abs() <= NOISE && l <= 0.0 && u >= 0.0 {
+            *v = 0.0;
+        }
+    }
     if x == t.x {
         return None;
     }
