@@ -532,14 +532,19 @@ fn objective_form(instance: &Instance, evaluator: &Evaluator) -> ObjectiveForm {
         .iter()
         .any(|t| t.columns.contains(&(z as u32)));
     let coefficient = instance.matrix.row(row).find(|&(j, _)| j == z);
+    // z ≥ f(x) holds as an equation where z is minimised
+    let pushes = |c: f64| match instance.rows.relation[row] {
+        Relation::Equal => true,
+        Relation::Greater => instance.sign() * c > 0.0,
+        Relation::Less => instance.sign() * c < 0.0,
+        Relation::Free => false,
+    };
     match coefficient {
-        Some((_, c)) if !nonlinear && instance.rows.relation[row] == Relation::Equal => {
-            ObjectiveForm::Row {
-                row,
-                column: z,
-                coefficient: c,
-            }
-        }
+        Some((_, c)) if !nonlinear && pushes(c) => ObjectiveForm::Row {
+            row,
+            column: z,
+            coefficient: c,
+        },
         _ => variable,
     }
 }
