@@ -237,8 +237,13 @@ impl Compiler {
                 continue;
             }
             elements.unordered |= all_of_unordered && elements.symbol.dim() == 1 && keys.len() > 0;
-            for (key, _) in keys.rows() {
-                self.put_element(&mut elements, key, text, span);
+            for row in keys.rows() {
+                let both = text
+                    .filter(|_| !row.text.is_empty())
+                    .map(|t| format!("{} {t}", row.text));
+                let brought = Some(row.text).filter(|t| !t.is_empty());
+                let text = both.as_deref().or(text).or(brought);
+                self.put_element(&mut elements, row.labels, text, span);
             }
         }
         self.store.table_mut(elements.symbol.table).tidy();
@@ -260,6 +265,9 @@ impl Compiler {
         {
             let own = to.filling.own.as_ref();
             if own.is_none_or(|own| own.len() != 1) {
+                if self.modes.at(span).loose_singleton {
+                    return;
+                }
                 let message = format!("`{}` is a singleton: it has one element", to.symbol.name);
                 self.report(Diagnostic::error("E0342", span, message).label("second element"));
                 return;
@@ -384,8 +392,8 @@ impl Compiler {
                 self.put_value(&mut filling, &[], v, span);
                 continue;
             }
-            for (k, factor) in keys.rows() {
-                self.put_value(&mut filling, k, scaled(v, factor), span);
+            for row in keys.rows() {
+                self.put_value(&mut filling, row.labels, scaled(v, row.factor), span);
             }
         }
         self.store.table_mut(filling.table).tidy();
@@ -536,8 +544,8 @@ impl Compiler {
             if symbol.dim() == 0 {
                 t.set(&[], v);
             }
-            for (k, factor) in keys.rows() {
-                t.set(k, scaled(v, factor));
+            for row in keys.rows() {
+                t.set(row.labels, scaled(v, row.factor));
             }
         }
         Ok(())

@@ -9,6 +9,7 @@ use crate::diag::Diagnostic;
 use crate::source::Span;
 use crate::syntax::ast::Ident;
 use crate::syntax::data::KeyPart;
+use std::rc::Rc;
 
 /// What a label takes, about: its name twice, its place in the universe.
 const LABEL_BYTES: usize = 128;
@@ -21,6 +22,9 @@ pub(super) fn record_bytes(dim: usize) -> usize {
 /// A range or a product of sets in data may not make more records than this.
 pub const MAX_EXPANSION: usize = 50_000_000;
 
+/// A set without elements, in data: `set s / system.empty /`.
+const NO_ELEMENTS: &str = "system.empty";
+
 /// Tuples of labels, one behind the other.
 #[derive(Default)]
 pub struct Tuples {
@@ -30,26 +34,38 @@ pub struct Tuples {
     pub labels: Vec<Label>,
     /// What data say of each besides: factors of its value. Empty where all are 1.
     factors: Vec<f64>,
+    /// And texts. Empty where there is none.
+    texts: Vec<Rc<str>>,
+}
+
+/// A tuple, and what data say of it besides.
+#[derive(Clone, Copy)]
+pub struct Row<'a> {
+    /// Its labels.
+    pub labels: &'a [Label],
+    /// Factor of its value.
+    pub factor: f64,
+    /// Its text; may be empty.
+    pub text: &'a str,
 }
 
 impl Tuples {
-    fn new(width: usize, labels: Vec<Label>) -> Self {
-        Self {
-            width,
-            labels,
-            factors: Vec::new(),
-        }
-    }
-
     /// One label a tuple.
     pub fn single(labels: Vec<Label>) -> Self {
-        Self::new(1, labels)
+        Self {
+            width: 1,
+            labels,
+            ..Self::default()
+        }
     }
 
     /// The keys of a table.
     pub fn of(table: &Table) -> Self {
-        let labels = table.iter().flat_map(|(k, _)| k.iter().copied()).collect();
-        Self::new(table.dim(), labels)
+        Self {
+            width: table.dim(),
+            labels: table.iter().flat_map(|(k, _)| k.iter().copied()).collect(),
+            ..Self::default()
+        }
     }
 
     /// How many.
@@ -57,39 +73,51 @@ impl Tuples {
         self.labels.len() / self.width.max(1)
     }
 
-    /// Tuples, each with the factor of its value.
-    pub fn rows(&self) -> impl Iterator<Item = (&[Label], f64)> {
-        let factors = self.factors.iter().copied().chain(std::iter::repeat(1.0));
-        self.labels.chunks_exact(self.width.max(1)).zip(factors)
+    /// The tuples.
+    pub fn rows(&self) -> impl Iterator<Item = Row<'_>> {
+        let keys = self.labels.chunks_exact(self.width.max(1)).enumerate();
+        keys.map(|(n, labels)| Row {
+            labels,
+            factor: self.factors.get(n).copied().unwrap_or(1.0),
+            text: self.texts.get(n).map_or("", |t| t),
+        })
     }
 
-    /// Tuples of each pair put together.
-    fn joined<'a>(
-        width: usize,
-        pairs: impl Iterator<Item = ((&'a [Label], f64), (&'a [Label], f64))>,
-    ) -> Self {
-        let mut out = Self::new(width, Vec::new());
-        for ((a, x), (b, y)) in pairs {
-            out.push(x * y, |labels| {
-                labels.extend_from_slice(a);
-                labels.extend_from_slice(b);
-            });
+    /// Tuples of each pair put together, and their texts.
+    fn joined<'a>(width: usize, pairs: impl Iterator<Item = (Row<'a>, Row<'a>)>) -> Self {
+        let mut out = Self {
+            width,
+            ..Self::default()
+        };
+        for (a, b) in pairs {
+            let both = (!a.text.is_empty() && !b.text.is_empty())
+                .then(|| format!("{} {}", a.text, b.text));
+            let alone = if a.text.is_empty() { b.text } else { a.text };
+            out.said(a.factor * b.factor, both.as_deref().unwrap_or(alone));
+            out.labels.extend_from_slice(a.labels);
+            out.labels.extend_from_slice(b.labels);
         }
         out
     }
 
-    fn push(&mut self, factor: f64, labels: impl FnOnce(&mut Vec<Label>)) {
+    /// Keeps what is said of the tuple that comes next.
+    fn said(&mut self, factor: f64, text: &str) {
+        let before = self.len();
         if factor != 1.0 || !self.factors.is_empty() {
-            self.factors.resize(self.len(), 1.0);
+            self.factors.resize(before, 1.0);
             self.factors.push(factor);
         }
-        labels(&mut self.labels);
+        if !text.is_empty() || !self.texts.is_empty() {
+            self.texts.resize(before, "".into());
+            self.texts.push(text.into());
+        }
     }
 
     /// Appends the tuples of another.
     fn append(&mut self, other: &Self) {
-        for (labels, factor) in other.rows() {
-            self.push(factor, |l| l.extend_from_slice(labels));
+        for row in other.rows() {
+            self.said(row.factor, row.text);
+            self.labels.extend_from_slice(row.labels);
         }
     }
 
@@ -210,6 +238,7 @@ impl Compiler {
         out.width = self.symbols.get(s).dim();
         out.labels.clear();
         out.factors.clear();
+        out.texts.clear();
         let dim = self.symbols.get(s).dim();
         // `set.i` stands for all elements of i.
         let spelled_out = [parts].into_iter().find_map(set_prefix);
@@ -234,8 +263,7 @@ impl Compiler {
         if rows.len() > 0 && rows.width != dim {
             return self.wrong_dimension(s, span, rows.width);
         }
-        out.labels = rows.labels;
-        out.factors = rows.factors;
+        *out = Tuples { width: dim, ..rows };
         Ok(())
     }
 
@@ -329,6 +357,7 @@ impl Compiler {
                     .map(|l| self.data_label(s, position, l, *span, defines));
                 Ok(Tuples::single(labels.collect::<Result<_, _>>()?))
             }
+            KeyPart::AllOf { set, .. } if *set == NO_ELEMENTS => Ok(Tuples::single(Vec::new())),
             KeyPart::AllOf { set, span } => {
                 let id = self.lookup_set(&Ident {
                     name: (*set).into(),
@@ -338,7 +367,16 @@ impl Compiler {
                 if id == UNIVERSE {
                     self.store.refresh_universe();
                 }
-                Ok(Tuples::of(self.store.table(t)))
+                let mut all = Tuples::of(self.store.table(t));
+                let texts = self.store.texts.get(&t);
+                // The elements of a set bring their texts into another.
+                if let Some(texts) = texts.filter(|_| self.symbols.get(s).is_set()) {
+                    let keys = all.labels.chunks_exact(all.width.max(1));
+                    all.texts = keys
+                        .map(|k| texts.get(k).map_or_else(|| "".into(), |t| (&**t).into()))
+                        .collect();
+                }
+                Ok(all)
             }
             KeyPart::Universe(_) => {
                 self.store.refresh_universe();
@@ -408,9 +446,17 @@ impl Compiler {
     }
 }
 
-/// Replaces `set` and the name behind it by all elements of that set.
+/// Replaces `set` and the name behind it by all elements of that set, and `system.empty` by those of none.
 pub(super) fn set_prefix<'a>(parts: &[KeyPart<'a>]) -> Option<Vec<KeyPart<'a>>> {
-    let is_set = |p: &KeyPart| matches!(p, KeyPart::Label { text, quoted: false, .. } if text.eq_ignore_ascii_case("set"));
+    let is = |p: &KeyPart, word: &str| matches!(p, KeyPart::Label { text, quoted: false, .. } if text.eq_ignore_ascii_case(word));
+    let is_set = |p: &KeyPart| is(p, "set");
+    if let [system, empty] = parts
+        && is(system, "system")
+        && is(empty, "empty")
+    {
+        let (set, span) = (NO_ELEMENTS, Span::default());
+        return Some(vec![KeyPart::AllOf { set, span }]);
+    }
     if !parts.iter().any(is_set) {
         return None;
     }

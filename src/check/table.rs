@@ -185,7 +185,7 @@ impl Compiler {
             {
                 continue;
             }
-            for (k, _) in keys.rows() {
+            for k in keys.rows().map(|r| r.labels) {
                 if symbol.is_set() {
                     self.store.table_mut(symbol.table).set(k, value);
                 } else {
@@ -290,7 +290,7 @@ impl Compiler {
         let mut again = None;
         let tuples: Box<dyn Iterator<Item = &[Label]>> = match &line {
             Line::Labels(l) => Box::new(std::iter::once(l.as_slice())),
-            Line::Many(t) => Box::new(t.rows().map(|r| r.0)),
+            Line::Many(t) => Box::new(t.rows().map(|r| r.labels)),
             Line::Open | Line::Refused => return line,
         };
         for key in tuples {

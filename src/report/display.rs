@@ -1,8 +1,9 @@
-//! The text of `display`, in GAMS's layout: numbers to eleven columns, lists, tables, planes.
+//! The text of `display`, in GAMS's layout: numbers, lists, tables, planes.
 //!
-//! A number is shown with the wanted decimals if it fits in eleven columns and does not vanish, with an
-//! exponent otherwise. A list holds as many items of equal width as fit on the page; a table's columns
-//! are twelve wide, its row labels as wide as the longest of the plane. What is not stored is blank.
+//! A number is shown with the wanted decimals if it fits in eleven characters (`option dispWidth`: in more)
+//! and does not vanish, with an exponent otherwise. A list holds as many items of equal width as fit on the
+//! page; a table's columns are one wider than a number, its row labels as wide as the longest of the plane.
+//! What is not stored is blank.
 //!
 //! Source of the layout: GAMS 54.6, observed. Invariant: time and text are proportional to the records
 //! and to the blanks between them.
@@ -13,12 +14,6 @@ use crate::data::value::{as_acronym, is_eps, is_na};
 use rustc_hash::FxHashMap;
 use std::fmt::Write;
 
-/// Widest number.
-const NUMBER: usize = 11;
-/// Width of a table's column.
-const COLUMN: usize = 12;
-/// A column heading of one label is cut at this length.
-const HEADING: usize = 10;
 /// Characters on a line.
 pub const PAGE: usize = 32767;
 /// Items of a list on a line.
@@ -71,50 +66,95 @@ pub struct Sheet<'a> {
     pub table: &'a Table,
     /// Names of labels.
     pub universe: &'a Universe,
-    /// Names of acronyms.
-    pub acronyms: &'a [Box<str>],
     /// Numbers or members.
     pub cells: Cells<'a>,
-    /// Digits after the point.
-    pub decimals: usize,
+    /// How numbers look.
+    pub numbers: Numbers<'a>,
     /// Rows and columns, if they were asked for.
     pub layout: Option<Layout>,
     /// Characters on a line.
     pub page: usize,
 }
 
-/// A number in at most eleven columns (acronyms: as long as they are), not padded.
-pub fn number(x: f64, decimals: usize, acronyms: &[Box<str>]) -> String {
-    if !x.is_finite() {
-        return match x {
-            f64::INFINITY => "+INF".into(),
-            f64::NEG_INFINITY => "-INF".into(),
-            x if is_eps(x) => "EPS".into(),
-            x if is_na(x) => "NA".into(),
-            x => match as_acronym(x).and_then(|n| acronyms.get(n as usize)) {
-                Some(name) => name.to_string(),
-                None => "UNDF".into(),
-            },
-        };
-    }
-    // Longer than this it cannot fit; formatting 300 digits would only take time.
-    if x.abs() < 1e12 {
-        let fixed = format!("{:.decimals$}", x);
-        let vanishes = || x != 0.0 && !fixed.bytes().any(|b| matches!(b, b'1'..=b'9'));
-        if fixed.len() <= NUMBER && !vanishes() {
-            return if x == 0.0 {
-                fixed.trim_start_matches('-').to_string()
-            } else {
-                fixed
-            };
-        }
-    }
-    exponential(x)
+/// How numbers look.
+#[derive(Clone, Copy)]
+pub struct Numbers<'a> {
+    /// Digits after the point.
+    pub decimals: usize,
+    /// `option dispWidth`: a column heading of one label is cut at this length.
+    pub heading: usize,
+    /// Names of acronyms.
+    pub acronyms: &'a [Box<str>],
 }
 
-/// A number with an exponent and as many digits as make eleven columns.
-fn exponential(x: f64) -> String {
-    let mut digits = 6;
+impl<'a> Numbers<'a> {
+    /// Where nothing was said.
+    pub fn usual(acronyms: &'a [Box<str>]) -> Self {
+        Self {
+            decimals: 3,
+            heading: 10,
+            acronyms,
+        }
+    }
+
+    /// Widest number.
+    fn width(&self) -> usize {
+        self.heading + 1
+    }
+
+    /// Width of a table's column.
+    fn column(&self) -> usize {
+        self.heading + 2
+    }
+
+    /// A number as wide as one may be (acronyms: as long as they are), not padded.
+    pub fn text(&self, x: f64) -> String {
+        if !x.is_finite() {
+            return match x {
+                f64::INFINITY => "+INF".into(),
+                f64::NEG_INFINITY => "-INF".into(),
+                x if is_eps(x) => "EPS".into(),
+                x if is_na(x) => "NA".into(),
+                x => match as_acronym(x).and_then(|n| self.acronyms.get(n as usize)) {
+                    Some(name) => name.to_string(),
+                    None => "UNDF".into(),
+                },
+            };
+        }
+        // Longer than this it cannot fit; formatting 300 digits would only take time.
+        if x.abs() < 1e32 {
+            let fixed = format!("{:.*}", self.decimals, x);
+            let vanishes = || x != 0.0 && !fixed.bytes().any(|b| matches!(b, b'1'..=b'9'));
+            if fixed.len() <= self.width() && !vanishes() {
+                return if x == 0.0 {
+                    fixed.trim_start_matches('-').to_string()
+                } else {
+                    fixed
+                };
+            }
+        }
+        exponential(x, self.width())
+    }
+
+    /// The line of a scalar, from `PARAMETER` on.
+    pub fn scalar(&self, kind: &str, name: &str, value: f64, text: &str) -> String {
+        let head = format!("{kind} {name}");
+        let column = self.column();
+        let line = format!("{head:30} = {:>column$}  {text}", self.text(value));
+        line.trim_end().to_string()
+    }
+
+    /// The line that stands for an indexed symbol whose records all have the default value.
+    pub fn all_default(&self, default: f64) -> String {
+        let column = self.column();
+        format!("{:22}( ALL{:>column$} )", "", self.text(default))
+    }
+}
+
+/// A number with an exponent and as many digits as fill the width.
+fn exponential(x: f64, width: usize) -> String {
+    let most = width - 5;
+    let mut digits = most;
     loop {
         let text = format!("{x:.digits$E}");
         let (mantissa, exponent) = text.split_once('E').unwrap_or((&text, "0"));
@@ -122,40 +162,14 @@ fn exponential(x: f64) -> String {
             Some(e) => format!("E-{e}"),
             None => format!("E+{exponent}"),
         };
-        let spare = (NUMBER + 1).saturating_sub(mantissa.len() + exponent.len());
+        let spare = (width + 1).saturating_sub(mantissa.len() + exponent.len());
         if spare > 0 || digits == 0 {
             // Rounding up to a power of ten may have made room for a digit: it is a zero.
-            let zeros = (spare.saturating_sub(1)).min(6 - digits);
+            let zeros = (spare.saturating_sub(1)).min(most - digits);
             return format!("{mantissa}{}{exponent}", "0".repeat(zeros));
         }
         digits -= 1;
     }
-}
-
-/// The line of a scalar, from `PARAMETER` on.
-pub fn scalar(
-    kind: &str,
-    name: &str,
-    value: f64,
-    text: &str,
-    decimals: usize,
-    acronyms: &[Box<str>],
-) -> String {
-    let head = format!("{kind} {name}");
-    let line = format!(
-        "{head:30} = {:>12}  {text}",
-        number(value, decimals, acronyms)
-    );
-    line.trim_end().to_string()
-}
-
-/// The line that stands for an indexed symbol whose records all have the default value.
-pub fn all_default(default: f64, decimals: usize, acronyms: &[Box<str>]) -> String {
-    format!(
-        "{:22}( ALL{:>12} )",
-        "",
-        number(default, decimals, acronyms)
-    )
 }
 
 /// The line that stands for an empty set.
@@ -224,7 +238,7 @@ impl Sheet<'_> {
 
     fn cell(&self, v: f64) -> String {
         match self.cells {
-            Cells::Numbers => number(v, self.decimals, self.acronyms),
+            Cells::Numbers => self.numbers.text(v),
             Cells::Members(_) => "YES".into(),
         }
     }
@@ -311,7 +325,7 @@ impl Sheet<'_> {
             && records.iter().all(|(k, _)| {
                 let labels = &k[lead + rows..];
                 labels.iter().map(|&l| width(self.name(l))).sum::<usize>() + labels.len() - 1
-                    <= NUMBER
+                    <= self.numbers.width()
             });
         let mut from = 0;
         while from < records.len() {
@@ -347,6 +361,7 @@ impl Sheet<'_> {
     ) {
         let row_of = |k: usize| &records[k].0[lead..lead + rows];
         let column_of = |k: usize| &records[k].0[lead + rows..];
+        let column_width = self.numbers.column();
         let widths = self.widths((0..records.len()).map(row_of), rows);
         let label_width = widths.iter().sum::<usize>() + rows - 1;
 
@@ -357,7 +372,7 @@ impl Sheet<'_> {
             columns.iter().enumerate().map(|(i, &c)| (c, i)).collect();
 
         // Records by the block of columns they fall in, otherwise in their order.
-        let per_block = (self.page.saturating_sub(label_width) / COLUMN).max(1);
+        let per_block = (self.page.saturating_sub(label_width) / column_width).max(1);
         let blocks = columns.len().div_ceil(per_block);
         let places: Vec<usize> = (0..records.len()).map(|k| place[column_of(k)]).collect();
         let mut start = vec![0usize; blocks + 1];
@@ -394,15 +409,15 @@ impl Sheet<'_> {
                 } else {
                     places[block[i - 1]] - first + 1
                 };
-                pad(out, COLUMN * (places[k] - first - before));
+                pad(out, column_width * (places[k] - first - before));
                 let cell = self.cell(records[k].1);
                 let length = width(&cell);
-                if length > COLUMN {
+                if length > column_width {
                     // A long acronym is cut, and says so.
                     out.push_str("****");
-                    out.extend(cell.chars().take(COLUMN).skip(4));
+                    out.extend(cell.chars().take(column_width).skip(4));
                 } else {
-                    push_right(out, &cell, COLUMN);
+                    push_right(out, &cell, column_width);
                 }
             }
             out.push('\n');
@@ -417,6 +432,7 @@ impl Sheet<'_> {
         continued: bool,
         out: &mut String,
     ) {
+        let (heading, column) = (self.numbers.heading, self.numbers.column());
         let lines = if joined { 1 } else { columns[0].len() };
         for line in 0..lines {
             if line == 0 && continued {
@@ -427,15 +443,15 @@ impl Sheet<'_> {
             for c in columns {
                 if joined {
                     let names: Vec<&str> = c.iter().map(|&l| self.name(l)).collect();
-                    push_right(out, &names.join("."), COLUMN);
+                    push_right(out, &names.join("."), column);
                 } else {
                     let name = self.name(c[line]);
-                    if width(name) > HEADING {
-                        let mut cut: String = name.chars().take(HEADING - 1).collect();
+                    if width(name) > heading {
+                        let mut cut: String = name.chars().take(heading - 1).collect();
                         cut.push('~');
-                        push_right(out, &cut, COLUMN);
+                        push_right(out, &cut, column);
                     } else {
-                        push_right(out, name, COLUMN);
+                        push_right(out, name, column);
                     }
                 }
             }
@@ -449,8 +465,36 @@ mod tests {
     use super::*;
     use crate::data::value::{EPS, NA, UNDF, acronym};
 
+    fn numbers_of(decimals: usize, heading: usize) -> Numbers<'static> {
+        Numbers {
+            decimals,
+            heading,
+            ..Numbers::usual(&[])
+        }
+    }
+
     fn shown(x: f64, d: usize) -> String {
-        number(x, d, &["red".into()])
+        let acronyms = ["red".into()];
+        let usual = Numbers::usual(&acronyms);
+        Numbers {
+            decimals: d,
+            ..usual
+        }
+        .text(x)
+    }
+
+    #[test]
+    fn wide_numbers() {
+        for (x, decimals, heading, text) in [
+            (1234567890.123456, 3, 15, "1234567890.123"),
+            (1234567890123.25, 3, 15, "1.2345678901E+12"),
+            (-3.14159265358979e12, 3, 15, "-3.141592654E+12"),
+            (1.2345678e-4, 3, 15, "1.23456780000E-4"),
+            (1234567890123.25, 8, 20, "1.234567890123250E+12"),
+            (1234567890123.25, 8, 31, "1234567890123.25000000"),
+        ] {
+            assert_eq!(numbers_of(decimals, heading).text(x), text, "{x}");
+        }
     }
 
     #[test]
@@ -493,23 +537,17 @@ mod tests {
 
     #[test]
     fn scalars() {
+        let numbers = Numbers::usual(&[]);
         assert_eq!(
-            scalar("PARAMETER", "s", 3.25, "a scalar", 3, &[]),
+            numbers.scalar("PARAMETER", "s", 3.25, "a scalar"),
             "PARAMETER s                    =        3.250  a scalar"
         );
         assert_eq!(
-            scalar(
-                "PARAMETER",
-                "a_very_long_name_for_a_scal123",
-                4.0,
-                "",
-                3,
-                &[]
-            ),
+            numbers.scalar("PARAMETER", "a_very_long_name_for_a_scal123", 4.0, ""),
             "PARAMETER a_very_long_name_for_a_scal123 =        4.000"
         );
         assert_eq!(
-            all_default(0.0, 3, &[]),
+            numbers.all_default(0.0),
             "                      ( ALL       0.000 )"
         );
     }
@@ -537,9 +575,8 @@ mod tests {
         Sheet {
             table: &table,
             universe: &universe,
-            acronyms: &[],
             cells,
-            decimals: 3,
+            numbers: Numbers::usual(&[]),
             layout,
             page,
         }

@@ -10,6 +10,7 @@ use crate::check::symbols::SymbolKind;
 use crate::data::universe::Label;
 use crate::data::value::truth;
 use crate::diag::{Diagnostic, nearest};
+use crate::report::display::Numbers;
 use crate::report::figure::{Anchor, Element, Paint, Scene, Shape, Style, png, svg};
 use crate::report::format::{self, Value};
 use crate::report::textfile::Item;
@@ -213,7 +214,7 @@ impl Machine<'_> {
     }
 
     fn shown(&self, v: f64) -> String {
-        crate::report::display::number(v, 3, &self.store.acronyms)
+        Numbers::usual(&self.store.acronyms).text(v)
     }
 
     /// The text that an argument stands for: a text, or a format with values.

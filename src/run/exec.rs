@@ -502,7 +502,7 @@ impl Machine<'_> {
         let table = self.symbols.get(target).table;
         let table = self.store.table_mut(table);
         table.clear();
-        for (key, _) in all.iter().flat_map(Tuples::rows) {
+        for key in all.iter().flat_map(Tuples::rows).map(|r| r.labels) {
             table.set(key, 1.0);
         }
         table.tidy();

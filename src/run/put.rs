@@ -333,7 +333,7 @@ impl Machine<'_> {
                 .map(part);
                 format!("{h:02}:{m:02}:{s:02}")
             }
-            "title" => "bmod".into(),
+            "title" => self.map.title.clone().unwrap_or_else(|| "bmod".into()),
             "version" => format!("bmod {}", env!("CARGO_PKG_VERSION")),
             "verid" | "gamsversion" | "gamsrelease" | "buildcode" => {
                 env!("CARGO_PKG_VERSION").into()

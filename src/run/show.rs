@@ -6,14 +6,11 @@ use crate::check::node::{Derived, Shown, SymbolId};
 use crate::check::output::shown_offset;
 use crate::check::symbols::{DomainPosition, Symbol, SymbolKind, attribute};
 use crate::data::table::Table;
-use crate::report::display::{self, Cells, Layout, Sheet};
+use crate::report::display::{self, Cells, Layout, Numbers, Sheet};
 use crate::report::json::{Display, Number};
 use crate::source::Span;
 use std::borrow::Cow;
 use std::fmt::Write;
-
-/// Decimals where nothing was said.
-const DECIMALS: usize = 3;
 
 /// The text of a statement while it grows.
 struct Page {
@@ -83,14 +80,7 @@ impl Machine<'_> {
                 "FILE"
             };
             let name = format!("{}.{}", symbol.name, spelled(attr));
-            page.line(&display::scalar(
-                kind,
-                &name,
-                value,
-                &symbol.text,
-                self.decimals(s),
-                &self.store.acronyms,
-            ));
+            page.line(&self.numbers(s).scalar(kind, &name, value, &symbol.text));
             self.collect_scalar(page.line, format!("{}.{attr}", symbol.name), value);
             return;
         }
@@ -117,17 +107,10 @@ impl Machine<'_> {
             Some(a) => format!("{}.{}", symbol.name, a.to_lowercase()),
             None => symbol.name.to_string(),
         };
-        let decimals = self.decimals(s);
+        let numbers = self.numbers(s);
         if table.dim() == 0 {
             let value = table.get(&[]);
-            page.line(&display::scalar(
-                kind,
-                &shown_name,
-                value,
-                &symbol.text,
-                decimals,
-                &self.store.acronyms,
-            ));
+            page.line(&numbers.scalar(kind, &shown_name, value, &symbol.text));
             drop(table);
             self.collect_scalar(page.line, short, value);
             return;
@@ -144,7 +127,7 @@ impl Machine<'_> {
                 let default = if default.is_finite() {
                     default.to_string()
                 } else {
-                    display::number(default, decimals, &[])
+                    numbers.text(default)
                 };
                 page.header(&format!("{kind} {shown_name} ({default}) {}", symbol.text));
                 page.text.push('\n');
@@ -153,11 +136,7 @@ impl Machine<'_> {
                 if symbol.is_set() {
                     page.text.push_str(&display::empty_set());
                 } else {
-                    page.text.push_str(&display::all_default(
-                        default,
-                        decimals,
-                        &self.store.acronyms,
-                    ));
+                    page.text.push_str(&numbers.all_default(default));
                 }
                 page.text.push('\n');
             } else {
@@ -177,9 +156,8 @@ impl Machine<'_> {
                 let sheet = Sheet {
                     table: &table,
                     universe: &self.store.universe,
-                    acronyms: &self.store.acronyms,
                     cells,
-                    decimals,
+                    numbers,
                     layout,
                     page: display::PAGE,
                 };
@@ -230,17 +208,21 @@ impl Machine<'_> {
         symbol.domain.iter().map(name).collect()
     }
 
-    /// Decimals of a symbol's display: its own, or the option's.
-    fn decimals(&self, s: SymbolId) -> usize {
-        let own = self
-            .formats
-            .get(&s)
-            .and_then(|f| f.first())
-            .map(|&d| d as f64);
-        let d = own
-            .or_else(|| self.options.number("decimals"))
-            .unwrap_or(DECIMALS as f64);
-        d.clamp(0.0, 8.0) as usize
+    /// How the numbers of a symbol look: with its own decimals, or the option's.
+    fn numbers(&self, s: SymbolId) -> Numbers<'_> {
+        let usual = Numbers::usual(&self.store.acronyms);
+        let own = self.formats.get(&s).and_then(|f| f.first());
+        let decimals = own.map(|&d| d as f64);
+        let decimals = decimals.or_else(|| self.options.number("decimals"));
+        let wide = self.options.number("dispwidth").map(|w| w as usize);
+        Numbers {
+            decimals: decimals.map_or(usual.decimals, |d| d.clamp(0.0, 8.0) as usize),
+            // Other widths are passed over, as in GAMS.
+            heading: wide
+                .filter(|w| (10..=31).contains(w))
+                .unwrap_or(usual.heading),
+            ..usual
+        }
     }
 
     /// Makes the tables tidy that a display of a symbol reads.

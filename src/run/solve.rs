@@ -163,6 +163,8 @@ impl Machine<'_> {
                 };
                 self.store(s, &generated, &a);
                 self.remember(s, &generated, &a, seconds);
+                let savepoint = self.model_option(s.model, "savepoint", 0.0);
+                self.save_point(s.model, savepoint, &generated.origin, span);
                 self.report_solve(s, &generated, &a, seconds);
                 if self.options.keep_solutions {
                     self.keep_solution(s, generated, a);

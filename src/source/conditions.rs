@@ -288,12 +288,14 @@ fn comparison(text: &str, flavour: Flavour) -> Result<(bool, usize), String> {
             text.trim()
         ));
     };
-    // Nothing on the right, or blanks and then the action, is the empty text.
-    let (right, m) = if after.starts_with([' ', '\t']) && after.trim_start().starts_with('$') {
-        ("", 0)
-    } else {
-        term(after, false)
-    };
+    let (right, m) = term(after, false);
+    if after.trim().is_empty() {
+        // `$ifThen %x% == %y%` with nothing on both sides is false, as in GAMS.
+        if n > 0 {
+            return Err("nothing stands behind `==`; the empty text is `''`".into());
+        }
+        return Ok((false, text.len()));
+    }
     let same = match flavour {
         Flavour::NoCase => left.eq_ignore_ascii_case(right),
         _ => left == right,

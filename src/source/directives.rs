@@ -142,6 +142,16 @@ impl Preprocessor<'_> {
             || self.marks.slashes && b.starts_with(b"//")
     }
 
+    /// Another directive in what is left of a line: `$inlineCom { } eolCom !`.
+    fn further_directive(&mut self, line: &Line, rest: &str, known: &dyn Known) -> Outcome<()> {
+        let rest = behind_separators(rest);
+        if rest.is_empty() || !self.is_directive(rest) {
+            return Ok(());
+        }
+        let mark = usize::from(rest.as_bytes()[0] == self.marks.dollar);
+        self.directives(line, line.text.len() - rest.len() + mark, known)
+    }
+
     /// Whether a text begins with the name of a directive.
     fn is_directive(&self, text: &str) -> bool {
         let t = text.strip_prefix(self.marks.dollar as char).unwrap_or(text);
@@ -175,7 +185,7 @@ impl Preprocessor<'_> {
             "dotl" => m.dot_l = on,
             "implicitassign" => m.implicit_assign = on,
             "uni" => m.universal = on,
-            "strictsingleton" => {}
+            "strictsingleton" => m.loose_singleton = !on,
             "end" => self.on_end = on,
             "eolcom" => {
                 self.marks.eol_on = on;
@@ -219,7 +229,7 @@ impl Preprocessor<'_> {
         let (lo, hi) = line.origin(from.saturating_sub(1), text.trim_end().len().max(from));
         let rest = &text[at..];
         match word {
-            "title" => self.title = Some(rest.trim().to_owned()),
+            "title" => self.map.title = Some(rest.trim().to_owned()),
             "log" => self.log.push(rest.trim().to_owned()),
             "ontext" => return self.comment_block(line),
             "include" => {
@@ -382,16 +392,19 @@ impl Preprocessor<'_> {
                 self.marks.escape = mark.filter(|&c| c != b'%');
             }
             "eolcom" | "inlinecom" | "comment" | "dollar" => {
-                return self.set_mark(word, rest, lo, hi);
+                let behind = self.set_mark(word, rest, lo, hi)?;
+                return self.further_directive(line, behind, known);
             }
             "maxcol" | "mincol" => {
-                if let Ok(n) = rest.trim().parse::<usize>() {
+                let (number, behind) = argument(rest);
+                if let Ok(n) = number.parse::<usize>() {
                     if word == "maxcol" {
                         self.marks.columns.1 = n.max(1);
                     } else {
                         self.marks.columns.0 = n.max(1);
                     }
                 }
+                return self.further_directive(line, behind, known);
             }
             "maxgoto" => {
                 self.max_jumps = rest.trim().parse().unwrap_or(self.max_jumps).min(1_000_000)
@@ -694,10 +707,18 @@ impl Preprocessor<'_> {
         })
     }
 
-    fn set_mark(&mut self, word: &str, rest: &str, lo: u32, hi: u32) -> Outcome<()> {
-        let mut marks = rest.split_whitespace();
-        let first = marks.next().unwrap_or("").as_bytes().to_vec();
-        let second = marks.next().unwrap_or("").as_bytes().to_vec();
+    /// Gives what stands behind the marks.
+    fn set_mark<'t>(&mut self, word: &str, rest: &'t str, lo: u32, hi: u32) -> Outcome<&'t str> {
+        let mark = |text: &'t str| {
+            let t = text.trim_start();
+            t.split_at(t.find([' ', '\t']).unwrap_or(t.len()))
+        };
+        let (first, behind) = mark(rest);
+        let (second, behind) = match word {
+            "inlinecom" => mark(behind),
+            _ => ("", behind),
+        };
+        let (first, second) = (first.as_bytes().to_vec(), second.as_bytes().to_vec());
         let good = match word {
             "inlinecom" => !first.is_empty() && !second.is_empty(),
             "eolcom" => !first.is_empty(),
@@ -729,7 +750,7 @@ impl Preprocessor<'_> {
             _ => self.marks.dollar = first[0],
         }
         self.marks_changed();
-        Ok(())
+        Ok(behind)
     }
 }
 

@@ -51,6 +51,8 @@ pub struct SourceMap {
     listing: Vec<(u32, i64)>,
     /// Files that `$echo` and `$onEcho` wrote, by lower-case name: their names as spelled, and texts.
     pub(crate) echoed: BTreeMap<String, (String, String)>,
+    /// What `$title` said last.
+    pub(crate) title: Option<String>,
 }
 
 impl SourceMap {

@@ -201,7 +201,6 @@ pub(crate) struct Preprocessor<'h> {
     comment_depth: usize,
     pub(super) warnings: Vec<Diagnostic>,
     pub(super) log: Vec<String>,
-    pub(super) title: Option<String>,
     pub(super) ending: Ending,
     pub(super) max_jumps: usize,
     /// How many of the errors so far `$clearError` made warnings.
@@ -243,7 +242,6 @@ impl<'h> Preprocessor<'h> {
             comment_depth: 0,
             warnings: Vec::new(),
             log: Vec::new(),
-            title: None,
             ending: Ending::Regular,
             max_jumps: 100,
             cleared_errors: 0,
@@ -533,10 +531,6 @@ impl<'h> Preprocessor<'h> {
         std::mem::take(&mut self.log)
     }
 
-    pub(crate) fn title(&self) -> Option<&str> {
-        self.title.as_deref()
-    }
-
     pub(crate) fn ending(&self) -> Ending {
         self.ending
     }
@@ -804,7 +798,7 @@ impl<'h> Preprocessor<'h> {
             "date" | "rdate" => super::directives::date_text(now),
             "date1" => super::directives::date_text(now),
             "time" | "rtime" => super::directives::time_text(now),
-            "title" => self.title.clone().unwrap_or_default(),
+            "title" => self.map.title.clone().unwrap_or_default(),
             "filesys" => "UNIX".into(),
             "dirsep" => "/".into(),
             "tab" => "\t".into(),

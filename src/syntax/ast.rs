@@ -37,6 +37,8 @@ pub struct Modes {
     pub universal: bool,
     /// `$onDotL`: a variable in an assignment means its level.
     pub dot_l: bool,
+    /// `$offStrictSingleton`: of several elements a singleton keeps the first.
+    pub loose_singleton: bool,
 }
 
 /// The switches over the text of a statement: directives may stand inside it.

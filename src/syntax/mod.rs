@@ -243,11 +243,6 @@ impl<'h> Parser<'h> {
         self.text.take_log()
     }
 
-    /// What `$title` said last.
-    pub fn title(&self) -> Option<&str> {
-        self.text.title()
-    }
-
     /// How the text ended: whether it is to be run.
     pub fn ending(&self) -> Ending {
         self.text.ending()

@@ -10,9 +10,11 @@ mod write;
 
 use super::Machine;
 use crate::check::load::{Kind, Request, Wanted, format_of, has_data, load, no_file, wanted};
+use crate::check::node::SymbolId;
 use crate::check::symbols::{SymbolKind, attribute};
 use crate::data::value::{as_acronym, is_eps, is_na};
 use crate::diag::Diagnostic;
+use crate::model::origin::Origin;
 use crate::source::Span;
 use crate::syntax::ast::Exchange;
 use rustc_hash::FxHashMap;
@@ -105,6 +107,31 @@ impl Machine<'_> {
         if let Err(d) = done {
             self.note(*d);
         }
+    }
+
+    /// `savepoint`: levels and marginals of a model are written after its solve, for `execute_loadpoint`.
+    pub(super) fn save_point(
+        &mut self,
+        model: SymbolId,
+        savepoint: f64,
+        origin: &Origin,
+        span: Span,
+    ) {
+        let mut name = format!("{}_p", self.symbols.get(model).name);
+        match savepoint {
+            1.0 => {}
+            2.0 => name.push_str(&(self.report.solves.len() + 1).to_string()),
+            _ => return,
+        }
+        let blocks = origin.columns.list.iter().chain(&origin.rows.list);
+        let items: Vec<Wanted> = blocks
+            .map(|b| Wanted {
+                symbol: b.symbol,
+                name: self.symbols.get(b.symbol).name.to_string(),
+                span,
+            })
+            .collect();
+        self.unload(&format!("{name}.gdx"), &items, span);
     }
 
     /// Writes what `$unload` collected.

@@ -97,10 +97,10 @@ impl Builder<'_, '_> {
         for (c, _) in matched_rows.iter_mut().chain(&mut alone) {
             *c = new_number[*c as usize];
         }
-        if solve.using == "mcp" {
+        if self.options.keep_paired {
             self.check_partners(&rows, &columns, &matched_rows, &alone);
         }
-        if matches!(solve.using, "mcp" | "mpec" | "rmpec" | "cns") {
+        if self.options.keep_paired || solve.using == "cns" {
             self.match_columns(&rows, &columns, &matched_rows);
             self.fix_unlimited(&rows, &matched_rows);
         }

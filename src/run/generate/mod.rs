@@ -31,7 +31,7 @@ pub struct GenerateOptions {
     pub hold_fixed: bool,
     /// Use `.scale`.
     pub scale: bool,
-    /// Rows that are paired are kept even when empty.
+    /// Rows that are paired are kept even when empty, unless the partner is fixed.
     pub keep_paired: bool,
 }
 
@@ -90,6 +90,8 @@ struct Builder<'m, 'h> {
     instance: Instance,
     kernels: FxHashMap<Vec<Op>, usize>,
     nonlinear_terms: usize,
+    /// A constant in a nonlinear term of the row at hand is `na` or `undf`.
+    not_a_number: bool,
     /// Position + 1 of a column in the row at hand.
     place: Vec<u32>,
     row: u32,
@@ -143,6 +145,7 @@ impl Machine<'_> {
             instance: Instance::default(),
             kernels: FxHashMap::default(),
             nonlinear_terms: 0,
+            not_a_number: false,
             place: Vec::new(),
             row: 0,
             never_bind: Vec::new(),
@@ -246,7 +249,7 @@ impl Builder<'_, '_> {
             self.one_row(
                 e,
                 relation,
-                item.pair.is_some(),
+                item.pair,
                 frame,
                 &mut row,
                 &key[..dim],
@@ -295,7 +298,7 @@ impl Builder<'_, '_> {
         &mut self,
         e: &EquationDef,
         relation: Relation,
-        paired: bool,
+        pair: Option<SymbolId>,
         frame: &mut Frame,
         row: &mut Row,
         key: &[Label],
@@ -321,7 +324,11 @@ impl Builder<'_, '_> {
             -row.constant
         };
         let empty = !nonlinear && row.terms.iter().all(|t| t.1 == 0.0);
-        if empty && !(paired && self.options.keep_paired) {
+        let pair = pair.filter(|_| self.options.keep_paired);
+        if empty && pair.is_some_and(|v| self.fixed_at(v, key).is_some()) {
+            return;
+        }
+        if empty && pair.is_none() {
             let violated = match relation {
                 Relation::Equal => rhs.abs() > 1e-9,
                 Relation::Greater => rhs > 1e-9,
@@ -351,7 +358,7 @@ impl Builder<'_, '_> {
             Relation::Greater => rhs == f64::NEG_INFINITY,
             _ => false,
         };
-        let (relation, rhs) = match (unlimited, paired) {
+        let (relation, rhs) = match (unlimited, pair.is_some()) {
             (true, false) => (Relation::Free, 0.0),
             (true, true) => {
                 self.never_bind.push(self.row);
@@ -359,7 +366,9 @@ impl Builder<'_, '_> {
             }
             (false, _) => (relation, rhs),
         };
-        let part = if !rhs.is_finite() {
+        let part = if std::mem::take(&mut self.not_a_number) {
+            Some("a constant in a nonlinear term")
+        } else if !rhs.is_finite() {
             Some("the constant")
         } else {
             let bad = kept().any(|t| !t.1.is_finite());
@@ -449,16 +458,16 @@ impl Builder<'_, '_> {
             return None;
         }
         let k = &k[..key.parts.len()];
-        if self.options.hold_fixed {
-            let t = self.m.symbols.get(s).table;
-            let (lo, up) = (
-                self.m.store.table(t + attribute::LO).get(k),
-                self.m.store.table(t + attribute::UP).get(k),
-            );
-            if number(lo) == number(up) {
-                return Some(Err(number(lo)));
-            }
-        }
-        Some(Ok(self.column(s, k)))
+        let hold = self.options.hold_fixed;
+        let held = hold.then(|| self.fixed_at(s, k)).flatten();
+        Some(held.map_or_else(|| Ok(self.column(s, k)), Err))
+    }
+
+    /// The value of a variable whose bounds are equal.
+    fn fixed_at(&self, s: SymbolId, key: &[Label]) -> Option<f64> {
+        let t = self.m.symbols.get(s).table;
+        let bound = |o: u32| number(self.m.store.table(t + o).get(key));
+        let (lower, upper) = (bound(attribute::LO), bound(attribute::UP));
+        (lower == upper).then_some(lower)
     }
 }

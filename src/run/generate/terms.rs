@@ -172,6 +172,8 @@ impl Builder<'_, '_> {
             }
         };
         self.nonlinear_terms += 1;
+        let mut numbers = tape.constants.iter().chain([&coef]);
+        self.not_a_number |= numbers.any(|c| c.is_nan());
         let terms = &mut self.instance.nonlinear[k];
         terms.row.push(self.row);
         terms.coef.push(coef);
