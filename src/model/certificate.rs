@@ -64,7 +64,7 @@ pub struct Residuals {
     pub dual_relative: f64,
     /// The gap relative to the data.
     pub gap_relative: f64,
-    /// The natural residual relative to max(1, |x_j|), that of rows without a variable to max(1, |a_ij x_j|).
+    /// The natural residual with every variable in units of max(1, |x_j|), every row in units of its largest term.
     pub natural_relative: f64,
     /// Number of rows and columns that violate the relative tolerance (`.numinfes`).
     pub infeasible_count: usize,
@@ -321,8 +321,11 @@ pub fn linear(instance: &Instance, outcome: &Outcome) -> Residuals {
 }
 
 /// Residuals of a complementarity model: natural, complementarity, and the equations that are
-/// matched with nothing. `f` is left minus right of each row at the levels.
-pub fn complementarity(instance: &Instance, x: &[f64], f: &[f64]) -> Residuals {
+/// matched with nothing. `at` is the instance at the levels x.
+///
+/// Both sides of a pair are measured, the variable in units of max(1, |x_j|) and the row in units of its largest term: on the
+/// way to infinity, where a model without a solution leads, what is missing in a row is small beside x_j.
+pub fn complementarity(instance: &Instance, x: &[f64], at: &Linearised) -> Residuals {
     let nothing = Vec::new();
     let matched = instance.matched.as_ref().unwrap_or(&nothing);
     let (mut row, mut column) = (Worst::default(), Worst::default());
@@ -330,24 +333,28 @@ pub fn complementarity(instance: &Instance, x: &[f64], f: &[f64]) -> Residuals {
     let mut pairs = 0.0f64;
     let mut natural_relative = 0.0f64;
     let mut taken = vec![false; instance.row_count()];
+    let f = |i: usize| at.activity[i] - instance.rows.rhs[i];
+    let mut see = |r: f64| {
+        natural_relative = natural_relative.max(if r.is_nan() { f64::INFINITY } else { r });
+    };
     for (j, &x) in x.iter().enumerate() {
         let (l, u) = (instance.columns.lower[j], instance.columns.upper[j]);
         let partner = matched.get(j).copied().flatten().map(|i| i as usize);
-        let step = match partner {
+        let (step, size) = match partner {
             Some(i) => {
                 taken[i] = true;
-                f[i]
+                (f(i), at.row_size[i].max(1.0))
             }
-            None => 0.0,
+            None => (0.0, 1.0),
         };
-        let mid = (x - step).max(l).min(u);
-        let natural = (x - mid).abs();
+        let residual = |step: f64| (x - (x - step).max(l).min(u)).abs();
+        let natural = residual(step);
         match partner {
             Some(i) => row.see(natural, i),
             None => column.see(natural, j),
         }
-        let r = natural / x.abs().max(1.0);
-        natural_relative = natural_relative.max(if r.is_nan() { f64::INFINITY } else { r });
+        let unit = x.abs().max(1.0);
+        see(residual(step * (unit / size)) / unit);
         let bound = if step > 0.0 { l } else { u };
         pairs = pairs.max(step.abs() * (x - bound).abs().min(1.0));
         if step != 0.0 && bound.is_finite() {
@@ -357,12 +364,10 @@ pub fn complementarity(instance: &Instance, x: &[f64], f: &[f64]) -> Residuals {
         }
     }
     for i in (0..instance.row_count()).filter(|&i| !taken[i]) {
-        let v = row_violation(instance.rows.relation[i], f[i], 0.0);
+        let v = row_violation(instance.rows.relation[i], f(i), 0.0);
         row.see(v, i);
         pairs = pairs.max(v);
-        let terms = instance.matrix.row(i).map(|(j, a)| (a * x[j]).abs());
-        let r = v / terms.fold(1.0, f64::max);
-        natural_relative = natural_relative.max(if r.is_nan() { f64::INFINITY } else { r });
+        see(v / at.row_size[i].max(1.0));
     }
     Residuals {
         natural: Some(row.value.max(column.value)),
@@ -641,8 +646,12 @@ mod tests {
         instance.rows.relation = vec![Relation::Greater, Relation::Greater, Relation::Equal];
         instance.rows.rhs = vec![2.0, -1.0, 1.0];
         let at = |x: &[f64]| {
-            let f = [x[0] - 2.0, x[1] + 1.0, x[2] - 1.0];
-            complementarity(&instance, x, &f)
+            let at = Linearised {
+                activity: x.to_vec(),
+                row_size: x.to_vec(),
+                ..Linearised::default()
+            };
+            complementarity(&instance, x, &at)
         };
         let r = at(&[2.0, 0.0, 1.0]);
         assert_eq!(r.natural, Some(0.0));
@@ -665,5 +674,13 @@ mod tests {
             complementarity_status(&at(&[f64::NAN, 0., 1.]), Claim::Solved),
             ModelStatus::IntermediateInfeasible
         );
+        // Far out a variable is no excuse for its row.
+        let far = Linearised {
+            activity: vec![2.0, 0.0, 2.0],
+            row_size: vec![1.0; 3],
+            ..Linearised::default()
+        };
+        let r = complementarity(&instance, &[2.0, 0.0, 1e9], &far);
+        assert_eq!(r.natural_relative, 1.0);
     }
 }

@@ -137,20 +137,25 @@ fn complementary(
     monitor: &mut dyn Monitor,
 ) -> Result<Answer, SolveError> {
     let outcome = complementarity::solve(instance, false, settings, monitor)?;
-    let activity = activity(instance, &outcome.level);
-    let f: Vec<f64> = activity
-        .iter()
-        .zip(&instance.rows.rhs)
-        .map(|(a, b)| a - b)
-        .collect();
-    let residuals = certificate::complementarity(instance, &outcome.level, &f);
+    let at = linearised(instance, &outcome);
+    let residuals = certificate::complementarity(instance, &outcome.level, &at);
     let status = match certificate::complementarity_status(&residuals, outcome.claim) {
         ModelStatus::LocallyInfeasible if is_impossible(instance, settings, monitor)? => {
             ModelStatus::Infeasible
         }
         status => status,
     };
-    Ok(Answer::new(outcome, residuals, status, activity))
+    Ok(Answer::new(outcome, residuals, status, at.activity))
+}
+
+/// The instance at an outcome's point; without derivatives where they have no value.
+fn linearised(instance: &Instance, outcome: &Outcome) -> Linearised {
+    let (x, marginal) = (&outcome.level, &outcome.row_marginal);
+    linearise(instance, &mut Evaluator::new(instance), x, marginal).unwrap_or_else(|_| Linearised {
+        activity: activity(instance, x),
+        row_size: vec![1.0; instance.row_count()],
+        ..Linearised::default()
+    })
 }
 
 /// Whether the linear rows and the bounds alone, what the pairs imply without their products, have no solution.
@@ -175,18 +180,7 @@ fn square(
     monitor: &mut dyn Monitor,
 ) -> Result<Answer, SolveError> {
     let outcome = complementarity::solve(instance, true, settings, monitor)?;
-    let mut evaluator = Evaluator::new(instance);
-    let at = linearise(
-        instance,
-        &mut evaluator,
-        &outcome.level,
-        &outcome.row_marginal,
-    )
-    .unwrap_or_else(|_| Linearised {
-        activity: activity(instance, &outcome.level),
-        row_size: vec![1.0; instance.row_count()],
-        ..Linearised::default()
-    });
+    let at = linearised(instance, &outcome);
     let residuals = certificate::primal(instance, &outcome.level, &at.activity, &at.row_size);
     let status = if residuals.is_feasible(TOLERANCE) {
         ModelStatus::Solved

@@ -22,7 +22,7 @@ use super::active::active_sets;
 use super::arc::around;
 use super::factor::{Analysis, Factor, combine};
 use super::log;
-use super::run::{Point, Run, Stop};
+use super::run::{Patience, Point, Run, Stop};
 
 /// Steps at most.
 const LIMIT: usize = 100;
@@ -110,7 +110,7 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
     let mut best = start.clone();
     let mut analysis = Analysis::default();
     let mut prox = PROX.0;
-    let (mut least, mut idle) = (f64::INFINITY, 0);
+    let mut patience = Patience::new();
     for iteration in 0..LIMIT {
         run.check()?;
         state.distances(run, &bounds, &point.x);
@@ -124,13 +124,9 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
             .map(|i| point.f[i] - state.w[i] + state.v[i])
             .collect();
         let off = r.iter().fold(0.0f64, |m, r| m.max(r.abs()));
-        idle += 1;
-        if mu + off < 0.5 * least {
-            (least, idle) = (mu + off, 0);
-        }
         if run.polished(best.residual)
             || mu < PRODUCT_MIN
-            || idle > PATIENCE
+            || patience.idle(mu + off, 0.5) > PATIENCE
             || !(mu + off).is_finite()
         {
             break;
@@ -185,7 +181,7 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
             let Some(found) = around(run, (&point, &state), &bounds, &mut analysis)? else {
                 break;
             };
-            ((point, state), idle, least) = (found, 0, f64::INFINITY);
+            ((point, state), patience) = (found, Patience::new());
         } else if t > 0.5 {
             prox = (0.1 * prox).max(PROX.0);
         }

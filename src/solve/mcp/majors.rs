@@ -23,7 +23,7 @@ use super::linear::{Kind, LinearProblem};
 use super::log;
 use super::merit::Phi;
 use super::path::{HARRIS, HARRIS_CLOSE, PathEnd, PathResult, Start, follow};
-use super::run::{End, Point, Run, Stop};
+use super::run::{End, Patience, Point, Run, Stop};
 use super::vertex::vertex;
 
 /// Armijo constant of the M test and of the line search.
@@ -43,7 +43,7 @@ const RAY_MIN: f64 = 1e-2;
 /// Residual from which a singular basis is taken for that of a face of solutions.
 const VERTEX: f64 = 1e-2;
 /// Major iterations without a notable fall of the residual before the run is called stuck.
-const STAGNATION: usize = 60;
+const STAGNATION: usize = 30;
 /// The same where the residual would be accepted already, and the problem is large.
 const STAGNATION_NEAR: usize = 4;
 /// Steps in a row to solutions ~ 1/v before the run is called stuck: it follows a ray.
@@ -63,7 +63,7 @@ pub(super) enum Crash {
     None,
     /// Projected Newton steps.
     Newton,
-    /// Interior steps; projected Newton steps if they lead nowhere.
+    /// Interior steps; if they lead nowhere, nothing follows.
     Interior,
 }
 
@@ -72,13 +72,13 @@ pub(super) fn majors(run: &mut Run, start: Point, before: Crash) -> Result<End, 
     let mut history = vec![start.merit];
     let mut point = start;
     if before != Crash::None && !run.polished(point.residual) {
-        let mut crashed = None;
-        if before == Crash::Interior {
-            crashed = interior(run, &point)?.filter(|p| p.residual < 1e-2 * point.residual);
-        }
-        let crashed = match crashed {
-            Some(found) => found,
-            None => crash(run, point.clone(), &mut history)?,
+        let crashed = if before == Crash::Interior {
+            match interior(run, &point)?.filter(|p| p.residual < 1e-2 * point.residual) {
+                Some(found) => found,
+                None => return Ok(End::Stuck),
+            }
+        } else {
+            crash(run, point.clone(), &mut history)?
         };
         // A start that is good enough is left only for a better one.
         if !run.converged(point.residual) || crashed.residual < point.residual {
@@ -159,12 +159,9 @@ impl Majors {
         log::major_header(run, &self.point);
         // More iterations after convergence: Newton's method doubles the digits.
         let mut polishing = 0;
-        let (mut least, mut idle) = (f64::INFINITY, 0);
+        let mut patience = Patience::new();
         for _ in 0..run.settings.major_iteration_limit {
-            idle += 1;
-            if self.best.residual < 0.9 * least {
-                (least, idle) = (self.best.residual, 0);
-            }
+            let idle = patience.idle(self.best.residual, 0.9);
             // Good enough to accept, and no better in sight: another method may do better.
             let acceptable =
                 run.n > LARGE && self.best.residual <= run.settings.acceptable_tolerance;

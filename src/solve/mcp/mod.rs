@@ -114,8 +114,8 @@ pub struct Settings {
     pub watchdog_limit: usize,
     /// Memory of the nonmonotone reference value. Default 10.
     pub nms_memory_size: usize,
-    /// Random restarts, after all methods failed from the given start. Default: 6, and up to 30 while the work done is
-    /// small.
+    /// Random restarts, after all methods failed from the given start. Default: up to 30, while they are cheap or have cost
+    /// no more than what was tried before.
     pub restart_limit: Option<usize>,
     /// Wall-clock seconds. Default 1000.
     pub time_limit: f64,

@@ -2,7 +2,7 @@
 //!
 //! The main method first; the others fail on other problems than it does, which is what makes them
 //! good company: smoothing where the merit function has local minima, the semismooth method with
-//! two penalties, the main method without crash, and all of it again from random starts. Problems
+//! a penalty, the main method without crash, and all of it again from random starts. Problems
 //! that are linear and not monotone (bimatrix games) often yield to one path from the right start,
 //! so many are tried ([`starts`]).
 
@@ -24,7 +24,7 @@ use super::{Monitor, Outcome, Problem, Settings, Status};
 enum Method {
     Path { crash: Crash },
     Smoothing,
-    Semismooth { lambda: f64, memory: usize },
+    Semismooth,
     Starts,
 }
 
@@ -34,7 +34,7 @@ impl Method {
             Method::Path { crash: Crash::None } => "path without crash",
             Method::Path { .. } => "path",
             Method::Smoothing => "smoothing",
-            Method::Semismooth { .. } => "semismooth",
+            Method::Semismooth => "semismooth",
             Method::Starts => "path from random starts",
         }
     }
@@ -44,7 +44,7 @@ impl Method {
         match self {
             Method::Path { crash } => majors(run, start, crash),
             Method::Smoothing => smoothing(run, start),
-            Method::Semismooth { lambda, memory } => semismooth(run, start, lambda, memory),
+            Method::Semismooth => semismooth(run, start),
             Method::Starts => starts(run, start),
         }
     }
@@ -126,10 +126,12 @@ pub(super) fn solve(
     outcome
 }
 
-/// Random restarts in any case, and while no more than [`CHEAP`] was done.
-const RESTARTS: [usize; 2] = [6, 30];
-/// Factorisations times unknowns: a second or so.
+/// Random restarts at most.
+const RESTARTS: usize = 30;
+/// Work ([`Run::work`]) up to which they are made in any case: a second or so.
 const CHEAP: usize = 300_000;
+/// Otherwise all work may become this multiple of that from the given start.
+const MULTIPLE: usize = 2;
 
 fn deadline(settings: &Settings) -> Option<Instant> {
     // Durations beyond a century overflow; they mean no limit.
@@ -186,34 +188,24 @@ fn attempt(run: &mut Run, restarts: &mut usize) -> Result<(), Stop> {
         return Ok(());
     }
     run.check()?;
+    let large = run.n > INTERIOR;
     if let Some(start) = first_point(run) {
-        let (crash, other) = match run.settings.crash_method {
-            true if run.n > INTERIOR => (Crash::Interior, Crash::Newton),
-            true => (Crash::Newton, Crash::None),
-            false => (Crash::None, Crash::Newton),
+        let path = |crash| Method::Path { crash };
+        let mut methods = match run.settings.crash_method {
+            true if large => vec![path(Crash::Interior), path(Crash::Newton)],
+            true => vec![path(Crash::Newton)],
+            false => vec![path(Crash::None)],
         };
-        let mut methods = vec![Method::Path { crash }];
         if run.settings.fallbacks {
-            if run.n > INTERIOR {
-                methods.push(Method::Path { crash: other });
-            }
             if run.problem.is_linear() {
                 methods.push(Method::Starts);
             }
-            methods.extend([
-                Method::Smoothing,
-                Method::Semismooth {
-                    lambda: 0.95,
-                    memory: 8,
-                },
-                Method::Path {
-                    crash: if run.n > INTERIOR { Crash::None } else { other },
-                },
-                Method::Semismooth {
-                    lambda: 0.8,
-                    memory: 1,
-                },
-            ]);
+            methods.extend([Method::Smoothing, Method::Semismooth]);
+            match run.settings.crash_method {
+                true if large => {}
+                true => methods.push(path(Crash::None)),
+                false => methods.push(path(Crash::Newton)),
+            }
         }
         for method in methods {
             if succeeds(run, method, start.clone())? {
@@ -221,16 +213,16 @@ fn attempt(run: &mut Run, restarts: &mut usize) -> Result<(), Stop> {
             }
         }
     }
-    if !run.settings.fallbacks {
+    let acceptable = run.settings.acceptable_tolerance;
+    if !run.settings.fallbacks || run.best.as_ref().is_some_and(|b| b.residual <= acceptable) {
         return Ok(());
     }
+    let budget = match run.settings.restart_limit {
+        Some(_) => usize::MAX,
+        None => CHEAP.max(MULTIPLE * run.work()),
+    };
     let mut random = Random::new(20);
-    let most = run.settings.restart_limit.unwrap_or(RESTARTS[1]);
-    for k in 0..most {
-        let expensive = run.factorisations * run.n > CHEAP;
-        if run.settings.restart_limit.is_none() && k >= RESTARTS[0] && expensive {
-            break;
-        }
+    for k in 0..run.settings.restart_limit.unwrap_or(RESTARTS) {
         *restarts += 1;
         let spread = 10f64.powf(random.between(-2.0, 1.0));
         let x = random_point(run, &mut random, spread);
@@ -238,17 +230,13 @@ fn attempt(run: &mut Run, restarts: &mut usize) -> Result<(), Stop> {
             format!("Restart {} from a random point", k + 1)
         });
         let Some(start) = run.point(x) else { continue };
+        let crash = Crash::Newton;
         for method in [
-            Method::Path {
-                crash: Crash::Newton,
-            },
+            Method::Path { crash },
             Method::Smoothing,
-            Method::Semismooth {
-                lambda: 0.95,
-                memory: 8,
-            },
+            Method::Semismooth,
         ] {
-            if succeeds(run, method, start.clone())? {
+            if run.work() > budget || succeeds(run, method, start.clone())? {
                 return Ok(());
             }
         }

@@ -41,6 +41,30 @@ pub(super) struct Point {
     pub(super) merit: f64,
 }
 
+/// Counts the iterations without a notable fall of what shall become small.
+pub(super) struct Patience {
+    least: f64,
+    idle: usize,
+}
+
+impl Patience {
+    pub(super) fn new() -> Self {
+        Patience {
+            least: f64::INFINITY,
+            idle: 0,
+        }
+    }
+
+    /// Iterations, this one included, since a value was below the share of the least before it.
+    pub(super) fn idle(&mut self, value: f64, share: f64) -> usize {
+        self.idle += 1;
+        if value < share * self.least {
+            (self.least, self.idle) = (value, 0);
+        }
+        self.idle
+    }
+}
+
 /// One call of the solver.
 pub(super) struct Run<'a> {
     pub(super) problem: &'a mut dyn Problem,
@@ -68,6 +92,9 @@ pub(super) struct Run<'a> {
     pub(super) original: Vec<usize>,
     deadline: Option<Instant>,
 }
+
+/// Pivots that cost as much as a factorisation where factors are sparse.
+const PIVOTS_PER_FACTORISATION: usize = 20;
 
 /// A bound with PATH's and GAMS's idea of infinity.
 pub(super) fn bound(b: f64) -> f64 {
@@ -128,6 +155,11 @@ impl<'a> Run<'a> {
             return Err(Stop::Interrupted);
         }
         Ok(())
+    }
+
+    /// What was done so far: factorisations and pivots, in terms of factorisations, times unknowns.
+    pub(super) fn work(&self) -> usize {
+        (self.factorisations + self.pivots / PIVOTS_PER_FACTORISATION) * self.n
     }
 
     /// x clipped to the bounds.

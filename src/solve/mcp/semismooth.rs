@@ -10,33 +10,41 @@ use super::factor::{Builder, Factor, Fill, combine};
 use super::log;
 use super::majors::merit_gradient;
 use super::merit::Phi;
-use super::run::{End, Point, Run, Stop};
+use super::run::{End, Patience, Point, Run, Stop};
 
 /// Iterations at most.
 const LIMIT: usize = 200;
+/// Iterations after which the merit function must have halved.
+pub(super) const PATIENCE: usize = 20;
 /// Descent test of the Newton direction: gᵀd ≤ −ρ‖d‖^p.
 const RHO: f64 = 1e-8;
 const POWER: f64 = 2.1;
+/// Weight of the Fischer–Burmeister function against the penalty.
+const LAMBDA: f64 = 0.95;
+/// Memory of the nonmonotone search.
+const MEMORY: usize = 8;
 /// Armijo constant.
 const ARMIJO: f64 = 1e-4;
 
-/// Runs the method with penalty weight `lambda`; `memory` 1 makes the search monotone.
-pub(super) fn semismooth(
-    run: &mut Run,
-    start: Point,
-    lambda: f64,
-    memory: usize,
-) -> Result<End, Stop> {
-    let phi = Phi { lambda, mu: 0.0 };
+/// Runs the method.
+pub(super) fn semismooth(run: &mut Run, start: Point) -> Result<End, Stop> {
+    let phi = Phi {
+        lambda: LAMBDA,
+        mu: 0.0,
+    };
     let mut point = start;
     let mut merit = phi.merit(&point.x, &point.f, &run.lower, &run.upper);
     let mut history = vec![merit];
     log::note(run, log::Part::Majors, || {
-        format!("Semismooth Newton, lambda = {lambda}\n iter        nu    residual     step")
+        "Semismooth Newton\n iter        nu    residual     step".into()
     });
+    let mut patience = Patience::new();
     for iteration in 0..LIMIT {
         if run.converged(point.residual) {
             return Ok(End::Solved);
+        }
+        if patience.idle(merit, 0.5) > PATIENCE {
+            return Ok(End::Stuck);
         }
         run.check()?;
         let Some(jacobian) = run.jacobian(&point.x) else {
@@ -65,7 +73,7 @@ pub(super) fn semismooth(
         let reference = history
             .iter()
             .rev()
-            .take(memory.max(1))
+            .take(MEMORY)
             .fold(0.0, |a, &b| f64::max(a, b));
         let Some((next, step)) = search(run, &point, &direction, |run, p, t| {
             phi.merit(&p.x, &p.f, &run.lower, &run.upper)

@@ -7,8 +7,8 @@ use super::factor::Factor;
 use super::log;
 use super::majors::merit_gradient;
 use super::merit::Phi;
-use super::run::{End, Point, Run, Stop};
-use super::semismooth::{levenberg_marquardt, newton_system, search};
+use super::run::{End, Patience, Point, Run, Stop};
+use super::semismooth::{PATIENCE, levenberg_marquardt, newton_system, search};
 
 /// Iterations at most.
 const LIMIT: usize = 200;
@@ -27,6 +27,7 @@ pub(super) fn smoothing(run: &mut Run, start: Point) -> Result<End, Stop> {
     log::note(run, log::Part::Majors, || {
         "Smoothing Newton\n iter        mu    residual     step".into()
     });
+    let mut patience = Patience::new();
     for iteration in 0..LIMIT {
         if run.converged(point.residual) {
             return Ok(End::Solved);
@@ -37,6 +38,9 @@ pub(super) fn smoothing(run: &mut Run, start: Point) -> Result<End, Stop> {
             phi.mu = (0.1 * phi.mu)
                 .min(0.2 * Phi::PLAIN.merit(&point.x, &point.f, &run.lower, &run.upper));
             merit = phi.merit(&point.x, &point.f, &run.lower, &run.upper);
+        }
+        if patience.idle(merit + phi.mu, 0.5) > PATIENCE {
+            return Ok(End::Stuck);
         }
         let Some(jacobian) = run.jacobian(&point.x) else {
             return Ok(End::Stuck);
