@@ -44,6 +44,8 @@ const RAY_MIN: f64 = 1e-2;
 const VERTEX: f64 = 1e-2;
 /// Major iterations without a notable fall of the residual before the run is called stuck.
 const STAGNATION: usize = 30;
+/// Pivots without that, at least and times n: hopeless problems have many and long paths.
+const STAGNATION_PIVOTS: (usize, usize) = (10_000, 40);
 /// The same where the residual would be accepted already, and the problem is large.
 const STAGNATION_NEAR: usize = 4;
 /// Steps in a row to solutions ~ 1/v before the run is called stuck: it follows a ray.
@@ -160,12 +162,18 @@ impl Majors {
         // More iterations after convergence: Newton's method doubles the digits.
         let mut polishing = 0;
         let mut patience = Patience::new();
+        let most = STAGNATION_PIVOTS.0.max(STAGNATION_PIVOTS.1 * run.n);
+        let mut pivots_then = run.pivots;
         for _ in 0..run.settings.major_iteration_limit {
             let idle = patience.idle(self.best.residual, 0.9);
+            if idle == 0 {
+                pivots_then = run.pivots;
+            }
             // Good enough to accept, and no better in sight: another method may do better.
             let acceptable =
                 run.n > LARGE && self.best.residual <= run.settings.acceptable_tolerance;
-            if idle > STAGNATION || acceptable && idle > STAGNATION_NEAR {
+            let long = run.pivots - pivots_then > most;
+            if idle > STAGNATION || long || acceptable && idle > STAGNATION_NEAR {
                 return Ok(End::Stuck);
             }
             if run.converged(self.point.residual) {
