@@ -335,7 +335,11 @@ impl Preprocessor<'_> {
             "ifthen" | "iftheni" | "ifthene" => {
                 let flavour = flavour(&word[6..]);
                 match self.condition(rest, flavour, known) {
-                    Err(why) => return refuse(self.bad_condition(word, why, lo, hi)),
+                    Err(why) => {
+                        // Its `$endIf` is not to blame.
+                        self.if_then(line, suffix, true, known)?;
+                        return refuse(self.bad_condition(word, why, lo, hi));
+                    }
                     Ok((truth, len)) => {
                         self.if_then(line, suffix, truth, known)?;
                         if truth {
