@@ -5,6 +5,7 @@ use super::options::ListOptions;
 use super::{Flow, Frame, Machine, ModelState};
 use crate::check::node::*;
 use crate::check::symbols::attribute;
+use crate::data::value::EPS;
 use crate::diag::Diagnostic;
 use crate::model::instance::{ColumnKind, Instance, Relation};
 use crate::model::origin::{Blocks, Origin};
@@ -323,8 +324,13 @@ impl Machine<'_> {
             }
         };
         write(&g.origin.columns, attribute::L, &a.outcome.level);
-        write(&g.origin.columns, attribute::M, &a.outcome.column_marginal);
-        let rows = &g.instance.rows;
+        let (columns, rows) = (&g.instance.columns, &g.instance.rows);
+        let optimal = g.instance.matched.is_none()
+            && g.instance.objective.is_some()
+            && matches!(a.status, ModelStatus::Optimal | ModelStatus::LocallyOptimal);
+        let fixed = |j: usize| optimal && columns.lower[j] == columns.upper[j];
+        let marginals = stored(&a.outcome.column_marginal, fixed);
+        write(&g.origin.columns, attribute::M, &marginals);
         // A row without relation has its constant inside its level; one that binds is at its right side, not a hair beside it.
         let levels: Vec<f64> = (0..rows.rhs.len())
             .map(|i| {
@@ -338,7 +344,9 @@ impl Machine<'_> {
             })
             .collect();
         write(&g.origin.rows, attribute::L, &levels);
-        write(&g.origin.rows, attribute::M, &a.outcome.row_marginal);
+        let equal = |i: usize| optimal && rows.relation[i] == Relation::Equal;
+        let marginals = stored(&a.outcome.row_marginal, equal);
+        write(&g.origin.rows, attribute::M, &marginals);
         let lower: Vec<f64> = rows
             .relation
             .iter()
@@ -610,6 +618,13 @@ impl Machine<'_> {
             .collect();
         solution::to_json(file, &solved)
     }
+}
+
+/// Marginals as GAMS stores them: a 0 is EPS where nothing can move, in a fixed column and in the row of an equation, which
+/// are outside the basis.
+fn stored(marginals: &[f64], outside: impl Fn(usize) -> bool) -> Vec<f64> {
+    let stored = |(k, &m): (usize, &f64)| if m == 0.0 && outside(k) { EPS } else { m };
+    marginals.iter().enumerate().map(stored).collect()
 }
 
 /// A solve that is kept for `--solution` and `bmod bench`.
