@@ -15,7 +15,23 @@ use crate::solve::SolveError;
 use crate::solve::lp::Limits;
 use std::sync::{Arc, Mutex};
 
+/// Residuals of a point that is taken without a run.
+const SHARPLY: f64 = 1e-9;
+
 impl Driver<'_> {
+    /// The start with the marginals that an earlier solve left: where little or nothing has changed since, that is the answer,
+    /// perhaps after a Newton step on its active set.
+    pub(super) fn attempt_again(&mut self) {
+        let lambda = lock(&*self.problem).marginals_of(self.instance);
+        if lambda.iter().all(|&l| l == 0.0) {
+            return;
+        }
+        let trial = self.judge(self.start.clone(), lambda, Ended::Solved);
+        if trial.is_optimal() && trial.residual() <= SHARPLY {
+            self.keep(trial);
+        }
+    }
+
     /// Newton's method on the equations, where they leave nothing to choose.
     pub(super) fn attempt_newton(&mut self) {
         let deadline = self.deadline();

@@ -247,6 +247,11 @@ impl Driver<'_> {
                 return Ok(self.finish());
             }
         }
+        self.attempt_again();
+        self.leave_saddles()?;
+        if self.is_settled() {
+            return Ok(self.finish());
+        }
         if self.is_square() {
             self.attempt_newton();
             let newton = self.iterations;
@@ -639,11 +644,10 @@ impl Driver<'_> {
             Some(t) if t.is_optimal() || !plain.is_optimal() => t,
             _ => plain,
         };
-        let residual = |t: &Trial| t.residuals.primal_relative.max(t.residuals.dual_relative);
-        let nearly = residual(&best) < 1e-2 && residual(&best) > 1e-13;
+        let nearly = best.residual() < 1e-2 && best.residual() > 1e-13;
         if nearly
             && let Some(t) = polished(self.instance, &mut problem, kinks, &best, 1e-6)
-            && residual(&t) < residual(&best)
+            && t.residual() < best.residual()
         {
             best = t;
         }

@@ -294,18 +294,19 @@ impl Problem {
     /// Uses the marginals of the instance's rows and columns as start multipliers.
     pub fn use_marginals(&mut self, instance: &Instance) {
         let s = self.sign;
-        let lambda = self
-            .rows
-            .iter()
-            .map(|&i| -s * instance.rows.marginal[i as usize])
-            .collect();
-        self.start_multipliers = Some(lambda);
+        self.start_multipliers = Some(self.marginals_of(instance));
         let reduced = self
             .columns
             .iter()
             .map(|&j| s * instance.columns.marginal[j as usize])
             .collect();
         self.start_reduced = Some(reduced);
+    }
+
+    /// Multipliers of the constraints from the marginals of the instance's rows.
+    pub fn marginals_of(&self, instance: &Instance) -> Vec<f64> {
+        let marginal = |&i: &u32| -self.sign * instance.rows.marginal[i as usize];
+        self.rows.iter().map(marginal).collect()
     }
 
     /// The full point of the instance: fixed columns filled in, the objective column computed.

@@ -51,6 +51,13 @@ impl Trial {
         self.residuals.is_feasible(TOLERANCE) && !self.hollow
     }
 
+    /// The larger of the relative residuals.
+    pub(super) fn residual(&self) -> f64 {
+        self.residuals
+            .primal_relative
+            .max(self.residuals.dual_relative)
+    }
+
     /// Feasible, and stationary but for a little.
     pub(super) fn is_nearly_optimal(&self) -> bool {
         self.is_feasible() && self.residuals.dual_relative <= 1e3 * TOLERANCE
