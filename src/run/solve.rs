@@ -162,7 +162,7 @@ impl Machine<'_> {
                     solve: end - generated_at,
                     total: end - begin,
                 };
-                self.store(s, &generated, &a);
+                self.store(&generated, &a);
                 self.remember(s, &generated, &a, seconds);
                 let savepoint = self.model_option(s.model, "savepoint", 0.0);
                 self.save_point(s.model, savepoint, &generated.origin, span);
@@ -309,7 +309,7 @@ impl Machine<'_> {
     }
 
     /// Writes levels, marginals and bounds of rows back.
-    fn store(&mut self, s: &SolveCode, g: &Generated, a: &Answer) {
+    fn store(&mut self, g: &Generated, a: &Answer) {
         let mut write = |blocks: &Blocks, offset: u32, values: &[f64]| {
             for b in &blocks.list {
                 let t = self.symbols.get(b.symbol).table + offset;
@@ -373,7 +373,6 @@ impl Machine<'_> {
             .collect();
         write(&g.origin.rows, attribute::LO, &lower);
         write(&g.origin.rows, attribute::UP, &upper);
-        let _ = s;
     }
 
     /// Model attributes after a solve.
