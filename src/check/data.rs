@@ -1,6 +1,6 @@
 //! Data statements: elements of sets, numbers of parameters, attributes of variables.
 
-use super::expansion::{Tuples, record_bytes, set_prefix};
+use super::expansion::{Tuples, record_bytes, set_prefix, together};
 use super::node::{SymbolId, TableId};
 use super::symbols::{DomainPosition, Store, Symbol, SymbolKind, Symbols, attribute};
 use super::{Compiler, Failed};
@@ -238,12 +238,9 @@ impl Compiler {
             }
             elements.unordered |= all_of_unordered && elements.symbol.dim() == 1 && keys.len() > 0;
             for row in keys.rows() {
-                let both = text
-                    .filter(|_| !row.text.is_empty())
-                    .map(|t| format!("{} {t}", row.text));
-                let brought = Some(row.text).filter(|t| !t.is_empty());
-                let text = both.as_deref().or(text).or(brought);
-                self.put_element(&mut elements, row.labels, text, span);
+                let both = together(row.text, text.unwrap_or_default());
+                let said = text.is_some() || !both.is_empty();
+                self.put_element(&mut elements, row.labels, said.then_some(&*both), span);
             }
         }
         self.store.table_mut(elements.symbol.table).tidy();

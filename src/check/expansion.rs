@@ -9,6 +9,7 @@ use crate::diag::Diagnostic;
 use crate::source::Span;
 use crate::syntax::ast::Ident;
 use crate::syntax::data::KeyPart;
+use std::borrow::Cow;
 use std::rc::Rc;
 
 /// What a label takes, about: its name twice, its place in the universe.
@@ -47,6 +48,15 @@ pub struct Row<'a> {
     pub factor: f64,
     /// Its text; may be empty.
     pub text: &'a str,
+}
+
+/// Two texts of an element as one.
+pub(super) fn together<'a>(first: &'a str, second: &'a str) -> Cow<'a, str> {
+    match (first.is_empty(), second.is_empty()) {
+        (true, _) => second.into(),
+        (_, true) => first.into(),
+        _ => format!("{first} {second}").into(),
+    }
 }
 
 impl Tuples {
@@ -90,10 +100,7 @@ impl Tuples {
             ..Self::default()
         };
         for (a, b) in pairs {
-            let both = (!a.text.is_empty() && !b.text.is_empty())
-                .then(|| format!("{} {}", a.text, b.text));
-            let alone = if a.text.is_empty() { b.text } else { a.text };
-            out.said(a.factor * b.factor, both.as_deref().unwrap_or(alone));
+            out.said(a.factor * b.factor, &together(a.text, b.text));
             out.labels.extend_from_slice(a.labels);
             out.labels.extend_from_slice(b.labels);
         }

@@ -65,8 +65,8 @@ pub fn answer(
         "cns" => square(instance, settings, monitor),
         "mpec" | "rmpec" => super::mpec::answer(choice, instance, settings, monitor),
         _ if instance.is_linear() && instance.objective.is_some() => match choice {
-            Some("mcp" | "bmcp") => linear(&super::kkt::Kkt, instance, settings, monitor),
-            _ => linear(&lp::Clarabel, instance, settings, monitor),
+            Some("mcp" | "bmcp") => linear_shown(&super::kkt::Kkt, instance, settings, monitor),
+            _ => linear_shown(&lp::Clarabel, instance, settings, monitor),
         },
         _ => super::nlp::answer(choice, instance, settings, monitor),
     }?;
@@ -110,16 +110,28 @@ pub(super) fn linear(
     settings: &Settings,
     monitor: &mut dyn Monitor,
 ) -> Result<Answer, SolveError> {
-    let mut outcome = solver.solve(instance, settings, monitor)?;
-    let mut at = certificate::linearise(instance, &outcome);
-    let mut residuals = certificate::residuals(instance, &outcome, &at);
+    let outcome = solver.solve(instance, settings, monitor)?;
+    let at = certificate::linearise(instance, &outcome);
+    let residuals = certificate::residuals(instance, &outcome, &at);
     let status = certificate::linear_status(instance, &outcome, &residuals);
-    if status == ModelStatus::Infeasible {
-        least::report_least_violation(instance, settings, monitor, &mut outcome);
-        at = certificate::linearise(instance, &outcome);
-        residuals = certificate::residuals(instance, &outcome, &at);
-    }
     Ok(Answer::new(outcome, residuals, status, at.activity))
+}
+
+/// The same for what people see: an infeasible program at its least violation.
+pub(super) fn linear_shown(
+    solver: &dyn Solver,
+    instance: &Instance,
+    settings: &Settings,
+    monitor: &mut dyn Monitor,
+) -> Result<Answer, SolveError> {
+    let mut found = linear(solver, instance, settings, monitor)?;
+    if found.status == ModelStatus::Infeasible {
+        least::report_least_violation(instance, settings, monitor, &mut found.outcome);
+        let at = certificate::linearise(instance, &found.outcome);
+        found.residuals = certificate::residuals(instance, &found.outcome, &at);
+        found.activity = at.activity;
+    }
+    Ok(found)
 }
 
 /// Levels of the rows; not a number where a function has no value.

@@ -1,7 +1,7 @@
 //! Numbers that differ from what is meant by rounding only.
 
 /// Relative to the largest number beside it: by so much what was computed is wrong at least.
-const LEVELS: f64 = 1e-14;
+pub const LEVELS: f64 = 1e-14;
 /// The same of multipliers, which a factorisation gave.
 const MULTIPLIERS: f64 = 1e-13;
 

@@ -25,11 +25,7 @@ pub fn report_least_violation(
     let Ok(form) = Form::new(instance) else {
         return;
     };
-    let limits = Limits {
-        start: Instant::now(),
-        seconds: settings.time_limit,
-        iterations: settings.iteration_limit,
-    };
+    let limits = Limits::of(settings, Instant::now());
     let elastic = elastic(&form.problem);
     let scaling = Scaling::new(&elastic);
     let scaled = scaling.apply(&elastic);

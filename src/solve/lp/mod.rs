@@ -67,6 +67,15 @@ pub struct Limits {
 }
 
 impl Limits {
+    /// Those that the settings give a solve that began then.
+    pub fn of(settings: &Settings, start: Instant) -> Self {
+        Self {
+            start,
+            seconds: settings.time_limit,
+            iterations: settings.iteration_limit,
+        }
+    }
+
     /// Seconds left.
     pub fn seconds_left(&self) -> f64 {
         (self.seconds - self.start.elapsed().as_secs_f64()).max(0.0)
@@ -193,11 +202,7 @@ fn solve(
             "the model has nonlinear terms; this solver takes linear models",
         ));
     }
-    let limits = Limits {
-        start: Instant::now(),
-        seconds: settings.time_limit,
-        iterations: settings.iteration_limit,
-    };
+    let limits = Limits::of(settings, Instant::now());
     let accuracy = Accuracy::new(settings)?;
     let tolerance = settings
         .option("tolerance")

@@ -600,7 +600,12 @@ impl Search<'_> {
         let settings = self.program_settings(&[("nlp_attempts", "all")]);
         let envelope = &self.program.envelope;
         let mut a = match envelope.is_linear() {
-            true => super::answer::linear(&super::lp::Clarabel, envelope, &settings, self.monitor)?,
+            true => super::answer::linear_shown(
+                &super::lp::Clarabel,
+                envelope,
+                &settings,
+                self.monitor,
+            )?,
             false => super::nlp::answer(self.choice, envelope, &settings, self.monitor)?,
         };
         let proved = matches!(

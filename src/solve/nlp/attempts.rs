@@ -56,11 +56,7 @@ impl Driver<'_> {
     }
 
     pub(super) fn attempt_quadratic(&mut self, quadratic: &Quadratic) {
-        let limits = Limits {
-            start: self.begin,
-            seconds: self.settings.time_limit,
-            iterations: self.settings.iteration_limit,
-        };
+        let limits = Limits::of(self.settings, self.begin);
         let solution = quadratic.solve(&limits, &mut || self.monitor.interrupted());
         self.iterations += solution.iterations;
         self.note_end(solution.ended);

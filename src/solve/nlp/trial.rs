@@ -7,15 +7,12 @@ use crate::autodiff::{Degree, Evaluator};
 use crate::model::certificate::{Linearised, Residuals, TOLERANCE, primal, row_violation};
 use crate::model::certificate_nlp::{kkt_residual, linearise, residuals};
 use crate::model::instance::{Instance, Relation};
-use crate::solve::noise;
+use crate::solve::noise::{LEVELS, snap};
 
 /// Numbers from here on are large for a model that has a solution.
 pub(super) const FAR: f64 = 1e7;
 /// A change of the objective that matters, relative to its size.
 pub(super) const CONSIDERABLE: f64 = 0.01;
-
-/// What is closer to 0 than this is 0, unless a residual shows otherwise.
-const NOISE: f64 = 1e-14;
 
 /// A point that was judged.
 #[derive(Clone)]
@@ -61,6 +58,13 @@ impl Trial {
     /// Feasible, and stationary but for a little.
     pub(super) fn is_nearly_optimal(&self) -> bool {
         self.is_feasible() && self.residuals.dual_relative <= 1e3 * TOLERANCE
+    }
+
+    /// Whether the residuals are not above those of the other, or what matters.
+    fn is_as_good(&self, other: &Self, matters: f64) -> bool {
+        let (now, before) = (&self.residuals, &other.residuals);
+        now.primal_relative <= before.primal_relative.max(matters)
+            && now.dual_relative <= before.dual_relative.max(matters)
     }
 
     /// Whether this one is worth more than the other.
@@ -255,9 +259,7 @@ pub(super) fn tidy(
         }
     }
     let tidied = residuals_at(instance, problem, kinks, x, lambda, t.ended);
-    let fine = tidied.residuals.primal_relative <= t.residuals.primal_relative.max(1e-9)
-        && tidied.residuals.dual_relative <= t.residuals.dual_relative.max(1e-9);
-    fine.then_some(tidied)
+    tidied.is_as_good(t, 1e-9).then_some(tidied)
 }
 
 /// The trial without values that are nothing but noise around 0 or a bound, if it is worth as much.
@@ -269,9 +271,9 @@ pub(super) fn without_noise(
 ) -> Option<Trial> {
     let (lower, upper) = problem.bounds();
     let mut x = t.x.clone();
-    noise::snap(&mut x, lower, upper);
+    snap(&mut x, lower, upper);
     for (v, (&l, &u)) in x.iter_mut().zip(lower.iter().zip(upper)) {
-        if v.abs() <= NOISE && l <= 0.0 && u >= 0.0 {
+        if v.abs() <= LEVELS && l <= 0.0 && u >= 0.0 {
             *v = 0.0;
         }
     }
@@ -280,10 +282,7 @@ pub(super) fn without_noise(
     }
     let lambda = t.lambda.clone();
     let quiet = residuals_at(instance, problem, kinks, x, lambda, t.ended);
-    let (before, now) = (&t.residuals, &quiet.residuals);
-    let fine = now.primal_relative <= before.primal_relative.max(NOISE)
-        && now.dual_relative <= before.dual_relative.max(NOISE);
-    fine.then_some(quiet)
+    quiet.is_as_good(t, LEVELS).then_some(quiet)
 }
 
 /// Variables at a bound and rows that bind, to a relative tolerance.

@@ -125,11 +125,7 @@ pub(super) fn certify_by(
     let form = Form::exact(instance)?;
     let scaling = Scaling::new(&form.problem);
     let p = scaling.apply(&form.problem);
-    let limits = Limits {
-        start: std::time::Instant::now(),
-        seconds: settings.time_limit,
-        iterations: settings.iteration_limit,
-    };
+    let limits = Limits::of(settings, std::time::Instant::now());
     let why = |why| Unproved {
         why,
         row: None,

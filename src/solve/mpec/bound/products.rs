@@ -113,11 +113,7 @@ impl Products<'_> {
         let form = Form::exact(&instance).ok()?;
         let mut problem = form.problem.clone();
         let near = form.near(&answer.outcome);
-        let limits = lp::Limits {
-            start: self.begin,
-            seconds: self.settings.time_limit,
-            iterations: self.settings.iteration_limit,
-        };
+        let limits = lp::Limits::of(self.settings, self.begin);
         let monitor = &mut *self.monitor;
         let multipliers = Multipliers::new(&problem, &limits, &mut || monitor.interrupted());
         let Some(multipliers) = multipliers else {
