@@ -207,7 +207,7 @@ pub(super) fn around(
     run: &mut Run,
     (point, state): (&Point, &State),
     bounds: &Bounds,
-    analysis: &mut Analysis,
+    analysis: &Analysis,
 ) -> Result<Option<(Point, State)>, Stop> {
     let at_start = || Path {
         bounds,

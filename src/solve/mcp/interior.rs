@@ -108,7 +108,7 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
         "Interior crash\n iter    product  equations    residual     step     prox".into()
     });
     let mut best = start.clone();
-    let mut analysis = Analysis::default();
+    let analysis = Analysis::default();
     let mut prox = PROX.0;
     let mut patience = Patience::new();
     for iteration in 0..LIMIT {
@@ -140,7 +140,7 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
             |_| 1.0,
         );
         run.factorisations += 1;
-        let step = Factor::analysed(matrix, run.fill, &mut analysis)
+        let step = Factor::analysed(matrix, run.fill, &analysis)
             .and_then(|mut factor| step(&mut factor, &state, &bounds, &r, mu));
         let Some(step) = step else {
             if prox >= PROX.1 {
@@ -178,7 +178,7 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
             .for_each(|(v, d)| *v += t * d);
         if t < STEP_BAD {
             state.distances(run, &bounds, &point.x);
-            let Some(found) = around(run, (&point, &state), &bounds, &mut analysis)? else {
+            let Some(found) = around(run, (&point, &state), &bounds, &analysis)? else {
                 break;
             };
             ((point, state), patience) = (found, Patience::new());
