@@ -72,6 +72,12 @@ impl Diagnostic {
         Self::new(Severity::Execution, code, span, message)
     }
 
+    /// The same found while the text is read.
+    pub fn as_error(mut self) -> Self {
+        self.severity = Severity::Error;
+        self
+    }
+
     /// Adds the text at the main place.
     pub fn label(mut self, text: impl Into<String>) -> Self {
         self.label = text.into();

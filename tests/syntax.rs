@@ -475,7 +475,7 @@ fn other_statements() {
                 matches!(items[0], ModelItem::All(_)) && matches!(items[1], ModelItem::Remove(_))
             );
             assert!(matches!(&items[3], ModelItem::Pair { rows, .. } if rows.len() == 2));
-            assert!(matches!(&items[4], ModelItem::Add(_, Some(over)) if over.len() == 1));
+            assert!(matches!(&items[4], ModelItem::Limit(_, over) if over.len() == 1));
         }
         other => panic!("{other:?}"),
     }

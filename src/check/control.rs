@@ -5,7 +5,7 @@
 
 use super::node::*;
 use super::symbols::{DomainPosition, SymbolKind, UNIVERSE};
-use super::{Compiler, Failed};
+use super::{Compiler, Failed, has_random};
 use crate::diag::Diagnostic;
 use crate::source::Span;
 use crate::syntax::ast::{self, Expr, ExprKind, Ident, Sign};
@@ -58,15 +58,30 @@ impl Compiler {
         Ok(out)
     }
 
-    /// Adds the conjuncts of a condition to a domain.
+    /// Adds the conjuncts of a condition to a domain. Where random numbers are drawn in one, the condition
+    /// stays whole: every tuple draws, whatever the others say.
     pub(super) fn condition(&mut self, c: &Expr, out: &mut Domain) -> Result<(), Failed> {
+        let before = out.conditions.len();
+        self.conjuncts(c, &mut out.conditions)?;
+        if out.conditions[before..].iter().any(has_random) {
+            let whole = |a: Node, b| {
+                let kind = NodeKind::Binary(BinaryOp::And, Box::new(a), Box::new(b));
+                Node::data(kind, c.span)
+            };
+            let parts = out.conditions.split_off(before);
+            out.conditions.extend(parts.into_iter().reduce(whole));
+        }
+        Ok(())
+    }
+
+    fn conjuncts(&mut self, c: &Expr, out: &mut Vec<Node>) -> Result<(), Failed> {
         if let ExprKind::Binary(BinaryOp::And, a, b) = &c.kind {
-            self.condition(a, out)?;
-            return self.condition(b, out);
+            self.conjuncts(a, out)?;
+            return self.conjuncts(b, out);
         }
         let node = self.expr(c)?;
         self.no_variable(&node, "a condition")?;
-        out.conditions.push(node);
+        out.push(node);
         Ok(())
     }
 
@@ -218,9 +233,7 @@ impl Compiler {
             } if a.name.eq_ignore_ascii_case("local") => {
                 let s = self.lookup_set(name)?;
                 self.used(s, name.span);
-                if self.symbols.get(s).dim() == 1 {
-                    self.fits(s, of, position, index.span)?;
-                }
+                self.fits(s, of, position, index.span)?;
                 Ok(self.run_over(s, out))
             }
             ExprKind::Apply {

@@ -1,10 +1,11 @@
 //! Declarations.
 
+use super::model::mentions;
 use super::node::{SymbolId, TableId};
 use super::symbols::{DomainPosition, ModelInfo, Symbol, SymbolKind, UNIVERSE, attribute};
 use super::{Compiler, Failed};
 use crate::diag::Diagnostic;
-use crate::source::SourceMap;
+use crate::source::{SourceMap, Span};
 use crate::syntax::ast::{
     DomainName, FileDecl, Ident, ModelDecl, ModelItem, ParameterDecl, SetDecl, SymbolDecl,
     VariableKind,
@@ -311,22 +312,7 @@ impl Compiler {
                 continue;
             };
             if kind != VariableKind::Unstated {
-                let symbol = self.symbols.get(s);
-                if let SymbolKind::Variable(before) = symbol.kind
-                    && before != VariableKind::Unstated
-                    && before != kind
-                {
-                    let d = Diagnostic::error(
-                        "E0348",
-                        d.name.span,
-                        format!("the variable `{}` has another kind already", symbol.name),
-                    )
-                    .label("a second kind")
-                    .other(symbol.declared, "declared here")
-                    .help(
-                        "a variable has one kind; assign its bounds `.lo` and `.up` to narrow it",
-                    );
-                    self.report(d);
+                if self.other_kind(s, kind, d.name.span).is_err() {
                     continue;
                 }
                 self.symbols.get_mut(s).kind = SymbolKind::Variable(kind);
@@ -350,6 +336,35 @@ impl Compiler {
             }
         }
         Ok(())
+    }
+
+    /// An error for a variable that has another kind, or was used as one without.
+    fn other_kind(&mut self, s: SymbolId, kind: VariableKind, at: Span) -> Result<(), Failed> {
+        let symbol = self.symbols.get(s);
+        let (message, label) = match symbol.kind {
+            SymbolKind::Variable(before) if before == kind => return Ok(()),
+            SymbolKind::Variable(VariableKind::Unstated) => {
+                let used = symbol.assigned
+                    || self
+                        .equations
+                        .iter()
+                        .any(|e| mentions(&e.left, s) || mentions(&e.right, s));
+                if !used || kind == VariableKind::Free {
+                    return Ok(());
+                }
+                ("gets its kind after it was used", "too late for a kind")
+            }
+            _ => ("has another kind already", "a second kind"),
+        };
+        let d = Diagnostic::error(
+            "E0348",
+            at,
+            format!("the variable `{}` {message}", symbol.name),
+        )
+        .label(label)
+        .other(symbol.declared, "declared here")
+        .help("a variable has one kind from its first use on; assign its bounds `.lo` and `.up` to narrow it");
+        self.fail(d)
     }
 
     fn record_tables(&mut self, dim: usize) -> TableId {
@@ -432,13 +447,10 @@ impl Compiler {
                         .iter()
                         .filter(|(_, s)| matches!(s.kind, SymbolKind::Equation(_)))
                         .map(|(_, s)| {
-                            ModelItem::Add(
-                                Ident {
-                                    name: s.name.clone(),
-                                    span: *span,
-                                },
-                                None,
-                            )
+                            ModelItem::Add(Ident {
+                                name: s.name.clone(),
+                                span: *span,
+                            })
                         }),
                 ),
                 other => out.push(other.clone()),
@@ -471,13 +483,8 @@ impl Compiler {
         };
         match item {
             ModelItem::All(_) => Ok(()),
-            ModelItem::Add(n, sub) => {
-                is_equation(self, n, true)?;
-                for s in sub.iter().flatten() {
-                    self.lookup_set(s)?;
-                }
-                Ok(())
-            }
+            ModelItem::Add(n) => is_equation(self, n, true),
+            ModelItem::Limit(variable, sets) => self.check_limit(variable, sets),
             ModelItem::Remove(n) => is_equation(self, n, true),
             ModelItem::Pair { rows, column } => {
                 for r in rows {
@@ -502,6 +509,43 @@ impl Compiler {
                 }
                 Ok(())
             }
+        }
+    }
+
+    /// `x(s)` in the list of a model.
+    fn check_limit(&mut self, variable: &Ident, sets: &[Ident]) -> Result<(), Failed> {
+        let v = self.lookup(variable)?;
+        let symbol = self.symbols.get(v).clone();
+        if !matches!(symbol.kind, SymbolKind::Variable(_)) {
+            let kind = symbol.kind_name();
+            return self.fail(
+                Diagnostic::error("E0338", variable.span, format!("the {kind} `{}` stands here without indices", symbol.name))
+                .label("only variables are limited to a set")
+                .other(symbol.declared, "declared here")
+                .help(format!(
+                    "write `{}` alone; which rows there are is said where the equation is defined: `e(i)$s(i)..`",
+                    symbol.name
+                )),
+            );
+        }
+        let [set] = sets else {
+            return self.fail(
+                Diagnostic::error(
+                    "E0338",
+                    variable.span,
+                    "one set says which columns there are",
+                )
+                .label("not one set")
+                .help(format!(
+                    "write `{}(s)` with a set `s` of the dimension of `{0}`",
+                    symbol.name
+                )),
+            );
+        };
+        let s = self.lookup_set(set)?;
+        match self.symbols.get(s).dim() == symbol.dim() {
+            true => Ok(()),
+            false => self.wrong_dimension(s, set.span, symbol.dim()),
         }
     }
 

@@ -408,11 +408,9 @@ impl Compiler {
             );
         };
         let key = self.key(s, indices, span)?;
+        self.used(s, span);
         match which {
             functions::RecordAttribute::Stored(offset) => {
-                if offset == attribute::L || offset == attribute::M {
-                    self.used(s, span);
-                }
                 Ok(Node::data(NodeKind::Data(symbol.table + offset, key), span))
             }
             functions::RecordAttribute::Derived(d) => {

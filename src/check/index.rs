@@ -9,7 +9,7 @@ use crate::syntax::ast::{Expr, ExprKind, Ident, Sign};
 use std::rc::Rc;
 
 impl Compiler {
-    /// Whether set `a` may stand at a position of symbol `of`.
+    /// Whether set `a` may stand at a position of symbol `of`; a tuple set at as many as it has.
     pub(super) fn fits(
         &mut self,
         a: SymbolId,
@@ -17,26 +17,64 @@ impl Compiler {
         position: usize,
         span: Span,
     ) -> Result<(), Failed> {
-        let DomainPosition::Set(d) = self.symbols.get(of).domain[position] else {
-            return Ok(());
-        };
-        if self.modes.at(span).universal
-            || self.symbols.is_subset(a, d)
-            || self.symbols.get(a).dim() > 1
-        {
+        if self.modes.at(span).universal {
             return Ok(());
         }
-        let (an, dn) = (
-            self.symbols.get(a).name.clone(),
-            self.symbols.get(d).name.clone(),
-        );
+        let over = self.symbols.get(self.symbols.root(a)).domain.clone();
+        if over.len() == 1 {
+            return self.fits_as(a, a, of, position, span);
+        }
+        let parts = self.controlled(a).unwrap_or_default().to_vec();
+        for (k, set) in over.into_iter().enumerate() {
+            let named = parts.get(k).and_then(|p| self.named_index(p));
+            let s = match (named, set) {
+                (Some(s), _) | (None, DomainPosition::Set(s)) => s,
+                (None, DomainPosition::Universe) => UNIVERSE,
+                (None, DomainPosition::Relaxed(_)) => continue,
+            };
+            self.fits_as(s, a, of, position + k, span)?;
+        }
+        Ok(())
+    }
+
+    /// The set under control that a part is the index of: `i` in `loop(arc(i,j), …)`.
+    fn named_index(&self, part: &Part) -> Option<SymbolId> {
+        let Part::Slot(slot) = part else { return None };
+        let is = |parts: &[Part]| matches!(parts, [Part::Slot(s)] if s == slot);
+        let found = self.scope.iter().rev().find(|(_, parts)| is(parts));
+        found.map(|(s, _)| *s)
+    }
+
+    /// Whether set `s`, which is `a` or runs within it, may stand at a position of symbol `of`.
+    fn fits_as(
+        &mut self,
+        s: SymbolId,
+        a: SymbolId,
+        of: SymbolId,
+        position: usize,
+        span: Span,
+    ) -> Result<(), Failed> {
+        let Some(&DomainPosition::Set(d)) = self.symbols.get(of).domain.get(position) else {
+            return Ok(());
+        };
+        if self.symbols.is_subset(s, d) {
+            return Ok(());
+        }
+        let name = |id| self.symbols.get(id).name.clone();
+        let (an, dn, sn) = (name(a), name(d), name(s));
+        let why = match s == a {
+            true => format!("`{an}` is not a subset of `{dn}`"),
+            false => format!("`{an}` runs over `{sn}` there"),
+        };
         let (on, declared) = (
             self.symbols.get(of).name.clone(),
             self.symbols.get(of).declared,
         );
         let a_root = self.symbols.get(self.symbols.root(a)).declared;
         let same = self.symbols.is_subset(d, a);
-        let help = if same {
+        let help = if s != a {
+            format!("declare `{an}` over the sets that `{on}` runs over, or name its indices")
+        } else if same {
             format!(
                 "`{dn}` is the smaller set: use an index that runs over `{dn}`, or declare `{on}` over `{an}`"
             )
@@ -54,7 +92,7 @@ impl Compiler {
                     position + 1
                 ),
             )
-            .label(format!("`{an}` is not a subset of `{dn}`"))
+            .label(why)
             .other(declared, format!("`{on}` is declared here"))
             .other(a_root, format!("`{an}` is declared here"))
             .help(help),
@@ -198,9 +236,7 @@ impl Compiler {
                     self.lookup_set(name)?;
                 }
                 let part = self.set_index(s, name)?;
-                if self.symbols.get(s).dim() == 1 {
-                    self.fits(s, of, position, e.span)?;
-                }
+                self.fits(s, of, position, e.span)?;
                 Ok(part)
             }
             ExprKind::Apply { name, attribute: None, arguments: Some(inner) } => {

@@ -4,8 +4,8 @@
 //! Statements are taken one at a time, in the order of the text, so that what `$if declared` and
 //! `$eval card(i)` ask can be answered at their place. Several errors are reported per run.
 
+pub mod exchange;
 pub mod functions;
-pub mod load;
 pub mod node;
 pub mod symbols;
 
@@ -22,14 +22,15 @@ pub(crate) mod option;
 pub(crate) mod output;
 mod statement;
 mod table;
-pub use model::walk as walk_node;
+pub use model::{has_random, walk as walk_node};
 
 use crate::diag::{Diagnostic, Severity};
 use crate::host::Host;
+use crate::run::calendar;
 use crate::source::{Ending, Known, PreprocessOptions, SourceMap, Span, predefined};
 use crate::syntax::Parser;
 use crate::syntax::ast::{StmtKind, Switches};
-use node::{Code, EquationDef, Part, Slot, SymbolId};
+use node::{Code, DataFunction, EquationDef, Part, Slot, SymbolId};
 use symbols::{DomainPosition, Store, Symbol, SymbolKind, Symbols, UNIVERSE};
 
 /// An error was reported; there is nothing more to say.
@@ -80,6 +81,8 @@ pub(crate) struct Compiler {
     scope: Vec<(SymbolId, Vec<Part>)>,
     /// The file that `$gdxIn` named.
     input: Option<(String, Span)>,
+    /// The file that `$gdxOut` named, and what `$unload` asked for.
+    output: Option<(String, Span, Vec<exchange::Wanted>)>,
     next_slot: Slot,
     slots: usize,
     in_equation: bool,
@@ -114,11 +117,10 @@ pub fn compile(
         match next {
             Ok(None) => break,
             Ok(Some(stmt)) => {
-                if let StmtKind::Exchange(x) = &stmt.kind {
-                    let mut read = |name: &str, at| parser.read(name, at);
-                    if !matches!(c.load_now(x, stmt.span, &mut read), Ok(false)) {
-                        continue;
-                    }
+                if let StmtKind::Exchange(x) = &stmt.kind
+                    && !matches!(c.exchange_now(x, stmt.span, &mut parser), Ok(false))
+                {
+                    continue;
                 }
                 let mut one = Vec::new();
                 // What is wrong is not run, should `$clearError` let the rest run.
@@ -137,6 +139,9 @@ pub fn compile(
             ));
             break;
         }
+    }
+    if let Err(d) = c.finish_unload(&mut parser) {
+        c.report(d.as_error());
     }
     c.clear_errors(parser.cleared_errors());
     c.store.refresh_universe();
@@ -182,6 +187,7 @@ impl Compiler {
             diagnostics: Vec::new(),
             scope: Vec::new(),
             input: None,
+            output: None,
             next_slot: 0,
             slots: 0,
             in_equation: false,
@@ -259,7 +265,7 @@ impl Compiler {
             SymbolKind::Variable(_) | SymbolKind::Equation(_) => Diagnostic::error(
                 "E0319",
                 span,
-                format!("the {kind} `{name}` has no level yet"),
+                format!("the {kind} `{name}` has no values yet"),
             )
             .label("nothing was solved or assigned above")
             .other(declared, "declared here")
@@ -328,6 +334,17 @@ impl Known for Compiler {
 
     fn is_function(&self, name: &str) -> bool {
         functions::callee(&name.to_lowercase()).is_some()
+    }
+
+    fn date(&self, function: &str, arguments: &[f64]) -> Option<f64> {
+        let (functions::Callee::Data(f), ..) = functions::callee(function)? else {
+            return None;
+        };
+        match (f, arguments) {
+            (DataFunction::JDate, &[year, month, day]) => calendar::jdate(year, month, day),
+            (_, &[day]) => calendar::part(f, day),
+            _ => None,
+        }
     }
 
     fn kind(&self, name: &str) -> Option<&'static str> {

@@ -53,7 +53,8 @@ impl Compiler {
         }
         let items = info.items.clone().unwrap_or_default();
         let mut rows: Vec<ModelRow> = Vec::new();
-        self.collect(&items, &mut rows, 0)?;
+        let mut limits = Vec::new();
+        self.collect(&items, &mut rows, &mut limits, 0)?;
         rows.sort_by_key(|r| self.equations[r.definition].symbol);
         if rows.is_empty() {
             return self.fail(
@@ -101,16 +102,7 @@ impl Compiler {
         if failed {
             return Err(Failed);
         }
-        // After a solve, levels and marginals are there.
-        let ids: Vec<SymbolId> = self
-            .symbols
-            .iter()
-            .filter(|(_, s)| matches!(s.kind, SymbolKind::Variable(_) | SymbolKind::Equation(_)))
-            .map(|(i, _)| i)
-            .collect();
-        for i in ids {
-            self.symbols.get_mut(i).assigned = true;
-        }
+        self.solved(&rows);
         let scenario = match &s.scenario {
             Some(name) => Some(self.dictionary(name)?),
             None => None,
@@ -123,10 +115,28 @@ impl Compiler {
         Ok(CodeKind::Solve(Box::new(SolveCode {
             model,
             equations: rows,
+            limits,
             using,
             objective,
             scenario,
         })))
+    }
+
+    /// After a solve, levels and marginals are there: of the equations and of what stands in them.
+    fn solved(&mut self, rows: &[ModelRow]) {
+        let symbols = &mut self.symbols;
+        for r in rows {
+            let e = &self.equations[r.definition];
+            let named = [e.symbol].into_iter().chain(r.pair);
+            named.for_each(|s| symbols.get_mut(s).assigned = true);
+            for side in [&e.left, &e.right] {
+                walk(side, &mut |n| {
+                    if let NodeKind::Var(v, _) = n.kind {
+                        symbols.get_mut(v).assigned = true;
+                    }
+                });
+            }
+        }
     }
 
     /// The set behind `scenario`; the parameters it names get values in the solve.
@@ -152,11 +162,12 @@ impl Compiler {
         Ok(s)
     }
 
-    /// Rows of a list of model items, in order.
+    /// Rows of a list of model items, in order, and the sets that limit variables.
     fn collect(
         &mut self,
         items: &[ModelItem],
         rows: &mut Vec<ModelRow>,
+        limits: &mut Vec<(SymbolId, SymbolId)>,
         depth: usize,
     ) -> Result<(), Failed> {
         if depth > 50 {
@@ -165,7 +176,6 @@ impl Compiler {
         let add = |c: &mut Self,
                    e: SymbolId,
                    pair: Option<SymbolId>,
-                   restrict: Option<SymbolId>,
                    at: Span,
                    rows: &mut Vec<ModelRow>| {
             let SymbolKind::Equation(defined) = c.symbols.get(e).kind else {
@@ -199,7 +209,6 @@ impl Compiler {
                     None => rows.push(ModelRow {
                         definition,
                         pair,
-                        restrict,
                         span: at,
                     }),
                 },
@@ -211,21 +220,23 @@ impl Compiler {
             match item {
                 // Declarations have put the equations in its place.
                 ModelItem::All(_) => {}
-                ModelItem::Add(name, sub) => {
+                ModelItem::Limit(variable, sets) => {
+                    let v = self.lookup(variable)?;
+                    for s in sets {
+                        limits.push((v, self.lookup_set(s)?));
+                    }
+                }
+                ModelItem::Add(name) => {
                     let Ok(id) = self.lookup(name) else {
                         failed = true;
                         continue;
                     };
-                    let restrict = match sub.as_deref() {
-                        Some([one]) => Some(self.lookup_set(one)?),
-                        _ => None,
-                    };
                     match self.symbols.get(id).kind.clone() {
                         SymbolKind::Model(m) => {
                             let inner = m.items.clone().unwrap_or_default();
-                            failed |= self.collect(&inner, rows, depth + 1).is_err();
+                            failed |= self.collect(&inner, rows, limits, depth + 1).is_err();
                         }
-                        _ => failed |= add(self, id, None, restrict, name.span, rows).is_err(),
+                        _ => failed |= add(self, id, None, name.span, rows).is_err(),
                     }
                 }
                 ModelItem::Remove(name) => {
@@ -234,7 +245,7 @@ impl Compiler {
                         SymbolKind::Model(m) => {
                             let mut gone = Vec::new();
                             let inner = m.items.clone().unwrap_or_default();
-                            self.collect(&inner, &mut gone, depth + 1)?;
+                            self.collect(&inner, &mut gone, &mut Vec::new(), depth + 1)?;
                             rows.retain(|r| !gone.iter().any(|g| g.definition == r.definition));
                         }
                         SymbolKind::Equation(Some(d)) => rows.retain(|r| r.definition != d),
@@ -248,8 +259,7 @@ impl Compiler {
                     let v = self.lookup(column)?;
                     for n in names {
                         let e = self.lookup(n)?;
-                        failed |=
-                            add(self, e, Some(v), None, n.span.to(column.span), rows).is_err();
+                        failed |= add(self, e, Some(v), n.span.to(column.span), rows).is_err();
                     }
                 }
             }
@@ -610,10 +620,32 @@ pub fn walk<'a>(n: &'a Node, f: &mut dyn FnMut(&'a Node)) {
     each_child(n, &mut |c| walk(c, f));
 }
 
-fn mentions(n: &Node, v: SymbolId) -> bool {
+pub(super) fn mentions(n: &Node, v: SymbolId) -> bool {
     let mut hit = false;
     walk(n, &mut |x| {
         hit |= matches!(&x.kind, NodeKind::Var(s, _) if *s == v)
+    });
+    hit
+}
+
+/// Whether evaluating draws random numbers: then order and number of evaluations matter.
+pub fn has_random(n: &Node) -> bool {
+    use DataFunction as D;
+    let mut hit = false;
+    walk(n, &mut |x| {
+        hit |= matches!(
+            &x.kind,
+            NodeKind::DataCall(
+                D::Uniform
+                    | D::UniformInt
+                    | D::Normal
+                    | D::RandBinomial
+                    | D::RandLinear
+                    | D::RandTriangle
+                    | D::ExecSeed,
+                _
+            )
+        );
     });
     hit
 }

@@ -313,6 +313,8 @@ pub struct SolveCode {
     pub model: SymbolId,
     /// Its equations at this place of the text, and pairs.
     pub equations: Vec<ModelRow>,
+    /// Variables that have only the columns whose labels are in a set.
+    pub limits: Vec<(SymbolId, SymbolId)>,
     /// Problem type, lower case.
     pub using: &'static str,
     /// Direction and objective variable.
@@ -328,8 +330,6 @@ pub struct ModelRow {
     pub definition: usize,
     /// The variable it is paired with.
     pub pair: Option<SymbolId>,
-    /// Only the rows whose label is in these sets.
-    pub restrict: Option<SymbolId>,
     /// Where the model names it.
     pub span: Span,
 }

@@ -99,6 +99,19 @@ const OPTIONS: &[&str] = &[
     "sys19",
 ];
 
+/// Options without a value.
+const FLAGS: &[&str] = &[
+    "dmpopt",
+    "dmpsym",
+    "dmpusersym",
+    "eject",
+    "measure",
+    "memorystat",
+    "shut",
+    "stat",
+    "subsystems",
+];
+
 /// Options whose value is a whole number.
 const WHOLE: &[&str] = &["decimals", "domlim", "iterlim", "limcol", "limrow", "seed"];
 
@@ -182,12 +195,18 @@ impl Compiler {
                 Ok(Some(CodeKind::Option(lower.into(), value)))
             }
             OptionForm::Flag => {
-                if !OPTIONS.iter().any(|o| o.eq_ignore_ascii_case(&lower))
-                    && !matches!(lower.as_str(), "dmpsym" | "eject" | "shut" | "stat")
-                {
+                if FLAGS.contains(&lower.as_str()) {
+                    return Ok(None);
+                }
+                if !is_statement_option(&lower) {
                     return self.unknown_option(item);
                 }
-                Ok(None)
+                let message = format!("the option `{}` needs a value", item.name.name);
+                self.fail(
+                    Diagnostic::error("E0330", item.name.span, message)
+                        .label("no value")
+                        .help(format!("write `option {} = …;`", item.name.name)),
+                )
             }
         }
     }
@@ -249,7 +268,9 @@ impl Compiler {
             if position + dim > self.symbols.get(target).dim() {
                 return self.wrong_dimension(target, item.name.span, position + dim);
             }
-            self.fits(s, target, position, name.span)?;
+            if dim == 1 {
+                self.fits(s, target, position, name.span)?;
+            }
             position += dim;
         }
         if position != self.symbols.get(target).dim() {

@@ -72,7 +72,7 @@ impl Compiler {
                         }
                         (_, None) => None,
                     };
-                    if matches!(attr, None | Some("L" | "M")) {
+                    if attr.is_none() || symbol.has_attributes() {
                         self.used(s, r.span);
                     }
                     out.push(Shown::Symbol(s, attr));

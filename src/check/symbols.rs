@@ -251,6 +251,16 @@ impl Symbols {
         }
     }
 
+    /// Names of the index sets of a symbol.
+    pub fn domain_names(&self, symbol: &Symbol) -> Vec<String> {
+        let name = |d: &DomainPosition| match d {
+            DomainPosition::Universe => "*".to_string(),
+            DomainPosition::Set(i) => self.get(*i).name.to_string(),
+            DomainPosition::Relaxed(n) => n.to_string(),
+        };
+        symbol.domain.iter().map(name).collect()
+    }
+
     /// Whether every member of set `a` is a member of `b`, by their declarations.
     pub fn is_subset(&self, a: SymbolId, b: SymbolId) -> bool {
         let b = self.root(b);

@@ -573,25 +573,3 @@ fn tidy_records(r: &mut Records, d: usize) {
     }
     *r = Records { keys, values };
 }
-
-/// Whether evaluating draws random numbers: then order and number of evaluations matter.
-pub(super) fn has_random(n: &Node) -> bool {
-    use DataFunction as D;
-    let mut hit = false;
-    crate::check::walk_node(n, &mut |x| {
-        hit |= matches!(
-            &x.kind,
-            NodeKind::DataCall(
-                D::Uniform
-                    | D::UniformInt
-                    | D::Normal
-                    | D::RandBinomial
-                    | D::RandLinear
-                    | D::RandTriangle
-                    | D::ExecSeed,
-                _
-            )
-        );
-    });
-    hit
-}

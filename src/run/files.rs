@@ -24,10 +24,10 @@ impl Machine<'_> {
         }
     }
 
-    /// Writes what `$echo` said while the text was read. A name outside the output folder is passed over: the
+    /// Writes what `$echo` and `$unload` said while the text was read. A name outside the output folder is passed over: the
     /// run itself finds the text without it.
-    pub(super) fn write_echoed(&mut self) {
-        let files: Vec<_> = self.map.echoed.values().cloned().collect();
+    pub(super) fn write_early_files(&mut self) {
+        let files: Vec<_> = self.map.written.values().cloned().collect();
         for (name, text) in files.iter().filter(|f| !f.0.is_empty()) {
             let written = self.host().write(name, text.as_bytes());
             if let Ok(path) = written {
@@ -36,11 +36,11 @@ impl Machine<'_> {
         }
     }
 
-    /// Whether there is such a file: written by `$echo`, or one that may be read.
+    /// Whether there is such a file: written by this run, or one that may be read.
     pub(super) fn file_exists(&self, name: &str, span: Span) -> bool {
         let from = self.map.place(span);
         let from = from.map(|p| self.map.file(p.file).name.clone());
-        self.map.echoed(name).is_some()
+        self.map.written(name).is_some()
             || self
                 .host()
                 .exists(name, from.as_deref().map(std::path::Path::new))
@@ -48,7 +48,7 @@ impl Machine<'_> {
 
     /// Reads a text; a diagnostic if that is not possible.
     pub(super) fn read_file(&mut self, name: &str, span: Span) -> Result<String, Box<Diagnostic>> {
-        if let Some(text) = self.map.echoed(name) {
+        if let Some(text) = self.map.written(name) {
             return Ok(text.to_owned());
         }
         let from = self

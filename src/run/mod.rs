@@ -5,11 +5,11 @@
 //! the next solve is refused and ends it.
 
 pub mod arithmetic;
+pub mod calendar;
 pub mod plan;
 pub mod random;
 
 mod attributes;
-mod calendar;
 mod constant;
 mod draw;
 mod eval;
@@ -82,7 +82,7 @@ pub struct Machine<'h> {
     kept: Vec<solve::KeptSolve>,
     /// Files of `put`.
     pub put: options::PutState,
-    /// Files of `$load` and `$unload`.
+    /// Files that data go to and come from.
     transfer: exchange::ExchangeState,
     host: RefCell<&'h mut dyn Host>,
     random: RefCell<Random>,
@@ -153,10 +153,9 @@ impl<'h> Machine<'h> {
     /// Runs all statements.
     pub fn run(&mut self, code: &[Code]) -> Flow {
         let mut frame = vec![0; self.slots];
-        self.write_echoed();
+        self.write_early_files();
         let flow = self.block(code, &mut frame);
         self.close_put_files();
-        self.finish_unload();
         flow
     }
 

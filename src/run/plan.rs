@@ -10,8 +10,8 @@
 //! label order ([`Branch::ordered`], or sorted after).
 
 use super::Machine;
-use super::exec::has_random;
 use super::support::{Analysis, Premise, Sparse, product};
+use crate::check::has_random;
 use crate::check::node::*;
 use crate::check::symbols::DomainPosition;
 use crate::data::sort::sort_tuples;

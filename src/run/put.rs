@@ -128,7 +128,8 @@ impl Machine<'_> {
                 f.closed.clear();
             } else if f.closed.is_empty() {
                 let name = f.name.as_deref().unwrap_or(declared);
-                f.closed.push_str(self.map.echoed(name).unwrap_or_default());
+                f.closed
+                    .push_str(self.map.written(name).unwrap_or_default());
             }
             f.text.reopen();
             f.open = true;

@@ -4,7 +4,7 @@ use super::Machine;
 use super::eval::derived_value;
 use crate::check::node::{Derived, Shown, SymbolId};
 use crate::check::output::shown_offset;
-use crate::check::symbols::{DomainPosition, Symbol, SymbolKind, attribute};
+use crate::check::symbols::{SymbolKind, attribute};
 use crate::data::table::Table;
 use crate::report::display::{self, Cells, Layout, Numbers, Sheet};
 use crate::report::json::{Display, Number};
@@ -176,7 +176,7 @@ impl Machine<'_> {
                     (labels, Number(v))
                 })
                 .collect();
-            let domain = self.domain_names(self.symbols.get(root));
+            let domain = self.symbols.domain_names(self.symbols.get(root));
             let display = Display::Indexed {
                 line: page.line,
                 symbol: short,
@@ -196,16 +196,6 @@ impl Machine<'_> {
                 value: Number(value),
             });
         }
-    }
-
-    /// Names of the index sets of a symbol.
-    pub(super) fn domain_names(&self, symbol: &Symbol) -> Vec<String> {
-        let name = |d: &DomainPosition| match d {
-            DomainPosition::Universe => "*".to_string(),
-            DomainPosition::Set(i) => self.symbols.get(*i).name.to_string(),
-            DomainPosition::Relaxed(n) => n.to_string(),
-        };
-        symbol.domain.iter().map(name).collect()
     }
 
     /// How the numbers of a symbol look: with its own decimals, or the option's.
@@ -362,6 +352,12 @@ fn spelled(attr: &str) -> Cow<'static, str> {
         "JustScrDir",
         "TryLinear",
         "Reform",
+        "RequestMarginals",
+        "NumVarProj",
+        "ResCalc",
+        "RObj",
+        "SysIdent",
+        "SysVer",
         "Case",
     ];
     match KNOWN.iter().find(|k| k.eq_ignore_ascii_case(attr)) {

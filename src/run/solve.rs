@@ -421,6 +421,9 @@ impl Machine<'_> {
             ),
             ("meaninfes", if count > 0.0 { sum / count } else { 0.0 }),
             ("numnopt", 0.0),
+            ("numredef", 0.0),
+            ("numvarproj", 0.0),
+            ("trylinear", 0.0),
             ("numdepnd", 0.0),
             (
                 "numdvar",

@@ -11,9 +11,9 @@
 //!
 //! What is said of an expression can change with the data: [`Premise`]s tell when.
 
-use super::exec::has_random;
 use super::{Machine, arithmetic};
 use crate::autodiff::functions::function_value;
+use crate::check::has_random;
 use crate::check::node::*;
 use crate::check::symbols::DomainPosition;
 use crate::model::instance::Function;
@@ -164,6 +164,8 @@ impl<'m, 'h> Analysis<'m, 'h> {
                     (None, None) => None,
                 }
             }
+            // Both sides are evaluated: random numbers are drawn for every tuple.
+            NodeKind::Binary(BinaryOp::And, ..) if has_random(n) => None,
             NodeKind::Binary(BinaryOp::And, a, b) => self.both(n, a, b),
             NodeKind::Binary(BinaryOp::Power, a, b) => {
                 self.call(Function::RPower, &[(symbolic, a), (symbolic, b)])

@@ -113,7 +113,7 @@ impl Preprocessor<'_> {
     /// Remembers what `$echo` writes: a later `$include`, and the run, may read it; the run writes it.
     pub(super) fn echo(&mut self, file: &str, text: &str, append: bool) {
         let name = file.trim();
-        let files = &mut self.map.echoed;
+        let files = &mut self.map.written;
         let (spelled, entry) = files.entry(name.to_lowercase()).or_default();
         if spelled.is_empty() {
             *spelled = name.to_owned();

@@ -123,7 +123,7 @@ impl Preprocessor<'_> {
             "exist" | "readable" => {
                 let (name, n) = term(after, false);
                 let from = self.frames.last().map(|f| f.path.clone());
-                let found = self.map.echoed(name).is_some()
+                let found = self.map.written(name).is_some()
                     || !name.is_empty() && self.host.exists(name, from.as_deref());
                 Some(Ok((found, len + n)))
             }

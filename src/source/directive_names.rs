@@ -153,6 +153,8 @@ pub(super) const OTHERS: &[&str] = &[
     "execute",
     "gdxin",
     "gdxout",
+    "gdxload",
+    "gdxunload",
     "load",
     "loaddc",
     "loadm",

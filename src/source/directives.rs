@@ -436,8 +436,9 @@ impl Preprocessor<'_> {
                         .help("write the computation in the language itself"),
                 );
             }
-            "gdxin" | "gdxout" | "load" | "loaddc" | "loadm" | "loadr" | "loaddcm" | "loaddcr"
-            | "loadfiltered" | "loadidx" | "unload" | "kill" | "clear" => {
+            "gdxin" | "gdxout" | "gdxload" | "gdxunload" | "load" | "loaddc" | "loadm"
+            | "loadr" | "loaddcm" | "loaddcr" | "loadfiltered" | "loadidx" | "unload" | "kill"
+            | "clear" => {
                 // The parser reads these; the line goes into the text as a statement.
                 let line = line.clone();
                 let end = line.text.len();

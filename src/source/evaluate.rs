@@ -367,6 +367,7 @@ impl<'a> Evaluator<'a> {
         self.depth -= 1;
         self.close(open)?;
         function(&lower, &args)
+            .or_else(|| self.known.date(&lower, &args))
             .ok_or_else(|| format!("`{name}` with {} argument(s) is not known here", args.len()))
     }
 }

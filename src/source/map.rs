@@ -49,17 +49,23 @@ pub struct SourceMap {
     segments: Vec<Segment>,
     /// From which byte of the expanded text on how many lines a listing counts more than the file.
     listing: Vec<(u32, i64)>,
-    /// Files that `$echo` and `$onEcho` wrote, by lower-case name: their names as spelled, and texts.
-    pub(crate) echoed: BTreeMap<String, (String, String)>,
+    /// Files that the run has written, `$echo` and `$unload` first, by lower-case name: their names as spelled, and texts.
+    pub(crate) written: BTreeMap<String, (String, String)>,
     /// What `$title` said last.
     pub(crate) title: Option<String>,
 }
 
 impl SourceMap {
-    /// The text of a file that `$echo` wrote.
-    pub fn echoed(&self, name: &str) -> Option<&str> {
-        let found = self.echoed.get(&name.to_lowercase());
+    /// The text of a file that the run has written.
+    pub fn written(&self, name: &str) -> Option<&str> {
+        let found = self.written.get(&name.to_lowercase());
         found.map(|(_, text)| text.as_str())
+    }
+
+    /// Keeps a text that the run writes: it may be read again.
+    pub fn remember(&mut self, name: &str, text: String) {
+        let file = self.written.entry(name.to_lowercase()).or_default();
+        *file = (name.to_owned(), text);
     }
 
     /// Adds a file.

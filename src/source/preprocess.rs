@@ -63,6 +63,10 @@ pub trait Known {
     fn is_function(&self, _name: &str) -> bool {
         false
     }
+    /// A day number, or a part of one: `jdate(2012,3,1)`, `gdow(d)`.
+    fn date(&self, _function: &str, _arguments: &[f64]) -> Option<f64> {
+        None
+    }
     /// Errors reported so far, cleared or not.
     fn errors(&self) -> usize {
         0
@@ -347,7 +351,7 @@ impl<'h> Preprocessor<'h> {
             .is_none()
             .then(|| format!("{name}.gms"));
         let names = || [Some(name), longer.as_deref()].into_iter().flatten();
-        if let Some(text) = names().find_map(|n| self.map.echoed(n)) {
+        if let Some(text) = names().find_map(|n| self.map.written(n)) {
             let text = text.to_owned();
             self.open(PathBuf::from(name), name, text, arguments, asked);
             return Ok(());
@@ -389,7 +393,7 @@ impl<'h> Preprocessor<'h> {
 
     /// The text of a data file, looked for beside the file that asks for it.
     pub(crate) fn read(&mut self, name: &str, at: Span) -> Result<String, Box<Diagnostic>> {
-        if let Some(text) = self.map.echoed(name) {
+        if let Some(text) = self.map.written(name) {
             return Ok(text.to_owned());
         }
         let asking = self

@@ -274,8 +274,10 @@ pub struct ModelDecl {
 pub enum ModelItem {
     /// `all`.
     All(Span),
-    /// An equation or another model, perhaps with a restricted domain `e(sub)`.
-    Add(Ident, Option<Vec<Ident>>),
+    /// An equation or another model.
+    Add(Ident),
+    /// `x(s)`: the columns of a variable are those whose labels are in a set.
+    Limit(Ident, Vec<Ident>),
     /// `- e` or `- m`.
     Remove(Ident),
     /// `f.x`, `(f|g).x`, `(f,g):x`.

@@ -218,6 +218,11 @@ impl<'h> Parser<'h> {
         self.text.read(name, at)
     }
 
+    /// Keeps a text that the run writes; what follows may read it.
+    pub fn remember(&mut self, name: &str, text: String) {
+        self.text.map.remember(name, text);
+    }
+
     /// The files and the expanded text so far.
     pub fn map(&self) -> &SourceMap {
         &self.text.map

@@ -86,6 +86,8 @@ struct Builder<'m, 'h> {
     options: GenerateOptions,
     maps: Vec<ColumnMap>,
     map_of: FxHashMap<SymbolId, usize>,
+    /// Sets that say which columns some variables have.
+    limits: FxHashMap<SymbolId, TableId>,
     columns: u32,
     instance: Instance,
     kernels: FxHashMap<Vec<Op>, usize>,
@@ -129,10 +131,11 @@ impl Machine<'_> {
             scan::domain(&e.domain, &mut scans);
             scan::expr(&e.left, true, &mut scans);
             scan::expr(&e.right, true, &mut scans);
-            if let Some(s) = r.restrict {
-                scans.push(self.symbols.get(s).table);
-            }
         }
+        let table = |s: SymbolId| self.symbols.get(self.symbols.root(s)).table;
+        let limits: FxHashMap<SymbolId, TableId> =
+            solve.limits.iter().map(|&(v, s)| (v, table(s))).collect();
+        scans.extend(limits.values());
         for t in scans {
             self.store.table_mut(t).tidy();
         }
@@ -141,6 +144,7 @@ impl Machine<'_> {
             options,
             maps: Vec::new(),
             map_of: FxHashMap::default(),
+            limits,
             columns: 0,
             instance: Instance::default(),
             kernels: FxHashMap::default(),
@@ -186,7 +190,6 @@ impl Builder<'_, '_> {
             dim,
             keys: Vec::new(),
         };
-        let restrict = item.restrict.map(|s| self.m.symbols.get(s).table);
         // Tuples first (in label order), then rows: the order of rows is what a person sees.
         let d = e.domain.slots.len();
         let errors = self.m.execution_error_count();
@@ -237,12 +240,6 @@ impl Builder<'_, '_> {
             }
             let mut key = [0; 20];
             if !self.m.key(&e.key, frame, &mut key) {
-                continue;
-            }
-            if let Some(t) = restrict
-                && self.m.store.table(t).dim() == dim
-                && self.m.store.table(t).find(&key[..dim]).is_none()
-            {
                 continue;
             }
             *self.m.current.borrow_mut() = Some((e.symbol, key[..dim].to_vec()));
@@ -325,7 +322,8 @@ impl Builder<'_, '_> {
         };
         let empty = !nonlinear && row.terms.iter().all(|t| t.1 == 0.0);
         let pair = pair.filter(|_| self.options.keep_paired);
-        if empty && pair.is_some_and(|v| self.fixed_at(v, key).is_some()) {
+        let decided = |v| self.fixed_at(v, key).is_some() || self.is_left_out(v, key);
+        if empty && pair.is_some_and(decided) {
             return;
         }
         if empty && pair.is_none() {
@@ -451,16 +449,25 @@ impl Builder<'_, '_> {
     }
 
     /// The column of a reference in the frame, or a constant when it is held fixed; None for a lag
-    /// that leaves its set.
+    /// that leaves its set, and for a column that the model leaves out.
     fn reference(&mut self, s: SymbolId, key: &Key, frame: &mut Frame) -> Option<Result<u32, f64>> {
         let mut k = [0; 20];
         if !self.m.key(key, frame, &mut k) {
             return None;
         }
         let k = &k[..key.parts.len()];
+        if self.is_left_out(s, k) {
+            return None;
+        }
         let hold = self.options.hold_fixed;
         let held = hold.then(|| self.fixed_at(s, k)).flatten();
         Some(held.map_or_else(|| Ok(self.column(s, k)), Err))
+    }
+
+    /// Whether the model limits a variable to a set that a key is not in.
+    fn is_left_out(&self, s: SymbolId, key: &[Label]) -> bool {
+        let limit = self.limits.get(&s).map(|&t| self.m.store.table(t));
+        limit.is_some_and(|t| t.find(key).is_none())
     }
 
     /// The value of a variable whose bounds are equal.

@@ -239,12 +239,11 @@ impl Builder<'_> {
                     let Some(name) = inner.next() else { continue };
                     let name = self.ident(&name);
                     let over = inner.next().map(|a| self.plain_names(a)).transpose()?;
-                    items.push(if minus {
-                        ModelItem::Remove(name)
-                    } else if name.name.eq_ignore_ascii_case("all") && over.is_none() {
-                        ModelItem::All(name.span)
-                    } else {
-                        ModelItem::Add(name, over)
+                    items.push(match over {
+                        _ if minus => ModelItem::Remove(name),
+                        Some(sets) => ModelItem::Limit(name, sets),
+                        None if name.name.eq_ignore_ascii_case("all") => ModelItem::All(name.span),
+                        None => ModelItem::Add(name),
                     });
                 }
                 Rule::model_group => {
@@ -254,7 +253,7 @@ impl Builder<'_> {
                             items.push(if minus {
                                 ModelItem::Remove(n)
                             } else {
-                                ModelItem::Add(n, None)
+                                ModelItem::Add(n)
                             });
                         }
                     }

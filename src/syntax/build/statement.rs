@@ -613,7 +613,7 @@ impl Builder<'_> {
         for p in inner {
             let span = self.span(&p);
             match p.as_rule() {
-                Rule::gdx_file => {
+                Rule::gdx_file | Rule::gdx_name => {
                     let t = p.as_str().trim();
                     let t = ['\'', '"']
                         .iter()

@@ -4,7 +4,7 @@ use super::{Declare, Hole, HoleKind, Splitter, span};
 use crate::diag::Diagnostic;
 use crate::source::{Span, quoted_end};
 use crate::syntax::constants::end_of_constant;
-use crate::syntax::words::{self, Class};
+use crate::syntax::words::{self, Class, Word};
 
 impl Splitter {
     pub(super) fn declaration(&mut self, text: &str) -> bool {
@@ -124,6 +124,11 @@ impl Splitter {
                         return true;
                     }
                     if self.declare == Declare::AfterText && !self.new_line && self.names > 0 {
+                        if let Some((body, next)) = self.swallowed_declaration(text) {
+                            self.unclosed_body(body, next);
+                            self.pos = next;
+                            return true;
+                        }
                         self.stray(
                             i,
                             end,
@@ -282,9 +287,7 @@ impl Splitter {
                     continue;
                 }
                 // A `;` in numbers, or before a keyword: the slash was forgotten.
-                if let Some(stop) = self.forgotten_slash(text, at) {
-                    self.unclosed_body(self.body_start, stop);
-                    self.pos = stop + 1;
+                if self.ends_unclosed(text, at) {
                     return true;
                 }
                 let body = span(self.body_start, at);
@@ -306,13 +309,32 @@ impl Splitter {
             }
             i = quoted_end(bytes, at).unwrap_or(at + 1);
         }
-        if let Some(stop) = self.forgotten_slash(text, i) {
-            self.unclosed_body(self.body_start, stop);
-            self.pos = stop + 1;
+        if self.ends_unclosed(text, i) {
             return true;
         }
         self.pos = i;
         false
+    }
+
+    /// Whether data are left behind that no slash closes: where the next statement begins, or at its `;`.
+    fn ends_unclosed(&mut self, text: &str, to: usize) -> bool {
+        let Some(stop) = self.forgotten_slash(text, to) else {
+            return false;
+        };
+        self.unclosed_body(self.body_start, stop);
+        self.pos = next_declaration(text, self.body_start, stop).unwrap_or(stop + 1);
+        true
+    }
+
+    /// Data whose slash was forgotten, and the declaration whose slash was taken for it.
+    fn swallowed_declaration(&self, text: &str) -> Option<(usize, usize)> {
+        let data = self
+            .holes
+            .last()
+            .filter(|h| h.kind == HoleKind::Body)?
+            .inside;
+        let (from, to) = (data.lo as usize, data.hi as usize);
+        Some((from, next_declaration(text, from, to)?))
     }
 
     /// The `;` that ends the statement inside data, if one does.
@@ -430,6 +452,19 @@ fn unclosed_quote(at: usize) -> Diagnostic {
 }
 
 /// A quote that begins a file's name and does not end it.
+/// The first line that begins a declaration: with its keyword, and a name behind.
+fn next_declaration(text: &str, from: usize, to: usize) -> Option<usize> {
+    let bytes = text.as_bytes();
+    let ends = memchr::memchr_iter(b'\n', &bytes[from..to]).map(|n| from + n + 1);
+    ends.map(|line| line + text[line..to].len() - text[line..to].trim_start().len())
+        .find(|&at| {
+            let end = words::word_end(bytes, at);
+            let name = text[end..].trim_start_matches([' ', '\t']);
+            words::statement_word(text, at, end) == Some(Word::Declaration)
+                && name.starts_with(|c: char| c.is_alphabetic())
+        })
+}
+
 fn lone_quote(name: &str) -> Option<usize> {
     let inside = name.trim();
     let quote = inside.chars().next().filter(|c| matches!(c, '\'' | '"'))?;

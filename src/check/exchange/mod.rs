@@ -1,23 +1,31 @@
-//! Data that a model loads from files in open formats: `$load` while the text is read, so that what
-//! follows sees the data, `execute_load` in the run.
+//! Data that a model exchanges in open formats: `$load` and `$unload` while the text is read, so that what
+//! follows sees the data, `execute_load` and `execute_unload` in the run.
+//!
+//! The file's ending says the format: `.csv` (one symbol, or many with a column `symbol`), `.json`; a
+//! name that ends in `/` is a folder with a CSV file per symbol. `docs/data-exchange.md` describes them.
 //!
 //! Invariant: a load changes all of its symbols or, with a diagnostic, nothing.
 
 mod csv;
 mod json;
 mod records;
+mod write;
 
 use super::node::SymbolId;
 use super::symbols::{Store, SymbolKind, Symbols, attribute};
 use super::{Compiler, Failed};
 use crate::data::value::{EPS, NA, UNDF};
-use crate::diag::{Diagnostic, Severity, nearest};
-use crate::source::Span;
+use crate::diag::{Diagnostic, nearest};
+use crate::source::{SourceMap, Span};
+use crate::syntax::Parser;
 use crate::syntax::ast::{Exchange, Ident};
 use records::Loading;
 
 /// A diagnostic; boxed, because it is large and rare.
 pub type Loaded<T> = Result<T, Box<Diagnostic>>;
+
+/// Files to write: names and texts.
+pub type Files = Vec<(String, String)>;
 
 /// The text of a file.
 pub type Read<'a> = &'a mut dyn FnMut(&str, Span) -> Loaded<String>;
@@ -229,41 +237,103 @@ pub fn load(
     Ok(())
 }
 
+/// The files that hold these symbols: names and texts. A warning says where another name was asked for.
+pub fn unload(
+    symbols: &Symbols,
+    store: &mut Store,
+    file: &str,
+    items: &[Wanted],
+    span: Span,
+) -> Loaded<(Files, Option<Diagnostic>)> {
+    let instead = instead_of_gdx(file);
+    let warning = instead.as_ref().map(|other| {
+        Diagnostic::warning(
+            "E0476",
+            span,
+            format!("`{other}` is written in place of the GDX file `{file}`"),
+        )
+        .label("GDX is GAMS's own binary format")
+        .help("name a file that ends in `.csv` or `.json` to choose the format")
+    });
+    let file = instead.as_deref().unwrap_or(file);
+    let kind = format_of(file, span)?;
+    let everything = match items.is_empty() {
+        true => everything(symbols, span),
+        false => Vec::new(),
+    };
+    let items = if items.is_empty() { &everything } else { items };
+    Ok((write::files(symbols, store, kind, file, items), warning))
+}
+
+/// All symbols with data, in order of declaration.
+fn everything(symbols: &Symbols, span: Span) -> Vec<Wanted> {
+    let listed = |k: &SymbolKind| has_data(k) && !matches!(k, SymbolKind::Alias(_));
+    let all = symbols.iter().skip(1).filter(|(_, s)| listed(&s.kind));
+    all.map(|(symbol, s)| Wanted {
+        symbol,
+        name: s.name.to_string(),
+        span,
+    })
+    .collect()
+}
+
+/// The name of a file to load: what the run has written is found by the name that was asked for.
+pub fn file_to_load(map: &SourceMap, file: &str) -> String {
+    instead_of_gdx(file)
+        .filter(|f| map.written(f).is_some())
+        .unwrap_or_else(|| file.to_string())
+}
+
+/// What a model writes for GAMS as `results.gdx`, or without an ending, is `results.json` here.
+fn instead_of_gdx(file: &str) -> Option<String> {
+    let path = std::path::Path::new(file);
+    let gdx = path
+        .extension()
+        .is_none_or(|e| e.eq_ignore_ascii_case("gdx"));
+    (gdx && !file.ends_with('/')).then(|| path.with_extension("json").to_string_lossy().into())
+}
+
 impl Compiler {
-    /// `$gdxIn` and `$load` act while the text is read. False if it is another statement.
-    pub(super) fn load_now(
+    /// `$gdxIn`, `$load`, `$gdxOut` and `$unload` act while the text is read. False if it is another statement.
+    pub(super) fn exchange_now(
         &mut self,
         x: &Exchange,
         span: Span,
-        read: Read<'_>,
+        parser: &mut Parser,
     ) -> Result<bool, Failed> {
-        match &*x.keyword.name {
+        let done = match &*x.keyword.name {
             "gdxin" => {
                 self.input = x.file.as_ref().map(|(f, s)| (f.to_string(), *s));
-                return Ok(true);
+                Ok(())
             }
-            k if k.starts_with("load") => {}
+            "gdxout" => {
+                let before = self.finish_unload(parser);
+                let file = x.file.as_ref();
+                self.output = file.map(|(f, s)| (f.to_string(), *s, Vec::new()));
+                before
+            }
+            "unload" => self.unload_listed(x, span),
+            "gdxunload" => self
+                .unload_listed(x, span)
+                .and_then(|()| self.finish_unload(parser)),
+            k if k.starts_with("load") || k == "gdxload" => self.load_listed(x, span, parser),
             _ => return Ok(false),
-        }
-        match self.load_listed(x, span, read) {
-            Ok(()) => Ok(true),
-            Err(mut d) => {
-                // One mistake, one message: what should have come is not missed again.
-                for (name, _) in &x.items {
-                    if let Some(s) = self.symbols.find(&name.name) {
-                        let root = self.symbols.root(s);
-                        self.symbols.get_mut(root).assigned = true;
-                    }
-                }
-                d.severity = Severity::Error;
-                self.fail(*d)
+        };
+        let Err(d) = done else { return Ok(true) };
+        // One mistake, one message: what should have come is not missed again.
+        for (name, _) in &x.items {
+            if let Some(s) = self.symbols.find(&name.name) {
+                let root = self.symbols.root(s);
+                self.symbols.get_mut(root).assigned = true;
             }
         }
+        self.fail(d.as_error())
     }
 
-    fn load_listed(&mut self, x: &Exchange, span: Span, read: Read<'_>) -> Loaded<()> {
+    fn load_listed(&mut self, x: &Exchange, span: Span, parser: &mut Parser) -> Loaded<()> {
         let items = wanted(&self.symbols, &x.items)?;
-        let Some((file, at)) = self.input.clone() else {
+        let named = x.file.as_ref().map(|(f, s)| (f.to_string(), *s));
+        let Some((file, at)) = named.or_else(|| self.input.clone()) else {
             return Err(no_file(span, "$gdxIn 'data.csv'"));
         };
         // `$load` alone lists a file in GAMS; there is nothing to do.
@@ -271,13 +341,41 @@ impl Compiler {
             return Ok(());
         }
         let request = Request {
-            file: &file,
+            file: &file_to_load(parser.map(), &file),
             at,
             items: &items,
             point: false,
             span,
         };
-        load(&mut self.symbols, &mut self.store, &request, read)
+        let mut read = |name: &str, at| parser.read(name, at);
+        load(&mut self.symbols, &mut self.store, &request, &mut read)
+    }
+
+    /// `$unload`: what it lists is written at the next `$gdxOut`; alone it lists everything.
+    fn unload_listed(&mut self, x: &Exchange, span: Span) -> Loaded<()> {
+        let mut items = wanted(&self.symbols, &x.items)?;
+        if items.is_empty() {
+            items = everything(&self.symbols, span);
+        }
+        match (&mut self.output, &x.file) {
+            (output, Some((file, at))) => *output = Some((file.to_string(), *at, items)),
+            (Some((_, _, listed)), None) => listed.extend(items),
+            (None, None) => return Err(no_file(span, "$gdxOut 'results.json'")),
+        }
+        Ok(())
+    }
+
+    /// Keeps what `$unload` collected: the run writes it, and what follows may load it.
+    pub(super) fn finish_unload(&mut self, parser: &mut Parser) -> Loaded<()> {
+        let Some((file, span, items)) = self.output.take().filter(|o| !o.2.is_empty()) else {
+            return Ok(());
+        };
+        let (files, warning) = unload(&self.symbols, &mut self.store, &file, &items, span)?;
+        warning.into_iter().for_each(|d| self.report(d));
+        for (name, text) in files {
+            parser.remember(&name, text);
+        }
+        Ok(())
     }
 }
 

@@ -1,11 +1,44 @@
 //! Writing CSV and JSON.
 
-use super::special_name;
-use crate::check::load::{ATTRIBUTES, Wanted};
-use crate::check::symbols::{Symbol, SymbolKind, attribute};
+use super::{ATTRIBUTES, Files, Kind, Wanted};
+use crate::check::symbols::{Store, Symbol, SymbolKind, Symbols, attribute};
 use crate::data::universe::Label;
-use crate::run::Machine;
+use crate::data::value::{as_acronym, is_eps, is_na};
 use serde_json::{Map, Value, json};
+
+/// Names and texts of the files that hold these symbols: one, or one per symbol for a folder.
+pub fn files(
+    symbols: &Symbols,
+    store: &mut Store,
+    kind: Kind,
+    file: &str,
+    items: &[Wanted],
+) -> Files {
+    for w in items {
+        for (_, table) in parts(symbols.get(symbols.root(w.symbol))) {
+            store.table_mut(table).tidy();
+        }
+    }
+    let writer = Writer { symbols, store };
+    let one = |text| vec![(file.to_string(), text)];
+    match kind {
+        Kind::Csv => one(writer.csv(items)),
+        Kind::Json => one(writer.json(items)),
+        Kind::Folder => items
+            .iter()
+            .map(|w| {
+                let text = writer.csv(std::slice::from_ref(w));
+                (format!("{file}{}.csv", w.name), text)
+            })
+            .collect(),
+    }
+}
+
+/// What is written: the symbols and their data.
+struct Writer<'a> {
+    symbols: &'a Symbols,
+    store: &'a Store,
+}
 
 /// Tables of a symbol that a file holds: name of the attribute (none: the data itself) and table.
 fn parts(symbol: &Symbol) -> Vec<(&'static str, u32)> {
@@ -19,7 +52,7 @@ fn parts(symbol: &Symbol) -> Vec<(&'static str, u32)> {
     }
 }
 
-impl Machine<'_> {
+impl Writer<'_> {
     /// All keys that a symbol has records for, in label order.
     fn keys(&self, symbol: &Symbol) -> Vec<Vec<Label>> {
         let tables = parts(symbol);
@@ -44,13 +77,13 @@ impl Machine<'_> {
     }
 
     /// One symbol with its own columns, or several in one long table.
-    pub(super) fn csv_of(&self, items: &[Wanted]) -> String {
+    fn csv(&self, items: &[Wanted]) -> String {
         let mut out = csv::Writer::from_writer(Vec::new());
         // A vector takes everything: writing cannot fail.
         if let [one] = items {
             let symbol = self.symbols.get(self.symbols.root(one.symbol));
             let set = symbol.is_set();
-            let mut header = self.domain_names(symbol);
+            let mut header = self.symbols.domain_names(symbol);
             match parts(symbol).as_slice() {
                 [_] if set => header.push("text".into()),
                 [_] => header.push("value".into()),
@@ -145,7 +178,7 @@ impl Machine<'_> {
     }
 
     /// One object with a member per symbol, one record per line.
-    pub(super) fn json_of(&self, items: &[Wanted]) -> String {
+    fn json(&self, items: &[Wanted]) -> String {
         let mut out = String::from("{");
         for (n, w) in items.iter().enumerate() {
             let symbol = self.symbols.get(self.symbols.root(w.symbol));
@@ -176,7 +209,7 @@ impl Machine<'_> {
             }
             out.push_str(&format!(
                 "{{\"domain\": {}, \"records\": [",
-                json!(self.domain_names(symbol))
+                json!(self.symbols.domain_names(symbol))
             ));
             for (k, key) in self.keys(symbol).iter().enumerate() {
                 let labels: Vec<&str> = key.iter().map(|&l| self.store.universe.name(l)).collect();
@@ -187,5 +220,30 @@ impl Machine<'_> {
         }
         out.push_str("\n}\n");
         out
+    }
+
+    /// A value as files hold it.
+    fn value_text(&self, v: f64) -> String {
+        match special_name(v) {
+            Some(name) => name.to_string(),
+            None => match as_acronym(v).and_then(|a| self.store.acronyms.get(a as usize)) {
+                Some(name) => name.to_string(),
+                None if v == 0.0 || (1e-5..1e15).contains(&v.abs()) => v.to_string(),
+                None => format!("{v:e}"),
+            },
+        }
+    }
+}
+
+/// The name of a special value.
+fn special_name(v: f64) -> Option<&'static str> {
+    match v {
+        v if v.is_finite() => None,
+        f64::INFINITY => Some("+INF"),
+        f64::NEG_INFINITY => Some("-INF"),
+        v if is_eps(v) => Some("EPS"),
+        v if is_na(v) => Some("NA"),
+        v if as_acronym(v).is_some() => None,
+        _ => Some("UNDF"),
     }
 }
