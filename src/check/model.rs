@@ -56,6 +56,10 @@ impl Compiler {
         let mut limits = Vec::new();
         self.collect(&items, &mut rows, &mut limits, 0)?;
         rows.sort_by_key(|r| self.equations[r.definition].symbol);
+        // Its list was wrong: that was said.
+        if rows.is_empty() && info.items.is_none() && self.errors() > 0 {
+            return Err(Failed);
+        }
         if rows.is_empty() {
             return self.fail(
                 Diagnostic::error(

@@ -10,7 +10,7 @@ use super::evaluate::{evaluate, number_text};
 use super::line::Line;
 use super::preprocess::{Ending, Known, Preprocessor};
 use super::variables::Reach;
-use super::{Outcome, refuse};
+use super::{Outcome, embedded_code, refuse};
 use crate::diag::{Diagnostic, nearest};
 use crate::syntax::ast::Modes;
 
@@ -431,10 +431,7 @@ impl Preprocessor<'_> {
             "onembeddedcode" | "onembeddedcodes" | "onembeddedcodev" => {
                 let span = self.place(lo, hi);
                 self.skip_to("offembeddedcode");
-                return refuse(
-                    Diagnostic::error("E0113", span, "embedded code of other languages is not run")
-                        .help("write the computation in the language itself"),
-                );
+                return refuse(embedded_code(span));
             }
             "gdxin" | "gdxout" | "gdxload" | "gdxunload" | "load" | "loaddc" | "loadm"
             | "loadr" | "loaddcm" | "loaddcr" | "loadfiltered" | "loadidx" | "unload" | "kill"

@@ -22,17 +22,22 @@ mod variables;
 pub(crate) use conditions::predefined;
 pub(crate) use evaluate::constant;
 pub use map::{FileId, Place, SourceFile, SourceMap};
+pub(crate) use preprocess::{DELIMITED, Preprocessor, quoted_end};
 pub use preprocess::{Ending, Known, NothingKnown, PreprocessOptions, SymbolKindName};
-pub(crate) use preprocess::{Preprocessor, quoted_end};
 
 /// What reading a line gives; a diagnostic is boxed because it is large and rare.
-pub(crate) use preprocess::DELIMITED;
-
 pub(crate) type Outcome<T> = Result<T, Box<Diagnostic>>;
 
 /// A diagnostic as the outcome.
 pub(crate) fn refuse<T>(d: Diagnostic) -> Outcome<T> {
     Err(Box::new(d))
+}
+
+/// Code of another language in the model.
+pub(crate) fn embedded_code(at: Span) -> Diagnostic {
+    Diagnostic::error("E0113", at, "embedded code of other languages is not run")
+        .label("not run")
+        .help("write the computation in the language itself")
 }
 
 /// A range of bytes in the expanded text. `lo <= hi`; an empty span is a point.

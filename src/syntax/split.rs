@@ -16,7 +16,7 @@ mod declaration;
 
 use super::words::{self, Class, Word};
 use crate::diag::Diagnostic;
-use crate::source::Span;
+use crate::source::{Span, embedded_code};
 
 /// Parentheses and blocks inside each other.
 pub(super) const DEEPEST: usize = 250;
@@ -295,9 +295,33 @@ impl Splitter {
         self.last_end = end;
     }
 
+    /// `embeddedCode Python: … endEmbeddedCode p`: nothing between is looked at. None for other statements,
+    /// else whether the end is there.
+    fn embedded(&mut self, text: &str, start: usize) -> Option<bool> {
+        const BEGIN: &str = "embeddedcode";
+        const END: &str = "endembeddedcode";
+        let word = text.get(start..start + BEGIN.len())?;
+        if !word.eq_ignore_ascii_case(BEGIN) {
+            return None;
+        }
+        let inside = text[start..].to_ascii_lowercase();
+        let Some(end) = inside.find(END).map(|n| start + n + END.len()) else {
+            return Some(false);
+        };
+        let rest = memchr::memchr2(b';', b'\n', &text.as_bytes()[end..]);
+        self.pos = rest.map_or(text.len(), |n| end + n + 1);
+        self.last_end = self.pos;
+        self.problems
+            .push(embedded_code(span(start, start + BEGIN.len())));
+        Some(true)
+    }
+
     fn code(&mut self, text: &str, on_end: bool) -> bool {
         let bytes = text.as_bytes();
         let start = self.start.unwrap_or(0);
+        if let Some(ended) = self.embedded(text, start) {
+            return ended;
+        }
         let mut i = self.pos;
         while i < bytes.len() {
             let b = bytes[i];
