@@ -195,6 +195,7 @@ pub const OWN_OPTIONS: &[&str] = &[
     "mpec_nodes",
     "mpec_relaxation",
     "mpec_starts",
+    "mpec_swaps",
     "nlp_attempts",
     "nlp_search",
 ];

@@ -100,6 +100,15 @@ pub struct Clarabel;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DualSimplex;
 
+/// The simplex method from a basis that may be optimal: states of the instance's columns and rows. Where it
+/// leads nowhere, as [`Clarabel`].
+pub struct Restart {
+    /// A state for each column.
+    pub columns: Basis,
+    /// A state for each row.
+    pub rows: Basis,
+}
+
 /// How many digits are wanted, `option lp_accuracy`.
 #[derive(Clone, Copy, PartialEq, Debug)]
 enum Accuracy {
@@ -134,12 +143,13 @@ impl Accuracy {
 }
 
 /// Which way to go.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-enum Method {
+#[derive(Clone, Copy)]
+enum Method<'a> {
     Auto,
     Interior,
     Crossover,
     Simplex,
+    Restart(&'a Restart),
 }
 
 impl Solver for Clarabel {
@@ -175,6 +185,21 @@ impl Solver for DualSimplex {
         monitor: &mut dyn Monitor,
     ) -> Result<Outcome, SolveError> {
         solve(instance, settings, monitor, Method::Simplex)
+    }
+}
+
+impl Solver for Restart {
+    fn name(&self) -> &'static str {
+        "simplex"
+    }
+
+    fn solve(
+        &self,
+        instance: &Instance,
+        settings: &Settings,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Outcome, SolveError> {
+        solve(instance, settings, monitor, Method::Restart(self))
     }
 }
 
@@ -229,6 +254,12 @@ fn solve(
         (Method::Crossover, _) => finished(&scaled, accuracy, &limits, monitor),
         (Method::Simplex, _) => simplex_only(&scaled, accuracy, &limits, monitor),
         (Method::Auto, _) => auto(&scaled, accuracy, &limits, monitor),
+        (Method::Restart(from), _) => {
+            let columns = form.columns.iter().map(|&j| from.columns[j as usize]);
+            let rows = form.rows.iter().map(|&i| from.rows[i as usize]);
+            let basis = columns.chain(rows).collect();
+            restarted(&scaled, &basis, accuracy, &limits, monitor)
+        }
     };
     let (claim, status) = match answer.ended {
         Ended::Solved if answer.almost => (Claim::Unfinished, SolverStatus::TerminatedBySolver),
@@ -297,6 +328,28 @@ fn simplex_only(
     if ended == Ended::Solved {
         tighten(&mut simplex, accuracy, limits, monitor);
     }
+    simplex_answer(simplex, ended)
+}
+
+fn restarted(
+    p: &Problem,
+    basis: &Basis,
+    accuracy: Accuracy,
+    limits: &Limits,
+    monitor: &mut dyn Monitor,
+) -> Answer {
+    let cut = Limits {
+        iterations: limits.iterations.min((100 + p.m() + p.n()) as u64),
+        ..*limits
+    };
+    let mut simplex = Simplex::new(p);
+    let ended = simplex.solve_from_basis(basis, &mut watch(&cut, monitor));
+    if ended != Ended::Solved {
+        return auto(p, accuracy, limits, monitor);
+    }
+    let line = format!("simplex: solved after {} iterations", simplex.iterations);
+    limits.log(monitor, &line);
+    tighten(&mut simplex, accuracy, limits, monitor);
     simplex_answer(simplex, ended)
 }
 

@@ -29,8 +29,8 @@ mod swaps;
 mod tree;
 
 use super::answer::Answer;
-use super::lp::Ended;
-use super::{Claim, ModelStatus, Monitor, Outcome, Settings, SolveError, SolverStatus};
+use super::lp::{Clarabel, Ended, Restart};
+use super::{Claim, ModelStatus, Monitor, Outcome, Settings, SolveError, Solver, SolverStatus};
 use pairs::{Judged, Piece, Program};
 use relaxation::{Kind, Relaxed};
 use settings::{Method, Options};
@@ -158,7 +158,9 @@ impl Search<'_> {
                         self.relax(kind, &start)?;
                     }
                 }
-                self.explore(kind, &start)?;
+                if self.options.swaps {
+                    self.explore(kind, &start)?;
+                }
             }
         }
         self.finish()
@@ -223,9 +225,33 @@ impl Search<'_> {
         self.branch_within(pieces, start, u64::MAX)
     }
 
+    /// The same for a linear program whose optimal basis may be known.
+    fn branch_from(
+        &mut self,
+        basis: Option<Restart>,
+        pieces: Vec<Piece>,
+        start: &[f64],
+    ) -> Result<Option<Found>, SolveError> {
+        match &basis {
+            Some(basis) => self.branch_by(basis, pieces, start, u64::MAX),
+            None => self.branch(pieces, start),
+        }
+    }
+
     /// The same, in so many iterations.
     fn branch_within(
         &mut self,
+        pieces: Vec<Piece>,
+        start: &[f64],
+        most: u64,
+    ) -> Result<Option<Found>, SolveError> {
+        self.branch_by(&Clarabel, pieces, start, most)
+    }
+
+    /// The same, by a solver of its own if it is linear.
+    fn branch_by(
+        &mut self,
+        solver: &dyn Solver,
         pieces: Vec<Piece>,
         start: &[f64],
         most: u64,
@@ -238,7 +264,7 @@ impl Search<'_> {
             true => {
                 let mut settings = self.sub_settings(&[]);
                 settings.iteration_limit = settings.iteration_limit.min(most);
-                super::answer::linear(&super::lp::Clarabel, &instance, &settings, self.monitor)
+                super::answer::linear(solver, &instance, &settings, self.monitor)
             }
             false => {
                 let mut settings = self.program_settings(&[]);
@@ -600,12 +626,7 @@ impl Search<'_> {
         let settings = self.program_settings(&[("nlp_attempts", "all")]);
         let envelope = &self.program.envelope;
         let mut a = match envelope.is_linear() {
-            true => super::answer::linear_shown(
-                &super::lp::Clarabel,
-                envelope,
-                &settings,
-                self.monitor,
-            )?,
+            true => super::answer::linear_shown(&Clarabel, envelope, &settings, self.monitor)?,
             false => super::nlp::answer(self.choice, envelope, &settings, self.monitor)?,
         };
         let proved = matches!(

@@ -17,7 +17,8 @@
 
 use super::pairs::{Piece, Program};
 use super::split::{Point, Retry, Side, Split, shifts};
-use crate::solve::lp::Ended;
+use crate::solve::lp::simplex::{Simplex, State};
+use crate::solve::lp::{Ended, Restart};
 use crate::solve::random::Random;
 use std::collections::HashSet;
 
@@ -26,6 +27,9 @@ const BETTER: f64 = 1e-10;
 
 /// Products below this vanish.
 const GAP: f64 = 1e-11;
+
+/// A penalty that no gain of the objective outweighs.
+const HIGH: f64 = 1e3;
 
 /// Iterations of the programs of B and of A in a short round.
 const SHORT: [u64; 2] = [5, 40];
@@ -80,7 +84,7 @@ impl Pieces {
         Some(Self {
             split: Split::new(program)?,
             rhs: shifts(program),
-            random: Random(0x5eed),
+            random: Random(1),
             tried: HashSet::new(),
             exhausted: false,
         })
@@ -104,6 +108,32 @@ impl Pieces {
         self.split.a.price(1.0, &[]);
         let a = self.split.a.solve(&self.rhs, stop)?;
         Some(Solution { pieces, a, b })
+    }
+
+    /// An optimal basis of a branch.
+    pub fn basis(&mut self, pieces: &[Piece]) -> Option<Restart> {
+        let mut stop = |_| None;
+        let Split { a, b, bounds } = &mut self.split;
+        for (side, weight) in [(&mut *a, 1.0), (&mut *b, 0.0)] {
+            for (k, &piece) in pieces.iter().enumerate() {
+                side.restrict(k, Some(piece), bounds[k], self.rhs[k]);
+            }
+            side.price(weight, &[]);
+            side.solve(&self.rhs, &mut stop)?;
+        }
+        let total = |[a, b]: [usize; 2]| vec![State::Free; a + b];
+        let mut out = Restart {
+            columns: total([a.columns.len(), b.columns.len()]),
+            rows: total([a.rows.len(), b.rows.len()]),
+        };
+        for side in [a, b] {
+            let (columns, rows) = side.basis();
+            let at = side.columns.iter().zip(columns);
+            at.for_each(|(&j, state)| out.columns[j] = state);
+            let at = side.rows.iter().zip(rows);
+            at.for_each(|(&i, state)| out.rows[i] = state);
+        }
+        Some(out)
     }
 
     /// Bounds of one side without the pairs, but for those whose products are not linear in it.
@@ -157,7 +187,10 @@ impl Pieces {
             let a = self.split.a.mark();
             for &round in rounds {
                 let weights = match round {
-                    Round::Kicked => self.other_weights(&usual, stop),
+                    Round::Kicked => {
+                        self.split.a.back(&a);
+                        self.other_weights(&usual, stop)
+                    }
                     _ => usual.clone(),
                 };
                 self.relax(false, Some(&again.a));
@@ -175,9 +208,8 @@ impl Pieces {
                     if self.iterations() > limit || stop(0).is_some() {
                         return best;
                     }
-                    self.split.a.back(&a);
                     self.split.b.back(&b);
-                    match self.swap(&again, avoid, round != Round::Rest, stop) {
+                    match self.swap(&again, &a, avoid, round != Round::Rest, stop) {
                         Swap::Better(next) => {
                             best = next;
                             continue 'again;
@@ -201,8 +233,16 @@ impl Pieces {
         list
     }
 
-    /// The piece at the point of B that avoids a pair, in a few iterations if it is to be `short`.
-    fn swap(&mut self, at: &Solution, avoid: Option<usize>, short: bool, stop: Stop) -> Swap {
+    /// The piece at the point of B that avoids a pair, from a state of A, in a few iterations if it is to be
+    /// `short`.
+    fn swap(
+        &mut self,
+        at: &Solution,
+        from: &Simplex,
+        avoid: Option<usize>,
+        short: bool,
+        stop: Stop,
+    ) -> Swap {
         let rhs = &self.rhs;
         let run = |side: &mut Side, most: u64, stop: Stop| match short {
             true => side.retry(most, rhs),
@@ -231,6 +271,7 @@ impl Pieces {
             return Swap::Nothing;
         }
         let value = at.a.value;
+        self.split.a.back(from);
         self.split.allow(&pieces, rhs);
         let side = &mut self.split.a;
         // Perturbed costs make the value inexact.
@@ -342,12 +383,17 @@ impl Pieces {
             self.split.b.price(0.0, &weights);
             b = self.split.b.solve(&self.rhs, stop)?;
             let gap = self.split.gap(&a, &b);
-            // Neither side moves any more, or hardly: B's point may still have a piece.
-            if gap < GAP || (gap - last).abs() <= 1e-6 * gap {
+            if gap < GAP {
                 return Some(b);
             }
+            // Neither side moves any more, or hardly.
+            let still = (gap - last).abs() <= 1e-6 * gap;
+            if still && rho >= HIGH {
+                // The penalty is exact: no point of A is on the support, unless beyond its cap.
+                return rho.is_infinite().then_some(b);
+            }
             last = gap;
-            rho *= 2.0;
+            rho *= if still { 10.0 } else { 2.0 };
         }
         None
     }

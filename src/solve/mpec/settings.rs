@@ -43,6 +43,8 @@ pub struct Options {
     pub last: f64,
     /// `mpec_starts`: further starts, after the first local solution.
     pub starts: usize,
+    /// `mpec_swaps` = `yes | no`: whether anything better than the first local solution is looked for.
+    pub swaps: bool,
     /// `mpec_nodes`: nodes of a search for a descent direction.
     pub nodes: usize,
     /// `mpec_bound` = `none | quick | SECONDS`.
@@ -58,6 +60,7 @@ impl Default for Options {
             factor: 0.1,
             last: 1e-8,
             starts: 4,
+            swaps: true,
             nodes: 300,
             bound: Bound::None,
         }
@@ -98,6 +101,13 @@ impl Options {
                         "scholtes" => false,
                         "aggregate" => true,
                         _ => return Err(refused("`scholtes` or `aggregate`")),
+                    }
+                }
+                "swaps" => {
+                    out.swaps = match text.as_str() {
+                        "yes" => true,
+                        "no" => false,
+                        _ => return Err(refused("`yes` or `no`")),
                     }
                 }
                 "bound" => {

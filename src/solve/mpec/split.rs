@@ -18,7 +18,7 @@ use super::pairs::{Piece, Program};
 use crate::model::instance::Relation;
 use crate::solve::lp::Ended;
 use crate::solve::lp::form::{Problem, Sparse};
-use crate::solve::lp::simplex::Simplex;
+use crate::solve::lp::simplex::{Basis, Simplex};
 
 /// A value this close to a bound is on it. Simplex solutions have their nonbasic variables exactly
 /// there; this is for degenerate basic ones.
@@ -30,6 +30,8 @@ pub struct Side {
     problem: Problem,
     /// Column of the instance of each column.
     pub columns: Vec<usize>,
+    /// Row of the instance of each row.
+    pub rows: Vec<usize>,
     /// Variable of each pair: a column, or n + a row.
     variable: Vec<usize>,
     /// Whether it is the row of the pair that is on this side.
@@ -282,6 +284,7 @@ impl Side {
             has_row,
             simplex: engine(&problem),
             columns,
+            rows,
             problem,
         }
     }
@@ -395,6 +398,13 @@ impl Side {
                 false => self.simplex.set_bounds(j, l.max(value / c).min(u), u),
             }
         }
+    }
+
+    /// The present basis: states of the columns and of the rows.
+    pub fn basis(&self) -> (Basis, Basis) {
+        let mut columns = self.simplex.basis();
+        let rows = columns.split_off(self.n());
+        (columns, rows)
     }
 
     /// The present state, to come back to.

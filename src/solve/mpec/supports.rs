@@ -18,15 +18,16 @@ const SWAPS: u64 = 80_000;
 
 /// Random starts, in simplex iterations times rows and columns. On small programs they cost nothing, and there
 /// are more than were asked for; on large ones they seldom lead anywhere, and there are fewer.
-const STARTS: [u64; 2] = [1_000_000, 20_000_000];
+const STARTS: u64 = 1_000_000;
 
-/// Tries to get below the best, in simplex iterations times the cube of rows and columns (on larger programs a
-/// try takes more iterations, these take longer, and fewer tries succeed), and at most so many for each start
-/// that was asked for.
-const BELOW: (u64, usize) = (8_000_000_000_000, 250);
+/// Tries to get below the best, in simplex iterations times the fourth power of rows and columns (on larger
+/// programs a try takes more iterations, these take longer, and fewer tries succeed), and at most so many for
+/// each start that was asked for.
+const BELOW: (u64, usize) = (3_500_000_000_000_000, 250);
 
-/// Columns of a program of which there is a descent for each start that was asked for.
-const DESCENTS: usize = 500;
+/// Columns of a program of which there is one descent for each start that was asked for; of one with twice as many
+/// there are four.
+const DESCENTS: usize = 1200;
 
 /// Share of the time left that the search may take: the branch that it ends on has to be solved in the rest.
 const SEARCH: f64 = 0.9;
@@ -47,7 +48,7 @@ impl Search<'_> {
         let best = self.best_support(&mut pieces, &levels);
         self.iterations += pieces.iterations();
         match best {
-            Some(best) => self.settle(&pieces, best, start),
+            Some(best) => self.settle(&mut pieces, best, start),
             None => Ok(false),
         }
     }
@@ -74,6 +75,9 @@ impl Search<'_> {
                 &mut best,
             );
         }
+        if !self.options.swaps {
+            return best;
+        }
         if let Some(b) = best.as_ref().map(|s| s.b.clone()) {
             let next = pieces.alternate(b, 1e-3, &mut stop);
             keep("alternation from there", next, &mut best);
@@ -82,9 +86,9 @@ impl Search<'_> {
         let columns = self.program.instance.column_count();
         let size = (columns + self.program.instance.row_count()) as u64;
         let begun = pieces.iterations();
-        for k in 0..100 * starts {
+        for _ in 0..100 * starts {
             let work = (pieces.iterations() - begun) * size;
-            if work > STARTS[usize::from(k < starts)] || stop(0).is_some() {
+            if work > STARTS || stop(0).is_some() {
                 break;
             }
             let next = pieces.random_start(&mut stop);
@@ -94,7 +98,7 @@ impl Search<'_> {
         }
         let begun = pieces.iterations();
         for _ in 0..starts * BELOW.1 {
-            let work = (pieces.iterations() - begun).saturating_mul(size.saturating_pow(3));
+            let work = (pieces.iterations() - begun).saturating_mul(size.saturating_pow(4));
             if work > BELOW.0 || stop(0).is_some() {
                 break;
             }
@@ -102,10 +106,15 @@ impl Search<'_> {
             let next = pieces.below(value, &mut stop);
             keep("below", next.filter(|s| s.a.value < value), &mut best);
         }
-        // The larger the program, the fewer of the ways lead on.
-        let from = best.clone()?;
-        for _ in 0..starts * columns / DESCENTS {
-            let next = pieces.swaps(from.clone(), &[Round::Kicked], SWAPS, &mut stop);
+        // The larger the program, the fewer of the ways lead on. From a better point fewer do, but further.
+        let first = best.clone()?;
+        for k in 0..starts * columns * columns / (DESCENTS * DESCENTS) {
+            let from = if k % 2 == 0 {
+                first.clone()
+            } else {
+                best.clone()?
+            };
+            let next = pieces.swaps(from, &[Round::Kicked], SWAPS, &mut stop);
             keep("descent", Some(next), &mut best);
         }
         let all = [Round::Short, Round::Kicked, Round::Kicked, Round::Rest];
@@ -122,7 +131,7 @@ impl Search<'_> {
     /// gain.
     fn settle(
         &mut self,
-        pieces: &Pieces,
+        pieces: &mut Pieces,
         best: Solution,
         start: &[f64],
     ) -> Result<bool, SolveError> {
@@ -130,7 +139,9 @@ impl Search<'_> {
         pieces.write(&best, &mut level);
         let mut on: Vec<Piece> = best.pieces;
         for _ in 0..20 {
-            let Some(mut found): Option<Found> = self.branch(on.clone(), &level)? else {
+            let basis = pieces.basis(&on);
+            let Some(mut found): Option<Found> = self.branch_from(basis, on.clone(), &level)?
+            else {
                 break;
             };
             level.clone_from(&found.answer.outcome.level);

@@ -32,6 +32,7 @@ use super::form::{Point, Problem, Sparse};
 use crate::model::sum::Sum;
 use crate::solve::interval::{WideSum, two_sum};
 use factor::{Entries, Factor, Failure, ZERO};
+use std::rc::Rc;
 
 /// Where a variable is in a basis.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -79,8 +80,8 @@ enum Stop {
 pub struct Simplex {
     m: usize,
     n: usize,
-    columns: Sparse,
-    rows: Sparse,
+    columns: Rc<Sparse>,
+    rows: Rc<Sparse>,
     cost: Vec<f64>,
     lower: Vec<f64>,
     upper: Vec<f64>,
@@ -137,8 +138,8 @@ impl Simplex {
         let mut s = Self {
             m,
             n,
-            columns: p.columns.clone(),
-            rows: p.rows.clone(),
+            columns: Rc::new(p.columns.clone()),
+            rows: Rc::new(p.rows.clone()),
             work_cost: cost.clone(),
             work_lower: lower.clone(),
             work_upper: upper.clone(),
