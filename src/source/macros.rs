@@ -9,6 +9,7 @@
 
 use std::cell::Cell;
 
+use super::directives::unquoted;
 use rustc_hash::FxHashMap;
 
 /// Calls inside calls.
@@ -299,12 +300,14 @@ fn substitute(body: &str, parameters: &[String], arguments: &[String]) -> String
     while i < bytes.len() {
         let b = bytes[i];
         if b == b'&' {
-            // `&` only joins; `&&name` asks for the argument as it is spelled.
+            // `&` only joins.
             i += 1;
         } else if b.is_ascii_alphabetic() || b == b'_' {
             let len = word_len(&body[i..]);
             let word = &body[i..i + len];
             match parameters.iter().position(|p| p.eq_ignore_ascii_case(word)) {
+                // `&&name` takes the quotes off: they held an argument with commas together.
+                Some(n) if body[..i].ends_with("&&") => out.push_str(unquoted(&arguments[n])),
                 Some(n) => out.push_str(&arguments[n]),
                 None => out.push_str(word),
             }
