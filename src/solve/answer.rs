@@ -3,6 +3,8 @@
 //! The status that is reported follows from the residuals recomputed on the unscaled instance, not
 //! from the solver's word.
 
+use std::cell::OnceCell;
+
 use super::lp::certify::{Proof, Unproved};
 use super::lp::least;
 use super::mpec::Stationarity;
@@ -148,13 +150,15 @@ fn complementary(
     settings: &Settings,
     monitor: &mut dyn Monitor,
 ) -> Result<Answer, SolveError> {
-    let outcome = complementarity::solve(instance, false, settings, monitor)?;
+    let known = OnceCell::new();
+    let hopeless = |monitor: &mut dyn Monitor| {
+        *known.get_or_init(|| is_impossible(instance, settings, monitor).unwrap_or(false))
+    };
+    let outcome = complementarity::solve(instance, false, settings, monitor, &hopeless)?;
     let at = linearised(instance, &outcome);
     let residuals = certificate::complementarity(instance, &outcome.level, &at);
     let status = match certificate::complementarity_status(&residuals, outcome.claim) {
-        ModelStatus::LocallyInfeasible if is_impossible(instance, settings, monitor)? => {
-            ModelStatus::Infeasible
-        }
+        ModelStatus::LocallyInfeasible if hopeless(monitor) => ModelStatus::Infeasible,
         status => status,
     };
     Ok(Answer::new(outcome, residuals, status, at.activity))
@@ -191,7 +195,7 @@ fn square(
     settings: &Settings,
     monitor: &mut dyn Monitor,
 ) -> Result<Answer, SolveError> {
-    let outcome = complementarity::solve(instance, true, settings, monitor)?;
+    let outcome = complementarity::solve(instance, true, settings, monitor, &|_| false)?;
     let at = linearised(instance, &outcome);
     let residuals = certificate::primal(instance, &outcome.level, &at.activity, &at.row_size);
     let status = if residuals.is_feasible(TOLERANCE) {

@@ -173,8 +173,12 @@ impl mcp::Problem for Square<'_> {
 struct Line<'a> {
     monitor: &'a mut dyn Monitor,
     names: Names<'a>,
+    hopeless: Hopeless<'a>,
     log: bool,
 }
+
+/// Whether it can be proved, at the price of a linear program, that there is no solution.
+type Hopeless<'a> = &'a dyn Fn(&mut dyn Monitor) -> bool;
 
 /// What index k of a complementarity problem is called.
 type Names<'a> = &'a dyn Fn(&dyn Monitor, usize) -> String;
@@ -190,6 +194,10 @@ impl mcp::Monitor for Line<'_> {
 
     fn wants_log(&self) -> bool {
         self.log
+    }
+
+    fn hopeless(&mut self) -> bool {
+        (self.hopeless)(self.monitor)
     }
 
     fn name(&self, i: usize) -> String {
@@ -266,6 +274,7 @@ pub(super) fn run(
     names: Names,
     settings: &Settings,
     monitor: &mut dyn Monitor,
+    hopeless: Hopeless,
 ) -> Result<(mcp::Outcome, SolverStatus), SolveError> {
     let limits = options(settings)?;
     let log = settings.log;
@@ -275,6 +284,7 @@ pub(super) fn run(
         &mut Line {
             monitor,
             names,
+            hopeless,
             log,
         },
     );
@@ -291,13 +301,14 @@ pub(super) fn run(
     Ok((out, status))
 }
 
-/// Solves an mcp (or, with `square`, a cns). The outcome's marginals are those of GAMS: of a row the
+/// Solves an mcp (or, with `square`, a cns), of which `hopeless` is asked when the main method fails. The outcome's marginals are those of GAMS: of a row the
 /// level of its column, of a column F.
 pub fn solve(
     instance: &Instance,
     square: bool,
     settings: &Settings,
     monitor: &mut dyn Monitor,
+    hopeless: Hopeless,
 ) -> Result<Outcome, SolveError> {
     let mut problem = Square::new(instance, square)?;
     let row_of = problem.row_of.clone();
@@ -309,7 +320,7 @@ pub fn solve(
         ),
         None => monitor.column_name(j),
     };
-    let (mut out, status) = run(&mut problem, &names, settings, monitor)?;
+    let (mut out, status) = run(&mut problem, &names, settings, monitor, hopeless)?;
     noise::snap(&mut out.x, &instance.columns.lower, &instance.columns.upper);
     if out.status == mcp::Status::EvaluationFailed {
         let mut f = vec![0.0; instance.column_count()];

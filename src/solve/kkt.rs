@@ -142,7 +142,7 @@ impl Solver for Kkt {
             None => monitor.column_name(k),
             Some(row) => monitor.row_name(row),
         };
-        let (out, status) = run(&mut problem, &names, settings, monitor)?;
+        let (out, status) = run(&mut problem, &names, settings, monitor, &|_| false)?;
         let sign = instance.sign();
         let solved = out.status == mcp::Status::Solved;
         Ok(Outcome {

@@ -220,6 +220,11 @@ pub trait Monitor {
     fn interrupted(&mut self) -> bool;
     /// False saves the work of composing log lines.
     fn wants_log(&self) -> bool;
+    /// Asked once, when the main method has failed: true if it is known that there is no solution. Ends the run with
+    /// [`Status::NoSolution`].
+    fn hopeless(&mut self) -> bool {
+        false
+    }
     /// Names of row i and of its variable, for the log.
     fn name(&self, i: usize) -> String {
         format!("{}", i + 1)

@@ -207,8 +207,8 @@ fn attempt(run: &mut Run, restarts: &mut usize) -> Result<(), Stop> {
                 false => methods.push(path(Crash::Newton)),
             }
         }
-        for method in methods {
-            if succeeds(run, method, start.clone())? {
+        for (tried, method) in methods.into_iter().enumerate() {
+            if tried == 1 && run.monitor.hopeless() || succeeds(run, method, start.clone())? {
                 return Ok(());
             }
         }

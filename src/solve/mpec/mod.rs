@@ -382,7 +382,9 @@ impl Search<'_> {
         instance.objective = None;
         instance.columns.level.copy_from_slice(start);
         let settings = self.sub_settings(options);
-        let out = super::complementarity::solve(&instance, false, &settings, self.monitor).ok()?;
+        let (monitor, hopeless) = (&mut *self.monitor, |_: &mut dyn Monitor| false);
+        let out =
+            super::complementarity::solve(&instance, false, &settings, monitor, &hopeless).ok()?;
         self.iterations += out.iterations;
         let judged = self.program.judge(&out.level);
         let value = self.program.sign() * self.program.objective(&out.level);
