@@ -1,0 +1,314 @@
+//! What surrounds the plot: titles, axes, legends.
+
+use std::fmt::Write;
+
+use super::{Drawing, FONT, GRID, INK, MARGIN, Px, QUIET, escape};
+use crate::report::figure::layout::{Axis, log_ticks, power_label, text_width, tick_labels, ticks};
+use crate::report::figure::{Scene, Shape, color};
+
+/// Ticks of an axis that is to have about so many, with their labels.
+pub(super) fn tick_texts(range: [f64; 2], log: bool, wanted: f64) -> Vec<(f64, String)> {
+    if log {
+        let ticks = log_ticks(range, 8.0);
+        return ticks.into_iter().map(|v| (v, power_label(v))).collect();
+    }
+    let ticks = ticks(range, wanted);
+    let labels = tick_labels(&ticks);
+    ticks.into_iter().zip(labels).collect()
+}
+
+/// Whether the labels of the categories are too wide to stand side by side.
+pub(super) fn rotated(scene: &Scene, plot_width: f64) -> bool {
+    let room = plot_width / scene.categories.len().max(1) as f64;
+    scene
+        .categories
+        .iter()
+        .any(|c| text_width(c, 11.5) + 6.0 > room)
+}
+
+/// Legend entries in rows, each with its x offset.
+pub(super) fn legend_rows(names: &[&str], width: f64) -> Vec<Vec<(usize, f64)>> {
+    let mut rows: Vec<Vec<(usize, f64)>> = Vec::new();
+    let mut x = f64::INFINITY;
+    for (k, name) in names.iter().enumerate() {
+        let wide = 40.0 + text_width(name, 12.0);
+        if x + wide > width {
+            rows.push(Vec::new());
+            x = 0.0;
+        }
+        if let Some(row) = rows.last_mut() {
+            row.push((k, x));
+        }
+        x += wide;
+    }
+    rows
+}
+
+/// Names of the legend in order, each with the place that chooses its colour.
+pub(super) fn legend_names(scene: &Scene) -> Vec<&str> {
+    let mut names: Vec<&str> = Vec::new();
+    for name in scene.elements.iter().filter_map(|e| e.name.as_deref()) {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    names
+}
+
+impl Drawing<'_> {
+    pub(super) fn head(&mut self, width: f64, height: f64) {
+        let (w, h) = (Px(width.round()), Px(height.round()));
+        let _ = writeln!(
+            self.out,
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" \
+             viewBox=\"0 0 {w} {h}\" font-family=\"{FONT}\" font-size=\"12\">"
+        );
+        if let Some(title) = &self.scene.title {
+            let _ = writeln!(self.out, "  <title>{}</title>", escape(title));
+        }
+        let _ = writeln!(
+            self.out,
+            "  <rect width=\"{w}\" height=\"{h}\" fill=\"white\"/>"
+        );
+        let mut y = MARGIN + 13.0;
+        if let Some(title) = &self.scene.title {
+            let _ = writeln!(
+                self.out,
+                "  <text x=\"{}\" y=\"{}\" font-size=\"16\" font-weight=\"600\" fill=\"{INK}\">{}</text>",
+                Px(MARGIN),
+                Px(y),
+                escape(title)
+            );
+            y += 20.0;
+        }
+        if let Some(subtitle) = &self.scene.subtitle {
+            let _ = writeln!(
+                self.out,
+                "  <text x=\"{}\" y=\"{}\" font-size=\"12.5\" fill=\"{QUIET}\">{}</text>",
+                Px(MARGIN),
+                Px(y),
+                escape(subtitle)
+            );
+        }
+    }
+
+    pub(super) fn axes(&mut self, rotate: bool) {
+        let [left, right] = self.x.pixels;
+        let [bottom, top] = self.y.pixels;
+        let (mut grid, mut labels) = (String::new(), String::new());
+        for (v, text) in tick_texts(self.y.range, self.scene.y_log, 6.0) {
+            let y = self.y.at(v);
+            if y < top - 0.5 || y > bottom + 0.5 {
+                continue;
+            }
+            let _ = writeln!(
+                grid,
+                "    <line x1=\"{}\" y1=\"{y}\" x2=\"{}\" y2=\"{y}\"/>",
+                Px(left),
+                Px(right),
+                y = Px(y)
+            );
+            let _ = writeln!(
+                labels,
+                "    <text x=\"{}\" y=\"{}\" text-anchor=\"end\">{text}</text>",
+                Px(left - 7.0),
+                Px(y + 4.0)
+            );
+        }
+        let x_ticks: Vec<(f64, String)> = if self.scene.categories.is_empty() {
+            tick_texts(self.x.range, self.scene.x_log, (right - left) / 90.0)
+        } else {
+            // At most about one label per 14 pixels.
+            let every = (14.0 * self.scene.categories.len() as f64 / (right - left)).ceil();
+            let numbered = self.scene.categories.iter().enumerate();
+            let shown = numbered.step_by((every as usize).max(1));
+            shown.map(|(k, c)| (k as f64 + 1.0, escape(c))).collect()
+        };
+        for (v, text) in x_ticks {
+            let x = self.x.at(v);
+            if x < left - 0.5 || x > right + 0.5 {
+                continue;
+            }
+            if self.scene.categories.is_empty() {
+                let _ = writeln!(
+                    grid,
+                    "    <line x1=\"{x}\" y1=\"{}\" x2=\"{x}\" y2=\"{}\"/>",
+                    Px(top),
+                    Px(bottom),
+                    x = Px(x)
+                );
+            }
+            let y = bottom + 18.0;
+            let _ = if rotate {
+                let (x, y) = (Px(x + 4.0), Px(y - 4.0));
+                writeln!(
+                    labels,
+                    "    <text x=\"{x}\" y=\"{y}\" text-anchor=\"end\" transform=\"rotate(-45 {x} {y})\">{text}</text>"
+                )
+            } else {
+                writeln!(
+                    labels,
+                    "    <text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{text}</text>",
+                    Px(x),
+                    Px(y)
+                )
+            };
+        }
+        let _ = write!(
+            self.out,
+            "  <g stroke=\"{GRID}\" stroke-width=\"1\">\n{grid}  </g>\n  <g font-size=\"11.5\" fill=\"{QUIET}\">\n{labels}  </g>\n"
+        );
+        let base = match self.scene.y_log {
+            false => self.y.at(0.0f64.clamp(self.y.range[0], self.y.range[1])),
+            true => bottom,
+        };
+        let _ = writeln!(
+            self.out,
+            "  <line x1=\"{}\" y1=\"{y}\" x2=\"{}\" y2=\"{y}\" stroke=\"{QUIET}\" stroke-width=\"1\"/>",
+            Px(left),
+            Px(right),
+            y = Px(base)
+        );
+        if let Some(label) = &self.scene.x_label {
+            let room = if rotate { 0.0 } else { 38.0 };
+            let y = if rotate {
+                self.bottom_edge() - 8.0
+            } else {
+                bottom + room
+            };
+            let _ = writeln!(
+                self.out,
+                "  <text x=\"{}\" y=\"{}\" text-anchor=\"middle\" fill=\"{INK}\">{}</text>",
+                Px((left + right) / 2.0),
+                Px(y),
+                escape(label)
+            );
+        }
+        if let Some(label) = &self.scene.y_label {
+            let (x, y) = (Px(MARGIN + 4.0), Px((top + bottom) / 2.0));
+            let _ = writeln!(
+                self.out,
+                "  <text x=\"{x}\" y=\"{y}\" text-anchor=\"middle\" transform=\"rotate(-90 {x} {y})\" fill=\"{INK}\">{}</text>",
+                escape(label)
+            );
+        }
+    }
+
+    /// Where the lowest rotated label ends.
+    pub(super) fn bottom_edge(&self) -> f64 {
+        let widest = self.scene.categories.iter().map(|c| text_width(c, 11.5));
+        self.y.pixels[0] + (widest.fold(0.0, f64::max) * 0.71).min(110.0) + 38.0
+    }
+
+    pub(super) fn legend(&mut self, rows: &[Vec<(usize, f64)>], top: f64) {
+        for (r, row) in rows.iter().enumerate() {
+            let y = top + 20.0 * r as f64 + 8.0;
+            for &(k, offset) in row {
+                let name = self.names[k];
+                let Some(number) = self
+                    .scene
+                    .elements
+                    .iter()
+                    .position(|e| e.name.as_deref() == Some(name))
+                else {
+                    continue;
+                };
+                let e = &self.scene.elements[number];
+                let x = MARGIN + offset;
+                let color = match e.shape {
+                    Shape::Polygon(_) => e
+                        .style
+                        .fill
+                        .as_ref()
+                        .map_or("#dde3ea".into(), |p| self.color(p)),
+                    Shape::Polyline(_) | Shape::Arrow(..) => e
+                        .style
+                        .stroke
+                        .as_ref()
+                        .map_or(INK.into(), |p| self.color(p)),
+                    _ => self.series_color(number),
+                };
+                let line = matches!(
+                    e.shape,
+                    Shape::Line(_) | Shape::Polyline(_) | Shape::Arrow(..)
+                );
+                let _ = if line {
+                    let width = Px(e.style.width.unwrap_or(2.0));
+                    writeln!(
+                        self.out,
+                        "  <line x1=\"{}\" y1=\"{y}\" x2=\"{}\" y2=\"{y}\" stroke=\"{color}\" stroke-width=\"{width}\"/>",
+                        Px(x),
+                        Px(x + 18.0),
+                        y = Px(y)
+                    )
+                } else {
+                    writeln!(
+                        self.out,
+                        "  <rect x=\"{}\" y=\"{}\" width=\"12\" height=\"12\" rx=\"2\" fill=\"{color}\"/>",
+                        Px(x + 3.0),
+                        Px(y - 6.0)
+                    )
+                };
+                let _ = writeln!(
+                    self.out,
+                    "  <text x=\"{}\" y=\"{}\" fill=\"{INK}\">{}</text>",
+                    Px(x + 24.0),
+                    Px(y + 4.0),
+                    escape(name)
+                );
+            }
+        }
+    }
+
+    /// The colour scale, at the right of the plot.
+    pub(super) fn color_legend(&mut self, x: f64) {
+        let Some([lo, hi]) = self.colors else { return };
+        let [bottom, top] = self.y.pixels;
+        let long = (bottom - top).min(220.0);
+        let middle = (bottom + top) / 2.0;
+        let (y0, y1) = (middle + long / 2.0, middle - long / 2.0);
+        self.out
+            .push_str("  <defs><linearGradient id=\"scale\" x1=\"0\" y1=\"1\" x2=\"0\" y2=\"0\">");
+        for k in 0..=8 {
+            let part = f64::from(k) / 8.0;
+            let _ = write!(
+                self.out,
+                "<stop offset=\"{}\" stop-color=\"{}\"/>",
+                part,
+                color::scale(part)
+            );
+        }
+        self.out.push_str("</linearGradient></defs>\n");
+        let _ = writeln!(
+            self.out,
+            "  <rect x=\"{}\" y=\"{}\" width=\"12\" height=\"{}\" fill=\"url(#scale)\"/>",
+            Px(x),
+            Px(y1),
+            Px(long)
+        );
+        let axis = Axis {
+            range: [lo, hi],
+            pixels: [y0, y1],
+            log: false,
+        };
+        let _ = writeln!(self.out, "  <g font-size=\"11\" fill=\"{QUIET}\">");
+        for (v, text) in tick_texts([lo, hi], false, 5.0) {
+            let y = Px(axis.at(v) + 4.0);
+            let _ = writeln!(
+                self.out,
+                "    <text x=\"{}\" y=\"{y}\">{text}</text>",
+                Px(x + 17.0)
+            );
+        }
+        if let Some(label) = &self.scene.scale_label {
+            let _ = writeln!(
+                self.out,
+                "    <text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>",
+                Px(x + 12.0 + 30.0),
+                Px(y1 - 9.0),
+                escape(label)
+            );
+        }
+        self.out.push_str("  </g>\n");
+    }
+}
