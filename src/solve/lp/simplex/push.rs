@@ -7,12 +7,13 @@
 //! *Values*: the nonbasic variables that are not at a bound move to their nearest ones, all together: most
 //! of them have hardly any way to go, and one solve with the basis moves thousands. Where a basic variable
 //! reaches its bound first, it leaves the basis for the one of the moving variables that does most of its motion,
-//! and the rest goes on. Variables that the multipliers hold at a bound do not move, or the point would leave
+//! and the rest goes on; after some steps of this kind each of those with a way to go moves for itself, which
+//! takes as many pivots but a solve with one column each. Variables that the multipliers hold at a bound do not move, or the point would leave
 //! the optimal face; in the end it is a vertex of that face.
 //!
 //! *Multipliers*: the reduced costs of the basic variables go to 0, again all together. Where that of a
 //! nonbasic variable would change its sign first, the variable enters the basis for one of them, which is at
-//! its bound: the vertex stays where it is.
+//! its bound: the vertex stays where it is. After some steps, again, one after the other.
 
 use super::factor::{Entries, Factor, Failure, ZERO};
 use super::{Basis, NONBASIC, PIVOT, SAFE_PIVOT, Simplex};
@@ -23,6 +24,10 @@ const OUTSIDE: f64 = 1e-6;
 
 /// Weight of a row whose logical may well be basic.
 const UNHELD: f64 = 1.0 / 4096.0;
+
+/// Steps that all make together, before one after the other makes its own: where there is much to push, every step of
+/// all costs a dense solve and hardly leads on.
+const TOGETHER: usize = 30;
 
 /// Where a crossover begins: one entry per column, then one per row.
 #[derive(Clone, Debug)]
@@ -113,7 +118,17 @@ impl Simplex {
     }
 
     fn push_values(&mut self, stop: &mut dyn FnMut(u64) -> Option<Ended>) -> Result<(), Ended> {
-        self.until_arrived(stop, Self::push_values_step)
+        if self.until_arrived(TOGETHER, stop, Self::push_values_step)? {
+            return Ok(());
+        }
+        let far: Vec<usize> = (0..self.n + self.m)
+            .filter(|&j| self.way(j).abs() > self.tolerance)
+            .collect();
+        for (count, &j) in far.iter().enumerate() {
+            ask(stop, count, self.iterations)?;
+            self.push_value(j).ok_or(Ended::Failed)?;
+        }
+        self.to_the_end(stop, Self::push_values_step)
     }
 
     fn push_multipliers(
@@ -129,27 +144,45 @@ impl Simplex {
         });
         let rate = self.rates(inside.collect()).ok_or(Ended::Failed)?;
         d.iter_mut().zip(&rate).for_each(|(d, r)| *d += r);
-        self.until_arrived(stop, |s| s.push_multipliers_step(&mut d))
+        if self.until_arrived(TOGETHER, stop, |s| s.push_multipliers_step(&mut d))? {
+            return Ok(());
+        }
+        let basic = self.head.clone();
+        for (count, &j) in basic.iter().enumerate() {
+            ask(stop, count, self.iterations)?;
+            self.push_multiplier(j as usize, &mut d)
+                .ok_or(Ended::Failed)?;
+        }
+        self.to_the_end(stop, |s| s.push_multipliers_step(&mut d))
+    }
+
+    /// At most so many steps of a push: whether all arrived.
+    fn until_arrived(
+        &mut self,
+        steps: usize,
+        stop: &mut dyn FnMut(u64) -> Option<Ended>,
+        mut step: impl FnMut(&mut Self) -> Option<bool>,
+    ) -> Result<bool, Ended> {
+        for count in 0..steps {
+            ask(stop, count, self.iterations)?;
+            if step(self).ok_or(Ended::Failed)? {
+                return Ok(true);
+            }
+        }
+        Ok(false)
     }
 
     /// A push that takes more steps than there are variables goes round in circles: pivots on the border of
     /// being none.
-    fn until_arrived(
+    fn to_the_end(
         &mut self,
         stop: &mut dyn FnMut(u64) -> Option<Ended>,
-        mut step: impl FnMut(&mut Self) -> Option<bool>,
+        step: impl FnMut(&mut Self) -> Option<bool>,
     ) -> Result<(), Ended> {
-        for count in 0..self.n + self.m {
-            if count.is_multiple_of(32)
-                && let Some(why) = stop(self.iterations)
-            {
-                return Err(why);
-            }
-            if step(self).ok_or(Ended::Failed)? {
-                return Ok(());
-            }
+        match self.until_arrived(self.n + self.m, stop, step)? {
+            true => Ok(()),
+            false => Err(Ended::Failed),
         }
-        Err(Ended::Failed)
     }
 
     /// What a nonbasic variable has to go.
@@ -175,7 +208,8 @@ impl Simplex {
             }
         }
         self.factor.as_mut()?.forward_dense(&mut rate)?;
-        let (step, blocking) = self.first_block(&rate);
+        let rates = rate.iter().copied().enumerate();
+        let (step, blocking) = self.first_block(rates.filter(|e| e.1 != 0.0));
         for (k, r) in rate.iter().enumerate() {
             self.x[self.head[k] as usize] -= step * r;
         }
@@ -212,17 +246,53 @@ impl Simplex {
         Some(false)
     }
 
-    /// How much of the way all can go, and the slot that ends it.
-    fn first_block(&self, rate: &[f64]) -> (f64, Option<usize>) {
-        let room = |k: usize| {
+    /// Moves one variable to its bound, or into the basis for what stops it.
+    fn push_value(&mut self, entering: usize) -> Option<()> {
+        let way = self.way(entering);
+        if way == 0.0 {
+            return Some(());
+        }
+        let a_q = self.column(entering);
+        let column = self.factor.as_mut()?.forward(&a_q)?.clone();
+        let rates = column.iter().filter(|e| e.1.abs() > PIVOT);
+        let rates = rates.map(|&(k, a)| (k, a * way));
+        let (step, blocking) = self.first_block(rates);
+        if let Some(slot) = blocking {
+            let pivot = column.iter().find(|e| e.0 == slot).map_or(0.0, |e| e.1);
+            if pivot.abs() <= self.least_pivot() {
+                self.refreshed()?;
+                return self.push_value(entering);
+            }
+        }
+        for &(k, a) in &column {
+            self.x[self.head[k] as usize] -= step * way * a;
+        }
+        self.x[entering] = match blocking {
+            None => self.resting(entering, self.x[entering]),
+            Some(_) => self.x[entering] + step * way,
+        };
+        let Some(slot) = blocking else {
+            return Some(());
+        };
+        let leaving = self.head[slot] as usize;
+        self.x[leaving] = self.resting(leaving, self.x[leaving]);
+        self.iterations += 1;
+        self.exchange(slot, entering)
+    }
+
+    /// How much of the way slots with these rates can go, and the one that ends it.
+    fn first_block(
+        &self,
+        rates: impl Iterator<Item = (usize, f64)> + Clone,
+    ) -> (f64, Option<usize>) {
+        let room = |k: usize, rate: f64| {
             let j = self.head[k] as usize;
-            match rate[k] > 0.0 {
+            match rate > 0.0 {
                 true => self.x[j] - self.work_lower[j],
                 false => self.work_upper[j] - self.x[j],
             }
         };
-        let slots = (0..self.m).filter(|&k| rate[k] != 0.0);
-        first(slots.map(|k| (k, room(k), rate[k].abs())), self.tolerance)
+        first(rates.map(|(k, r)| (k, room(k, r), r.abs())), self.tolerance)
     }
 
     /// Moves the reduced costs of all basic variables as far as the others allow, and pivots there. True:
@@ -230,7 +300,8 @@ impl Simplex {
     fn push_multipliers_step(&mut self, d: &mut [f64]) -> Option<bool> {
         let part = self.head.iter().map(|&j| d[j as usize]).collect();
         let rate = self.rates(part)?;
-        let (step, blocking) = self.first_sign(d, &rate);
+        let rates = rate.iter().copied().enumerate();
+        let (step, blocking) = self.first_sign(d, rates.filter(|e| e.1 != 0.0));
         d.iter_mut().zip(&rate).for_each(|(d, r)| *d += step * r);
         let Some(entering) = blocking else {
             return Some(true);
@@ -257,6 +328,38 @@ impl Simplex {
         Some(false)
     }
 
+    /// Moves the reduced cost of one basic variable at its bound to 0, or the variable out of the basis for the one
+    /// whose sign stops it.
+    fn push_multiplier(&mut self, leaving: usize, d: &mut [f64]) -> Option<()> {
+        let way = d[leaving];
+        let slot = self.slot[leaving];
+        if slot == NONBASIC || way.abs() <= self.dual_tolerance || !self.may_rest(leaving, way) {
+            return Some(());
+        }
+        let slot = slot as usize;
+        let rho = self.factor.as_mut()?.backward(&[(slot, 1.0)])?.clone();
+        self.pivot_row(&rho);
+        let entries = self
+            .row_index
+            .iter()
+            .map(|&j| (j as usize, self.row[j as usize]));
+        let entries = entries.filter(|e| e.1.abs() > PIVOT);
+        let (step, blocking) = self.first_sign(d, entries.clone().map(|(j, a)| (j, -a * way)));
+        if blocking.is_some_and(|j| self.row[j].abs() <= self.least_pivot()) {
+            self.refreshed()?;
+            return self.push_multiplier(leaving, d);
+        }
+        entries.for_each(|(j, a)| d[j] -= step * way * a);
+        d[leaving] -= step * way;
+        let Some(entering) = blocking else {
+            return Some(());
+        };
+        d[entering] = 0.0;
+        self.x[leaving] = self.resting(leaving, self.x[leaving]);
+        self.iterations += 1;
+        self.exchange(slot, entering)
+    }
+
     /// How the reduced costs of all variables change while those of the slots change by −`part`.
     fn rates(&mut self, mut part: Vec<f64>) -> Option<Vec<f64>> {
         self.factor.as_mut()?.backward_dense(&mut part)?;
@@ -274,11 +377,15 @@ impl Simplex {
         (d > 0.0 && x - l <= OUTSIDE) || (d < 0.0 && u - x <= OUTSIDE)
     }
 
-    /// How much of their way the reduced costs can go, and the variable whose sign ends it.
-    fn first_sign(&self, d: &[f64], rate: &[f64]) -> (f64, Option<usize>) {
-        let candidates = (0..d.len()).filter_map(|j| {
+    /// How much of their way reduced costs with these rates can go, and the variable whose sign ends it.
+    fn first_sign(
+        &self,
+        d: &[f64],
+        rates: impl Iterator<Item = (usize, f64)> + Clone,
+    ) -> (f64, Option<usize>) {
+        let candidates = rates.filter_map(|(j, rate)| {
             let (l, u) = (self.work_lower[j], self.work_upper[j]);
-            if self.slot[j] != NONBASIC || rate[j] == 0.0 || l == u {
+            if self.slot[j] != NONBASIC || l == u {
                 return None;
             }
             let free = l.is_infinite() && u.is_infinite();
@@ -288,8 +395,8 @@ impl Simplex {
                 true => d[j],
                 false => -d[j],
             };
-            let blocks = free || (rate[j] < 0.0) == low;
-            blocks.then_some((j, room, rate[j].abs()))
+            let blocks = free || (rate < 0.0) == low;
+            blocks.then_some((j, room, rate.abs()))
         });
         first(candidates, self.dual_tolerance)
     }
@@ -309,6 +416,18 @@ impl Simplex {
         }
         self.refactor()?;
         Some(false)
+    }
+}
+
+/// Asks now and then whether to stop.
+fn ask(
+    stop: &mut dyn FnMut(u64) -> Option<Ended>,
+    count: usize,
+    iterations: u64,
+) -> Result<(), Ended> {
+    match count.is_multiple_of(32).then(|| stop(iterations)).flatten() {
+        Some(why) => Err(why),
+        None => Ok(()),
     }
 }
 
