@@ -120,6 +120,7 @@ pub fn start(p: &Problem, point: &Point, of_face: Option<&Point>) -> Start {
         value: Vec::with_capacity(m + n),
         held: Vec::with_capacity(m + n),
         inside: Vec::with_capacity(m + n),
+        of_face: of_face.is_some(),
         y: point.y.clone(),
     };
     let mut order: Vec<(bool, f64, usize)> = Vec::with_capacity(m + n);

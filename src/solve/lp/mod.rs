@@ -96,10 +96,6 @@ impl Limits {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Clarabel;
 
-/// The simplex method alone, `option lp = simplex`.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct DualSimplex;
-
 /// The simplex method from a basis that may be optimal: states of the instance's columns and rows. Where it
 /// leads nowhere, as [`Clarabel`].
 pub struct Restart {
@@ -170,21 +166,6 @@ impl Solver for Clarabel {
             _ => Method::Auto,
         };
         solve(instance, settings, monitor, method)
-    }
-}
-
-impl Solver for DualSimplex {
-    fn name(&self) -> &'static str {
-        "simplex"
-    }
-
-    fn solve(
-        &self,
-        instance: &Instance,
-        settings: &Settings,
-        monitor: &mut dyn Monitor,
-    ) -> Result<Outcome, SolveError> {
-        solve(instance, settings, monitor, Method::Simplex)
     }
 }
 
@@ -565,23 +546,25 @@ mod tests {
     use super::*;
     use crate::solve::conformance;
 
+    fn conforms(method: &str, tolerance: f64) {
+        let mut settings = Settings::default();
+        settings.options.push(("method".into(), method.into()));
+        conformance::suite_with(&Clarabel, &settings, tolerance);
+    }
+
     #[test]
     fn interior_point_conforms() {
-        let mut settings = Settings::default();
-        settings.options.push(("method".into(), "interior".into()));
-        conformance::suite_with(&Clarabel, &settings, 2e-7);
+        conforms("interior", 2e-7);
     }
 
     #[test]
     fn simplex_conforms() {
-        conformance::suite(&DualSimplex, 1e-12);
+        conforms("simplex", 1e-12);
     }
 
     #[test]
     fn crossover_conforms() {
-        let mut settings = Settings::default();
-        settings.options.push(("method".into(), "crossover".into()));
-        conformance::suite_with(&Clarabel, &settings, 1e-12);
+        conforms("crossover", 1e-12);
     }
 
     #[test]

@@ -25,9 +25,12 @@ const OUTSIDE: f64 = 1e-6;
 /// Weight of a row whose logical may well be basic.
 const UNHELD: f64 = 1.0 / 4096.0;
 
-/// Steps that all make together, before one after the other makes its own: where there is much to push, every step of
-/// all costs a dense solve and hardly leads on.
-const TOGETHER: usize = 30;
+/// Entries of a column that only makes a matrix square. The search for pivots looks at the columns with the fewest
+/// entries first, so empty ones would be in its way at every step.
+const PADDING: usize = 4;
+
+/// Such an entry: not 0, but too small for a pivot.
+const NO_PIVOT: f64 = 1e-200;
 
 /// Where a crossover begins: one entry per column, then one per row.
 #[derive(Clone, Debug)]
@@ -36,6 +39,8 @@ pub struct Start {
     pub basis: Basis,
     /// What is between its bounds, and should be basic if it can.
     pub inside: Vec<bool>,
+    /// The point is a vertex of a wide face, and the rest of the basis stems from the face.
+    pub of_face: bool,
     /// Values, near a solution of the equations.
     pub value: Vec<f64>,
     /// What stays at its nearest bound.
@@ -65,7 +70,7 @@ impl Simplex {
         // Where there is far to go, a basis that is nearly dependent leads astray.
         let far = (0..self.n + self.m).any(|j| self.way(j).abs() > self.tolerance);
         self.crossing = Some(if far { SAFE_PIVOT } else { ZERO });
-        let ready = self.refactor().and_then(|()| self.bring_inside(start));
+        let ready = self.bring_inside(start);
         let mut done = ready.ok_or(Ended::Failed);
         if done.is_ok() {
             done = self.push_values(stop);
@@ -79,15 +84,21 @@ impl Simplex {
         done
     }
 
-    /// Where variables at their bounds have displaced some from inside, which depend on them, those from inside
-    /// take the basis alone, and the logicals of the rows that they leave complete it: what is out of the
-    /// basis has far to go otherwise, and every step of its way is blocked.
+    /// Factorises the first basis. Where variables at their bounds have displaced some from inside, which depend on
+    /// them, those from inside take the basis alone, and the logicals of the rows that they leave complete it: what is
+    /// out of the basis has far to go otherwise, and every step of its way is blocked.
     fn bring_inside(&mut self, start: &Start) -> Option<()> {
         let all = || (0..self.n + self.m).filter(|&j| start.inside[j]);
-        let displaced = all().any(|j| self.slot[j] == NONBASIC);
         let inside: Vec<u32> = all().map(|j| j as u32).collect();
-        if !displaced || inside.len() >= self.m {
-            return Some(());
+        if inside.len() >= self.m {
+            return self.refactor();
+        }
+        // At a vertex of a wide face some always are.
+        if !start.of_face {
+            self.refactor()?;
+            if (0..self.n + self.m).all(|j| !start.inside[j] || self.slot[j] != NONBASIC) {
+                return Some(());
+            }
         }
         // A row is left the rather if no multiplier holds its logical at a bound: its pivots look small.
         let weight = |i: usize| if start.held[self.n + i] { 1.0 } else { UNHELD };
@@ -96,14 +107,19 @@ impl Simplex {
             column.map(|(i, a)| (i, a * weight(i))).collect()
         };
         let mut columns: Vec<Entries> = inside.iter().map(weighted).collect();
-        columns.resize(self.m, Vec::new());
+        let padding = (0..self.m - columns.len()).map(|k| {
+            let rows = (k * PADDING..).take(PADDING);
+            rows.map(|i| (i % self.m, NO_PIVOT)).collect()
+        });
+        let padding: Vec<Entries> = padding.collect();
+        columns.extend(padding);
         let left = match Factor::new(self.m, &columns) {
             Err(Failure::Dependent(left)) => left,
-            // No column can stand in for an empty one.
+            // No column can stand in for what is none.
             Ok(_) | Err(Failure::Numbers) => return None,
         };
         if left.iter().any(|&(_, row)| start.inside[self.n + row]) {
-            return Some(());
+            return self.refactor();
         }
         self.head = inside;
         self.head.resize(self.m, NONBASIC);
@@ -118,13 +134,14 @@ impl Simplex {
     }
 
     fn push_values(&mut self, stop: &mut dyn FnMut(u64) -> Option<Ended>) -> Result<(), Ended> {
-        if self.until_arrived(TOGETHER, stop, Self::push_values_step)? {
+        let has_to_go = |s: &Self, &j: &usize| s.way(j).abs() > s.tolerance;
+        let far = (0..self.n + self.m).filter(|j| has_to_go(self, j));
+        let steps = together(far.count());
+        if self.until_arrived(steps, stop, Self::push_values_step)? {
             return Ok(());
         }
-        let far: Vec<usize> = (0..self.n + self.m)
-            .filter(|&j| self.way(j).abs() > self.tolerance)
-            .collect();
-        for (count, &j) in far.iter().enumerate() {
+        let far = (0..self.n + self.m).filter(|j| has_to_go(self, j));
+        for (count, j) in far.collect::<Vec<usize>>().into_iter().enumerate() {
             ask(stop, count, self.iterations)?;
             self.push_value(j).ok_or(Ended::Failed)?;
         }
@@ -144,10 +161,12 @@ impl Simplex {
         });
         let rate = self.rates(inside.collect()).ok_or(Ended::Failed)?;
         d.iter_mut().zip(&rate).for_each(|(d, r)| *d += r);
-        if self.until_arrived(TOGETHER, stop, |s| s.push_multipliers_step(&mut d))? {
+        let basic = self.head.clone();
+        let far = basic.iter().filter(|&&j| self.must_rest(j as usize, &d));
+        let steps = together(far.count());
+        if self.until_arrived(steps, stop, |s| s.push_multipliers_step(&mut d))? {
             return Ok(());
         }
-        let basic = self.head.clone();
         for (count, &j) in basic.iter().enumerate() {
             ask(stop, count, self.iterations)?;
             self.push_multiplier(j as usize, &mut d)
@@ -331,12 +350,10 @@ impl Simplex {
     /// Moves the reduced cost of one basic variable at its bound to 0, or the variable out of the basis for the one
     /// whose sign stops it.
     fn push_multiplier(&mut self, leaving: usize, d: &mut [f64]) -> Option<()> {
-        let way = d[leaving];
-        let slot = self.slot[leaving];
-        if slot == NONBASIC || way.abs() <= self.dual_tolerance || !self.may_rest(leaving, way) {
+        if !self.must_rest(leaving, d) {
             return Some(());
         }
-        let slot = slot as usize;
+        let (way, slot) = (d[leaving], self.slot[leaving] as usize);
         let rho = self.factor.as_mut()?.backward(&[(slot, 1.0)])?.clone();
         self.pivot_row(&rho);
         let entries = self
@@ -375,6 +392,11 @@ impl Simplex {
     fn may_rest(&self, j: usize, d: f64) -> bool {
         let (l, u, x) = (self.work_lower[j], self.work_upper[j], self.x[j]);
         (d > 0.0 && x - l <= OUTSIDE) || (d < 0.0 && u - x <= OUTSIDE)
+    }
+
+    /// Whether a variable is basic at a bound with a reduced cost that holds it there.
+    fn must_rest(&self, j: usize, d: &[f64]) -> bool {
+        self.slot[j] != NONBASIC && d[j].abs() > self.dual_tolerance && self.may_rest(j, d[j])
     }
 
     /// How much of their way reduced costs with these rates can go, and the variable whose sign ends it.
@@ -417,6 +439,12 @@ impl Simplex {
         self.refactor()?;
         Some(false)
     }
+}
+
+/// Steps that all make together, of so many with a way to go, before one after the other makes its own. Where all are
+/// near their ends some of these lead there; else each costs a dense solve and hardly leads on.
+fn together(far: usize) -> usize {
+    (far / 8).max(30)
 }
 
 /// Asks now and then whether to stop.
