@@ -108,17 +108,20 @@ impl Simplex {
         };
         let mut columns: Vec<Entries> = inside.iter().map(weighted).collect();
         let padding = (0..self.m - columns.len()).map(|k| {
-            let rows = (k * PADDING..).take(PADDING);
+            let rows = (k * PADDING..).take(PADDING.min(self.m));
             rows.map(|i| (i % self.m, NO_PIVOT)).collect()
         });
         let padding: Vec<Entries> = padding.collect();
         columns.extend(padding);
         let left = match Factor::new(self.m, &columns) {
             Err(Failure::Dependent(left)) => left,
-            // No column can stand in for what is none.
-            Ok(_) | Err(Failure::Numbers) => return None,
+            // What is inside has hardly an entry: paddings were pivots.
+            Ok(_) => return self.refactor(),
+            Err(Failure::Numbers) => return None,
         };
-        if left.iter().any(|&(_, row)| start.inside[self.n + row]) {
+        let paddings = left.iter().filter(|l| l.0 >= inside.len()).count();
+        let taken = left.iter().any(|&(_, row)| start.inside[self.n + row]);
+        if paddings < self.m - inside.len() || taken {
             return self.refactor();
         }
         self.head = inside;
