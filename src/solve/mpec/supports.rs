@@ -25,9 +25,8 @@ const STARTS: u64 = 1_000_000;
 /// each start that was asked for.
 const BELOW: (u64, usize) = (3_500_000_000_000_000, 250);
 
-/// Columns of a program of which there is one descent for each start that was asked for; of one with twice as many
-/// there are four.
-const DESCENTS: usize = 1200;
+/// Columns of a program of which there is a descent for each start that was asked for, and at most so many for each.
+const DESCENTS: [usize; 2] = [250, 6];
 
 /// Share of the time left that the search may take: the branch that it ends on has to be solved in the rest.
 const SEARCH: f64 = 0.9;
@@ -64,7 +63,9 @@ impl Search<'_> {
             if log {
                 monitor.log(&format!("{what}: {:.10}", sign * s.a.value));
             }
-            if best.as_ref().is_none_or(|b| s.a.value < b.a.value) {
+            // Of points that differ by rounding the first is kept.
+            let enough = |b: &Solution| s.a.value < b.a.value - 1e-10 * b.a.value.abs().max(1.0);
+            if best.as_ref().is_none_or(enough) {
                 *best = Some(s);
             }
         };
@@ -108,7 +109,7 @@ impl Search<'_> {
         }
         // The larger the program, the fewer of the ways lead on. From a better point fewer do, but further.
         let first = best.clone()?;
-        for k in 0..starts * columns * columns / (DESCENTS * DESCENTS) {
+        for k in 0..starts * (columns / DESCENTS[0]).min(DESCENTS[1]) {
             let from = if k % 2 == 0 {
                 first.clone()
             } else {
