@@ -18,6 +18,9 @@ use std::sync::{Arc, Mutex};
 /// Residuals of a point that is taken without a run.
 const SHARPLY: f64 = 1e-9;
 
+/// The part of a right-hand side by which such a point may miss it: one that has become smaller is meant so, however small it is.
+const SHARE: f64 = 1e-3;
+
 impl Driver<'_> {
     /// The start with the marginals that an earlier solve left: where little or nothing has changed since, that is the answer,
     /// perhaps after a Newton step on its active set.
@@ -27,7 +30,8 @@ impl Driver<'_> {
             return;
         }
         let trial = self.judge(self.start.clone(), lambda, Ended::Solved);
-        if trial.is_optimal() && trial.residual() <= SHARPLY {
+        let sharp = trial.residual() <= SHARPLY && trial.relative_miss(self.instance) <= SHARE;
+        if trial.is_optimal() && sharp {
             self.keep(trial);
         }
     }

@@ -55,6 +55,13 @@ impl Trial {
             .max(self.residuals.dual_relative)
     }
 
+    /// The largest violation of a row, relative to its right-hand side, if that is not 0.
+    pub(super) fn relative_miss(&self, instance: &Instance) -> f64 {
+        let rows = (0..instance.row_count()).filter(|&i| instance.rows.rhs[i] != 0.0);
+        let misses = rows.map(|i| violation(instance, &self.at, i) / instance.rows.rhs[i].abs());
+        misses.fold(0.0, f64::max)
+    }
+
     /// Feasible, and stationary but for a little.
     pub(super) fn is_nearly_optimal(&self) -> bool {
         self.is_feasible() && self.residuals.dual_relative <= 1e3 * TOLERANCE
@@ -145,6 +152,12 @@ fn is_receding(instance: &Instance, level: &[f64], reduced: &[f64], objective: f
     (0..level.len()).any(|j| level[j].abs() >= FAR && promise(j) > considerable)
 }
 
+/// Violation of row i.
+fn violation(instance: &Instance, at: &Linearised, i: usize) -> f64 {
+    let rows = &instance.rows;
+    row_violation(rows.relation[i], at.activity[i], rows.rhs[i])
+}
+
 /// Whether a variable is beyond [`FAR`], and violations within the tolerance are worth a considerable part of the objective:
 /// x y ≥ 10 and x + y ≤ 1 hold where x = −1e-9 stands for x ≥ 0, and y for −1e10.
 fn is_hollow(
@@ -154,9 +167,7 @@ fn is_hollow(
     at: &Linearised,
     objective: f64,
 ) -> bool {
-    let rows = &instance.rows;
-    let violation = |i: usize| row_violation(rows.relation[i], at.activity[i], rows.rhs[i]);
-    let worth = |i: usize| row_marginal[i].abs() * violation(i);
+    let worth = |i: usize| row_marginal[i].abs() * violation(instance, at, i);
     level.iter().any(|x| x.abs() >= FAR)
         && (0..row_marginal.len()).map(worth).sum::<f64>() > CONSIDERABLE * objective.abs().max(1.0)
 }

@@ -148,7 +148,7 @@ impl Simplex {
             ask(stop, count, self.iterations)?;
             self.push_value(j).ok_or(Ended::Failed)?;
         }
-        self.to_the_end(stop, Self::push_values_step)
+        self.finish_push(stop, Self::push_values_step)
     }
 
     fn push_multipliers(
@@ -175,7 +175,7 @@ impl Simplex {
             self.push_multiplier(j as usize, &mut d)
                 .ok_or(Ended::Failed)?;
         }
-        self.to_the_end(stop, |s| s.push_multipliers_step(&mut d))
+        self.finish_push(stop, |s| s.push_multipliers_step(&mut d))
     }
 
     /// At most so many steps of a push: whether all arrived.
@@ -196,7 +196,7 @@ impl Simplex {
 
     /// A push that takes more steps than there are variables goes round in circles: pivots on the border of
     /// being none.
-    fn to_the_end(
+    fn finish_push(
         &mut self,
         stop: &mut dyn FnMut(u64) -> Option<Ended>,
         step: impl FnMut(&mut Self) -> Option<bool>,
