@@ -5,6 +5,9 @@
 //! depends. Pivots are taken within the rows of a front as long as they are not smaller than the front's other rows by
 //! more than [`THRESHOLD`]; columns without such a pivot go on to the front above (Duff & Reid 1983). So weak a test
 //! lets digits be lost, which [`gmres`](super::gmres) wins back with the factors for a preconditioner.
+//!
+//! The libraries at hand have no such LU: `faer`'s orders AᵀA and pivots by rows, `feral`'s fronts are those of symmetric matrices. The
+//! ordering, the supernodes and the dense kernels are `faer`'s.
 
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
