@@ -4,6 +4,7 @@
 //! Statements are taken one at a time, in the order of the text, so that what `$if declared` and
 //! `$eval card(i)` ask can be answered at their place. Several errors are reported per run.
 
+pub mod calendar;
 pub mod exchange;
 pub mod functions;
 pub mod node;
@@ -26,7 +27,6 @@ pub use model::{has_random, walk as walk_node};
 
 use crate::diag::{Diagnostic, Severity};
 use crate::host::Host;
-use crate::run::calendar;
 use crate::source::{Ending, Known, PreprocessOptions, SourceMap, Span, predefined};
 use crate::syntax::Parser;
 use crate::syntax::ast::{StmtKind, Switches};

@@ -4,6 +4,7 @@ use super::Machine;
 use super::arithmetic::{self, ArithmeticError};
 use super::plan::Wanted;
 use crate::autodiff::functions::function_value;
+use crate::check::calendar;
 use crate::check::node::*;
 use crate::check::symbols::{SymbolKind, attribute};
 use crate::data::universe::Label;
@@ -454,7 +455,7 @@ impl Machine<'_> {
             D::Pi => std::f64::consts::PI,
             D::JNow => self.now(),
             D::JStart => self.started,
-            D::JDate => match super::calendar::jdate(a[0], a[1], a[2]) {
+            D::JDate => match calendar::jdate(a[0], a[1], a[2]) {
                 Some(day) => day,
                 None => {
                     drop(random);
@@ -470,7 +471,7 @@ impl Machine<'_> {
             | D::GHour
             | D::GMinute
             | D::GSecond
-            | D::GMillisec => match super::calendar::part(f, a[0]) {
+            | D::GMillisec => match calendar::part(f, a[0]) {
                 Some(part) => part,
                 None => {
                     drop(random);

@@ -5,7 +5,6 @@
 //! the next solve is refused and ends it.
 
 pub mod arithmetic;
-pub mod calendar;
 pub mod plan;
 pub mod random;
 

@@ -4,7 +4,8 @@
 //!
 //! [`TextFile`]: crate::report::textfile::TextFile
 
-use super::{Frame, Machine, calendar};
+use super::{Frame, Machine};
+use crate::check::calendar;
 use crate::check::node::{DataFunction, Node, NodeKind, PutCode, SymbolId};
 use crate::check::symbols::SymbolKind;
 use crate::data::value::{as_acronym, is_eps, is_na, number, truth};

@@ -1,6 +1,6 @@
 //! Dates as numbers: days since 1899-12-31, with the time of day as fraction (jdate(1900,1,1) = 1).
 
-use crate::check::node::DataFunction;
+use super::node::DataFunction;
 use jiff::civil::{Date, date};
 
 const EPOCH: Date = date(1899, 12, 31);
