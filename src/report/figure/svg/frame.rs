@@ -72,24 +72,21 @@ impl Drawing<'_> {
         );
         let mut y = MARGIN + 13.0;
         if let Some(title) = &self.scene.title {
-            let _ = writeln!(
-                self.out,
-                "  <text x=\"{}\" y=\"{}\" font-size=\"16\" font-weight=\"600\" fill=\"{INK}\">{}</text>",
-                Px(MARGIN),
-                Px(y),
-                escape(title)
-            );
+            let style = format!("font-size=\"16\" font-weight=\"600\" fill=\"{INK}\"");
+            self.heading(y, &style, title);
             y += 20.0;
         }
         if let Some(subtitle) = &self.scene.subtitle {
-            let _ = writeln!(
-                self.out,
-                "  <text x=\"{}\" y=\"{}\" font-size=\"12.5\" fill=\"{QUIET}\">{}</text>",
-                Px(MARGIN),
-                Px(y),
-                escape(subtitle)
-            );
+            self.heading(y, &format!("font-size=\"12.5\" fill=\"{QUIET}\""), subtitle);
         }
+    }
+
+    fn heading(&mut self, y: f64, style: &str, text: &str) {
+        let (x, y, text) = (Px(MARGIN), Px(y), escape(text));
+        let _ = writeln!(
+            self.out,
+            "  <text x=\"{x}\" y=\"{y}\" {style}>{text}</text>"
+        );
     }
 
     pub(super) fn axes(&mut self, rotate: bool) {

@@ -68,7 +68,7 @@ impl Simplex {
             }
         }
         // Where there is far to go, a basis that is nearly dependent leads astray.
-        let far = (0..self.n + self.m).any(|j| self.way(j).abs() > self.tolerance);
+        let far = self.far().next().is_some();
         self.crossing = Some(if far { SAFE_PIVOT } else { ZERO });
         let ready = self.bring_inside(start);
         let mut done = ready.ok_or(Ended::Failed);
@@ -88,15 +88,15 @@ impl Simplex {
     /// them, those from inside take the basis alone, and the logicals of the rows that they leave complete it: what is
     /// out of the basis has far to go otherwise, and every step of its way is blocked.
     fn bring_inside(&mut self, start: &Start) -> Option<()> {
-        let all = || (0..self.n + self.m).filter(|&j| start.inside[j]);
-        let inside: Vec<u32> = all().map(|j| j as u32).collect();
+        let all = (0..self.n + self.m).filter(|&j| start.inside[j]);
+        let inside: Vec<u32> = all.map(|j| j as u32).collect();
         if inside.len() >= self.m {
             return self.refactor();
         }
         // At a vertex of a wide face some always are.
         if !start.of_face {
             self.refactor()?;
-            if (0..self.n + self.m).all(|j| !start.inside[j] || self.slot[j] != NONBASIC) {
+            if inside.iter().all(|&j| self.slot[j as usize] != NONBASIC) {
                 return Some(());
             }
         }
@@ -137,14 +137,12 @@ impl Simplex {
     }
 
     fn push_values(&mut self, stop: &mut dyn FnMut(u64) -> Option<Ended>) -> Result<(), Ended> {
-        let has_to_go = |s: &Self, &j: &usize| s.way(j).abs() > s.tolerance;
-        let far = (0..self.n + self.m).filter(|j| has_to_go(self, j));
-        let steps = together(far.count());
+        let steps = together(self.far().count());
         if self.until_arrived(steps, stop, Self::push_values_step)? {
             return Ok(());
         }
-        let far = (0..self.n + self.m).filter(|j| has_to_go(self, j));
-        for (count, j) in far.collect::<Vec<usize>>().into_iter().enumerate() {
+        let far: Vec<usize> = self.far().collect();
+        for (count, j) in far.into_iter().enumerate() {
             ask(stop, count, self.iterations)?;
             self.push_value(j).ok_or(Ended::Failed)?;
         }
@@ -213,6 +211,11 @@ impl Simplex {
             NONBASIC => self.resting(j, self.x[j]) - self.x[j],
             _ => 0.0,
         }
+    }
+
+    /// The nonbasic variables that have a way to go.
+    fn far(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.n + self.m).filter(|&j| self.way(j).abs() > self.tolerance)
     }
 
     /// Moves all as far as the basic variables allow, and pivots there. True: all arrived.
