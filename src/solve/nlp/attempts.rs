@@ -1,14 +1,16 @@
-//! Attempts other than a plain run of the provider: Newton's method on the equations, Clarabel for convex quadratic programs,
-//! rounded kinks, and the elastic form.
+//! Attempts other than a plain run of the provider: from where an earlier solve ended, Newton's method on the equations, Clarabel
+//! for convex quadratic programs, rounded kinks, and the elastic form.
 
 use super::driver::{Driver, why_stop};
 use super::elastic::Elastic;
+use super::growth::Growth;
 use super::newton;
 use super::problem::Problem;
 use super::provider::Ended;
 use super::provider::lock;
 use super::quadratic::Quadratic;
-use super::schedule::{FINEST, NEAR, NEARER, ROUNDING};
+use super::schedule::{CHEAP, FINEST, FIRST_PATIENCE, LEAST_PATIENCE, NEAR, NEARER, ROUNDING};
+use super::slp::Effort;
 use super::trial::{Trial, polished};
 use crate::model::certificate_nlp::is_locally_infeasible;
 use crate::solve::SolveError;
@@ -22,22 +24,59 @@ const SHARPLY: f64 = 1e-9;
 const SHARE: f64 = 1e-3;
 
 impl Driver<'_> {
+    /// Where an earlier solve ended, linear programs from there, and Newton's method where there is nothing to choose. Whether
+    /// that settles it.
+    pub(super) fn settle_without_provider(&mut self) -> Result<bool, SolveError> {
+        let again = self.attempt_again();
+        self.leave_saddles()?;
+        if self.is_settled() {
+            return Ok(true);
+        }
+        if self.is_square() {
+            self.attempt_newton();
+            return self.is_settled_by("newton");
+        }
+        if !again || self.named {
+            return Ok(false);
+        }
+        self.patience = LEAST_PATIENCE;
+        self.linearised_from(self.start.clone(), Effort::NEAR);
+        let settled = self.is_settled_by("slp")?;
+        if settled && LEAST_PATIENCE as f64 * self.work_of_iteration() <= CHEAP {
+            self.growth = Growth::Ignored;
+            self.search()?;
+        }
+        self.patience = FIRST_PATIENCE;
+        Ok(settled)
+    }
+
+    /// Whether the best point is an answer, of the method of that name if it is no saddle.
+    fn is_settled_by(&mut self, method: &'static str) -> Result<bool, SolveError> {
+        let before = self.iterations;
+        self.leave_saddles()?;
+        if self.is_settled() && self.iterations == before {
+            self.solver = method;
+        }
+        Ok(self.is_settled())
+    }
+
     /// The start with the marginals that an earlier solve left: where little or nothing has changed since, that is the answer,
-    /// perhaps after a Newton step on its active set.
-    pub(super) fn attempt_again(&mut self) {
+    /// perhaps after a Newton step on its active set. Whether there are such marginals.
+    fn attempt_again(&mut self) -> bool {
         let lambda = lock(&*self.problem).marginals_of(self.instance);
         if lambda.iter().all(|&l| l == 0.0) {
-            return;
+            return false;
         }
         let trial = self.judge(self.start.clone(), lambda, Ended::Solved);
         let sharp = trial.residual() <= SHARPLY && trial.relative_miss(self.instance) <= SHARE;
         if trial.is_optimal() && sharp {
             self.keep(trial);
         }
+        true
     }
 
     /// Newton's method on the equations, where they leave nothing to choose.
-    pub(super) fn attempt_newton(&mut self) {
+    fn attempt_newton(&mut self) {
         let deadline = self.deadline();
         let limit = self.settings.evaluation_error_limit;
         let mut problem = lock(&*self.problem);

@@ -24,7 +24,7 @@ use super::provider::{Control, Ended, Progress, Provider, Shared, Solution, lock
 use super::quadratic::Quadratic;
 use super::schedule::{
     AGREEMENT, BASE, BESIDE, BETTER, CHEAP, ELASTIC_AFTER, ENOUGH, EXACT, FINEST, FIRST_PATIENCE,
-    From, OVERHEAD, PATIENCE, SCHEDULE, SHARP, SMALL, TIMES,
+    From, LEAST_PATIENCE, OVERHEAD, PATIENCE, SCHEDULE, SHARP, SMALL, TIMES,
 };
 use super::slp;
 use super::trial::{Trial, active_set, clean, polished, residuals_at, tidy, without_noise};
@@ -79,6 +79,7 @@ pub fn solve(
         )
     });
     driver.convex = quadratic.is_some().then_some(convexity);
+    driver.named = convexity == Convexity::Ignored;
     driver.run(quadratic)
 }
 
@@ -162,6 +163,8 @@ pub(super) struct Driver<'a> {
     pub(super) monitor: &'a mut dyn Monitor,
     /// A point that satisfies the KKT conditions is a global optimum.
     pub(super) convex: Option<Convexity>,
+    /// The model asks for this provider.
+    pub(super) named: bool,
     /// Name of who found the answer.
     pub(super) solver: &'static str,
     /// What the person is to hear in any case.
@@ -188,7 +191,7 @@ pub(super) struct Driver<'a> {
     /// Work after which no further attempt is begun.
     enough: f64,
     /// Iterations one attempt may take.
-    patience: u64,
+    pub(super) patience: u64,
     /// What is done about runs that lead far away.
     pub(super) growth: Growth,
 }
@@ -209,6 +212,7 @@ impl<'a> Driver<'a> {
             settings,
             monitor,
             convex: None,
+            named: false,
             solver: provider.name(),
             message: None,
             start: problem.start().to_vec(),
@@ -247,27 +251,15 @@ impl Driver<'_> {
                 return Ok(self.finish());
             }
         }
-        self.attempt_again();
-        self.leave_saddles()?;
-        if self.is_settled() {
+        if self.settle_without_provider()? {
             return Ok(self.finish());
         }
-        if self.is_square() {
-            self.attempt_newton();
-            let newton = self.iterations;
-            self.leave_saddles()?;
-            if self.is_settled() {
-                if self.iterations == newton {
-                    self.solver = "newton";
-                }
-                return Ok(self.finish());
-            }
-        }
+        let before = self.iterations;
         self.attempt(From::Start, &[])?;
         self.enough = ENOUGH.max(TIMES * self.work());
         if self.is_settled() {
             // there is an answer: to look for a better one may not take much longer
-            self.patience = (4 * self.iterations).clamp(50, PATIENCE);
+            self.patience = (4 * (self.iterations - before)).clamp(LEAST_PATIENCE, PATIENCE);
         }
         self.leave_saddles()?;
         if self.is_settled() {
@@ -326,7 +318,7 @@ impl Driver<'_> {
         self.iterations as f64 * self.work_of_iteration()
     }
 
-    fn work_of_iteration(&self) -> f64 {
+    pub(super) fn work_of_iteration(&self) -> f64 {
         let problem = lock(&*self.problem);
         let (n, m) = problem.size();
         let size = n + m + problem.jacobian_pattern().0.len() + problem.hessian_pattern().0.len();
@@ -334,7 +326,7 @@ impl Driver<'_> {
     }
 
     /// Looks for a better local optimum where that is cheap.
-    fn search(&mut self) -> Result<(), SolveError> {
+    pub(super) fn search(&mut self) -> Result<(), SolveError> {
         let optimal = |me: &Self| {
             me.best
                 .as_ref()
@@ -369,7 +361,7 @@ impl Driver<'_> {
 
     /// As many equations as variables, as in a general equilibrium that is written as a nonlinear program: linear
     /// programs would have nothing to choose.
-    fn is_square(&self) -> bool {
+    pub(super) fn is_square(&self) -> bool {
         let problem = lock(&*self.problem);
         let (lower, upper) = problem.sides();
         let equations = lower.iter().zip(upper).filter(|(l, u)| l == u).count();
@@ -455,17 +447,17 @@ impl Driver<'_> {
     /// The point is judged and kept; None where it is an answer.
     fn linearised(&mut self) -> Option<Vec<f64>> {
         let start = self.consistent().unwrap_or_else(|| self.start.clone());
+        self.linearised_from(start, slp::Effort::FULL)
+    }
+
+    pub(super) fn linearised_from(&mut self, x: Vec<f64>, effort: slp::Effort) -> Option<Vec<f64>> {
         let mut problem = lock(&*self.problem);
-        problem.set_start(start);
+        problem.set_start(x);
         let deadline = self.deadline();
-        let own = self
-            .settings
-            .option("max_iter")
-            .and_then(|n| n.parse().ok());
-        let most = slp::STEPS
-            .min(self.iterations_left())
-            .min(own.unwrap_or(u64::MAX));
-        let run = slp::solve(&mut *problem, most, &mut || {
+        let own = self.settings.option("max_iter");
+        let own = own.and_then(|n| n.parse().ok()).unwrap_or(u64::MAX);
+        let steps = effort.steps.min(self.iterations_left()).min(own);
+        let run = slp::solve(&mut *problem, slp::Effort { steps, ..effort }, &mut || {
             self.monitor.interrupted() || deadline.is_some_and(|d| Instant::now() > d)
         })?;
         drop(problem);

@@ -39,6 +39,8 @@ pub(super) const BESIDE: [f64; 3] = [1e-6, 1e-4, 1e-2];
 /// Iterations that one attempt may take; the first less, for what takes so many is better begun elsewhere.
 pub(super) const PATIENCE: u64 = 3000;
 pub(super) const FIRST_PATIENCE: u64 = 500;
+/// Where there is an answer, a search for a better one may take this many at least.
+pub(super) const LEAST_PATIENCE: u64 = 50;
 
 /// Options that keep an interior point near its start.
 pub(super) const NEAR: &[(&str, &str)] = &[

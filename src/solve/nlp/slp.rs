@@ -1,4 +1,4 @@
-//! Sequential linear programming: a start where an interior point finds no way.
+//! Sequential linear programming: the way from a solution to the next one, and a start where an interior point finds no way.
 //!
 //! ```text
 //!     φ(x) = f(x) + ν Σᵢ max(aᵢ − gᵢ(x), gᵢ(x) − bᵢ, 0)     over l ≤ x ≤ u
@@ -6,8 +6,8 @@
 //!
 //! is made small by linear programs in a trust region (Fletcher & Sainz de la Maza 1989): f and g are replaced by
 //! their linearisations at x, |dⱼ| ≤ Δ max(1, |xⱼ|), and the step is taken where φ falls by a part of what the program
-//! promises. Bounds and linear rows are kept by the simplex method, which moves along them where an interior point
-//! is stopped by them; where a solution is a vertex, convergence is quadratic and the multipliers prove it. Elsewhere the
+//! promises; ν is twice the largest multiplier then, if the program can meet its rows. Bounds and linear rows are kept by the
+//! simplex method, which moves along them where an interior point is stopped by them; where a solution is a vertex, convergence is quadratic and the multipliers prove it. Elsewhere the
 //! steps get short, and what was reached serves as a start.
 
 use super::problem::Nlp;
@@ -15,14 +15,34 @@ use super::quadratic::by_rows;
 use crate::solve::lp::Ended;
 use crate::solve::lp::form::{Point, Problem, Sparse};
 use crate::solve::lp::scale::Scaling;
-use crate::solve::lp::simplex::{Basis, Simplex};
+use crate::solve::lp::simplex::{Basis, Simplex, State};
 
-/// Linear programs at most.
-pub const STEPS: u64 = 100;
-/// Pivots of the simplex method at most, all programs together, by the number of rows and columns.
-const PIVOTS: u64 = 20;
-/// Variables and constraints at most: the programs start from the last basis, but each is factorised afresh.
-const LARGEST: usize = 5000;
+/// What may be spent on it.
+#[derive(Clone, Copy, Debug)]
+pub struct Effort {
+    /// Linear programs.
+    pub steps: u64,
+    /// Pivots of the simplex method, all programs together, by the number of rows and columns.
+    pub pivots: u64,
+    /// Variables and constraints: the programs start from the last basis, but each is factorised afresh.
+    pub size: usize,
+}
+
+impl Effort {
+    /// From anywhere.
+    pub const FULL: Self = Self {
+        steps: 100,
+        pivots: 20,
+        size: 5000,
+    };
+    /// From where an earlier solve ended.
+    pub const NEAR: Self = Self {
+        steps: 20,
+        pivots: 2,
+        size: 10_000,
+    };
+}
+
 /// The penalty ν grows up to here.
 const MOST_PENALTY: f64 = 1e9;
 /// A step is taken from this part of the promised decrease on, and the trust region grows from the other on.
@@ -84,11 +104,11 @@ impl Slopes {
     }
 }
 
-/// Runs from the start point, by at most so many linear programs. None where the start has no values or derivatives,
+/// Runs from the start point, with so much effort at most. None where the start has no values or derivatives,
 /// where the problem is too large, and where it leads to infinity.
-pub fn solve(nlp: &mut dyn Nlp, most: u64, stop: &mut dyn FnMut() -> bool) -> Option<Run> {
+pub fn solve(nlp: &mut dyn Nlp, effort: Effort, stop: &mut dyn FnMut() -> bool) -> Option<Run> {
     let (n, m) = nlp.size();
-    if n + m > LARGEST {
+    if n + m > effort.size {
         return None;
     }
     let mut x: Vec<f64> = nlp.start().to_vec();
@@ -102,20 +122,26 @@ pub fn solve(nlp: &mut dyn Nlp, most: u64, stop: &mut dyn FnMut() -> bool) -> Op
         steps: 0,
     };
     let (mut penalty, mut radius) = (10.0 * steepest, 1.0);
-    let mut basis = Basis::new();
-    let mut pivots = PIVOTS * (n + m) as u64;
-    while run.steps < most && radius > SMALLEST && !stop() {
+    // of the violation in φ: the multipliers say what is enough
+    let mut weight = 0.0;
+    let mut basis = basis_at(nlp, &x, &here);
+    let mut pivots = effort.pivots * (n + m) as u64;
+    while run.steps < effort.steps && radius > SMALLEST && !stop() {
         run.steps += 1;
         let program = linearised(nlp, &x, &here, &slopes, penalty, radius);
         let Some((step, y)) = minimum(&program, &mut basis, &mut pivots) else {
             break;
         };
         run.lambda = y.iter().map(|y| -y).collect();
-        let merit = |v: &Values, nlp: &dyn Nlp| v.f + penalty * v.violation(nlp);
-        let now = merit(&here, nlp);
         let elastic: f64 = step[n..].iter().sum();
+        weight = match elastic > 1e-9 {
+            true => penalty,
+            false => y.iter().fold(weight, |w, y| w.max(2.0 * y.abs())),
+        };
+        let merit = |v: &Values, nlp: &dyn Nlp| v.f + weight * v.violation(nlp);
+        let now = merit(&here, nlp);
         let slope: f64 = slopes.gradient.iter().zip(&step).map(|(g, d)| g * d).sum();
-        let promised = now - (here.f + slope + penalty * elastic);
+        let promised = now - (here.f + slope + weight * elastic);
         if promised <= 1e-10 * now.abs().max(1.0) {
             if elastic <= 1e-9 || penalty >= MOST_PENALTY {
                 break;
@@ -153,6 +179,26 @@ pub fn solve(nlp: &mut dyn Nlp, most: u64, stop: &mut dyn FnMut() -> bool) -> Op
     }
     run.x = x;
     Some(run)
+}
+
+/// What lies between its bounds is basic: at a vertex, and near one, that is the basis of the first program.
+fn basis_at(nlp: &dyn Nlp, x: &[f64], here: &Values) -> Basis {
+    let state = |(&v, (&l, &u)): (&f64, (&f64, &f64))| {
+        let near = 1e-9 * v.abs().max(1.0);
+        match (v - l > near, u - v > near) {
+            (true, true) => State::Basic,
+            (true, false) => State::Upper,
+            _ => State::Lower,
+        }
+    };
+    let ((lower, upper), (a, b)) = (nlp.bounds(), nlp.sides());
+    let columns = x.iter().zip(lower.iter().zip(upper)).map(state);
+    let sides = a.iter().chain(b).filter(|v| v.is_finite()).count();
+    let rows = here.g.iter().zip(a.iter().zip(b)).map(state);
+    columns
+        .chain(vec![State::Lower; sides])
+        .chain(rows)
+        .collect()
 }
 
 fn into_bounds(nlp: &dyn Nlp, x: &mut [f64]) {
@@ -204,20 +250,23 @@ fn linearised(
     program
 }
 
-/// Solution and multipliers of a program, from a basis, which is renewed. None: not within so many pivots, which
-/// are taken off.
+/// Solution and multipliers of a program, from a basis, which is renewed, or from that of all logicals. None: not within so
+/// many pivots, which are taken off.
 fn minimum(program: &Problem, basis: &mut Basis, pivots: &mut u64) -> Option<(Vec<f64>, Vec<f64>)> {
     let scaling = Scaling::new(program);
-    let mut simplex = Simplex::new(&scaling.apply(program));
-    simplex.limit = *pivots;
-    let ended = simplex.solve_from_basis(basis, &mut |_| None);
-    *pivots = pivots.saturating_sub(simplex.iterations);
-    let Point { x, y, .. } = match ended {
-        Ended::Solved => scaling.restore(simplex.point()?),
-        _ => return None,
-    };
-    *basis = simplex.basis();
-    Some((x, y))
+    let scaled = scaling.apply(program);
+    for from in [basis.clone(), Basis::new()] {
+        let mut simplex = Simplex::new(&scaled);
+        simplex.limit = *pivots;
+        let ended = simplex.solve_from_basis(&from, &mut |_| None);
+        *pivots = pivots.saturating_sub(simplex.iterations);
+        if ended == Ended::Solved {
+            let Point { x, y, .. } = scaling.restore(simplex.point()?);
+            *basis = simplex.basis();
+            return Some((x, y));
+        }
+    }
+    None
 }
 
 #[cfg(test)]
@@ -271,7 +320,8 @@ mod tests {
             }),
             ..Instance::default()
         };
-        solve(&mut Problem::new(&instance), STEPS, &mut || false).expect("the problem is small")
+        solve(&mut Problem::new(&instance), Effort::FULL, &mut || false)
+            .expect("the problem is small")
     }
 
     #[test]
