@@ -22,7 +22,7 @@ use super::run::{Point, Run, Stop};
 /// Variables per step, and steps at most: where steps cost more than pivots, the paths of the majors do better. Some
 /// paths close on themselves.
 const SHARE: usize = 20;
-const LIMIT: usize = 1000;
+const LIMIT: usize = 500;
 /// Share of the way to the boundary.
 const DAMPING: f64 = 0.9;
 /// Relative change along the tangent: at first, least and most.
@@ -37,6 +37,11 @@ const ENOUGH: f64 = 1e-9;
 const INFINITE: f64 = 1e3;
 /// τ, and its slope along the tangent, from which interior steps do better.
 const DONE: (f64, f64) = (0.5, -0.5);
+
+/// Steps for folds at most.
+pub(super) fn fold_limit(n: usize) -> usize {
+    (n / SHARE).min(LIMIT)
+}
 
 /// The path's point, and what it goes through with τ = 1.
 struct Path<'a> {
@@ -231,7 +236,7 @@ pub(super) fn around(
     log::note(run, log::Part::Crash, || {
         " arc       tau      slope   change     step".into()
     });
-    for iteration in 0..(run.n / SHARE).min(LIMIT) {
+    for iteration in 0..fold_limit(run.n) {
         run.check()?;
         let Some(jacobian) = run.jacobian(&path.point.x) else {
             return Ok(None);

@@ -11,7 +11,9 @@
 //! they shorten the step, and then with outliers among the products pulled in (Gondzio 1996).
 //!
 //! Where J is not monotone, steps may get short far from a solution: the central path has folds. [`arc`](super::arc)
-//! goes around them.
+//! goes around them. A fold is a matter of a few indices, but the path turns back with all of them, and the more folds, the
+//! longer it gets. Where it gets too long, the proximal term ρ grows with every short step and falls with long ones, so that
+//! steps go over the folds. What ρ adds to the equations, ρ dx, vanishes with the steps.
 //!
 //! For monotone problems the number of steps hardly grows with n, while the path makes at least a pivot
 //! for every index that a crash got wrong; for others this is a heuristic like any crash. Its
@@ -19,12 +21,12 @@
 //! path does the rest.
 
 use super::active::active_sets;
-use super::arc::around;
+use super::arc::{around, fold_limit};
 use super::factor::{Analysis, Factor, combine};
 use super::log;
 use super::run::{Patience, Point, Run, Stop};
 
-/// Steps at most.
+/// Steps at most, over folds a share of the variables besides.
 const LIMIT: usize = 100;
 /// Share of the way to the boundary.
 const DAMPING: f64 = 0.995;
@@ -39,7 +41,9 @@ const STEP_SHORT: f64 = 0.3;
 /// Relative residual of a step.
 const ENOUGH: f64 = 1e-9;
 /// ρ, least and largest.
-pub(super) const PROX: (f64, f64) = (1e-14, 1e-2);
+pub(super) const PROX: (f64, f64) = (1e-14, 1e-1);
+/// ρ with which steps go over folds: at first, and its factors after short and long steps.
+const OVER: (f64, f64, f64) = (1e-6, 10.0, 0.3);
 /// Products below this are rounding errors.
 const PRODUCT_MIN: f64 = 1e-16;
 
@@ -111,7 +115,9 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
     let analysis = Analysis::default();
     let mut prox = PROX.0;
     let mut patience = Patience::new();
-    for iteration in 0..LIMIT {
+    // Whether the way around folds was too long, and the steps that are left.
+    let (mut over, mut left) = (false, LIMIT);
+    for iteration in 1.. {
         run.check()?;
         state.distances(run, &bounds, &point.x);
         if let Some(found) = run.point(snapped(run, &point.x, &state, &bounds))
@@ -128,9 +134,11 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
             || mu < PRODUCT_MIN
             || patience.idle(mu + off, 0.5) > PATIENCE
             || !(mu + off).is_finite()
+            || left == 0
         {
             break;
         }
+        left -= 1;
         let Some(jacobian) = run.jacobian(&point.x) else {
             break;
         };
@@ -155,7 +163,7 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
         log::note(run, log::Part::Crash, || {
             format!(
                 "{:5} {mu:10.3e} {off:10.3e} {residual:11.4e} {t:8.1e} {prox:8.1e}",
-                iteration + 1
+                iteration
             )
         });
         let x = point
@@ -176,14 +184,18 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
             .iter_mut()
             .zip(&step.v)
             .for_each(|(v, d)| *v += t * d);
-        if t < STEP_BAD {
+        if t < STEP_BAD && !over {
             state.distances(run, &bounds, &point.x);
-            let Some(found) = around(run, (&point, &state), &bounds, &analysis)? else {
-                break;
-            };
-            ((point, state), patience) = (found, Patience::new());
+            match around(run, (&point, &state), &bounds, &analysis)? {
+                Some(found) => ((point, state), patience) = (found, Patience::new()),
+                None => (over, left) = (true, fold_limit(n)),
+            }
+        }
+        if t < STEP_BAD && over {
+            prox = (OVER.1 * prox).clamp(OVER.0, PROX.1);
+            patience = Patience::new();
         } else if t > 0.5 {
-            prox = (0.1 * prox).max(PROX.0);
+            prox = (OVER.2 * prox).max(PROX.0);
         }
     }
     if let Some(last) = run.point(snapped(run, &point.x, &state, &bounds)) {
