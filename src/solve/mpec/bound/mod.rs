@@ -4,11 +4,11 @@
 //! ([`crate::solve::lp::certify`]): multipliers that are shown to satisfy their own constraints exactly.
 //! Nothing about the size of a column is assumed.
 //!
-//! * [`lift`]: where the program comes apart into two sides, products of their rows.
+//! * [`products`]: where the program comes apart into two [`sides`], products of their rows.
 
-mod lift;
-mod multipliers;
+mod cone;
 mod products;
+mod sides;
 pub mod weak;
 
 use std::time::Instant;
@@ -42,8 +42,20 @@ pub struct Proof {
     pub note: Option<String>,
 }
 
-/// Products up to which the lifted relaxation is tried by `quick`, and at all.
-const PRODUCTS: [usize; 2] = [4_000, 40_000];
+/// What products are tried by `quick`, and at all.
+const PRODUCTS: [products::Limits; 2] = [
+    products::Limits {
+        products: 5_000,
+        steps: 10_000,
+    },
+    products::Limits {
+        products: 4_000_000,
+        steps: usize::MAX,
+    },
+];
+
+/// How much worse than the best known a solution may be that is thought of, relative to the objective if that is above 1.
+const ROOM: f64 = 1e-2;
 
 /// Nodes of the tree for `quick`.
 const NODES: usize = 1_000;
@@ -68,7 +80,7 @@ pub fn lower(
         return proof;
     }
     let mut settings = settings.clone();
-    let (most, nodes) = match wanted {
+    let (limits, nodes) = match wanted {
         Bound::Seconds(s) => {
             settings.time_limit = settings.time_limit.min(s);
             (PRODUCTS[1], usize::MAX)
@@ -86,7 +98,7 @@ pub fn lower(
         iterations: 0,
     };
     let mut problem = whole(program);
-    let low = products.bound(program, &mut problem, cutoff, level, most);
+    let low = products.bound(program, &mut problem, best + ROOM * unit, level, limits);
     proof.iterations += products.iterations;
     if is_closed(low, best) {
         proof.value = Some(low);

@@ -1,6 +1,8 @@
 //! Bounds against the global minimum, which enumeration of all pieces finds.
 
 use super::super::pairs::{Piece, Program};
+use super::super::split::whole;
+use super::products::{Limits, Products};
 use crate::model::instance::{INF, Instance, Relation, Sense};
 use crate::solve::answer::{Answer, linear};
 use crate::solve::conformance::{self, Quiet, Row};
@@ -193,4 +195,40 @@ fn bounds_of_two_sides_enclose_the_global_minimum() {
     let (closed, all) = (closed.iter().filter(|c| **c).count(), closed.len());
     println!("{closed} of {all} closed");
     assert!(2 * closed > all, "{closed} of {all}");
+}
+
+#[test]
+fn products_alone_are_below_the_global_minimum() {
+    let mut dice = Dice(11);
+    let (mut closed, mut all) = (0, 0);
+    for k in 0..12 {
+        let instance = apart(&mut dice);
+        let Some(truth) = by_enumeration(&instance).filter(|t| t.is_finite()) else {
+            continue;
+        };
+        let program = Program::new(&instance).expect("pairs");
+        let level = solve(&instance).outcome.level;
+        let settings = Settings::default();
+        let mut products = Products {
+            settings: &settings,
+            monitor: &mut Quiet,
+            begin: std::time::Instant::now(),
+            iterations: 0,
+        };
+        let limits = Limits {
+            products: 1_000,
+            steps: 2_000,
+        };
+        let cutoff = truth + 0.1 * truth.abs().max(1.0);
+        let low = products.bound(&program, &mut whole(&program), cutoff, &level, limits);
+        assert!(
+            low <= truth + 1e-9 * truth.abs().max(1.0),
+            "{k}: {low} > {truth}"
+        );
+        println!("{k}: {low} of {truth}");
+        closed += usize::from(super::is_closed(low, truth));
+        all += 1;
+    }
+    println!("{closed} of {all} closed");
+    assert!(4 * closed > all, "{closed} of {all}");
 }
