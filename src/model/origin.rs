@@ -81,4 +81,6 @@ pub struct Origin {
     pub nonzeros: usize,
     /// Of those, where the column stands in a nonlinear term.
     pub nonlinear_nonzeros: usize,
+    /// Rows without variables, with a level or marginal from before: equation and key.
+    pub left_out: Vec<(u32, Vec<Label>)>,
 }

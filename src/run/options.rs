@@ -4,7 +4,7 @@ use crate::check::node::{OptionCode, SymbolId};
 use crate::check::option::is_statement_option;
 use crate::report::textfile::TextFile;
 use crate::solve::OWN_OPTIONS;
-use crate::source::Span;
+use crate::source::{Span, named_constant};
 use rustc_hash::FxHashMap;
 use std::cell::Cell;
 
@@ -98,7 +98,10 @@ impl Options {
                 t if t == "on" || t == "yes" => (Some(1.0), Some(t)),
                 t if t == "off" || t == "no" => (Some(0.0), Some(t)),
                 t if t == "default" => (None, None),
-                t => (None, Some(t)),
+                t => {
+                    let code = named_constant(&format!("{name}.{t}"));
+                    (code.and_then(|c| c.parse().ok()), Some(t))
+                }
             },
         };
         self.numbers.remove(name);

@@ -162,6 +162,7 @@ impl Machine<'_> {
                     solve: end - generated_at,
                     total: end - begin,
                 };
+                self.forget_rows(s, &generated);
                 self.store(&generated, &a);
                 self.remember(s, &generated, &a, seconds);
                 let savepoint = self.model_option(s.model, "savepoint", 0.0);
@@ -306,6 +307,33 @@ impl Machine<'_> {
         a.outcome.message = (!parts.is_empty()).then(|| parts.join("; "));
         let bounds = [proof.low, proof.high];
         a.bounds = bounds.iter().any(|b| b.is_finite()).then_some(bounds);
+    }
+
+    /// Levels and marginals from before of rows that have left the model: of those without variables, and,
+    /// with `solveOpt` replace or clear, of all rows of its equations.
+    fn forget_rows(&mut self, s: &SolveCode, g: &Generated) {
+        const MERGE: f64 = 1.0;
+        let of_rows = [attribute::L, attribute::M, attribute::LO, attribute::UP];
+        if self.model_option(s.model, "solveopt", MERGE) != MERGE {
+            for item in &s.equations {
+                let t = self
+                    .symbols
+                    .get(self.equations[item.definition].symbol)
+                    .table;
+                for o in of_rows {
+                    self.store.table_mut(t + o).clear();
+                }
+            }
+            return;
+        }
+        for rows in g.origin.left_out.chunk_by(|a, b| a.0 == b.0) {
+            let t = self.symbols.get(rows[0].0).table;
+            for o in [attribute::L, attribute::M] {
+                let table = self.store.table_mut(t + o);
+                rows.iter().for_each(|(_, key)| table.set(key, 0.0));
+                table.tidy();
+            }
+        }
     }
 
     /// Writes levels, marginals and bounds of rows back.

@@ -24,6 +24,7 @@ pub(crate) use evaluate::constant;
 pub use map::{FileId, Place, SourceFile, SourceMap};
 pub(crate) use preprocess::{DELIMITED, Preprocessor, quoted_end};
 pub use preprocess::{Ending, Known, NothingKnown, PreprocessOptions, SymbolKindName};
+pub(crate) use variables::constant as named_constant;
 
 /// What reading a line gives; a diagnostic is boxed because it is large and rare.
 pub(crate) type Outcome<T> = Result<T, Box<Diagnostic>>;

@@ -87,7 +87,7 @@ impl Variables {
 }
 
 /// The number behind a named constant such as `%modelStat.optimal%`.
-pub(super) fn constant(name: &str) -> Option<&'static str> {
+pub(crate) fn constant(name: &str) -> Option<&'static str> {
     const MODEL_STATUS: &[&str] = &[
         "optimal",
         "locallyoptimal",

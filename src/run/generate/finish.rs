@@ -110,6 +110,7 @@ impl Builder<'_, '_> {
             columns,
             nonzeros,
             nonlinear_nonzeros,
+            left_out: std::mem::take(&mut self.left_out),
         }
     }
 

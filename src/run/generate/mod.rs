@@ -99,6 +99,8 @@ struct Builder<'m, 'h> {
     row: u32,
     /// Rows of pairs whose constant says that they never bind: the column is at the bound that F = ±∞ asks for.
     never_bind: Vec<u32>,
+    /// Rows without variables that a solve before has left a level or marginal.
+    left_out: Vec<(SymbolId, Vec<Label>)>,
     failed: bool,
     span: Span,
 }
@@ -153,6 +155,7 @@ impl Machine<'_> {
             place: Vec::new(),
             row: 0,
             never_bind: Vec::new(),
+            left_out: Vec::new(),
             failed: false,
             span: Span::default(),
         };
@@ -324,6 +327,7 @@ impl Builder<'_, '_> {
         let pair = pair.filter(|_| self.options.keep_paired);
         let decided = |v| self.fixed_at(v, key).is_some() || self.is_left_out(v, key);
         if empty && pair.is_some_and(decided) {
+            self.leave_out(e.symbol, key);
             return;
         }
         if empty && pair.is_none() {
@@ -347,6 +351,7 @@ impl Builder<'_, '_> {
                 );
                 self.failed = true;
             }
+            self.leave_out(e.symbol, key);
             return;
         }
         let kept = || row.terms.iter().filter(|t| t.1 != 0.0);
@@ -397,6 +402,15 @@ impl Builder<'_, '_> {
         rows.scale.push(scale);
         block.keys.extend_from_slice(key);
         self.row += 1;
+    }
+
+    /// A row without variables: what it has from before is to go.
+    fn leave_out(&mut self, equation: SymbolId, key: &[Label]) {
+        let t = self.m.symbols.get(equation).table;
+        let stored = |o| self.m.store.table(t + o).find(key).is_some();
+        if stored(attribute::L) || stored(attribute::M) {
+            self.left_out.push((equation, key.to_vec()));
+        }
     }
 
     fn not_finite(&mut self, part: &str, row: &str, span: Span) {
