@@ -32,8 +32,8 @@ impl Effort {
     /// From anywhere.
     pub const FULL: Self = Self {
         steps: 100,
-        pivots: 20,
-        size: 5000,
+        pivots: 10,
+        size: 10_000,
     };
     /// From where an earlier solve ended.
     pub const NEAR: Self = Self {
