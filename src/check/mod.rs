@@ -255,9 +255,13 @@ impl Compiler {
             }
             return;
         }
-        // A statement that could not be read may be the one that gives it values.
-        let unread = |d: &Diagnostic| d.severity == Severity::Error && d.code < "E03";
-        if self.diagnostics.iter().any(unread) {
+        // A statement with an error may be the one that gives it values.
+        let solved_for = matches!(s.kind, SymbolKind::Variable(_) | SymbolKind::Equation(_));
+        let hides = |d: &Diagnostic| {
+            let refused = d.code < "E03" || solved_for && d.code != "E0319";
+            d.severity == Severity::Error && refused
+        };
+        if self.diagnostics.iter().any(hides) {
             return;
         }
         let (name, kind, declared) = (s.name.clone(), s.kind_name(), s.declared);

@@ -62,10 +62,11 @@ pub fn answer(
     settings: &Settings,
     monitor: &mut dyn Monitor,
 ) -> Result<Answer, SolveError> {
+    let has_pairs = instance.matched.iter().flatten().any(Option::is_some);
     let mut found = match using {
         "mcp" => complementary(instance, settings, monitor),
         "cns" => square(instance, settings, monitor),
-        "mpec" | "rmpec" => super::mpec::answer(choice, instance, settings, monitor),
+        "mpec" | "rmpec" if has_pairs => super::mpec::answer(choice, instance, settings, monitor),
         _ if instance.is_linear() && instance.objective.is_some() => match choice {
             Some("mcp" | "bmcp") => linear_shown(&super::kkt::Kkt, instance, settings, monitor),
             _ => linear_shown(&lp::Clarabel, instance, settings, monitor),

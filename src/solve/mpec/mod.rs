@@ -489,6 +489,7 @@ impl Search<'_> {
         let mut x = start.to_vec();
         let n = x.len();
         let mut mu = self.options.mu;
+        let mut missed = 0;
         loop {
             relaxed.tighten(self.program, mu, &x);
             let settings =
@@ -504,6 +505,7 @@ impl Search<'_> {
                 judged.residuals.complementarity_sum.unwrap_or(f64::NAN),
             ));
             let usable = a.residuals.is_feasible(1e-4) && y.iter().all(|v| v.is_finite());
+            missed = if usable { 0 } else { missed + 1 };
             if usable {
                 x.copy_from_slice(y);
             }
@@ -528,7 +530,8 @@ impl Search<'_> {
                     return Ok(());
                 }
             }
-            if self.is_spent() || mu <= self.options.last {
+            // With a smaller μ it only becomes harder.
+            if missed == 2 || self.is_spent() || mu <= self.options.last {
                 break;
             }
             mu = (mu * self.options.factor).max(self.options.last);
