@@ -321,7 +321,14 @@ pub fn solve(
         None => monitor.column_name(j),
     };
     let (mut out, status) = run(&mut problem, &names, settings, monitor, hopeless)?;
-    noise::snap(&mut out.x, &instance.columns.lower, &instance.columns.upper);
+    let (lower, upper) = (&instance.columns.lower, &instance.columns.upper);
+    noise::snap(&mut out.x, lower, upper);
+    if square && out.status != mcp::Status::Solved {
+        // The rows do not hold: the bounds shall.
+        for (x, (&l, &u)) in out.x.iter_mut().zip(lower.iter().zip(upper)) {
+            *x = x.max(l).min(u);
+        }
+    }
     if out.status == mcp::Status::EvaluationFailed {
         let mut f = vec![0.0; instance.column_count()];
         let failure = mcp::Problem::function(&mut problem, &instance.columns.level, &mut f).err();

@@ -41,12 +41,18 @@ impl Space {
     }
 
     /// Y with its part in the space made C, by changes of the entries with a weight, least in its units. What cannot be
-    /// reached stays.
-    pub fn corrected(&self, y: &Mat<f64>, c: &Mat<f64>, weight: &Mat<f64>) -> Mat<f64> {
+    /// reached stays, and what is left when `stop` says so.
+    pub fn corrected(
+        &self,
+        y: &Mat<f64>,
+        c: &Mat<f64>,
+        weight: &Mat<f64>,
+        stop: &mut dyn FnMut() -> bool,
+    ) -> Mat<f64> {
         let mut out = y.clone();
         let mut rest = c - self.down(&out);
         for _ in 0..PASSES {
-            let more = self.conjugate(&rest, weight);
+            let more = self.conjugate(&rest, weight, stop);
             let next = &out + weighted(self.up(&more), weight);
             let left = c - self.down(&next);
             if left.norm_l2() > 0.5 * rest.norm_l2() {
@@ -59,7 +65,12 @@ impl Space {
 
     /// N with Pᵀ (W ∘ P N Qᵀ) Q = C to some digits, by conjugate gradients. Where W is 0 the equations are singular, and
     /// rounding leads astray in the end: the best on the way counts.
-    fn conjugate(&self, c: &Mat<f64>, weight: &Mat<f64>) -> Mat<f64> {
+    fn conjugate(
+        &self,
+        c: &Mat<f64>,
+        weight: &Mat<f64>,
+        stop: &mut dyn FnMut() -> bool,
+    ) -> Mat<f64> {
         let mut sum = Mat::<f64>::zeros(c.nrows(), c.ncols());
         let mut rest = c.clone();
         let mut step = rest.clone();
@@ -67,7 +78,7 @@ impl Space {
         let mut best = (size, sum.clone());
         let enough = DIGITS * size;
         for _ in 0..CORRECTIONS {
-            if best.0 <= enough || size > ASTRAY * best.0 {
+            if best.0 <= enough || size > ASTRAY * best.0 || stop() {
                 break;
             }
             let image = self.down(&weighted(self.up(&step), weight));
@@ -190,7 +201,7 @@ mod tests {
         assert!(search.distance < 1e-12);
         assert!((search.y[(0, 0)] - 0.3).abs() < 1e-12);
         let one = Mat::from_fn(3, 3, |_, _| 1.0);
-        let corrected = space.corrected(&Mat::zeros(3, 3), &target, &one);
+        let corrected = space.corrected(&Mat::zeros(3, 3), &target, &one, &mut || false);
         assert!((space.down(&corrected) - target).norm_l2() < 1e-14);
     }
 }

@@ -161,7 +161,9 @@ impl Products<'_> {
                 continue;
             }
             distance = search.distance;
-            let low = proof.bound(&objective, &search.y, &room);
+            let low = self.watched(|stop| {
+                proof.bound(&objective, &search.y, &room, &mut || stop(0).is_some())
+            });
             self.log(&format!(
                 "{made} steps, {distance:.1e} apart, bound {:.9}, proved {low:.9}",
                 constant(&search.y),
@@ -187,7 +189,9 @@ impl Products<'_> {
             if over {
                 return None;
             }
-            let (room, without) = Room::new(proof, &search.y, k == ROOM.1);
+            let (room, without) = self.watched(|stop| {
+                Room::new(proof, &search.y, k == ROOM.1, &mut || stop(0).is_some())
+            });
             self.log(&format!(
                 "no room in {without} of {}, {:.1e} in all",
                 proof.kinds.len(),
@@ -261,7 +265,12 @@ struct Room {
 impl Room {
     /// From multipliers that are nearly such, and in how many there is none. None: they are not near enough, which does not
     /// matter if they are the `last`, or do not bound all columns of B.
-    fn new(proof: &Proof, near: &Mat<f64>, last: bool) -> (Option<Self>, usize) {
+    fn new(
+        proof: &Proof,
+        near: &Mat<f64>,
+        last: bool,
+        stop: &mut dyn FnMut() -> bool,
+    ) -> (Option<Self>, usize) {
         let mut kinds = proof.kinds.clone();
         let rows = near.nrows();
         let mut high = near.clone();
@@ -286,14 +295,14 @@ impl Room {
             if round == ROUNDS || !settled {
                 return (None, without);
             }
-            high = proof.space.corrected(&high, &target, &weight);
+            high = proof.space.corrected(&high, &target, &weight, stop);
         }
         let mut out = Self {
             high,
             kinds,
             sizes: Vec::new(),
         };
-        match proof.sizes(&out) {
+        match proof.sizes(&out, stop) {
             Some(sizes) => {
                 out.sizes = sizes;
                 (Some(out), without)
@@ -437,7 +446,13 @@ impl<'s> Proof<'s> {
     }
 
     /// Multipliers made right from some that are nearly, or from none: they prove what is of this part.
-    fn mended(&self, near: &Mat<f64>, part: &Mat<f64>, room: &Room) -> Mat<f64> {
+    fn mended(
+        &self,
+        near: &Mat<f64>,
+        part: &Mat<f64>,
+        room: &Room,
+        stop: &mut dyn FnMut() -> bool,
+    ) -> Mat<f64> {
         let rows = near.nrows();
         let mut weight = room.high.clone();
         for (i, kind) in room.kinds.iter().enumerate() {
@@ -447,7 +462,7 @@ impl<'s> Proof<'s> {
                 _ => room.high[(k, l)].min(1.0),
             };
         }
-        self.space.corrected(near, part, &weight)
+        self.space.corrected(near, part, &weight, stop)
     }
 
     /// With as much of the room as their signs lack.
@@ -465,13 +480,19 @@ impl<'s> Proof<'s> {
     }
 
     /// What multipliers prove of the objective.
-    fn bound(&self, form: &Form, near: &Mat<f64>, room: &Room) -> f64 {
-        let y = self.mended(near, &self.part(form), room);
+    fn bound(
+        &self,
+        form: &Form,
+        near: &Mat<f64>,
+        room: &Room,
+        stop: &mut dyn FnMut() -> bool,
+    ) -> f64 {
+        let y = self.mended(near, &self.part(form), room, stop);
         self.proved(form, &self.signed(y, room), &room.sizes)
     }
 
-    /// Sizes of side B's columns, and 1; None where not all are proved.
-    fn sizes(&self, room: &Room) -> Option<Vec<f64>> {
+    /// Sizes of side B's columns, and 1; None where not all are proved before `stop` says so.
+    fn sizes(&self, room: &Room, stop: &mut dyn FnMut() -> bool) -> Option<Vec<f64>> {
         let b = &self.sides.b;
         let last = self.space.p.nrows() - 1;
         // |z_j| ≤ (most / h + |constant|) / |v| from inequality l with a single column, and the column 1 of A.
@@ -498,9 +519,12 @@ impl<'s> Proof<'s> {
         let nothing = Mat::zeros(last + 1, self.space.q.nrows());
         let mut tried: Vec<(usize, Mat<f64>)> = Vec::new();
         for j in 0..b.count {
+            if stop() {
+                return None;
+            }
             if sizes[j].is_infinite() && b.opposite[j].is_none() {
                 let part = self.part(&[Factor::one(), Factor::column(j)]);
-                let y = self.mended(&nothing, &part, room);
+                let y = self.mended(&nothing, &part, room, stop);
                 let ends = [1.0, -1.0].map(|s| constant(&self.signed(Scale(s) * &y, room)).abs());
                 sizes[j] = 2.0 * ends[0].max(ends[1]) + 1.0;
                 tried.push((j, y));
