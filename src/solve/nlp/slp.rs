@@ -142,7 +142,12 @@ pub fn solve(nlp: &mut dyn Nlp, effort: Effort, stop: &mut dyn FnMut() -> bool) 
         let now = merit(&here, nlp);
         let slope: f64 = slopes.gradient.iter().zip(&step).map(|(g, d)| g * d).sum();
         let promised = now - (here.f + slope + weight * elastic);
-        if promised <= 1e-10 * now.abs().max(1.0) {
+        let mut next: Vec<f64> = x.iter().zip(&step).map(|(x, d)| x + d).collect();
+        into_bounds(nlp, &mut next);
+        let there = Values::at(nlp, &next);
+        let small = promised <= 1e-10 * now.abs().max(1.0);
+        let closer = |v: &Values| v.violation(nlp) < 0.5 * here.violation(nlp);
+        if small && !there.as_ref().is_some_and(closer) {
             if elastic <= 1e-9 || penalty >= MOST_PENALTY {
                 break;
             }
@@ -150,12 +155,12 @@ pub fn solve(nlp: &mut dyn Nlp, effort: Effort, stop: &mut dyn FnMut() -> bool) 
             (penalty, radius) = (10.0 * penalty, radius.max(1.0));
             continue;
         }
-        let mut next: Vec<f64> = x.iter().zip(&step).map(|(x, d)| x + d).collect();
-        into_bounds(nlp, &mut next);
-        let there = Values::at(nlp, &next);
-        let part = there
-            .as_ref()
-            .map_or(-1.0, |v| (now - merit(v, nlp)) / promised);
+        let part = match &there {
+            None => -1.0,
+            // the last digits of the rows
+            Some(_) if small => 1.0,
+            Some(v) => (now - merit(v, nlp)) / promised,
+        };
         let reach = x
             .iter()
             .zip(&step)
