@@ -24,8 +24,6 @@ pub struct Effort {
     pub steps: u64,
     /// Pivots of the simplex method, all programs together, by the number of rows and columns.
     pub pivots: u64,
-    /// Variables and constraints: the programs start from the last basis, but each is factorised afresh.
-    pub size: usize,
 }
 
 impl Effort {
@@ -33,16 +31,16 @@ impl Effort {
     pub const FULL: Self = Self {
         steps: 100,
         pivots: 10,
-        size: 10_000,
     };
     /// From where an earlier solve ended.
     pub const NEAR: Self = Self {
         steps: 20,
         pivots: 2,
-        size: 10_000,
     };
 }
 
+/// Variables and constraints at most: the programs start from the last basis, but each is factorised afresh.
+const LARGEST: usize = 10_000;
 /// The penalty ν grows up to here.
 const MOST_PENALTY: f64 = 1e9;
 /// A step is taken from this part of the promised decrease on, and the trust region grows from the other on.
@@ -108,7 +106,7 @@ impl Slopes {
 /// where the problem is too large, and where it leads to infinity.
 pub fn solve(nlp: &mut dyn Nlp, effort: Effort, stop: &mut dyn FnMut() -> bool) -> Option<Run> {
     let (n, m) = nlp.size();
-    if n + m > effort.size {
+    if n + m > LARGEST {
         return None;
     }
     let mut x: Vec<f64> = nlp.start().to_vec();

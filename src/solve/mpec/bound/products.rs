@@ -37,6 +37,7 @@
 
 use std::time::Instant;
 
+use faer::linalg::solvers::Svd;
 use faer::{Mat, Scale};
 
 use super::super::pairs::Program;
@@ -340,12 +341,7 @@ impl Basis {
             true => (0, Mat::zeros(n, 0), Mat::identity(n, n)),
             false => {
                 let svd = equations.svd().ok()?;
-                let s: Vec<f64> = svd.S().column_vector().iter().copied().collect();
-                let rank = s.iter().filter(|v| **v > RANK * s[0]).count();
-                let mut shrunk = svd.V().subcols(0, rank).to_owned();
-                for (k, s) in s[..rank].iter().enumerate() {
-                    shrunk.col_as_slice_mut(k).iter_mut().for_each(|v| *v /= s);
-                }
+                let (rank, shrunk) = shrunk(&svd);
                 let inverse = shrunk * svd.U().subcols(0, rank).transpose();
                 (rank, inverse, svd.V().to_owned())
             }
@@ -364,12 +360,7 @@ impl Basis {
             column.zip(&scale).for_each(|(v, s)| *v *= s);
         }
         let svd = slacks.thin_svd().ok()?;
-        let s: Vec<f64> = svd.S().column_vector().iter().copied().collect();
-        let rank = s.iter().filter(|v| **v > RANK * s[0]).count();
-        let mut shrunk = svd.V().subcols(0, rank).to_owned();
-        for (k, s) in s[..rank].iter().enumerate() {
-            shrunk.col_as_slice_mut(k).iter_mut().for_each(|v| *v /= s);
-        }
+        let (rank, shrunk) = shrunk(&svd);
         Some(Self {
             scale,
             inverse,
@@ -377,6 +368,17 @@ impl Basis {
             forms: shrunk.transpose() * null.transpose(),
         })
     }
+}
+
+/// The rank, and V over S up to it.
+fn shrunk(svd: &Svd<f64>) -> (usize, Mat<f64>) {
+    let s: Vec<f64> = svd.S().column_vector().iter().copied().collect();
+    let rank = s.iter().filter(|v| **v > RANK * s[0]).count();
+    let mut shrunk = svd.V().subcols(0, rank).to_owned();
+    for (k, s) in s[..rank].iter().enumerate() {
+        shrunk.col_as_slice_mut(k).iter_mut().for_each(|v| *v /= s);
+    }
+    (rank, shrunk)
 }
 
 /// Mean of the slacks that are not 0, of either side, beside the column 1: the search takes several times as many steps
