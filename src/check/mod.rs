@@ -51,6 +51,8 @@ pub struct Program {
     pub equations: Vec<EquationDef>,
     /// Statements.
     pub code: Vec<Code>,
+    /// Whether the text itself shows numbers: a `display`, `put`, `draw` or `execute_unload`.
+    pub shows_numbers: bool,
     /// Number of slots the frame needs.
     pub slots: usize,
     /// Where everything stands.
@@ -83,6 +85,7 @@ pub(crate) struct Compiler {
     input: Option<(String, Span)>,
     /// The file that `$gdxOut` named, and what `$unload` asked for.
     output: Option<(String, Span, Vec<exchange::Wanted>)>,
+    shows_numbers: bool,
     next_slot: Slot,
     slots: usize,
     in_equation: bool,
@@ -154,6 +157,7 @@ pub fn compile(
         store: c.store,
         equations: c.equations,
         code,
+        shows_numbers: c.shows_numbers,
         slots: c.slots,
         map: parser.into_map(),
         diagnostics: c.diagnostics,
@@ -189,6 +193,7 @@ impl Compiler {
             input: None,
             output: None,
             next_slot: 0,
+            shows_numbers: false,
             slots: 0,
             in_equation: false,
             reads: Vec::new(),

@@ -204,6 +204,10 @@ impl Compiler {
                 CodeKind::Draw(s, file)
             }
         };
+        self.shows_numbers |= matches!(
+            kind,
+            CodeKind::Display(..) | CodeKind::Put(..) | CodeKind::Draw(..) | CodeKind::Exchange(_)
+        );
         out.push(Code::new(kind, span));
         Ok(())
     }

@@ -106,6 +106,9 @@ pub struct RunArgs {
     /// Writes all rows and columns of every solve as JSON, with all digits.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub solution: Option<PathBuf>,
+    /// Shows every level and marginal after each solve.
+    #[arg(long, conflicts_with = "quiet")]
+    pub all: bool,
     /// No summaries and no displays; diagnostics only.
     #[arg(long, short)]
     pub quiet: bool,
@@ -261,6 +264,48 @@ pub fn try_parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Cli, c
     Cli::try_parse_from(accept_gams(arguments))
 }
 
+/// GAMS's own `key=value` arguments that say how its log, its listing and its processes look: nothing here to set.
+const GAMS_KEYS: &[&str] = &[
+    "lo",
+    "logoption",
+    "o",
+    "output",
+    "pw",
+    "pagewidth",
+    "ps",
+    "pagesize",
+    "lf",
+    "logfile",
+    "gdx",
+    "scrdir",
+    "curdir",
+    "idir",
+    "ll",
+    "loglevel",
+    "suppress",
+    "appendlog",
+    "appendout",
+    "errmsg",
+    "license",
+    "procdir",
+    "ide",
+    "profile",
+    "stepsum",
+];
+
+/// What GAMS's `key=value` on the command line means here: an option of the run (`reslim=5`), a definition (`user1=x`), or
+/// nothing (`lo=3`). None: it is no such argument.
+fn gams_argument(text: &str) -> Option<Option<[OsString; 2]>> {
+    let (key, value) = text.trim_start_matches('-').split_once('=')?;
+    let key = key.to_lowercase();
+    if GAMS_KEYS.contains(&key.as_str()) {
+        return Some(None);
+    }
+    let is_option = crate::check::option::is_statement_option(&key);
+    let pair = OsString::from(format!("{key}={value}"));
+    is_option.then(|| Some(["--option".into(), pair]))
+}
+
 /// Turns GAMS's `--NAME=VALUE` into `-D NAME=VALUE` wherever NAME is no option of the command.
 fn accept_gams(arguments: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
     let mut arguments: Vec<OsString> = arguments.into_iter().collect();
@@ -270,9 +315,33 @@ fn accept_gams(arguments: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
         return arguments;
     };
     let known: Vec<&str> = sub.get_arguments().filter_map(|a| a.get_long()).collect();
+    let takes_value = |argument: &OsString| {
+        let text = argument.to_str().unwrap_or_default();
+        let is_it = |a: &&clap::Arg| {
+            a.get_long()
+                .is_some_and(|l| text.strip_prefix("--") == Some(l))
+                || a.get_short().is_some_and(|s| text == format!("-{s}"))
+        };
+        sub.get_arguments()
+            .find(is_it)
+            .is_some_and(|a| a.get_action().takes_values())
+    };
+    let solves = known.contains(&"option");
     let mut k = 2;
     while k < arguments.len() && arguments[k] != "--" {
-        let text = arguments[k].to_str().and_then(|t| t.strip_prefix("--"));
+        let text = arguments[k].to_str();
+        if let Some(meant) = text
+            .filter(|t| !t.starts_with("--"))
+            .and_then(gams_argument)
+            && !takes_value(&arguments[k - 1])
+        {
+            let meant: Vec<OsString> = meant.filter(|_| solves).into_iter().flatten().collect();
+            let count = meant.len();
+            arguments.splice(k..=k, meant);
+            k += count;
+            continue;
+        }
+        let text = text.and_then(|t| t.strip_prefix("--"));
         if let Some((name, _)) = text.and_then(|t| t.split_once('='))
             && !name.is_empty()
             && !known.contains(&name)
@@ -355,6 +424,23 @@ mod tests {
         };
         assert_eq!(run.out, PathBuf::from("figs"));
         assert_eq!(run.model.define.len(), 1);
+    }
+
+    #[test]
+    fn arguments_of_gams_are_accepted() {
+        let line = "bmod run w.gms lo=3 o=w.lst --option lp=clarabel reslim=5 MIP=highs pw=120";
+        let Command::Run(run) = read(line).expect("right").command else {
+            panic!("not a run");
+        };
+        let pair = |a: &str, b: &str| (a.to_string(), b.to_string());
+        let want = [
+            pair("lp", "clarabel"),
+            pair("reslim", "5"),
+            pair("mip", "highs"),
+        ];
+        assert_eq!(run.solve.option, want);
+        assert!(read("bmod check w.gms lo=3 reslim=4").is_ok());
+        assert!(read("bmod run w.gms nonsense=3").is_err());
     }
 
     #[test]

@@ -158,6 +158,7 @@ fn run(a: &RunArgs) -> u8 {
         keep_solutions: a.solution.is_some(),
         collect: a.json.is_some(),
         quiet: a.quiet,
+        all: a.all,
         color: Look::stream(is_terminal).color,
         ..options(&a.solve)
     };
@@ -173,6 +174,13 @@ fn run(a: &RunArgs) -> u8 {
         }
     });
     let mut status = finished.end.exit();
+    if !a.quiet && !finished.report.files.is_empty() {
+        let line = format!("written: {}\n", finished.report.files.join(", "));
+        let _ = match output {
+            Output::Error => std::io::stderr().write_all(line.as_bytes()),
+            _ => std::io::stdout().write_all(line.as_bytes()),
+        };
+    }
     if let Some(path) = &a.solution
         && let Some(text) = &solutions
         && let Err(e) = write_whole(path, text.as_bytes())

@@ -157,6 +157,9 @@ pub struct SolveReport {
     /// One more line from the solver.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub message: Option<String>,
+    /// What the reader can do about it, for the terminal. Not in the JSON.
+    #[serde(skip)]
+    pub hint: Option<String>,
     /// Why it ended so (`bmod why`).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub why: Option<super::why::Explanation>,
@@ -281,6 +284,7 @@ mod tests {
             bounds: None,
             stationarity: None,
             message: None,
+            hint: None,
             why: None,
         });
         report.displays = vec![

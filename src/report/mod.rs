@@ -5,6 +5,7 @@ pub mod display;
 pub mod figure;
 pub mod format;
 pub mod json;
+pub mod levels;
 pub mod listing;
 pub mod names;
 pub mod number;

@@ -32,7 +32,8 @@ pub fn solve(s: &SolveReport, color: bool) -> String {
         _ => {}
     }
     let mut out = format!("  {what}: {}{}{reset}", paint(status), s.model_status.name);
-    if let Some(Number(v)) = s.objective {
+    // The objective of a point that violates the rows means nothing.
+    if let Some(Number(v)) = s.objective.filter(|_| !is_infeasible(s)) {
         let name = s.objective_name.as_deref().unwrap_or("objective");
         let _ = write!(out, ", {name} = {}{}{reset}", paint(BOLD), digits(v));
     }
@@ -86,6 +87,9 @@ pub fn solve(s: &SolveReport, color: bool) -> String {
     if let Some(message) = &s.message {
         let _ = writeln!(out, "    {message}");
     }
+    if let Some(hint) = &s.hint {
+        let _ = writeln!(out, "    {hint}");
+    }
     for text in s.why.iter().flat_map(|w| &w.text) {
         let _ = writeln!(out, "  {text}");
     }
@@ -93,6 +97,11 @@ pub fn solve(s: &SolveReport, color: bool) -> String {
         let _ = writeln!(out, "    stationarity: {stationarity}");
     }
     out
+}
+
+/// Whether the point violates rows or bounds.
+fn is_infeasible(s: &SolveReport) -> bool {
+    matches!(s.model_status.code, 4 | 5 | 6 | 19)
 }
 
 /// Ten significant digits, without trailing zeros.
@@ -196,6 +205,7 @@ mod tests {
             bounds: None,
             stationarity: None,
             message: None,
+            hint: None,
             why: None,
         }
     }

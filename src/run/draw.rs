@@ -62,9 +62,18 @@ impl Machine<'_> {
             );
             return;
         }
+        let name = symbol.name.to_string();
         let Ok(scene) = self.scene(&code, frame) else {
             return;
         };
+        if scene.elements.is_empty() {
+            let message = format!("the figure `{name}` is empty: no element has a record to draw");
+            self.note(
+                Diagnostic::warning("E0484", span, message)
+                    .label("drawn as an empty page")
+                    .help("`display` the data of its elements; a condition may leave nothing"),
+            );
+        }
         let picture = svg(&scene);
         if lower.ends_with(".svg") {
             self.write_file(&file, picture.as_bytes(), span);

@@ -114,7 +114,9 @@ impl Machine<'_> {
                 items,
                 no_error,
             } => {
-                if self.holds(condition.as_ref(), frame) {
+                // Behind a solve that was not made (`bmod list`) an abort judges numbers that are not there.
+                let judges = self.options.list.is_none() || self.report.solves.is_empty();
+                if judges && self.holds(condition.as_ref(), frame) {
                     return self.abort(items, *no_error, c.span);
                 }
             }
@@ -153,7 +155,10 @@ impl Machine<'_> {
         if !self.keep_going() {
             return ControlFlow::Break(Flow::Stop);
         }
-        match self.block(body, frame) {
+        self.loops += 1;
+        let flow = self.block(body, frame);
+        self.loops -= 1;
+        match flow {
             Flow::Next | Flow::Continue => ControlFlow::Continue(()),
             Flow::Break(loops) if loops > 1 => ControlFlow::Break(Flow::Break(loops - 1)),
             Flow::Break(_) => ControlFlow::Break(Flow::Next),

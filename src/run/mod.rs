@@ -96,6 +96,10 @@ pub struct Machine<'h> {
     current: RefCell<Option<(SymbolId, Vec<Label>)>>,
     ticks: Cell<u32>,
     stop: Cell<bool>,
+    /// The text itself shows numbers.
+    shows_numbers: bool,
+    /// Loops around the statement that runs.
+    loops: usize,
     started: f64,
     table_symbols: Vec<SymbolId>,
     slots: usize,
@@ -142,6 +146,8 @@ impl<'h> Machine<'h> {
             current: RefCell::new(None),
             ticks: Cell::new(0),
             stop: Cell::new(false),
+            shows_numbers: program.shows_numbers,
+            loops: 0,
             started,
             table_symbols,
             slots: program.slots,

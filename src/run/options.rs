@@ -33,6 +33,8 @@ pub struct Options {
     pub keep_solutions: bool,
     /// Do not print displays and summaries.
     pub quiet: bool,
+    /// After a solve show every level and marginal, also where the text displays something.
+    pub all: bool,
     /// Summaries in colour.
     pub color: bool,
     /// `bmod list`: generate, print rows and columns, do not solve: how many per block.
@@ -64,6 +66,7 @@ impl Default for Options {
             collect: true,
             keep_solutions: false,
             quiet: false,
+            all: false,
             color: false,
             list: None,
             at: Cell::default(),

@@ -11,7 +11,7 @@ use crate::model::instance::{ColumnKind, Instance, Relation};
 use crate::model::origin::{Blocks, Origin};
 use crate::report::names::Names;
 use crate::report::why::{Explanation, explain};
-use crate::report::{json, listing, solution, summary};
+use crate::report::{json, levels, listing, solution, summary};
 use crate::solve::answer::{Answer, answer, certify};
 use crate::solve::why;
 use crate::solve::{ModelStatus, Monitor, Settings, SolverStatus};
@@ -510,13 +510,40 @@ impl Machine<'_> {
             bounds: a.bounds.map(|b| b.map(json::Number)),
             stationarity: a.stationarity.map(|s| s.name()),
             message: self.solve_message(g, a),
+            hint: self.hint(g, a),
             why: self.options.why.then(|| self.explanation(s, g, a)),
         };
         if !self.options.quiet {
-            let text = summary::solve(&solve, self.options.color);
+            let mut text = summary::solve(&solve, self.options.color);
+            text.push_str(&self.levels(s.model, g, a));
             self.print(&text);
         }
         self.report.solves.push(solve);
+    }
+
+    /// Levels and marginals, where the text shows no numbers itself, or where all are asked for. `solPrint` = 0 or 2, a loop
+    /// around the solve, and a point that is no solution leave them out.
+    fn levels(&self, model: SymbolId, g: &Generated, a: &Answer) -> String {
+        const REPORT: f64 = 1.0;
+        let all = self.options.all;
+        let wanted = !self.shows_numbers
+            && self.loops == 0
+            && self.model_option(model, "solprint", REPORT) == REPORT
+            && a.status.has_solution();
+        if !wanted && !all {
+            return String::new();
+        }
+        let names = RunNames {
+            machine: self,
+            origin: &g.origin,
+        };
+        let values = levels::Values {
+            column_level: &a.outcome.level,
+            column_marginal: &a.outcome.column_marginal,
+            row_level: &a.activity,
+            row_marginal: &a.outcome.row_marginal,
+        };
+        levels::levels(&g.instance, &names, &values, all)
     }
 
     /// The report of a model that was generated only.
@@ -541,6 +568,7 @@ impl Machine<'_> {
             bounds: None,
             stationarity: None,
             message: None,
+            hint: None,
             why: None,
         }
     }
@@ -559,6 +587,36 @@ impl Machine<'_> {
             origin: &g.origin,
         };
         explain(&found, &g.instance, &names)
+    }
+
+    /// Where a reader finds out why there is no solution. The multipliers that prove an infeasible linear program so tell how
+    /// many rows and bounds it takes.
+    fn hint(&self, g: &Generated, a: &Answer) -> Option<String> {
+        if self.options.why {
+            return None;
+        }
+        let file = &self.map.files()[0].name;
+        match a.status {
+            ModelStatus::Infeasible => {
+                let ray = &a.outcome.ray;
+                let largest = ray.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+                let rows = ray.iter().filter(|v| v.abs() > 1e-9 * largest).count();
+                let what = match rows {
+                    _ if ray.len() != g.instance.row_count() => "what contradicts what".into(),
+                    0 => "which bounds contradict each other".into(),
+                    1 => "which row contradicts its variables' bounds".into(),
+                    n => format!("which of {n} rows contradict each other"),
+                };
+                Some(format!("`bmod why {file}` shows {what}"))
+            }
+            ModelStatus::LocallyInfeasible | ModelStatus::IntermediateInfeasible => {
+                Some(format!("`bmod why {file}` shows what is violated"))
+            }
+            ModelStatus::Unbounded | ModelStatus::UnboundedNoSolution => {
+                Some(format!("`bmod why {file}` shows what grows without limit"))
+            }
+            _ => None,
+        }
     }
 
     /// What else there is to say: the solver's remark, and the worst row or column of a failure.
@@ -599,7 +657,14 @@ impl Machine<'_> {
             machine: self,
             origin: &g.origin,
         };
-        let text = listing::listing(&g.instance, &names, &activity, &selection);
+        let mut text = listing::listing(&g.instance, &names, &activity, &selection);
+        if text.is_empty() && !list.only.is_empty() {
+            let asked = list.only.join("`, `");
+            text = format!(
+                "  no row or column is called `{asked}`; there are {}\n",
+                symbols(g, &names)
+            );
+        }
         self.print(&format!(
             "model {model}: {} rows, {} columns, {} nonzeros\n\n{text}\n",
             g.instance.row_count(),
@@ -648,6 +713,20 @@ impl Machine<'_> {
             .collect();
         solution::to_json(file, &solved)
     }
+}
+
+/// Names of the equations and variables of a model, for a message.
+fn symbols(g: &Generated, names: &RunNames) -> String {
+    let of = |blocks: &Blocks| -> Vec<String> {
+        let symbols = blocks.list.iter().map(|b| b.symbol);
+        symbols
+            .map(|s| names.machine.symbols.get(s).name.to_string())
+            .collect()
+    };
+    let mut all = of(&g.origin.rows);
+    all.extend(of(&g.origin.columns));
+    all.dedup();
+    all.join(", ")
 }
 
 /// Marginals as GAMS stores them: a 0 is EPS where nothing can move, in a fixed column and in the row of an equation, which

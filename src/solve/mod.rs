@@ -57,6 +57,18 @@ pub enum ModelStatus {
 }
 
 impl ModelStatus {
+    /// Whether the point that comes with it satisfies the rows and bounds, so that its numbers mean something.
+    pub fn has_solution(self) -> bool {
+        matches!(
+            self,
+            Self::Optimal
+                | Self::LocallyOptimal
+                | Self::Feasible
+                | Self::SolvedUnique
+                | Self::Solved
+        )
+    }
+
     /// GAMS's words for it, lower case.
     pub fn name(self) -> &'static str {
         match self {
