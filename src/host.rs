@@ -22,6 +22,15 @@ pub trait Host {
     /// Reads a text. `from` is the file whose text asks (for relative paths).
     /// Returns the path under which it is known, and the text.
     fn read(&mut self, path: &str, from: Option<&Path>) -> Result<(PathBuf, String), HostError>;
+    /// Reads the bytes of a file, as [`Host::read`] finds it. A host that has texts only gives their bytes.
+    fn read_bytes(
+        &mut self,
+        path: &str,
+        from: Option<&Path>,
+    ) -> Result<(PathBuf, Vec<u8>), HostError> {
+        let (known, text) = self.read(path, from)?;
+        Ok((known, text.into_bytes()))
+    }
     /// Whether a file may be read and is there (`$if exist`).
     fn exists(&mut self, path: &str, from: Option<&Path>) -> bool;
     /// Whether there is a folder whose files may be read (`$if dExist`).

@@ -10,6 +10,7 @@ pub mod check;
 pub mod cli;
 pub mod data;
 pub mod diag;
+pub mod gdx;
 pub mod host;
 pub mod model;
 pub mod report;

@@ -602,7 +602,7 @@ fn compile_time_data() {
         matches!(&s[1].kind, StmtKind::Exchange(e) if e.file.as_ref().is_some_and(|f| &*f.0 == "data.csv"))
     );
     assert!(
-        matches!(&s[2].kind, StmtKind::Exchange(e) if e.items.len() == 2 && e.items[1].1.is_some())
+        matches!(&s[2].kind, StmtKind::Exchange(e) if e.items.len() == 2 && e.items[1].other.is_some())
     );
     assert!(matches!(&s[4].kind, StmtKind::Clear { kill: true, names } if names.len() == 2));
     assert_eq!(s.len(), 6);

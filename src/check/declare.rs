@@ -162,7 +162,7 @@ impl Compiler {
                     | SymbolKind::Variable(_)
                     | SymbolKind::Equation(_)
             );
-        Ok(self.symbols.add(Symbol {
+        let new = self.symbols.add(Symbol {
             name: d.name.name.clone(),
             open,
             kind,
@@ -175,7 +175,12 @@ impl Compiler {
             dynamic: false,
             is_domain: false,
             unordered: false,
-        }))
+        });
+        if names.iter().any(|n| n.defines) {
+            let defines = names.iter().map(|n| n.defines).collect();
+            self.defining.insert(new, defines);
+        }
+        Ok(new)
     }
 
     pub(super) fn declare_plain(

@@ -81,6 +81,8 @@ pub(crate) struct Compiler {
     diagnostics: Vec<Diagnostic>,
     /// Sets under control, innermost last.
     scope: Vec<(SymbolId, Vec<Part>)>,
+    /// Symbols declared with `<` behind an index: their data define those sets.
+    defining: rustc_hash::FxHashMap<SymbolId, Vec<bool>>,
     /// The file that `$gdxIn` named.
     input: Option<(String, Span)>,
     /// The file that `$gdxOut` named, and what `$unload` asked for.
@@ -190,6 +192,7 @@ impl Compiler {
             equations: Vec::new(),
             diagnostics: Vec::new(),
             scope: Vec::new(),
+            defining: rustc_hash::FxHashMap::default(),
             input: None,
             output: None,
             next_slot: 0,

@@ -156,8 +156,8 @@ impl Compiler {
             }
             StmtKind::Put(p) => self.put(p, span)?,
             StmtKind::Exchange(x) => {
-                for (name, _) in &x.items {
-                    let s = self.lookup(name)?;
+                for item in &x.items {
+                    let s = self.lookup(&item.name)?;
                     if x.keyword.name.to_lowercase().contains("load")
                         && !x.keyword.name.to_lowercase().contains("unload")
                     {

@@ -46,11 +46,27 @@ pub enum Command {
     Bench(BenchArgs),
     /// Shows the generated rows and columns as readable algebra, with names and numbers.
     List(ListArgs),
+    /// Shows what is in a GDX file, the data files of GAMS: all symbols, or the records of one.
+    Gdx(GdxArgs),
     /// Prints a script that completes bmod's commands in a shell.
     Completions {
         /// The shell.
         shell: clap_complete::Shell,
     },
+}
+
+/// `bmod gdx`
+#[derive(Args, Debug, Clone)]
+pub struct GdxArgs {
+    /// The file.
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// The symbol whose records are shown.
+    #[arg(value_name = "SYMBOL")]
+    pub symbol: Option<String>,
+    /// As comma-separated values.
+    #[arg(long)]
+    pub csv: bool,
 }
 
 /// How diagnostics are written.

@@ -35,6 +35,7 @@ pub fn execute(cli: &Cli) -> u8 {
         Command::Bench(a) => super::bench::bench(a),
         Command::Why(a) => super::why::why(a),
         Command::List(a) => list(a),
+        Command::Gdx(a) => super::gdx::show(a),
         Command::Completions { shell } => {
             let _ = std::io::stdout().write_all(&completions(*shell));
             0

@@ -204,12 +204,7 @@ impl Host for SystemHost {
     }
 
     fn read(&mut self, path: &str, from: Option<&Path>) -> Result<(PathBuf, String), HostError> {
-        let (known, real) = self.find(path, from)?;
-        let size = real.metadata().map_err(other)?.len();
-        if size > u64::from(u32::MAX / 2) {
-            return Err(HostError::Other("it is larger than 2 GB".into()));
-        }
-        let bytes = std::fs::read(&real).map_err(other)?;
+        let (known, bytes) = self.read_bytes(path, from)?;
         match String::from_utf8(bytes) {
             Ok(text) => {
                 // A byte order mark is no part of the text.
@@ -220,11 +215,24 @@ impl Host for SystemHost {
                 Ok((known, text))
             }
             // Old GAMS files are often Latin-1 in their comments; a .blk is UTF-8.
-            Err(e) if is_gams(&real) => {
+            Err(e) if is_gams(&known) => {
                 Ok((known, e.into_bytes().into_iter().map(char::from).collect()))
             }
             Err(e) => Err(HostError::NotUtf8(e.utf8_error().valid_up_to())),
         }
+    }
+
+    fn read_bytes(
+        &mut self,
+        path: &str,
+        from: Option<&Path>,
+    ) -> Result<(PathBuf, Vec<u8>), HostError> {
+        let (known, real) = self.find(path, from)?;
+        let size = real.metadata().map_err(other)?.len();
+        if size > u64::from(u32::MAX / 2) {
+            return Err(HostError::Other("it is larger than 2 GB".into()));
+        }
+        Ok((known, std::fs::read(&real).map_err(other)?))
     }
 
     fn exists(&mut self, path: &str, from: Option<&Path>) -> bool {

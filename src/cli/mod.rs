@@ -3,6 +3,7 @@
 pub mod args;
 pub mod bench;
 pub mod commands;
+mod gdx;
 pub mod host;
 pub mod why;
 

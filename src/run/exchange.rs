@@ -1,8 +1,8 @@
-//! Data exchange in the run: `execute_unload`, `execute_load` and `execute_loadpoint`, with open formats
+//! Data exchange in the run: `execute_unload`, `execute_load` and `execute_loadpoint`
 //! (`$load` and `$unload` act while the text is read: [`crate::check::exchange`]).
 
 use super::Machine;
-use crate::check::exchange::{Request, Wanted, file_to_load, load, no_file, unload, wanted};
+use crate::check::exchange::{Part, Request, Wanted, load, no_file, unload, wanted};
 use crate::check::node::SymbolId;
 use crate::model::origin::Origin;
 use crate::source::Span;
@@ -24,8 +24,8 @@ impl Machine<'_> {
         };
         let unloads = x.keyword.name.contains("unload");
         let (named, example) = match unloads {
-            true => (&self.transfer.unload_to, "execute_unload 'results.json';"),
-            false => (&self.transfer.load_from, "execute_load 'data.csv', p;"),
+            true => (&self.transfer.unload_to, "execute_unload 'results.gdx';"),
+            false => (&self.transfer.load_from, "execute_load 'data.gdx', p;"),
         };
         let named = named.clone().map(|f| (f.into(), span));
         let Some((file, at)) = x.file.as_ref().or(named.as_ref()) else {
@@ -35,10 +35,12 @@ impl Machine<'_> {
             return self.unload(file, &items, *at);
         }
         self.load(&Request {
-            file: &file_to_load(&self.map, file),
+            file,
             at: *at,
             items: &items,
             point: x.keyword.name.contains("point"),
+            strict: x.keyword.name.ends_with("dc"),
+            merge: false,
             span,
         });
     }
@@ -46,11 +48,12 @@ impl Machine<'_> {
     fn load(&mut self, request: &Request<'_>) {
         let mut symbols = std::mem::take(&mut self.symbols);
         let mut store = std::mem::take(&mut self.store);
-        let mut read = |name: &str, at| self.read_file(name, at);
+        let mut read = |name: &str, at| self.read_bytes(name, at);
         let done = load(&mut symbols, &mut store, request, &mut read);
         (self.symbols, self.store) = (symbols, store);
-        if let Err(d) = done {
-            self.note(*d);
+        match done {
+            Ok(warnings) => warnings.into_iter().for_each(|d| self.note(d)),
+            Err(d) => self.note(*d),
         }
     }
 
@@ -74,21 +77,30 @@ impl Machine<'_> {
                 symbol: b.symbol,
                 name: self.symbols.get(b.symbol).name.to_string(),
                 span,
+                part: Part::Whole,
             })
             .collect();
         self.unload(&format!("{name}.gdx"), &items, span);
     }
 
     fn unload(&mut self, file: &str, items: &[Wanted], span: Span) {
-        let (files, warning) = match unload(&self.symbols, &mut self.store, file, items, span) {
-            Ok(done) => done,
+        let equations = std::rc::Rc::clone(&self.equations);
+        let done = unload(
+            &self.symbols,
+            &mut self.store,
+            &equations,
+            file,
+            items,
+            span,
+        );
+        let files = match done {
+            Ok(files) => files,
             Err(d) => return self.note(*d),
         };
-        warning.into_iter().for_each(|d| self.note(d));
-        for (name, text) in files {
-            let written = self.write_file(&name, text.as_bytes(), span);
+        for (name, bytes) in files {
+            let written = self.write_file(&name, &bytes, span);
             // It may be loaded again.
-            self.map.remember(&name, text);
+            self.map.remember(&name, bytes);
             if !written {
                 return;
             }

@@ -28,8 +28,8 @@ impl Machine<'_> {
     /// run itself finds the text without it.
     pub(super) fn write_early_files(&mut self) {
         let files: Vec<_> = self.map.written.values().cloned().collect();
-        for (name, text) in files.iter().filter(|f| !f.0.is_empty()) {
-            let written = self.host().write(name, text.as_bytes());
+        for (name, bytes) in files.iter().filter(|f| !f.0.is_empty()) {
+            let written = self.host().write(name, bytes);
             if let Ok(path) = written {
                 self.report.files.push(path.display().to_string());
             }
@@ -38,30 +38,44 @@ impl Machine<'_> {
 
     /// Whether there is such a file: written by this run, or one that may be read.
     pub(super) fn file_exists(&self, name: &str, span: Span) -> bool {
-        let from = self.map.place(span);
-        let from = from.map(|p| self.map.file(p.file).name.clone());
-        self.map.written(name).is_some()
-            || self
-                .host()
-                .exists(name, from.as_deref().map(std::path::Path::new))
+        let from = self.asking(span);
+        self.map.written(name).is_some() || self.host().exists(name, from.as_deref())
     }
 
     /// Reads a text; a diagnostic if that is not possible.
     pub(super) fn read_file(&mut self, name: &str, span: Span) -> Result<String, Box<Diagnostic>> {
-        if let Some(text) = self.map.written(name) {
+        if let Some(text) = self.map.written_text(name) {
             return Ok(text.to_owned());
         }
-        let from = self
-            .map
-            .place(span)
-            .map(|p| self.map.file(p.file).name.clone());
-        let read = self
-            .host()
-            .read(name, from.as_deref().map(std::path::Path::new));
+        let from = self.asking(span);
+        let read = self.host().read(name, from.as_deref());
         match read {
             Ok((_, text)) => Ok(text),
             Err(e) => Err(Box::new(refused("E0471", "read", name, &e, span))),
         }
+    }
+
+    /// Reads the bytes of a file; a diagnostic if that is not possible.
+    pub(super) fn read_bytes(
+        &mut self,
+        name: &str,
+        span: Span,
+    ) -> Result<Vec<u8>, Box<Diagnostic>> {
+        if let Some(bytes) = self.map.written(name) {
+            return Ok(bytes.to_owned());
+        }
+        let from = self.asking(span);
+        let read = self.host().read_bytes(name, from.as_deref());
+        match read {
+            Ok((_, bytes)) => Ok(bytes),
+            Err(e) => Err(Box::new(refused("E0471", "read", name, &e, span))),
+        }
+    }
+
+    /// The file whose text asks for another one.
+    fn asking(&self, span: Span) -> Option<std::path::PathBuf> {
+        let place = self.map.place(span)?;
+        Some(self.map.file(place.file).name.clone().into())
     }
 }
 

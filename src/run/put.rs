@@ -130,7 +130,7 @@ impl Machine<'_> {
             } else if f.closed.is_empty() {
                 let name = f.name.as_deref().unwrap_or(declared);
                 f.closed
-                    .push_str(self.map.written(name).unwrap_or_default());
+                    .push_str(self.map.written_text(name).unwrap_or_default());
             }
             f.text.reopen();
             f.open = true;

@@ -121,7 +121,7 @@ impl Preprocessor<'_> {
         if !append {
             entry.clear();
         }
-        entry.push_str(text);
+        entry.extend_from_slice(text.as_bytes());
     }
 
     pub(super) fn echo_block(

@@ -49,23 +49,28 @@ pub struct SourceMap {
     segments: Vec<Segment>,
     /// From which byte of the expanded text on how many lines a listing counts more than the file.
     listing: Vec<(u32, i64)>,
-    /// Files that the run has written, `$echo` and `$unload` first, by lower-case name: their names as spelled, and texts.
-    pub(crate) written: BTreeMap<String, (String, String)>,
+    /// Files that the run has written, `$echo` and `$unload` first, by lower-case name: their names as spelled, and bytes.
+    pub(crate) written: BTreeMap<String, (String, Vec<u8>)>,
     /// What `$title` said last.
     pub(crate) title: Option<String>,
 }
 
 impl SourceMap {
-    /// The text of a file that the run has written.
-    pub fn written(&self, name: &str) -> Option<&str> {
+    /// The bytes of a file that the run has written.
+    pub fn written(&self, name: &str) -> Option<&[u8]> {
         let found = self.written.get(&name.to_lowercase());
-        found.map(|(_, text)| text.as_str())
+        found.map(|(_, bytes)| bytes.as_slice())
     }
 
-    /// Keeps a text that the run writes: it may be read again.
-    pub fn remember(&mut self, name: &str, text: String) {
+    /// The text of a file that the run has written.
+    pub fn written_text(&self, name: &str) -> Option<&str> {
+        std::str::from_utf8(self.written(name)?).ok()
+    }
+
+    /// Keeps a file that the run writes: it may be read again.
+    pub fn remember(&mut self, name: &str, bytes: Vec<u8>) {
         let file = self.written.entry(name.to_lowercase()).or_default();
-        *file = (name.to_owned(), text);
+        *file = (name.to_owned(), bytes);
     }
 
     /// Adds a file.

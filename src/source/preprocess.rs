@@ -351,7 +351,7 @@ impl<'h> Preprocessor<'h> {
             .is_none()
             .then(|| format!("{name}.gms"));
         let names = || [Some(name), longer.as_deref()].into_iter().flatten();
-        if let Some(text) = names().find_map(|n| self.map.written(n)) {
+        if let Some(text) = names().find_map(|n| self.map.written_text(n)) {
             let text = text.to_owned();
             self.open(PathBuf::from(name), name, text, arguments, asked);
             return Ok(());
@@ -391,17 +391,18 @@ impl<'h> Preprocessor<'h> {
         Ok(())
     }
 
-    /// The text of a data file, looked for beside the file that asks for it.
-    pub(crate) fn read(&mut self, name: &str, at: Span) -> Result<String, Box<Diagnostic>> {
-        if let Some(text) = self.map.written(name) {
-            return Ok(text.to_owned());
+    /// The bytes of a data file, looked for beside the file that asks for it.
+    pub(crate) fn read(&mut self, name: &str, at: Span) -> Result<Vec<u8>, Box<Diagnostic>> {
+        if let Some(bytes) = self.map.written(name) {
+            return Ok(bytes.to_owned());
         }
         let asking = self
             .map
             .place(at)
             .map(|p| self.map.file(p.file).name.clone());
-        match self.host.read(name, asking.as_deref().map(Path::new)) {
-            Ok((_, text)) => Ok(text),
+        let read = self.host.read_bytes(name, asking.as_deref().map(Path::new));
+        match read {
+            Ok((_, bytes)) => Ok(bytes),
             Err(e) => Err(Box::new(unreadable(name, &e, at))),
         }
     }

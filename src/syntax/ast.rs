@@ -630,8 +630,32 @@ pub struct Exchange {
     pub keyword: Ident,
     /// The file, where one is named.
     pub file: Option<(Box<str>, Span)>,
-    /// `x`, `x = y` (the name inside the file).
-    pub items: Vec<(Ident, Option<Ident>)>,
+    /// The symbols.
+    pub items: Vec<ExchangeItem>,
+}
+
+/// A symbol of a data exchange: `x`, `x = y` with the name in the file, `p = x.l`, `i < p`, `i < p.dim2`.
+#[derive(Clone, Debug)]
+pub struct ExchangeItem {
+    /// The symbol.
+    pub name: Ident,
+    /// Its name in the file; `*` for all labels.
+    pub other: Option<Ident>,
+    /// `l`, `dim2` …
+    pub suffix: Option<Ident>,
+    /// How the symbol of the file is taken.
+    pub by: ExchangeBy,
+}
+
+/// How a symbol of a file is taken.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum ExchangeBy {
+    /// `=`: as it is.
+    Name,
+    /// `<`: the labels of an index position, the last that fits.
+    LastPosition,
+    /// `<=`: the labels of an index position, the first that fits.
+    FirstPosition,
 }
 
 /// A figure.

@@ -214,13 +214,13 @@ impl<'h> Parser<'h> {
     }
 
     /// The text of a data file that the statement at `at` asks for.
-    pub fn read(&mut self, name: &str, at: Span) -> Result<String, Box<Diagnostic>> {
+    pub fn read(&mut self, name: &str, at: Span) -> Result<Vec<u8>, Box<Diagnostic>> {
         self.text.read(name, at)
     }
 
-    /// Keeps a text that the run writes; what follows may read it.
-    pub fn remember(&mut self, name: &str, text: String) {
-        self.text.map.remember(name, text);
+    /// Keeps a file that the run writes; what follows may read it.
+    pub fn remember(&mut self, name: &str, bytes: Vec<u8>) {
+        self.text.map.remember(name, bytes);
     }
 
     /// The files and the expanded text so far.

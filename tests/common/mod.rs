@@ -91,6 +91,16 @@ impl Host for Memory {
         let text = std::fs::read_to_string(&real).map_err(|_| HostError::NotFound)?;
         Ok((real, text))
     }
+    fn read_bytes(
+        &mut self,
+        path: &str,
+        from: Option<&Path>,
+    ) -> Result<(PathBuf, Vec<u8>), HostError> {
+        match self.on_disk(path).map(|p| (std::fs::read(&p), p)) {
+            Some((Ok(bytes), real)) if !self.files.contains_key(path) => Ok((real, bytes)),
+            _ => self.read(path, from).map(|(p, t)| (p, t.into_bytes())),
+        }
+    }
     fn exists(&mut self, path: &str, _: Option<&Path>) -> bool {
         self.files.contains_key(path) || self.on_disk(path).is_some_and(|p| p.is_file())
     }

@@ -2,33 +2,35 @@
 //! follows sees the data, `execute_load` and `execute_unload` in the run.
 //!
 //! The file's ending says the format: `.csv` (one symbol, or many with a column `symbol`), `.json`; a
-//! name that ends in `/` is a folder with a CSV file per symbol. `docs/data-exchange.md` describes them.
+//! name that ends in `/` is a folder with a CSV file per symbol; everything else is GDX, with the ending `.gdx` where the
+//! name has none. `docs/data-exchange.md` describes them.
 //!
 //! Invariant: a load changes all of its symbols or, with a diagnostic, nothing.
 
 mod csv;
+mod gdx;
 mod json;
 mod records;
 mod write;
 
-use super::node::SymbolId;
-use super::symbols::{Store, SymbolKind, Symbols, attribute};
+use super::node::{EquationDef, SymbolId};
+use super::symbols::{DomainPosition, Store, SymbolKind, Symbols, attribute};
 use super::{Compiler, Failed};
 use crate::data::value::{EPS, NA, UNDF};
 use crate::diag::{Diagnostic, nearest};
-use crate::source::{SourceMap, Span};
+use crate::source::Span;
 use crate::syntax::Parser;
-use crate::syntax::ast::{Exchange, Ident};
+use crate::syntax::ast::{Exchange, ExchangeBy, ExchangeItem};
 use records::Loading;
 
 /// A diagnostic; boxed, because it is large and rare.
 pub type Loaded<T> = Result<T, Box<Diagnostic>>;
 
-/// Files to write: names and texts.
-pub type Files = Vec<(String, String)>;
+/// Files to write: names and bytes.
+pub type Files = Vec<(String, Vec<u8>)>;
 
-/// The text of a file.
-pub type Read<'a> = &'a mut dyn FnMut(&str, Span) -> Loaded<String>;
+/// The bytes of a file.
+pub type Read<'a> = &'a mut dyn FnMut(&str, Span) -> Loaded<Vec<u8>>;
 
 /// A symbol, and its name in the file.
 #[derive(Clone, Debug)]
@@ -39,6 +41,23 @@ pub struct Wanted {
     pub name: String,
     /// Where it is asked for.
     pub span: Span,
+    /// What of it is read.
+    pub part: Part,
+}
+
+/// What of a symbol in a file is read.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Part {
+    /// All of it.
+    Whole,
+    /// An attribute, by its place behind the first table, into a parameter.
+    Attribute(u32),
+    /// The labels of an index position, into a set.
+    Position(usize),
+    /// The labels of the last position whose domain has the name of the set.
+    LastPosition,
+    /// The labels of the first position whose domain has the name of the set.
+    FirstPosition,
 }
 
 /// A format, by the ending of a file's name.
@@ -50,6 +69,8 @@ pub enum Kind {
     Json,
     /// A folder with a CSV file per symbol.
     Folder,
+    /// GAMS's binary files.
+    Gdx,
 }
 
 /// Attributes of variables and equations in files: name, other names, place behind the first table.
@@ -69,9 +90,10 @@ fn attribute_offset(name: &str) -> Option<u32> {
 }
 
 /// The symbols of a list; an error if one is not known or has no data.
-pub fn wanted(symbols: &Symbols, items: &[(Ident, Option<Ident>)]) -> Loaded<Vec<Wanted>> {
+pub fn wanted(symbols: &Symbols, items: &[ExchangeItem]) -> Loaded<Vec<Wanted>> {
     let mut out = Vec::new();
-    for (name, other) in items {
+    for item in items {
+        let ExchangeItem { name, other, .. } = item;
         let Some(symbol) = symbols.find(&name.name) else {
             return Err(Box::new(Diagnostic::execution(
                 "E0475",
@@ -98,52 +120,58 @@ pub fn wanted(symbols: &Symbols, items: &[(Ident, Option<Ident>)]) -> Loaded<Vec
             symbol,
             name: shown,
             span: name.span,
+            part: part_of(item)?,
         });
     }
     Ok(out)
 }
 
-/// The format of a file, by the ending of its name.
-pub fn format_of(file: &str, span: Span) -> Loaded<Kind> {
-    if file.ends_with('/') {
-        return Ok(Kind::Folder);
-    }
-    let ending = std::path::Path::new(file)
-        .extension()
-        .map(|e| e.to_string_lossy().to_lowercase());
-    match ending.as_deref() {
-        Some("csv" | "tsv" | "txt") => return Ok(Kind::Csv),
-        Some("json") => return Ok(Kind::Json),
-        _ => {}
-    }
-    let d = match ending.as_deref() {
-        Some("gdx") | None => {
-            let stem = file.strip_suffix(".gdx").unwrap_or(file);
-            let d = if ending.is_none() {
-                Diagnostic::execution(
-                    "E0476",
-                    span,
-                    format!("the name `{file}` does not say a format"),
-                )
-            } else {
-                Diagnostic::execution(
-                    "E0476",
-                    span,
-                    format!("`{file}`: GDX is GAMS's own binary format; bmod exchanges open ones"),
-                )
-            };
-            d.label("a name that ends in .csv or .json is expected").help(format!(
-                    "write `'{stem}.csv'` or `'{stem}.json'`; `gdxdump {stem}.gdx symb=NAME format=csv` makes a CSV file of a GDX symbol"
-                ))
-        }
-        Some(other) => Diagnostic::execution(
-            "E0476",
-            span,
-            format!("`.{other}` is not a format for data"),
-        )
-        .label("a name that ends in .csv or .json is expected"),
+/// What of a symbol an item asks for.
+fn part_of(item: &ExchangeItem) -> Loaded<Part> {
+    let Some(suffix) = &item.suffix else {
+        return Ok(match item.by {
+            ExchangeBy::Name => Part::Whole,
+            ExchangeBy::LastPosition => Part::LastPosition,
+            ExchangeBy::FirstPosition => Part::FirstPosition,
+        });
     };
-    Err(Box::new(d))
+    let lower = suffix.name.to_ascii_lowercase();
+    let position = lower.strip_prefix("dim").and_then(|n| n.parse().ok());
+    let found = match (item.by, position) {
+        (ExchangeBy::Name, _) => attribute_offset(&lower).map(Part::Attribute),
+        (_, Some(p @ 1..=20)) => Some(Part::Position(p - 1)),
+        _ => None,
+    };
+    found.ok_or_else(|| {
+        Box::new(
+            Diagnostic::execution(
+                "E0475",
+                suffix.span,
+                format!("`.{}` is not a part of a symbol in a file", suffix.name),
+            )
+            .help("`p = x.l` reads an attribute into a parameter, `i < p.dim1` the labels of a position into a set"),
+        )
+    })
+}
+
+/// The format of a file, by the ending of its name.
+fn format_of(file: &str) -> Kind {
+    if file.ends_with('/') {
+        return Kind::Folder;
+    }
+    let ending = std::path::Path::new(file).extension();
+    let ending = ending.map(|e| e.to_string_lossy().to_lowercase());
+    match ending.as_deref() {
+        Some("csv" | "tsv" | "txt") => Kind::Csv,
+        Some("json") => Kind::Json,
+        _ => Kind::Gdx,
+    }
+}
+
+/// The name of a file: a GDX file has an ending.
+fn full_name(file: &str) -> String {
+    let bare = format_of(file) == Kind::Gdx && std::path::Path::new(file).extension().is_none();
+    format!("{file}{}", if bare { ".gdx" } else { "" })
 }
 
 /// The symbols of the program among names in a file.
@@ -164,6 +192,7 @@ fn declared(symbols: &Symbols, names: &[String], point: bool, span: Span) -> Vec
                 symbol,
                 name: n.clone(),
                 span,
+                part: Part::Whole,
             });
         }
     }
@@ -178,45 +207,71 @@ pub struct Request<'a> {
     pub at: Span,
     /// The symbols; none for all that the file has.
     pub items: &'a [Wanted],
-    /// Levels and marginals only.
+    /// Levels and marginals only, of the records that the file has.
     pub point: bool,
+    /// A label outside the domain is an error: its record is not left out.
+    pub strict: bool,
+    /// What a symbol held stays where the file has no record.
+    pub merge: bool,
     /// Place of the statement.
     pub span: Span,
 }
 
-/// Reads symbols from a file, or a folder of files.
+/// Reads symbols from a file, or a folder of files; warnings.
 pub fn load(
     symbols: &mut Symbols,
     store: &mut Store,
     request: &Request<'_>,
     read: Read<'_>,
-) -> Loaded<()> {
-    let kind = format_of(request.file, request.at)?;
+) -> Loaded<Vec<Diagnostic>> {
+    let kind = format_of(request.file);
+    let file = full_name(request.file);
+    if kind != Kind::Gdx
+        && let Some(w) = request.items.iter().find(|w| w.part != Part::Whole)
+    {
+        return Err(Box::new(
+            Diagnostic::execution(
+                "E0475",
+                w.span,
+                format!("a part of `{}` is read from GDX files only", w.name),
+            )
+            .help("read the whole symbol, and take its part in an assignment"),
+        ));
+    }
     let mut files = Vec::new();
     if kind == Kind::Folder {
         for w in request.items {
-            let name = format!("{}{}.csv", request.file, w.name);
-            let text = read(&name, request.at)?;
-            files.push((name, text, vec![w.clone()]));
+            let name = format!("{file}{}.csv", w.name);
+            let bytes = read(&name, request.at)?;
+            files.push((name, bytes, vec![w.clone()]));
         }
     } else {
-        let text = read(request.file, request.at)?;
-        files.push((request.file.to_string(), text, request.items.to_vec()));
+        let bytes = read(&file, request.at)?;
+        files.push((file, bytes, request.items.to_vec()));
     }
-    let mut loading = Loading::new(symbols, store, request.point);
-    for (name, text, mut items) in files {
+    if let (Kind::Gdx, [(name, bytes, items)]) = (kind, files.as_slice()) {
+        gdx::shape(name, bytes, items, symbols, store, request)?;
+    }
+    let mut loading = Loading::new(symbols, store, request);
+    for (name, bytes, mut items) in files {
+        let text = match kind {
+            Kind::Gdx => "",
+            _ => text_of(&name, &bytes, request.at)?,
+        };
         if items.is_empty() {
             let found = match kind {
-                Kind::Json => json::names(&text),
-                _ => csv::names(&text),
+                Kind::Gdx => gdx::names(&name, &bytes, request.at, symbols)?,
+                Kind::Json => json::names(text),
+                _ => csv::names(text),
             };
             items = declared(symbols, &found, request.point, request.span);
         }
         // Sets first: they may be the domains of the others.
         items.sort_by_key(|w| !symbols.get(w.symbol).is_set());
         match kind {
-            Kind::Json => json::read(&name, &text, &items, &mut loading)?,
-            _ => csv::read(&name, &text, &items, &mut loading)?,
+            Kind::Gdx => gdx::read(&name, &bytes, request.at, &items, &mut loading)?,
+            Kind::Json => json::read(&name, text, &items, &mut loading)?,
+            _ => csv::read(&name, text, &items, &mut loading)?,
         }
     }
     let loaded = loading.finish();
@@ -234,63 +289,77 @@ pub fn load(
         let root = symbols.root(w);
         symbols.get_mut(root).assigned = true;
     }
-    Ok(())
+    for (symbol, text) in loaded.explanations {
+        let symbol = symbols.get_mut(symbol);
+        if symbol.text.is_empty() {
+            symbol.text = text;
+        }
+    }
+    Ok(loaded.warnings)
 }
 
-/// The files that hold these symbols: names and texts. A warning says where another name was asked for.
+/// A text file's text.
+fn text_of<'a>(file: &str, bytes: &'a [u8], at: Span) -> Loaded<&'a str> {
+    match std::str::from_utf8(bytes) {
+        Ok(text) => Ok(text.strip_prefix('\u{feff}').unwrap_or(text)),
+        Err(e) => Err(Box::new(
+            Diagnostic::execution(
+                "E0478",
+                at,
+                format!("{file}: byte {} is not UTF-8", e.valid_up_to() + 1),
+            )
+            .help("save the file as UTF-8"),
+        )),
+    }
+}
+
+/// The files that hold these symbols (all, if none is named): names and bytes.
 pub fn unload(
     symbols: &Symbols,
     store: &mut Store,
+    equations: &[EquationDef],
     file: &str,
     items: &[Wanted],
     span: Span,
-) -> Loaded<(Files, Option<Diagnostic>)> {
-    let instead = instead_of_gdx(file);
-    let warning = instead.as_ref().map(|other| {
-        Diagnostic::warning(
-            "E0476",
-            span,
-            format!("`{other}` is written in place of the GDX file `{file}`"),
-        )
-        .label("GDX is GAMS's own binary format")
-        .help("name a file that ends in `.csv` or `.json` to choose the format")
-    });
-    let file = instead.as_deref().unwrap_or(file);
-    let kind = format_of(file, span)?;
+) -> Loaded<Files> {
+    let kind = format_of(file);
     let everything = match items.is_empty() {
-        true => everything(symbols, span),
+        true => everything(symbols, kind, span),
         false => Vec::new(),
     };
     let items = if items.is_empty() { &everything } else { items };
-    Ok((write::files(symbols, store, kind, file, items), warning))
+    let file = full_name(file);
+    write::tidy(symbols, store, items);
+    let writer = write::Writer { symbols, store };
+    let one = |bytes| Ok(vec![(file.clone(), bytes)]);
+    match kind {
+        Kind::Csv => one(writer.csv(items).into_bytes()),
+        Kind::Json => one(writer.json(items).into_bytes()),
+        Kind::Folder => {
+            let text = |w: &Wanted| writer.csv(std::slice::from_ref(w)).into_bytes();
+            let named = |w: &Wanted| (format!("{file}{}.csv", w.name), text(w));
+            Ok(items.iter().map(named).collect())
+        }
+        Kind::Gdx => one(gdx::write(symbols, store, equations, items).map_err(|e| {
+            let d =
+                Diagnostic::execution("E0470", span, format!("`{file}` cannot be written: {e}"));
+            Box::new(d.label("nothing was written"))
+        })?),
+    }
 }
 
 /// All symbols with data, in order of declaration.
-fn everything(symbols: &Symbols, span: Span) -> Vec<Wanted> {
-    let listed = |k: &SymbolKind| has_data(k) && !matches!(k, SymbolKind::Alias(_));
+fn everything(symbols: &Symbols, kind: Kind, span: Span) -> Vec<Wanted> {
+    let aliases = kind == Kind::Gdx;
+    let listed = |k: &SymbolKind| has_data(k) && (aliases || !matches!(k, SymbolKind::Alias(_)));
     let all = symbols.iter().skip(1).filter(|(_, s)| listed(&s.kind));
     all.map(|(symbol, s)| Wanted {
         symbol,
         name: s.name.to_string(),
         span,
+        part: Part::Whole,
     })
     .collect()
-}
-
-/// The name of a file to load: what the run has written is found by the name that was asked for.
-pub fn file_to_load(map: &SourceMap, file: &str) -> String {
-    instead_of_gdx(file)
-        .filter(|f| map.written(f).is_some())
-        .unwrap_or_else(|| file.to_string())
-}
-
-/// What a model writes for GAMS as `results.gdx`, or without an ending, is `results.json` here.
-fn instead_of_gdx(file: &str) -> Option<String> {
-    let path = std::path::Path::new(file);
-    let gdx = path
-        .extension()
-        .is_none_or(|e| e.eq_ignore_ascii_case("gdx"));
-    (gdx && !file.ends_with('/')).then(|| path.with_extension("json").to_string_lossy().into())
 }
 
 impl Compiler {
@@ -321,8 +390,8 @@ impl Compiler {
         };
         let Err(d) = done else { return Ok(true) };
         // One mistake, one message: what should have come is not missed again.
-        for (name, _) in &x.items {
-            if let Some(s) = self.symbols.find(&name.name) {
+        for item in &x.items {
+            if let Some(s) = self.symbols.find(&item.name.name) {
                 let root = self.symbols.root(s);
                 self.symbols.get_mut(root).assigned = true;
             }
@@ -331,36 +400,71 @@ impl Compiler {
     }
 
     fn load_listed(&mut self, x: &Exchange, span: Span, parser: &mut Parser) -> Loaded<()> {
-        let items = wanted(&self.symbols, &x.items)?;
+        let mut items = wanted(&self.symbols, &x.items)?;
         let named = x.file.as_ref().map(|(f, s)| (f.to_string(), *s));
         let Some((file, at)) = named.or_else(|| self.input.clone()) else {
-            return Err(no_file(span, "$gdxIn 'data.csv'"));
+            return Err(no_file(span, "$gdxIn data.gdx"));
         };
         // `$load` alone lists a file in GAMS; there is nothing to do.
         if items.is_empty() {
             return Ok(());
         }
+        self.defined_domains(&file, &mut items);
+        // `loadDC`, `loadM`, `loadDCR` …: what comes after `load`.
+        let how = x.keyword.name.rsplit("load").next().unwrap_or_default();
         let request = Request {
-            file: &file_to_load(parser.map(), &file),
+            file: &file,
             at,
             items: &items,
             point: false,
+            strict: how.starts_with("dc"),
+            merge: matches!(how, "m" | "dcm"),
             span,
         };
         let mut read = |name: &str, at| parser.read(name, at);
-        load(&mut self.symbols, &mut self.store, &request, &mut read)
+        let warnings = load(&mut self.symbols, &mut self.store, &request, &mut read)?;
+        warnings.into_iter().for_each(|d| self.report(d));
+        Ok(())
+    }
+
+    /// `parameter p(i<)`: with `p`, a GDX file also brings the labels of `i`.
+    fn defined_domains(&self, file: &str, items: &mut Vec<Wanted>) {
+        if format_of(file) != Kind::Gdx {
+            return;
+        }
+        let mut more = Vec::new();
+        for w in items.iter().filter(|w| w.part == Part::Whole) {
+            let defines = self.defining.get(&w.symbol).map_or(&[][..], Vec::as_slice);
+            let domain = &self.symbols.get(w.symbol).domain;
+            for (p, d) in domain.iter().enumerate() {
+                if let DomainPosition::Set(set) = d
+                    && defines.get(p) == Some(&true)
+                {
+                    let part = Part::Position(p);
+                    let symbol = *set;
+                    more.push(Wanted {
+                        symbol,
+                        part,
+                        ..w.clone()
+                    });
+                }
+            }
+        }
+        items.extend(more);
     }
 
     /// `$unload`: what it lists is written at the next `$gdxOut`; alone it lists everything.
     fn unload_listed(&mut self, x: &Exchange, span: Span) -> Loaded<()> {
         let mut items = wanted(&self.symbols, &x.items)?;
         if items.is_empty() {
-            items = everything(&self.symbols, span);
+            let file = x.file.as_ref().map(|(f, _)| &**f);
+            let file = file.or(self.output.as_ref().map(|(f, ..)| f.as_str()));
+            items = everything(&self.symbols, format_of(file.unwrap_or_default()), span);
         }
         match (&mut self.output, &x.file) {
             (output, Some((file, at))) => *output = Some((file.to_string(), *at, items)),
             (Some((_, _, listed)), None) => listed.extend(items),
-            (None, None) => return Err(no_file(span, "$gdxOut 'results.json'")),
+            (None, None) => return Err(no_file(span, "$gdxOut results.gdx")),
         }
         Ok(())
     }
@@ -370,10 +474,16 @@ impl Compiler {
         let Some((file, span, items)) = self.output.take().filter(|o| !o.2.is_empty()) else {
             return Ok(());
         };
-        let (files, warning) = unload(&self.symbols, &mut self.store, &file, &items, span)?;
-        warning.into_iter().for_each(|d| self.report(d));
-        for (name, text) in files {
-            parser.remember(&name, text);
+        let files = unload(
+            &self.symbols,
+            &mut self.store,
+            &self.equations,
+            &file,
+            &items,
+            span,
+        )?;
+        for (name, bytes) in files {
+            parser.remember(&name, bytes);
         }
         Ok(())
     }

@@ -1,6 +1,6 @@
 //! What a load collects before anything is changed.
 
-use super::{Loaded, Wanted, parse_value};
+use super::{Loaded, Request, Wanted, parse_value};
 use crate::check::node::{SymbolId, TableId};
 use crate::check::symbols::{DomainPosition, Store, SymbolKind, Symbols, attribute};
 use crate::data::table::Table;
@@ -15,8 +15,7 @@ type Texts = FxHashMap<Box<[Label]>, Box<str>>;
 pub(super) struct Loading<'a> {
     pub symbols: &'a Symbols,
     pub store: &'a Store,
-    /// Levels and marginals only.
-    pub point: bool,
+    pub request: &'a Request<'a>,
     /// Labels that the universe does not have yet: their numbers follow on its own.
     new: Universe,
     /// Members of sets that this load brings.
@@ -32,6 +31,9 @@ pub(super) struct Finished {
     pub tables: Vec<(TableId, Table)>,
     pub texts: Vec<(TableId, Texts)>,
     pub symbols: Vec<SymbolId>,
+    /// Explanatory texts for symbols that may have none.
+    pub explanations: Vec<(SymbolId, Box<str>)>,
+    pub warnings: Vec<Diagnostic>,
 }
 
 /// Records of one symbol.
@@ -46,11 +48,11 @@ pub(super) struct Records {
 }
 
 impl<'a> Loading<'a> {
-    pub fn new(symbols: &'a Symbols, store: &'a Store, point: bool) -> Self {
+    pub fn new(symbols: &'a Symbols, store: &'a Store, request: &'a Request<'a>) -> Self {
         Self {
             symbols,
             store,
-            point,
+            request,
             new: Universe::default(),
             members: FxHashMap::default(),
             out: Finished::default(),
@@ -65,7 +67,23 @@ impl<'a> Loading<'a> {
         }
     }
 
-    fn name(&self, l: Label) -> &str {
+    /// Number of a label that is known.
+    pub fn known(&self, text: &str) -> Option<Label> {
+        let new = || Some(self.store.universe.len() as Label + self.new.get(text)?);
+        self.store.universe.get(text).or_else(new)
+    }
+
+    /// An explanatory text for a symbol that has none.
+    pub fn text(&mut self, symbol: SymbolId, text: &str) {
+        self.out.explanations.push((symbol, text.into()));
+    }
+
+    /// Tells of something that does not stop the load.
+    pub fn warn(&mut self, d: Diagnostic) {
+        self.out.warnings.push(d);
+    }
+
+    pub fn name(&self, l: Label) -> &str {
         match (l as usize).checked_sub(self.store.universe.len()) {
             Some(k) => self.new.name(k as Label),
             None => self.store.universe.name(l),
@@ -88,7 +106,7 @@ impl<'a> Loading<'a> {
     }
 
     /// Whether a label belongs to the set of a position.
-    fn belongs(&self, set: SymbolId, l: Label) -> bool {
+    pub fn belongs(&self, set: SymbolId, l: Label) -> bool {
         let root = self.symbols.root(set);
         if root == crate::check::symbols::UNIVERSE {
             return true;
@@ -219,12 +237,20 @@ impl<'a> Loading<'a> {
             ));
         }
         for (c, &offset) in columns.iter().enumerate() {
-            if self.point && !matches!(offset, attribute::L | attribute::M) {
+            if self.request.point && !matches!(offset, attribute::L | attribute::M) {
                 continue;
             }
             let values: Vec<f64> = order.iter().map(|&k| r.values[k * width + c]).collect();
-            let default = self.store.table(symbol.table + offset).default_value();
-            let table = if dim == 0 {
+            let before = self.store.table(symbol.table + offset);
+            let default = before.default_value();
+            let table = if self.request.merge || self.request.point {
+                let mut t = before.clone();
+                for (n, v) in values.iter().enumerate() {
+                    t.set(&keys[n * dim..(n + 1) * dim], *v);
+                }
+                t.tidy();
+                t
+            } else if dim == 0 {
                 let mut t = Table::new(0, default);
                 t.set(&[], values.first().copied().unwrap_or(default));
                 t
@@ -238,9 +264,13 @@ impl<'a> Loading<'a> {
             self.out.tables.push((symbol.table + offset, table));
         }
         if is_set {
-            self.out
-                .texts
-                .push((symbol.table, std::mem::take(&mut r.texts)));
+            let mut texts = std::mem::take(&mut r.texts);
+            if self.request.merge {
+                for (key, text) in self.store.texts.get(&symbol.table).into_iter().flatten() {
+                    texts.entry(key.clone()).or_insert_with(|| text.clone());
+                }
+            }
+            self.out.texts.push((symbol.table, texts));
         }
         self.out.symbols.push(root);
         Ok(())

@@ -1,43 +1,41 @@
-//! Writing CSV and JSON.
+//! Writing CSV and JSON; the records of a symbol in any format.
 
-use super::{ATTRIBUTES, Files, Kind, Wanted};
+use super::{ATTRIBUTES, Wanted};
 use crate::check::symbols::{Store, Symbol, SymbolKind, Symbols, attribute};
 use crate::data::universe::Label;
 use crate::data::value::{as_acronym, is_eps, is_na};
 use serde_json::{Map, Value, json};
 
-/// Names and texts of the files that hold these symbols: one, or one per symbol for a folder.
-pub fn files(
-    symbols: &Symbols,
-    store: &mut Store,
-    kind: Kind,
-    file: &str,
-    items: &[Wanted],
-) -> Files {
+/// Makes the tables of symbols ready for reading in order.
+pub(super) fn tidy(symbols: &Symbols, store: &mut Store, items: &[Wanted]) {
     for w in items {
         for (_, table) in parts(symbols.get(symbols.root(w.symbol))) {
             store.table_mut(table).tidy();
         }
     }
-    let writer = Writer { symbols, store };
-    let one = |text| vec![(file.to_string(), text)];
-    match kind {
-        Kind::Csv => one(writer.csv(items)),
-        Kind::Json => one(writer.json(items)),
-        Kind::Folder => items
-            .iter()
-            .map(|w| {
-                let text = writer.csv(std::slice::from_ref(w));
-                (format!("{file}{}.csv", w.name), text)
-            })
-            .collect(),
+}
+
+/// All keys that a symbol has records for, in label order.
+pub(super) fn keys(store: &Store, symbol: &Symbol) -> Vec<Vec<Label>> {
+    let tables = parts(symbol);
+    let mut keys: Vec<Vec<Label>> = tables
+        .iter()
+        .flat_map(|(_, t)| store.table(*t).iter().map(|(k, _)| k.to_vec()))
+        .collect();
+    if tables.len() > 1 {
+        keys.sort_unstable();
+        keys.dedup();
     }
+    if symbol.dim() == 0 && keys.is_empty() {
+        keys.push(Vec::new());
+    }
+    keys
 }
 
 /// What is written: the symbols and their data.
-struct Writer<'a> {
-    symbols: &'a Symbols,
-    store: &'a Store,
+pub(super) struct Writer<'a> {
+    pub symbols: &'a Symbols,
+    pub store: &'a Store,
 }
 
 /// Tables of a symbol that a file holds: name of the attribute (none: the data itself) and table.
@@ -53,31 +51,8 @@ fn parts(symbol: &Symbol) -> Vec<(&'static str, u32)> {
 }
 
 impl Writer<'_> {
-    /// All keys that a symbol has records for, in label order.
-    fn keys(&self, symbol: &Symbol) -> Vec<Vec<Label>> {
-        let tables = parts(symbol);
-        let mut keys: Vec<Vec<Label>> = tables
-            .iter()
-            .flat_map(|(_, t)| {
-                self.store
-                    .table(*t)
-                    .iter()
-                    .map(|(k, _)| k.to_vec())
-                    .collect::<Vec<_>>()
-            })
-            .collect();
-        if tables.len() > 1 {
-            keys.sort_unstable();
-            keys.dedup();
-        }
-        if symbol.dim() == 0 && keys.is_empty() {
-            keys.push(Vec::new());
-        }
-        keys
-    }
-
     /// One symbol with its own columns, or several in one long table.
-    fn csv(&self, items: &[Wanted]) -> String {
+    pub fn csv(&self, items: &[Wanted]) -> String {
         let mut out = csv::Writer::from_writer(Vec::new());
         // A vector takes everything: writing cannot fail.
         if let [one] = items {
@@ -90,7 +65,7 @@ impl Writer<'_> {
                 many => header.extend(many.iter().map(|p| p.0.to_string())),
             }
             let _ = out.write_record(&header);
-            for key in self.keys(symbol) {
+            for key in keys(self.store, symbol) {
                 let mut row: Vec<String> = key
                     .iter()
                     .map(|&l| self.store.universe.name(l).to_string())
@@ -178,7 +153,7 @@ impl Writer<'_> {
     }
 
     /// One object with a member per symbol, one record per line.
-    fn json(&self, items: &[Wanted]) -> String {
+    pub fn json(&self, items: &[Wanted]) -> String {
         let mut out = String::from("{");
         for (n, w) in items.iter().enumerate() {
             let symbol = self.symbols.get(self.symbols.root(w.symbol));
@@ -211,7 +186,7 @@ impl Writer<'_> {
                 "{{\"domain\": {}, \"records\": [",
                 json!(self.symbols.domain_names(symbol))
             ));
-            for (k, key) in self.keys(symbol).iter().enumerate() {
+            for (k, key) in keys(self.store, symbol).iter().enumerate() {
                 let labels: Vec<&str> = key.iter().map(|&l| self.store.universe.name(l)).collect();
                 out.push_str(if k > 0 { ",\n    " } else { "\n    " });
                 out.push_str(&json!([labels, value(key)]).to_string());

@@ -563,15 +563,7 @@ impl Builder<'_> {
                 Rule::exchange_file => {
                     file = p.into_inner().next().map(|q| (Self::unquote(&q), span))
                 }
-                _ => {
-                    let mut names = p
-                        .into_inner()
-                        .filter(|q| q.as_rule() == Rule::name)
-                        .map(|q| self.ident(&q));
-                    if let Some(first) = names.next() {
-                        items.push((first, names.next()));
-                    }
-                }
+                _ => items.extend(self.exchange_item(p)),
             }
         }
         let statement = StmtKind::Exchange(Exchange {
@@ -592,6 +584,35 @@ impl Builder<'_> {
                 )],
                 Vec::new(),
             ),
+        })
+    }
+
+    /// `x`, `x = y`, `p = x.l`, `i < p.dim1`.
+    fn exchange_item(&self, pair: Pair<'_, Rule>) -> Option<ExchangeItem> {
+        let (mut name, mut other, mut suffix) = (None, None, None);
+        let mut by = ExchangeBy::Name;
+        for p in pair.into_inner() {
+            match p.as_rule() {
+                Rule::name if name.is_none() => name = Some(self.ident(&p)),
+                Rule::name | Rule::any_label => other = Some(self.ident(&p)),
+                Rule::attribute if other.is_some() => {
+                    suffix = p.into_inner().next().map(|q| self.ident(&q));
+                }
+                Rule::load_from => {
+                    by = match p.as_str() {
+                        "<" => ExchangeBy::LastPosition,
+                        "<=" => ExchangeBy::FirstPosition,
+                        _ => ExchangeBy::Name,
+                    };
+                }
+                _ => {}
+            }
+        }
+        Some(ExchangeItem {
+            name: name?,
+            other,
+            suffix,
+            by,
         })
     }
 
@@ -623,15 +644,7 @@ impl Builder<'_> {
                         file = Some((t.into(), span));
                     }
                 }
-                _ => {
-                    let mut names = p
-                        .into_inner()
-                        .filter(|q| q.as_rule() == Rule::name)
-                        .map(|q| self.ident(&q));
-                    if let Some(first) = names.next() {
-                        items.push((first, names.next()));
-                    }
-                }
+                _ => items.extend(self.exchange_item(p)),
             }
         }
         Ok(StmtKind::Exchange(Exchange {

@@ -1,0 +1,186 @@
+//! Files that GAMS 54.6 wrote, our own, and damaged ones.
+
+use super::*;
+
+const PLAIN: &[u8] = include_bytes!("../../tests/suite/exchange/gams.gdx");
+const PACKED: &[u8] = include_bytes!("../../tests/suite/exchange/gams_packed.gdx");
+const RELAXED: &[u8] = include_bytes!("../../tests/suite/exchange/gams_relaxed.gdx");
+
+/// Opens a file and reads all of it.
+fn all(bytes: &[u8]) -> Result<Contents<'_>> {
+    let file = File::open(bytes)?;
+    let mut symbols = Vec::new();
+    for (n, s) in file.symbols.iter().enumerate() {
+        let records = match s.kind {
+            Kind::Alias(_) => {
+                file.records(n)?;
+                Records::default()
+            }
+            _ => file.records(n)?,
+        };
+        symbols.push((s.clone(), records));
+    }
+    let leak = |list: Vec<String>| -> Vec<&'static str> {
+        list.into_iter().map(|t| &*t.leak()).collect()
+    };
+    Ok(Contents {
+        acronyms: leak(file.acronyms().map(String::from).collect()),
+        labels: leak(file.labels.clone()),
+        texts: leak(file.texts.clone()),
+        symbols,
+    })
+}
+
+/// A record: labels and values.
+fn record(file: &File<'_>, symbol: &str, r: usize) -> (String, Vec<Value>) {
+    let n = file.find(symbol).expect("a symbol");
+    let (s, records) = (&file.symbols[n], file.records(n).expect("records"));
+    let (dim, width) = (s.domain.len(), s.kind.width());
+    let keys = &records.keys[r * dim..(r + 1) * dim];
+    let labels: Vec<&str> = keys.iter().map(|&k| &*file.labels[k as usize]).collect();
+    let values = records.values[r * width..(r + 1) * width].to_vec();
+    (labels.join("."), values)
+}
+
+#[test]
+fn reads_what_gams_wrote() {
+    use Value::{Acronym, Eps, NotAvailable, Number};
+    let inf = f64::INFINITY;
+    for bytes in [PLAIN, PACKED] {
+        let file = File::open(bytes).expect("a file of GAMS");
+        assert_eq!((file.version, file.symbols.len()), (7, 31));
+        assert_eq!(file.labels.len(), 9);
+        let set = |name: &str| file.records(file.find(name).expect("a set")).expect("read");
+        let i = set("I");
+        let texts: Vec<&str> = i.texts.iter().map(|&t| &*file.texts[t as usize]).collect();
+        assert_eq!(texts, ["text a", "", "text c"]);
+        assert_eq!(set("ii"), i);
+        assert_eq!(set("uni").len, 9);
+        assert_eq!(file.symbols[4].kind, Kind::Set { singleton: true });
+        assert_eq!(record(&file, "ij", 1).0, "b.u3");
+        assert_eq!(file.symbols[6].domain, [Domain::Set(0), Domain::Set(3)]);
+        assert_eq!(record(&file, "z", 0).1, [Number(0.0)]);
+        assert_eq!(record(&file, "sc", 0).1, [Number(3.5)]);
+        assert_eq!(record(&file, "na1", 0).1, [NotAvailable]);
+        assert_eq!(record(&file, "p", 1), ("b".into(), vec![Eps]));
+        assert_eq!(record(&file, "p", 2), ("c".into(), vec![Number(inf)]));
+        let q = record(&file, "q", 2);
+        assert_eq!(q, ("c.u3.a".into(), vec![Number(-inf)]));
+        assert_eq!(record(&file, "r", 1), ("b".into(), vec![Acronym(1)]));
+        assert_eq!(file.acronyms().collect::<Vec<_>>(), ["red", "blue"]);
+        let values = [2.0, 0.25, -inf, 7.0, 1.0].map(Number).to_vec();
+        assert_eq!(record(&file, "x", 1), ("b".into(), values));
+        let kind = |name: &str| file.symbols[file.find(name).expect("a symbol")].kind;
+        let types = ["bb", "ii2", "v", "ng", "x", "so", "s2", "sc2", "si2"].map(kind);
+        assert_eq!(types, [1, 2, 3, 4, 5, 6, 7, 8, 9].map(Kind::Variable));
+        assert_eq!(
+            ["h", "f", "g", "nn"].map(kind),
+            [53, 54, 55, 56].map(Kind::Equation)
+        );
+        assert_eq!(record(&file, "lng", 1).0, "quote's");
+    }
+    assert_eq!(
+        format!("{:?}", all(PLAIN).expect("read")),
+        format!("{:?}", all(PACKED).expect("read"))
+    );
+    let file = File::open(RELAXED).expect("a file of GAMS");
+    assert_eq!(file.symbols[0].domain, [Domain::Relaxed("i".into())]);
+}
+
+#[test]
+fn what_is_written_is_read() {
+    for bytes in [PLAIN, RELAXED] {
+        let contents = all(bytes).expect("read");
+        for packed in [false, true] {
+            let again = write(&contents, packed).expect("written");
+            let read = all(&again).expect("read again");
+            assert_eq!(format!("{read:?}"), format!("{contents:?}"));
+        }
+    }
+}
+
+#[test]
+fn large_steps_and_blocks() {
+    let names: Vec<String> = (0..70_000).map(|n| format!("l{n}")).collect();
+    let labels: Vec<&str> = names.iter().map(String::as_str).collect();
+    let symbol = Symbol {
+        name: "p".into(),
+        text: String::new(),
+        kind: Kind::Parameter,
+        domain: vec![Domain::Universe; 2],
+    };
+    // Steps of the last label that fit in a byte and that do not; first labels of one, two and four bytes.
+    let mut keys = Vec::new();
+    for (a, b) in [(0, 0), (0, 1), (0, 252), (0, 600), (3, 69_999), (300, 5), (69_999, 0)] {
+        keys.extend([a, b]);
+    }
+    for n in 0..20_000 {
+        keys.extend([69_999, n * 3 + 1]);
+    }
+    let len = keys.len() / 2;
+    let value = |n: usize| Value::Number((n as f64).sin());
+    let records = Records {
+        len,
+        keys,
+        values: (0..len).map(value).collect(),
+        texts: Vec::new(),
+    };
+    for packed in [false, true] {
+        let contents = Contents {
+            labels: labels.clone(),
+            texts: vec![""],
+            acronyms: Vec::new(),
+            symbols: vec![(symbol.clone(), records.clone())],
+        };
+        let bytes = write(&contents, packed).expect("written");
+        let file = File::open(&bytes).expect("read");
+        assert_eq!(file.records(0).expect("read"), records);
+    }
+}
+
+#[test]
+fn damaged_files_end_in_an_error() {
+    for whole in [PLAIN, PACKED, RELAXED] {
+        for n in 0..whole.len() {
+            assert!(all(&whole[..n]).is_err(), "{n} bytes are enough");
+        }
+        let mut bytes = whole.to_vec();
+        for n in 0..whole.len() {
+            // Other data may come out, or an error; no panic, and no memory beyond the file's.
+            for flip in [0x01, 0x80, 0xff] {
+                bytes[n] ^= flip;
+                let _ = all(&bytes);
+                bytes[n] ^= flip;
+            }
+        }
+    }
+}
+
+#[test]
+fn what_a_file_cannot_hold_is_refused() {
+    let long = "l".repeat(64);
+    let value = |labels, v| {
+        let symbol = Symbol {
+            name: "p".into(),
+            text: String::new(),
+            kind: Kind::Parameter,
+            domain: vec![Domain::Universe],
+        };
+        let records = Records {
+            len: 1,
+            keys: vec![0],
+            values: vec![Value::Number(v)],
+            texts: Vec::new(),
+        };
+        let contents = Contents {
+            labels,
+            texts: vec![""],
+            acronyms: Vec::new(),
+            symbols: vec![(symbol, records)],
+        };
+        write(&contents, false)
+    };
+    assert!(value(vec![&long], 1.0).is_err());
+    assert!(value(vec!["a"], 1e300).is_err());
+    assert!(value(vec!["a"], -1e305).is_ok());
+}
