@@ -20,9 +20,8 @@ fn all(bytes: &[u8]) -> Result<Contents<'_>> {
         };
         symbols.push((s.clone(), records));
     }
-    let leak = |list: Vec<String>| -> Vec<&'static str> {
-        list.into_iter().map(|t| &*t.leak()).collect()
-    };
+    let leak =
+        |list: Vec<String>| -> Vec<&'static str> { list.into_iter().map(|t| &*t.leak()).collect() };
     Ok(Contents {
         acronyms: leak(file.acronyms().map(String::from).collect()),
         labels: leak(file.labels.clone()),
@@ -111,7 +110,15 @@ fn large_steps_and_blocks() {
     };
     // Steps of the last label that fit in a byte and that do not; first labels of one, two and four bytes.
     let mut keys = Vec::new();
-    for (a, b) in [(0, 0), (0, 1), (0, 252), (0, 600), (3, 69_999), (300, 5), (69_999, 0)] {
+    for (a, b) in [
+        (0, 0),
+        (0, 1),
+        (0, 252),
+        (0, 600),
+        (3, 69_999),
+        (300, 5),
+        (69_999, 0),
+    ] {
         keys.extend([a, b]);
     }
     for n in 0..20_000 {

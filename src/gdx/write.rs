@@ -94,13 +94,7 @@ fn list<T>(out: &mut Output, mark: &str, items: &[T], mut write: impl FnMut(&mut
 }
 
 /// An entry of the list of symbols.
-fn entry(
-    out: &mut Output,
-    symbol: &Symbol,
-    records: &Records,
-    at: i64,
-    packed: bool,
-) {
+fn entry(out: &mut Output, symbol: &Symbol, records: &Records, at: i64, packed: bool) {
     let (kind, detail) = match symbol.kind {
         Kind::Set { singleton } => (0, i32::from(singleton)),
         Kind::Parameter => (1, 0),
