@@ -364,11 +364,16 @@ pub fn function_value(f: Function, args: &[f64]) -> Result<f64, DomainError> {
         return Ok(f64::NAN);
     }
     if let Some(i) = args.iter().position(|a| a.is_infinite())
-        && !takes_infinity(f, args[i])
+        && !takes_infinity(f, i, args[i])
     {
         return fail(i, ErrorKind::Infinite);
     }
-    let x = args[0];
+    // To these infinity is a large number.
+    let x = match f {
+        F::LogGamma | F::Round | F::Entropy => clamp(args[0]),
+        F::SlExp | F::SlLog10 | F::SlRec | F::SqExp | F::SqLog10 | F::SqRec => clamp(args[0]),
+        _ => args[0],
+    };
     let y = args.get(1).copied().unwrap_or(0.0);
     let z = args.get(2).copied().unwrap_or(0.0);
     use ErrorKind::{Domain, NotWhole, Precision, Singular};
@@ -594,14 +599,20 @@ pub fn function_value(f: Function, args: &[f64]) -> Result<f64, DomainError> {
     Ok(clamp(v))
 }
 
-/// Which functions take +∞ or −∞ (`x` is the infinite argument).
-fn takes_infinity(f: Function, x: f64) -> bool {
+/// Whether a function with so many arguments is `na` where one of them is; the others refuse it.
+pub fn takes_na(f: Function, arguments: usize) -> bool {
+    arguments < 3 || matches!(f, F::Min | F::Max | F::IfThen)
+}
+
+/// Which functions take +∞ or −∞ (`x` is the infinite argument, number `i`).
+fn takes_infinity(f: Function, i: usize, x: f64) -> bool {
     use F::*;
     match f {
         Log | Log2 | Log10 | Sqrt | Power | RPower => x > 0.0,
         Exp | Sqr | Abs | Sign | Min | Max | Floor | Ceil | Round | Trunc | Frac | ErrorF
         | Sigmoid | ArcTan | Tanh | Sinh | Cosh => true,
-        Gamma => x > 0.0,
+        Gamma | LogGamma | Entropy => x > 0.0,
+        SlExp | SlLog10 | SlRec | SqExp | SqLog10 | SqRec => i == 0,
         IfThen | BoolAnd | BoolOr | BoolNot | BoolXor | BoolEqv | BoolImp | RelEq | RelNe
         | RelLt | RelLe | RelGt | RelGe => true,
         // outside the domain in any case
@@ -610,24 +621,16 @@ fn takes_infinity(f: Function, x: f64) -> bool {
     }
 }
 
-/// x rounded to n decimals, halves away from zero, as x·10ⁿ is in doubles (like GAMS: 2.345 gives 2.35,
-/// 1.005 gives 1.00).
+/// x rounded to n decimals, halves away from zero: ⌊|x|·10ⁿ + ½⌋/10ⁿ in doubles (like GAMS: 2.345 gives 2.35,
+/// 1.005 gives 1.00, 0.35 gives 0.4).
 fn round_to(x: f64, n: f64) -> f64 {
-    let half_away = |v: f64| (v.abs() + 0.5).floor().copysign(v);
-    if n == 0.0 {
-        return if x.abs() < 4.5e15 { x.round() } else { x };
-    }
-    let unit = 10f64.powi(-(n.clamp(-300.0, 300.0) as i32));
-    let scaled = x / unit;
-    if !scaled.is_finite() || scaled.abs() > 4.5e15 {
+    let power = 10f64.powi(n.abs().min(300.0) as i32);
+    let times = |v: f64, up: bool| if up { v * power } else { v / power };
+    let scaled = times(x.abs(), n >= 0.0);
+    if !scaled.is_finite() || scaled > 4.5e15 {
         return x;
     }
-    let r = half_away(scaled);
-    if n < 0.0 {
-        r * unit
-    } else {
-        r / 10f64.powi(n.clamp(-300.0, 300.0) as i32)
-    }
+    times((scaled + 0.5).floor(), n < 0.0).copysign(x)
 }
 
 /// log(a / b) for a, b > 0, accurate where a ≈ b.

@@ -5,7 +5,7 @@
 
 use super::node::*;
 use super::symbols::{DomainPosition, SymbolKind, UNIVERSE};
-use super::{Compiler, Failed, has_random};
+use super::{Compiler, Failed};
 use crate::diag::Diagnostic;
 use crate::source::Span;
 use crate::syntax::ast::{self, Expr, ExprKind, Ident, Sign};
@@ -63,7 +63,7 @@ impl Compiler {
     pub(super) fn condition(&mut self, c: &Expr, out: &mut Domain) -> Result<(), Failed> {
         let before = out.conditions.len();
         self.conjuncts(c, &mut out.conditions)?;
-        if out.conditions[before..].iter().any(has_random) {
+        if out.conditions[before..].iter().any(Node::has_random) {
             let whole = |a: Node, b| {
                 let kind = NodeKind::Binary(BinaryOp::And, Box::new(a), Box::new(b));
                 Node::data(kind, c.span)

@@ -1,6 +1,5 @@
 //! Declarations.
 
-use super::model::mentions;
 use super::node::{SymbolId, TableId};
 use super::symbols::{DomainPosition, ModelInfo, Symbol, SymbolKind, UNIVERSE, attribute};
 use super::{Compiler, Failed};
@@ -353,7 +352,7 @@ impl Compiler {
                     || self
                         .equations
                         .iter()
-                        .any(|e| mentions(&e.left, s) || mentions(&e.right, s));
+                        .any(|e| e.left.mentions(s) || e.right.mentions(s));
                 if !used || kind == VariableKind::Free {
                     return Ok(());
                 }

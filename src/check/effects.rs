@@ -3,6 +3,7 @@
 
 use super::node::*;
 use super::symbols::{Symbols, attribute};
+use super::visit::{Reading, Visitor};
 use rustc_hash::FxHashSet;
 
 /// What a piece of code changes.
@@ -19,95 +20,101 @@ impl Effects {
     /// The effects of statements.
     pub fn of(code: &[Code], symbols: &Symbols) -> Self {
         let mut e = Self::default();
-        e.add(code, symbols);
-        e
-    }
-
-    fn add(&mut self, code: &[Code], symbols: &Symbols) {
-        let first = |s: SymbolId| symbols.get(s).table;
-        for c in code {
-            match &c.kind {
-                CodeKind::Assign { target, .. } => match *target {
-                    Target::Table(t) | Target::Set(t) | Target::Singleton(t) => {
-                        self.tables.insert(t);
-                    }
-                    Target::Fix(s) => {
-                        let t = first(s);
-                        self.tables
-                            .extend([attribute::L, attribute::LO, attribute::UP].map(|o| t + o));
-                    }
-                    Target::Object(..) => self.objects = true,
-                    Target::Seed | Target::Errors | Target::MostErrors | Target::Ignored => {}
-                },
-                CodeKind::Loop(_, b) | CodeKind::While(_, b) | CodeKind::Repeat(b, _) => {
-                    self.add(b, symbols);
-                }
-                CodeKind::For { table, body, .. } => {
-                    self.tables.insert(*table);
-                    self.add(body, symbols);
-                }
-                CodeKind::If(arms, otherwise) => {
-                    arms.iter().for_each(|(_, b)| self.add(b, symbols));
-                    self.add(otherwise, symbols);
-                }
-                CodeKind::Clear(s, _) => {
-                    let t = first(*s);
-                    self.tables.extend(t..t + attribute::COUNT);
-                }
-                CodeKind::Match(target, _) | CodeKind::Project { target, .. } => {
-                    self.tables.insert(first(*target));
-                }
-                CodeKind::Solve(_) | CodeKind::Exchange(_) => self.everything = true,
-                _ => {}
+        code.iter().for_each(|c| {
+            Changes {
+                effects: &mut e,
+                symbols,
             }
-        }
+            .code(c)
+        });
+        e
     }
 
     /// Whether the value of an expression may change with them.
     pub fn touch(&self, n: &Node) -> bool {
-        match &n.kind {
-            NodeKind::Data(t, k) | NodeKind::ElementText(t, k) => self.table(*t) || self.key(k),
-            NodeKind::Var(..) => self.everything,
-            NodeKind::Derived(_, _, k) => self.everything || !self.tables.is_empty() || self.key(k),
-            NodeKind::Ord(t, p) | NodeKind::LabelAttribute(_, t, p) => {
-                self.table(*t) || self.part(p)
+        let mut reads = Reads {
+            effects: self,
+            touched: false,
+        };
+        reads.node(n);
+        reads.touched
+    }
+}
+
+/// Collects what statements change.
+struct Changes<'e> {
+    effects: &'e mut Effects,
+    symbols: &'e Symbols,
+}
+
+impl Visitor<'_> for Changes<'_> {
+    fn node(&mut self, _: &Node) {}
+
+    fn code(&mut self, c: &Code) {
+        let first = |s: SymbolId| self.symbols.get(s).table;
+        let e = &mut *self.effects;
+        match &c.kind {
+            CodeKind::Assign { target, .. } => match *target {
+                Target::Table(t) | Target::Set(t) | Target::Singleton(t) => {
+                    e.tables.insert(t);
+                }
+                Target::Fix(s) => {
+                    let t = first(s);
+                    e.tables
+                        .extend([attribute::L, attribute::LO, attribute::UP].map(|o| t + o));
+                }
+                Target::Object(..) => e.objects = true,
+                Target::Seed | Target::Errors | Target::MostErrors | Target::Ignored => {}
+            },
+            CodeKind::For { table, .. } => {
+                e.tables.insert(*table);
             }
-            NodeKind::Card(t) => self.table(*t),
-            NodeKind::SameAs(a, b) => self.part(a) || self.part(b),
-            NodeKind::LabelText(p) => self.part(p),
-            NodeKind::Negate(a) | NodeKind::Not(a) => self.touch(a),
-            NodeKind::Sum(t) | NodeKind::Product(t) => t.iter().any(|(_, x)| self.touch(x)),
-            NodeKind::Binary(_, a, b) | NodeKind::Dollar(a, b) => self.touch(a) || self.touch(b),
-            NodeKind::Call(_, a) => a.iter().any(|x| self.touch(x)),
+            CodeKind::Clear(s, _) => {
+                let t = first(*s);
+                e.tables.extend(t..t + attribute::COUNT);
+            }
+            CodeKind::Match(target, _) | CodeKind::Project { target, .. } => {
+                e.tables.insert(first(*target));
+            }
+            CodeKind::Solve(_) | CodeKind::Exchange(_) => e.everything = true,
+            CodeKind::Loop(..)
+            | CodeKind::While(..)
+            | CodeKind::Repeat(..)
+            | CodeKind::If(..)
+            | CodeKind::Break(..)
+            | CodeKind::Continue(_)
+            | CodeKind::Display(..)
+            | CodeKind::Abort { .. }
+            | CodeKind::Option(..)
+            | CodeKind::Format(..)
+            | CodeKind::Put(..)
+            | CodeKind::Draw(..) => {}
+        }
+        c.walk(self);
+    }
+}
+
+/// Looks for something that was changed.
+struct Reads<'e> {
+    effects: &'e Effects,
+    touched: bool,
+}
+
+impl Visitor<'_> for Reads<'_> {
+    fn node(&mut self, n: &Node) {
+        let e = self.effects;
+        self.touched |= match &n.kind {
+            NodeKind::Var(..) => e.everything,
+            NodeKind::Derived(..) => e.everything || !e.tables.is_empty(),
+            NodeKind::ObjectAttribute(..) => e.everything || e.objects,
             // Random numbers, the clock, the number of errors.
             NodeKind::DataCall(..) => true,
-            NodeKind::Aggregate(_, d, b) => {
-                self.touch(b)
-                    || d.conditions.iter().any(|x| self.touch(x))
-                    || d.members
-                        .iter()
-                        .any(|m| self.table(m.table) || self.key(&m.key))
-            }
-            NodeKind::ObjectAttribute(..) => self.everything || self.objects,
-            NodeKind::Const(_) | NodeKind::Text(_) | NodeKind::SymbolText(_) => false,
-            NodeKind::RecordName(_, k) => self.key(k),
-            NodeKind::OfText(t, n) => self.touch(t) || n.as_ref().is_some_and(|n| self.touch(n)),
-        }
+            _ => false,
+        };
+        n.walk(self);
     }
 
-    fn table(&self, t: TableId) -> bool {
-        self.everything || self.tables.contains(&t)
-    }
-
-    fn key(&self, k: &Key) -> bool {
-        k.parts.iter().any(|p| self.part(p))
-    }
-
-    fn part(&self, p: &Part) -> bool {
-        match p {
-            Part::Slot(_) | Part::Label(_) => false,
-            Part::Lag(l) => self.table(l.set) || self.part(&l.base) || self.touch(&l.offset),
-            Part::Singleton(t, _) => self.table(*t),
-        }
+    fn table(&mut self, t: TableId, _: Reading) {
+        self.touched |= self.effects.everything || self.effects.tables.contains(&t);
     }
 }

@@ -351,13 +351,19 @@ impl Compiler {
         }
         let labels = self.store.universe.len().min(10_000) as u32;
         let near = nearest(text, (0..labels).map(|l| self.store.universe.name(l)));
-        let d = Diagnostic::error("E0308", span, format!("no set has the label `'{text}'`"))
-            .label("unknown label")
-            .help(match near {
-                Some(n) => format!("did you mean `'{n}'`?"),
-                None => "a label must stand in data, or be assigned to, before it is used".into(),
-            });
-        self.fail(d)
+        let message = format!("no set has the label `'{text}'`");
+        let help = match near {
+            Some(n) => format!("did you mean `'{n}'`?"),
+            None => "a label must stand in data, or be assigned to, before it is used".into(),
+        };
+        if self.in_equation {
+            // As in GAMS: there is no such record when the model is generated.
+            let d = Diagnostic::warning("E0308", span, message).label("reads 0");
+            self.report(d.help(help));
+            return Ok(self.store.universe.intern(text));
+        }
+        let d = Diagnostic::error("E0308", span, message);
+        self.fail(d.label("unknown label").help(help))
     }
 
     /// Runs `f` where labels may be new: on the left of an assignment, in the key of an equation.

@@ -9,7 +9,9 @@ pub mod exchange;
 pub mod functions;
 pub mod node;
 pub mod symbols;
+pub mod visit;
 
+mod assign;
 mod control;
 mod data;
 mod declare;
@@ -23,7 +25,6 @@ pub(crate) mod option;
 pub(crate) mod output;
 mod statement;
 mod table;
-pub use model::{has_random, walk as walk_node};
 
 use crate::diag::{Diagnostic, Severity};
 use crate::host::Host;

@@ -134,7 +134,7 @@ impl Compiler {
             let named = [e.symbol].into_iter().chain(r.pair);
             named.for_each(|s| symbols.get_mut(s).assigned = true);
             for side in [&e.left, &e.right] {
-                walk(side, &mut |n| {
+                side.each(|n| {
                     if let NodeKind::Var(v, _) = n.kind {
                         symbols.get_mut(v).assigned = true;
                     }
@@ -318,7 +318,7 @@ impl Compiler {
         }
         let mentioned = rows.iter().any(|r| {
             let e = &self.equations[r.definition];
-            mentions(&e.left, v) || mentions(&e.right, v)
+            e.left.mentions(v) || e.right.mentions(v)
         });
         // An equation that failed to compile may be the one that mentions it.
         if !mentioned && self.errors() == 0 {
@@ -351,7 +351,7 @@ impl Compiler {
             !matches!(using, "dnlp" | "rminlp" | "minlp" | "mcp" | "cns") && !linear_only;
         let mut found: Option<(Span, String, &'static str, String)> = None;
         for side in [&e.left, &e.right] {
-            walk(side, &mut |n| {
+            side.each(|n| {
                 if found.is_some() || !n.has_var {
                     return;
                 }
@@ -376,7 +376,7 @@ impl Compiler {
                         "E0362",
                         "use `dnlp`".into(),
                     ));
-                } else if linear_only && !n.linear && children_linear(n) {
+                } else if linear_only && !n.linear && n.children_are_linear() {
                     let what = match &n.kind {
                         NodeKind::Product(_) => {
                             "variables are multiplied or divided here".to_string()
@@ -442,7 +442,7 @@ impl Compiler {
         for r in rows {
             let e = &self.equations[r.definition];
             for side in [&e.left, &e.right] {
-                walk(side, &mut |n| {
+                side.each(|n| {
                     if let NodeKind::Var(v, _) = &n.kind
                         && let SymbolKind::Variable(k) = self.symbols.get(*v).kind
                         && !matches!(
@@ -493,7 +493,7 @@ impl Compiler {
         for (v, span) in paired {
             let appears = rows.iter().any(|r| {
                 let e = &self.equations[r.definition];
-                mentions(&e.left, v) || mentions(&e.right, v)
+                e.left.mentions(v) || e.right.mentions(v)
             });
             if !appears {
                 let (name, declared) = (
@@ -593,63 +593,4 @@ impl Compiler {
         }
         if failed { Err(Failed) } else { Ok(()) }
     }
-}
-
-/// Whether all children that hold variables are linear: the node itself is where linearity ends.
-fn children_linear(n: &Node) -> bool {
-    let mut all = true;
-    each_child(n, &mut |c| all &= c.linear);
-    all
-}
-
-/// Calls `f` for each direct child (conditions of sums are data and are left out).
-pub fn each_child<'a>(n: &'a Node, f: &mut dyn FnMut(&'a Node)) {
-    match &n.kind {
-        NodeKind::Negate(a) | NodeKind::Not(a) => f(a),
-        NodeKind::Sum(t) | NodeKind::Product(t) => t.iter().for_each(|(_, x)| f(x)),
-        NodeKind::Binary(_, a, b) => {
-            f(a);
-            f(b);
-        }
-        NodeKind::Call(_, a) | NodeKind::DataCall(_, a) => a.iter().for_each(f),
-        NodeKind::Dollar(a, _) => f(a),
-        NodeKind::Aggregate(_, _, b) => f(b),
-        _ => {}
-    }
-}
-
-/// Calls `f` for a node and all below.
-pub fn walk<'a>(n: &'a Node, f: &mut dyn FnMut(&'a Node)) {
-    f(n);
-    each_child(n, &mut |c| walk(c, f));
-}
-
-pub(super) fn mentions(n: &Node, v: SymbolId) -> bool {
-    let mut hit = false;
-    walk(n, &mut |x| {
-        hit |= matches!(&x.kind, NodeKind::Var(s, _) if *s == v)
-    });
-    hit
-}
-
-/// Whether evaluating draws random numbers: then order and number of evaluations matter.
-pub fn has_random(n: &Node) -> bool {
-    use DataFunction as D;
-    let mut hit = false;
-    walk(n, &mut |x| {
-        hit |= matches!(
-            &x.kind,
-            NodeKind::DataCall(
-                D::Uniform
-                    | D::UniformInt
-                    | D::Normal
-                    | D::RandBinomial
-                    | D::RandLinear
-                    | D::RandTriangle
-                    | D::ExecSeed,
-                _
-            )
-        );
-    });
-    hit
 }

@@ -395,6 +395,8 @@ pub enum CodeKind {
         value: Node,
         /// Whether the domain covers every record the target can have.
         covers: bool,
+        /// `$=`: what is 0 is not assigned.
+        nonzero: bool,
     },
     /// `loop`
     Loop(Domain, Vec<Code>),

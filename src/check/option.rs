@@ -73,6 +73,7 @@ const OPTIONS: &[&str] = &[
     "gdxuels",
     "shuffle",
     "certify",
+    "gams_power",
     "checkerrorlevel",
     "dmpusersym",
     "holdfixedasync",
@@ -167,6 +168,8 @@ impl Compiler {
                         }
                     },
                 };
+                let root = self.symbols.root(s);
+                self.symbols.get_mut(root).assigned = true;
                 Ok(Some(CodeKind::Clear(s, offset)))
             }
             OptionForm::Assign(v) => {

@@ -1,13 +1,12 @@
 //! Statements other than declarations.
 
 use super::effects::Effects;
-use super::functions;
 use super::node::*;
-use super::symbols::{DomainPosition, SymbolKind, attribute};
+use super::symbols::{SymbolKind, attribute};
 use super::{Compiler, Failed};
 use crate::diag::Diagnostic;
 use crate::source::{SourceMap, Span};
-use crate::syntax::ast::{self, Assign, DisplayItem, Equate, Expr, ExprKind, Stmt, StmtKind};
+use crate::syntax::ast::{self, DisplayItem, Equate, Expr, ExprKind, Stmt, StmtKind};
 
 impl Compiler {
     /// Checks a statement and appends its code.
@@ -48,21 +47,22 @@ impl Compiler {
             StmtKind::Clear { kill, names } => return self.forget(*kill, names),
             StmtKind::Empty => return Ok(()),
             StmtKind::Assign(a) => {
-                let code = self.assign(a);
-                if code.is_err()
+                let done = self.assign(a, span, out);
+                if done.is_err()
                     && let Some(s) = self.symbols.find(&a.target.name.name)
                 {
                     // It is meant to get values: no second message where it is used.
                     let root = self.symbols.root(s);
                     self.symbols.get_mut(root).assigned = true;
                 }
-                code?
+                return done;
             }
             StmtKind::Equate(e) => return self.equate(e, span),
             StmtKind::Solve(s) => self.solve(s, span)?,
             StmtKind::Loop(d, body) => self.scoped(|c| {
                 let mut domain = c.domain(d)?;
                 let body = c.body(body, map)?;
+                domain.conditions.extend(c.driver(&body));
                 // What the body changes is asked at every turn, not before the first.
                 let effects = Effects::of(&body, &c.symbols);
                 let mut late = Vec::new();
@@ -251,175 +251,6 @@ impl Compiler {
 
     pub(super) fn optional(&mut self, e: Option<&Expr>) -> Result<Option<Node>, Failed> {
         e.map(|e| self.expr(e)).transpose()
-    }
-
-    fn assign(&mut self, a: &Assign) -> Result<CodeKind, Failed> {
-        let t = &a.target;
-        let counter = match t.name.name.to_lowercase().as_str() {
-            "execseed" => Some(Target::Seed),
-            "execerror" => Some(Target::Errors),
-            "maxexecerror" => Some(Target::MostErrors),
-            "heaplimit" => Some(Target::Ignored),
-            _ => None,
-        };
-        if let Some(target) = counter
-            && self.symbols.find(&t.name.name).is_none()
-        {
-            let value = self.expr(&a.value)?;
-            return Ok(CodeKind::Assign {
-                domain: Domain::default(),
-                target,
-                key: Key::default(),
-                value,
-                covers: false,
-            });
-        }
-        let s = self.lookup(&t.name)?;
-        self.shape(s, &t.indices);
-        let symbol = self.symbols.get(s).clone();
-        let target = match &symbol.kind {
-            SymbolKind::Parameter { .. } if t.attribute.is_none() => Target::Table(symbol.table),
-            SymbolKind::Set { singleton } if t.attribute.is_none() => {
-                if *singleton {
-                    Target::Singleton(symbol.table)
-                } else {
-                    Target::Set(symbol.table)
-                }
-            }
-            SymbolKind::Alias(root) if t.attribute.is_none() => {
-                Target::Set(self.symbols.get(*root).table)
-            }
-            SymbolKind::Variable(_)
-                if t.attribute.is_none() && self.modes.at(t.name.span).dot_l =>
-            {
-                Target::Table(symbol.table + attribute::L)
-            }
-            SymbolKind::Variable(_) | SymbolKind::Equation(_) => {
-                let Some(attr) = &t.attribute else {
-                    let what = symbol.kind_name();
-                    let d = Diagnostic::error(
-                        "E0310",
-                        t.span,
-                        format!(
-                            "`{}` is a {what}; it cannot be assigned itself",
-                            symbol.name
-                        ),
-                    )
-                    .label("which of its numbers?")
-                    .other(symbol.declared, "declared here");
-                    return self.fail(if what == "equation" {
-                        d.help(format!(
-                            "an equation is defined with two dots: `{}.. left =e= right;`",
-                            t.name.name
-                        ))
-                    } else {
-                        d.help(format!(
-                            "assign `{0}.l`, `{0}.lo`, `{0}.up` or `{0}.fx`",
-                            t.name.name
-                        ))
-                    });
-                };
-                match functions::record_attribute(&attr.name) {
-                    Some(functions::RecordAttribute::Stored(o)) => Target::Table(symbol.table + o),
-                    Some(functions::RecordAttribute::Fix) => Target::Fix(s),
-                    Some(functions::RecordAttribute::Derived(_)) => {
-                        return self.fail(
-                            Diagnostic::error(
-                                "E0314",
-                                attr.span,
-                                format!("`.{}` is computed and cannot be assigned", attr.name),
-                            )
-                            .label("read only"),
-                        );
-                    }
-                    None => {
-                        return self.unknown_attribute(
-                            attr,
-                            &symbol.name,
-                            symbol.kind_name(),
-                            "l, m, lo, up, fx, scale, prior",
-                        );
-                    }
-                }
-            }
-            SymbolKind::Model(_) | SymbolKind::File(_) if t.attribute.is_some() => {
-                let attr = t.attribute.as_ref().expect("tested above");
-                Target::Object(s, self.object_attribute(s, attr)?)
-            }
-            _ => {
-                return self.fail(
-                    Diagnostic::error(
-                        "E0325",
-                        t.span,
-                        format!(
-                            "`{}` is a {} and cannot be assigned",
-                            symbol.name,
-                            symbol.kind_name()
-                        ),
-                    )
-                    .label("not assignable")
-                    .other(symbol.declared, "declared here"),
-                );
-            }
-        };
-        let is_set = matches!(target, Target::Set(_) | Target::Singleton(_));
-        let root = self.symbols.root(s);
-        if is_set && (self.symbols.get(root).is_domain || root == super::symbols::UNIVERSE) {
-            return self.fail(
-                Diagnostic::error(
-                    "E0320",
-                    t.span,
-                    format!(
-                        "the set `{}` cannot be assigned: it is the domain of other symbols",
-                        symbol.name
-                    ),
-                )
-                .label("a domain must stay as it is")
-                .other(symbol.declared, "declared here")
-                .help(format!(
-                    "declare a subset, `set sub({});`, and assign that",
-                    symbol.name
-                )),
-            );
-        }
-        let r = self.scoped(|c| {
-            let mut domain = Domain::default();
-            let parts = match target {
-                Target::Object(..) => Vec::new(),
-                _ => c.defining(|c| c.control_key(&t.indices, s, t.span, &mut domain))?,
-            };
-            if let Some(cond) = &a.condition {
-                c.condition(cond, &mut domain)?;
-            }
-            c.texts_allowed = matches!(target, Target::Object(..));
-            let value = c.expr(&a.value);
-            c.texts_allowed = false;
-            let value = value?;
-            let covers = domain.conditions.is_empty()
-                && domain.slots.len() == symbol.dim()
-                && domain.members.len() == symbol.dim()
-                && parts.iter().enumerate().all(|(p, part)| {
-                    let Part::Slot(slot) = part else { return false };
-                    domain.slots.get(p) == Some(slot)
-                        && match symbol.domain[p] {
-                            DomainPosition::Set(d) => domain.sets[p] == c.symbols.get(d).table,
-                            _ => false,
-                        }
-                });
-            Ok(CodeKind::Assign {
-                domain,
-                target,
-                key: Key { parts },
-                value,
-                covers,
-            })
-        })?;
-        let sym = self.symbols.get_mut(root);
-        sym.assigned = true;
-        if is_set {
-            sym.dynamic = true;
-        }
-        Ok(r)
     }
 
     fn equate(&mut self, e: &Equate, span: Span) -> Result<(), Failed> {

@@ -11,6 +11,7 @@
 use super::key_index::{KeyIndex, same};
 use super::sort::sort_records;
 use super::universe::Label;
+use super::value::is_eps;
 use hashbrown::HashTable;
 use std::cell::{Cell, OnceCell, RefCell};
 use std::hash::Hasher;
@@ -30,9 +31,37 @@ pub struct Table {
     index: OnceCell<KeyIndex>,
     orders: RefCell<Vec<(u32, Rc<Order>)>>,
     distinct: OnceCell<Vec<u32>>,
-    special: bool,
+    special: Special,
     /// The record that a scan has come to: it is mostly the one that is asked for.
     visited: Cell<u32>,
+}
+
+/// What kind of special values there may be; each includes those before it.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+enum Special {
+    None,
+    /// Infinite, `eps`.
+    Extreme,
+    /// `na`, `undf`, acronyms.
+    Undefined,
+}
+
+impl Special {
+    #[inline]
+    fn of(value: f64) -> Self {
+        if value.is_finite() {
+            Self::None
+        } else if value.is_infinite() || is_eps(value) {
+            Self::Extreme
+        } else {
+            Self::Undefined
+        }
+    }
+
+    fn among(values: &[f64]) -> Self {
+        let kinds = values.iter().map(|&v| Self::of(v));
+        kinds.max().unwrap_or(Self::None)
+    }
 }
 
 /// Records grouped by their labels at some positions.
@@ -105,7 +134,7 @@ impl Table {
             index: OnceCell::new(),
             orders: RefCell::default(),
             distinct: OnceCell::new(),
-            special: false,
+            special: Special::None,
             visited: Cell::new(0),
         }
     }
@@ -113,7 +142,7 @@ impl Table {
     /// A table from records that are sorted and distinct; values equal to the default are skipped.
     pub fn from_sorted(dim: usize, default: f64, keys: Vec<Label>, values: Vec<f64>) -> Self {
         let mut t = Self::new(dim, default);
-        t.special = values.iter().any(|v| !v.is_finite());
+        t.special = Special::among(&values);
         t.sorted = values.len();
         t.dead = values.iter().filter(|&&v| v == default).count();
         t.keys = keys;
@@ -144,7 +173,12 @@ impl Table {
 
     /// Whether some value may be infinite, `na`, `eps` or `undf`: a zero does not annihilate those.
     pub fn has_special(&self) -> bool {
-        self.special
+        self.special != Special::None
+    }
+
+    /// Whether some value, stored or not, may be `na`, `undf` or an acronym: logic with those is not two-valued.
+    pub fn has_undefined(&self) -> bool {
+        self.special.max(Special::of(self.default)) == Special::Undefined
     }
 
     /// Labels of a stored record.
@@ -230,9 +264,7 @@ impl Table {
     /// Stores a value; the default removes the record.
     pub fn set(&mut self, key: &[Label], value: f64) {
         debug_assert_eq!(key.len(), self.dim);
-        if !value.is_finite() {
-            self.special = true;
-        }
+        self.special = self.special.max(Special::of(value));
         if self.dim == 0 {
             self.values.clear();
             if value != self.default {
@@ -294,7 +326,7 @@ impl Table {
     pub fn append(&mut self, key: &[Label], value: f64) {
         let n = self.values.len();
         let in_order = self.sorted == n && (n == 0 || self.key(n as u32 - 1) < key);
-        self.special |= !value.is_finite();
+        self.special = self.special.max(Special::of(value));
         self.index.take();
         self.push(key, value);
         self.sorted += usize::from(in_order);
@@ -356,7 +388,7 @@ impl Table {
         }
         self.sorted = self.values.len();
         self.dead = 0;
-        self.special = self.values.iter().any(|v| !v.is_finite());
+        self.special = Special::among(&self.values);
         self.index.take();
         self.moved();
     }
@@ -411,7 +443,7 @@ impl Table {
             old += 1;
         }
         t.sorted = t.values.len();
-        t.special = t.values.iter().any(|v| !v.is_finite());
+        t.special = Special::among(&t.values);
         *self = t;
     }
 

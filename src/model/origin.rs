@@ -70,6 +70,17 @@ impl Blocks {
     }
 }
 
+/// A row without variables.
+#[derive(Clone, Debug)]
+pub struct LeftOut {
+    /// Number of the equation.
+    pub symbol: u32,
+    /// Labels.
+    pub key: Vec<Label>,
+    /// Lower and upper bound of the level, which is 0.
+    pub bounds: [f64; 2],
+}
+
 /// Origin of all rows and columns, and statistics as GAMS counts them.
 #[derive(Clone, Default, Debug)]
 pub struct Origin {
@@ -81,6 +92,10 @@ pub struct Origin {
     pub nonzeros: usize,
     /// Of those, where the column stands in a nonlinear term.
     pub nonlinear_nonzeros: usize,
-    /// Rows without variables, with a level or marginal from before: equation and key.
-    pub left_out: Vec<(u32, Vec<Label>)>,
+    /// Rows without variables: they are not in the instance.
+    pub left_out: Vec<LeftOut>,
+    /// Variables that are held fixed, and their keys: constants of the instance.
+    pub held: Vec<(u32, Vec<Label>)>,
+    /// Columns of the instance that are held fixed: each is there for the row it is paired with.
+    pub held_columns: Vec<u32>,
 }

@@ -4,9 +4,11 @@
 //! Of several controlled indices the last one runs along a polygon, a line or a series; there is one of
 //! those for each combination of the others.
 
-use super::{Frame, Machine, scan};
+use super::scan::Scans;
+use super::{Frame, Machine};
 use crate::check::node::{FigureCode, FigureElementCode, Node, SymbolId};
 use crate::check::symbols::SymbolKind;
+use crate::check::visit::Visitor;
 use crate::data::universe::Label;
 use crate::data::value::truth;
 use crate::diag::{Diagnostic, nearest};
@@ -92,14 +94,12 @@ impl Machine<'_> {
     }
 
     fn scene(&mut self, code: &FigureCode, frame: &mut Frame) -> Result<Scene, Failed> {
-        let mut tables = Vec::new();
+        let mut scans = Scans::default();
         for e in &code.elements {
-            e.domain.iter().for_each(|d| scan::domain(d, &mut tables));
-            e.arguments
-                .iter()
-                .for_each(|(_, n)| scan::expr(n, false, &mut tables));
+            e.domain.iter().for_each(|d| scans.domain(d));
+            e.arguments.iter().for_each(|(_, n)| scans.node(n));
         }
-        for t in tables {
+        for &t in scans.tables().iter() {
             self.store.table_mut(t).tidy();
         }
         let mut scene = Scene {

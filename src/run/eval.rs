@@ -3,7 +3,8 @@
 use super::Machine;
 use super::arithmetic::{self, ArithmeticError};
 use super::plan::Wanted;
-use crate::autodiff::functions::function_value;
+use super::random;
+use crate::autodiff::functions::{self, function_value};
 use crate::check::calendar;
 use crate::check::node::*;
 use crate::check::symbols::{SymbolKind, attribute};
@@ -88,7 +89,7 @@ impl Machine<'_> {
                 if self.key(key, frame, &mut k) {
                     t.get(&k[..parts.len()])
                 } else {
-                    0.0
+                    t.default_value()
                 }
             }
         }
@@ -164,6 +165,19 @@ impl Machine<'_> {
         UNDF
     }
 
+    /// Whether conditions hold together: `na and 0` is `na`, which counts as true.
+    pub(super) fn all_hold<'n>(
+        &self,
+        conditions: impl IntoIterator<Item = &'n Node>,
+        frame: &mut Frame,
+    ) -> bool {
+        let mut all = 1.0;
+        for c in conditions {
+            all = arithmetic::relate(BinaryOp::And, all, self.eval(c, frame));
+        }
+        truth(all)
+    }
+
     /// The value of an expression without unknowns.
     pub(super) fn eval(&self, n: &Node, frame: &mut Frame) -> f64 {
         match &n.kind {
@@ -200,6 +214,9 @@ impl Machine<'_> {
             NodeKind::Not(a) => arithmetic::not(self.eval(a, frame)),
             NodeKind::Binary(BinaryOp::Power, a, b) => {
                 let (a, b) = (self.eval(a, frame), self.eval(b, frame));
+                if a.is_normal() && a > 0.0 && b.is_finite() && self.options.gams_power() {
+                    return (b * a.ln()).exp().min(functions::HUGE);
+                }
                 self.call(Function::RPower, &[a, b], n.span)
             }
             NodeKind::Binary(op, a, b) => {
@@ -297,14 +314,9 @@ impl Machine<'_> {
                 AggregateOp::Prod => acc = self.arithmetic(arithmetic::multiply(acc, v), body.span),
                 AggregateOp::Smin => acc = extreme(acc, v, |a, b| a < b),
                 AggregateOp::Smax => acc = extreme(acc, v, |a, b| a > b),
-                AggregateOp::Sand => {
-                    acc = f64::from(u8::from(truth(v)));
-                    return truth(v);
-                }
-                AggregateOp::Sor => {
-                    acc = f64::from(u8::from(truth(v)));
-                    return !truth(v);
-                }
+                // To the end, as in GAMS: `na` anywhere makes it `na`.
+                AggregateOp::Sand => acc = arithmetic::relate(BinaryOp::And, acc, v),
+                AggregateOp::Sor => acc = arithmetic::relate(BinaryOp::Or, acc, v),
             }
             self.keep_going()
         });
@@ -348,8 +360,14 @@ impl Machine<'_> {
             return self.no_acronym(*word.unwrap_or(&UNDF), span);
         }
         let power = matches!(f, Function::Power | Function::RPower);
-        if args.iter().any(|&x| is_na(x)) && !(power && args[0] < 0.0) {
-            return NA;
+        if let Some(at) = args.iter().position(|&x| is_na(x))
+            && !(power && args[0] < 0.0)
+        {
+            return if functions::takes_na(f, args.len()) {
+                NA
+            } else {
+                self.no_na(f.name(), at, span)
+            };
         }
         let eps = args.iter().any(|&x| is_eps(x));
         match f {
@@ -376,16 +394,18 @@ impl Machine<'_> {
                 if args[1].is_finite() { EPS } else { 0.0 }
             }
             Function::Power | Function::RPower if args[0] == 0.0 && args[1] == f64::INFINITY => 0.0,
-            Function::Power | Function::RPower if args[0] == f64::INFINITY && args[1] != 0.0 => {
+            Function::Power | Function::RPower
+                if args[0] == f64::INFINITY && number(args[1]) != 0.0 =>
+            {
                 if args[1] > 0.0 {
                     args[0]
                 } else {
                     0.0
                 }
             }
-            Function::Round if eps || args.get(1) == Some(&f64::NEG_INFINITY) => 0.0,
+            Function::Round if is_eps(args[0]) || args.get(1) == Some(&f64::NEG_INFINITY) => 0.0,
             Function::Sign => args[0].signum(),
-            Function::Floor | Function::Ceil | Function::Round | Function::Trunc => args[0],
+            Function::Floor | Function::Ceil | Function::Trunc => args[0],
             Function::RelLt => arithmetic::relate(BinaryOp::Lt, args[0], args[1]),
             Function::RelLe => arithmetic::relate(BinaryOp::Le, args[0], args[1]),
             Function::RelGt => arithmetic::relate(BinaryOp::Gt, args[0], args[1]),
@@ -425,8 +445,18 @@ impl Machine<'_> {
             };
         }
         let a: Vec<f64> = a.iter().map(|&x| number(x)).collect();
-        if let Some(&bad) = a.iter().find(|x| !x.is_finite()) {
-            return if is_na(bad) { NA } else { UNDF };
+        if let Some(at) = a.iter().position(|&x| is_na(x)) {
+            return if a.len() < 3 {
+                NA
+            } else {
+                self.no_na("the function", at, span)
+            };
+        }
+        if f == D::Fact && a[0] == f64::INFINITY {
+            return functions::HUGE;
+        }
+        if let Err(why) = random::valid(f, &a) {
+            return self.execution_error("E0403", span, why.into(), "guard it with a condition");
         }
         let mut random = self.random.borrow_mut();
         match f {
@@ -486,6 +516,15 @@ impl Machine<'_> {
             D::GamsVersion => 54.0,
             D::Mapval => unreachable!("handled above"),
         }
+    }
+
+    fn no_na(&self, name: &str, at: usize, span: Span) -> f64 {
+        self.execution_error(
+            "E0403",
+            span,
+            format!("{name} does not take na (argument {})", at + 1),
+            "guard it with a condition",
+        )
     }
 
     fn no_date(&self, span: Span) -> f64 {

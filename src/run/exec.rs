@@ -2,7 +2,8 @@
 
 use super::plan::Wanted;
 use super::random::Random;
-use super::{Flow, Frame, Machine, scan};
+use super::scan::Scans;
+use super::{Flow, Frame, Machine};
 use crate::check::expansion::Tuples;
 use crate::check::node::*;
 use crate::check::symbols::attribute;
@@ -20,6 +21,20 @@ struct Records {
     values: Vec<f64>,
 }
 
+/// The right side of an assignment.
+#[derive(Clone, Copy)]
+struct Right<'n> {
+    value: &'n Node,
+    /// `$=`: what is 0 is not assigned.
+    nonzero: bool,
+}
+
+impl Right<'_> {
+    fn skips(self, value: f64) -> bool {
+        self.nonzero && !truth(value)
+    }
+}
+
 impl Machine<'_> {
     pub(super) fn block(&mut self, code: &[Code], frame: &mut Frame) -> Flow {
         for c in code {
@@ -33,7 +48,7 @@ impl Machine<'_> {
 
     /// Makes the tables that a statement scans tidy.
     fn tidy(&mut self, c: &Code) {
-        for &t in c.scans.get_or_init(|| scan::scanned(&c.kind)).iter() {
+        for &t in c.scans.get_or_init(|| Scans::of(c)).iter() {
             let table = &mut self.store.tables[t as usize];
             if !table.is_tidy() {
                 table.tidy();
@@ -55,8 +70,13 @@ impl Machine<'_> {
                 key,
                 value,
                 covers,
+                nonzero,
             } => {
-                self.assign(domain, *target, key, value, *covers, frame);
+                let right = Right {
+                    value,
+                    nonzero: *nonzero,
+                };
+                self.assign(domain, *target, key, right, *covers, frame);
             }
             CodeKind::Loop(d, body) => return self.run_loop(d, body, frame),
             CodeKind::While(cond, body) => {
@@ -255,17 +275,18 @@ impl Machine<'_> {
         domain: &Domain,
         target: Target,
         key: &Key,
-        value: &Node,
+        right: Right,
         covers: bool,
         frame: &mut Frame,
     ) {
+        let value = right.value;
         let symbol = self.target_table(target).and_then(|t| self.table_symbol(t));
         if domain.slots.is_empty() {
             if let Some(s) = symbol {
-                self.assign_one(s, domain, target, key, value, frame);
+                self.assign_one(s, domain, target, key, right, frame);
                 return;
             }
-            if !domain.conditions.iter().all(|c| truth(self.eval(c, frame))) {
+            if !self.all_hold(&domain.conditions, frame) {
                 return;
             }
             let text = if let NodeKind::Text(t) = &value.kind {
@@ -274,6 +295,9 @@ impl Machine<'_> {
                 None
             };
             let v = self.eval(value, frame);
+            if right.skips(v) {
+                return;
+            }
             match target {
                 Target::Errors => self
                     .failed_statements
@@ -295,8 +319,12 @@ impl Machine<'_> {
         let covers = covers && matches!(target, Target::Table(_));
         let wanted = Wanted {
             value: table.map(|_| value),
-            rest: table.map_or(0.0, |t| self.store.table(t).default_value()),
-            stored: table.filter(|_| !covers).map(|t| (t, key)),
+            rest: table
+                .filter(|_| !right.nonzero)
+                .map_or(0.0, |t| self.store.table(t).default_value()),
+            stored: table
+                .filter(|_| !covers && !right.nonzero)
+                .map(|t| (t, key)),
         };
         let plan = self.plan(domain, wanted);
         for t in plan.scanned() {
@@ -307,7 +335,7 @@ impl Machine<'_> {
             values: Vec::new(),
         };
         self.run_plan(domain, &plan, frame, &mut |f| {
-            self.evaluate(symbol, target, key, value, f, &mut out);
+            self.evaluate(symbol, key, right, f, &mut out);
             self.keep_going()
         });
         *self.current.borrow_mut() = None;
@@ -324,10 +352,10 @@ impl Machine<'_> {
         domain: &Domain,
         target: Target,
         key: &Key,
-        value: &Node,
+        right: Right,
         frame: &mut Frame,
     ) {
-        if !domain.conditions.iter().all(|c| truth(self.eval(c, frame)))
+        if !self.all_hold(&domain.conditions, frame)
             || !domain
                 .members
                 .iter()
@@ -355,7 +383,10 @@ impl Machine<'_> {
         } else {
             *self.current.borrow_mut() = None;
         }
-        let v = self.eval(value, frame);
+        let v = self.eval(right.value, frame);
+        if right.skips(v) {
+            return;
+        }
         match target {
             Target::Table(t) => self.store.table_mut(t).set(&k[..n], v),
             _ => self.write(
@@ -381,9 +412,8 @@ impl Machine<'_> {
     fn evaluate(
         &self,
         symbol: SymbolId,
-        _target: Target,
         key: &Key,
-        value: &Node,
+        right: Right,
         frame: &mut Frame,
         out: &mut Records,
     ) {
@@ -403,7 +433,10 @@ impl Machine<'_> {
                 none => *none = Some((symbol, k[..n].to_vec())),
             }
         }
-        let v = self.eval(value, frame);
+        let v = self.eval(right.value, frame);
+        if right.skips(v) {
+            return;
+        }
         out.keys.extend_from_slice(&k[..n]);
         out.values.push(v);
     }

@@ -124,6 +124,11 @@ impl Options {
         self.solver_options.iter().cloned().chain(own).collect()
     }
 
+    /// `option gams_power = on`: `x**y` is exp(y·log x), with its rounding, as GAMS computes it.
+    pub fn gams_power(&self) -> bool {
+        self.number("gams_power") == Some(1.0)
+    }
+
     /// A numeric option.
     pub fn number(&self, name: &str) -> Option<f64> {
         self.numbers.get(name).copied()

@@ -11,12 +11,11 @@
 
 use super::Machine;
 use super::support::{Analysis, Premise, Sparse, product};
-use crate::check::has_random;
 use crate::check::node::*;
 use crate::check::symbols::DomainPosition;
+use crate::check::visit::Visitor;
 use crate::data::sort::sort_tuples;
 use crate::data::universe::Label;
-use crate::data::value::truth;
 use std::rc::Rc;
 
 /// How to enumerate a domain.
@@ -61,9 +60,9 @@ enum Step {
     },
     /// A record must be there.
     Member(TableId, Key),
-    /// A conjunct of the condition (by number) must be true. Its own sums leave these slots changed, which
-    /// scans around still read.
-    Filter(usize, Box<[Slot]>),
+    /// Conjuncts of the condition (by number) must be true together. Their own sums leave these slots changed,
+    /// which scans around still read.
+    Filter(Box<[usize]>, Box<[Slot]>),
 }
 
 /// A table whose record must be nonzero for the tuple to count.
@@ -155,7 +154,12 @@ impl Machine<'_> {
     }
 
     fn make_plan(&self, d: &Domain, wanted: Wanted) -> Plan {
-        let pick = if d.conditions.iter().chain(wanted.value).any(has_random) {
+        let pick = if d
+            .conditions
+            .iter()
+            .chain(wanted.value)
+            .any(Node::has_random)
+        {
             Pick::InOrder
         } else {
             Pick::Cheapest
@@ -163,11 +167,7 @@ impl Machine<'_> {
         let mut analysis = Analysis::new(self);
         let mut supports: Vec<Sparse> = Vec::new();
         if !d.slots.is_empty() {
-            supports.extend(
-                d.conditions
-                    .iter()
-                    .filter_map(|c| analysis.nonzero(c, false)),
-            );
+            supports.extend(analysis.conjuncts(&d.conditions));
             if let Some(v) = wanted.value
                 && let Some(mut s) = analysis.resting_at(wanted.rest, v, v.has_var)
             {
@@ -207,11 +207,17 @@ impl Machine<'_> {
             }
             open.push((s.forced, alternatives));
         }
-        let quiet: Vec<bool> = d.conditions.iter().map(|c| analysis.is_quiet(c)).collect();
+        // As in GAMS one condition is evaluated where another is false: an error in it is reported.
+        let count = d.conditions.len();
+        let filters: Vec<Box<[usize]>> = if d.conditions.iter().all(|c| analysis.is_safe(c)) {
+            (0..count).map(|i| [i].into()).collect()
+        } else {
+            vec![(0..count).collect()]
+        };
         let make = |list: &[Vec<Candidate>]| -> Vec<Branch> {
             let branches = list.iter();
             branches
-                .map(|c| self.branch(d, &quiet, c, pick, wanted.stored.map(|s| s.0)))
+                .map(|c| self.branch(d, &filters, c, pick, wanted.stored.map(|s| s.0)))
                 .collect()
         };
         let mut premises = analysis.premises;
@@ -248,7 +254,7 @@ impl Machine<'_> {
     fn branch(
         &self,
         d: &Domain,
-        quiet: &[bool],
+        filters: &[Box<[usize]>],
         drivers: &[Candidate],
         pick: Pick,
         changing: Option<TableId>,
@@ -288,26 +294,22 @@ impl Machine<'_> {
         // What a slot's label is known to be a member of, by the tables that bound it.
         let mut known: Vec<(Slot, TableId)> = Vec::new();
         let indices = free.clone();
-        let mut filters: Vec<(usize, Vec<Slot>)> = d
-            .conditions
+        let mut filters: Vec<(&[usize], Vec<Slot>)> = filters
             .iter()
-            .enumerate()
-            .map(|(i, c)| {
-                let mut used = Vec::new();
-                slots_of(c, &mut used);
+            .map(|list| {
+                let conditions = || list.iter().map(|&i| &d.conditions[i]);
+                let mut used: Vec<Slot> = conditions().flat_map(slots_of).collect();
                 used.retain(|s| free.contains(s));
-                if has_random(c) {
+                if conditions().any(Node::has_random) {
                     // Drawn once per tuple.
                     used = free.clone();
                 }
-                (i, used)
+                (&**list, used)
             })
             .collect();
-        // What may fail is tested last.
-        filters.sort_by_key(|(i, _)| !quiet[*i]);
         let settle = |free: &[Slot],
                       candidates: &mut Vec<Candidate>,
-                      filters: &mut Vec<(usize, Vec<Slot>)>,
+                      filters: &mut Vec<(&[usize], Vec<Slot>)>,
                       known: &[(Slot, TableId)],
                       steps: &mut Vec<Step>| {
             for c in candidates.iter_mut().filter(|c| !c.done && c.required) {
@@ -325,15 +327,15 @@ impl Machine<'_> {
                     steps.push(Step::Member(c.table, c.key.clone()));
                 }
             }
-            filters.retain(|(i, used)| {
+            filters.retain(|(list, used)| {
                 if used.iter().any(|s| free.contains(s)) {
                     return true;
                 }
-                if !self.scanned_by(&d.conditions[*i], steps) {
-                    let mut changed = Vec::new();
-                    slots_of(&d.conditions[*i], &mut changed);
-                    changed.retain(|s| is_inner(*s, d) && indices.contains(s));
-                    steps.push(Step::Filter(*i, changed.into()));
+                let conditions = || list.iter().map(|&i| &d.conditions[i]);
+                if !conditions().all(|c| self.scanned_by(c, steps)) {
+                    let changed = conditions().flat_map(slots_of);
+                    let changed = changed.filter(|s| is_inner(*s, d) && indices.contains(s));
+                    steps.push(Step::Filter((*list).into(), changed.collect()));
                 }
                 false
             });
@@ -517,12 +519,13 @@ impl Machine<'_> {
             return f(frame);
         };
         match step {
-            Step::Filter(i, changed) => {
+            Step::Filter(list, changed) => {
+                let conditions = list.iter().map(|&i| &d.conditions[i]);
                 let holds = if changed.is_empty() {
-                    truth(self.eval(&d.conditions[*i], frame))
+                    self.all_hold(conditions, frame)
                 } else {
                     let before: Vec<Label> = changed.iter().map(|&s| frame[s as usize]).collect();
-                    let holds = truth(self.eval(&d.conditions[*i], frame));
+                    let holds = self.all_hold(conditions, frame);
                     for (&s, l) in changed.iter().zip(before) {
                         frame[s as usize] = l;
                     }
@@ -620,9 +623,9 @@ fn binds(key: &Key, free: &[Slot]) -> Option<Vec<Slot>> {
     let mut new = Vec::new();
     for p in &key.parts {
         if let Part::Lag(l) = p {
-            let mut offset = Vec::new();
-            slots_of(&l.offset, &mut offset);
-            if offset.iter().any(|s| free.contains(s)) || matches!(l.base, Part::Lag(_)) {
+            if slots_of(&l.offset).iter().any(|s| free.contains(s))
+                || matches!(l.base, Part::Lag(_))
+            {
                 return None;
             }
         }
@@ -634,67 +637,35 @@ fn binds(key: &Key, free: &[Slot]) -> Option<Vec<Slot>> {
 }
 
 fn slots_of_key(key: &Key) -> Vec<Slot> {
-    let mut out = Vec::new();
-    key.parts.iter().for_each(|p| slots_of_part(p, &mut out));
-    out
+    key.parts.iter().flat_map(slots_of_part).collect()
 }
 
 /// Whether a part mentions one of the slots.
 fn mentions(p: &Part, slots: &[Slot]) -> bool {
-    let mut used = Vec::new();
-    slots_of_part(p, &mut used);
-    used.iter().any(|s| slots.contains(s))
+    slots_of_part(p).iter().any(|s| slots.contains(s))
 }
 
-/// Slots that an expression reads from outside of its own sums.
-pub(super) fn slots_of(n: &Node, out: &mut Vec<Slot>) {
-    let mut part = |p: &Part| slots_of_part(p, out);
-    match &n.kind {
-        NodeKind::Data(_, k)
-        | NodeKind::Var(_, k)
-        | NodeKind::Derived(_, _, k)
-        | NodeKind::ElementText(_, k)
-        | NodeKind::RecordName(_, k) => {
-            k.parts.iter().for_each(part);
-        }
-        NodeKind::Ord(_, p) | NodeKind::LabelAttribute(_, _, p) | NodeKind::LabelText(p) => part(p),
-        NodeKind::SameAs(a, b) => {
-            part(a);
-            part(b);
-        }
-        NodeKind::OfText(t, n) => {
-            slots_of(t, out);
-            n.iter().for_each(|n| slots_of(n, out));
-        }
-        NodeKind::Dollar(a, c) => {
-            slots_of(a, out);
-            slots_of(c, out);
-        }
-        NodeKind::Aggregate(_, d, b) => {
-            for m in &d.members {
-                m.key.parts.iter().for_each(|p| slots_of_part(p, out));
-            }
-            d.conditions.iter().for_each(|c| slots_of(c, out));
-            slots_of(b, out);
-        }
-        NodeKind::Negate(a) | NodeKind::Not(a) => slots_of(a, out),
-        NodeKind::Sum(t) | NodeKind::Product(t) => t.iter().for_each(|(_, x)| slots_of(x, out)),
-        NodeKind::Binary(_, a, b) => {
-            slots_of(a, out);
-            slots_of(b, out);
-        }
-        NodeKind::Call(_, a) | NodeKind::DataCall(_, a) => a.iter().for_each(|x| slots_of(x, out)),
-        _ => {}
-    }
+/// Slots that an expression reads, those of its own sums too.
+fn slots_of(n: &Node) -> Vec<Slot> {
+    let mut slots = Slots(Vec::new());
+    slots.node(n);
+    slots.0
 }
 
-fn slots_of_part(p: &Part, out: &mut Vec<Slot>) {
-    match p {
-        Part::Slot(s) => out.push(*s),
-        Part::Lag(l) => {
-            slots_of_part(&l.base, out);
-            slots_of(&l.offset, out);
+fn slots_of_part(p: &Part) -> Vec<Slot> {
+    let mut slots = Slots(Vec::new());
+    slots.part(p);
+    slots.0
+}
+
+/// Collects slots.
+struct Slots(Vec<Slot>);
+
+impl Visitor<'_> for Slots {
+    fn part(&mut self, p: &Part) {
+        if let Part::Slot(s) = p {
+            self.0.push(*s);
         }
-        _ => {}
+        p.walk(self);
     }
 }

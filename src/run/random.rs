@@ -1,6 +1,8 @@
 //! GAMS's random stream: Knuth's subtractive lagged-Fibonacci generator (lags 55 and 24, modulus
 //! 10⁹; The Art of Computer Programming, vol. 2, section 3.6), and the distributions on top of it.
 
+use crate::check::node::DataFunction;
+
 const MODULUS: i64 = 1_000_000_000;
 
 /// The generator.
@@ -117,6 +119,9 @@ impl Random {
     /// Triangular with mode `mid`.
     pub fn triangle(&mut self, low: f64, mid: f64, high: f64) -> f64 {
         let u = self.unit();
+        if low == high {
+            return low;
+        }
         let split = (mid - low) / (high - low);
         if u < split {
             low + (u * (high - low) * (mid - low)).sqrt()
@@ -128,6 +133,42 @@ impl Random {
     /// Number of successes in `n` trials.
     pub fn binomial(&mut self, n: f64, p: f64) -> f64 {
         (0..n.max(0.0) as u64).filter(|_| self.unit() < p).count() as f64
+    }
+}
+
+/// Whether a function of data has a value at these arguments; why not.
+pub(super) fn valid(f: DataFunction, a: &[f64]) -> Result<(), &'static str> {
+    use DataFunction as D;
+    let whole = |x: f64| x.fract() == 0.0;
+    if a.iter().any(|x| x.is_nan()) {
+        return Err("undf stands where a number is expected");
+    }
+    if a.iter().any(|x| x.is_infinite()) {
+        return Err("the function does not take an infinite argument");
+    }
+    match (f, a) {
+        (D::Uniform | D::UniformInt, [low, high]) if low > high => {
+            Err("the lower end of the interval is above the upper one")
+        }
+        (D::UniformInt, [low, high]) if !(whole(*low) && whole(*high)) => {
+            Err("the ends of the interval must be whole numbers")
+        }
+        (D::Normal, [_, deviation]) if *deviation < 0.0 => {
+            Err("the standard deviation must not be negative")
+        }
+        (D::RandBinomial, [n, p]) if !(whole(*n) && *n >= 1.0 && (0.0..=1.0).contains(p)) => Err(
+            "the number of trials must be a positive whole number, the probability between 0 and 1",
+        ),
+        (D::RandTriangle, [low, mid, high]) if !(low <= mid && mid <= high) => {
+            Err("the mode must be between the ends of the interval")
+        }
+        // The density falls below 0 at one end where the slope is too steep.
+        (D::RandLinear, [low, slope, high])
+            if low >= high || slope.abs() * (high - low).powi(2) > 2.0 =>
+        {
+            Err("a linear density needs low < high and a slope that keeps it positive")
+        }
+        _ => Ok(()),
     }
 }
 

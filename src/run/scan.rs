@@ -1,125 +1,72 @@
 //! Which tables a statement may scan: those must be tidy before it runs.
 
 use crate::check::node::*;
+use crate::check::visit::{Reading, Visitor};
 
-/// Tables in domains, conditions, sums, `ord` and lags of a statement (not of the statements inside).
-pub fn scanned(kind: &CodeKind) -> Box<[TableId]> {
-    let mut out = Vec::new();
-    let o = &mut out;
-    match kind {
-        CodeKind::Assign {
-            domain, key, value, ..
-        } => {
-            // What is stored and what a sparse right side holds are made tidy when they turn out to drive
-            // the assignment: an assignment to a few records of a large table must not cost the table.
-            self::domain(domain, o);
-            expr(value, false, o);
-            self::key(key, o);
-        }
-        CodeKind::Loop(d, _) => domain(d, o),
-        CodeKind::While(c, _) => expr(c, false, o),
-        CodeKind::Repeat(_, c) => expr(c, false, o),
-        CodeKind::For { from, to, by, .. } => {
-            expr(from, false, o);
-            expr(to, false, o);
-            by.iter().for_each(|b| expr(b, false, o));
-        }
-        CodeKind::If(arms, _) => arms.iter().for_each(|(c, _)| expr(c, false, o)),
-        CodeKind::Break(c, _) | CodeKind::Continue(c) | CodeKind::Display(c, _) => {
-            c.iter().for_each(|c| expr(c, false, o))
-        }
-        CodeKind::Abort { condition, .. } => condition.iter().for_each(|c| expr(c, false, o)),
-        CodeKind::Put(_, c, items) => {
-            c.iter().for_each(|c| expr(c, false, o));
-            for i in items {
-                match i {
-                    PutCode::Column(e) | PutCode::Row(e) | PutCode::Item { value: e, .. } => {
-                        expr(e, false, o)
-                    }
-                    _ => {}
-                }
+/// Collects tables whose order matters, and those that may drive a sum or an assignment.
+#[derive(Default)]
+pub struct Scans {
+    tables: Vec<TableId>,
+    /// Records that are read here may be scanned.
+    driving: bool,
+}
+
+impl Scans {
+    /// Tables in domains, conditions, sums, `ord` and lags of a statement (not of the statements inside).
+    pub fn of(code: &Code) -> Box<[TableId]> {
+        // What is stored and what a sparse right side holds are made tidy when they turn out to drive
+        // the assignment: an assignment to a few records of a large table must not cost the table.
+        let mut scans = Self::default();
+        code.walk(&mut scans);
+        scans.tables()
+    }
+
+    /// What was collected, each once.
+    pub fn tables(mut self) -> Box<[TableId]> {
+        self.tables.sort_unstable();
+        self.tables.dedup();
+        self.tables.into()
+    }
+
+    /// An expression over which something runs.
+    pub fn driving(&mut self, n: &Node) {
+        self.with(true, |s| s.node(n));
+    }
+
+    fn with(&mut self, driving: bool, f: impl FnOnce(&mut Self)) {
+        let before = std::mem::replace(&mut self.driving, driving);
+        f(self);
+        self.driving = before;
+    }
+}
+
+impl<'a> Visitor<'a> for Scans {
+    fn code(&mut self, _: &'a Code) {}
+
+    fn node(&mut self, n: &'a Node) {
+        match &n.kind {
+            NodeKind::Aggregate(_, d, body) => {
+                self.domain(d);
+                self.driving(body);
             }
+            NodeKind::OfText(..) => self.with(false, |s| n.walk(s)),
+            _ => n.walk(self),
         }
-        _ => {}
     }
-    out.sort_unstable();
-    out.dedup();
-    out.into()
-}
 
-/// Tables of a domain.
-pub fn domain(d: &Domain, out: &mut Vec<TableId>) {
-    for m in &d.members {
-        out.push(m.table);
-        key(&m.key, out);
+    fn domain(&mut self, d: &'a Domain) {
+        self.with(!d.slots.is_empty(), |s| d.walk(s));
     }
-    out.extend(&d.sets);
-    d.conditions
-        .iter()
-        .for_each(|c| expr(c, !d.slots.is_empty(), out));
-}
 
-fn key(k: &Key, out: &mut Vec<TableId>) {
-    k.parts.iter().for_each(|p| part(p, out));
-}
-
-fn part(p: &Part, out: &mut Vec<TableId>) {
-    match p {
-        Part::Lag(l) => {
-            out.push(l.set);
-            part(&l.base, out);
-            expr(&l.offset, false, out);
-        }
-        Part::Singleton(t, _) => out.push(*t),
-        _ => {}
+    fn part(&mut self, p: &'a Part) {
+        self.with(false, |s| p.walk(s));
     }
-}
 
-/// Tables of an expression; with `driving`, also those that a sum or assignment around may scan.
-pub fn expr(n: &Node, driving: bool, out: &mut Vec<TableId>) {
-    match &n.kind {
-        NodeKind::Data(t, k) => {
-            if driving {
-                out.push(*t);
-            }
-            key(k, out);
+    fn table(&mut self, t: TableId, how: Reading) {
+        match how {
+            Reading::Order => self.tables.push(t),
+            Reading::Record if self.driving => self.tables.push(t),
+            Reading::Record | Reading::Count => {}
         }
-        NodeKind::Var(_, k)
-        | NodeKind::Derived(_, _, k)
-        | NodeKind::ElementText(_, k)
-        | NodeKind::RecordName(_, k) => key(k, out),
-        NodeKind::Ord(t, p) | NodeKind::LabelAttribute(_, t, p) => {
-            out.push(*t);
-            part(p, out);
-        }
-        NodeKind::LabelText(p) => part(p, out),
-        NodeKind::SameAs(a, b) => {
-            part(a, out);
-            part(b, out);
-        }
-        NodeKind::OfText(t, n) => {
-            expr(t, false, out);
-            n.iter().for_each(|n| expr(n, false, out));
-        }
-        NodeKind::Negate(a) | NodeKind::Not(a) => expr(a, driving, out),
-        NodeKind::Sum(t) | NodeKind::Product(t) => {
-            t.iter().for_each(|(_, x)| expr(x, driving, out))
-        }
-        NodeKind::Binary(_, a, b) => {
-            expr(a, driving, out);
-            expr(b, driving, out);
-        }
-        NodeKind::Call(_, a) | NodeKind::DataCall(_, a) => {
-            a.iter().for_each(|x| expr(x, driving, out))
-        }
-        NodeKind::Dollar(a, c) => {
-            expr(a, driving, out);
-            expr(c, driving, out);
-        }
-        NodeKind::Aggregate(_, d, b) => {
-            domain(d, out);
-            expr(b, true, out);
-        }
-        _ => {}
     }
 }

@@ -162,7 +162,7 @@ impl Machine<'_> {
                     solve: end - generated_at,
                     total: end - begin,
                 };
-                self.forget_rows(s, &generated);
+                self.store_outside(s, &generated);
                 self.store(&generated, &a);
                 self.remember(s, &generated, &a, seconds);
                 let savepoint = self.model_option(s.model, "savepoint", 0.0);
@@ -309,9 +309,9 @@ impl Machine<'_> {
         a.bounds = bounds.iter().any(|b| b.is_finite()).then_some(bounds);
     }
 
-    /// Levels and marginals from before of rows that have left the model: of those without variables, and,
-    /// with `solveOpt` replace or clear, of all rows of its equations.
-    fn forget_rows(&mut self, s: &SolveCode, g: &Generated) {
+    /// Rows without variables get level and marginal 0 and their bounds, variables that are held fixed their level.
+    /// With `solveOpt` replace or clear all rows of the equations lose what a solve before has left.
+    fn store_outside(&mut self, s: &SolveCode, g: &Generated) {
         const MERGE: f64 = 1.0;
         let of_rows = [attribute::L, attribute::M, attribute::LO, attribute::UP];
         if self.model_option(s.model, "solveopt", MERGE) != MERGE {
@@ -324,15 +324,28 @@ impl Machine<'_> {
                     self.store.table_mut(t + o).clear();
                 }
             }
-            return;
         }
-        for rows in g.origin.left_out.chunk_by(|a, b| a.0 == b.0) {
-            let t = self.symbols.get(rows[0].0).table;
-            for o in [attribute::L, attribute::M] {
+        for rows in g.origin.left_out.chunk_by(|a, b| a.symbol == b.symbol) {
+            let t = self.symbols.get(rows[0].symbol).table;
+            for (k, o) in of_rows.into_iter().enumerate() {
                 let table = self.store.table_mut(t + o);
-                rows.iter().for_each(|(_, key)| table.set(key, 0.0));
+                for row in rows {
+                    let [lower, upper] = row.bounds;
+                    table.set(&row.key, [0.0, 0.0, lower, upper][k]);
+                }
                 table.tidy();
             }
+        }
+        let mut levels = Vec::new();
+        for (v, key) in &g.origin.held {
+            let t = self.symbols.get(*v).table;
+            let value = self.store.table(t + attribute::LO).get(key);
+            levels.push(t + attribute::L);
+            self.store.table_mut(t + attribute::L).set(key, value);
+        }
+        levels.dedup();
+        for t in levels {
+            self.store.table_mut(t).tidy();
         }
     }
 
@@ -357,7 +370,15 @@ impl Machine<'_> {
             && g.instance.objective.is_some()
             && matches!(a.status, ModelStatus::Optimal | ModelStatus::LocallyOptimal);
         let fixed = |j: usize| optimal && columns.lower[j] == columns.upper[j];
-        let marginals = stored(&a.outcome.column_marginal, fixed);
+        let mut marginals = stored(&a.outcome.column_marginal, fixed);
+        let mut row_marginals = a.outcome.row_marginal.clone();
+        // A pair whose column is held fixed is none.
+        for &j in &g.origin.held_columns {
+            marginals[j as usize] = columns.marginal[j as usize];
+            if let Some(r) = g.instance.matched.as_ref().and_then(|m| m[j as usize]) {
+                row_marginals[r as usize] = 0.0;
+            }
+        }
         write(&g.origin.columns, attribute::M, &marginals);
         // A row without relation has its constant inside its level; one that binds is at its right side, not a hair beside it.
         let levels: Vec<f64> = (0..rows.rhs.len())
@@ -373,32 +394,14 @@ impl Machine<'_> {
             .collect();
         write(&g.origin.rows, attribute::L, &levels);
         let equal = |i: usize| optimal && rows.relation[i] == Relation::Equal;
-        let marginals = stored(&a.outcome.row_marginal, equal);
+        let marginals = stored(&row_marginals, equal);
         write(&g.origin.rows, attribute::M, &marginals);
-        let lower: Vec<f64> = rows
+        let bounds = rows
             .relation
             .iter()
             .zip(&rows.rhs)
-            .map(|(r, &b)| {
-                if matches!(r, Relation::Equal | Relation::Greater) {
-                    b
-                } else {
-                    f64::NEG_INFINITY
-                }
-            })
-            .collect();
-        let upper: Vec<f64> = rows
-            .relation
-            .iter()
-            .zip(&rows.rhs)
-            .map(|(r, &b)| {
-                if matches!(r, Relation::Equal | Relation::Less) {
-                    b
-                } else {
-                    f64::INFINITY
-                }
-            })
-            .collect();
+            .map(|(r, &b)| r.bounds(b));
+        let (lower, upper): (Vec<f64>, Vec<f64>) = bounds.map(|[l, u]| (l, u)).unzip();
         write(&g.origin.rows, attribute::LO, &lower);
         write(&g.origin.rows, attribute::UP, &upper);
     }
@@ -433,7 +436,7 @@ impl Machine<'_> {
             ("etsolver", seconds.solve),
             ("resgen", seconds.generate),
             ("numequ", instance.row_count() as f64),
-            ("numvar", instance.column_count() as f64),
+            ("numvar", g.columns() as f64),
             ("numnz", g.origin.nonzeros as f64),
             ("numnlnz", g.origin.nonlinear_nonzeros as f64),
             ("numnlins", g.origin.nonlinear_nonzeros as f64),
@@ -496,7 +499,7 @@ impl Machine<'_> {
             solver_status: a.outcome.status.into(),
             objective: objective.map(|o| json::Number(a.outcome.level[o.column as usize])),
             rows: g.instance.row_count(),
-            columns: g.instance.column_count(),
+            columns: g.columns(),
             nonzeros: g.origin.nonzeros,
             nonlinear_nonzeros: g.origin.nonlinear_nonzeros,
             iterations: a.outcome.iterations,
@@ -558,7 +561,7 @@ impl Machine<'_> {
             solver_status: SolverStatus::NormalCompletion.into(),
             objective: None,
             rows: g.instance.row_count(),
-            columns: g.instance.column_count(),
+            columns: g.columns(),
             nonzeros: g.origin.nonzeros,
             nonlinear_nonzeros: g.origin.nonlinear_nonzeros,
             iterations: 0,

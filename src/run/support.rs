@@ -13,9 +13,9 @@
 
 use super::{Machine, arithmetic};
 use crate::autodiff::functions::function_value;
-use crate::check::has_random;
 use crate::check::node::*;
 use crate::check::symbols::DomainPosition;
+use crate::data::value::is_eps;
 use crate::model::instance::Function;
 
 /// Alternatives, each a conjunction of records that must be there.
@@ -41,6 +41,8 @@ pub(super) enum Premise {
     Size(TableId, usize),
     /// No value is infinite, `na`, `eps` or `undf`.
     Plain(TableId),
+    /// No value is `na`, `undf` or an acronym.
+    Defined(TableId),
     /// There is a record.
     Filled(TableId),
     /// There is a record for every key of the domain.
@@ -73,6 +75,7 @@ impl Machine<'_> {
                 now <= 4 * n + 64 && n <= 4 * now + 64
             }
             Premise::Plain(t) => !self.store.table(t).has_special(),
+            Premise::Defined(t) => !self.store.table(t).has_undefined(),
             Premise::Filled(t) => !self.store.table(t).is_empty(),
             Premise::Full(t) => self.is_full(t),
             Premise::Scalar(t, bits) => self.store.table(t).get(&[]).to_bits() == bits,
@@ -126,6 +129,58 @@ impl<'m, 'h> Analysis<'m, 'h> {
         found
     }
 
+    /// Supports of conditions that must all hold.
+    pub fn conjuncts(&mut self, conditions: &[Node]) -> Vec<Sparse> {
+        if self.are_joint(conditions) {
+            return Vec::new();
+        }
+        let conditions = conditions.iter();
+        conditions.filter_map(|c| self.nonzero(c, false)).collect()
+    }
+
+    /// Whether a condition is evaluated without an error: then it need not be where another one is false.
+    pub fn is_safe(&mut self, n: &Node) -> bool {
+        self.is_quiet(n)
+            || self.is_defined(n)
+                && !n.any(|n| match &n.kind {
+                    NodeKind::Product(_)
+                    | NodeKind::Binary(BinaryOp::Power, ..)
+                    | NodeKind::Call(..)
+                    | NodeKind::DataCall(..)
+                    | NodeKind::Aggregate(AggregateOp::Prod, ..) => true,
+                    NodeKind::LabelAttribute(which, ..) => {
+                        matches!(which, LabelAttribute::Val | LabelAttribute::TextVal)
+                    }
+                    _ => false,
+                })
+    }
+
+    /// Whether conditions must be evaluated together: `na and 0` is `na`, which counts as true.
+    pub fn are_joint(&mut self, conditions: &[Node]) -> bool {
+        conditions.len() > 1 && !conditions.iter().all(|c| self.is_defined(c))
+    }
+
+    /// Whether a value is never `na`, nor `undf` unless an error is reported.
+    fn is_defined(&mut self, n: &Node) -> bool {
+        let mut tables = Vec::new();
+        let mut defined = true;
+        n.each(|n| match &n.kind {
+            NodeKind::Data(t, _) => tables.push(*t),
+            NodeKind::Const(x) => defined &= !x.is_nan() || is_eps(*x),
+            NodeKind::ObjectAttribute(..) => defined = false,
+            _ => {}
+        });
+        defined &= tables
+            .iter()
+            .all(|&t| !self.m.store.table(t).has_undefined());
+        if defined {
+            tables
+                .into_iter()
+                .for_each(|t| self.premise(Premise::Defined(t)));
+        }
+        defined
+    }
+
     /// Rest and support; with `symbolic`, in an equation: a zero factor removes the term.
     fn sparse(&mut self, n: &Node, symbolic: bool) -> Option<Sparse> {
         match &n.kind {
@@ -153,7 +208,7 @@ impl<'m, 'h> Analysis<'m, 'h> {
                     (Some(c), Some(a)) => Some(meet(c, a)),
                     (Some(c), None) => Some(c),
                     // Random numbers are drawn for every tuple.
-                    (None, Some(_)) if has_random(c) => None,
+                    (None, Some(_)) if c.has_random() => None,
                     (None, Some(a)) => {
                         let care = self.care(c);
                         Some(Sparse {
@@ -165,7 +220,7 @@ impl<'m, 'h> Analysis<'m, 'h> {
                 }
             }
             // Both sides are evaluated: random numbers are drawn for every tuple.
-            NodeKind::Binary(BinaryOp::And, ..) if has_random(n) => None,
+            NodeKind::Binary(BinaryOp::And, ..) if n.has_random() => None,
             NodeKind::Binary(BinaryOp::And, a, b) => self.both(n, a, b),
             NodeKind::Binary(BinaryOp::Power, a, b) => {
                 self.call(Function::RPower, &[(symbolic, a), (symbolic, b)])
@@ -190,8 +245,7 @@ impl<'m, 'h> Analysis<'m, 'h> {
             return Some(at_rest(value));
         }
         let rest = table.default_value();
-        // A lag that leaves its set gives 0, whatever the default.
-        (rest == 0.0 || key.is_plain()).then(|| Sparse {
+        Some(Sparse {
             rest,
             support: vec![vec![Driver {
                 table: t,
@@ -233,11 +287,13 @@ impl<'m, 'h> Analysis<'m, 'h> {
 
     fn product(&mut self, factors: &[(bool, Node)], symbolic: bool) -> Option<Sparse> {
         // A term of an equation whose coefficient is 0 is not looked at; else a divisor must not be 0.
-        if !symbolic
-            && !factors
-                .iter()
-                .all(|(divide, f)| !divide || self.is_divisor(f))
-        {
+        let mut divisors = factors
+            .iter()
+            .filter_map(|(divide, f)| match f.kind.reciprocal_of() {
+                Some(b) => Some(b),
+                None => divide.then_some(f),
+            });
+        if !symbolic && !divisors.all(|b| self.is_divisor(b)) {
             return None;
         }
         let mut out: Option<Sparse> = None;
@@ -315,7 +371,7 @@ impl<'m, 'h> Analysis<'m, 'h> {
                 self.premise(Premise::Filled(m.table));
             }
         }
-        if d.conditions.iter().any(has_random) {
+        if d.conditions.iter().any(Node::has_random) {
             return None;
         }
         let mut out = Sparse {
@@ -323,10 +379,8 @@ impl<'m, 'h> Analysis<'m, 'h> {
             support: vec![d.members.clone()],
             forced: false,
         };
-        for c in &d.conditions {
-            if let Some(s) = self.nonzero(c, false) {
-                out = meet(out, s);
-            }
+        for s in self.conjuncts(&d.conditions) {
+            out = meet(out, s);
         }
         if let Some(s) = self.nonzero(body, symbolic) {
             out = meet(out, s);
@@ -361,7 +415,10 @@ impl<'m, 'h> Analysis<'m, 'h> {
                 }
                 Some(worst)
             }
-            NodeKind::Binary(op, a, b) if *op != BinaryOp::Power => self.cares([&**a, &**b]),
+            NodeKind::Binary(BinaryOp::Power, a, b) => {
+                Some(self.cares([&**a, &**b])?.max(Care::MayFail))
+            }
+            NodeKind::Binary(_, a, b) => self.cares([&**a, &**b]),
             NodeKind::Dollar(a, b) => self.cares([&**a, &**b]),
             NodeKind::Aggregate(op, d, b)
                 if !matches!(op, AggregateOp::Smin | AggregateOp::Smax) =>
@@ -377,9 +434,37 @@ impl<'m, 'h> Analysis<'m, 'h> {
                 | Function::Floor
                 | Function::Ceil
                 | Function::Round
-                | Function::Trunc,
+                | Function::Trunc
+                | Function::Frac
+                | Function::Exp
+                | Function::ArcTan
+                | Function::Tanh
+                | Function::ErrorF
+                | Function::Sigmoid
+                | Function::IfThen,
                 a,
             ) => self.cares(a),
+            NodeKind::Call(Function::Mod, a) if self.is_divisor(&a[1]) => self.care(&a[0]),
+            NodeKind::LabelAttribute(which, ..) => Some(match which {
+                LabelAttribute::Val | LabelAttribute::TextVal => Care::MayFail,
+                _ => Care::Quiet,
+            }),
+            // GAMS passes over these where another factor is 0, but not over `log`, `sqrt`, `power` and others.
+            NodeKind::Call(
+                Function::Mod
+                | Function::Log2
+                | Function::Sin
+                | Function::Cos
+                | Function::Tan
+                | Function::ArcSin
+                | Function::ArcCos
+                | Function::Gamma
+                | Function::LogGamma
+                | Function::Entropy
+                | Function::Logit
+                | Function::BetaReg,
+                a,
+            ) => Some(self.cares(a)?.max(Care::MayFail)),
             _ => None,
         }
     }

@@ -311,6 +311,8 @@ pub struct Assign {
     pub condition: Option<Expr>,
     /// Right side.
     pub value: Expr,
+    /// Written `$=`: only where the right side is not 0.
+    pub nonzero: bool,
 }
 
 /// `=e=`, `=g=`, `=l=`, `=n=`.
@@ -324,6 +326,18 @@ pub enum Relation {
     Less,
     /// No relation.
     Free,
+}
+
+impl Relation {
+    /// Lower and upper bound of a left side whose right side is this.
+    pub fn bounds(self, rhs: f64) -> [f64; 2] {
+        match self {
+            Self::Equal => [rhs, rhs],
+            Self::Greater => [rhs, f64::INFINITY],
+            Self::Less => [f64::NEG_INFINITY, rhs],
+            Self::Free => [f64::NEG_INFINITY, f64::INFINITY],
+        }
+    }
 }
 
 /// The definition of an equation.

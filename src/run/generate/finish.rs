@@ -37,9 +37,14 @@ impl Builder<'_, '_> {
         }
         let mut matched_rows = Vec::new();
         let mut alone = Vec::new();
+        let mut held_columns = Vec::new();
         for (v, r, key) in &pairs {
             let known = self.columns;
             let c = self.column(*v, key);
+            if self.held_at(*v, key).is_some() {
+                self.held.insert((*v, key.clone()));
+                held_columns.push(c);
+            }
             if c >= known {
                 alone.push((c, *r));
             }
@@ -111,6 +116,11 @@ impl Builder<'_, '_> {
             nonzeros,
             nonlinear_nonzeros,
             left_out: std::mem::take(&mut self.left_out),
+            held: std::mem::take(&mut self.held).into_iter().collect(),
+            held_columns: held_columns
+                .into_iter()
+                .map(|c| new_number[c as usize])
+                .collect(),
         }
     }
 

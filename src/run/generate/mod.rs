@@ -11,18 +11,20 @@ mod finish;
 mod terms;
 
 use super::plan::Wanted;
-use super::{Frame, Machine, scan};
+use super::scan::Scans;
+use super::{Frame, Machine};
 use crate::check::node::*;
 use crate::check::symbols::{DomainPosition, attribute};
+use crate::check::visit::Visitor;
 use crate::data::key_index::{KeyIndex, LabelBox};
 use crate::data::sort::sort_tuples;
 use crate::data::universe::Label;
 use crate::data::value::number;
 use crate::diag::Diagnostic;
 use crate::model::instance::*;
-use crate::model::origin::{Block, Blocks, Origin};
+use crate::model::origin::{Block, Blocks, LeftOut, Origin};
 use crate::source::Span;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// How to generate.
 #[derive(Clone, Copy, Debug, Default)]
@@ -42,6 +44,13 @@ pub struct Generated {
     pub instance: Instance,
     /// Names and statistics.
     pub origin: Origin,
+}
+
+impl Generated {
+    /// Number of columns, without those that are held fixed.
+    pub fn columns(&self) -> usize {
+        self.instance.column_count() - self.origin.held_columns.len()
+    }
 }
 
 /// Columns of one variable, numbered as they appear.
@@ -99,8 +108,10 @@ struct Builder<'m, 'h> {
     row: u32,
     /// Rows of pairs whose constant says that they never bind: the column is at the bound that F = ±∞ asks for.
     never_bind: Vec<u32>,
-    /// Rows without variables that a solve before has left a level or marginal.
-    left_out: Vec<(SymbolId, Vec<Label>)>,
+    /// Rows without variables.
+    left_out: Vec<LeftOut>,
+    /// Variables that are held fixed.
+    held: FxHashSet<(SymbolId, Vec<Label>)>,
     failed: bool,
     span: Span,
 }
@@ -127,18 +138,17 @@ impl Machine<'_> {
         frame: &mut Frame,
     ) -> Option<Generated> {
         let equations = self.equations.clone();
-        let mut scans = Vec::new();
+        let mut scans = Scans::default();
         for r in &solve.equations {
             let e = &equations[r.definition];
-            scan::domain(&e.domain, &mut scans);
-            scan::expr(&e.left, true, &mut scans);
-            scan::expr(&e.right, true, &mut scans);
+            scans.domain(&e.domain);
+            scans.driving(&e.left);
+            scans.driving(&e.right);
         }
         let table = |s: SymbolId| self.symbols.get(self.symbols.root(s)).table;
         let limits: FxHashMap<SymbolId, TableId> =
             solve.limits.iter().map(|&(v, s)| (v, table(s))).collect();
-        scans.extend(limits.values());
-        for t in scans {
+        for &t in scans.tables().iter().chain(limits.values()) {
             self.store.table_mut(t).tidy();
         }
         let mut b = Builder {
@@ -156,6 +166,7 @@ impl Machine<'_> {
             row: 0,
             never_bind: Vec::new(),
             left_out: Vec::new(),
+            held: FxHashSet::default(),
             failed: false,
             span: Span::default(),
         };
@@ -327,7 +338,7 @@ impl Builder<'_, '_> {
         let pair = pair.filter(|_| self.options.keep_paired);
         let decided = |v| self.fixed_at(v, key).is_some() || self.is_left_out(v, key);
         if empty && pair.is_some_and(decided) {
-            self.leave_out(e.symbol, key);
+            self.leave_out(e, key, rhs);
             return;
         }
         if empty && pair.is_none() {
@@ -351,7 +362,7 @@ impl Builder<'_, '_> {
                 );
                 self.failed = true;
             }
-            self.leave_out(e.symbol, key);
+            self.leave_out(e, key, rhs);
             return;
         }
         let kept = || row.terms.iter().filter(|t| t.1 != 0.0);
@@ -404,13 +415,13 @@ impl Builder<'_, '_> {
         self.row += 1;
     }
 
-    /// A row without variables: what it has from before is to go.
-    fn leave_out(&mut self, equation: SymbolId, key: &[Label]) {
-        let t = self.m.symbols.get(equation).table;
-        let stored = |o| self.m.store.table(t + o).find(key).is_some();
-        if stored(attribute::L) || stored(attribute::M) {
-            self.left_out.push((equation, key.to_vec()));
-        }
+    /// A row without variables.
+    fn leave_out(&mut self, e: &EquationDef, key: &[Label], rhs: f64) {
+        self.left_out.push(LeftOut {
+            symbol: e.symbol,
+            key: key.to_vec(),
+            bounds: e.relation.bounds(rhs),
+        });
     }
 
     fn not_finite(&mut self, part: &str, row: &str, span: Span) {
@@ -473,9 +484,19 @@ impl Builder<'_, '_> {
         if self.is_left_out(s, k) {
             return None;
         }
+        Some(match self.held_at(s, k) {
+            None => Ok(self.column(s, k)),
+            Some(value) => {
+                self.held.insert((s, k.to_vec()));
+                Err(value)
+            }
+        })
+    }
+
+    /// The value at which `holdFixed` holds a variable.
+    fn held_at(&self, s: SymbolId, key: &[Label]) -> Option<f64> {
         let hold = self.options.hold_fixed;
-        let held = hold.then(|| self.fixed_at(s, k)).flatten();
-        Some(held.map_or_else(|| Ok(self.column(s, k)), Err))
+        hold.then(|| self.fixed_at(s, key)).flatten()
     }
 
     /// Whether the model limits a variable to a set that a key is not in.

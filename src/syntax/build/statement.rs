@@ -191,26 +191,16 @@ impl Builder<'_> {
                     }));
                 }
                 _ => {
-                    let conditional = p.as_str().starts_with("$=");
+                    let nonzero = p.as_str().starts_with("$=");
                     let value = match p.into_inner().next() {
                         Some(e) => self.expression(e)?,
                         None => break,
                     };
-                    if conditional {
-                        // `a $= b` is `a$b = b`.
-                        let span = value.span;
-                        condition = Some(match condition {
-                            None => value.clone(),
-                            Some(c) => Expr {
-                                kind: ExprKind::Dollar(Box::new(value.clone()), Box::new(c)),
-                                span,
-                            },
-                        });
-                    }
                     return Ok(StmtKind::Assign(Assign {
                         target,
                         condition,
                         value,
+                        nonzero,
                     }));
                 }
             }

@@ -1,0 +1,356 @@
+//! Assignments: what is written, where, and in which order.
+
+use super::functions;
+use super::node::*;
+use super::symbols::{DomainPosition, SymbolKind, attribute};
+use super::visit::Visitor;
+use super::{Compiler, Failed};
+use crate::diag::Diagnostic;
+use crate::model::instance::Function;
+use crate::source::Span;
+use crate::syntax::ast::{Assign, Reference};
+
+impl Compiler {
+    /// An assignment; several statements where GAMS does more than one thing.
+    pub(super) fn assign(
+        &mut self,
+        a: &Assign,
+        span: Span,
+        out: &mut Vec<Code>,
+    ) -> Result<(), Failed> {
+        let t = &a.target;
+        let counter = match t.name.name.to_lowercase().as_str() {
+            "execseed" => Some(Target::Seed),
+            "execerror" => Some(Target::Errors),
+            "maxexecerror" => Some(Target::MostErrors),
+            "heaplimit" => Some(Target::Ignored),
+            _ => None,
+        };
+        if let Some(target) = counter
+            && self.symbols.find(&t.name.name).is_none()
+        {
+            let value = self.expr(&a.value)?;
+            let kind = CodeKind::Assign {
+                domain: Domain::default(),
+                target,
+                key: Key::default(),
+                value,
+                covers: false,
+                nonzero: a.nonzero,
+            };
+            out.push(Code::new(kind, span));
+            return Ok(());
+        }
+        let s = self.lookup(&t.name)?;
+        self.shape(s, &t.indices);
+        let target = self.target(s, t)?;
+        let symbol = self.symbols.get(s).clone();
+        let root = self.symbols.root(s);
+        let (domain, key, value, covers) = self.scoped(|c| {
+            let mut domain = Domain::default();
+            let parts = match target {
+                Target::Object(..) => Vec::new(),
+                _ => c.defining(|c| c.control_key(&t.indices, s, t.span, &mut domain))?,
+            };
+            if let Some(cond) = &a.condition {
+                c.condition(cond, &mut domain)?;
+            }
+            c.texts_allowed = matches!(target, Target::Object(..));
+            let value = c.expr(&a.value);
+            c.texts_allowed = false;
+            let value = value?;
+            let covers = domain.conditions.is_empty()
+                && !a.nonzero
+                && domain.slots.len() == symbol.dim()
+                && domain.members.len() == symbol.dim()
+                && parts.iter().enumerate().all(|(p, part)| {
+                    let Part::Slot(slot) = part else { return false };
+                    domain.slots.get(p) == Some(slot)
+                        && match symbol.domain[p] {
+                            DomainPosition::Set(d) => domain.sets[p] == c.symbols.get(d).table,
+                            _ => false,
+                        }
+                });
+            Ok((domain, Key { parts }, value, covers))
+        })?;
+        let sym = self.symbols.get_mut(root);
+        sym.assigned = true;
+        if matches!(target, Target::Set(_) | Target::Singleton(_)) {
+            sym.dynamic = true;
+        }
+        let mut reading = SelfReading {
+            tables: self.tables(target),
+            ..SelfReading::default()
+        };
+        domain.conditions.iter().for_each(|c| reading.node(c));
+        reading.node(&value);
+        // GAMS empties what is assigned anew before it counts it.
+        let whole = symbol.dim() > 0 && !symbol.has_attributes();
+        if covers && whole && reading.counted && reading.keys.is_empty() {
+            out.push(Code::new(CodeKind::Clear(root, None), span));
+        }
+        let recurrence = reading.is_recurrence(&key);
+        let code = |domain| {
+            let kind = CodeKind::Assign {
+                domain,
+                target,
+                value,
+                covers,
+                nonzero: a.nonzero,
+                key,
+            };
+            Code::new(kind, span)
+        };
+        out.push(if recurrence {
+            let (conditions, outer) = (
+                domain.conditions,
+                Domain {
+                    conditions: Vec::new(),
+                    ..domain
+                },
+            );
+            let inner = Domain {
+                conditions,
+                ..Domain::default()
+            };
+            Code::new(CodeKind::Loop(outer, vec![code(inner)]), span)
+        } else {
+            code(domain)
+        });
+        Ok(())
+    }
+
+    /// What is written to.
+    fn target(&mut self, s: SymbolId, t: &Reference) -> Result<Target, Failed> {
+        let symbol = self.symbols.get(s).clone();
+        let target = match &symbol.kind {
+            SymbolKind::Parameter { .. } if t.attribute.is_none() => Target::Table(symbol.table),
+            SymbolKind::Set { singleton } if t.attribute.is_none() => {
+                if *singleton {
+                    Target::Singleton(symbol.table)
+                } else {
+                    Target::Set(symbol.table)
+                }
+            }
+            SymbolKind::Alias(root) if t.attribute.is_none() => {
+                Target::Set(self.symbols.get(*root).table)
+            }
+            SymbolKind::Variable(_)
+                if t.attribute.is_none() && self.modes.at(t.name.span).dot_l =>
+            {
+                Target::Table(symbol.table + attribute::L)
+            }
+            SymbolKind::Variable(_) | SymbolKind::Equation(_) => {
+                let Some(attr) = &t.attribute else {
+                    let what = symbol.kind_name();
+                    let d = Diagnostic::error(
+                        "E0310",
+                        t.span,
+                        format!(
+                            "`{}` is a {what}; it cannot be assigned itself",
+                            symbol.name
+                        ),
+                    )
+                    .label("which of its numbers?")
+                    .other(symbol.declared, "declared here");
+                    return self.fail(if what == "equation" {
+                        d.help(format!(
+                            "an equation is defined with two dots: `{}.. left =e= right;`",
+                            t.name.name
+                        ))
+                    } else {
+                        d.help(format!(
+                            "assign `{0}.l`, `{0}.lo`, `{0}.up` or `{0}.fx`",
+                            t.name.name
+                        ))
+                    });
+                };
+                match functions::record_attribute(&attr.name) {
+                    Some(functions::RecordAttribute::Stored(o)) => Target::Table(symbol.table + o),
+                    Some(functions::RecordAttribute::Fix) => Target::Fix(s),
+                    Some(functions::RecordAttribute::Derived(_)) => {
+                        return self.fail(
+                            Diagnostic::error(
+                                "E0314",
+                                attr.span,
+                                format!("`.{}` is computed and cannot be assigned", attr.name),
+                            )
+                            .label("read only"),
+                        );
+                    }
+                    None => {
+                        return self.unknown_attribute(
+                            attr,
+                            &symbol.name,
+                            symbol.kind_name(),
+                            "l, m, lo, up, fx, scale, prior",
+                        );
+                    }
+                }
+            }
+            SymbolKind::Model(_) | SymbolKind::File(_) if t.attribute.is_some() => {
+                let attr = t.attribute.as_ref().expect("tested above");
+                Target::Object(s, self.object_attribute(s, attr)?)
+            }
+            _ => {
+                return self.fail(
+                    Diagnostic::error(
+                        "E0325",
+                        t.span,
+                        format!(
+                            "`{}` is a {} and cannot be assigned",
+                            symbol.name,
+                            symbol.kind_name()
+                        ),
+                    )
+                    .label("not assignable")
+                    .other(symbol.declared, "declared here"),
+                );
+            }
+        };
+        let is_set = matches!(target, Target::Set(_) | Target::Singleton(_));
+        let root = self.symbols.root(s);
+        if is_set && (self.symbols.get(root).is_domain || root == super::symbols::UNIVERSE) {
+            return self.fail(
+                Diagnostic::error(
+                    "E0320",
+                    t.span,
+                    format!(
+                        "the set `{}` cannot be assigned: it is the domain of other symbols",
+                        symbol.name
+                    ),
+                )
+                .label("a domain must stay as it is")
+                .other(symbol.declared, "declared here")
+                .help(format!(
+                    "declare a subset, `set sub({});`, and assign that",
+                    symbol.name
+                )),
+            );
+        }
+        Ok(target)
+    }
+
+    /// What drives a loop around a single assignment to a parameter or set, as GAMS runs it: turns in which the
+    /// right side is 0 whatever the assignment's own indices are passed over, and nothing is assigned in them.
+    pub(super) fn driver(&self, body: &[Code]) -> Option<Node> {
+        let [only] = body else { return None };
+        match &only.kind {
+            CodeKind::If(arms, otherwise) if otherwise.is_empty() => match arms.as_slice() {
+                [(_, body)] => self.driver(body),
+                _ => None,
+            },
+            CodeKind::Assign {
+                domain,
+                target: Target::Table(t) | Target::Set(t),
+                value,
+                nonzero: false,
+                ..
+            } if !domain.slots.is_empty() && domain.conditions.is_empty() => {
+                let mut symbols = self.symbols.iter();
+                let whole = symbols.any(|(_, s)| s.table == *t && !s.has_attributes());
+                whole.then(|| zero_with(value, &domain.slots)).flatten()
+            }
+            _ => None,
+        }
+    }
+
+    /// The tables that a target writes to.
+    fn tables(&self, target: Target) -> Vec<TableId> {
+        match target {
+            Target::Table(t) | Target::Set(t) | Target::Singleton(t) => vec![t],
+            Target::Fix(s) => {
+                let t = self.symbols.get(s).table;
+                [attribute::L, attribute::LO, attribute::UP]
+                    .map(|o| t + o)
+                    .into()
+            }
+            Target::Object(..)
+            | Target::Seed
+            | Target::Errors
+            | Target::MostErrors
+            | Target::Ignored => Vec::new(),
+        }
+    }
+}
+
+/// How an assignment reads what it writes to.
+#[derive(Default)]
+struct SelfReading<'a> {
+    tables: Vec<TableId>,
+    keys: Vec<&'a Key>,
+    counted: bool,
+}
+
+impl<'a> Visitor<'a> for SelfReading<'a> {
+    fn node(&mut self, n: &'a Node) {
+        match &n.kind {
+            NodeKind::Data(t, key) if self.tables.contains(t) => self.keys.push(key),
+            NodeKind::Card(t) => self.counted |= self.tables.contains(t),
+            _ => {}
+        }
+        n.walk(self);
+    }
+}
+
+impl SelfReading<'_> {
+    /// Whether the assignment goes element by element, each reading what those before have written: GAMS does
+    /// where the left side has a lag, and all that is read has lags of the same indices (`p(t+1) = p(t-1)`).
+    /// Else the right side sees the values from before.
+    fn is_recurrence(&self, written: &Key) -> bool {
+        let lagged = written.parts.iter().any(|p| matches!(p, Part::Lag(_)));
+        lagged
+            && !self.keys.is_empty()
+            && self.keys.iter().all(|k| {
+                k.parts
+                    .iter()
+                    .zip(&written.parts)
+                    .all(|(a, b)| same_index(a, b))
+            })
+    }
+}
+
+/// Whether two parts are the same index, wherever lags lead.
+fn same_index(a: &Part, b: &Part) -> bool {
+    match (a, b) {
+        (Part::Slot(a), Part::Slot(b)) => a == b,
+        (Part::Label(a), Part::Label(b)) => a == b,
+        (Part::Lag(a), Part::Lag(b)) => a.set == b.set && same_index(&a.base, &b.base),
+        (Part::Singleton(a, p), Part::Singleton(b, q)) => (a, p) == (b, q),
+        _ => false,
+    }
+}
+
+/// Something without these slots that makes an expression 0 where it is 0.
+fn zero_with(n: &Node, own: &[Slot]) -> Option<Node> {
+    match &n.kind {
+        NodeKind::Data(t, key) => {
+            let plain = |p: &Part| match p {
+                Part::Slot(s) => !own.contains(s),
+                Part::Label(_) => true,
+                Part::Lag(_) | Part::Singleton(..) => false,
+            };
+            let runs = key.parts.iter().any(|p| matches!(p, Part::Slot(_)));
+            (runs && key.parts.iter().all(plain))
+                .then(|| Node::data(NodeKind::Data(*t, key.clone()), n.span))
+        }
+        NodeKind::Negate(a) => zero_with(a, own),
+        NodeKind::Call(Function::Sqr, a) => zero_with(&a[0], own),
+        NodeKind::Dollar(a, c) => zero_with(a, own).or_else(|| zero_with(c, own)),
+        // Of a sum, where all terms are driven by one table.
+        NodeKind::Sum(list) => {
+            let mut drivers = list.iter().map(|(_, x)| zero_with(x, own));
+            let first = drivers.next()??;
+            let table = |n: &Node| match n.kind {
+                NodeKind::Data(t, _) => Some(t),
+                _ => None,
+            };
+            let same = |d: Option<Node>| d.is_some_and(|d| table(&d) == table(&first));
+            drivers.all(same).then_some(first)
+        }
+        NodeKind::Product(list) if list.iter().all(|(divide, _)| !divide) => {
+            list.iter().find_map(|(_, x)| zero_with(x, own))
+        }
+        _ => None,
+    }
+}
