@@ -364,14 +364,15 @@ pub fn function_value(f: Function, args: &[f64]) -> Result<f64, DomainError> {
         return Ok(f64::NAN);
     }
     if let Some(i) = args.iter().position(|a| a.is_infinite())
-        && !takes_infinity(f, i, args[i])
+        && !(takes_infinity(f, args[i]) && (args.len() == 1 || !is_smoothed(f)))
     {
         return fail(i, ErrorKind::Infinite);
     }
     // To these infinity is a large number.
     let x = match f {
-        F::LogGamma | F::Round | F::Entropy => clamp(args[0]),
-        F::SlExp | F::SlLog10 | F::SlRec | F::SqExp | F::SqLog10 | F::SqRec => clamp(args[0]),
+        F::LogGamma | F::Entropy => clamp(args[0]),
+        F::Round if args.len() == 1 => clamp(args[0]),
+        f if is_smoothed(f) => clamp(args[0]),
         _ => args[0],
     };
     let y = args.get(1).copied().unwrap_or(0.0);
@@ -567,6 +568,7 @@ pub fn function_value(f: Function, args: &[f64]) -> Result<f64, DomainError> {
         F::Floor => return Ok(x.floor()),
         F::Ceil => return Ok(x.ceil()),
         F::Trunc => return Ok(x.trunc()),
+        F::Round if x.is_infinite() => return Ok(x),
         F::Round => {
             let n = y.round();
             if (y - n).abs() > 1e-5 {
@@ -599,20 +601,26 @@ pub fn function_value(f: Function, args: &[f64]) -> Result<f64, DomainError> {
     Ok(clamp(v))
 }
 
+/// exp, log10 and 1/x that go on as polynomials.
+fn is_smoothed(f: Function) -> bool {
+    use F::*;
+    matches!(f, SlExp | SlLog10 | SlRec | SqExp | SqLog10 | SqRec)
+}
+
 /// Whether a function with so many arguments is `na` where one of them is; the others refuse it.
 pub fn takes_na(f: Function, arguments: usize) -> bool {
     arguments < 3 || matches!(f, F::Min | F::Max | F::IfThen)
 }
 
-/// Which functions take +∞ or −∞ (`x` is the infinite argument, number `i`).
-fn takes_infinity(f: Function, i: usize, x: f64) -> bool {
+/// Which functions take +∞ or −∞ (`x` is the infinite argument).
+fn takes_infinity(f: Function, x: f64) -> bool {
     use F::*;
     match f {
         Log | Log2 | Log10 | Sqrt | Power | RPower => x > 0.0,
         Exp | Sqr | Abs | Sign | Min | Max | Floor | Ceil | Round | Trunc | Frac | ErrorF
         | Sigmoid | ArcTan | Tanh | Sinh | Cosh => true,
         Gamma | LogGamma | Entropy => x > 0.0,
-        SlExp | SlLog10 | SlRec | SqExp | SqLog10 | SqRec => i == 0,
+        f if is_smoothed(f) => true,
         IfThen | BoolAnd | BoolOr | BoolNot | BoolXor | BoolEqv | BoolImp | RelEq | RelNe
         | RelLt | RelLe | RelGt | RelGe => true,
         // outside the domain in any case

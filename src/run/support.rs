@@ -134,8 +134,12 @@ impl<'m, 'h> Analysis<'m, 'h> {
         if self.are_joint(conditions) {
             return Vec::new();
         }
+        let safe = conditions.len() < 2 || conditions.iter().all(|c| self.is_safe(c));
         let conditions = conditions.iter();
-        conditions.filter_map(|c| self.nonzero(c, false)).collect()
+        let mut supports: Vec<Sparse> = conditions.filter_map(|c| self.nonzero(c, false)).collect();
+        // A number that is 0 stops nothing: errors in the others are reported.
+        supports.retain(|s| safe || !s.support.is_empty());
+        supports
     }
 
     /// Whether a condition is evaluated without an error: then it need not be where another one is false.
