@@ -6,7 +6,8 @@
 use crate::source::Span;
 
 /// How serious a diagnostic is.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Severity {
     /// Legal, but unlikely to be meant.
     Warning,

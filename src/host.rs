@@ -17,6 +17,17 @@ pub enum HostError {
     Other(String),
 }
 
+impl std::fmt::Display for HostError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::NotFound => f.write_str("there is no such file"),
+            Self::Outside(_) => f.write_str("it lies outside the folders of the model"),
+            Self::NotUtf8(at) => write!(f, "byte {} is not UTF-8", at + 1),
+            Self::Other(why) => f.write_str(why),
+        }
+    }
+}
+
 /// What a run may ask of the world.
 pub trait Host {
     /// Reads a text. `from` is the file whose text asks (for relative paths).
@@ -53,4 +64,9 @@ pub trait Host {
     fn memory(&self) -> usize {
         0
     }
+}
+
+/// Days since 1899-12-31, as GAMS counts, from seconds since 1970-01-01 UTC (which is day 25568).
+pub fn day_number(seconds: f64) -> f64 {
+    25568.0 + seconds / 86400.0
 }

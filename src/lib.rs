@@ -1,10 +1,59 @@
-//! bmod: a declarative algebraic modeling language in the GAMS tradition.
+//! bmod solves models written in a declarative algebraic language in the GAMS tradition: linear, nonlinear and
+//! complementarity programs, equilibrium constraints. This is the library; the command line is a program on top of
+//! it.
 //!
-//! Text in, numbers and pictures out, one stage after the other:
-//! `source` → `syntax` → `check` → `run` → `model` → `solve` → `report`.
-//! See `docs/architecture.md`.
+//! # A model from Rust
+//!
+//! ```
+//! use bmod::{Model, ModelStatus, Options};
+//!
+//! let mut model = Model::from_text(
+//!     "blend.blk",
+//!     "Set i 'ingredients' / corn, soy /;
+//!      Parameters price(i) / corn 0.30, soy 0.90 /, protein(i) / corn 0.09, soy 0.60 /;
+//!      Scalar need 'protein per unit' / 0.30 /;
+//!      Positive variable share(i);  Variable cost;
+//!      Equations total, enough, whole;
+//!      total..   cost =e= sum(i, price(i)*share(i));
+//!      enough..  sum(i, protein(i)*share(i)) =g= need;
+//!      whole..   sum(i, share(i)) =e= 1;
+//!      Model blend / all /;
+//!      solve blend using lp minimizing cost;",
+//! );
+//!
+//! // Data come in by name …
+//! model.set_parameter("price", [("corn", 0.25), ("soy", 1.0)]);
+//! let run = model.run(&Options::default()).ok()?;
+//!
+//! // … and answers go out by name and labels.
+//! assert_eq!(run.solves()[0].model_status, ModelStatus::Optimal);
+//! assert!((run.level("share", "soy")? - 0.21 / 0.51).abs() < 1e-9);
+//! println!("one more unit of protein costs {:.3}", run.marginal("enough", [])?);
+//! # Ok::<(), bmod::Error>(())
+//! ```
+//!
+//! # What is where
+//!
+//! * [`Model`]: the text, the files it includes, data from outside. A model is a value: change the data and run again.
+//! * [`Options`]: limits, options of the solvers; [`Control`] watches and stops a run from another thread.
+//! * [`Run`]: [`Run::solves`] (statuses, objective, residuals, times), [`Run::level`] and its kin, [`Run::symbols`]
+//!   with their [records](Record), [`Run::figures`] (SVG), [`Run::displays`], [`Run::diagnostics`] with their
+//!   [places](Place).
+//! * [`Error`]: what a program that asks for a symbol or a label may get wrong. A mistake in a model is a
+//!   [`Diagnostic`], never a panic.
+//!
+//! # Features
+//!
+//! * `system` reads files ([`Model::from_file`]), the clock and memory of the system, and runs models on a thread with a
+//!   large stack.
+//! * `cli`, on by default, is the command line; it implies `system`.
+//! * `pounce`, on by default, is the embedded solver for nonlinear programs (EPL-2.0); `ipopt` is the system's Ipopt.
+//!
+//! Without default features the library does no input or output, and asks for the time only through
+//! [`Options::clock`]. `examples/` has programs to start from; the language is described in `docs/language.md`.
 #![warn(missing_docs)]
 
+mod api;
 pub mod autodiff;
 pub mod check;
 pub mod cli;
@@ -19,3 +68,14 @@ pub mod session;
 pub mod solve;
 pub mod source;
 pub mod syntax;
+#[cfg(feature = "system")]
+mod system;
+
+pub use api::{
+    Control, Error, Labels, Model, Options, OutputFile, Progress, Record, Records, Run, Solve,
+    Special, Symbol, SymbolKind, VariableRecord, VariableRecords,
+};
+pub use host::{Host, HostError};
+pub use report::diagnostic::{Diagnostic, Place, Related, Severity};
+pub use report::json::{Display, Number, Residual, RunStatus, Seconds};
+pub use solve::{ModelStatus, SolverStatus};

@@ -1,5 +1,6 @@
 //! All tests from outside in one program, built and linked once. `robustness.rs` is another: it measures the memory of its process.
 
+mod api;
 mod bad_input;
 mod certify;
 mod common;
@@ -7,6 +8,7 @@ mod complementarity;
 mod corpus;
 mod derivatives;
 mod functions;
+mod library;
 mod mcp_corpus;
 mod mcp_solver;
 mod mcp_walls;

@@ -225,7 +225,9 @@ impl Compiler {
             if explicit {
                 self.symbols.get_mut(s).open = false;
             }
-            if let Some(body) = d.data {
+            if !self.take_input(s, &d.defines(), d.name.span)
+                && let Some(body) = d.data
+            {
                 let _ = self.set_data(s, body, d.name.span, &d.defines(), map);
             }
         }
@@ -295,8 +297,10 @@ impl Compiler {
             let Ok(s) = self.declare(&p.symbol, kind, |c, n| c.store.add_table(n, 0.0)) else {
                 continue;
             };
-            if let Some(body) = p.symbol.data {
-                let defines = p.symbol.defines();
+            let defines = p.symbol.defines();
+            if !self.take_input(s, &defines, p.symbol.name.span)
+                && let Some(body) = p.symbol.data
+            {
                 let _ = self.parameter_data(s, body, p.symbol.name.span, &defines, map);
             }
         }

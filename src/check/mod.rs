@@ -20,6 +20,7 @@ pub(crate) mod expansion;
 mod expr;
 mod figure;
 mod index;
+mod input;
 mod model;
 pub(crate) mod option;
 pub(crate) mod output;
@@ -102,6 +103,8 @@ pub(crate) struct Compiler {
     /// What data may take, and what they took so far, in bytes.
     max_memory: Option<usize>,
     taken: usize,
+    /// Data from outside the text.
+    inputs: input::Inputs,
     modes: Switches,
 }
 
@@ -109,13 +112,15 @@ pub(crate) struct Compiler {
 pub fn compile(
     host: &mut dyn Host,
     path: &str,
-    options: PreprocessOptions,
+    mut options: PreprocessOptions,
 ) -> Result<Program, Box<(Diagnostic, SourceMap)>> {
     let max_memory = options.max_memory;
+    let inputs = std::mem::take(&mut options.inputs);
     let mut parser =
         Parser::new(host, path, options).map_err(|u| Box::new((u.diagnostic, u.map)))?;
     let mut c = Compiler::new();
     c.max_memory = max_memory;
+    c.inputs = input::Inputs::new(inputs);
     let mut code = Vec::new();
     loop {
         let next = parser.next(&c);
@@ -149,6 +154,7 @@ pub fn compile(
     if let Err(d) = c.finish_unload(&mut parser) {
         c.report(d.as_error());
     }
+    c.unused_inputs();
     c.clear_errors(parser.cleared_errors());
     c.store.refresh_universe();
     // `$terminate`: nothing is run, which is no failure.
@@ -208,6 +214,7 @@ impl Compiler {
             put_named: None,
             max_memory: None,
             taken: 0,
+            inputs: input::Inputs::default(),
             modes: Switches::default(),
         }
     }

@@ -77,9 +77,12 @@ impl Compiler {
             _ => SymbolKind::Parameter { scalar: false },
         };
         let s = self.declare(d, kind, |c, n| c.store.add_table(n, 0.0))?;
-        let open = self.symbols.get(s).open;
         let name = d.name.span;
         let defines = d.defines();
+        if self.take_input(s, &defines, name) {
+            return Ok(());
+        }
+        let open = self.symbols.get(s).open;
         let mut filling = self.open_data(s, name)?;
         self.open_domains(s, &defines, name)?;
         if open {

@@ -8,6 +8,7 @@ use super::args::{
     completions,
 };
 use super::host::{Output, SystemHost, watch_ctrl_c, write_whole};
+use crate::report::diagnostic::{Diagnostic, json_lines};
 use crate::report::diagnostics::{self, Look};
 use crate::report::json::{Report, RunStatus};
 use crate::run::{ListOptions, Machine, Options};
@@ -84,6 +85,7 @@ pub(super) fn carry_out(
         defines: model.define.clone(),
         slash_comments: extension.is_some_and(|e| e.eq_ignore_ascii_case("blk")),
         max_memory: options.max_memory,
+        ..PreprocessOptions::default()
     };
     let file = name(model);
     let finished = session::run(
@@ -130,10 +132,9 @@ fn tell(finished: &Finished, format: MessageFormat) {
             );
             eprintln!("{}", diagnostics::count(&finished.diagnostics));
         }
-        MessageFormat::Json => eprint!(
-            "{}",
-            diagnostics::json_lines(&finished.diagnostics, &finished.map)
-        ),
+        MessageFormat::Json => {
+            eprint!("{}", json_lines(&finished.diagnostics, &finished.map));
+        }
     }
 }
 
@@ -199,11 +200,7 @@ fn run(a: &RunArgs) -> u8 {
 pub(super) fn write_report(finished: Finished, file: &str, path: &Path) -> u8 {
     let report = Report {
         status: finished.end,
-        diagnostics: finished
-            .diagnostics
-            .iter()
-            .map(|d| diagnostics::json(d, &finished.map))
-            .collect(),
+        diagnostics: Diagnostic::all(&finished.diagnostics, &finished.map),
         solves: finished.report.solves,
         displays: finished.report.displays,
         files: finished.report.files,

@@ -10,11 +10,12 @@
 use std::io::{IsTerminal, Write};
 use std::path::{Component, Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant, SystemTime};
+use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::host::{Host, HostError};
+use crate::system::{self, Files, other, tidy};
 
 /// Set by the first Ctrl-C.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
@@ -33,10 +34,7 @@ pub enum Output {
 
 /// Files of this machine, this terminal, this clock.
 pub struct SystemHost {
-    model: Option<PathBuf>,
-    model_folder: PathBuf,
-    current: PathBuf,
-    allowed: Vec<PathBuf>,
+    files: Files,
     out: PathBuf,
     output: Output,
     start: Instant,
@@ -64,22 +62,10 @@ impl SystemHost {
     /// For a model file, an output folder (made when something is written), and further folders
     /// that may be read.
     pub fn new(model: &Path, out: &Path, allow_read: &[PathBuf], output: Output) -> Self {
-        let current = std::env::current_dir()
-            .and_then(|d| d.canonicalize())
-            .unwrap_or_else(|_| PathBuf::from("."));
-        let folder = match model.parent() {
-            Some(p) if !p.as_os_str().is_empty() => p.to_path_buf(),
-            _ => PathBuf::from("."),
-        };
+        let files = Files::new(model, allow_read);
         Self {
-            model: model.canonicalize().ok(),
-            model_folder: folder,
-            out: current.join(out),
-            allowed: allow_read
-                .iter()
-                .filter_map(|d| d.canonicalize().ok())
-                .collect(),
-            current,
+            out: files.current.join(out),
+            files,
             output,
             start: Instant::now(),
             bar: None,
@@ -88,82 +74,11 @@ impl SystemHost {
         }
     }
 
-    fn may_read(&self, real: &Path) -> bool {
-        let folder = self.model_folder.canonicalize();
-        self.model.as_deref() == Some(real)
-            || folder.is_ok_and(|f| real.starts_with(f))
-            || real.starts_with(&self.current)
-            || self.allowed.iter().any(|d| real.starts_with(d))
-    }
-
-    /// The file that `path` means: relative to the asking file, the model, the current folder, or
-    /// an allowed folder, whichever has it first.
-    fn find(&self, path: &str, from: Option<&Path>) -> Result<(PathBuf, PathBuf), HostError> {
-        let mut outside = None;
-        for known in self.places(path, from) {
-            let Ok(real) = known.canonicalize() else {
-                continue;
-            };
-            if !self.may_read(&real) {
-                outside.get_or_insert(known);
-                continue;
-            }
-            if real.is_file() {
-                return Ok((known, real));
-            }
-            if real.is_dir() {
-                return Err(HostError::Other("it is a folder".into()));
-            }
-        }
-        Err(outside.map_or(HostError::NotFound, HostError::Outside))
-    }
-
-    /// Where a file may be, in the order in which it is looked for.
-    fn places<'a>(
-        &'a self,
-        path: &'a str,
-        from: Option<&'a Path>,
-    ) -> impl Iterator<Item = PathBuf> + 'a {
-        let folders = [from.and_then(Path::parent), Some(&*self.model_folder)];
-        let folders = folders.into_iter().flatten();
-        folders
-            .chain([Path::new("")])
-            .chain(self.allowed.iter().map(|d| &**d))
-            .map(move |folder| tidy(&folder.join(path)))
-    }
-
     fn clear_progress(&mut self) {
         if let Some(bar) = self.bar.take() {
             bar.finish_and_clear();
         }
     }
-}
-
-/// Without `.` parts, which say nothing.
-fn tidy(path: &Path) -> PathBuf {
-    let parts = path.components().filter(|c| *c != Component::CurDir);
-    let tidy: PathBuf = parts.collect();
-    if tidy.as_os_str().is_empty() {
-        PathBuf::from(".")
-    } else {
-        tidy
-    }
-}
-
-fn other(e: std::io::Error) -> HostError {
-    match e.kind() {
-        std::io::ErrorKind::NotFound => HostError::NotFound,
-        std::io::ErrorKind::PermissionDenied => {
-            HostError::Other("you do not have the right to do that".into())
-        }
-        _ => HostError::Other(e.to_string()),
-    }
-}
-
-/// Whether a file is GAMS's rather than bmod's, by its extension.
-fn is_gams(path: &Path) -> bool {
-    path.extension()
-        .is_some_and(|e| ["gms", "inc"].iter().any(|g| e.eq_ignore_ascii_case(g)))
 }
 
 impl SystemHost {
@@ -193,33 +108,11 @@ pub(super) fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
 
 impl Host for SystemHost {
     fn memory(&self) -> usize {
-        // Resident pages, where the system tells.
-        let statm = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();
-        statm
-            .split(' ')
-            .nth(1)
-            .and_then(|p| p.parse::<usize>().ok())
-            .unwrap_or(0)
-            * 4096
+        system::memory()
     }
 
     fn read(&mut self, path: &str, from: Option<&Path>) -> Result<(PathBuf, String), HostError> {
-        let (known, bytes) = self.read_bytes(path, from)?;
-        match String::from_utf8(bytes) {
-            Ok(text) => {
-                // A byte order mark is no part of the text.
-                let text = match text.strip_prefix('\u{feff}') {
-                    Some(rest) => rest.to_string(),
-                    None => text,
-                };
-                Ok((known, text))
-            }
-            // Old GAMS files are often Latin-1 in their comments; a .blk is UTF-8.
-            Err(e) if is_gams(&known) => {
-                Ok((known, e.into_bytes().into_iter().map(char::from).collect()))
-            }
-            Err(e) => Err(HostError::NotUtf8(e.utf8_error().valid_up_to())),
-        }
+        self.files.read(path, from)
     }
 
     fn read_bytes(
@@ -227,23 +120,15 @@ impl Host for SystemHost {
         path: &str,
         from: Option<&Path>,
     ) -> Result<(PathBuf, Vec<u8>), HostError> {
-        let (known, real) = self.find(path, from)?;
-        let size = real.metadata().map_err(other)?.len();
-        if size > u64::from(u32::MAX / 2) {
-            return Err(HostError::Other("it is larger than 2 GB".into()));
-        }
-        Ok((known, std::fs::read(&real).map_err(other)?))
+        self.files.read_bytes(path, from)
     }
 
     fn exists(&mut self, path: &str, from: Option<&Path>) -> bool {
-        self.find(path, from).is_ok()
+        self.files.exists(path, from)
     }
 
     fn folder_exists(&mut self, path: &str, from: Option<&Path>) -> bool {
-        let mut real = self
-            .places(path, from)
-            .filter_map(|p| p.canonicalize().ok());
-        real.any(|p| p.is_dir() && self.may_read(&p))
+        self.files.folder_exists(path, from)
     }
 
     fn write(&mut self, path: &str, bytes: &[u8]) -> Result<PathBuf, HostError> {
@@ -272,7 +157,7 @@ impl Host for SystemHost {
         }
         write_whole(&target, bytes).map_err(other)?;
         Ok(target
-            .strip_prefix(&self.current)
+            .strip_prefix(&self.files.current)
             .map_or(target.clone(), Path::to_path_buf))
     }
 
@@ -291,9 +176,7 @@ impl Host for SystemHost {
     }
 
     fn now(&self) -> f64 {
-        // 1970-01-01 is day 25568; the time is UTC.
-        let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
-        25568.0 + since.map_or(0.0, |d| d.as_secs_f64() / 86400.0)
+        system::now()
     }
 
     fn interrupted(&self) -> bool {

@@ -121,6 +121,12 @@ fn hash_at(key: &[Label], positions: &[usize]) -> u64 {
     h.finish()
 }
 
+impl Default for Table {
+    fn default() -> Self {
+        Self::new(0, 0.0)
+    }
+}
+
 impl Table {
     /// An empty table.
     pub fn new(dim: usize, default: f64) -> Self {
@@ -149,6 +155,12 @@ impl Table {
         t.values = values;
         t.tidy();
         t
+    }
+
+    /// Keys, one after the other, and values of all records in label order.
+    pub fn into_records(mut self) -> (Vec<Label>, Vec<f64>) {
+        self.tidy();
+        (self.keys, self.values)
     }
 
     /// Number of index positions.

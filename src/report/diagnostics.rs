@@ -1,4 +1,4 @@
-//! Diagnostics as people read them (with miette) and as programs do (JSON, one object per line).
+//! Diagnostics as people read them (with miette).
 //!
 //! What is shown of the source is an *excerpt*: the lines of the places with one line around them,
 //! long lines clipped about the place. So a message about one number in a line of 50 MB is as short
@@ -11,10 +11,9 @@ use miette::{
     GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteError, MietteSpanContents, Severity,
     SourceCode, SourceSpan, SpanContents,
 };
-use serde::Serialize;
 
 use crate::diag::{self, Diagnostic, Severity as Serious};
-use crate::source::{FileId, SourceFile, SourceMap, Span};
+use crate::source::{FileId, SourceFile, SourceMap};
 
 /// How diagnostics are drawn.
 #[derive(Clone, Copy, Debug)]
@@ -94,100 +93,6 @@ pub fn count(diagnostics: &[Diagnostic]) -> String {
     ];
     let parts: Vec<String> = parts.into_iter().flatten().collect();
     parts.join(", ")
-}
-
-/// A place, as programs read it: lines and columns from 1, columns in characters; the end is
-/// exclusive.
-#[derive(Clone, Debug, Serialize, PartialEq)]
-pub struct JsonPlace {
-    /// The file, as the person wrote it.
-    pub file: String,
-    /// Line of its first character.
-    pub line: usize,
-    /// Column of its first character.
-    pub column: usize,
-    /// Line behind its last character.
-    pub end_line: usize,
-    /// Column behind its last character.
-    pub end_column: usize,
-}
-
-/// A place with a text.
-#[derive(Clone, Debug, Serialize, PartialEq)]
-pub struct JsonLabel {
-    /// Where.
-    #[serde(flatten)]
-    pub place: Option<JsonPlace>,
-    /// What is there.
-    pub text: String,
-}
-
-/// A diagnostic, as programs read it.
-#[derive(Clone, Debug, Serialize, PartialEq)]
-pub struct JsonDiagnostic {
-    /// `E0101`
-    pub code: &'static str,
-    /// `error`, `execution` or `warning`.
-    pub severity: &'static str,
-    /// The problem.
-    pub message: String,
-    /// The main place; absent where there is none.
-    #[serde(flatten)]
-    pub place: Option<JsonPlace>,
-    /// Text at the main place.
-    pub label: String,
-    /// Other places.
-    pub labels: Vec<JsonLabel>,
-    /// How to fix it.
-    pub help: Option<String>,
-}
-
-/// One diagnostic, as programs read it.
-pub fn json(d: &Diagnostic, map: &SourceMap) -> JsonDiagnostic {
-    let place = |span: Span| {
-        let p = map.place(span)?;
-        let file = map.file(p.file);
-        let (line, column) = file.line_column(p.lo);
-        let (end_line, end_column) = file.line_column(p.hi);
-        Some(JsonPlace {
-            file: file.name.clone(),
-            line,
-            column,
-            end_line,
-            end_column,
-        })
-    };
-    JsonDiagnostic {
-        code: d.code,
-        severity: match d.severity {
-            Serious::Error => "error",
-            Serious::Execution => "execution",
-            Serious::Warning => "warning",
-        },
-        message: d.message.clone(),
-        place: place(d.span),
-        label: d.label.clone(),
-        labels: d
-            .others
-            .iter()
-            .map(|o| JsonLabel {
-                place: place(o.span),
-                text: o.text.clone(),
-            })
-            .collect(),
-        help: d.help.clone(),
-    }
-}
-
-/// All diagnostics as JSON, one object per line.
-pub fn json_lines(diagnostics: &[Diagnostic], map: &SourceMap) -> String {
-    let mut out = String::new();
-    for d in diagnostics {
-        // Strings and numbers only: this cannot fail.
-        out.push_str(&serde_json::to_string(&json(d, map)).unwrap_or_default());
-        out.push('\n');
-    }
-    out
 }
 
 /// A piece of a file: whole lines, perhaps clipped.
@@ -461,6 +366,8 @@ impl miette::Diagnostic for Report {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::diagnostic::json_lines;
+    use crate::source::Span;
 
     fn map(name: &str, text: &str) -> (SourceMap, Span) {
         let mut map = SourceMap::default();

@@ -6,7 +6,7 @@
 
 use serde::{Serialize, Serializer};
 
-use super::diagnostics::JsonDiagnostic;
+use super::diagnostic::Diagnostic;
 use crate::data::value;
 use crate::model::certificate::Residuals;
 use crate::solve::{ModelStatus, SolverStatus};
@@ -55,7 +55,7 @@ pub struct Report {
     /// Files written: figures, put files, data.
     pub files: Vec<String>,
     /// What was wrong.
-    pub diagnostics: Vec<JsonDiagnostic>,
+    pub diagnostics: Vec<Diagnostic>,
 }
 
 /// How a run ended.
@@ -85,28 +85,33 @@ impl RunStatus {
 }
 
 /// A status with GAMS's code.
-#[derive(Clone, Debug, Serialize, PartialEq)]
-pub struct Status {
+#[derive(Clone, Copy, Debug, Serialize, PartialEq)]
+pub struct Status<S> {
+    /// The status itself. Not in the JSON.
+    #[serde(skip)]
+    pub status: S,
     /// GAMS's number.
     pub code: u8,
     /// GAMS's words, lower case.
     pub name: &'static str,
 }
 
-impl From<ModelStatus> for Status {
-    fn from(s: ModelStatus) -> Self {
+impl From<ModelStatus> for Status<ModelStatus> {
+    fn from(status: ModelStatus) -> Self {
         Self {
-            code: s as u8,
-            name: s.name(),
+            status,
+            code: status as u8,
+            name: status.name(),
         }
     }
 }
 
-impl From<SolverStatus> for Status {
-    fn from(s: SolverStatus) -> Self {
+impl From<SolverStatus> for Status<SolverStatus> {
+    fn from(status: SolverStatus) -> Self {
         Self {
-            code: s as u8,
-            name: s.name(),
+            status,
+            code: status as u8,
+            name: status.name(),
         }
     }
 }
@@ -126,9 +131,9 @@ pub struct SolveReport {
     /// The solver that ran.
     pub solver: String,
     /// What the point and the rays prove.
-    pub model_status: Status,
+    pub model_status: Status<ModelStatus>,
     /// How the solver ended.
-    pub solver_status: Status,
+    pub solver_status: Status<SolverStatus>,
     /// Level of the objective variable.
     pub objective: Option<Number>,
     /// Rows, the objective's included.

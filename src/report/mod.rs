@@ -1,5 +1,6 @@
 //! What people see: figures, diagnostics, summaries, JSON, listings.
 
+pub mod diagnostic;
 pub mod diagnostics;
 pub mod display;
 pub mod figure;

@@ -21,6 +21,7 @@ use super::line::Line;
 use super::macros::Macros;
 use super::variables::{self, Variables};
 use super::{FileId, Outcome, SourceMap, Span, refuse};
+use crate::data::input::Input;
 use crate::diag::Diagnostic;
 use crate::host::{Host, HostError};
 use crate::syntax::ast::{Modes, Switches};
@@ -45,6 +46,8 @@ pub struct PreprocessOptions {
     pub slash_comments: bool,
     /// What the data in the text may take, in bytes.
     pub max_memory: Option<usize>,
+    /// Data from outside the text.
+    pub inputs: Vec<Input>,
 }
 
 /// What a directive may ask about the symbols known so far.

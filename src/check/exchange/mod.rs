@@ -401,6 +401,7 @@ impl Compiler {
 
     fn load_listed(&mut self, x: &Exchange, span: Span, parser: &mut Parser) -> Loaded<()> {
         let mut items = wanted(&self.symbols, &x.items)?;
+        items.retain(|w| !self.inputs.has(self.symbols.root(w.symbol)));
         let named = x.file.as_ref().map(|(f, s)| (f.to_string(), *s));
         let Some((file, at)) = named.or_else(|| self.input.clone()) else {
             return Err(no_file(span, "$gdxIn data.gdx"));

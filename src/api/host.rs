@@ -1,0 +1,153 @@
+//! The host of a run of the library: texts in memory, perhaps files on disk to read, nothing written to disk.
+
+use super::{Model, Options, OutputFile, Run};
+use crate::host::{Host, HostError, day_number};
+use std::path::{Component, Path, PathBuf};
+
+pub(super) struct RunHost<'a> {
+    model: &'a Model,
+    options: &'a Options,
+    written: Vec<OutputFile>,
+    printed: String,
+    start: f64,
+}
+
+/// `a/../b/./c` as `b/c`: names of files in memory.
+fn plain(path: &Path) -> String {
+    let mut parts: Vec<String> = Vec::new();
+    for c in path.components() {
+        match c {
+            Component::Normal(part) => parts.push(part.to_string_lossy().into_owned()),
+            Component::ParentDir => {
+                parts.pop();
+            }
+            _ => {}
+        }
+    }
+    parts.join("/")
+}
+
+impl<'a> RunHost<'a> {
+    pub(super) fn new(model: &'a Model, options: &'a Options) -> Self {
+        let mut host = Self {
+            model,
+            options,
+            written: Vec::new(),
+            printed: String::new(),
+            start: 0.0,
+        };
+        host.start = host.clock();
+        host
+    }
+
+    /// The run with what it wrote and printed.
+    pub(super) fn finish(self, mut run: Run) -> Run {
+        run.take_output(self.written, self.printed);
+        run
+    }
+
+    fn clock(&self) -> f64 {
+        match &self.options.clock {
+            Some(clock) => clock(),
+            #[cfg(feature = "system")]
+            None => crate::system::clock(),
+            #[cfg(not(feature = "system"))]
+            None => 0.0,
+        }
+    }
+
+    /// A text in memory: by the name as it stands, beside the file that asks, or as it stands without `.` and `..`.
+    fn in_memory(&self, path: &str, from: Option<&Path>) -> Option<(PathBuf, String)> {
+        let texts = &self.model.texts;
+        let beside = from.and_then(Path::parent).map(|f| plain(&f.join(path)));
+        let names = [Some(path.to_string()), beside, Some(plain(Path::new(path)))];
+        let mut found = names
+            .into_iter()
+            .flatten()
+            .filter_map(|n| texts.get(&n).map(|t| (PathBuf::from(n), t.clone())));
+        found.next().or_else(|| {
+            let text = self.model.resolver.as_ref()?(path)?;
+            Some((path.into(), text))
+        })
+    }
+}
+
+impl Host for RunHost<'_> {
+    fn read(&mut self, path: &str, from: Option<&Path>) -> Result<(PathBuf, String), HostError> {
+        if let Some(found) = self.in_memory(path, from) {
+            return Ok(found);
+        }
+        #[cfg(feature = "system")]
+        if let Some(files) = &self.model.files {
+            return files.read(path, from);
+        }
+        Err(HostError::NotFound)
+    }
+
+    fn exists(&mut self, path: &str, from: Option<&Path>) -> bool {
+        #[cfg(feature = "system")]
+        if let Some(files) = &self.model.files
+            && files.exists(path, from)
+        {
+            return true;
+        }
+        self.in_memory(path, from).is_some()
+    }
+
+    #[cfg(feature = "system")]
+    fn folder_exists(&mut self, path: &str, from: Option<&Path>) -> bool {
+        let files = self.model.files.as_ref();
+        files.is_some_and(|f| f.folder_exists(path, from))
+    }
+
+    fn write(&mut self, path: &str, bytes: &[u8]) -> Result<PathBuf, HostError> {
+        let outside = Path::new(path).components().any(|c| {
+            matches!(
+                c,
+                Component::ParentDir | Component::RootDir | Component::Prefix(_)
+            )
+        });
+        if outside {
+            return Err(HostError::Outside(path.into()));
+        }
+        let name = plain(Path::new(path));
+        self.written.retain(|f| f.name != name);
+        self.written.push(OutputFile {
+            name: name.clone(),
+            bytes: bytes.to_vec(),
+        });
+        Ok(name.into())
+    }
+
+    fn print(&mut self, text: &str) {
+        if let Some(listener) = &self.options.listener {
+            listener(text);
+        }
+        self.printed.push_str(text);
+    }
+
+    fn elapsed(&self) -> f64 {
+        (self.clock() - self.start).max(0.0)
+    }
+
+    fn now(&self) -> f64 {
+        day_number(self.clock())
+    }
+
+    fn interrupted(&self) -> bool {
+        self.options.control.is_cancelled()
+    }
+
+    fn progress(&mut self, message: &str) {
+        self.options.control.tell(message, self.elapsed());
+    }
+
+    fn memory(&self) -> usize {
+        #[cfg(feature = "system")]
+        return crate::system::memory();
+        #[cfg(all(not(feature = "system"), target_arch = "wasm32"))]
+        return core::arch::wasm32::memory_size(0) * 65536;
+        #[cfg(all(not(feature = "system"), not(target_arch = "wasm32")))]
+        0
+    }
+}

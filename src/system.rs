@@ -1,0 +1,187 @@
+//! The system's files, clock and memory. What needs none of them is built without this module.
+//!
+//! Invariant: a model reads only inside its own folder, the current folder, and folders that the user
+//! allowed; symbolic links and `..` are resolved before that is decided.
+
+use std::path::{Component, Path, PathBuf};
+use std::time::SystemTime;
+
+use crate::host::HostError;
+
+/// Which files a model may read, and where they are looked for.
+#[derive(Clone, Debug)]
+pub struct Files {
+    model: Option<PathBuf>,
+    model_folder: PathBuf,
+    /// The current folder.
+    pub current: PathBuf,
+    allowed: Vec<PathBuf>,
+}
+
+impl Files {
+    /// For a model file, and further folders that may be read.
+    pub fn new(model: &Path, allow_read: &[PathBuf]) -> Self {
+        let current = std::env::current_dir()
+            .and_then(|d| d.canonicalize())
+            .unwrap_or_else(|_| PathBuf::from("."));
+        let folder = match model.parent() {
+            Some(p) if !p.as_os_str().is_empty() => p.to_path_buf(),
+            _ => PathBuf::from("."),
+        };
+        Self {
+            model: model.canonicalize().ok(),
+            model_folder: folder,
+            allowed: allow_read
+                .iter()
+                .filter_map(|d| d.canonicalize().ok())
+                .collect(),
+            current,
+        }
+    }
+
+    /// The same, and another folder that may be read.
+    pub fn and_allow(mut self, folder: &Path) -> Self {
+        self.allowed.extend(folder.canonicalize());
+        self
+    }
+
+    fn may_read(&self, real: &Path) -> bool {
+        let folder = self.model_folder.canonicalize();
+        self.model.as_deref() == Some(real)
+            || folder.is_ok_and(|f| real.starts_with(f))
+            || real.starts_with(&self.current)
+            || self.allowed.iter().any(|d| real.starts_with(d))
+    }
+
+    /// The file that `path` means: relative to the asking file, the model, the current folder, or
+    /// an allowed folder, whichever has it first.
+    fn find(&self, path: &str, from: Option<&Path>) -> Result<(PathBuf, PathBuf), HostError> {
+        let mut outside = None;
+        for known in self.places(path, from) {
+            let Ok(real) = known.canonicalize() else {
+                continue;
+            };
+            if !self.may_read(&real) {
+                outside.get_or_insert(known);
+                continue;
+            }
+            if real.is_file() {
+                return Ok((known, real));
+            }
+            if real.is_dir() {
+                return Err(HostError::Other("it is a folder".into()));
+            }
+        }
+        Err(outside.map_or(HostError::NotFound, HostError::Outside))
+    }
+
+    /// Where a file may be, in the order in which it is looked for.
+    fn places<'a>(
+        &'a self,
+        path: &'a str,
+        from: Option<&'a Path>,
+    ) -> impl Iterator<Item = PathBuf> + 'a {
+        let folders = [from.and_then(Path::parent), Some(&*self.model_folder)];
+        let folders = folders.into_iter().flatten();
+        folders
+            .chain([Path::new("")])
+            .chain(self.allowed.iter().map(|d| &**d))
+            .map(move |folder| tidy(&folder.join(path)))
+    }
+
+    /// Reads a text, as [`crate::host::Host::read`] does.
+    pub fn read(&self, path: &str, from: Option<&Path>) -> Result<(PathBuf, String), HostError> {
+        let (known, bytes) = self.read_bytes(path, from)?;
+        match String::from_utf8(bytes) {
+            Ok(text) => {
+                // A byte order mark is no part of the text.
+                let text = match text.strip_prefix('\u{feff}') {
+                    Some(rest) => rest.to_string(),
+                    None => text,
+                };
+                Ok((known, text))
+            }
+            // Old GAMS files are often Latin-1 in their comments; a .blk is UTF-8.
+            Err(e) if is_gams(&known) => {
+                Ok((known, e.into_bytes().into_iter().map(char::from).collect()))
+            }
+            Err(e) => Err(HostError::NotUtf8(e.utf8_error().valid_up_to())),
+        }
+    }
+
+    /// Reads a file, as [`crate::host::Host::read_bytes`] does.
+    pub fn read_bytes(
+        &self,
+        path: &str,
+        from: Option<&Path>,
+    ) -> Result<(PathBuf, Vec<u8>), HostError> {
+        let (known, real) = self.find(path, from)?;
+        let size = real.metadata().map_err(other)?.len();
+        if size > u64::from(u32::MAX / 2) {
+            return Err(HostError::Other("it is larger than 2 GB".into()));
+        }
+        Ok((known, std::fs::read(&real).map_err(other)?))
+    }
+
+    /// Whether a file may be read and is there.
+    pub fn exists(&self, path: &str, from: Option<&Path>) -> bool {
+        self.find(path, from).is_ok()
+    }
+
+    /// Whether there is a folder whose files may be read.
+    pub fn folder_exists(&self, path: &str, from: Option<&Path>) -> bool {
+        let mut real = self
+            .places(path, from)
+            .filter_map(|p| p.canonicalize().ok());
+        real.any(|p| p.is_dir() && self.may_read(&p))
+    }
+}
+
+/// A path without `.` parts, which say nothing.
+pub fn tidy(path: &Path) -> PathBuf {
+    let parts = path.components().filter(|c| *c != Component::CurDir);
+    let tidy: PathBuf = parts.collect();
+    if tidy.as_os_str().is_empty() {
+        PathBuf::from(".")
+    } else {
+        tidy
+    }
+}
+
+/// What the system says, in plain words.
+pub fn other(e: std::io::Error) -> HostError {
+    match e.kind() {
+        std::io::ErrorKind::NotFound => HostError::NotFound,
+        std::io::ErrorKind::PermissionDenied => {
+            HostError::Other("you do not have the right to do that".into())
+        }
+        _ => HostError::Other(e.to_string()),
+    }
+}
+
+/// Whether a file is GAMS's rather than bmod's, by its extension.
+fn is_gams(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|e| ["gms", "inc"].iter().any(|g| e.eq_ignore_ascii_case(g)))
+}
+
+/// Seconds since 1970-01-01 UTC.
+pub fn clock() -> f64 {
+    let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
+    since.map_or(0.0, |d| d.as_secs_f64())
+}
+
+/// Date and time now, as [`crate::host::Host::now`] counts it.
+pub fn now() -> f64 {
+    crate::host::day_number(clock())
+}
+
+/// Bytes of memory that the process holds, 0 where the system does not say.
+pub fn memory() -> usize {
+    let statm = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();
+    let pages = statm
+        .split(' ')
+        .nth(1)
+        .and_then(|p| p.parse::<usize>().ok());
+    pages.unwrap_or(0) * 4096
+}
