@@ -3,7 +3,7 @@
 //! Invariant: every error has a place. A message speaks in the reader's terms, with labels and
 //! numbers of the instance; a help line says how to fix it. No Rust type name, no internal index.
 
-use crate::source::Span;
+use crate::span::Span;
 
 /// How serious a diagnostic is.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug, serde::Serialize)]

@@ -57,6 +57,7 @@ mod api;
 pub mod autodiff;
 pub mod check;
 pub mod cli;
+mod color;
 pub mod data;
 pub mod diag;
 pub mod gdx;
@@ -67,6 +68,7 @@ pub mod run;
 pub mod session;
 pub mod solve;
 pub mod source;
+mod span;
 pub mod syntax;
 #[cfg(feature = "system")]
 mod system;

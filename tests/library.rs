@@ -60,8 +60,14 @@ fn answers_by_name() {
     assert_eq!(alias.alias_of(), Some("i"));
     assert_eq!(alias.records().count(), 2);
     let x = run.symbol("x").expect("a variable");
-    assert_eq!((x.kind(), x.text(), x.domain()), (SymbolKind::Variable, "made", &["i".to_string()][..]));
-    let levels: Vec<_> = x.variable_records().map(|r| (r.labels[0], r.level, r.upper)).collect();
+    assert_eq!(
+        (x.kind(), x.text(), x.domain()),
+        (SymbolKind::Variable, "made", &["i".to_string()][..])
+    );
+    let levels: Vec<_> = x
+        .variable_records()
+        .map(|r| (r.labels[0], r.level, r.upper))
+        .collect();
     assert_eq!(levels, [("a", 2.0, 9.0), ("b", 4.0, f64::INFINITY)]);
     let names: Vec<_> = run.symbols().map(|s| s.name()).take(3).collect();
     assert_eq!(names, ["i", "ii", "price"]);
@@ -138,7 +144,12 @@ fn data_from_outside_are_checked() {
         assert_eq!(run.status(), RunStatus::CompilationError);
         let d = &run.diagnostics()[0];
         let line = d.place.as_ref().map_or(0, |p| p.line);
-        format!("{line} {} {} {:?}", d.code, d.message, d.help.as_deref().unwrap_or(""))
+        format!(
+            "{line} {} {} {:?}",
+            d.code,
+            d.message,
+            d.help.as_deref().unwrap_or("")
+        )
     };
     let cases: [&dyn Fn(&mut Model); 6] = [
         &|m| drop(m.set_parameter("price", [("c", 1.0)])),
@@ -154,9 +165,17 @@ fn data_from_outside_are_checked() {
 
 #[test]
 fn includes_from_memory() {
-    let mut model = Model::from_text("main/m.blk", "$include data/sizes.inc\nScalar y; y = %twice%*n;");
-    model.file("main/data/sizes.inc", "$include more.inc").define("twice", 2);
-    model.resolver(|name| name.ends_with("more.inc").then(|| "Scalar n / 21 /;".to_string()));
+    let mut model = Model::from_text(
+        "main/m.blk",
+        "$include data/sizes.inc\nScalar y; y = %twice%*n;",
+    );
+    model
+        .file("main/data/sizes.inc", "$include more.inc")
+        .define("twice", 2);
+    model.resolver(|name| {
+        name.ends_with("more.inc")
+            .then(|| "Scalar n / 21 /;".to_string())
+    });
     let run = run(&model);
     assert_eq!(run.messages(), "");
     assert_eq!(run.value("y", []), Ok(42.0));
@@ -192,7 +211,10 @@ fn a_folder_of_files() {
     let model = Model::from_file(&wall).expect("the flagship");
     let run = model.run(&Options::default().control(&control));
     assert_eq!(run.messages(), "");
-    assert!(run.level("alpha", []).is_ok_and(|a| (a - 0.642_859_003).abs() < 1e-8));
+    assert!(
+        run.level("alpha", [])
+            .is_ok_and(|a| (a - 0.642_859_003).abs() < 1e-8)
+    );
     assert!(run.figures().any(|(name, _)| name == "wall.svg"));
     assert!(control.progress().message.contains("kinematic"));
 }

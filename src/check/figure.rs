@@ -3,8 +3,8 @@
 use super::node::{FigureCode, FigureElementCode, Node, NodeKind};
 use super::symbols::SymbolKind;
 use super::{Compiler, Failed};
+use crate::color::Paint;
 use crate::diag::{Diagnostic, nearest};
-use crate::report::figure::Paint;
 use crate::syntax::ast::{ExprKind, Figure, FigureElement};
 use std::rc::Rc;
 

@@ -29,9 +29,9 @@ mod table;
 
 use crate::diag::{Diagnostic, Severity};
 use crate::host::Host;
-use crate::source::{Ending, Known, PreprocessOptions, SourceMap, Span, predefined};
+use crate::source::{Ending, Known, PreprocessOptions, SourceMap, Span, Switches, predefined};
 use crate::syntax::Parser;
-use crate::syntax::ast::{StmtKind, Switches};
+use crate::syntax::ast::StmtKind;
 use node::{Code, DataFunction, EquationDef, Part, Slot, SymbolId};
 use symbols::{DomainPosition, Store, Symbol, SymbolKind, Symbols, UNIVERSE};
 

@@ -5,9 +5,9 @@
 
 use crate::data::universe::Label;
 use crate::model::instance::Function;
-use crate::run::plan::Plan;
 use crate::source::Span;
 pub use crate::syntax::ast::{AggregateOp, BinaryOp, Relation, Sense};
+use std::any::Any;
 use std::cell::RefCell;
 use std::rc::Rc;
 
@@ -229,8 +229,8 @@ pub struct Domain {
     pub members: Vec<Driver>,
     /// Conjuncts of the condition.
     pub conditions: Vec<Node>,
-    /// How to enumerate, made when first run.
-    pub plan: RefCell<Option<Rc<Plan>>>,
+    /// How to enumerate: what the run makes of it at first use, and only the run knows.
+    pub plan: RefCell<Option<Rc<dyn Any>>>,
 }
 
 /// The definition of an equation.

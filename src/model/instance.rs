@@ -14,7 +14,49 @@ pub const NEG_INF: f64 = f64::NEG_INFINITY;
 /// +∞ as used in bounds.
 pub const INF: f64 = f64::INFINITY;
 
-pub use crate::syntax::ast::{Relation, Sense};
+/// `=e=`, `=g=`, `=l=`, `=n=`.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Relation {
+    /// Equal.
+    Equal,
+    /// Left side at least the right.
+    Greater,
+    /// Left side at most the right.
+    Less,
+    /// No relation.
+    Free,
+}
+
+impl Relation {
+    /// Lower and upper bound of a left side whose right side is this.
+    pub fn bounds(self, rhs: f64) -> [f64; 2] {
+        match self {
+            Self::Equal => [rhs, rhs],
+            Self::Greater => [rhs, f64::INFINITY],
+            Self::Less => [f64::NEG_INFINITY, rhs],
+            Self::Free => [f64::NEG_INFINITY, f64::INFINITY],
+        }
+    }
+}
+
+/// Direction of a solve.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Sense {
+    /// `minimizing`
+    Minimize,
+    /// `maximizing`
+    Maximize,
+}
+
+impl Sense {
+    /// What the objective is multiplied by to make the problem a minimum.
+    pub fn sign(self) -> f64 {
+        match self {
+            Self::Minimize => 1.0,
+            Self::Maximize => -1.0,
+        }
+    }
+}
 
 /// Kind of a column.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::figure::color::series;
+use crate::color::series;
 use crate::solve::study::{Reference, Run, Study};
 
 fn small(v: Option<f64>) -> String {

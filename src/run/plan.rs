@@ -143,10 +143,11 @@ fn cost(branches: &[Branch]) -> f64 {
 impl Machine<'_> {
     /// The plan of a domain.
     pub(super) fn plan(&self, d: &Domain, wanted: Wanted) -> Rc<Plan> {
-        if let Some(p) = &*d.plan.borrow()
+        let known = d.plan.borrow().clone();
+        if let Some(Ok(p)) = known.map(Rc::downcast::<Plan>)
             && p.premises.iter().all(|p| self.holds_still(p))
         {
-            return p.clone();
+            return p;
         }
         let p = Rc::new(self.make_plan(d, wanted));
         *d.plan.borrow_mut() = Some(p.clone());

@@ -4,6 +4,7 @@
 //! to the program and are left in the text for the parser (`$load`, `$gdxin`, `$kill` …), and those
 //! that only shape a listing, which are accepted and do nothing.
 
+use super::Modes;
 use super::conditions::Flavour;
 use super::directive_names::{OTHERS, SILENT, SILENT_LINES, SILENT_SWITCHES};
 use super::evaluate::{evaluate, number_text};
@@ -12,7 +13,6 @@ use super::preprocess::{Ending, Known, Preprocessor};
 use super::variables::Reach;
 use super::{Outcome, embedded_code, refuse};
 use crate::diag::{Diagnostic, nearest};
-use crate::syntax::ast::Modes;
 
 /// Length of the word at the start of a text.
 pub(super) fn word_len(text: &str) -> usize {

@@ -7,6 +7,7 @@
 //! Invariant: a span that leaves this crate in a diagnostic is in the *original* text.
 
 use crate::diag::Diagnostic;
+pub use crate::span::Span;
 
 mod blocks;
 mod conditions;
@@ -16,12 +17,14 @@ mod evaluate;
 mod line;
 mod macros;
 mod map;
+mod modes;
 mod preprocess;
 mod variables;
 
 pub(crate) use conditions::predefined;
 pub(crate) use evaluate::constant;
 pub use map::{FileId, Place, SourceFile, SourceMap};
+pub use modes::{Modes, Switches};
 pub(crate) use preprocess::{DELIMITED, Preprocessor, quoted_end};
 pub use preprocess::{Ending, Known, NothingKnown, PreprocessOptions, SymbolKindName};
 pub(crate) use variables::constant as named_constant;
@@ -39,28 +42,4 @@ pub(crate) fn embedded_code(at: Span) -> Diagnostic {
     Diagnostic::error("E0113", at, "embedded code of other languages is not run")
         .label("not run")
         .help("write the computation in the language itself")
-}
-
-/// A range of bytes in the expanded text. `lo <= hi`; an empty span is a point.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Default, Debug)]
-pub struct Span {
-    /// First byte.
-    pub lo: u32,
-    /// One past the last byte.
-    pub hi: u32,
-}
-
-impl Span {
-    /// The range `lo..hi`.
-    pub fn new(lo: u32, hi: u32) -> Self {
-        Self { lo, hi }
-    }
-
-    /// The smallest span that covers both.
-    pub fn to(self, other: Span) -> Span {
-        Span {
-            lo: self.lo.min(other.lo),
-            hi: self.hi.max(other.hi),
-        }
-    }
 }

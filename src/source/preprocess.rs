@@ -20,11 +20,10 @@ use super::directives::word_len;
 use super::line::Line;
 use super::macros::Macros;
 use super::variables::{self, Variables};
-use super::{FileId, Outcome, SourceMap, Span, refuse};
+use super::{FileId, Modes, Outcome, SourceMap, Span, Switches, refuse};
 use crate::data::input::Input;
 use crate::diag::Diagnostic;
 use crate::host::{Host, HostError};
-use crate::syntax::ast::{Modes, Switches};
 
 /// Files included by files.
 const DEEPEST_INCLUDE: usize = 40;

@@ -3,9 +3,8 @@
 //! What the grammar cannot tell apart is kept as one node until names are known: `p(i+1)` is an
 //! [`Expr`] of kind [`ExprKind::Apply`] whether `p` is a parameter with a lead or a function of a sum.
 
-use std::rc::Rc;
-
-use crate::source::Span;
+pub use crate::model::instance::{Relation, Sense};
+use crate::source::{Span, Switches};
 
 /// A name as it was spelled. Names are compared without regard to case.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,56 +13,6 @@ pub struct Ident {
     pub name: Box<str>,
     /// Place.
     pub span: Span,
-}
-
-/// Switches set by `$on…`/`$off…` directives.
-#[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
-pub struct Modes {
-    /// `$onMulti`: a symbol may get data more than once (merged).
-    pub multi: bool,
-    /// `$onMultiR`: a second data statement replaces the first.
-    pub multi_replace: bool,
-    /// `$onEmpty`: empty data statements are allowed.
-    pub empty: bool,
-    /// `$onEps`: zeros in data are stored as `eps`.
-    pub eps: bool,
-    /// `$onUndf`: `undf` may be written.
-    pub undf: bool,
-    /// `$offOrder`: lags and `ord` on unordered sets are allowed.
-    pub off_order: bool,
-    /// `$onImplicitAssign`: a symbol may be read that was never assigned.
-    pub implicit_assign: bool,
-    /// `$onUni`: any set may stand at any position.
-    pub universal: bool,
-    /// `$onDotL`: a variable in an assignment means its level.
-    pub dot_l: bool,
-    /// `$offStrictSingleton`: of several elements a singleton keeps the first.
-    pub loose_singleton: bool,
-}
-
-/// The switches over the text of a statement: directives may stand inside it.
-#[derive(Clone, Debug)]
-pub struct Switches(Rc<[(u32, Modes)]>);
-
-impl Switches {
-    /// From where in the expanded text which switches are in force; the first holds from the start.
-    pub fn new(changes: &[(u32, Modes)]) -> Self {
-        Self(changes.into())
-    }
-
-    /// The switches where something begins.
-    pub fn at(&self, place: Span) -> Modes {
-        let later = self.0.partition_point(|(from, _)| *from <= place.lo);
-        self.0
-            .get(later.saturating_sub(1))
-            .map_or(Modes::default(), |m| m.1)
-    }
-}
-
-impl Default for Switches {
-    fn default() -> Self {
-        Self::new(&[(0, Modes::default())])
-    }
 }
 
 /// A statement.
@@ -315,31 +264,6 @@ pub struct Assign {
     pub nonzero: bool,
 }
 
-/// `=e=`, `=g=`, `=l=`, `=n=`.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Relation {
-    /// Equal.
-    Equal,
-    /// Left side at least the right.
-    Greater,
-    /// Left side at most the right.
-    Less,
-    /// No relation.
-    Free,
-}
-
-impl Relation {
-    /// Lower and upper bound of a left side whose right side is this.
-    pub fn bounds(self, rhs: f64) -> [f64; 2] {
-        match self {
-            Self::Equal => [rhs, rhs],
-            Self::Greater => [rhs, f64::INFINITY],
-            Self::Less => [f64::NEG_INFINITY, rhs],
-            Self::Free => [f64::NEG_INFINITY, f64::INFINITY],
-        }
-    }
-}
-
 /// The definition of an equation.
 #[derive(Clone, Debug)]
 pub struct Equate {
@@ -355,25 +279,6 @@ pub struct Equate {
     pub relation: Relation,
     /// Right side.
     pub right: Expr,
-}
-
-/// Direction of a solve.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Sense {
-    /// `minimizing`
-    Minimize,
-    /// `maximizing`
-    Maximize,
-}
-
-impl Sense {
-    /// What the objective is multiplied by to make the problem a minimum.
-    pub fn sign(self) -> f64 {
-        match self {
-            Self::Minimize => 1.0,
-            Self::Maximize => -1.0,
-        }
-    }
 }
 
 /// A `solve` statement.

@@ -10,12 +10,11 @@
 //! Invariants: the same scene gives the same bytes; points that are not finite are left out, never
 //! written; every text is escaped.
 
-pub mod color;
 mod layout;
 pub mod png;
 mod svg;
 
-pub use color::Paint;
+pub use crate::color::Paint;
 pub use png::{PngError, png};
 pub use svg::svg;
 

@@ -4,9 +4,9 @@ mod frame;
 
 use std::fmt::Write;
 
-use super::color::{self, Paint};
 use super::layout::{Axis, extent, rounded, text_width, visible};
 use super::{Anchor, Element, Scene, Shape, Style};
+use crate::color::{self, Paint};
 use frame::{legend_names, legend_rows, rotated, tick_texts};
 
 /// Ink of axes, texts and lines that have no colour of their own.

@@ -13,7 +13,7 @@ use super::ast::*;
 use super::grammar::Rule;
 use super::split::{Hole, HoleKind};
 use crate::diag::Diagnostic;
-use crate::source::Span;
+use crate::source::{Span, Switches};
 
 /// Depth of an expression, operators and parentheses counted: later stages recurse over it.
 pub(super) const DEEPEST: usize = 1000;

@@ -3,8 +3,9 @@
 use std::fmt::Write;
 
 use super::{Drawing, FONT, GRID, INK, MARGIN, Px, QUIET, escape};
+use crate::color;
 use crate::report::figure::layout::{Axis, log_ticks, power_label, text_width, tick_labels, ticks};
-use crate::report::figure::{Scene, Shape, color};
+use crate::report::figure::{Scene, Shape};
 
 /// Ticks of an axis that is to have about so many, with their labels.
 pub(super) fn tick_texts(range: [f64; 2], log: bool, wanted: f64) -> Vec<(f64, String)> {
