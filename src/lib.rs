@@ -56,6 +56,7 @@
 mod api;
 pub mod autodiff;
 pub mod check;
+#[cfg(feature = "cli")]
 pub mod cli;
 mod color;
 pub mod data;
@@ -77,7 +78,8 @@ pub use api::{
     Control, Error, Labels, Model, Options, OutputFile, Progress, Record, Records, Run, Solve,
     Special, Symbol, SymbolKind, VariableRecord, VariableRecords,
 };
+pub use diag::Severity;
 pub use host::{Host, HostError};
-pub use report::diagnostic::{Diagnostic, Place, Related, Severity};
+pub use report::diagnostic::{Diagnostic, Place, Related};
 pub use report::json::{Display, Number, Residual, RunStatus, Seconds};
 pub use solve::{ModelStatus, SolverStatus};

@@ -40,11 +40,12 @@ fn declaration(lines: &[&str], at: usize) -> String {
             text.push(' ');
         }
         text.push_str(line);
-        if line.ends_with(['{', ';']) {
+        if line.ends_with(['{', ';', '}']) {
             break;
         }
     }
-    text.trim_end_matches([' ', '{', ';']).replace(",)", ")")
+    text.trim_end_matches([' ', '{', '}', ';'])
+        .replace(",)", ")")
 }
 
 /// Members of a block: public fields and functions, variants, functions of a trait.
@@ -54,6 +55,13 @@ fn members(lines: &[&str], head: &str, out: &mut String) {
         let Some(item) = line.strip_prefix("    ") else {
             continue;
         };
+        let field = item
+            .strip_prefix("    ")
+            .filter(|_| head.starts_with("pub enum"));
+        if let Some(field) = field.filter(|f| !f.starts_with(['/', '#'])) {
+            let _ = writeln!(out, "        {}", field.trim_end_matches(','));
+            continue;
+        }
         let is_plain = !item.starts_with([' ', '/', '#', '}', ')']) && !item.is_empty();
         if !is_plain || !(all || item.starts_with("pub ")) || item.starts_with("pub(") {
             continue;
@@ -110,7 +118,7 @@ fn public_api() {
             let is_own = |t: &str| t == name || t.starts_with(&format!("{name}<"));
             if let Some((_, of)) = of.split_once(" for ") {
                 if is_own(of) {
-                    let _ = writeln!(out, "{}", declaration(&lines, n).trim_end_matches(" {}"));
+                    let _ = writeln!(out, "{}", declaration(&lines, n));
                 }
             } else if is_own(of.rsplit(' ').next().unwrap_or("")) {
                 members(&block(&lines, n), "impl", &mut out);

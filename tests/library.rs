@@ -19,7 +19,7 @@ Model shop / all /;
 solve shop using lp maximizing z;
 display x.l;
 File f / 'out.txt' /;  put f 'z = ' z.l:0:1;
-Figure g;  g: line(i, x = ord(i), y = x.l(i));
+Figure g { line(i)  x = ord(i), y = x.l(i); };
 draw g;
 ";
 
@@ -152,12 +152,24 @@ fn data_from_outside_are_checked() {
         )
     };
     let cases: [&dyn Fn(&mut Model); 6] = [
-        &|m| drop(m.set_parameter("price", [("c", 1.0)])),
-        &|m| drop(m.set_parameter("price", [(["a", "b"], 1.0)])),
-        &|m| drop(m.set_parameter("prise", [("a", 1.0)])),
-        &|m| drop(m.set_scalar("x", 1.0)),
-        &|m| drop(m.set_scalar("i", 1.0)),
-        &|m| drop(m.set_members("i", ["b"])),
+        &|m| {
+            m.set_parameter("price", [("c", 1.0)]);
+        },
+        &|m| {
+            m.set_parameter("price", [(["a", "b"], 1.0)]);
+        },
+        &|m| {
+            m.set_parameter("prise", [("a", 1.0)]);
+        },
+        &|m| {
+            m.set_scalar("x", 1.0);
+        },
+        &|m| {
+            m.set_scalar("i", 1.0);
+        },
+        &|m| {
+            m.set_members("i", ["b"]);
+        },
     ];
     let said: Vec<String> = cases.iter().map(|c| say(c)).collect();
     insta::assert_snapshot!(said.join("\n"));

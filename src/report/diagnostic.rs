@@ -77,7 +77,7 @@ pub fn place(span: Span, map: &SourceMap) -> Option<Place> {
 
 impl Diagnostic {
     /// With places in the files.
-    pub fn new(d: &diag::Diagnostic, map: &SourceMap) -> Self {
+    pub(crate) fn new(d: &diag::Diagnostic, map: &SourceMap) -> Self {
         let related = |o: &diag::Label| Related {
             place: place(o.span, map),
             text: o.text.clone(),
@@ -94,7 +94,7 @@ impl Diagnostic {
     }
 
     /// The same for a list.
-    pub fn all(list: &[diag::Diagnostic], map: &SourceMap) -> Vec<Self> {
+    pub(crate) fn all(list: &[diag::Diagnostic], map: &SourceMap) -> Vec<Self> {
         list.iter().map(|d| Self::new(d, map)).collect()
     }
 }

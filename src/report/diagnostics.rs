@@ -38,6 +38,7 @@ impl Look {
 
     /// For a stream: colours and box drawing on a terminal, unless `NO_COLOR` is set or the terminal
     /// is a dumb one.
+    #[cfg(feature = "cli")]
     pub fn stream(is_terminal: bool) -> Self {
         let set = |name| std::env::var_os(name).is_some_and(|v| !v.is_empty());
         let dumb = std::env::var_os("TERM").is_some_and(|v| v == "dumb");

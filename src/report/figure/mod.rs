@@ -11,12 +11,20 @@
 //! written; every text is escaped.
 
 mod layout;
+#[cfg(feature = "png")]
 pub mod png;
 mod svg;
 
 pub use crate::color::Paint;
+#[cfg(feature = "png")]
 pub use png::{PngError, png};
 pub use svg::svg;
+
+/// A build without the feature `png` writes SVG only.
+#[cfg(not(feature = "png"))]
+pub fn png(_: &str, _: f64) -> Result<Vec<u8>, &'static str> {
+    Err("this build of bmod writes SVG only")
+}
 
 /// Something to see.
 #[derive(Clone, Debug, Default)]
@@ -133,5 +141,5 @@ impl Element {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "png"))]
 mod tests;

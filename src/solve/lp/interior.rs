@@ -159,6 +159,12 @@ pub fn solve(
         Some(solver.solution)
     };
     // Clarabel's callback must own what it sees, so the monitor is asked from this thread.
+    #[cfg(not(feature = "system"))]
+    let solution = {
+        stop.store(interrupted(), Ordering::Relaxed);
+        run()
+    };
+    #[cfg(feature = "system")]
     let solution = std::thread::scope(|scope| {
         let worker = scope.spawn(run);
         let start = Instant::now();

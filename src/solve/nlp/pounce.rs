@@ -24,7 +24,8 @@ use pounce_restoration::resto_inner_solver::{
 };
 use std::cell::RefCell;
 use std::rc::Rc;
-use std::sync::mpsc::{Receiver, Sender, channel};
+#[cfg(feature = "system")]
+use std::sync::mpsc::channel;
 
 /// `option nlp = pounce`.
 #[derive(Clone, Copy, Debug, Default)]
@@ -40,42 +41,60 @@ impl Provider for Pounce {
         if let Some(s) = control.seconds() {
             options.push(("max_wall_time".into(), format!("{s:.6}")));
         }
-        let (send, receive) = channel();
-        let (reply, on) = channel();
-        let thread = {
-            let nlp = nlp.clone();
-            std::thread::Builder::new()
-                .name(super::THREAD.into())
-                .stack_size(64 << 20)
-                .spawn(move || run(nlp, &options, send, on))
-                .map_err(|e| format!("no thread could be started: {e}"))?
-        };
-        for progress in receive {
-            // Nobody listens: the run has ended by itself.
-            let _ = reply.send((control.watch)(&progress));
-        }
-        match thread.join() {
-            Ok(result) => result,
-            Err(_) => {
-                let nlp = lock(&nlp);
-                Ok(Solution {
-                    ended: Ended::Broken,
-                    x: nlp.start().to_vec(),
-                    lambda: vec![0.0; nlp.size().1],
-                    objective: f64::NAN,
-                    iterations: 0,
-                })
-            }
+        // Without threads nobody can be asked; the time limit holds.
+        #[cfg(not(feature = "system"))]
+        return run(nlp, &options, Box::new(|_| true));
+        #[cfg(feature = "system")]
+        on_a_thread(nlp, options, control)
+    }
+}
+
+/// Runs it on a thread of its own, which a panic may end.
+#[cfg(feature = "system")]
+fn on_a_thread(
+    nlp: Shared,
+    options: Vec<(String, String)>,
+    control: &mut Control<'_>,
+) -> Result<Solution, String> {
+    let (send, receive) = channel();
+    let (reply, on) = channel();
+    let thread = {
+        let nlp = nlp.clone();
+        std::thread::Builder::new()
+            .name(super::THREAD.into())
+            .stack_size(64 << 20)
+            .spawn(move || {
+                // The answer is waited for: how far a run gets must not depend on how fast the threads are. A
+                // closed channel means that nobody listens any more.
+                let tell = move |p| send.send(p).is_ok() && on.recv().unwrap_or(false);
+                run(nlp, &options, Box::new(tell))
+            })
+            .map_err(|e| format!("no thread could be started: {e}"))?
+    };
+    for progress in receive {
+        // Nobody listens: the run has ended by itself.
+        let _ = reply.send((control.watch)(&progress));
+    }
+    match thread.join() {
+        Ok(result) => result,
+        Err(_) => {
+            let nlp = lock(&nlp);
+            Ok(Solution {
+                ended: Ended::Broken,
+                x: nlp.start().to_vec(),
+                lambda: vec![0.0; nlp.size().1],
+                objective: f64::NAN,
+                iterations: 0,
+            })
         }
     }
 }
 
-/// What the thread does.
+/// Solves; `tell` hears of each iteration, and says whether to go on.
 fn run(
     nlp: Shared,
     options: &[(String, String)],
-    progress: Sender<Progress>,
-    on: Receiver<bool>,
+    tell: Box<dyn FnMut(Progress) -> bool>,
 ) -> Result<Solution, String> {
     let mut app = IpoptApplication::new();
     for (k, v) in options {
@@ -98,8 +117,7 @@ fn run(
     let x = lock(&nlp).start().to_vec();
     let adapter = Rc::new(RefCell::new(Adapter {
         nlp,
-        progress,
-        on,
+        tell,
         lambda: vec![0.0; m],
         solution: Solution {
             ended: Ended::Broken,
@@ -137,8 +155,7 @@ fn ended(status: Status) -> Ended {
 /// The problem as pounce sees it.
 struct Adapter {
     nlp: Shared,
-    progress: Sender<Progress>,
-    on: Receiver<bool>,
+    tell: Box<dyn FnMut(Progress) -> bool>,
     lambda: Vec<f64>,
     solution: Solution,
 }
@@ -262,9 +279,7 @@ impl TNLP for Adapter {
     }
 
     fn intermediate_callback(&mut self, s: IterStats, _: &IpoptData, _: &IpoptCq) -> bool {
-        // The answer is waited for: how far a run gets must not depend on how fast the threads are. A closed channel
-        // means that nobody listens any more.
-        let sent = self.progress.send(Progress {
+        (self.tell)(Progress {
             iteration: u64::try_from(s.iter).unwrap_or(0),
             objective: s.obj_value,
             primal: s.inf_pr,
@@ -272,7 +287,6 @@ impl TNLP for Adapter {
             mu: s.mu,
             step: s.alpha_pr,
             restoration: s.mode == AlgorithmMode::RestorationPhaseMode,
-        });
-        sent.is_ok() && self.on.recv().unwrap_or(false)
+        })
     }
 }
