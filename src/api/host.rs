@@ -56,32 +56,46 @@ impl<'a> RunHost<'a> {
         }
     }
 
-    /// A text in memory: by the name as it stands, beside the file that asks, or as it stands without `.` and `..`.
-    fn in_memory(&self, path: &str, from: Option<&Path>) -> Option<(PathBuf, String)> {
-        let texts = &self.model.texts;
+    /// A file in memory: by the name as it stands, beside the file that asks, or as it stands without `.` and `..`.
+    fn in_memory(&self, path: &str, from: Option<&Path>) -> Option<(PathBuf, Vec<u8>)> {
+        let contents = &self.model.contents;
         let beside = from.and_then(Path::parent).map(|f| plain(&f.join(path)));
         let names = [Some(path.to_string()), beside, Some(plain(Path::new(path)))];
         let mut found = names
             .into_iter()
             .flatten()
-            .filter_map(|n| texts.get(&n).map(|t| (PathBuf::from(n), t.clone())));
+            .filter_map(|n| contents.get(&n).map(|t| (PathBuf::from(n), t.clone())));
         found.next().or_else(|| {
             let text = self.model.resolver.as_ref()?(path)?;
-            Some((path.into(), text))
+            Some((path.into(), text.into_bytes()))
         })
     }
 }
 
 impl Host for RunHost<'_> {
     fn read(&mut self, path: &str, from: Option<&Path>) -> Result<(PathBuf, String), HostError> {
-        if let Some(found) = self.in_memory(path, from) {
-            return Ok(found);
+        if let Some((known, bytes)) = self.in_memory(path, from) {
+            let text = String::from_utf8(bytes);
+            let text = text.map_err(|e| HostError::NotUtf8(e.utf8_error().valid_up_to()))?;
+            return Ok((known, text));
         }
         #[cfg(feature = "system")]
         if let Some(files) = &self.model.files {
             return files.read(path, from);
         }
         Err(HostError::NotFound)
+    }
+
+    fn read_bytes(
+        &mut self,
+        path: &str,
+        from: Option<&Path>,
+    ) -> Result<(PathBuf, Vec<u8>), HostError> {
+        #[cfg(feature = "system")]
+        if let (None, Some(files)) = (self.in_memory(path, from), &self.model.files) {
+            return files.read_bytes(path, from);
+        }
+        self.in_memory(path, from).ok_or(HostError::NotFound)
     }
 
     fn exists(&mut self, path: &str, from: Option<&Path>) -> bool {

@@ -57,7 +57,8 @@ type Resolver = Arc<dyn Fn(&str) -> Option<String> + Send + Sync>;
 #[derive(Clone)]
 pub struct Model {
     name: String,
-    texts: BTreeMap<String, String>,
+    /// Files in memory, the model's own among them.
+    contents: BTreeMap<String, Vec<u8>>,
     resolver: Option<Resolver>,
     /// Files may be read from disk.
     #[cfg(feature = "system")]
@@ -84,7 +85,7 @@ impl Model {
             .extension()
             .is_some_and(|e| e.eq_ignore_ascii_case("gms"));
         Self {
-            texts: BTreeMap::from([(name.clone(), text.into())]),
+            contents: BTreeMap::from([(name.clone(), text.into().into_bytes())]),
             name,
             resolver: None,
             #[cfg(feature = "system")]
@@ -124,9 +125,10 @@ impl Model {
         self
     }
 
-    /// Adds a file that the model may include (`$include`) or load data from (`.csv`, `.json`).
-    pub fn file(&mut self, name: impl Into<String>, text: impl Into<String>) -> &mut Self {
-        self.texts.insert(name.into(), text.into());
+    /// Adds a file that the model may include (`$include`) or load data from (`.csv`, `.json`, `.gdx`): a text, or
+    /// bytes.
+    pub fn file(&mut self, name: impl Into<String>, content: impl Into<Vec<u8>>) -> &mut Self {
+        self.contents.insert(name.into(), content.into());
         self
     }
 
