@@ -7,6 +7,7 @@ mod common;
 mod complementarity;
 mod corpus;
 mod derivatives;
+mod docs;
 mod functions;
 mod library;
 mod mcp_corpus;

@@ -1,0 +1,117 @@
+//! Every command in the pages of `docs/` gives the output that stands under it.
+//!
+//! A block ` ```blk NAME ` is a file; a block ` ```console ` holds commands (`$ bmod …`), each followed by what it prints. Pages
+//! run from top to bottom in a folder of their own, in which `models` is the project's. Times are not compared. `UPDATE_DOCS=1`
+//! writes the outputs anew.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Pages whose commands are run.
+fn pages() -> Vec<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut pages: Vec<PathBuf> = std::fs::read_dir(root.join("docs"))
+        .expect("docs")
+        .map(|e| e.expect("an entry").path())
+        .filter(|p| p.extension().is_some_and(|e| e == "md"))
+        .collect();
+    pages.sort();
+    pages
+}
+
+/// What a command prints: standard output, then standard error.
+fn output_of(command: &str, folder: &Path) -> String {
+    let mut words = command.split_whitespace();
+    assert_eq!(words.next(), Some("bmod"), "{command}");
+    let out = Command::new(env!("CARGO_BIN_EXE_bmod"))
+        .args(words)
+        .current_dir(folder)
+        .env_remove("NO_COLOR")
+        .output()
+        .expect("bmod runs");
+    let text = [out.stdout, out.stderr].map(|b| String::from_utf8(b).expect("UTF-8"));
+    text.concat().trim_end().to_string()
+}
+
+/// Without durations, which are never the same: `6.2 ms`, `0.31 s`.
+fn timeless(text: &str) -> String {
+    let mut out: Vec<&str> = Vec::new();
+    let words: Vec<&str> = text.split(' ').collect();
+    for (k, word) in words.iter().enumerate() {
+        let next = words.get(k + 1).copied().unwrap_or_default();
+        let unit = next.lines().next().unwrap_or_default();
+        let is_duration = word.parse::<f64>().is_ok() && matches!(unit, "ms" | "s");
+        out.push(if is_duration { "_" } else { word });
+    }
+    out.join(" ")
+}
+
+/// A page with the outputs as they are now.
+fn run(page: &str, folder: &Path) -> String {
+    let mut out = String::new();
+    let mut lines = page.lines().peekable();
+    while let Some(line) = lines.next() {
+        out.push_str(line);
+        out.push('\n');
+        if let Some(name) = line.strip_prefix("```blk ") {
+            let mut text = String::new();
+            while let Some(line) = lines.next_if(|l| *l != "```") {
+                text.push_str(line);
+                text.push('\n');
+            }
+            std::fs::write(folder.join(name), &text).expect("written");
+            out.push_str(&text);
+        } else if line == "```console" {
+            while let Some(line) = lines.next_if(|l| *l != "```") {
+                let Some(command) = line.strip_prefix("$ ") else {
+                    panic!("output without a command: {line}");
+                };
+                let mut claimed: Vec<&str> = Vec::new();
+                while let Some(line) = lines.next_if(|l| *l != "```" && !l.starts_with("$ ")) {
+                    claimed.push(line);
+                }
+                let claimed = claimed.join("\n").trim_end().to_string();
+                let now = output_of(command, folder);
+                let same = timeless(&claimed) == timeless(&now);
+                let text = if same { claimed } else { now };
+                out.push_str(&format!("$ {command}\n{text}\n"));
+            }
+        }
+    }
+    out
+}
+
+#[test]
+fn commands_of_the_pages_print_what_stands_there() {
+    let update = std::env::var_os("UPDATE_DOCS").is_some();
+    let mut wrong = Vec::new();
+    let mut commands = 0;
+    for path in pages() {
+        let page = std::fs::read_to_string(&path).expect("a page");
+        if !page.contains("```console") {
+            continue;
+        }
+        commands += page.lines().filter(|l| l.starts_with("$ bmod")).count();
+        let folder = tempfile::tempdir().expect("a folder");
+        #[cfg(unix)]
+        std::os::unix::fs::symlink(
+            Path::new(env!("CARGO_MANIFEST_DIR")).join("models"),
+            folder.path().join("models"),
+        )
+        .expect("a link");
+        let now = run(&page, folder.path());
+        if now != page {
+            if update {
+                std::fs::write(&path, &now).expect("written");
+            }
+            let differs = now.lines().zip(page.lines()).find(|(a, b)| a != b);
+            wrong.push(format!("{}: {differs:?}", path.display()));
+        }
+    }
+    assert!(commands > 10, "{commands} commands");
+    assert!(
+        wrong.is_empty() || update,
+        "UPDATE_DOCS=1 cargo test --test all docs:: writes the outputs anew\n{}",
+        wrong.join("\n")
+    );
+}
