@@ -56,6 +56,7 @@
 mod api;
 pub mod autodiff;
 pub mod check;
+pub mod claims;
 #[cfg(feature = "cli")]
 pub mod cli;
 mod color;

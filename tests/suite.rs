@@ -9,12 +9,11 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::common::{Memory, files};
-use bmod::check::symbols::{SymbolKind, attribute};
-use bmod::data::value;
+use bmod::claims::{same, spelled, value_of};
 use bmod::diag::Severity;
 use bmod::report::json::SolveReport;
 use bmod::report::why::Explanation;
-use bmod::run::{Machine, Options};
+use bmod::run::Options;
 use bmod::session;
 use bmod::source::PreprocessOptions;
 
@@ -90,93 +89,6 @@ fn claims(text: &str) -> Claims {
         }
     }
     c
-}
-
-/// Labels in quotes between parentheses.
-fn labels(text: &str) -> Vec<String> {
-    let mut out = Vec::new();
-    let mut rest = text;
-    while let Some(start) = rest.find(['\'', '"']) {
-        let quote = &rest[start..=start];
-        let inner = &rest[start + 1..];
-        let end = inner.find(quote).expect("a closing quote");
-        out.push(inner[..end].to_string());
-        rest = &inner[end + 1..];
-    }
-    out
-}
-
-/// `x.l('a')` as the run left it; None where there is no such thing.
-fn value_of(m: &mut Machine, what: &str) -> Option<f64> {
-    let (head, key) = match what.split_once('(') {
-        Some((h, k)) => (h.trim(), k),
-        None => (what.trim(), ""),
-    };
-    if head.eq_ignore_ascii_case("card") {
-        let s = m.symbols.find(key.trim_end_matches(')').trim())?;
-        return Some(m.store.table(m.symbols.get(s).table).len() as f64);
-    }
-    let (name, attr) = match head.split_once('.') {
-        Some((n, a)) => (n, Some(a.to_lowercase())),
-        None => (head, None),
-    };
-    let s = m.symbols.find(name)?;
-    let symbol = m.symbols.get(s);
-    if let SymbolKind::Model(_) = symbol.kind {
-        return Some(
-            m.models
-                .get(&s)
-                .and_then(|x| x.get(&attr?))
-                .unwrap_or(value::NA),
-        );
-    }
-    let offset = match attr.as_deref() {
-        None => 0,
-        Some("l") => attribute::L,
-        Some("m") => attribute::M,
-        Some("lo") => attribute::LO,
-        Some("up") => attribute::UP,
-        Some("scale") => attribute::SCALE,
-        Some("prior") => attribute::PRIOR,
-        Some(_) => return None,
-    };
-    let table = symbol.table + offset;
-    let keys: Option<Vec<u32>> = labels(key)
-        .iter()
-        .map(|l| m.store.universe.get(l))
-        .collect();
-    let table = m.store.table(table);
-    match keys {
-        Some(k) if k.len() == table.dim() => Some(table.get(&k)),
-        Some(_) => None,
-        // No such label: not stored.
-        None => Some(table.default_value()),
-    }
-}
-
-fn same(actual: f64, claimed: &str, tolerance: f64) -> bool {
-    match claimed {
-        "eps" => value::is_eps(actual),
-        "na" => value::is_na(actual),
-        "undf" => value::is_undf(actual),
-        "inf" => actual == f64::INFINITY,
-        "-inf" => actual == f64::NEG_INFINITY,
-        "yes" => actual != 0.0,
-        "no" => actual == 0.0,
-        number => match number.parse::<f64>() {
-            Ok(x) => actual.is_finite() && (actual - x).abs() <= tolerance * x.abs().max(1.0),
-            Err(_) => false,
-        },
-    }
-}
-
-fn spelled(v: f64) -> String {
-    match v {
-        v if value::is_eps(v) => "eps".into(),
-        v if value::is_na(v) => "na".into(),
-        v if v.is_nan() => "undf".into(),
-        v => v.to_string(),
-    }
 }
 
 /// Lines without blanks at their ends, several empty ones as one, none at the ends.

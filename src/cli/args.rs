@@ -48,6 +48,12 @@ pub enum Command {
     List(ListArgs),
     /// Shows what is in a GDX file, the data files of GAMS: all symbols, or the records of one.
     Gdx(GdxArgs),
+    /// Runs a model again at each save of a file in its folder.
+    Watch(WatchArgs),
+    /// Writes a model to begin with.
+    New(NewArgs),
+    /// Runs models and compares what they claim in comments: `*= x.l('a') 4`.
+    Test(TestArgs),
     /// Prints a script that completes bmod's commands in a shell.
     Completions {
         /// The shell.
@@ -200,6 +206,75 @@ pub struct ListArgs {
     /// How many of each block are shown.
     #[arg(long, value_name = "N", default_value_t = 3)]
     pub limit: usize,
+}
+
+/// Arguments of `bmod watch`.
+#[derive(Args, Debug, Clone)]
+pub struct WatchArgs {
+    /// The model.
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// Arguments of `bmod run`.
+    #[arg(
+        value_name = "ARGUMENT",
+        trailing_var_arg = true,
+        allow_hyphen_values = true
+    )]
+    pub arguments: Vec<OsString>,
+}
+
+/// What `bmod new` can begin with.
+#[derive(ValueEnum, Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Template {
+    /// A linear program with its data in a CSV file.
+    #[default]
+    Lp,
+    /// A nonlinear program with a start and a figure.
+    Nlp,
+    /// A complementarity problem: an equilibrium of supply and demand.
+    Mcp,
+    /// A wall of blocks and how it falls.
+    Wall,
+}
+
+/// Arguments of `bmod new`.
+#[derive(Args, Debug, Clone)]
+pub struct NewArgs {
+    /// Name of the model, with a folder if wanted.
+    #[arg(value_name = "NAME")]
+    pub name: String,
+    /// What it is.
+    #[arg(long = "kind", value_enum, default_value_t)]
+    pub template: Template,
+}
+
+/// Arguments of `bmod test`.
+#[derive(Args, Debug, Clone)]
+pub struct TestArgs {
+    /// Models, and folders of them.
+    #[arg(value_name = "FILE|FOLDER", required = true, value_hint = ValueHint::AnyPath)]
+    pub paths: Vec<PathBuf>,
+    /// Relative tolerance of a claim; below 1 absolute.
+    #[arg(long, value_name = "T", default_value_t = super::test::TOLERANCE)]
+    pub tolerance: f64,
+    /// Sets %NAME% to VALUE in all of them.
+    #[arg(short = 'D', value_name = "NAME=VALUE", value_parser = pair)]
+    pub define: Vec<(String, String)>,
+    /// How they are solved.
+    #[command(flatten)]
+    pub solve: SolveArgs,
+}
+
+impl TestArgs {
+    /// What the runs share; the model is still to be named.
+    pub(super) fn model(&self) -> ModelArgs {
+        ModelArgs {
+            file: PathBuf::new(),
+            define: self.define.clone(),
+            allow_read: Vec::new(),
+            message_format: MessageFormat::Human,
+        }
+    }
 }
 
 fn pair(text: &str) -> Result<(String, String), String> {

@@ -5,6 +5,9 @@ pub mod bench;
 pub mod commands;
 mod gdx;
 pub mod host;
+pub mod new;
+pub mod test;
+pub mod watch;
 pub mod why;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};

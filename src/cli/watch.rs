@@ -1,0 +1,65 @@
+//! `bmod watch`: runs a model again whenever a file of its folder is saved.
+
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::{Duration, SystemTime};
+
+use super::args::{EXECUTION, WatchArgs};
+
+/// How often the files are looked at.
+const INTERVAL: Duration = Duration::from_millis(200);
+
+/// Carries out `bmod watch`: a run as a process of its own each time, until Ctrl-C.
+pub fn watch(a: &WatchArgs) -> u8 {
+    let Ok(program) = std::env::current_exe() else {
+        eprintln!("bmod: the program does not find itself");
+        return EXECUTION;
+    };
+    let folder = match a.file.parent() {
+        Some(p) if !p.as_os_str().is_empty() => p.to_path_buf(),
+        _ => PathBuf::from("."),
+    };
+    let mut seen = None;
+    loop {
+        let now = stamp(&folder);
+        if seen == Some(now) {
+            std::thread::sleep(INTERVAL);
+            continue;
+        }
+        // On a terminal the screen is cleared, so that the first error or the answer stands on top.
+        if std::io::stdout().is_terminal() {
+            print!("\x1b[2J\x1b[H");
+        }
+        let saved = modified(&a.file);
+        let mut run = Command::new(&program);
+        run.arg("run").arg(&a.file).args(&a.arguments);
+        if let Err(e) = run.status() {
+            eprintln!("bmod: the run could not be started: {e}");
+            return EXECUTION;
+        }
+        println!(
+            "\nwaiting for a change in {} (Ctrl-C ends)",
+            folder.display()
+        );
+        // What the run itself wrote is no change; what was saved meanwhile is.
+        seen = (modified(&a.file) == saved).then(|| stamp(&folder));
+    }
+}
+
+fn modified(file: &Path) -> Option<SystemTime> {
+    file.metadata().ok()?.modified().ok()
+}
+
+/// The latest change of the texts and data of a folder, and how many there are.
+fn stamp(folder: &Path) -> (Option<SystemTime>, usize) {
+    const SOURCES: [&str; 6] = ["blk", "gms", "inc", "csv", "json", "gdx"];
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let is_source = |p: &PathBuf| {
+        p.extension()
+            .is_some_and(|x| SOURCES.iter().any(|s| x.eq_ignore_ascii_case(s)))
+    };
+    let files = entries.map(|e| e.path()).filter(is_source);
+    let times: Vec<SystemTime> = files.filter_map(|p| modified(&p)).collect();
+    (times.iter().max().copied(), times.len())
+}
