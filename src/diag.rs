@@ -3,6 +3,8 @@
 //! Invariant: every error has a place. A message speaks in the reader's terms, with labels and
 //! numbers of the instance; a help line says how to fix it. No Rust type name, no internal index.
 
+pub mod codes;
+
 use crate::span::Span;
 
 /// How serious a diagnostic is.
@@ -29,7 +31,7 @@ pub struct Label {
 /// One thing to tell the person.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Diagnostic {
-    /// Stable code, `E0101`; see `docs/errors.md`.
+    /// A code of [`codes::CODES`], `E0101`.
     pub code: &'static str,
     /// How serious.
     pub severity: Severity,
@@ -47,6 +49,7 @@ pub struct Diagnostic {
 
 impl Diagnostic {
     fn new(severity: Severity, code: &'static str, span: Span, message: impl Into<String>) -> Self {
+        debug_assert!(codes::find(code).is_some(), "{code} is not in diag::codes");
         Self {
             code,
             severity,
@@ -107,7 +110,8 @@ pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
     known
         .into_iter()
         .map(|k| (strsim::damerau_levenshtein(&name, &k.to_lowercase()), k))
-        .filter(|&(d, k)| d <= 1 + name.len().min(k.len()) / 4)
+        // Of two names of one letter none is like the other.
+        .filter(|&(d, k)| d <= 1 + name.len().min(k.len()) / 4 && d < name.len().max(k.len()))
         .min()
         .map(|(_, k)| k)
 }

@@ -13,6 +13,7 @@ mod library;
 mod mcp_corpus;
 mod mcp_solver;
 mod mcp_walls;
+mod mistakes;
 mod mpec;
 mod nonlinear;
 mod planner;

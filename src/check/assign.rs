@@ -8,7 +8,7 @@ use super::{Compiler, Failed};
 use crate::diag::Diagnostic;
 use crate::model::instance::Function;
 use crate::source::Span;
-use crate::syntax::ast::{Assign, Reference};
+use crate::syntax::ast::{self, Assign, Expr, ExprKind, Reference};
 
 impl Compiler {
     /// An assignment; several statements where GAMS does more than one thing.
@@ -59,6 +59,10 @@ impl Compiler {
             let value = c.expr(&a.value);
             c.texts_allowed = false;
             let value = value?;
+            if matches!(target, Target::Table(_) | Target::Fix(_)) {
+                c.index_as_number(&value);
+                c.loose_condition(&a.value);
+            }
             let covers = domain.conditions.is_empty()
                 && !a.nonzero
                 && domain.slots.len() == symbol.dim()
@@ -120,6 +124,27 @@ impl Compiler {
         Ok(())
     }
 
+    /// `s(t) = s(t-1) + 1 $ t > 1`: `$` takes `t` alone.
+    fn loose_condition(&mut self, value: &Expr) {
+        use ast::BinaryOp::{Eq, Ge, Gt, Le, Lt, Ne};
+        let ExprKind::Binary(Eq | Ne | Lt | Le | Gt | Ge, left, _) = &value.kind else {
+            return;
+        };
+        let last = match &left.kind {
+            ExprKind::Sum(terms) => terms.last().map(|(_, t)| t),
+            _ => Some(&**left),
+        };
+        if let Some(ExprKind::Dollar(_, c)) = last.map(|l| &l.kind)
+            && let ExprKind::Apply { .. } = &c.kind
+        {
+            let message = "`$` takes only what stands directly behind it; the comparison is made with all that stands on the left";
+            let d = Diagnostic::warning("E0377", c.span, message)
+                .label("the condition ends here")
+                .help("put the condition in parentheses: `1$(ord(t) > 1)`");
+            self.report(d);
+        }
+    }
+
     /// What is written to.
     fn target(&mut self, s: SymbolId, t: &Reference) -> Result<Target, Failed> {
         let symbol = self.symbols.get(s).clone();
@@ -146,13 +171,13 @@ impl Compiler {
                     let d = Diagnostic::error(
                         "E0310",
                         t.span,
-                        format!(
-                            "`{}` is a {what}; it cannot be assigned itself",
-                            symbol.name
-                        ),
+                        format!("the {what} `{}` cannot be assigned itself", symbol.name),
                     )
                     .label("which of its numbers?")
                     .other(symbol.declared, "declared here");
+                    if what == "equation" {
+                        self.lose(&t.name.name);
+                    }
                     return self.fail(if what == "equation" {
                         d.help(format!(
                             "an equation is defined with two dots: `{}.. left =e= right;`",

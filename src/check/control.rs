@@ -118,8 +118,8 @@ impl Compiler {
         let Some(indices) = indices else {
             if self.controlled(id).is_some() {
                 return self.fail(
-                    Diagnostic::error("E0305", span, format!("`{}` is under control already", set.name))
-                        .label("controlled a second time here")
+                    Diagnostic::error("E0305", span, format!("`{}` is bound already", set.name))
+                        .label("bound a second time here")
                         .help(format!(
                             "use an alias for the inner index: `alias({0},{0}2);` and write `{0}2` here",
                             symbol.name

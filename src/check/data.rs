@@ -50,6 +50,8 @@ pub(super) struct Filling {
     table: TableId,
     /// Records of this statement, where the symbol had some before it: none may come twice.
     own: Option<Seen>,
+    /// A value was given.
+    begun: bool,
 }
 
 impl Filling {
@@ -111,6 +113,7 @@ impl Compiler {
             symbol: s,
             table,
             own: (!old.is_empty()).then(Seen::default),
+            begun: false,
         })
     }
 
@@ -254,7 +257,11 @@ impl Compiler {
         if to.filling.repeats(&mut self.store, key) {
             let label = self.key_text(key);
             let message = format!("the element {label} of `{}` appears twice", to.symbol.name);
-            self.report(Diagnostic::error("E0341", span, message).label("second time"));
+            self.report(
+                Diagnostic::error("E0341", span, message)
+                    .label("second time")
+                    .help("take one of them out"),
+            );
             return;
         }
         if matches!(to.symbol.kind, SymbolKind::Set { singleton: true })
@@ -373,7 +380,15 @@ impl Compiler {
                                 symbol.name
                             ),
                         )
-                        .label(at),
+                        .label(at)
+                        .help(match decimal_comma(map, record.span) {
+                            true => "decimals stand behind a point: `1.5`".to_owned(),
+                            false if dim == 0 => "write `/ 5 /`".to_owned(),
+                            false => format!(
+                                "write each label and its number: `/ {} 1, … /`",
+                                vec!["a"; dim].join(".")
+                            ),
+                        }),
                     );
                     continue;
                 }
@@ -406,7 +421,7 @@ impl Compiler {
         self.fail(
             Diagnostic::error("E0345", span, format!("`{name}` is not a number"))
                 .label("a number is expected")
-                .help("numbers are `1.5`, `-2e3`, `inf`, `eps`, `na`; other words must be declared as acronyms"),
+                .help("numbers are `1.5`, `-2e3`, `inf`, `eps`, `na`; a label with a blank stands in quotes, `'new york' 3`; other words are declared as acronyms"),
         )
     }
 
@@ -427,7 +442,9 @@ impl Compiler {
             [] => v,
             _ => self.stored(v, span),
         };
-        if v != 0.0 && filling.repeats(&mut self.store, key) {
+        let again = key.is_empty() && filling.begun;
+        filling.begun = true;
+        if again || v != 0.0 && filling.repeats(&mut self.store, key) {
             let s = filling.symbol;
             let label = self.key_text(key);
             let name = self.symbols.get(s).name.clone();
@@ -436,7 +453,17 @@ impl Compiler {
             } else {
                 format!("the record {label} of `{name}` appears twice")
             };
-            self.report(Diagnostic::error("E0341", span, what).label("second time"));
+            let help = match key {
+                [] => {
+                    "a scalar has one value; decimals stand behind a point, `1.5`, and no sign parts thousands"
+                }
+                _ => "take one of them out",
+            };
+            self.report(
+                Diagnostic::error("E0341", span, what)
+                    .label("second time")
+                    .help(help),
+            );
             return;
         }
         self.store.tables[filling.table as usize].set(key, v);
@@ -604,6 +631,12 @@ fn scaled(v: f64, factor: f64) -> f64 {
     } else {
         v * factor
     }
+}
+
+/// Whether `5` of `1,5` is taken for a label.
+fn decimal_comma(map: &SourceMap, label: Span) -> bool {
+    let text = map.text(Span::new(label.lo.saturating_sub(2), label.hi));
+    matches!(text.as_bytes(), [before, b',', first, ..] if before.is_ascii_digit() && first.is_ascii_digit())
 }
 
 /// A number as it may stand in data.

@@ -71,6 +71,19 @@ impl Compiler {
         kind: SymbolKind,
         tables: impl FnOnce(&mut Self, usize) -> TableId,
     ) -> Result<SymbolId, Failed> {
+        let declared = self.declare_new(d, kind, tables);
+        if declared.is_err() {
+            self.lose_declaration(&d.name.name);
+        }
+        declared
+    }
+
+    fn declare_new(
+        &mut self,
+        d: &SymbolDecl,
+        kind: SymbolKind,
+        tables: impl FnOnce(&mut Self, usize) -> TableId,
+    ) -> Result<SymbolId, Failed> {
         let mut names = std::borrow::Cow::Borrowed(d.domain.as_deref().unwrap_or(&[]));
         if matches!(kind, SymbolKind::Set { .. }) && self.symbols.find(&d.name.name).is_none() {
             // `set e(e)`: a set over itself is over the universe.
@@ -97,7 +110,10 @@ impl Compiler {
                     )
                     .label("declared again")
                     .other(old.declared, "first declared here")
-                    .help("choose another name"),
+                    .help(match *old.name == *d.name.name {
+                        true => "choose another name",
+                        false => "choose another name: capitals do not distinguish names",
+                    }),
                 );
             }
             if old.open && d.domain.is_some() && domain.len() <= 20 {
@@ -485,7 +501,8 @@ impl Compiler {
                         ),
                     )
                     .label("not an equation")
-                    .other(symbol.declared, "declared here"),
+                    .other(symbol.declared, "declared here")
+                    .help("list equations, or `model m / all /;` for all of them; variables are found in them"),
                 ),
             }
         };

@@ -30,18 +30,45 @@ impl Compiler {
     /// The symbol of a name, or an "unknown symbol" error with the nearest name.
     pub(super) fn lookup(&mut self, id: &Ident) -> Result<SymbolId, Failed> {
         if let Some(s) = self.named(id) {
-            return Ok(s);
+            return if self.is_torn(s) { Err(Failed) } else { Ok(s) };
         }
         let near = nearest(&id.name, self.symbols.iter().skip(1).map(|(_, s)| &*s.name))
             .map(str::to_string);
         let d = Diagnostic::error("E0301", id.span, format!("`{}` is not known", id.name))
             .label("unknown symbol");
-        self.fail(match near {
+        let d = match near {
             Some(n) => d.help(format!("did you mean `{n}`?")),
-            None => d.help(
-                "declare it first: names must be declared above the place where they are used",
-            ),
-        })
+            None => d.help(DECLARE_FIRST),
+        };
+        self.unknown(id, d)
+    }
+
+    /// The equation that a definition is for.
+    pub(super) fn lookup_equation(&mut self, id: &Ident) -> Result<SymbolId, Failed> {
+        if self.named(id).is_some() {
+            return self.lookup(id);
+        }
+        // A declared equation that nothing defines is meant, if its name is like this one.
+        let open = self
+            .symbols
+            .iter()
+            .filter(|(_, s)| matches!(s.kind, SymbolKind::Equation(None)));
+        let near = nearest(&id.name, open.map(|(_, s)| &*s.name)).map(str::to_string);
+        let d = Diagnostic::error(
+            "E0301",
+            id.span,
+            format!("the equation `{}` is not declared", id.name),
+        )
+        .label("unknown equation");
+        let d = match &near {
+            Some(n) => d.help(format!("did you mean `{n}`?")),
+            None => d.help(format!(
+                "declare it before: `equation {};`, with its indices if it has any",
+                id.name
+            )),
+        };
+        near.iter().for_each(|n| self.lose(n));
+        self.unknown(id, d)
     }
 
     /// A symbol by name; `file` stands for the file that `put` named last.
@@ -132,13 +159,13 @@ impl Compiler {
             ExprKind::Product(factors) => {
                 let mut out = Vec::with_capacity(factors.len());
                 for (f, x) in factors {
-                    let node = self.expr(x)?;
-                    out.push(match f {
+                    out.push(self.expr(x).map(|node| match f {
                         Factor::Divide => divisor(x, node),
                         Factor::Multiply => (false, node),
-                    });
+                    }));
                 }
-                self.product(out, span)
+                let factors = out.into_iter().collect::<Result<_, Failed>>()?;
+                self.product(factors, span)
             }
             ExprKind::Binary(BinaryOp::Divide, a, right) => {
                 let (Ok(x), Ok(y)) = (self.expr(a), self.expr(right)) else {
@@ -215,11 +242,45 @@ impl Compiler {
         if !n.member {
             return Ok(());
         }
+        let help = match self.always_member(n) {
+            Some(set) => format!("`ord({set})` is the position of the element, `{set}.val` its label as a number"),
+            None => "`1$(…)` makes a number of it; with another membership, `+` is union, `*` intersection, `-` difference".into(),
+        };
         self.fail(
-            Diagnostic::error("E0375", n.span, "a membership stands where a number is expected")
-                .label("in the set or not: no number")
-                .help("`1$(…)` makes a number of it; with another membership, `+` is union, `*` intersection, `-` difference"),
+            Diagnostic::error(
+                "E0375",
+                n.span,
+                "a membership stands where a number is expected",
+            )
+            .label("in the set or not: no number")
+            .help(help),
         )
+    }
+
+    /// The set whose index stands for a membership that is always true: `t` in `p(t) = t`.
+    fn always_member(&self, n: &Node) -> Option<Box<str>> {
+        let NodeKind::Data(table, key) = &n.kind else {
+            return None;
+        };
+        let running = self.scope.iter().find(|(s, parts)| {
+            self.symbols.get(*s).table == *table
+                && n.member
+                && matches!((parts.as_slice(), key.parts.as_slice()), ([Part::Slot(a)], [Part::Slot(b)]) if a == b)
+        });
+        running.map(|(s, _)| self.symbols.get(*s).name.clone())
+    }
+
+    /// A warning where an index stands for a number: it is 1 for every element.
+    pub(super) fn index_as_number(&mut self, n: &Node) {
+        if let Some(set) = self.always_member(n) {
+            let message = format!("`{set}` is no number here: it is 1 for every element");
+            let d = Diagnostic::warning("E0376", n.span, message)
+                .label("always 1")
+                .help(format!(
+                    "`ord({set})` is the position of the element, `{set}.val` its label as a number"
+                ));
+            self.report(d);
+        }
     }
 
     /// Terms added up. Of memberships, `+` is the union and `-` the difference.
@@ -259,6 +320,9 @@ impl Compiler {
             }
         }
         let member = factors.iter().all(|(_, n)| n.member);
+        if !member {
+            factors.iter().for_each(|(_, n)| self.index_as_number(n));
+        }
         let v = factors.iter().filter(|(_, n)| n.has_var).count();
         let l = v <= 1
             && factors
@@ -279,6 +343,9 @@ impl Compiler {
         let Some(s) = self.named(name) else {
             return self.function(name, attr, arguments, span);
         };
+        if self.is_torn(s) {
+            return Err(Failed);
+        }
         let symbol = self.symbols.get(s).clone();
         let indices = arguments.unwrap_or(&[]);
         if self.texts_allowed
@@ -322,8 +389,8 @@ impl Compiler {
                         ),
                     );
                 }
-                self.used(s, span);
                 let key = self.key(s, indices, span)?;
+                self.used(s, span);
                 Ok(Node::data(NodeKind::Data(symbol.table, key), span))
             }
             SymbolKind::Variable(_) | SymbolKind::Equation(_) => {
@@ -543,7 +610,16 @@ impl Compiler {
                     span,
                     format!("`{lower}` takes {wanted}, not {}", args.len()),
                 )
-                .label("wrong number of arguments"),
+                .label("wrong number of arguments")
+                .help(match callee {
+                    Callee::Ord | Callee::Card => {
+                        format!("write `{lower}(i)` with the name of a set")
+                    }
+                    _ => format!(
+                        "write `{lower}({})`",
+                        ["x", "y", "z"][..low.min(3)].join(", ")
+                    ),
+                }),
             );
         }
         match callee {
@@ -707,6 +783,15 @@ impl Compiler {
             "maximum" => Some("max"),
             "minimum" => Some("min"),
             "int" => Some("trunc"),
+            "size" | "length" | "len" | "count" | "cardinality" => Some("card"),
+            "true" => Some("yes"),
+            "false" => Some("no"),
+            "none" | "null" | "nan" => Some("na"),
+            "infinity" => Some("inf"),
+            "if" | "iif" => Some("ifThen"),
+            "average" | "mean" => Some("sum(i, p(i))/card(i)"),
+            "sumproduct" | "dot" => Some("sum(i, p(i)*q(i))"),
+            "pos" | "index" => Some("ord"),
             _ => None,
         };
         let near = instead.map(str::to_string).or_else(|| {
@@ -728,13 +813,14 @@ impl Compiler {
             None if self.store.universe.get(&name.name).is_some() => {
                 d.help(format!("`{0}` is a label: quote it, `'{0}'`", name.name))
             }
-            None => d.help(
-                "declare it first: names must be declared above the place where they are used",
-            ),
+            None => d.help(DECLARE_FIRST),
         };
-        self.fail(d)
+        self.unknown(name, d)
     }
 }
+
+const DECLARE_FIRST: &str =
+    "declare it first: names must be declared above the place where they are used";
 
 /// A factor that divides. GAMS divides by a number or a scalar parameter `b` as it multiplies by `1/b`,
 /// which shows in the last digit: such a factor multiplies, and is a product of one divisor.

@@ -206,17 +206,39 @@ impl Compiler {
         let dim = self.symbols.get(of).dim();
         // A tuple set under control stands for all its positions: `p(arc)`.
         let mut parts = Vec::with_capacity(dim);
-        for index in indices {
+        for (n, index) in indices.iter().enumerate() {
             if parts.len() >= dim {
                 return self.wrong_dimension(of, span, indices.len());
             }
             let p = parts.len();
-            parts.extend(self.index(index, of, p)?);
+            match self.index(index, of, p) {
+                Ok(part) => parts.extend(part),
+                Err(Failed) => {
+                    self.others_bound(&indices[n + 1..]);
+                    return Err(Failed);
+                }
+            }
         }
         if parts.len() != dim {
             return self.wrong_dimension(of, span, parts.len().max(indices.len()));
         }
         Ok(Key { parts })
+    }
+
+    /// Behind an index that failed: whether the others are bound.
+    fn others_bound(&mut self, indices: &[Expr]) {
+        for e in indices {
+            if let ExprKind::Apply {
+                name,
+                attribute: None,
+                arguments: None,
+            } = &e.kind
+                && let Some(s) = self.symbols.find(&name.name)
+                && self.symbols.get(s).is_set()
+            {
+                let _ = self.set_index(s, name);
+            }
+        }
     }
 
     /// One index expression at a position of a symbol.
@@ -232,6 +254,9 @@ impl Compiler {
                 let Some(s) = self.symbols.find(&name.name) else {
                     return self.unknown_index(name);
                 };
+                if self.is_torn(s) {
+                    return Err(Failed);
+                }
                 if !self.symbols.get(s).is_set() {
                     self.lookup_set(name)?;
                 }
@@ -271,15 +296,11 @@ impl Compiler {
 
     pub(super) fn unknown_index<T>(&mut self, name: &Ident) -> Result<T, Failed> {
         if self.store.universe.get(&name.name).is_some() {
-            return self.fail(
-                Diagnostic::error(
-                    "E0301",
-                    name.span,
-                    format!("`{}` is not a set, but it is a label", name.name),
-                )
+            let message = format!("`{}` is not a set, but it is a label", name.name);
+            let d = Diagnostic::error("E0301", name.span, message)
                 .label("unknown set")
-                .help(format!("quote labels in expressions: `'{}'`", name.name)),
-            );
+                .help(format!("quote labels in expressions: `'{}'`", name.name));
+            return self.unknown(name, d);
         }
         self.lookup(name).and(Err(Failed))
     }
@@ -295,23 +316,26 @@ impl Compiler {
             return Ok((0..dim).map(|p| Part::Singleton(t, p as u8)).collect());
         }
         let (declared, is_label) = (root.declared, self.store.universe.get(&name.name).is_some());
-        let mut help = format!(
-            "let it run: in a sum, `sum({0}, …)`; on the left of an assignment; in the equation's domain; or in `loop({0}, …)`",
-            name.name
-        );
+        let mut help = if self.in_equation {
+            format!(
+                "sum over it, `sum({0}, …)`, or add it to the equation's domain, `e({0})..`",
+                name.name
+            )
+        } else {
+            format!(
+                "sum over it, `sum({0}, …)`; write it on the left, `p({0}) = …`; or run over it, `loop({0}, … );`",
+                name.name
+            )
+        };
         if is_label {
             help.push_str(&format!("; a label is quoted: `'{}'`", name.name));
         }
-        self.fail(
-            Diagnostic::error(
-                "E0303",
-                name.span,
-                format!("the index `{}` is not under control here", name.name),
-            )
-            .label("nothing lets it run")
+        let message = format!("the index `{}` is not bound here", name.name);
+        let d = Diagnostic::error("E0303", name.span, message)
+            .label("nothing says which elements")
             .other(declared, "the set is declared here")
-            .help(help),
-        )
+            .help(help);
+        self.unbound(name, d)
     }
 
     /// A quoted label at a position of a symbol.
@@ -390,6 +414,18 @@ impl Compiler {
         };
         let set = self.symbols.get(set);
         let table = self.store.table(set.table);
+        if table.is_empty() && !set.has_data && !set.assigned {
+            let (name, declared) = (set.name.clone(), set.declared);
+            let d = Diagnostic::error("E0319", span, format!("the set `{name}` has no elements"))
+                .label("no label is in it")
+                .other(declared, "declared without elements here")
+                .help(format!(
+                    "write its elements between slashes: `set {name} / {quote}{text}{quote}, … /;`"
+                ));
+            self.report(d);
+            self.lose_declaration(&name);
+            return Err(Failed);
+        }
         let known =
             (0..table.len().min(10_000) as u32).map(|r| self.store.universe.name(table.key(r)[0]));
         let (name, set_name) = (&symbol.name, &set.name);

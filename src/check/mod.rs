@@ -19,6 +19,7 @@ mod effects;
 pub(crate) mod expansion;
 mod expr;
 mod figure;
+mod follow;
 mod index;
 mod input;
 mod model;
@@ -106,6 +107,7 @@ pub(crate) struct Compiler {
     /// Data from outside the text.
     inputs: input::Inputs,
     modes: Switches,
+    lost: follow::Lost,
 }
 
 /// Compiles a file: parses, checks and carries out its data statements.
@@ -139,7 +141,13 @@ pub fn compile(
                     code.append(&mut one);
                 }
             }
-            Err(errors) => errors.into_iter().for_each(|d| c.report(d)),
+            Err(errors) => {
+                c.begin_statement();
+                errors.into_iter().for_each(|d| c.report(d));
+                if let Some(text) = parser.refused() {
+                    c.lose_statement(text);
+                }
+            }
         }
         if c.errors() - parser.cleared_errors() >= MAX_ERRORS {
             let at = c.diagnostics.last().map_or_else(Span::default, |d| d.span);
@@ -156,6 +164,7 @@ pub fn compile(
     }
     c.unused_inputs();
     c.clear_errors(parser.cleared_errors());
+    c.declared_below();
     c.store.refresh_universe();
     // `$terminate`: nothing is run, which is no failure.
     if parser.ending() != Ending::Regular {
@@ -216,17 +225,12 @@ impl Compiler {
             taken: 0,
             inputs: input::Inputs::default(),
             modes: Switches::default(),
+            lost: follow::Lost::default(),
         }
     }
 }
 
 impl Compiler {
-    fn report(&mut self, d: Diagnostic) {
-        if self.diagnostics.last() != Some(&d) {
-            self.diagnostics.push(d);
-        }
-    }
-
     /// Takes memory for data, estimated from what they say: the same text ends at the same place
     /// everywhere.
     fn take(&mut self, records: usize, bytes: usize, span: Span) -> Result<(), Failed> {
@@ -273,11 +277,8 @@ impl Compiler {
         }
         // A statement with an error may be the one that gives it values.
         let solved_for = matches!(s.kind, SymbolKind::Variable(_) | SymbolKind::Equation(_));
-        let hides = |d: &Diagnostic| {
-            let refused = d.code < "E03" || solved_for && d.code != "E0319";
-            d.severity == Severity::Error && refused
-        };
-        if self.diagnostics.iter().any(hides) {
+        let hides = |d: &Diagnostic| d.severity == Severity::Error && d.code != "E0319";
+        if self.is_lost(&s.name) || solved_for && self.diagnostics.iter().any(hides) {
             return;
         }
         let (name, kind, declared) = (s.name.clone(), s.kind_name(), s.declared);

@@ -56,8 +56,9 @@ impl Compiler {
         let mut limits = Vec::new();
         self.collect(&items, &mut rows, &mut limits, 0)?;
         rows.sort_by_key(|r| self.equations[r.definition].symbol);
-        // Its list was wrong: that was said.
-        if rows.is_empty() && info.items.is_none() && self.errors() > 0 {
+        // Its list, or a declaration of equations, was wrong: that was said.
+        if rows.is_empty() && (info.items.is_none() && self.errors() > 0 || self.lacks_something())
+        {
             return Err(Failed);
         }
         if rows.is_empty() {
@@ -100,7 +101,10 @@ impl Compiler {
             failed |= self.check_class(r.definition, using, s.using.span).is_err();
         }
         failed |= self.check_discrete(&rows, using, s.using.span).is_err();
-        if matches!(using, "mcp" | "mpec" | "rmpec") {
+        let whole = !rows
+            .iter()
+            .any(|r| self.lost.definitions.contains(&r.definition));
+        if matches!(using, "mcp" | "mpec" | "rmpec") && whole {
             failed |= self.check_pairs(&rows, using).is_err();
         }
         if failed {
@@ -187,6 +191,9 @@ impl Compiler {
             };
             let Some(definition) = defined else {
                 let (name, declared) = (c.symbols.get(e).name.clone(), c.symbols.get(e).declared);
+                if c.is_lost(&name) || c.lacks_equations() {
+                    return Err(Failed);
+                }
                 return c.fail(
                     Diagnostic::error(
                         "E0356",

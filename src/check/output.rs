@@ -7,9 +7,16 @@ use crate::diag::Diagnostic;
 use crate::source::Span;
 use crate::syntax::ast::{DisplayItem, Expr, ExprKind, Ident, Put, PutItem};
 
+/// `` `x`, `y` ``
+fn listed(names: &[(Ident, &str)]) -> String {
+    let names: Vec<String> = names.iter().map(|(n, _)| format!("`{}`", n.name)).collect();
+    names.join(", ")
+}
+
 impl Compiler {
     pub(super) fn shown(&mut self, items: &[DisplayItem]) -> Result<Vec<Shown>, Failed> {
         let mut out = Vec::new();
+        let mut bare: Vec<(Ident, &'static str)> = Vec::new();
         for item in items {
             match item {
                 DisplayItem::Text(t, _) => out.push(Shown::Text(t.clone())),
@@ -45,19 +52,8 @@ impl Compiler {
                             }
                         }
                         (SymbolKind::Variable(_) | SymbolKind::Equation(_), None) => {
-                            return self.fail(
-                                Diagnostic::error(
-                                    "E0310",
-                                    r.span,
-                                    format!(
-                                        "`{}` is a {}; say which number to display",
-                                        symbol.name,
-                                        symbol.kind_name()
-                                    ),
-                                )
-                                .label("an attribute is expected")
-                                .help(format!("for instance `{}.l`", r.name.name)),
-                            );
+                            bare.push((r.name.clone(), symbol.kind_name()));
+                            continue;
                         }
                         (SymbolKind::Model(_) | SymbolKind::File(_), Some(a)) => {
                             Some(self.object_attribute(s, a)?)
@@ -78,6 +74,23 @@ impl Compiler {
                     out.push(Shown::Symbol(s, attr));
                 }
             }
+        }
+        if let Some((first, kind)) = bare.first() {
+            let levels: Vec<String> = bare.iter().map(|(n, _)| format!("{}.l", n.name)).collect();
+            let message = match bare.len() {
+                1 => format!("`{}` is a {kind}; say which number to display", first.name),
+                _ => format!(
+                    "variables and equations are displayed with an attribute: {} have none",
+                    listed(&bare)
+                ),
+            };
+            let d = Diagnostic::error("E0310", first.span, message)
+                .label("an attribute is expected")
+                .help(format!("for instance `display {};`", levels.join(", ")));
+            let d = bare[1..]
+                .iter()
+                .fold(d, |d, (n, _)| d.other(n.span, "here too"));
+            return self.fail(d);
         }
         Ok(out)
     }

@@ -29,6 +29,7 @@ impl Compiler {
         out: &mut Vec<Code>,
     ) -> Result<(), Failed> {
         self.modes = stmt.modes.clone();
+        self.begin_statement();
         let mut span = stmt.span;
         if self.nesting > 0 {
             self.no_declaration(stmt)?;
@@ -254,7 +255,7 @@ impl Compiler {
     }
 
     fn equate(&mut self, e: &Equate, span: Span) -> Result<(), Failed> {
-        let s = self.lookup(&e.name)?;
+        let s = self.lookup_equation(&e.name)?;
         self.shape(s, &e.indices);
         let symbol = self.symbols.get(s).clone();
         let SymbolKind::Equation(defined) = symbol.kind else {
@@ -334,6 +335,7 @@ impl Compiler {
                 Ok(())
             }
             Err(Failed) => {
+                self.lost.definitions.insert(index);
                 let zero = || Node::number(0.0, span);
                 self.equations.push(EquationDef {
                     symbol: s,

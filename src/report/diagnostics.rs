@@ -472,11 +472,11 @@ Advice:
     #[test]
     fn no_place_no_harm() {
         let map = SourceMap::default();
-        let d = Diagnostic::execution("X0001", Span::default(), "nothing was read");
+        let d = Diagnostic::execution("E0490", Span::default(), "nothing was read");
         assert!(render(std::slice::from_ref(&d), &map, Look::plain()).contains("nothing was read"));
         assert!(json_lines(&[d], &map).contains("\"execution\""));
         let (map, _) = super::tests::map("empty.blk", "");
-        let d = Diagnostic::error("E0100", Span::default(), "the file is empty");
+        let d = Diagnostic::warning("E0109", Span::default(), "the file is empty");
         assert!(render(&[d], &map, Look::plain()).contains("the file is empty"));
     }
 }

@@ -37,7 +37,7 @@ use crate::check::symbols::{Store, SymbolKind, Symbols};
 use crate::data::universe::Label;
 use crate::diag::{Diagnostic, Severity};
 use crate::host::Host;
-use crate::source::SourceMap;
+use crate::source::{SourceMap, Span};
 use random::Random;
 use rustc_hash::FxHashMap;
 use std::cell::{Cell, RefCell};
@@ -172,7 +172,11 @@ impl<'h> Machine<'h> {
     /// Adds a diagnostic.
     pub(crate) fn note(&self, d: Diagnostic) {
         let mut list = self.diagnostics.borrow_mut();
-        let again = list.iter().any(|e| e.code == d.code && e.span == d.span);
+        // A loop comes to the same place again; a warning may come from several solves.
+        let warning = d.severity == Severity::Warning;
+        let again = list
+            .iter()
+            .any(|e| e.code == d.code && (e.span == d.span || warning && e.message == d.message));
         if d.severity == Severity::Execution {
             self.errors.set(self.errors.get() + 1);
             let failed = self.failed_statements.get();
@@ -183,6 +187,15 @@ impl<'h> Machine<'h> {
         }
         if list.len() < MAX_KEPT_ERRORS && !again {
             list.push(d);
+        }
+    }
+
+    /// What follows from the last error stands in its message: one mistake, one message.
+    pub(crate) fn consequence(&self, span: Span, text: &str) {
+        let mut list = self.diagnostics.borrow_mut();
+        let last = list.iter_mut().rfind(|d| d.severity == Severity::Execution);
+        if let Some(d) = last.filter(|d| d.others.iter().all(|o| o.text != text)) {
+            *d = std::mem::replace(d, Diagnostic::execution(d.code, d.span, "")).other(span, text);
         }
     }
 

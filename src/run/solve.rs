@@ -44,6 +44,18 @@ impl Monitor for RunMonitor<'_, '_> {
     }
 }
 
+/// How to mend a start at which a function has no value; `x`: a variable that stands in it.
+fn start_help(message: &str, x: &str) -> String {
+    if message.contains("the base of a real power") {
+        return "a whole power of a number that may be negative is `sqr(x)` or `power(x, n)`"
+            .into();
+    }
+    let (name, key) = x.split_at(x.find('(').unwrap_or(x.len()));
+    format!(
+        "variables start at 0, or at the bound next to it: give a start, and a bound inside of the function's domain, such as `{name}.l{key} = 1; {name}.lo{key} = 1e-6;`"
+    )
+}
+
 impl Machine<'_> {
     /// `equil('b3','x')`
     pub fn origin_name(&self, blocks: &Blocks, i: usize) -> String {
@@ -74,15 +86,7 @@ impl Machine<'_> {
             return self.skip(s, span);
         }
         if self.failed() {
-            self.note(
-                Diagnostic::execution(
-                    "E0420",
-                    span,
-                    "the solve is refused because of an error before",
-                )
-                .label("not solved")
-                .help("mend the execution errors above; the run ends here"),
-            );
+            self.consequence(span, "so this is not solved, and the run ends here");
             return Flow::Stop;
         }
         let begin = self.elapsed();
@@ -100,15 +104,7 @@ impl Machine<'_> {
                 return self.skip(s, span);
             }
             if !self.stopped() {
-                self.note(
-                    Diagnostic::execution(
-                        "E0421",
-                        span,
-                        format!("the model `{name}` could not be generated"),
-                    )
-                    .label("not solved")
-                    .help("mend the errors in its data or equations; the run ends here"),
-                );
+                self.consequence(span, "so this is not solved, and the run ends here");
             }
             return Flow::Stop;
         };
@@ -197,7 +193,13 @@ impl Machine<'_> {
                     let of = |d: &&EquationDef| d.symbol == symbol;
                     self.equations.iter().find(of).map(|d| d.span)
                 });
-                let d = Diagnostic::execution("E0422", blamed.unwrap_or(span), message);
+                let mut d = Diagnostic::execution("E0422", blamed.unwrap_or(span), message);
+                if e.message.contains("at the start point") {
+                    let x = e
+                        .column
+                        .map(|c| self.origin_name(&generated.origin.columns, c));
+                    d = d.help(start_help(&e.message, x.as_deref().unwrap_or("x")));
+                }
                 self.note(match blamed {
                     Some(_) => d.label("this row").other(span, "at this solve"),
                     None => d.label("at this solve"),
@@ -211,14 +213,7 @@ impl Machine<'_> {
 
     /// Passes over a solve after errors that `maxExecError` lets pass.
     fn skip(&mut self, s: &SolveCode, span: Span) -> Flow {
-        self.note(
-            Diagnostic::warning(
-                "E0420",
-                span,
-                "the solve is skipped because of an error before",
-            )
-            .label("not solved"),
-        );
+        self.consequence(span, "so this solve is skipped");
         let state = self.models.entry(s.model).or_default();
         state
             .attributes

@@ -447,6 +447,18 @@ impl Preprocessor<'_> {
             w if SILENT_LINES.contains(&w) => {}
             _ => {
                 let span = self.place(lo, hi);
+                if rest.trim_start().starts_with('(') {
+                    // A condition that was moved to the first column: the line is read as it is meant.
+                    let line = line.clone();
+                    let file = self.frames.last().map_or(super::FileId(0), |f| f.file);
+                    self.map.push_substitute(" ", file, lo, lo);
+                    line.emit(&mut self.map, from.saturating_sub(1), line.text.len());
+                    let message = "a `$` in the first column begins a directive";
+                    return refuse(
+                        Diagnostic::error("E0107", span, message)
+                            .help("put a blank before the condition"),
+                    );
+                }
                 let mut all: Vec<String> = OTHERS
                     .iter()
                     .chain(SILENT)

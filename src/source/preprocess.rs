@@ -716,6 +716,7 @@ impl<'h> Preprocessor<'h> {
                 .count();
             if digits > 0
                 && let Some(frame) = self.frames.last()
+                && !(frame.arguments.is_none() && in_text(&line.text, from, self.marks.dollar))
             {
                 // What `$batInclude` did not give is empty; `%0` is the file itself.
                 let end = from + 1 + digits;
@@ -954,6 +955,23 @@ pub(crate) fn quoted_end(bytes: &[u8], i: usize) -> Option<usize> {
     let rest = &bytes[i + 1..];
     let n = memchr::memchr2(q, b'\n', rest)?;
     (rest[n] == q).then_some(i + n + 2)
+}
+
+/// Whether a byte stands in a quoted text of a line that is no directive: there `%1` is text, such as `'%8.5f'`,
+/// unless the file got arguments.
+fn in_text(line: &str, at: usize, dollar: u8) -> bool {
+    if line.as_bytes().first() == Some(&dollar) {
+        return false;
+    }
+    let mut quote = None;
+    for b in line.bytes().take(at) {
+        match quote {
+            Some(q) if b == q => quote = None,
+            None if matches!(b, b'\'' | b'"') => quote = Some(b),
+            _ => {}
+        }
+    }
+    quote.is_some()
 }
 
 fn byte_of_column(text: &str, column: usize) -> usize {

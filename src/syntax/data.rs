@@ -211,7 +211,11 @@ impl<'a> DataReader<'a> {
             {
                 // The record behind it is read by the next call.
                 self.excused = true;
-                return Some(Err(*self.error("E0248", at, at + 1, message)));
+                let help = match self.text.as_bytes().get(at) {
+                    Some(b'%') => "write 15 percent as `0.15`",
+                    _ => "records are separated by one comma or a line end",
+                };
+                return Some(Err(self.error("E0248", at, at + 1, message).help(help)));
             }
             self.at = gap.end;
             let start = self.at;
@@ -338,7 +342,7 @@ impl<'a> DataReader<'a> {
             Some(x) => Ok(Tail::Number(x, span)),
             None if text.bytes().all(is_label) => Ok(Tail::Name(text, span)),
             None => Err(Box::new(
-                Diagnostic::error("E0305", span, format!("`{text}` is not a number"))
+                Diagnostic::error("E0245", span, format!("`{text}` is not a number"))
                     .help("under `$onDelim` the value stands behind the last comma"),
             )),
         }

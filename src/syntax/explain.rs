@@ -8,6 +8,7 @@ use pest::Parser as _;
 use pest::error::{Error, ErrorVariant, InputLocation};
 
 use super::build::Condensed;
+use super::foreign::{self, Language};
 use super::grammar::{Grammar, Rule};
 use super::neighbours;
 use super::split::Raw;
@@ -17,11 +18,38 @@ use crate::source::Span;
 
 /// What is wrong with a statement, and whether it is two.
 pub(super) struct Explanation {
-    pub(super) diagnostic: Diagnostic,
-    /// A `;` is missing: the first statement ends here, the second begins there (expanded text).
-    pub(super) divide: Option<(u32, u32)>,
-    /// Read on here instead of behind the statement.
-    pub(super) resume: Option<u32>,
+    /// None: it was said for a statement before.
+    pub(super) diagnostic: Option<Diagnostic>,
+    pub(super) go_on: GoOn,
+    /// The language that the statement comes from.
+    pub(super) language: Language,
+}
+
+/// Where to read on after a statement that could not be read (places in the expanded text).
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum GoOn {
+    /// Behind it.
+    Behind,
+    /// Here.
+    At(u32),
+    /// A `;` is missing: the first statement ends here, the second begins there.
+    Divided { end: u32, start: u32 },
+    /// The text is no model.
+    Nowhere,
+}
+
+impl Explanation {
+    pub(super) fn of(diagnostic: Diagnostic) -> Self {
+        Self {
+            diagnostic: Some(diagnostic),
+            go_on: GoOn::Behind,
+            language: Language::Any,
+        }
+    }
+
+    fn code(&self) -> &'static str {
+        self.diagnostic.as_ref().map_or("", |d| d.code)
+    }
 }
 
 /// A statement that the grammar did not accept.
@@ -86,34 +114,24 @@ pub(super) fn explain(
         text,
         at,
     };
-    let only = |diagnostic: Diagnostic| {
-        // A comment mark of another language spoils its line; a keyword as a name, its statement.
-        let behind = |mark: u8| {
-            let from = diagnostic.span.lo as usize;
-            memchr::memchr(mark, &expanded.as_bytes()[from.min(expanded.len())..])
-                .map(|n| (from + n + 1) as u32)
-        };
-        let resume = match diagnostic.code {
-            "E0230" => behind(b'\n'),
-            "E0205" | "E0233" => behind(b';'),
-            _ => None,
-        };
-        Explanation {
-            diagnostic,
-            divide: None,
-            resume,
-        }
-    };
-    if let Some(d) = neighbours::whole_statement(&f) {
-        return only(d);
+    if let Some(found) = foreign::statement(&f) {
+        return found;
     }
-    if let Some(found) = missing_semicolon(&f) {
+    if let Some(d) = neighbours::equation(&f) {
+        return Explanation::of(d);
+    }
+    if let Some(found) = missing_semicolon(&f).or_else(|| foreign::keyword_inside(&f)) {
         return found;
     }
     if let Some(d) = neighbours::at_token(&f).or_else(|| slip(&f)) {
-        return only(d);
+        let mut found = Explanation::of(d);
+        if found.code() == "E0230" {
+            // A comment mark of another language spoils its line.
+            found.go_on = foreign::line_end(&f, f.at);
+        }
+        return found;
     }
-    only(expected(&f, e))
+    Explanation::of(expected(&f, e))
 }
 
 /// Two statements with no `;` between them.
@@ -157,13 +175,15 @@ fn missing_semicolon(f: &Failure<'_>) -> Option<Explanation> {
     }
     let end = f.span(first.len().saturating_sub(1), first.len());
     let start = f.span(second, second + f.token(second).len());
-    Some(Explanation {
-        diagnostic: Diagnostic::error("E0201", end, "`;` is missing at the end of this statement")
-            .label("missing `;`")
-            .other(start, "the next statement begins here"),
-        divide: complete.then_some((end.hi, start.lo)),
-        resume: None,
-    })
+    let missing = Diagnostic::error("E0201", end, "`;` is missing at the end of this statement")
+        .label("missing `;`")
+        .other(start, "the next statement begins here");
+    let mut found = Explanation::of(missing);
+    if complete {
+        let (end, start) = (end.hi, start.lo);
+        found.go_on = GoOn::Divided { end, start };
+    }
+    Some(found)
 }
 
 /// `x =`, `x(i) =`, `x.l(i)$c =`, `e(i)..` at a byte of a text.
@@ -174,6 +194,14 @@ fn begins_statement(text: &str, at: usize) -> bool {
         return false;
     }
     if words::statement_word(text, at, i).is_some_and(|w| !w.inside_blocks_only()) {
+        return true;
+    }
+    let begins_line = text[..at].trim_end_matches([' ', '\t']).ends_with('\n');
+    if begins_line
+        && ["draw", "figure"]
+            .iter()
+            .any(|w| text[at..i].eq_ignore_ascii_case(w))
+    {
         return true;
     }
     loop {
@@ -333,32 +361,64 @@ fn slip(f: &Failure<'_>) -> Option<Diagnostic> {
 
 /// In the declarations: values without slashes, keywords as names.
 fn in_declaration(f: &Failure<'_>, token: &str) -> Option<Diagnostic> {
-    if matches!(token, "=" | ":") {
+    let name = f.text[..f.at].trim_end();
+    let name = &name[name
+        .rfind(|c: char| c.is_whitespace() || c == ',')
+        .map_or(0, |n| n + 1)..];
+    if f.raw.class == Class::Equation && f.text[f.at..].starts_with("..") {
         return Some(
-            f.error("E0220", f.at, 1, "a declaration gives values between slashes")
-                .label("`=` cannot stand here")
-                .help("write `scalar a / 5 /;`, or declare it first and assign in a statement of its own: `scalar a; a = 5;`"),
+            f.error(
+                "E0221",
+                f.at,
+                2,
+                "an equation is declared in one statement and defined in another",
+            )
+            .help(format!(
+                "write `equation {name};` and then `{name}.. left =e= right;`"
+            )),
+        );
+    }
+    if token.starts_with(|c: char| c.is_ascii_digit())
+        && f.text[..f.at].trim_end().ends_with(['(', ','])
+    {
+        return Some(
+            f.error(
+                "E0210",
+                f.at,
+                token.len(),
+                "an index position is a set, not a number",
+            )
+            .help(format!("declare `set i / 1*{token} /;` and write `x(i)`")),
+        );
+    }
+    if matches!(token, "=" | ":") {
+        let help = match f.raw.class {
+            Class::Set => "write `set i / a, b, c /;`; a set that is computed is declared first and assigned then".to_owned(),
+            Class::Model => "write `model m / all /;`".to_owned(),
+            Class::Equation | Class::Variable => format!("declare it first: `{name};`, and write what is equal in a statement of its own"),
+            _ if name.ends_with([')', ']', '}']) => format!("declare it, then assign: `parameter {name}; {name} = …;`; or write `/ label 1, … /`"),
+            _ => format!("write `scalar {name} / 5 /;`, or declare it first and assign then: `scalar {name}; {name} = 5;`"),
+        };
+        return Some(
+            f.error(
+                "E0220",
+                f.at,
+                1,
+                "a declaration gives values between slashes",
+            )
+            .label("`=` cannot stand here".replace('=', token))
+            .help(help),
         );
     }
     if matches!(token, "<" | ">") {
+        let (side, positive) = match token {
+            "<" => ("up", ""),
+            _ => ("lo", "`positive variable x;`, or "),
+        };
         return Some(
             f.error("E0220", f.at, 1, "a declaration gives no bounds")
-                .help("write `positive variable x;`, or set bounds after the declaration: `x.lo = 0;`"),
+                .help(format!("write {positive}the bound in a statement after the declaration: `{name}.{side} = …;`")),
         );
-    }
-    if token.is_empty() {
-        // The statement ended before a name: a keyword may stand there.
-        let after = f
-            .expanded
-            .get(f.raw.span.hi as usize..)
-            .unwrap_or("")
-            .trim_start();
-        let word = &after[..words::word_end(after.as_bytes(), 0)];
-        if !word.is_empty() && words::statement_word(after, 0, word.len()).is_some() {
-            let lo = f.expanded.len() - after.len();
-            let span = Span::new(lo as u32, (lo + word.len()) as u32);
-            return Some(words::reserved(word, span));
-        }
     }
     None
 }

@@ -15,6 +15,7 @@ mod constants;
 pub mod data;
 mod explain;
 mod fields;
+mod foreign;
 mod grammar;
 mod neighbours;
 mod split;
@@ -28,7 +29,8 @@ use crate::host::Host;
 use crate::source::{Ending, Known, PreprocessOptions, Preprocessor, SourceMap, Span};
 use ast::Stmt;
 use build::{Builder, Condensed};
-use explain::Explanation;
+use explain::{Explanation, GoOn};
+use foreign::Language;
 use grammar::{Grammar, Rule};
 use split::{Cut, Raw, Splitter};
 use words::Class;
@@ -52,7 +54,16 @@ pub struct Parser<'h> {
     errors: usize,
     /// Statements that were cut at a missing `;`.
     pending: Option<Raw>,
+    /// Words of the language that were taken for names.
+    reserved: Vec<String>,
+    /// Other languages that a message was about.
+    languages: Vec<Language>,
+    /// The statement that could not be read, when the last call ended with errors.
+    refused: Option<Span>,
 }
+
+/// Problems of declarations that leave them legible.
+const LEGIBLE: [&str; 3] = ["E0201", "E0206", "E0223"];
 
 /// Errors after which a text is given up: it is no model.
 const MOST_ERRORS: usize = 100;
@@ -71,6 +82,9 @@ impl<'h> Parser<'h> {
                 ended: false,
                 errors: 0,
                 pending: None,
+                reserved: Vec::new(),
+                languages: Vec::new(),
+                refused: None,
             }),
             Err(e) => Err(Box::new(Unreadable {
                 map: e.0,
@@ -84,6 +98,7 @@ impl<'h> Parser<'h> {
         if self.errors > MOST_ERRORS {
             return Ok(None);
         }
+        self.refused = None;
         if let Some(raw) = self.pending.take() {
             return self.take(raw).map(Some);
         }
@@ -112,25 +127,26 @@ impl<'h> Parser<'h> {
 
     /// Parses a statement; where a `;` is missing, the rest is kept for the next calls.
     fn take(&mut self, mut raw: Raw) -> Result<Stmt, Vec<Diagnostic>> {
-        let problems = std::mem::take(&mut raw.problems);
-        let outcome = if problems.is_empty() {
-            self.parse(&raw).map_err(|e| {
-                if let Some((end, start)) = e.divide {
-                    raw.span.hi = end;
-                    self.splitter.back_to(start as usize);
-                    self.pending = Some(raw);
-                }
-                if let Some(at) = e.resume {
-                    self.splitter.back_to(at as usize);
-                }
-                vec![e.diagnostic]
-            })
-        } else {
-            let legible = |p: &Diagnostic| matches!(p.code, "E0201" | "E0206" | "E0223");
-            if problems.iter().all(legible) {
+        let problem = std::mem::take(&mut raw.problems).into_iter().next();
+        let line = || foreign::line(self.text.map.expanded(), raw.span);
+        // What a statement of another language looks like once it is cut is of no interest.
+        let outcome = match problem.as_ref().and_then(|_| line()) {
+            Some(found) => Err(Box::new(found)),
+            None => self.parse(&raw),
+        };
+        let outcome = match (problem, outcome) {
+            (None, outcome) => outcome.map_err(|e| self.refuse(raw, *e)),
+            (Some(problem), Ok(_)) if LEGIBLE.contains(&problem.code) => {
+                // What is declared beside a stray name may have lost its data.
+                self.refused = (problem.code == "E0223").then_some(raw.span);
                 self.pending = Some(raw);
+                Err(vec![problem])
             }
-            Err(problems)
+            // The grammar knows better why a declaration is spoiled.
+            (Some(problem), Err(e)) if problem.code == "E0223" || e.language != Language::Any => {
+                Err(self.refuse(raw, *e))
+            }
+            (Some(problem), _) => Err(self.refuse(raw, Explanation::of(problem))),
         };
         if let Err(list) = &outcome {
             self.fail(list);
@@ -138,8 +154,63 @@ impl<'h> Parser<'h> {
         outcome
     }
 
+    /// A statement that cannot be read: what is said, and where to read on.
+    fn refuse(&mut self, mut raw: Raw, e: Explanation) -> Vec<Diagnostic> {
+        self.refused = Some(raw.span);
+        match e.go_on {
+            GoOn::Behind => {}
+            GoOn::At(at) => {
+                self.refused = Some(Span::new(raw.span.lo, at.max(raw.span.lo)));
+                self.splitter.back_to(at as usize);
+            }
+            GoOn::Divided { end, start } => {
+                self.refused = None;
+                raw.span.hi = end;
+                self.splitter.back_to(start as usize);
+                self.pending = Some(raw);
+            }
+            GoOn::Nowhere => self.errors = MOST_ERRORS + 1,
+        }
+        // A text in another language is one mistake, and so is a name that is a word of the language.
+        let again = match e.language {
+            Language::Any => false,
+            Language::Blocks => !self.languages.is_empty(),
+            other => self.languages.contains(&other),
+        };
+        if e.language != Language::Any && !again {
+            self.languages.push(e.language);
+        }
+        let Some(d) = e.diagnostic.filter(|_| !again) else {
+            return Vec::new();
+        };
+        let word = self.text.map.text(d.span).to_ascii_lowercase();
+        match d.code {
+            "E0205" => self.reserved.push(word),
+            "E0210" if self.reserved.contains(&word) => return Vec::new(),
+            _ => {}
+        }
+        vec![d]
+    }
+
     /// `variable x >= 0;` is legal, but the bound is a text.
     fn suspicious_texts(&mut self, stmt: &Stmt) {
+        if let ast::StmtKind::Set(list) = &stmt.kind {
+            let texts = list
+                .iter()
+                .filter_map(|s| Some((&s.symbol.name, s.symbol.text.as_deref()?)));
+            for (name, text) in
+                texts.filter(|(_, t)| t.contains(":=") || t.contains("..") && t.contains('='))
+            {
+                let message = format!(
+                    "`{text}` behind `{}` is read as an explanatory text, not as elements",
+                    name.name
+                );
+                let help =
+                    "the elements stand between slashes: `set i / a, b, c /;`, `set t / 1*10 /;`";
+                self.text
+                    .warn(Diagnostic::warning("E0234", name.span, message).help(help));
+            }
+        }
         let ast::StmtKind::Variable(_, list) = &stmt.kind else {
             return;
         };
@@ -150,9 +221,14 @@ impl<'h> Parser<'h> {
             let name = &d.name.name;
             let message =
                 format!("`{text}` behind `{name}` is read as an explanatory text, not as a bound");
-            self.text.warn(Diagnostic::warning("E0234", d.name.span, message).help(format!(
-                "declare `positive variable {name};`, or assign `{name}.lo = …;` after the declaration"
-            )));
+            let help = match text.starts_with('<') {
+                true => format!("assign the bound after the declaration: `{name}.up = …;`"),
+                false => format!(
+                    "declare `positive variable {name};`, or assign `{name}.lo = …;` after the declaration"
+                ),
+            };
+            self.text
+                .warn(Diagnostic::warning("E0234", d.name.span, message).help(help));
         }
     }
 
@@ -205,12 +281,13 @@ impl<'h> Parser<'h> {
                 self.suspicious_texts(&stmt);
                 Ok(stmt)
             }
-            Err(d) => Err(Box::new(Explanation {
-                diagnostic: *d,
-                divide: None,
-                resume: None,
-            })),
+            Err(d) => Err(Box::new(Explanation::of(*d))),
         }
+    }
+
+    /// The statement that could not be read, after errors that leave nothing of it.
+    pub fn refused(&self) -> Option<&str> {
+        self.refused.map(|span| self.text.map.text(span))
     }
 
     /// The text of a data file that the statement at `at` asks for.

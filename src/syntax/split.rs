@@ -110,6 +110,8 @@ pub(super) struct Splitter {
     control: bool,
     /// The statement is a figure: its braces hold statements.
     figure: bool,
+    /// It began with `loop`, `if` …: braces after that are those of another language.
+    controls: bool,
     /// Names declared so far in this statement.
     names: usize,
     /// Data up to here hold no `;` that could end the statement.
@@ -138,6 +140,7 @@ impl Splitter {
             after_dot: false,
             control: false,
             figure: false,
+            controls: false,
             names: 0,
             searched: 0,
         }
@@ -204,6 +207,7 @@ impl Splitter {
         }
         let (class, end) = words::classify(text, at);
         self.class = class;
+        self.controls = words::statement_word(text, at, end.max(at)) == Some(Word::Control);
         self.figure = words::is_figure(&text[at..end.max(at)]);
         if class.declares() {
             self.pos = end;
@@ -360,6 +364,17 @@ impl Splitter {
                                 .or(self.opens.last())
                                 .copied()
                             {
+                                if open.block
+                                    && let Some(n) = closes(&text[i..])
+                                {
+                                    self.problems.push(
+                                        Diagnostic::error("E0324", span(i, end), "a declaration cannot stand inside of a loop or an `if`")
+                                            .help("move it before the loop"),
+                                    );
+                                    self.last_end = i + n;
+                                    self.pos = i + n;
+                                    return true;
+                                }
                                 self.unclosed(open);
                             }
                             self.pos = i;
@@ -399,6 +414,9 @@ impl Splitter {
                         i += 1;
                     }
                 }
+                b'{' if self.controls && self.opens.is_empty() && !self.control => {
+                    return self.braces(text, i);
+                }
                 b'(' | b'[' | b'{' => {
                     let block = self.control || self.figure && b == b'{' && self.opens.is_empty();
                     self.opens.push(Open {
@@ -422,6 +440,15 @@ impl Splitter {
                         return true;
                     }
                     Some(open) if !open.block => {
+                        if stray_semicolon(&text[i + 1..], self.opens.len()) {
+                            self.problems.push(
+                                Diagnostic::error("E0202", span(i, i + 1), "a `;` stands inside of parentheses")
+                                    .label("a comma is meant?")
+                                    .help("write `,` between the parts of a sum or the arguments of a function; `;` ends a statement"),
+                            );
+                            i += 1;
+                            continue;
+                        }
                         // The `;` ends what is inside, closed or not.
                         let first = self
                             .opens
@@ -457,6 +484,27 @@ impl Splitter {
         false
     }
 
+    /// `loop(i) { p(i) = 1; }`: the statement ends behind the brace that closes.
+    fn braces(&mut self, text: &str, i: usize) -> bool {
+        let mut depth = 0usize;
+        let close = text[i..].bytes().position(|b| {
+            match b {
+                b'{' => depth += 1,
+                b'}' => depth -= 1,
+                _ => {}
+            }
+            depth == 0
+        });
+        self.problems.push(
+            Diagnostic::error("E0231", span(i, i + 1), "statements are not grouped by braces")
+                .help("they stand inside of the parentheses, after a comma: `loop(i, … );`, `if(c, … );`, `while(c, … );`"),
+        );
+        let end = close.map_or(text.len(), |n| i + n + 1);
+        self.last_end = end;
+        self.pos = end;
+        true
+    }
+
     /// Nested too deeply: reports it and passes over the statement.
     fn too_deep(&mut self, bytes: &[u8], i: usize) -> bool {
         self.problems.push(
@@ -472,6 +520,47 @@ impl Splitter {
         self.pos = (end + 1).min(bytes.len());
         true
     }
+}
+
+/// Whether behind a `;` inside of parentheses these are closed on the same line, before the next `;`.
+fn stray_semicolon(rest: &str, open: usize) -> bool {
+    let mut depth = open;
+    for b in rest.bytes().take_while(|b| *b != b'\n') {
+        match b {
+            b'(' | b'[' | b'{' => depth += 1,
+            b')' | b']' | b'}' => depth -= 1,
+            _ => {}
+        }
+        if depth == 0 {
+            return true;
+        }
+    }
+    false
+}
+
+/// The end of the statement in which a block is open here, if it is closed.
+fn closes(rest: &str) -> Option<usize> {
+    let mut depth = 1usize;
+    for (n, b) in rest.bytes().enumerate() {
+        match b {
+            b'(' => depth += 1,
+            b')' => depth -= 1,
+            _ => {}
+        }
+        if depth == 0 {
+            let behind = &rest[n + 1..];
+            let blanks = behind.len() - behind.trim_start().len();
+            return Some(
+                n + 1
+                    + if behind.trim_start().starts_with(';') {
+                        blanks + 1
+                    } else {
+                        0
+                    },
+            );
+        }
+    }
+    None
 }
 
 /// Whether the next byte that counts opens a parenthesis.

@@ -328,11 +328,11 @@ impl<'a> TableReader<'a> {
         let span = self.span(from, to);
         if to == from {
             self.skip(from + 1);
-            return Err(Box::new(Diagnostic::error(
-                "E0243",
-                span,
-                "a number was expected here",
-            )));
+            return Err(Box::new(
+                Diagnostic::error("E0243", span, "a number was expected here").help(
+                    "numbers look like `12`, `-3.5`, `1.5e-3`; decimals stand behind a point",
+                ),
+            ));
         }
         let (left, right) = (self.column(from), self.column(to));
         let mut first = self.passed;

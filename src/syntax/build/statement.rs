@@ -409,11 +409,12 @@ impl Builder<'_> {
                     };
                     let variable = self.ident(&need(&mut sides, place, "a variable")?);
                     if objective.is_some() {
-                        return Err(Box::new(Diagnostic::error(
-                            "E0218",
-                            place,
-                            "a second direction stands here",
-                        )));
+                        return Err(Box::new(
+                            Diagnostic::error("E0218", place, "a second direction stands here")
+                                .help(
+                                    "a solve has one objective: `solve m using lp minimizing z;`",
+                                ),
+                        ));
                     }
                     objective = Some((sense, variable));
                 }

@@ -280,6 +280,10 @@ impl Splitter {
             };
             let at = i + n;
             if bytes[at] == b'/' {
+                if not_available(bytes, at) {
+                    i = at + 1;
+                    continue;
+                }
                 if self.class.has_values()
                     && let Some(end) = end_of_constant(bytes, self.body_start, at)
                 {
@@ -365,6 +369,18 @@ impl Splitter {
                 continue;
             }
             if self.class != Class::Set {
+                let rest = text[at + 1..]
+                    .split_once(';')
+                    .map_or(&text[at + 1..], |_| &text[at + 1..]);
+                if separates_records(rest) {
+                    if self.problems.is_empty() {
+                        self.problems.push(
+                            Diagnostic::error("E0248", span(at, at + 1), "`;` ends a statement; it cannot stand between records")
+                                .help("write a comma or a line end between records, a blank between a label and its number"),
+                        );
+                    }
+                    continue;
+                }
                 return Some(at);
             }
             // In a set it may belong to a text: only a statement after it tells.
@@ -428,6 +444,24 @@ impl Splitter {
             let mut i = line;
             while let Some(n) = memchr::memchr3(b';', b'\'', b'"', &bytes[i..end]) {
                 let at = i + n;
+                if bytes[at] == b';'
+                    && memchr::memchr_iter(b';', &bytes[at..end]).count() > 1
+                    && !text[line..end].contains('=')
+                {
+                    self.problems.push(
+                        Diagnostic::error("E0248", span(at, at + 1), "`;` ends a table; it cannot stand between its columns")
+                            .help("lay the columns out with blanks; or replace `;` by `,` and write `$onDelim` before the table and `$offDelim` behind it"),
+                    );
+                    // To the line that ends it.
+                    let rest = text[end..].split_inclusive('\n').scan(end, |to, l| {
+                        *to += l.len();
+                        Some((*to, l.trim()))
+                    });
+                    let last = rest.take_while(|(_, l)| *l != ";" && !l.is_empty()).last();
+                    self.end_table(bytes, last.map_or(end, |(to, _)| to));
+                    self.pos = self.last_end;
+                    return true;
+                }
                 if bytes[at] == b';' {
                     self.end_table(bytes, at);
                     self.pos = at + 1;
@@ -441,6 +475,39 @@ impl Splitter {
     }
 }
 
+/// `n/a`, as spreadsheets write it.
+fn not_available(bytes: &[u8], at: usize) -> bool {
+    let is = |k: usize, letter: u8| {
+        bytes
+            .get(k)
+            .is_some_and(|b| b.eq_ignore_ascii_case(&letter))
+    };
+    at > 1
+        && is(at - 1, b'n')
+        && !bytes[at - 2].is_ascii_alphanumeric()
+        && is(at + 1, b'a')
+        && !bytes.get(at + 2).is_some_and(u8::is_ascii_alphanumeric)
+}
+
+/// Whether a `;` separates records, as in a file of a spreadsheet: text follows on its line, and the slash comes
+/// before anything that only a statement has.
+fn separates_records(text: &str) -> bool {
+    let line = text.split('\n').next().unwrap_or("").trim();
+    let Some(slash) = text.find('/') else {
+        return false;
+    };
+    let between = &text[..slash];
+    let word = words::word_end(line.as_bytes(), 0);
+    !line.is_empty()
+        && !line.starts_with('/')
+        && !between.contains(['=', '\'', '"'])
+        && words::statement_word(line, 0, word).is_none()
+        && between.lines().all(|l| {
+            let l = l.trim_start();
+            words::statement_word(l, 0, words::word_end(l.as_bytes(), 0)).is_none()
+        })
+}
+
 /// A text's quote that has no partner on its line.
 fn unclosed_quote(at: usize) -> Diagnostic {
     Diagnostic::error(
@@ -449,6 +516,7 @@ fn unclosed_quote(at: usize) -> Diagnostic {
         "this quote is not closed on its line",
     )
     .label("opened here")
+    .help("a text stands between two quotes of one kind: `'text'`, `\"it's\"`")
 }
 
 /// A quote that begins a file's name and does not end it.
