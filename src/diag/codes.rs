@@ -233,6 +233,7 @@ pub const CODES: &[Code] = &[
     row("E0484", Warning, "empty figure", "a figure with nothing to draw is an empty page; a condition may leave nothing"),
     row("E0490", Execution, "time limit", "raise it with `--time-limit`"),
     row("E0491", Execution, "memory limit", "raise it with `--max-memory`, or keep the sets sparse"),
+    row("E0499", Execution, "defect of bmod", "something went wrong inside of bmod; please report it with the model"),
 ];
 
 /// The row of a code.
