@@ -138,7 +138,7 @@ impl Compiler {
             && let ExprKind::Apply { .. } = &c.kind
         {
             let message = "`$` takes only what stands directly behind it; the comparison is made with all that stands on the left";
-            let d = Diagnostic::warning("E0377", c.span, message)
+            let d = Diagnostic::warning("E0379", c.span, message)
                 .label("the condition ends here")
                 .help("put the condition in parentheses: `1$(ord(t) > 1)`");
             self.report(d);

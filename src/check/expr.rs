@@ -274,7 +274,7 @@ impl Compiler {
     pub(super) fn index_as_number(&mut self, n: &Node) {
         if let Some(set) = self.always_member(n) {
             let message = format!("`{set}` is no number here: it is 1 for every element");
-            let d = Diagnostic::warning("E0376", n.span, message)
+            let d = Diagnostic::warning("E0378", n.span, message)
                 .label("always 1")
                 .help(format!(
                     "`ord({set})` is the position of the element, `{set}.val` its label as a number"

@@ -189,8 +189,10 @@ pub const CODES: &[Code] = &[
     row("E0374", Error, "`put` without a file", "declare `file f / 'name.txt' /;` and write `put f;` first"),
     row("E0375", Error, "membership as a number", "`1$(…)` makes a number of a membership"),
 
-    row("E0376", Warning, "membership assigned", "`p(t) = t` gives 1 for every element; `ord(t)` is its position, `t.val` its number"),
-    row("E0377", Warning, "condition without parentheses", "`a $ b > c` compares `a $ b` with `c`; write `a $ (b > c)`"),
+    row("E0376", Error, "data of another kind", "members are given to sets, numbers to parameters"),
+    row("E0377", Error, "data of another shape", "data from outside have as many labels as the symbol has indices"),
+    row("E0378", Warning, "membership assigned", "`p(t) = t` gives 1 for every element; `ord(t)` is its position, `t.val` its number"),
+    row("E0379", Warning, "condition without parentheses", "`a $ b > c` compares `a $ b` with `c`; write `a $ (b > c)`"),
 
     row("E0401", Execution, "division by zero", "guard it with a condition"),
     row("E0402", Execution, "infinity times zero", "guard the product with a condition"),
