@@ -223,7 +223,6 @@ pub const CODES: &[Code] = &[
     row("E0473", Warning, "text does not fit", "a number, line or page of a `put` file is too small"),
     row("E0474", Warning, "`put_utility`", "this command is not carried out"),
     row("E0475", Execution, "nothing to exchange", "a symbol with data, and a file, must be named"),
-    row("E0476", Execution, "format of a file", "data are exchanged as `.csv` or `.json`"),
     row("E0477", Execution, "symbol not in the file", "the message names the nearest"),
     row("E0478", Execution, "data file", "its content cannot be loaded; nothing was changed"),
     row("E0479", Execution, "label of a data file", "it is not in the domain; nothing was loaded"),
