@@ -110,6 +110,26 @@ impl Columns {
     }
 }
 
+/// Columns of which only some may be nonzero, in their order.
+#[derive(Clone, Default, Debug, PartialEq)]
+pub struct OrderedSet {
+    /// Two neighbours may be nonzero (`sos2`), not just one (`sos1`).
+    pub neighbours: bool,
+    /// Members.
+    pub columns: Vec<u32>,
+}
+
+/// What the kinds of columns leave open. Empty for a program without discrete columns.
+#[derive(Clone, Default, Debug)]
+pub struct Discrete {
+    /// Semicontinuous columns: the least value other than 0.
+    pub thresholds: Vec<(u32, f64)>,
+    /// Special ordered sets.
+    pub sets: Vec<OrderedSet>,
+    /// Branching priority of each column, the least first; empty where all are 1.
+    pub priorities: Vec<f64>,
+}
+
 /// Rows, one entry per equation.
 #[derive(Clone, Default, Debug)]
 pub struct Rows {
@@ -330,6 +350,8 @@ pub struct Instance {
     pub objective: Option<Objective>,
     /// For mcp and mpec: per column the row it is matched with, if any.
     pub matched: Option<Vec<Option<u32>>>,
+    /// Thresholds, ordered sets and priorities of discrete columns.
+    pub discrete: Discrete,
 }
 
 impl Instance {

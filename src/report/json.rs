@@ -116,6 +116,34 @@ impl From<SolverStatus> for Status<SolverStatus> {
     }
 }
 
+/// A search over discrete columns.
+#[derive(Clone, Debug, Serialize)]
+pub struct Search {
+    /// No solution is better than this.
+    pub bound: Number,
+    /// Distance of objective and bound, relative to the objective; null without a solution.
+    pub gap: Option<Number>,
+    /// Nodes solved.
+    pub nodes: u64,
+    /// The tree: node 0 is the root.
+    pub tree: Vec<TreeNode>,
+}
+
+/// A node of a search tree.
+#[derive(Clone, Debug, Serialize)]
+pub struct TreeNode {
+    /// Number of the parent; null for the root.
+    pub parent: Option<u32>,
+    /// The column whose bounds make the node (the first, where an ordered set was split).
+    pub column: Option<String>,
+    /// Its bounds.
+    pub bounds: Option<[Number; 2]>,
+    /// Value of the relaxation.
+    pub value: Number,
+    /// `branched`, `infeasible`, `bound`, `solution` or `open`.
+    pub fate: &'static str,
+}
+
 /// One solve.
 #[derive(Clone, Debug, Serialize)]
 pub struct SolveReport {
@@ -150,6 +178,9 @@ pub struct SolveReport {
     pub seconds: Seconds,
     /// Largest violations on the unscaled model.
     pub residual: Residual,
+    /// Of a search over discrete columns.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub search: Option<Search>,
     /// Sum of the violations of complementarity (mpec).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub complementarity_sum: Option<f64>,
@@ -287,6 +318,7 @@ mod tests {
             },
             complementarity_sum: None,
             bounds: None,
+            search: None,
             stationarity: None,
             message: None,
             hint: None,

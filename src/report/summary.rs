@@ -18,7 +18,7 @@ pub fn solve(s: &SolveReport, color: bool) -> String {
     let reset = paint(RESET);
     let status = match s.model_status.code {
         1 | 2 | 15 | 16 => GREEN,
-        3 | 4 | 5 | 18 | 19 => YELLOW,
+        3 | 4 | 5 | 8 | 10 | 18 | 19 => YELLOW,
         _ => RED,
     };
     let mut what = format!("{}{}{reset} using {}", paint(BOLD), s.model, s.using);
@@ -46,6 +46,15 @@ pub fn solve(s: &SolveReport, color: bool) -> String {
             let _ = write!(out, ", width {}", small(hi - lo));
         }
         out.push('\n');
+    }
+    if let Some(search) = &s.search {
+        let Number(bound) = search.bound;
+        let _ = write!(out, "    bound {}", digits(bound));
+        if let Some(Number(gap)) = search.gap {
+            let _ = write!(out, ", gap {} %", digits((gap * 1e5).round() / 1e3));
+        }
+        let plural = if search.nodes == 1 { "" } else { "s" };
+        let _ = writeln!(out, ", {} node{plural}", grouped(search.nodes as usize));
     }
     if s.solver_status.code != 1 {
         let _ = writeln!(
@@ -203,6 +212,7 @@ mod tests {
             },
             complementarity_sum: None,
             bounds: None,
+            search: None,
             stationarity: None,
             message: None,
             hint: None,

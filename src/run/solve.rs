@@ -5,7 +5,7 @@ use super::options::ListOptions;
 use super::{Flow, Frame, Machine, ModelState};
 use crate::check::node::*;
 use crate::check::symbols::attribute;
-use crate::data::value::EPS;
+use crate::data::value::{EPS, NA};
 use crate::diag::Diagnostic;
 use crate::model::instance::{ColumnKind, Instance, Relation};
 use crate::model::origin::{Blocks, Origin};
@@ -13,6 +13,7 @@ use crate::report::names::Names;
 use crate::report::why::{Explanation, explain};
 use crate::report::{json, levels, listing, solution, summary};
 use crate::solve::answer::{Answer, answer, certify};
+use crate::solve::mip::{self, Aim};
 use crate::solve::why;
 use crate::solve::{ModelStatus, Monitor, Settings, SolverStatus};
 use crate::source::Span;
@@ -113,10 +114,6 @@ impl Machine<'_> {
             self.print_listing(&name, &generated, &list);
             self.report.solves.push(self.not_solved(s, &generated));
             return Flow::Next;
-        }
-        if !self.decided(s, &generated, span) {
-            self.report.solves.push(self.not_solved(s, &generated));
-            return Flow::Stop;
         }
         let mut settings = self.settings(s.model);
         let mut options = self.option_file(s.model, s.using, span);
@@ -225,34 +222,6 @@ impl Machine<'_> {
         Flow::Next
     }
 
-    /// Whether no column of a discrete type is left to be decided. Only the generated columns tell: conditions
-    /// may leave none, and bounds may fix them all.
-    fn decided(&self, s: &SolveCode, g: &Generated, span: Span) -> bool {
-        let relaxation = match s.using {
-            "mip" => "rmip",
-            "minlp" => "rminlp",
-            "miqcp" => "rmiqcp",
-            "mpec" => "rmpec",
-            _ => return true,
-        };
-        let Some(column) = g.instance.columns.first_undecided() else {
-            return true;
-        };
-        let name = self.origin_name(&g.origin.columns, column);
-        let message = format!(
-            "there is no solver for `{}` with discrete variables, and {name} is not fixed",
-            s.using
-        );
-        self.note(
-            Diagnostic::execution("E0425", span, message)
-                .label("not solved")
-                .help(format!(
-                    "`solve … using {relaxation}` solves the relaxation; the run ends here"
-                )),
-        );
-        false
-    }
-
     fn settings(&self, model: SymbolId) -> Settings {
         let left = (self.options.time_limit - self.elapsed()).max(0.0);
         Settings {
@@ -263,6 +232,30 @@ impl Machine<'_> {
             evaluation_error_limit: self.model_option(model, "domlim", 0.0).clamp(0.0, 1e18) as u64,
             options: self.options.for_solvers(),
             log: self.options.log,
+            search: self.search_aim(model),
+        }
+    }
+
+    /// What a search over discrete columns is to reach.
+    fn search_aim(&self, model: SymbolId) -> Aim {
+        let standard = Aim::default();
+        let stated = |name| {
+            let of_model = self.models.get(&model).and_then(|m| m.get(name));
+            of_model.or_else(|| self.options.number(name))
+        };
+        let number = |name, default| {
+            let value: f64 = stated(name).unwrap_or(default);
+            if value.is_finite() { value } else { default }
+        };
+        Aim {
+            relative_gap: number("optcr", standard.relative_gap),
+            absolute_gap: number("optca", standard.absolute_gap),
+            nodes: number("nodlim", 0.0).clamp(0.0, 1e18) as u64,
+            cutoff: stated("cutoff").filter(|c| c.is_finite()),
+            cheat: number("cheat", 0.0),
+            try_start: number("tryint", 0.0),
+            priorities: number("prioropt", 0.0) != 0.0,
+            record: self.options.collect,
         }
     }
 
@@ -406,6 +399,8 @@ impl Machine<'_> {
         let r = &a.residuals;
         let instance: &Instance = &g.instance;
         let objective = match instance.objective {
+            // No point was returned.
+            Some(_) if a.is_without_point() => NA,
             Some(o) => a.outcome.level[o.column as usize],
             None => r.pairs.unwrap_or(0.0),
         };
@@ -424,7 +419,8 @@ impl Machine<'_> {
             ("modelstat", f64::from(a.status as u8)),
             ("solvestat", f64::from(a.outcome.status as u8)),
             ("objval", objective),
-            ("objest", crate::data::value::NA),
+            ("objest", a.search.as_ref().map_or(NA, |s| s.bound)),
+            ("nodusd", a.search.as_ref().map_or(NA, |s| s.nodes as f64)),
             ("iterusd", a.outcome.iterations as f64),
             ("resusd", seconds.solve),
             ("etsolve", seconds.total),
@@ -492,7 +488,10 @@ impl Machine<'_> {
             solver: a.outcome.solver.to_string(),
             model_status: a.status.into(),
             solver_status: a.outcome.status.into(),
-            objective: objective.map(|o| json::Number(a.outcome.level[o.column as usize])),
+            objective: objective
+                .filter(|_| !a.is_without_point())
+                .map(|o| json::Number(a.outcome.level[o.column as usize])),
+            search: a.search.as_ref().map(|found| self.search_report(g, a, found)),
             rows: g.instance.row_count(),
             columns: g.columns(),
             nonzeros: g.origin.nonzeros,
@@ -564,10 +563,31 @@ impl Machine<'_> {
             residual: json::Residual::default(),
             complementarity_sum: None,
             bounds: None,
+            search: None,
             stationarity: None,
             message: None,
             hint: None,
             why: None,
+        }
+    }
+
+    /// Bound, gap and nodes of a search, with names.
+    fn search_report(&self, g: &Generated, a: &Answer, found: &mip::Report) -> json::Search {
+        let value = g.instance.objective.map(|o| a.outcome.level[o.column as usize]);
+        let value = value.filter(|_| !a.is_without_point());
+        let gap = |v: f64| json::Number((v - found.bound).abs() / v.abs().max(1e-10));
+        let node = |r: &mip::Record| json::TreeNode {
+            parent: r.parent,
+            column: r.change.map(|c| self.origin_name(&g.origin.columns, c.column)),
+            bounds: r.change.map(|c| [json::Number(c.lower), json::Number(c.upper)]),
+            value: json::Number(g.instance.sign() * r.value),
+            fate: r.fate,
+        };
+        json::Search {
+            bound: json::Number(found.bound),
+            gap: value.map(gap),
+            nodes: found.nodes,
+            tree: found.records.iter().map(node).collect(),
         }
     }
 

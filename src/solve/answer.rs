@@ -33,6 +33,8 @@ pub struct Answer {
     pub stationarity: Option<Stationarity>,
     /// A proved interval for the optimal value.
     pub bounds: Option<[f64; 2]>,
+    /// For a program with discrete columns: bound and nodes.
+    pub search: Option<super::mip::Report>,
 }
 
 impl Answer {
@@ -50,7 +52,16 @@ impl Answer {
             activity,
             stationarity: None,
             bounds: None,
+            search: None,
         }
+    }
+}
+
+impl Answer {
+    /// A search ended without a solution: levels and marginals are as before.
+    pub fn is_without_point(&self) -> bool {
+        use ModelStatus as S;
+        self.search.is_some() && matches!(self.status, S::IntegerInfeasible | S::NoSolution | S::UnboundedNoSolution)
     }
 }
 
@@ -62,10 +73,13 @@ pub fn answer(
     settings: &Settings,
     monitor: &mut dyn Monitor,
 ) -> Result<Answer, SolveError> {
+    let discrete = matches!(using, "mip" | "miqcp" | "minlp");
+    let undecided = discrete && instance.columns.first_undecided().is_some();
     let has_pairs = instance.matched.iter().flatten().any(Option::is_some);
     let mut found = match using {
         "mcp" => complementary(instance, settings, monitor),
         "cns" => square(instance, settings, monitor),
+        _ if undecided => super::mip::answer(choice, instance, settings, monitor),
         "mpec" | "rmpec" if has_pairs => super::mpec::answer(choice, instance, settings, monitor),
         _ if instance.is_linear() && instance.objective.is_some() => match choice {
             Some("mcp" | "bmcp") => linear_shown(&super::kkt::Kkt, instance, settings, monitor),
@@ -144,6 +158,14 @@ fn activity(instance: &Instance, x: &[f64]) -> Vec<f64> {
         out.fill(f64::NAN);
     }
     out
+}
+
+/// Levels of the rows at a point, and what is violated there.
+pub(super) fn primal(instance: &Instance, x: &[f64]) -> (Vec<f64>, Residuals) {
+    let activity = activity(instance, x);
+    let size: Vec<f64> = activity.iter().map(|a| a.abs().max(1.0)).collect();
+    let residuals = certificate::primal(instance, x, &activity, &size);
+    (activity, residuals)
 }
 
 fn complementary(

@@ -11,6 +11,7 @@ pub mod interval;
 pub mod kkt;
 pub mod lp;
 pub mod mcp;
+pub mod mip;
 pub mod mpec;
 pub mod nlp;
 mod noise;
@@ -40,6 +41,12 @@ pub enum ModelStatus {
     IntermediateInfeasible = 6,
     /// The last point is feasible, but not shown to be optimal.
     Feasible = 7,
+    /// A solution with all discrete columns right, not shown to be the best.
+    IntegerSolution = 8,
+    /// Not solved, and the last point is no solution.
+    IntermediateNonInteger = 9,
+    /// No point satisfies rows, bounds and discrete columns.
+    IntegerInfeasible = 10,
     /// Error, unknown.
     ErrorUnknown = 12,
     /// Error, no solution.
@@ -79,6 +86,9 @@ impl ModelStatus {
             Self::LocallyInfeasible => "locally infeasible",
             Self::IntermediateInfeasible => "intermediate infeasible",
             Self::Feasible => "feasible solution",
+            Self::IntegerSolution => "integer solution",
+            Self::IntermediateNonInteger => "intermediate non-integer",
+            Self::IntegerInfeasible => "integer infeasible",
             Self::ErrorUnknown => "error unknown",
             Self::ErrorNoSolution => "error no solution",
             Self::NoSolution => "no solution returned",
@@ -182,6 +192,8 @@ pub struct Settings {
     pub options: Vec<(String, String)>,
     /// Whether a log is wanted.
     pub log: bool,
+    /// What a search over discrete columns is to reach.
+    pub search: mip::Aim,
 }
 
 impl Default for Settings {
@@ -192,6 +204,7 @@ impl Default for Settings {
             evaluation_error_limit: 0,
             options: Vec::new(),
             log: false,
+            search: mip::Aim::default(),
         }
     }
 }

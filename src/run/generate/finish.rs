@@ -281,6 +281,12 @@ impl Builder<'_, '_> {
                 _ => ColumnKind::Continuous,
             };
             let semi = matches!(kind, ColumnKind::SemiContinuous | ColumnKind::SemiInteger);
+            let sets = match symbol.kind {
+                SymbolKind::Variable(VariableKind::Sos1) => Some(false),
+                SymbolKind::Variable(VariableKind::Sos2) => Some(true),
+                _ => None,
+            };
+            let discrete = &mut self.instance.discrete;
             let get = |o: u32, key: &[Label]| number(self.m.store.table(t + o).get(key));
             for i in b.start..b.start + b.len {
                 let key = b.key(i);
@@ -294,7 +300,37 @@ impl Builder<'_, '_> {
                 } else {
                     1.0
                 });
-                c.kind.push(kind);
+                let prior = match kind {
+                    ColumnKind::Continuous => 1.0,
+                    _ => get(attribute::PRIOR, key),
+                };
+                if prior != 1.0 {
+                    discrete.priorities.resize(n, 1.0);
+                    discrete.priorities[i as usize] = prior;
+                }
+                // As in GAMS, an infinite priority relaxes the column.
+                let relaxed = prior == f64::INFINITY;
+                c.kind.push(if relaxed { ColumnKind::Continuous } else { kind });
+                if semi && lower > 0.0 && !relaxed {
+                    discrete.thresholds.push((i, lower));
+                }
+                if let Some(neighbours) = sets.filter(|_| !relaxed) {
+                    // The last index runs through a set; what stands before it names the set.
+                    let outer = |i: u32| b.key(i).split_last().map(|(_, outer)| outer);
+                    match discrete.sets.last_mut() {
+                        Some(set)
+                            if i > b.start
+                                && set.columns.last() == Some(&(i - 1))
+                                && outer(i - 1) == outer(i) =>
+                        {
+                            set.columns.push(i);
+                        }
+                        _ => discrete.sets.push(OrderedSet {
+                            neighbours,
+                            columns: vec![i],
+                        }),
+                    }
+                }
             }
         }
         for i in 0..n {

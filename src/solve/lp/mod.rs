@@ -82,7 +82,7 @@ impl Limits {
     }
 
     /// A line of the log that ends with the seconds so far.
-    fn log(&self, monitor: &mut dyn Monitor, line: &str) {
+    pub(super) fn log(&self, monitor: &mut dyn Monitor, line: &str) {
         let seconds = self.start.elapsed().as_secs_f64();
         monitor.log(&format!("{line}, {seconds:.2} s"));
     }

@@ -48,18 +48,31 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
 impl Scaling {
     /// Chooses factors for a problem.
     pub fn new(p: &Problem) -> Self {
+        Self::choose(p, &vec![false; p.n()])
+    }
+
+    /// The same with the unit 1 for the columns that `keep` marks, and for all bounds.
+    pub fn keeping(p: &Problem, keep: &[bool]) -> Self {
+        Self {
+            size: 1.0,
+            ..Self::choose(p, keep)
+        }
+    }
+
+    fn choose(p: &Problem, keep: &[bool]) -> Self {
         let mut row = vec![1.0; p.m()];
         let mut column = vec![1.0; p.n()];
+        let free = |j: &usize| !keep[*j];
         for _ in 0..4 {
             for (i, r) in row.iter_mut().enumerate() {
                 *r = 1.0 / extremes(p.rows.line(i).map(|(j, v)| v * column[j]));
             }
-            for (j, c) in column.iter_mut().enumerate() {
+            for (j, c) in column.iter_mut().enumerate().filter(|e| free(&e.0)) {
                 *c = 1.0 / extremes(p.columns.line(j).map(|(i, v)| v * row[i]));
             }
         }
         row.iter_mut().for_each(|r| *r = power_of_two(*r));
-        for (j, c) in column.iter_mut().enumerate() {
+        for (j, c) in column.iter_mut().enumerate().filter(|e| free(&e.0)) {
             let largest = p.columns.line(j).map(|(i, v)| (v * row[i]).abs());
             *c = match largest.fold(0.0, f64::max) {
                 0.0 => 1.0,

@@ -474,6 +474,40 @@ impl Simplex {
         ended
     }
 
+    /// Solves after bounds have changed, as in a search: without perturbations first, with them where that takes long.
+    pub fn resolve(&mut self, stop: &mut dyn FnMut(u64) -> Option<Ended>) -> Ended {
+        let most = self.limit;
+        self.limit = most.min(self.iterations + 500);
+        let ended = self.rounds(0, stop);
+        self.limit = most;
+        let cut = self.is_beyond_cutoff() || self.iterations >= most;
+        match ended {
+            Ended::Iterations if !cut => self.rounds(2, stop),
+            Ended::Failed => self.rounds(2, stop),
+            ended => ended,
+        }
+    }
+
+    /// Whether the dual method gave up because the value, for the costs it worked with, is above the cutoff.
+    pub fn is_beyond_cutoff(&self) -> bool {
+        let terms = self.work_cost.iter().zip(&self.x).map(|(c, x)| c * x);
+        self.cutoff.is_finite() && terms.sum::<f64>() > self.cutoff
+    }
+
+    /// Multipliers of the rows that give the row of the tableau in which this variable is basic.
+    pub fn tableau_multipliers(&mut self, variable: usize) -> Option<Entries> {
+        let slot = self.slot[variable];
+        match slot {
+            NONBASIC => None,
+            _ => self.factor.as_mut()?.backward(&[(slot as usize, 1.0)]).cloned(),
+        }
+    }
+
+    /// Whether a variable (a column, or n + row) is basic.
+    pub fn is_basic(&self, variable: usize) -> bool {
+        self.slot[variable] != NONBASIC
+    }
+
     /// Values of columns and rows at the present basis.
     pub fn values(&self) -> &[f64] {
         &self.x

@@ -310,6 +310,7 @@ impl Builder {
             nonlinear: self.nonlinear,
             objective: original.objective,
             matched: None,
+            discrete: Default::default(),
         };
         // the start of an outer one depends on that of an inner one
         let mut evaluator = Evaluator::new(&instance);

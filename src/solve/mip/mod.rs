@@ -1,0 +1,427 @@
+//! Programs with discrete columns: `mip`, `miqcp`, `minlp`.
+//!
+//! [`presolve`] makes a linear program smaller, [`cuts`] tighten its relaxation, and [`tree`] searches, by branch and
+//! bound over the simplex method ([`linear`]) or a nonlinear solver ([`nonlinear`]). The answer is that of the program
+//! with the discrete columns fixed at the best solution: so there are marginals, and the point is checked like any other.
+//!
+//! It is made for teaching and for small and middling models.
+
+mod branching;
+pub mod cuts;
+mod heuristics;
+pub mod linear;
+pub mod model;
+pub mod nonlinear;
+pub mod presolve;
+pub mod propagate;
+mod relaxation;
+pub mod tree;
+
+pub use tree::{Aim, Record};
+
+use super::answer::{Answer, linear as solve_linear};
+use super::lp::form::Form;
+use super::lp::{self, Ended, Limits};
+use super::{Claim, ModelStatus, Monitor, Outcome, Settings, SolveError, SolverStatus, nlp};
+use crate::model::certificate::Residuals;
+use crate::model::instance::{ColumnKind, Instance};
+use cuts::Separator;
+use linear::Linear;
+use model::{Change, Mip, Units};
+use nonlinear::{Muted, Nonlinear};
+use relaxation::{Control, Relaxation, Solved};
+use tree::{End, Search};
+
+/// Name of this solver.
+pub const NAME: &str = "bmip";
+
+/// What a search found out besides a point.
+#[derive(Clone, Debug)]
+pub struct Report {
+    /// No solution is better than this.
+    pub bound: f64,
+    /// Nodes solved.
+    pub nodes: u64,
+    /// What became of the nodes, where that was asked for; columns are the instance's.
+    pub records: Vec<Record>,
+}
+
+/// What a search gave, in columns of the instance, for a minimisation.
+struct Found {
+    x: Option<Vec<f64>>,
+    bound: f64,
+    value: f64,
+    nodes: u64,
+    end: End,
+    incomplete: bool,
+    /// Values of relaxations are bounds.
+    exact: bool,
+    records: Vec<Record>,
+}
+
+impl Found {
+    /// Of a program without a solution, seen before any search.
+    fn empty() -> Self {
+        Self {
+            x: None,
+            bound: f64::INFINITY,
+            value: f64::INFINITY,
+            nodes: 0,
+            end: End::Complete,
+            incomplete: false,
+            exact: true,
+            records: Vec::new(),
+        }
+    }
+}
+
+/// Solves an instance with discrete columns.
+pub fn answer(
+    choice: Option<&str>,
+    instance: &Instance,
+    settings: &Settings,
+    monitor: &mut dyn Monitor,
+) -> Result<Answer, SolveError> {
+    let limits = Limits::of(settings, std::time::Instant::now());
+    let mut control = Control {
+        monitor,
+        limits,
+        iterations: 0,
+    };
+    let mut aim = settings.search;
+    aim.cutoff = aim.cutoff.map(|c| instance.sign() * c);
+    let found = match instance.is_linear() {
+        true => linear_search(instance, aim, &mut control)?,
+        false => nonlinear_search(choice, instance, aim, settings, &mut control)?,
+    };
+    let iterations = control.iterations;
+    let (mut answer, complete) = match &found.x {
+        Some(x) => (solution(choice, instance, x, settings, control.monitor)?, true),
+        None => (nothing(instance), false),
+    };
+    let bound = if found.x.is_some() && found.exact { found.bound.min(found.value) } else { found.bound };
+    let proved = match found.end {
+        End::Complete => !found.incomplete,
+        _ => found.value - bound <= 1e-9 * found.value.abs().max(1e-9),
+    };
+    use ModelStatus as S;
+    answer.status = match (complete, &found.end) {
+        (true, _) if !answer.residuals.is_feasible(1e-6) => S::IntermediateNonInteger,
+        (true, End::Unbounded) => S::Unbounded,
+        (true, _) if proved && found.exact => S::Optimal,
+        (true, _) => S::IntegerSolution,
+        (false, End::Complete) if !found.incomplete => S::IntegerInfeasible,
+        (false, End::Unbounded) => S::UnboundedNoSolution,
+        _ => S::NoSolution,
+    };
+    let outcome = &mut answer.outcome;
+    outcome.iterations = iterations;
+    outcome.solver = NAME;
+    outcome.basis = None;
+    outcome.message = None;
+    outcome.status = match found.end {
+        End::Complete if found.incomplete => SolverStatus::TerminatedBySolver,
+        End::Complete | End::Gap | End::Unbounded => SolverStatus::NormalCompletion,
+        End::Stopped(Ended::Time) => SolverStatus::ResourceInterrupt,
+        End::Stopped(Ended::Iterations) => SolverStatus::IterationInterrupt,
+        End::Stopped(Ended::Interrupted) => SolverStatus::UserInterrupt,
+        _ => SolverStatus::TerminatedBySolver,
+    };
+    let shown = instance.sign() * bound;
+    answer.search = Some(Report {
+        bound: shown,
+        nodes: found.nodes,
+        records: found.records,
+    });
+    Ok(answer)
+}
+
+/// The search of a linear program: presolve, cuts, tree.
+fn linear_search(instance: &Instance, aim: Aim, control: &mut Control) -> Result<Found, SolveError> {
+    let form = Form::new(instance)?;
+    let mip = Mip::new(form.problem.clone(), instance, &form.columns, aim.priorities);
+    let start = aim.try_start > 0.0 && {
+        let near = |k: usize| {
+            let x = instance.columns.level[form.columns[k] as usize];
+            (x - x.round()).abs() <= aim.try_start
+        };
+        (0..mip.integer.len()).filter(|&k| mip.integer[k]).all(near)
+    };
+    let start: Option<Vec<f64>> = start.then(|| {
+        form.columns.iter().map(|&j| instance.columns.level[j as usize]).collect()
+    });
+    let mut found = search_linear(&mip, aim, start, control);
+    // In columns of the instance; the objective's follows from the others.
+    if let Some(x) = found.x.take() {
+        let point = lp::form::Point {
+            x,
+            y: vec![0.0; form.problem.m()],
+            d: vec![0.0; form.problem.n()],
+        };
+        found.x = Some(form.point(instance, &point).0);
+    }
+    for c in found.records.iter_mut().filter_map(|r| r.change.as_mut()) {
+        c.column = form.columns[c.column] as usize;
+    }
+    Ok(found)
+}
+
+fn search_linear(mip: &Mip, aim: Aim, start: Option<Vec<f64>>, control: &mut Control) -> Found {
+    let Some(reduced) = presolve::reduce(mip, &[]) else {
+        return Found::empty();
+    };
+    let line = format!(
+        "presolve: {} rows, {} columns, {} of them integer",
+        reduced.mip.problem.m(),
+        reduced.mip.problem.n(),
+        reduced.mip.integer.iter().filter(|i| **i).count()
+    );
+    control.limits.log(control.monitor, &line);
+    let (scaled, scaling) = reduced.mip.scaled();
+    let units = Units {
+        price: scaling.price,
+        offset: reduced.mip.problem.offset,
+    };
+    let mut linear = Linear::new(&scaled);
+    let solved = strengthen(&scaled, &mut linear, 30, control);
+    let near = |mip: &Mip, fixed: &[Change], cutoff: f64, control: &mut Control| nearby(mip, fixed, cutoff, control);
+    let mut search = Search::new(&scaled, linear, aim, units);
+    search.neighbourhood = Some(&near);
+    if solved == Solved::Infeasible {
+        return Found::empty();
+    }
+    if let Some(x) = start {
+        let mut y = reduced.reduce(&x);
+        y.iter_mut().zip(&scaling.column).for_each(|(x, c)| *x /= c);
+        search.offer(&y, control);
+    }
+    let mut end = search.run(control);
+    if end == End::Unbounded && search.best.is_none() {
+        // Unbounded, if there is a solution at all.
+        let mut anything = mip.clone();
+        anything.problem.cost.fill(0.0);
+        let some = search_linear(&anything, Aim::default(), None, control);
+        return Found {
+            end: if some.end == End::Complete && some.x.is_none() { End::Complete } else { End::Unbounded },
+            bound: f64::NEG_INFINITY,
+            value: some.x.as_ref().map_or(f64::INFINITY, |x| mip.value(x) + mip.problem.offset),
+            ..some
+        };
+    }
+    if end == End::Gap && search.best.is_none() {
+        end = End::Complete;
+    }
+    let restore = |x: &Vec<f64>| {
+        let x: Vec<f64> = x.iter().zip(&scaling.column).map(|(x, c)| x * c).collect();
+        reduced.restore(&x)
+    };
+    let mut records = std::mem::take(&mut search.records);
+    for r in &mut records {
+        r.value = units.shown(r.value);
+        if let Some(c) = &mut r.change {
+            let factor = scaling.column[c.column];
+            *c = Change {
+                column: reduced.columns[c.column] as usize,
+                lower: c.lower * factor,
+                upper: c.upper * factor,
+            };
+        }
+    }
+    Found {
+        value: search.best.as_ref().map_or(f64::INFINITY, |b| units.shown(b.0)),
+        x: search.best.as_ref().map(|b| restore(&b.1)),
+        bound: units.shown(search.bound),
+        nodes: search.nodes,
+        incomplete: search.incomplete,
+        exact: true,
+        end,
+        records,
+    }
+}
+
+/// Adds cuts to the root's relaxation while they help.
+fn strengthen(mip: &Mip, linear: &mut Linear, rounds: usize, control: &mut Control) -> Solved {
+    let first = mip.problem.m();
+    let mut solved = linear.solve(f64::INFINITY, control);
+    let Solved::Value(start) = solved else {
+        return solved;
+    };
+    let (mut value, mut idle) = (start, 0);
+    let separator = Separator::new(mip, &mip.problem.lower, &mip.problem.upper);
+    for _ in 0..rounds {
+        let x = linear.x().to_vec();
+        if mip.is_discrete(&x) || control.stop(control.iterations).is_some() || idle >= 3 {
+            break;
+        }
+        let cuts = separator.separate(linear);
+        if cuts.is_empty() {
+            break;
+        }
+        linear.add(&cuts);
+        solved = linear.solve(f64::INFINITY, control);
+        let Solved::Value(v) = solved else {
+            break;
+        };
+        idle = match v - value > 1e-3 * (v - start).max(1e-9 * v.abs()) + 1e-9 {
+            true => 0,
+            false => idle + 1,
+        };
+        value = v;
+        linear.drop_idle(first);
+    }
+    let rows = linear.problem.m() - first;
+    let line = format!("cuts: {rows}, bound {start:.10} to {value:.10} (scaled)");
+    control.limits.log(control.monitor, &line);
+    solved
+}
+
+/// A search of a few nodes where some columns are fixed.
+fn nearby(mip: &Mip, fixed: &[Change], cutoff: f64, control: &mut Control) -> Option<Vec<f64>> {
+    let reduced = presolve::reduce(mip, fixed)?;
+    let units = Units {
+        price: 1.0,
+        offset: reduced.mip.problem.offset - mip.problem.offset,
+    };
+    let aim = Aim {
+        nodes: 100,
+        cutoff: cutoff.is_finite().then_some(cutoff),
+        relative_gap: 1e-3,
+        ..Aim::default()
+    };
+    let mut sub = Control {
+        limits: Limits {
+            iterations: control.limits.iterations.min(control.iterations + 1000 + control.iterations / 5),
+            ..control.limits
+        },
+        iterations: control.iterations,
+        monitor: &mut *control.monitor,
+    };
+    let mut linear = Linear::new(&reduced.mip);
+    let mut quiet = Control {
+        monitor: &mut Muted(sub.monitor),
+        limits: sub.limits,
+        iterations: sub.iterations,
+    };
+    let solved = strengthen(&reduced.mip, &mut linear, 5, &mut quiet);
+    let mut best = None;
+    if solved != Solved::Infeasible {
+        let mut search = Search::new(&reduced.mip, linear, aim, units);
+        search.run(&mut quiet);
+        best = search.best.take();
+    }
+    sub.iterations = quiet.iterations;
+    control.iterations = sub.iterations;
+    best.map(|b| reduced.restore(&b.1))
+}
+
+/// The search of a nonlinear program.
+fn nonlinear_search(
+    choice: Option<&str>,
+    instance: &Instance,
+    aim: Aim,
+    settings: &Settings,
+    control: &mut Control,
+) -> Result<Found, SolveError> {
+    let mip = Mip::of_nonlinear(instance, aim.priorities);
+    let mut first = instance.clone();
+    first.columns.lower.copy_from_slice(&mip.problem.lower);
+    first.columns.upper.copy_from_slice(&mip.problem.upper);
+    let mut relaxation = Nonlinear::new(&first, choice, settings);
+    // What keeps the solver from starting is said before anything else.
+    let mut once = settings.clone();
+    once.iteration_limit = 1;
+    once.log = false;
+    nlp::answer(choice, &first, &once, &mut Muted(control.monitor))?;
+    relaxation.convex = true;
+    let units = Units {
+        price: 1.0,
+        offset: 0.0,
+    };
+    let mut search = Search::new(&mip, relaxation, aim, units);
+    let end = search.run(control);
+    Ok(Found {
+        value: search.best.as_ref().map_or(f64::INFINITY, |b| b.0),
+        x: search.best.as_ref().map(|b| b.1.clone()),
+        bound: search.bound,
+        nodes: search.nodes,
+        incomplete: search.incomplete,
+        exact: search.relaxation.convex,
+        end,
+        records: std::mem::take(&mut search.records),
+    })
+}
+
+/// The program with its discrete columns fixed where a point has them.
+pub fn fixed(instance: &Instance, x: &[f64]) -> Instance {
+    let mut out = instance.clone();
+    let c = &mut out.columns;
+    for j in 0..x.len() {
+        match c.kind[j] {
+            ColumnKind::Integer | ColumnKind::SemiInteger => {
+                (c.lower[j], c.upper[j]) = (x[j].round(), x[j].round());
+            }
+            ColumnKind::SemiContinuous | ColumnKind::OrderedSet if x[j] == 0.0 => {
+                (c.lower[j], c.upper[j]) = (0.0, 0.0);
+            }
+            _ => {}
+        }
+        c.kind[j] = ColumnKind::Continuous;
+        c.level[j] = x[j];
+    }
+    for &(j, lower) in &instance.discrete.thresholds {
+        let j = j as usize;
+        if c.lower[j] < c.upper[j] {
+            c.lower[j] = lower;
+        }
+    }
+    out.discrete = Default::default();
+    out
+}
+
+/// The answer at a solution of the search.
+fn solution(
+    choice: Option<&str>,
+    instance: &Instance,
+    x: &[f64],
+    settings: &Settings,
+    monitor: &mut dyn Monitor,
+) -> Result<Answer, SolveError> {
+    let fixed = fixed(instance, x);
+    let mut rest = settings.clone();
+    (rest.time_limit, rest.iteration_limit, rest.log) = (1e10, 2_147_483_647, false);
+    let mut muted = Muted(monitor);
+    let answer = match instance.is_linear() {
+        true => solve_linear(&lp::Clarabel, &fixed, &rest, &mut muted),
+        false => nlp::answer(choice, &fixed, &rest, &mut muted),
+    };
+    if let Ok(a) = answer
+        && matches!(a.status, ModelStatus::Optimal | ModelStatus::LocallyOptimal)
+    {
+        return Ok(a);
+    }
+    // The point of the search, without marginals.
+    let mut outcome = nothing(instance).outcome;
+    outcome.level = x.to_vec();
+    outcome.row_marginal.fill(0.0);
+    outcome.column_marginal.fill(0.0);
+    let (activity, residuals) = super::answer::primal(instance, &outcome.level);
+    Ok(Answer::new(outcome, residuals, ModelStatus::IntegerSolution, activity))
+}
+
+/// Without a solution levels and marginals stay as they were.
+fn nothing(instance: &Instance) -> Answer {
+    let outcome = Outcome {
+        level: instance.columns.level.clone(),
+        row_marginal: instance.rows.marginal.clone(),
+        column_marginal: instance.columns.marginal.clone(),
+        claim: Claim::Unfinished,
+        status: SolverStatus::NormalCompletion,
+        iterations: 0,
+        solver: NAME,
+        ray: Vec::new(),
+        message: None,
+        basis: None,
+    };
+    let (activity, _) = super::answer::primal(instance, &outcome.level);
+    Answer::new(outcome, Residuals::default(), ModelStatus::NoSolution, activity)
+}

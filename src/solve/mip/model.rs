@@ -1,0 +1,236 @@
+//! A linear program some of whose columns are discrete, and what it means that a point satisfies that.
+
+use crate::model::instance::{ColumnKind, Instance, OrderedSet};
+use crate::solve::lp::form::{Form, Problem};
+use crate::solve::lp::scale::Scaling;
+
+/// A value this near to an integer is one.
+pub const INTEGRAL: f64 = 1e-6;
+
+/// A violation of a row up to this, relative to the row's largest term, is none.
+pub const FEASIBLE: f64 = 1e-7;
+
+/// New bounds of a column.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Change {
+    /// The column.
+    pub column: usize,
+    /// Its lower bound from here on.
+    pub lower: f64,
+    /// Its upper bound from here on.
+    pub upper: f64,
+}
+
+/// A linear program (or the linear rows of a nonlinear one) with discrete columns.
+#[derive(Clone, Debug, Default)]
+pub struct Mip {
+    /// Costs, bounds and rows.
+    pub problem: Problem,
+    /// By column: integers only.
+    pub integer: Vec<bool>,
+    /// By column: 0, or not below this; 0 for columns that are not semicontinuous.
+    pub threshold: Vec<f64>,
+    /// Sets of columns of which one, or two neighbours, may be nonzero.
+    pub sets: Vec<OrderedSet>,
+    /// By column: what is branched on first has the least; empty: no preference.
+    pub priority: Vec<f64>,
+}
+
+/// What of a program's value is not a matter of the search: its unit and its constant.
+#[derive(Clone, Copy, Debug)]
+pub struct Units {
+    /// Factor.
+    pub price: f64,
+    /// Constant, after the factor.
+    pub offset: f64,
+}
+
+impl Units {
+    /// A value in the units of the instance, of a minimisation.
+    pub fn shown(&self, value: f64) -> f64 {
+        value * self.price + self.offset
+    }
+
+    /// The other way.
+    pub fn inner(&self, shown: f64) -> f64 {
+        (shown - self.offset) / self.price
+    }
+}
+
+impl Mip {
+    /// The discrete side of an instance's columns; `column[k]` is the instance's number of column k.
+    pub fn new(problem: Problem, instance: &Instance, columns: &[u32], priorities: bool) -> Self {
+        let n = problem.n();
+        let mut number = vec![u32::MAX; instance.column_count()];
+        for (k, &j) in columns.iter().enumerate() {
+            number[j as usize] = k as u32;
+        }
+        let kind = |k: usize| instance.columns.kind[columns[k] as usize];
+        let whole = |k| matches!(kind(k), ColumnKind::Integer | ColumnKind::SemiInteger);
+        let mut mip = Self {
+            problem,
+            integer: (0..n).map(whole).collect(),
+            threshold: vec![0.0; n],
+            sets: Vec::new(),
+            priority: Vec::new(),
+        };
+        for &(j, lower) in &instance.discrete.thresholds {
+            if let Some(k) = number.get(j as usize).filter(|&&k| k != u32::MAX) {
+                mip.threshold[*k as usize] = lower;
+            }
+        }
+        for set in &instance.discrete.sets {
+            let columns = set.columns.iter().map(|&j| number[j as usize]);
+            mip.sets.push(OrderedSet {
+                neighbours: set.neighbours,
+                columns: columns.filter(|&k| k != u32::MAX).collect(),
+            });
+        }
+        if priorities && !instance.discrete.priorities.is_empty() {
+            let all = &instance.discrete.priorities;
+            mip.priority = columns.iter().map(|&j| all[j as usize]).collect();
+        }
+        mip.round_bounds();
+        mip
+    }
+
+    /// Bounds of integer columns become integers.
+    pub fn round_bounds(&mut self) {
+        let p = &mut self.problem;
+        for j in (0..self.integer.len()).filter(|&j| self.integer[j]) {
+            p.lower[j] = (p.lower[j] - INTEGRAL).ceil();
+            p.upper[j] = (p.upper[j] + INTEGRAL).floor();
+        }
+    }
+
+    /// In units in which coefficients are near 1; integer columns and members of sets stay as they are.
+    pub fn scaled(&self) -> (Self, Scaling) {
+        let mut keep = self.integer.clone();
+        for set in &self.sets {
+            set.columns.iter().for_each(|&j| keep[j as usize] = true);
+        }
+        let scaling = Scaling::keeping(&self.problem, &keep);
+        let mut scaled = self.clone();
+        scaled.problem = scaling.apply(&self.problem);
+        for (t, c) in scaled.threshold.iter_mut().zip(&scaling.column) {
+            *t /= c;
+        }
+        (scaled, scaling)
+    }
+
+    /// The linear rows of an instance, without costs, over all of its columns.
+    pub fn of_nonlinear(instance: &Instance, priorities: bool) -> Self {
+        let mut rows = instance.clone();
+        rows.objective = None;
+        let nonlinear = instance.nonlinear_rows();
+        for (relation, nonlinear) in rows.rows.relation.iter_mut().zip(nonlinear) {
+            if nonlinear {
+                *relation = crate::model::instance::Relation::Free;
+            }
+        }
+        rows.nonlinear.clear();
+        let form = Form::new(&rows);
+        let (problem, columns) = form.map(|f| (f.problem, f.columns)).unwrap_or_default();
+        Self::new(problem, instance, &columns, priorities)
+    }
+
+    /// How far a value of column j is from what it may be, given its bounds in a node.
+    pub fn distance(&self, j: usize, x: f64, lower: f64) -> f64 {
+        let mut far = 0.0f64;
+        if self.integer[j] {
+            far = (x - x.round()).abs();
+        }
+        let t = self.threshold[j];
+        if t > 0.0 && lower < t && x < t - INTEGRAL * t.max(1.0) && x > INTEGRAL {
+            far = far.max((x / t).min(1.0 - x / t));
+        }
+        far
+    }
+
+    /// First and last position of what is not 0 in a set, if that is more than the set allows.
+    pub fn spread(&self, set: &OrderedSet, x: &[f64]) -> Option<(usize, usize)> {
+        let off = |j: &&u32| x[**j as usize].abs() > INTEGRAL;
+        let first = set.columns.iter().position(|j| off(&j))?;
+        let last = set.columns.iter().rposition(|j| off(&j))?;
+        (last - first > usize::from(set.neighbours)).then_some((first, last))
+    }
+
+    /// Whether all discrete columns have values that they may have.
+    pub fn is_discrete(&self, x: &[f64]) -> bool {
+        let fine = |j: usize| self.distance(j, x[j], 0.0) <= INTEGRAL;
+        (0..x.len()).all(fine) && self.sets.iter().all(|s| self.spread(s, x).is_none())
+    }
+
+    /// Whether a point satisfies bounds and rows, up to rounding.
+    pub fn is_feasible(&self, x: &[f64]) -> bool {
+        let p = &self.problem;
+        let inside = |(j, &x): (usize, &f64)| {
+            let slack = FEASIBLE * x.abs().max(1.0);
+            x >= p.lower[j] - slack && x <= p.upper[j] + slack
+        };
+        let row = |i: usize| {
+            let terms = p.rows.line(i).map(|(j, a)| a * x[j]);
+            let (sum, size) =
+                terms.fold((0.0, 1.0f64), |(s, z), t: f64| (s + t, z.max(t.abs())));
+            let slack = FEASIBLE * size;
+            sum >= p.row_lower[i] - slack && sum <= p.row_upper[i] + slack
+        };
+        x.iter().enumerate().all(inside) && (0..p.m()).all(row)
+    }
+
+    /// Value of a point.
+    pub fn value(&self, x: &[f64]) -> f64 {
+        self.problem.cost.iter().zip(x).map(|(c, x)| c * x).sum()
+    }
+
+    /// The step of the objective's values where only columns with integer values have costs; 0 if there is none.
+    pub fn granularity(&self) -> f64 {
+        let whole = self.implied_integers();
+        let costs: Vec<f64> = (0..whole.len())
+            .filter(|&j| self.problem.cost[j] != 0.0 && self.problem.lower[j] < self.problem.upper[j])
+            .map(|j| if whole[j] { self.problem.cost[j].abs() } else { f64::NAN })
+            .collect();
+        let Some(least) = costs.iter().copied().reduce(f64::min) else {
+            return 0.0;
+        };
+        if costs.iter().any(|c| c.is_nan()) {
+            return 0.0;
+        }
+        // decimal fractions, and multiples of the least cost
+        for unit in [1.0, 0.1, 0.01, 0.001, 1e-4, least, least / 2.0, least / 3.0, 1.0 / 32.0] {
+            let whole = |c: &f64| {
+                let k = c / unit;
+                k < 1e9 && (k - k.round()).abs() < 1e-9 * k.max(1.0)
+            };
+            if costs.iter().all(whole) {
+                let mut gcd = 0u64;
+                for c in &costs {
+                    let (mut a, mut b) = (gcd, (c / unit).round() as u64);
+                    while b > 0 {
+                        (a, b) = (b, a % b);
+                    }
+                    gcd = a;
+                }
+                return unit * gcd as f64;
+            }
+        }
+        0.0
+    }
+
+    /// Columns that are integers, or must be: alone in an equation whose other columns are.
+    fn implied_integers(&self) -> Vec<bool> {
+        let p = &self.problem;
+        let mut whole = self.integer.clone();
+        for _ in 0..3 {
+            for i in (0..p.m()).filter(|&i| p.row_lower[i] == p.row_upper[i]) {
+                let mut others = p.rows.line(i).filter(|&(j, _)| !whole[j]);
+                let (Some((j, a)), None) = (others.next(), others.next()) else {
+                    continue;
+                };
+                let near = |v: f64| v.abs() < 1e9 && (v - v.round()).abs() < 1e-10;
+                whole[j] = near(p.row_lower[i] / a) && p.rows.line(i).all(|(_, b)| near(b / a));
+            }
+        }
+        whole
+    }
+}

@@ -1,0 +1,143 @@
+//! The relaxation of a nonlinear program with discrete columns: a nonlinear solver at every node, from the parent's point.
+//!
+//! Where the relaxation is convex its values are bounds, and the search proves its answer. Elsewhere they are local optima:
+//! the search is then a good guess, as any of this kind.
+
+use super::model::Change;
+use super::relaxation::{Control, Relaxation, Solved};
+use crate::model::instance::{ColumnKind, Instance};
+use crate::solve::answer::Answer;
+use crate::solve::lp::Ended;
+use crate::solve::{ModelStatus, Monitor, Settings, SolverStatus, nlp};
+use std::rc::Rc;
+
+/// The instance under a node's bounds.
+pub struct Nonlinear {
+    instance: Instance,
+    choice: Option<String>,
+    settings: Settings,
+    first: Vec<f64>,
+    point: Rc<Vec<f64>>,
+    /// Every value so far was a global one.
+    pub convex: bool,
+}
+
+/// Passes on that the person wants to stop, and no lines of the many small solves.
+pub struct Muted<'m>(pub &'m mut dyn Monitor);
+
+impl Monitor for Muted<'_> {
+    fn log(&mut self, _: &str) {}
+    fn interrupted(&mut self) -> bool {
+        self.0.interrupted()
+    }
+    fn row_name(&self, row: usize) -> String {
+        self.0.row_name(row)
+    }
+    fn column_name(&self, column: usize) -> String {
+        self.0.column_name(column)
+    }
+}
+
+impl Nonlinear {
+    /// For an instance.
+    pub fn new(instance: &Instance, choice: Option<&str>, settings: &Settings) -> Self {
+        let mut relaxed = instance.clone();
+        relaxed.columns.kind.fill(ColumnKind::Continuous);
+        relaxed.discrete = Default::default();
+        let level = &instance.columns.level;
+        Self {
+            instance: relaxed,
+            choice: choice.map(str::to_string),
+            settings: settings.clone(),
+            first: level.clone(),
+            point: Rc::new(level.clone()),
+            convex: true,
+        }
+    }
+
+    /// Solves from a point; None: a limit.
+    pub fn answer(&mut self, from: &[f64], control: &mut Control) -> Option<Answer> {
+        let columns = &mut self.instance.columns;
+        for (j, x) in columns.level.iter_mut().enumerate() {
+            *x = from[j].max(columns.lower[j]).min(columns.upper[j]);
+        }
+        let mut settings = self.settings.clone();
+        settings.time_limit = control.limits.seconds_left();
+        settings.log = false;
+        let choice = self.choice.as_deref();
+        let mut muted = Muted(control.monitor);
+        let answer = nlp::answer(choice, &self.instance, &settings, &mut muted).ok()?;
+        control.iterations += answer.outcome.iterations;
+        Some(answer)
+    }
+}
+
+impl Relaxation for Nonlinear {
+    type Start = Rc<Vec<f64>>;
+
+    fn set_bounds(&mut self, c: Change) {
+        self.instance.columns.lower[c.column] = c.lower;
+        self.instance.columns.upper[c.column] = c.upper;
+    }
+
+    fn solve(&mut self, _: f64, control: &mut Control) -> Solved {
+        if let Some(why) = control.stop(control.iterations) {
+            return Solved::Stopped(why);
+        }
+        let mut solved = Solved::Failed;
+        for from in [self.point.clone(), Rc::new(self.first.clone())] {
+            let Some(answer) = self.answer(&from, control) else {
+                continue;
+            };
+            let stopped = match answer.outcome.status {
+                SolverStatus::UserInterrupt => Some(Ended::Interrupted),
+                SolverStatus::ResourceInterrupt => Some(Ended::Time),
+                _ => None,
+            };
+            if let Some(why) = stopped {
+                return Solved::Stopped(why);
+            }
+            use ModelStatus as S;
+            self.convex &= matches!(answer.status, S::Optimal | S::Infeasible);
+            match answer.status {
+                S::Optimal | S::LocallyOptimal | S::Feasible => {
+                    let value = self.instance.objective.map_or(0.0, |o| {
+                        o.sense.sign() * answer.outcome.level[o.column as usize]
+                    });
+                    self.point = Rc::new(answer.outcome.level);
+                    return Solved::Value(value);
+                }
+                S::Infeasible | S::InfeasibleNoSolution => return Solved::Infeasible,
+                S::Unbounded | S::UnboundedNoSolution => return Solved::Unbounded,
+                // from elsewhere it may be feasible
+                S::LocallyInfeasible => solved = Solved::Infeasible,
+                _ => {}
+            }
+        }
+        solved
+    }
+
+    fn x(&self) -> &[f64] {
+        &self.point
+    }
+
+    fn reduced(&self) -> Option<&[f64]> {
+        None
+    }
+
+    fn start(&self) -> Self::Start {
+        self.point.clone()
+    }
+
+    fn restart(&mut self, start: &Self::Start) {
+        self.point = start.clone();
+    }
+
+    fn is_linear(&self) -> bool {
+        false
+    }
+
+    fn is_exact(&self) -> bool {
+        self.convex
+    }
+}

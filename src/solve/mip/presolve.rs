@@ -1,0 +1,259 @@
+//! A smaller program with the same best solutions: bounds that follow, rows that say nothing, columns that are
+//! decided, coefficients of binaries no larger than they need be.
+//!
+//! Values of columns alone lead back: marginals come from a linear program with the discrete columns fixed.
+
+use super::model::{Change, FEASIBLE, Mip};
+use super::propagate::Propagator;
+use crate::model::instance::OrderedSet;
+use crate::solve::lp::form::{Problem, Sparse};
+
+/// The way back from a presolved program.
+pub struct Reduced {
+    /// The smaller program.
+    pub mip: Mip,
+    /// Its columns' numbers in the program before.
+    pub columns: Vec<u32>,
+    /// Values of all columns before; those of `columns` are put in.
+    values: Vec<f64>,
+}
+
+impl Reduced {
+    /// The point before, of one after.
+    pub fn restore(&self, x: &[f64]) -> Vec<f64> {
+        let mut out = self.values.clone();
+        for (&j, &x) in self.columns.iter().zip(x) {
+            out[j as usize] = x;
+        }
+        out
+    }
+
+    /// A point after, of one before.
+    pub fn reduce(&self, x: &[f64]) -> Vec<f64> {
+        self.columns.iter().map(|&j| x[j as usize]).collect()
+    }
+}
+
+/// The program that is left where these columns are fixed besides; None: it has no solution.
+pub fn reduce(mip: &Mip, fixed: &[Change]) -> Option<Reduced> {
+    let mut work = mip.clone();
+    for c in fixed {
+        (work.problem.lower[c.column], work.problem.upper[c.column]) = (c.lower, c.upper);
+    }
+    let mut in_set = vec![false; work.problem.n()];
+    for set in &work.sets {
+        set.columns.iter().for_each(|&j| in_set[j as usize] = true);
+    }
+    let mut idle = vec![false; work.problem.m()];
+    for round in 0..6 {
+        let mut changed = singletons(&mut work, &mut idle)?;
+        let (mut lower, mut upper) = (work.problem.lower.clone(), work.problem.upper.clone());
+        let mut propagator = Propagator::new(&work);
+        propagator.continuous = round < 2;
+        if !propagator.run(&work, None, &mut lower, &mut upper) {
+            return None;
+        }
+        changed |= !propagator.moved.is_empty();
+        (work.problem.lower, work.problem.upper) = (lower, upper);
+        changed |= rows(&mut work, &mut idle);
+        changed |= dual_fixing(&mut work, &idle, &in_set);
+        if !changed {
+            break;
+        }
+    }
+    Some(assemble(&work, &idle, &in_set))
+}
+
+/// Rows of one column become bounds. None: they cross.
+fn singletons(mip: &mut Mip, idle: &mut [bool]) -> Option<bool> {
+    let mut changed = false;
+    for i in 0..mip.problem.m() {
+        if idle[i] {
+            continue;
+        }
+        let p = &mut mip.problem;
+        let open = |&(j, _): &(usize, f64)| p.lower[j] < p.upper[j];
+        let mut entries = p.rows.line(i).filter(open);
+        let (Some((j, a)), None) = (entries.next(), entries.next()) else {
+            continue;
+        };
+        let rest: f64 = p.rows.line(i).filter(|e| e.0 != j).map(|(k, b)| b * p.lower[k]).sum();
+        let ends = [(p.row_lower[i] - rest) / a, (p.row_upper[i] - rest) / a];
+        let (mut l, mut u) = if a > 0.0 { (ends[0], ends[1]) } else { (ends[1], ends[0]) };
+        if mip.integer[j] {
+            (l, u) = ((l - FEASIBLE).ceil(), (u + FEASIBLE).floor());
+        }
+        if mip.threshold[j] > 0.0 {
+            continue;
+        }
+        let (l, u) = (l.max(p.lower[j]), u.min(p.upper[j]));
+        if l > u + FEASIBLE * l.abs().max(1.0) {
+            return None;
+        }
+        (p.lower[j], p.upper[j]) = if l > u { (u, u) } else { (l, u) };
+        idle[i] = true;
+        changed = true;
+    }
+    Some(changed)
+}
+
+/// Drops sides that bounds imply, and tightens coefficients of binaries.
+fn rows(mip: &mut Mip, idle: &mut [bool]) -> bool {
+    let mut changed = false;
+    let Mip { problem: p, integer, .. } = mip;
+    let mut new: Vec<(usize, usize, f64)> = Vec::new();
+    for i in 0..p.row_lower.len() {
+        if idle[i] {
+            continue;
+        }
+        // rows as borrowed by Activity
+        let (mut low, mut high, mut size) = (0.0, 0.0, 0.0f64);
+        for (j, a) in p.rows.line(i) {
+            let ends = [a * p.lower[j], a * p.upper[j]];
+            low += ends[0].min(ends[1]);
+            high += ends[0].max(ends[1]);
+            for e in ends.iter().filter(|e| e.is_finite()) {
+                size = size.max(e.abs());
+            }
+        }
+        let slack = 1e-9 * size.max(1.0);
+        if p.row_lower[i].is_finite() && low >= p.row_lower[i] - slack {
+            p.row_lower[i] = f64::NEG_INFINITY;
+            changed = true;
+        }
+        if p.row_upper[i].is_finite() && high <= p.row_upper[i] + slack {
+            p.row_upper[i] = f64::INFINITY;
+            changed = true;
+        }
+        if p.row_lower[i].is_infinite() && p.row_upper[i].is_infinite() {
+            idle[i] = true;
+            continue;
+        }
+        // One side, of either direction, as a ≤ row.
+        let sign = match (p.row_lower[i].is_finite(), p.row_upper[i].is_finite()) {
+            (false, true) if high.is_finite() => 1.0,
+            (true, false) if low.is_finite() => -1.0,
+            _ => continue,
+        };
+        let mut most = if sign > 0.0 { high } else { -low };
+        let mut side = if sign > 0.0 { p.row_upper[i] } else { -p.row_lower[i] };
+        for (j, a) in p.rows.line(i) {
+            let a = sign * a;
+            if !integer[j] || p.lower[j] != 0.0 || p.upper[j] != 1.0 {
+                continue;
+            }
+            // How much is left where the column does not use its share.
+            let spare = side - (most - a.abs());
+            if spare <= slack || spare >= a.abs() - slack {
+                continue;
+            }
+            let smaller = a.abs() - spare;
+            if a > 0.0 {
+                new.push((i, j, sign * smaller));
+                side -= spare;
+                most -= spare;
+            } else {
+                new.push((i, j, -sign * smaller));
+            }
+            changed = true;
+        }
+        if sign > 0.0 {
+            p.row_upper[i] = side;
+        } else {
+            p.row_lower[i] = -side;
+        }
+    }
+    if !new.is_empty() {
+        for (i, j, a) in new {
+            let r = p.rows.start[i]..p.rows.start[i + 1];
+            if let Ok(k) = p.rows.index[r.clone()].binary_search(&(j as u32)) {
+                p.rows.value[r.start + k] = a;
+            }
+        }
+        p.columns = p.rows.transpose(p.cost.len());
+    }
+    changed
+}
+
+/// Columns that neither rows nor costs keep from a bound go there.
+fn dual_fixing(mip: &mut Mip, idle: &[bool], in_set: &[bool]) -> bool {
+    let mut changed = false;
+    let p = &mut mip.problem;
+    for j in 0..p.cost.len() {
+        if p.lower[j] == p.upper[j] || in_set[j] {
+            continue;
+        }
+        let (mut up, mut down) = (0, 0);
+        for (i, a) in p.columns.line(j).filter(|e| !idle[e.0]) {
+            let blocks = [p.row_lower[i].is_finite(), p.row_upper[i].is_finite()];
+            let [low, high] = if a > 0.0 { blocks } else { [blocks[1], blocks[0]] };
+            down += usize::from(low);
+            up += usize::from(high);
+        }
+        if p.cost[j] >= 0.0 && down == 0 && p.lower[j].is_finite() {
+            p.upper[j] = p.lower[j];
+            changed = true;
+        } else if p.cost[j] <= 0.0 && up == 0 && p.upper[j].is_finite() {
+            p.lower[j] = p.upper[j];
+            changed = true;
+        }
+    }
+    changed
+}
+
+/// Columns that are fixed go, and rows that say nothing; members of sets stay.
+fn assemble(work: &Mip, idle: &[bool], in_set: &[bool]) -> Reduced {
+    let p = &work.problem;
+    let n = p.n();
+    let open = |j: usize| p.lower[j] < p.upper[j] || in_set[j];
+    let mut number = vec![u32::MAX; n];
+    let mut columns = Vec::new();
+    for j in (0..n).filter(|&j| open(j)) {
+        number[j] = columns.len() as u32;
+        columns.push(j as u32);
+    }
+    let values: Vec<f64> = (0..n).map(|j| if open(j) { 0.0 } else { p.lower[j] }).collect();
+    let mut problem = Problem {
+        rows: Sparse::new(),
+        offset: p.offset + p.cost.iter().zip(&values).map(|(c, x)| c * x).sum::<f64>(),
+        ..Problem::default()
+    };
+    for i in (0..p.m()).filter(|&i| !idle[i]) {
+        let moved: f64 = p.rows.line(i).map(|(j, a)| a * values[j]).sum();
+        let kept: Vec<(usize, f64)> = p
+            .rows
+            .line(i)
+            .filter(|e| open(e.0) && e.1 != 0.0)
+            .map(|(j, a)| (number[j] as usize, a))
+            .collect();
+        if kept.is_empty() {
+            continue;
+        }
+        problem.row_lower.push(p.row_lower[i] - moved);
+        problem.row_upper.push(p.row_upper[i] - moved);
+        problem.rows.push(kept);
+    }
+    let pick = |v: &[f64]| columns.iter().map(|&j| v[j as usize]).collect::<Vec<f64>>();
+    problem.cost = pick(&p.cost);
+    problem.lower = pick(&p.lower);
+    problem.upper = pick(&p.upper);
+    problem.columns = problem.rows.transpose(columns.len());
+    let mut sets = Vec::new();
+    for set in &work.sets {
+        sets.push(OrderedSet {
+            neighbours: set.neighbours,
+            columns: set.columns.iter().map(|&j| number[j as usize]).collect(),
+        });
+    }
+    let mip = Mip {
+        integer: columns.iter().map(|&j| work.integer[j as usize]).collect(),
+        threshold: pick(&work.threshold),
+        priority: match work.priority.is_empty() {
+            true => Vec::new(),
+            false => pick(&work.priority),
+        },
+        sets,
+        problem,
+    };
+    Reduced { mip, columns, values }
+}

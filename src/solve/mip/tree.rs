@@ -1,0 +1,633 @@
+//! Branch and bound over any relaxation.
+//!
+//! A node has bounds of its own, on the columns that were branched on. Its relaxation gives a bound for all below it; what
+//! cannot be better than the best solution is left. From a node the search plunges: it goes on with one of the two
+//! children at once, which costs the relaxation a few pivots, and leaves the other in a heap; when a plunge ends, the open
+//! node with the least bound is next. So at any time the least bound of the open nodes and the best solution enclose
+//! the value.
+//!
+//! Branching is by pseudo-costs, what a unit of a column has cost so far, which a look at both children makes reliable
+//! first (Achterberg, Koch & Martin 2005).
+
+use super::branching::{Branch, Pseudo};
+use super::model::{Change, Mip, Units};
+use super::propagate::Propagator;
+use super::relaxation::{Control, Relaxation, Solved};
+use crate::solve::lp::Ended;
+use std::collections::BinaryHeap;
+use std::rc::Rc;
+
+/// What a search is to reach, and where it may stop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aim {
+    /// `optCR`: the gap between solution and bound, relative to the solution, that is small enough.
+    pub relative_gap: f64,
+    /// `optCA`: the same, absolute.
+    pub absolute_gap: f64,
+    /// `nodLim`: nodes; 0: any number.
+    pub nodes: u64,
+    /// `cutOff`: only solutions that are better than this count.
+    pub cutoff: Option<f64>,
+    /// `cheat`: a new solution must be better by this.
+    pub cheat: f64,
+    /// `tryInt`: the levels at the start, rounded, are tried as a solution where they are this near to integers.
+    pub try_start: f64,
+    /// `priorOpt`: `.prior` decides what is branched on first.
+    pub priorities: bool,
+    /// Keep what became of every node.
+    pub record: bool,
+}
+
+impl Default for Aim {
+    fn default() -> Self {
+        Self {
+            relative_gap: 1e-4,
+            absolute_gap: 0.0,
+            nodes: 0,
+            cutoff: None,
+            cheat: 0.0,
+            try_start: 0.0,
+            priorities: false,
+            record: false,
+        }
+    }
+}
+
+/// How a search ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum End {
+    /// Nothing is left open.
+    Complete,
+    /// The gap is small enough.
+    Gap,
+    /// `nodLim`.
+    Nodes,
+    /// Another limit, or the person.
+    Stopped(Ended),
+    /// The relaxation is unbounded.
+    Unbounded,
+}
+
+/// A node as a picture needs it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Record {
+    /// Number of the parent; none for the root.
+    pub parent: Option<u32>,
+    /// The first bound that makes the node differ from its parent.
+    pub change: Option<Change>,
+    /// Value of the relaxation (of the parent's, where it was not solved).
+    pub value: f64,
+    /// `branched`, `infeasible`, `bound`, `solution`, `open`.
+    pub fate: &'static str,
+}
+
+/// Bounds on the way to a node.
+struct Path {
+    changes: Vec<Change>,
+    parent: Option<Rc<Path>>,
+}
+
+impl Drop for Path {
+    // A path may be longer than a stack of calls is deep.
+    fn drop(&mut self) {
+        let mut next = self.parent.take();
+        while let Some(path) = next {
+            next = match Rc::try_unwrap(path) {
+                Ok(mut path) => path.parent.take(),
+                Err(_) => None,
+            };
+        }
+    }
+}
+
+struct Node<S> {
+    bound: f64,
+    depth: u32,
+    number: u32,
+    path: Option<Rc<Path>>,
+    start: S,
+    /// For pseudo-costs: column, direction and distance of the branch that made it.
+    from: Option<(usize, usize, f64)>,
+}
+
+impl<S> PartialEq for Node<S> {
+    fn eq(&self, other: &Self) -> bool {
+        self.number == other.number
+    }
+}
+
+impl<S> Eq for Node<S> {}
+
+impl<S> PartialOrd for Node<S> {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl<S> Ord for Node<S> {
+    /// The heap's largest is the next: least bound, then deepest, then last made.
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        let bound = other.bound.total_cmp(&self.bound);
+        let depth = self.depth.cmp(&other.depth);
+        bound.then(depth).then(self.number.cmp(&other.number))
+    }
+}
+
+/// Finds solutions of the program that is left where columns are fixed.
+pub type Neighbourhood<'n> = &'n dyn Fn(&Mip, &[Change], f64, &mut Control) -> Option<Vec<f64>>;
+
+/// The search.
+pub struct Search<'a, R: Relaxation> {
+    pub(super) mip: &'a Mip,
+    pub(super) relaxation: R,
+    pub(super) aim: Aim,
+    units: Units,
+    /// Bounds that hold everywhere.
+    root: [Vec<f64>; 2],
+    /// Bounds of the present node.
+    pub(super) lower: Vec<f64>,
+    pub(super) upper: Vec<f64>,
+    propagator: Propagator,
+    open: BinaryHeap<Node<R::Start>>,
+    /// Value and point of the best solution.
+    pub best: Option<(f64, Vec<f64>)>,
+    /// Step of the values, 0 if they have none.
+    step: f64,
+    pub(super) pseudo: Vec<[Pseudo; 2]>,
+    /// Nodes solved.
+    pub nodes: u64,
+    /// No solution is better than this.
+    pub bound: f64,
+    /// What became of the nodes, if that is asked for.
+    pub records: Vec<Record>,
+    /// A node was left although nothing is known about it.
+    pub incomplete: bool,
+    /// Solves the rest where some columns are fixed; None inside such a search.
+    pub neighbourhood: Option<Neighbourhood<'a>>,
+    pub(super) dives: Dives,
+    next_log: f64,
+    /// Nodes made.
+    made: u32,
+}
+
+/// What heuristics have cost.
+#[derive(Default)]
+pub(super) struct Dives {
+    /// Iterations of dives and of searches near a solution.
+    pub iterations: u64,
+    /// Iterations of looks at children.
+    pub probes: u64,
+    /// The value of the solution near which was searched last.
+    pub last_near: f64,
+    /// How many there were.
+    pub count: u64,
+}
+
+impl<'a, R: Relaxation> Search<'a, R> {
+    /// Nothing is solved yet.
+    pub fn new(mip: &'a Mip, relaxation: R, aim: Aim, units: Units) -> Self {
+        let p = &mip.problem;
+        let n = p.n();
+        let (lower, upper) = (p.lower.clone(), p.upper.clone());
+        Self {
+            step: mip.granularity(),
+            mip,
+            relaxation,
+            aim,
+            units,
+            root: [lower.clone(), upper.clone()],
+            lower,
+            upper,
+            propagator: Propagator::new(mip),
+            open: BinaryHeap::new(),
+            best: None,
+            pseudo: vec![Default::default(); n],
+            nodes: 0,
+            bound: f64::NEG_INFINITY,
+            records: Vec::new(),
+            incomplete: false,
+            neighbourhood: None,
+            dives: Dives::default(),
+            next_log: 0.0,
+            made: 0,
+        }
+    }
+
+    /// A value that only a better solution is below.
+    pub(super) fn cutoff(&self) -> f64 {
+        let asked = self.aim.cutoff.map_or(f64::INFINITY, |c| self.units.inner(c));
+        let Some((v, _)) = &self.best else {
+            return asked;
+        };
+        let cheat = self.aim.cheat / self.units.price;
+        let better = match self.step > 0.0 && self.relaxation.is_exact() {
+            true => self.step * (1.0 - 1e-6),
+            false => 1e-9 * v.abs().max(1e-3),
+        };
+        (v - better.max(cheat)).min(asked)
+    }
+
+    /// Runs from the root.
+    pub fn run(&mut self, control: &mut Control) -> End {
+        let root = Node {
+            bound: f64::NEG_INFINITY,
+            depth: 0,
+            number: self.note(None, None, f64::NEG_INFINITY),
+            path: None,
+            start: self.relaxation.start(),
+            from: None,
+        };
+        self.open.push(root);
+        while let Some(node) = self.open.pop() {
+            let cutoff = self.cutoff();
+            if node.bound >= cutoff {
+                self.fate(node.number, "bound");
+                self.open.drain().for_each(drop);
+                break;
+            }
+            self.bound = self.bound.max(node.bound);
+            self.log(control, false);
+            if self.is_close() {
+                self.open.push(node);
+                return End::Gap;
+            }
+            if self.aim.nodes > 0 && self.nodes >= self.aim.nodes {
+                self.open.push(node);
+                return End::Nodes;
+            }
+            if let Some(end) = self.plunge(node, control) {
+                return end;
+            }
+        }
+        if let Some((v, _)) = &self.best
+            && !self.incomplete
+        {
+            self.bound = *v;
+        }
+        self.log(control, true);
+        End::Complete
+    }
+
+    /// Whether solution and bound are as near as was asked for.
+    fn is_close(&self) -> bool {
+        let Some((v, _)) = &self.best else {
+            return false;
+        };
+        let (v, b) = (self.units.shown(*v), self.units.shown(self.bound));
+        let gap = v - b;
+        gap <= self.aim.absolute_gap || gap <= self.aim.relative_gap * v.abs().max(1e-10)
+    }
+
+    fn note(&mut self, parent: Option<u32>, change: Option<Change>, value: f64) -> u32 {
+        if self.aim.record && self.records.len() < 100_000 {
+            self.records.push(Record { parent, change, value, fate: "open" });
+        }
+        self.made += 1;
+        self.made - 1
+    }
+
+    fn fate(&mut self, number: u32, fate: &'static str) {
+        if let Some(r) = self.records.get_mut(number as usize) {
+            r.fate = fate;
+        }
+    }
+
+    /// Bounds of a node. False: nothing is left of it.
+    fn load(&mut self, path: &Option<Rc<Path>>) -> bool {
+        self.lower.copy_from_slice(&self.root[0]);
+        self.upper.copy_from_slice(&self.root[1]);
+        let mut steps = Vec::new();
+        let mut next = path.as_ref();
+        while let Some(p) = next {
+            steps.push(p.clone());
+            next = p.parent.as_ref();
+        }
+        let mut columns = Vec::new();
+        for c in steps.iter().rev().flat_map(|p| &p.changes) {
+            if !self.narrow(c) {
+                return false;
+            }
+            columns.push(c.column);
+        }
+        let fine = self.propagator.run(self.mip, Some(&columns), &mut self.lower, &mut self.upper);
+        self.send_bounds();
+        fine
+    }
+
+    /// All bounds of the present node go to the relaxation.
+    pub(super) fn send_bounds(&mut self) {
+        for column in 0..self.lower.len() {
+            let (lower, upper) = (self.lower[column], self.upper[column]);
+            self.relaxation.set_bounds(Change { column, lower, upper });
+        }
+    }
+
+    fn narrow(&mut self, c: &Change) -> bool {
+        let (l, u) = (c.lower.max(self.lower[c.column]), c.upper.min(self.upper[c.column]));
+        (self.lower[c.column], self.upper[c.column]) = (l, u);
+        l <= u
+    }
+
+    /// Applies changes and what follows from them. False: nothing is left.
+    pub(super) fn apply(&mut self, changes: &[Change]) -> bool {
+        for c in changes {
+            if !self.narrow(c) {
+                return false;
+            }
+        }
+        let columns: Vec<usize> = changes.iter().map(|c| c.column).collect();
+        let fine = self.propagator.run(self.mip, Some(&columns), &mut self.lower, &mut self.upper);
+        for &column in columns.iter().chain(&self.propagator.moved) {
+            let (lower, upper) = (self.lower[column], self.upper[column]);
+            if lower <= upper {
+                self.relaxation.set_bounds(Change { column, lower, upper });
+            }
+        }
+        fine
+    }
+
+    /// From a node down until nothing is left below it. Some: why the search must end.
+    fn plunge(&mut self, node: Node<R::Start>, control: &mut Control) -> Option<End> {
+        let Node { mut bound, mut depth, mut number, mut path, start, mut from } = node;
+        if !self.load(&path) {
+            self.fate(number, "infeasible");
+            return None;
+        }
+        self.relaxation.restart(&start);
+        let stop = |s: &mut Self, bound, depth, number, path, from, end| {
+            let start = s.relaxation.start();
+            s.bound = s.open.peek().map_or(bound, |n| n.bound.min(bound)).max(s.bound);
+            s.open.push(Node { bound, depth, number, path, start, from });
+            Some(end)
+        };
+        let mut resolves = 0;
+        loop {
+            self.nodes += u64::from(resolves == 0);
+            let solved = self.relaxation.solve(self.cutoff(), control);
+            let value = match solved {
+                Solved::Value(v) => v,
+                Solved::Infeasible | Solved::Cutoff => {
+                    let fate = if solved == Solved::Cutoff { "bound" } else { "infeasible" };
+                    self.fate(number, fate);
+                    return None;
+                }
+                Solved::Unbounded => return stop(self, bound, depth, number, path, from, End::Unbounded),
+                Solved::Stopped(why) => {
+                    return stop(self, bound, depth, number, path, from, End::Stopped(why));
+                }
+                // Nothing is known: what is below is looked at with the parent's bound, while there is something to branch on.
+                Solved::Failed => bound,
+            };
+            let failed = solved == Solved::Failed;
+            if let Some((j, side, far)) = from.take()
+                && bound.is_finite()
+                && !failed
+                && resolves == 0
+            {
+                self.pseudo[j][side].add((value - bound).max(0.0) / far.max(1e-6));
+            }
+            bound = bound.max(value);
+            if let Some(r) = self.records.get_mut(number as usize) {
+                r.value = bound;
+            }
+            if bound >= self.cutoff() && !failed {
+                self.fate(number, "bound");
+                return None;
+            }
+            if depth == 0 {
+                self.bound = self.bound.max(bound);
+            }
+            if resolves < 5 && !failed && self.fix_by_costs(value, depth == 0) {
+                resolves += 1;
+                continue;
+            }
+            let point = self.relaxation.x().to_vec();
+            let mut branch = match failed {
+                false => self.branch(&point, value, control),
+                true => self.split_widest(),
+            };
+            if let Some(Branch::Fixed(changes)) = &branch {
+                // One side is empty: the node goes on without it.
+                if !self.apply(changes) {
+                    self.fate(number, "infeasible");
+                    return None;
+                }
+                path = Some(Rc::new(Path { changes: changes.clone(), parent: path }));
+                resolves += 1;
+                continue;
+            }
+            if branch.is_none() {
+                if failed {
+                    self.incomplete = true;
+                    self.fate(number, "open");
+                    return None;
+                }
+                if self.offer(&point, control) {
+                    self.fate(number, "solution");
+                    return None;
+                }
+                // Integers to the tolerance only, and no solution when they are rounded.
+                branch = self.split_widest();
+                if branch.is_none() {
+                    self.incomplete |= self.cutoff() > bound;
+                    self.fate(number, "infeasible");
+                    return None;
+                }
+            }
+            let Some(Branch::Two { sides, column, far, first }) = branch else {
+                self.fate(number, "infeasible");
+                return None;
+            };
+            if !failed {
+                self.heuristics(depth, &point, control);
+                if bound >= self.cutoff() {
+                    self.fate(number, "bound");
+                    return None;
+                }
+            }
+            self.fate(number, "branched");
+            let start = self.relaxation.start();
+            let before = (self.lower.clone(), self.upper.clone());
+            let child = |s: &mut Self, side: usize| {
+                let changes = sides[side].clone();
+                let parent = number;
+                Node {
+                    bound,
+                    depth: depth + 1,
+                    number: s.note(Some(parent), changes.first().copied(), bound),
+                    path: Some(Rc::new(Path { changes, parent: path.clone() })),
+                    start: start.clone(),
+                    from: column.map(|j| (j, side, far[side])),
+                }
+            };
+            let (mut next, other) = (child(self, first), child(self, 1 - first));
+            if self.apply(&sides[first]) {
+                self.open.push(other);
+            } else {
+                self.fate(next.number, "infeasible");
+                next = other;
+                (self.lower, self.upper) = before;
+                self.send_bounds();
+                if !self.apply(&sides[1 - first]) {
+                    self.fate(next.number, "infeasible");
+                    return None;
+                }
+            }
+            (bound, depth, number, path, from) = (next.bound, next.depth, next.number, next.path, next.from);
+            resolves = 0;
+            let least = self.open.peek().map_or(bound, |n| n.bound.min(bound));
+            self.bound = self.bound.max(least);
+            self.log(control, false);
+            let enough = self.aim.nodes > 0 && self.nodes >= self.aim.nodes;
+            if enough || self.is_close() {
+                let end = if enough { End::Nodes } else { End::Gap };
+                return stop(self, bound, depth, number, path, from, end);
+            }
+        }
+    }
+
+    /// Integer columns whose reduced costs keep them from going far. Whether one got fixed that the point must leave.
+    fn fix_by_costs(&mut self, value: f64, at_root: bool) -> bool {
+        let room = self.cutoff() - value;
+        if !room.is_finite() {
+            return false;
+        }
+        let Some(reduced) = self.relaxation.reduced() else {
+            return false;
+        };
+        let x = self.relaxation.x();
+        let mut changes = Vec::new();
+        for (j, &d) in reduced.iter().enumerate().filter(|e| self.mip.integer[e.0]) {
+            let (l, u) = (self.lower[j], self.upper[j]);
+            if d.abs() < 1e-7 || l == u || self.mip.threshold[j] > 0.0 {
+                continue;
+            }
+            let far = (room / d.abs() + 1e-6).floor();
+            if d > 0.0 && x[j] - l < 1e-9 && l + far < u {
+                changes.push(Change { column: j, lower: l, upper: l + far });
+            } else if d < 0.0 && u - x[j] < 1e-9 && u - far > l {
+                changes.push(Change { column: j, lower: u - far, upper: u });
+            }
+        }
+        if changes.is_empty() {
+            return false;
+        }
+        let x = x.to_vec();
+        if at_root {
+            for c in &changes {
+                self.root[0][c.column] = self.root[0][c.column].max(c.lower);
+                self.root[1][c.column] = self.root[1][c.column].min(c.upper);
+            }
+        }
+        if !self.apply(&changes) {
+            // Nothing better is left here: the next solve says so.
+            return true;
+        }
+        let outside = |j: &usize| x[*j] < self.lower[*j] - 1e-9 || x[*j] > self.upper[*j] + 1e-9;
+        self.propagator.moved.iter().any(|j| outside(j))
+    }
+
+    /// Takes a point as a solution if its integers, rounded, are one; the rest is solved for where need be.
+    pub(super) fn offer(&mut self, x: &[f64], control: &mut Control) -> bool {
+        let mut y = x.to_vec();
+        for (j, y) in y.iter_mut().enumerate() {
+            let t = self.mip.threshold[j];
+            if self.mip.integer[j] || y.abs() <= super::model::INTEGRAL {
+                *y = if self.mip.integer[j] || t > 0.0 { y.round() } else { *y };
+            }
+            if t > 0.0 && (*y - t).abs() <= super::model::INTEGRAL * t.max(1.0) {
+                *y = y.max(t);
+            }
+        }
+        for set in &self.mip.sets {
+            for &j in &set.columns {
+                if y[j as usize].abs() <= super::model::INTEGRAL {
+                    y[j as usize] = 0.0;
+                }
+            }
+        }
+        if !self.mip.is_discrete(&y) {
+            return false;
+        }
+        if self.relaxation.is_linear() && self.mip.is_feasible(&y) {
+            let value = self.mip.value(&y);
+            self.take(value, y, control);
+            return true;
+        }
+        let Some((value, y)) = self.complete(&y, control) else {
+            return false;
+        };
+        self.take(value, y, control);
+        true
+    }
+
+    /// The best point whose discrete columns are as in this one.
+    fn complete(&mut self, y: &[f64], control: &mut Control) -> Option<(f64, Vec<f64>)> {
+        let bounds = (self.lower.clone(), self.upper.clone());
+        let start = self.relaxation.start();
+        for (column, &y) in y.iter().enumerate() {
+            let t = self.mip.threshold[column];
+            if self.mip.integer[column] {
+                self.relaxation.set_bounds(Change { column, lower: y, upper: y });
+            } else if t > 0.0 && y == 0.0 {
+                self.relaxation.set_bounds(Change { column, lower: 0.0, upper: 0.0 });
+            } else if t > 0.0 {
+                let (lower, upper) = (self.lower[column].max(t), self.upper[column]);
+                self.relaxation.set_bounds(Change { column, lower, upper });
+            }
+        }
+        for column in self.mip.sets.iter().flat_map(|s| &s.columns).map(|&j| j as usize) {
+            if y[column] == 0.0 {
+                self.relaxation.set_bounds(Change { column, lower: 0.0, upper: 0.0 });
+            }
+        }
+        let solved = self.relaxation.solve(f64::INFINITY, control);
+        let found = match solved {
+            Solved::Value(v) => Some((v, self.relaxation.x().to_vec())),
+            _ => None,
+        };
+        (self.lower, self.upper) = bounds;
+        self.send_bounds();
+        self.relaxation.restart(&start);
+        let (value, mut x) = found?;
+        for (j, x) in x.iter_mut().enumerate().filter(|e| self.mip.integer[e.0]) {
+            *x = y[j];
+        }
+        Some((value, x))
+    }
+
+    pub(super) fn take(&mut self, value: f64, x: Vec<f64>, control: &mut Control) {
+        let asked = self.aim.cutoff.map_or(f64::INFINITY, |c| self.units.inner(c));
+        if value <= asked && self.best.as_ref().is_none_or(|b| value < b.0) {
+            self.best = Some((value, x));
+            self.next_log = 0.0;
+            self.log(control, false);
+        }
+    }
+
+    /// A line of progress: now and then, and for every new solution.
+    fn log(&mut self, control: &mut Control, last: bool) {
+        let seconds = control.limits.start.elapsed().as_secs_f64();
+        if seconds < self.next_log && !last || self.neighbourhood.is_none() {
+            return;
+        }
+        self.next_log = seconds + 2.0;
+        let shown = |v: f64| if v.is_finite() { format!("{:.10}", self.units.shown(v)) } else { "-".into() };
+        let gap = match &self.best {
+            Some((v, _)) => {
+                let (v, b) = (self.units.shown(*v), self.units.shown(self.bound));
+                format!("{:.3} %", 100.0 * (v - b) / v.abs().max(1e-10))
+            }
+            None => "-".into(),
+        };
+        let line = format!(
+            "{} nodes, {} open, bound {}, solution {}, gap {gap}, {} iterations, {seconds:.1} s",
+            self.nodes,
+            self.open.len(),
+            shown(self.bound),
+            shown(self.best.as_ref().map_or(f64::INFINITY, |b| b.0)),
+            control.iterations,
+        );
+        control.monitor.log(&line);
+    }
+}
