@@ -491,7 +491,10 @@ impl Machine<'_> {
             objective: objective
                 .filter(|_| !a.is_without_point())
                 .map(|o| json::Number(a.outcome.level[o.column as usize])),
-            search: a.search.as_ref().map(|found| self.search_report(g, a, found)),
+            search: a
+                .search
+                .as_ref()
+                .map(|found| self.search_report(g, a, found)),
             rows: g.instance.row_count(),
             columns: g.columns(),
             nonzeros: g.origin.nonzeros,
@@ -573,13 +576,20 @@ impl Machine<'_> {
 
     /// Bound, gap and nodes of a search, with names.
     fn search_report(&self, g: &Generated, a: &Answer, found: &mip::Report) -> json::Search {
-        let value = g.instance.objective.map(|o| a.outcome.level[o.column as usize]);
+        let value = g
+            .instance
+            .objective
+            .map(|o| a.outcome.level[o.column as usize]);
         let value = value.filter(|_| !a.is_without_point());
         let gap = |v: f64| json::Number((v - found.bound).abs() / v.abs().max(1e-10));
         let node = |r: &mip::Record| json::TreeNode {
             parent: r.parent,
-            column: r.change.map(|c| self.origin_name(&g.origin.columns, c.column)),
-            bounds: r.change.map(|c| [json::Number(c.lower), json::Number(c.upper)]),
+            column: r
+                .change
+                .map(|c| self.origin_name(&g.origin.columns, c.column)),
+            bounds: r
+                .change
+                .map(|c| [json::Number(c.lower), json::Number(c.upper)]),
             value: json::Number(g.instance.sign() * r.value),
             fate: r.fate,
         };

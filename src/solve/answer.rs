@@ -61,7 +61,11 @@ impl Answer {
     /// A search ended without a solution: levels and marginals are as before.
     pub fn is_without_point(&self) -> bool {
         use ModelStatus as S;
-        self.search.is_some() && matches!(self.status, S::IntegerInfeasible | S::NoSolution | S::UnboundedNoSolution)
+        self.search.is_some()
+            && matches!(
+                self.status,
+                S::IntegerInfeasible | S::NoSolution | S::UnboundedNoSolution
+            )
     }
 }
 

@@ -310,7 +310,11 @@ impl Builder<'_, '_> {
                 }
                 // As in GAMS, an infinite priority relaxes the column.
                 let relaxed = prior == f64::INFINITY;
-                c.kind.push(if relaxed { ColumnKind::Continuous } else { kind });
+                c.kind.push(if relaxed {
+                    ColumnKind::Continuous
+                } else {
+                    kind
+                });
                 if semi && lower > 0.0 && !relaxed {
                     discrete.thresholds.push((i, lower));
                 }

@@ -22,7 +22,11 @@ impl Pseudo {
     }
 
     fn mean(&self, other: f64) -> f64 {
-        if self.count == 0 { other } else { self.sum / f64::from(self.count) }
+        if self.count == 0 {
+            other
+        } else {
+            self.sum / f64::from(self.count)
+        }
     }
 }
 
@@ -51,14 +55,22 @@ const PATIENCE: usize = 6;
 
 impl<R: Relaxation> Search<'_, R> {
     /// A discrete condition that the point violates, and what to do about it. None: there is none.
-    pub(super) fn branch(&mut self, x: &[f64], value: f64, control: &mut Control) -> Option<Branch> {
+    pub(super) fn branch(
+        &mut self,
+        x: &[f64],
+        value: f64,
+        control: &mut Control,
+    ) -> Option<Branch> {
         let mut candidates = self.candidates(x);
         if candidates.is_empty() {
             return self.branch_on_set(x);
         }
         if !self.mip.priority.is_empty() {
             let of = |j: usize| self.mip.priority[j];
-            let first = candidates.iter().map(|c| of(c.0)).fold(f64::INFINITY, f64::min);
+            let first = candidates
+                .iter()
+                .map(|c| of(c.0))
+                .fold(f64::INFINITY, f64::min);
             candidates.retain(|c| of(c.0) <= first);
         }
         let mean = self.mean_gain();
@@ -112,7 +124,12 @@ impl<R: Relaxation> Search<'_, R> {
         let far = self.far(best, x[best]);
         let sides = self.sides(best, x[best]).map(|c| vec![c]);
         let first = self.first_side(best, far, mean);
-        Some(Branch::Two { sides, column: Some(best), far, first })
+        Some(Branch::Two {
+            sides,
+            column: Some(best),
+            far,
+            first,
+        })
     }
 
     /// Columns whose values they must not have, with how far they are from one they may.
@@ -144,8 +161,16 @@ impl<R: Relaxation> Search<'_, R> {
             false => (x.floor(), x.ceil()),
         };
         [
-            Change { column: j, lower: l, upper: low },
-            Change { column: j, lower: high, upper: u },
+            Change {
+                column: j,
+                lower: l,
+                upper: low,
+            },
+            Change {
+                column: j,
+                lower: high,
+                upper: u,
+            },
         ]
     }
 
@@ -153,7 +178,11 @@ impl<R: Relaxation> Search<'_, R> {
         [0, 1].map(|side| {
             let all = self.pseudo.iter().map(|p| p[side]);
             let (sum, count) = all.fold((0.0, 0u32), |(s, c), p| (s + p.sum, c + p.count));
-            if count == 0 { 1.0 } else { sum / f64::from(count) }
+            if count == 0 {
+                1.0
+            } else {
+                sum / f64::from(count)
+            }
         })
     }
 
@@ -173,20 +202,34 @@ impl<R: Relaxation> Search<'_, R> {
 
     pub(super) fn branch_on_set(&self, x: &[f64]) -> Option<Branch> {
         let weight = |s: &OrderedSet| s.columns.iter().map(|&j| x[j as usize].abs()).sum::<f64>();
-        let violated = self.mip.sets.iter().filter_map(|s| Some((s, self.mip.spread(s, x)?)));
+        let violated = self
+            .mip
+            .sets
+            .iter()
+            .filter_map(|s| Some((s, self.mip.spread(s, x)?)));
         let of = |s: &OrderedSet| match self.mip.priority.is_empty() {
             true => 1.0,
-            false => s.columns.iter().map(|&j| self.mip.priority[j as usize]).fold(f64::INFINITY, f64::min),
+            false => s
+                .columns
+                .iter()
+                .map(|&j| self.mip.priority[j as usize])
+                .fold(f64::INFINITY, f64::min),
         };
         let best = violated.min_by(|a, b| {
-            of(a.0).total_cmp(&of(b.0)).then(weight(b.0).total_cmp(&weight(a.0)))
+            of(a.0)
+                .total_cmp(&of(b.0))
+                .then(weight(b.0).total_cmp(&weight(a.0)))
         });
         let (set, (first, last)) = best?;
         let place = |(k, &j): (usize, &u32)| k as f64 * x[j as usize].abs();
         let middle: f64 = set.columns.iter().enumerate().map(place).sum::<f64>() / weight(set);
         let zero = |k: usize| {
             let column = set.columns[k] as usize;
-            Change { column, lower: 0.0, upper: 0.0 }
+            Change {
+                column,
+                lower: 0.0,
+                upper: 0.0,
+            }
         };
         // Left: what is behind the middle is 0; right: what is before it.
         let (left, right) = if set.neighbours {
@@ -196,7 +239,10 @@ impl<R: Relaxation> Search<'_, R> {
             let at = (middle.floor() as usize).clamp(first, last - 1);
             (at + 1, at + 1)
         };
-        let open = |k: &usize| self.lower[set.columns[*k] as usize] != 0.0 || self.upper[set.columns[*k] as usize] != 0.0;
+        let open = |k: &usize| {
+            self.lower[set.columns[*k] as usize] != 0.0
+                || self.upper[set.columns[*k] as usize] != 0.0
+        };
         let low: Vec<Change> = (left..set.columns.len()).filter(open).map(zero).collect();
         let high: Vec<Change> = (0..right).filter(open).map(zero).collect();
         let sum = |list: &[Change]| list.iter().map(|c| x[c.column].abs()).sum::<f64>();
@@ -222,10 +268,23 @@ impl<R: Relaxation> Search<'_, R> {
             _ => (u - 1.0).min(near),
         };
         let sides = [
-            vec![Change { column: j, lower: l, upper: at }],
-            vec![Change { column: j, lower: at + 1.0, upper: u }],
+            vec![Change {
+                column: j,
+                lower: l,
+                upper: at,
+            }],
+            vec![Change {
+                column: j,
+                lower: at + 1.0,
+                upper: u,
+            }],
         ];
-        Some(Branch::Two { sides, column: None, far: [1.0; 2], first: usize::from(near > at) })
+        Some(Branch::Two {
+            sides,
+            column: None,
+            far: [1.0; 2],
+            first: usize::from(near > at),
+        })
     }
 }
 

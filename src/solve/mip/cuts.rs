@@ -60,18 +60,33 @@ impl<'a> Separator<'a> {
                     .unwrap_or(0.0);
             }
             if let [first, second] = entries[..] {
-                let (x, y) = if mip.integer[first.0] { (second, first) } else { (first, second) };
+                let (x, y) = if mip.integer[first.0] {
+                    (second, first)
+                } else {
+                    (first, second)
+                };
                 let at_most = match x.1 > 0.0 {
                     true => p.row_upper[i],
                     false => -p.row_lower[i],
                 };
                 let u = -y.1 / x.1;
-                if !mip.integer[x.0] && mip.integer[y.0] && at_most == 0.0 && u > 0.0 && lower[y.0] == 0.0 {
+                if !mip.integer[x.0]
+                    && mip.integer[y.0]
+                    && at_most == 0.0
+                    && u > 0.0
+                    && lower[y.0] == 0.0
+                {
                     variable_upper[x.0] = Some((y.0, u));
                 }
             }
         }
-        Self { mip, variable_upper, step, lower, upper }
+        Self {
+            mip,
+            variable_upper,
+            step,
+            lower,
+            upper,
+        }
     }
 
     fn n(&self) -> usize {
@@ -86,7 +101,9 @@ impl<'a> Separator<'a> {
         let mut add = |made: Option<(f64, Cut)>| found.extend(made);
         // Gomory
         let away = |x: f64| (x - x.round()).abs();
-        let fractional = |j: &usize| self.mip.integer[*j] && linear.simplex.is_basic(*j) && away(values[*j]) > FRACTION;
+        let fractional = |j: &usize| {
+            self.mip.integer[*j] && linear.simplex.is_basic(*j) && away(values[*j]) > FRACTION
+        };
         let mut basic: Vec<usize> = (0..n).filter(fractional).collect();
         basic.sort_by(|&a, &b| away(values[b]).total_cmp(&away(values[a])));
         for j in basic.into_iter().take(200) {
@@ -119,7 +136,11 @@ impl<'a> Separator<'a> {
         let mut sum = vec![0.0; n];
         let mut terms = Terms::new();
         for &(i, w) in weights {
-            linear.problem.rows.line(i).for_each(|(j, a)| sum[j] += w * a);
+            linear
+                .problem
+                .rows
+                .line(i)
+                .for_each(|(j, a)| sum[j] += w * a);
             terms.push((n + i, -w));
         }
         terms.extend((0..n).map(|j| (j, sum[j])));
@@ -129,7 +150,13 @@ impl<'a> Separator<'a> {
     }
 
     /// Aggregates rows from one on until a cut is found.
-    fn path(&self, linear: &Linear, first: usize, values: &[f64], add: &mut dyn FnMut(Option<(f64, Cut)>)) {
+    fn path(
+        &self,
+        linear: &Linear,
+        first: usize,
+        values: &[f64],
+        add: &mut dyn FnMut(Option<(f64, Cut)>),
+    ) {
         let n = self.n();
         let p = &linear.problem;
         let binds = |i: usize| {
@@ -160,13 +187,19 @@ impl<'a> Separator<'a> {
                 };
                 above.min(x - self.lower[j])
             };
-            let inner = row.iter().filter(|e| e.0 < n && !self.mip.integer[e.0] && room(e.0) > 1e-6);
+            let inner = row
+                .iter()
+                .filter(|e| e.0 < n && !self.mip.integer[e.0] && room(e.0) > 1e-6);
             let Some(&(j, a)) = inner.max_by(|a, b| room(a.0).total_cmp(&room(b.0))) else {
                 return;
             };
             let fits = |e: &(usize, f64)| weights.iter().all(|w| w.0 != e.0) && binds(e.0);
             let short = |i: usize| p.rows.start[i + 1] - p.rows.start[i];
-            let next = p.columns.line(j).filter(fits).min_by_key(|e| (!is_equation(linear, e.0), short(e.0)));
+            let next = p
+                .columns
+                .line(j)
+                .filter(fits)
+                .min_by_key(|e| (!is_equation(linear, e.0), short(e.0)));
             let Some((i, b)) = next else {
                 return;
             };
@@ -190,7 +223,14 @@ impl<'a> Separator<'a> {
     }
 
     /// The best rounding of `sign · row ≤ 0`, divided by one of these numbers or by coefficients that suggest themselves.
-    fn round(&self, linear: &Linear, row: &Terms, sign: f64, values: &[f64], divisors: &[f64]) -> Option<(f64, Cut)> {
+    fn round(
+        &self,
+        linear: &Linear,
+        row: &Terms,
+        sign: f64,
+        values: &[f64],
+        divisors: &[f64],
+    ) -> Option<(f64, Cut)> {
         let n = self.n();
         // Variables with coefficient and value in their shifted form; integers first written in their units.
         let mut whole: Vec<(usize, f64, f64, Shift, f64)> = Vec::new();
@@ -213,7 +253,12 @@ impl<'a> Separator<'a> {
                 && most * values[y] - x <= above.min(below)
             {
                 by_integer.push((y, a * most));
-                real.push((v, -a, (most * values[y] - x).max(0.0), Shift::Below(y, most)));
+                real.push((
+                    v,
+                    -a,
+                    (most * values[y] - x).max(0.0),
+                    Shift::Below(y, most),
+                ));
                 continue;
             }
             let (shift, t) = match below <= above {
@@ -265,8 +310,10 @@ impl<'a> Separator<'a> {
         }
         let mut tried: Vec<f64> = divisors.to_vec();
         if divisors.is_empty() {
-            let mut inside: Vec<&(usize, f64, f64, Shift, f64)> =
-                whole.iter().filter(|e| e.2 > 1e-6 && e.1.abs() > 1e-6).collect();
+            let mut inside: Vec<&(usize, f64, f64, Shift, f64)> = whole
+                .iter()
+                .filter(|e| e.2 > 1e-6 && e.1.abs() > 1e-6)
+                .collect();
             inside.sort_by(|a, b| b.2.total_cmp(&a.2));
             for e in inside {
                 if tried.len() < 6 && tried.iter().all(|d| (d - e.1.abs()).abs() > 1e-9 * d) {
@@ -292,7 +339,11 @@ impl<'a> Separator<'a> {
             }
             sum / norm.sqrt()
         };
-        let best = |list: &[f64]| list.iter().copied().max_by(|x, y| efficacy(*x).total_cmp(&efficacy(*y)));
+        let best = |list: &[f64]| {
+            list.iter()
+                .copied()
+                .max_by(|x, y| efficacy(*x).total_cmp(&efficacy(*y)))
+        };
         let mut d = best(&tried)?;
         if divisors.is_empty() {
             d = best(&[d, d / 2.0, d / 4.0, d / 8.0])?;
@@ -305,7 +356,11 @@ impl<'a> Separator<'a> {
         let mut put = |v: usize, g: f64, shift: Shift, side: &mut f64| {
             let mut add = |v: usize, g: f64| match v.checked_sub(n) {
                 None => out[v] += g,
-                Some(i) => linear.problem.rows.line(i).for_each(|(j, a)| out[j] += g * a),
+                Some(i) => linear
+                    .problem
+                    .rows
+                    .line(i)
+                    .for_each(|(j, a)| out[j] += g * a),
             };
             match shift {
                 Shift::Up(l) => {
@@ -347,7 +402,11 @@ impl<'a> Separator<'a> {
         for (j, a) in out.iter_mut().enumerate().filter(|e| *e.1 != 0.0) {
             let a = *a * scale;
             if a.abs() < 1e-6 {
-                let bound = if a > 0.0 { self.lower[j] } else { self.upper[j] };
+                let bound = if a > 0.0 {
+                    self.lower[j]
+                } else {
+                    self.upper[j]
+                };
                 if bound.is_infinite() {
                     return None;
                 }
@@ -361,7 +420,8 @@ impl<'a> Separator<'a> {
         let most = 100 + self.n() / 3;
         side += 1e-9 * side.abs().max(1.0);
         let efficacy = (activity - side) / f64::max(norm, 1e-12).sqrt();
-        (efficacy > 1e-4 && terms.len() <= most && !terms.is_empty()).then_some((efficacy, Cut { terms, side }))
+        (efficacy > 1e-4 && terms.len() <= most && !terms.is_empty())
+            .then_some((efficacy, Cut { terms, side }))
     }
 
     /// Of binaries that do not fit into a row together all but one fit at most, and so with larger ones besides.
@@ -416,7 +476,9 @@ impl<'a> Separator<'a> {
         let heaviest = cover.iter().fold(0.0f64, |t, e| t.max(e.1));
         let side = cover.len() as f64 - 1.0;
         let members: Vec<usize> = cover.iter().map(|e| e.0).collect();
-        let extension = items.iter().filter(|e| e.1 >= heaviest && !members.contains(&e.0));
+        let extension = items
+            .iter()
+            .filter(|e| e.1 >= heaviest && !members.contains(&e.0));
         let (mut out, mut side) = (vec![0.0; self.n()], side);
         for e in cover.iter().chain(extension) {
             out[e.0] = if e.3 { -1.0 } else { 1.0 };

@@ -124,9 +124,11 @@ impl<R: Relaxation> Search<'_, R> {
         if candidates.is_empty() {
             let _ = control;
             return match self.branch_on_set(x)? {
-                super::branching::Branch::Two { sides: [a, b], first, .. } => {
-                    Some(if first == 0 { vec![a, b] } else { vec![b, a] })
-                }
+                super::branching::Branch::Two {
+                    sides: [a, b],
+                    first,
+                    ..
+                } => Some(if first == 0 { vec![a, b] } else { vec![b, a] }),
                 super::branching::Branch::Fixed(changes) => Some(vec![changes.clone(), changes]),
             };
         }
@@ -149,14 +151,26 @@ impl<R: Relaxation> Search<'_, R> {
                     let way = if goes_up { 1.0 - fraction } else { fraction };
                     let rate = down.min(up) as f64;
                     // Columns that go somewhere freely come last: they can be rounded in the end.
-                    (if harmless { 1e6 } else { way * (1.0 + 0.1 * rate) }, j, goes_up)
+                    (
+                        if harmless {
+                            1e6
+                        } else {
+                            way * (1.0 + 0.1 * rate)
+                        },
+                        j,
+                        goes_up,
+                    )
                 }
                 _ => (far, j, fraction >= 0.5),
             }
         });
         let (_, j, up) = choice.min_by(|a, b| a.0.total_cmp(&b.0))?;
         let [down, high] = self.sides(j, x[j]);
-        Some(if up { vec![vec![high], vec![down]] } else { vec![vec![down], vec![high]] })
+        Some(if up {
+            vec![vec![high], vec![down]]
+        } else {
+            vec![vec![down], vec![high]]
+        })
     }
 
     /// Fixes the columns on which the relaxation and the best solution agree (without one: those that are integers in the
@@ -179,7 +193,11 @@ impl<R: Relaxation> Search<'_, R> {
             };
             if agrees {
                 let v = x[j].round();
-                changes.push(Change { column: j, lower: v, upper: v });
+                changes.push(Change {
+                    column: j,
+                    lower: v,
+                    upper: v,
+                });
             } else {
                 open += usize::from(self.lower[j] < self.upper[j]);
             }

@@ -95,7 +95,8 @@ impl Relaxation for Linear {
 
     fn set_bounds(&mut self, change: Change) {
         // The bounds of the program are those of the root, which cuts rely on; the engine's are the node's.
-        self.simplex.set_bounds(change.column, change.lower, change.upper);
+        self.simplex
+            .set_bounds(change.column, change.lower, change.upper);
     }
 
     fn solve(&mut self, cutoff: f64, control: &mut Control) -> Solved {
@@ -140,7 +141,13 @@ impl Relaxation for Linear {
         let before = trial.iterations;
         let ended = trial.retry(PROBE);
         self.simplex.iterations += trial.iterations - before;
-        let value: f64 = self.problem.cost.iter().zip(trial.values()).map(|(c, x)| c * x).sum();
+        let value: f64 = self
+            .problem
+            .cost
+            .iter()
+            .zip(trial.values())
+            .map(|(c, x)| c * x)
+            .sum();
         match ended {
             Ended::Infeasible(_) => Some(f64::INFINITY),
             Ended::Iterations if trial.is_beyond_cutoff() => Some(f64::INFINITY),
@@ -152,6 +159,11 @@ impl Relaxation for Linear {
 
 impl Linear {
     fn value(&self) -> f64 {
-        self.problem.cost.iter().zip(self.x()).map(|(c, x)| c * x).sum()
+        self.problem
+            .cost
+            .iter()
+            .zip(self.x())
+            .map(|(c, x)| c * x)
+            .sum()
     }
 }

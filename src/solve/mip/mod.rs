@@ -8,6 +8,7 @@
 
 mod branching;
 pub mod cuts;
+mod driver;
 mod heuristics;
 pub mod linear;
 pub mod model;
@@ -25,11 +26,10 @@ use super::lp::{self, Ended, Limits};
 use super::{Claim, ModelStatus, Monitor, Outcome, Settings, SolveError, SolverStatus, nlp};
 use crate::model::certificate::Residuals;
 use crate::model::instance::{ColumnKind, Instance};
-use cuts::Separator;
-use linear::Linear;
-use model::{Change, Mip, Units};
-use nonlinear::{Muted, Nonlinear};
-use relaxation::{Control, Relaxation, Solved};
+use driver::{Found, search_linear};
+use model::{Mip, Units};
+use nonlinear::Nonlinear;
+use relaxation::{Control, Muted};
 use tree::{End, Search};
 
 /// Name of this solver.
@@ -44,35 +44,6 @@ pub struct Report {
     pub nodes: u64,
     /// What became of the nodes, where that was asked for; columns are the instance's.
     pub records: Vec<Record>,
-}
-
-/// What a search gave, in columns of the instance, for a minimisation.
-struct Found {
-    x: Option<Vec<f64>>,
-    bound: f64,
-    value: f64,
-    nodes: u64,
-    end: End,
-    incomplete: bool,
-    /// Values of relaxations are bounds.
-    exact: bool,
-    records: Vec<Record>,
-}
-
-impl Found {
-    /// Of a program without a solution, seen before any search.
-    fn empty() -> Self {
-        Self {
-            x: None,
-            bound: f64::INFINITY,
-            value: f64::INFINITY,
-            nodes: 0,
-            end: End::Complete,
-            incomplete: false,
-            exact: true,
-            records: Vec::new(),
-        }
-    }
 }
 
 /// Solves an instance with discrete columns.
@@ -96,10 +67,17 @@ pub fn answer(
     };
     let iterations = control.iterations;
     let (mut answer, complete) = match &found.x {
-        Some(x) => (solution(choice, instance, x, settings, control.monitor)?, true),
+        Some(x) => (
+            solution(choice, instance, x, settings, control.monitor)?,
+            true,
+        ),
         None => (nothing(instance), false),
     };
-    let bound = if found.x.is_some() && found.exact { found.bound.min(found.value) } else { found.bound };
+    let bound = if found.x.is_some() && found.exact {
+        found.bound.min(found.value)
+    } else {
+        found.bound
+    };
     let proved = match found.end {
         End::Complete => !found.incomplete,
         _ => found.value - bound <= 1e-9 * found.value.abs().max(1e-9),
@@ -137,9 +115,18 @@ pub fn answer(
 }
 
 /// The search of a linear program: presolve, cuts, tree.
-fn linear_search(instance: &Instance, aim: Aim, control: &mut Control) -> Result<Found, SolveError> {
+fn linear_search(
+    instance: &Instance,
+    aim: Aim,
+    control: &mut Control,
+) -> Result<Found, SolveError> {
     let form = Form::new(instance)?;
-    let mip = Mip::new(form.problem.clone(), instance, &form.columns, aim.priorities);
+    let mip = Mip::new(
+        form.problem.clone(),
+        instance,
+        &form.columns,
+        aim.priorities,
+    );
     let start = aim.try_start > 0.0 && {
         let near = |k: usize| {
             let x = instance.columns.level[form.columns[k] as usize];
@@ -148,7 +135,10 @@ fn linear_search(instance: &Instance, aim: Aim, control: &mut Control) -> Result
         (0..mip.integer.len()).filter(|&k| mip.integer[k]).all(near)
     };
     let start: Option<Vec<f64>> = start.then(|| {
-        form.columns.iter().map(|&j| instance.columns.level[j as usize]).collect()
+        form.columns
+            .iter()
+            .map(|&j| instance.columns.level[j as usize])
+            .collect()
     });
     let mut found = search_linear(&mip, aim, start, control);
     // In columns of the instance; the objective's follows from the others.
@@ -164,154 +154,6 @@ fn linear_search(instance: &Instance, aim: Aim, control: &mut Control) -> Result
         c.column = form.columns[c.column] as usize;
     }
     Ok(found)
-}
-
-fn search_linear(mip: &Mip, aim: Aim, start: Option<Vec<f64>>, control: &mut Control) -> Found {
-    let Some(reduced) = presolve::reduce(mip, &[]) else {
-        return Found::empty();
-    };
-    let line = format!(
-        "presolve: {} rows, {} columns, {} of them integer",
-        reduced.mip.problem.m(),
-        reduced.mip.problem.n(),
-        reduced.mip.integer.iter().filter(|i| **i).count()
-    );
-    control.limits.log(control.monitor, &line);
-    let (scaled, scaling) = reduced.mip.scaled();
-    let units = Units {
-        price: scaling.price,
-        offset: reduced.mip.problem.offset,
-    };
-    let mut linear = Linear::new(&scaled);
-    let solved = strengthen(&scaled, &mut linear, 30, control);
-    let near = |mip: &Mip, fixed: &[Change], cutoff: f64, control: &mut Control| nearby(mip, fixed, cutoff, control);
-    let mut search = Search::new(&scaled, linear, aim, units);
-    search.neighbourhood = Some(&near);
-    if solved == Solved::Infeasible {
-        return Found::empty();
-    }
-    if let Some(x) = start {
-        let mut y = reduced.reduce(&x);
-        y.iter_mut().zip(&scaling.column).for_each(|(x, c)| *x /= c);
-        search.offer(&y, control);
-    }
-    let mut end = search.run(control);
-    if end == End::Unbounded && search.best.is_none() {
-        // Unbounded, if there is a solution at all.
-        let mut anything = mip.clone();
-        anything.problem.cost.fill(0.0);
-        let some = search_linear(&anything, Aim::default(), None, control);
-        return Found {
-            end: if some.end == End::Complete && some.x.is_none() { End::Complete } else { End::Unbounded },
-            bound: f64::NEG_INFINITY,
-            value: some.x.as_ref().map_or(f64::INFINITY, |x| mip.value(x) + mip.problem.offset),
-            ..some
-        };
-    }
-    if end == End::Gap && search.best.is_none() {
-        end = End::Complete;
-    }
-    let restore = |x: &Vec<f64>| {
-        let x: Vec<f64> = x.iter().zip(&scaling.column).map(|(x, c)| x * c).collect();
-        reduced.restore(&x)
-    };
-    let mut records = std::mem::take(&mut search.records);
-    for r in &mut records {
-        r.value = units.shown(r.value);
-        if let Some(c) = &mut r.change {
-            let factor = scaling.column[c.column];
-            *c = Change {
-                column: reduced.columns[c.column] as usize,
-                lower: c.lower * factor,
-                upper: c.upper * factor,
-            };
-        }
-    }
-    Found {
-        value: search.best.as_ref().map_or(f64::INFINITY, |b| units.shown(b.0)),
-        x: search.best.as_ref().map(|b| restore(&b.1)),
-        bound: units.shown(search.bound),
-        nodes: search.nodes,
-        incomplete: search.incomplete,
-        exact: true,
-        end,
-        records,
-    }
-}
-
-/// Adds cuts to the root's relaxation while they help.
-fn strengthen(mip: &Mip, linear: &mut Linear, rounds: usize, control: &mut Control) -> Solved {
-    let first = mip.problem.m();
-    let mut solved = linear.solve(f64::INFINITY, control);
-    let Solved::Value(start) = solved else {
-        return solved;
-    };
-    let (mut value, mut idle) = (start, 0);
-    let separator = Separator::new(mip, &mip.problem.lower, &mip.problem.upper);
-    for _ in 0..rounds {
-        let x = linear.x().to_vec();
-        if mip.is_discrete(&x) || control.stop(control.iterations).is_some() || idle >= 3 {
-            break;
-        }
-        let cuts = separator.separate(linear);
-        if cuts.is_empty() {
-            break;
-        }
-        linear.add(&cuts);
-        solved = linear.solve(f64::INFINITY, control);
-        let Solved::Value(v) = solved else {
-            break;
-        };
-        idle = match v - value > 1e-3 * (v - start).max(1e-9 * v.abs()) + 1e-9 {
-            true => 0,
-            false => idle + 1,
-        };
-        value = v;
-        linear.drop_idle(first);
-    }
-    let rows = linear.problem.m() - first;
-    let line = format!("cuts: {rows}, bound {start:.10} to {value:.10} (scaled)");
-    control.limits.log(control.monitor, &line);
-    solved
-}
-
-/// A search of a few nodes where some columns are fixed.
-fn nearby(mip: &Mip, fixed: &[Change], cutoff: f64, control: &mut Control) -> Option<Vec<f64>> {
-    let reduced = presolve::reduce(mip, fixed)?;
-    let units = Units {
-        price: 1.0,
-        offset: reduced.mip.problem.offset - mip.problem.offset,
-    };
-    let aim = Aim {
-        nodes: 100,
-        cutoff: cutoff.is_finite().then_some(cutoff),
-        relative_gap: 1e-3,
-        ..Aim::default()
-    };
-    let mut sub = Control {
-        limits: Limits {
-            iterations: control.limits.iterations.min(control.iterations + 1000 + control.iterations / 5),
-            ..control.limits
-        },
-        iterations: control.iterations,
-        monitor: &mut *control.monitor,
-    };
-    let mut linear = Linear::new(&reduced.mip);
-    let mut quiet = Control {
-        monitor: &mut Muted(sub.monitor),
-        limits: sub.limits,
-        iterations: sub.iterations,
-    };
-    let solved = strengthen(&reduced.mip, &mut linear, 5, &mut quiet);
-    let mut best = None;
-    if solved != Solved::Infeasible {
-        let mut search = Search::new(&reduced.mip, linear, aim, units);
-        search.run(&mut quiet);
-        best = search.best.take();
-    }
-    sub.iterations = quiet.iterations;
-    control.iterations = sub.iterations;
-    best.map(|b| reduced.restore(&b.1))
 }
 
 /// The search of a nonlinear program.
@@ -405,7 +247,12 @@ fn solution(
     outcome.row_marginal.fill(0.0);
     outcome.column_marginal.fill(0.0);
     let (activity, residuals) = super::answer::primal(instance, &outcome.level);
-    Ok(Answer::new(outcome, residuals, ModelStatus::IntegerSolution, activity))
+    Ok(Answer::new(
+        outcome,
+        residuals,
+        ModelStatus::IntegerSolution,
+        activity,
+    ))
 }
 
 /// Without a solution levels and marginals stay as they were.
@@ -423,5 +270,10 @@ fn nothing(instance: &Instance) -> Answer {
         basis: None,
     };
     let (activity, _) = super::answer::primal(instance, &outcome.level);
-    Answer::new(outcome, Residuals::default(), ModelStatus::NoSolution, activity)
+    Answer::new(
+        outcome,
+        Residuals::default(),
+        ModelStatus::NoSolution,
+        activity,
+    )
 }

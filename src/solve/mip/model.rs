@@ -170,8 +170,7 @@ impl Mip {
         };
         let row = |i: usize| {
             let terms = p.rows.line(i).map(|(j, a)| a * x[j]);
-            let (sum, size) =
-                terms.fold((0.0, 1.0f64), |(s, z), t: f64| (s + t, z.max(t.abs())));
+            let (sum, size) = terms.fold((0.0, 1.0f64), |(s, z), t: f64| (s + t, z.max(t.abs())));
             let slack = FEASIBLE * size;
             sum >= p.row_lower[i] - slack && sum <= p.row_upper[i] + slack
         };
@@ -187,8 +186,16 @@ impl Mip {
     pub fn granularity(&self) -> f64 {
         let whole = self.implied_integers();
         let costs: Vec<f64> = (0..whole.len())
-            .filter(|&j| self.problem.cost[j] != 0.0 && self.problem.lower[j] < self.problem.upper[j])
-            .map(|j| if whole[j] { self.problem.cost[j].abs() } else { f64::NAN })
+            .filter(|&j| {
+                self.problem.cost[j] != 0.0 && self.problem.lower[j] < self.problem.upper[j]
+            })
+            .map(|j| {
+                if whole[j] {
+                    self.problem.cost[j].abs()
+                } else {
+                    f64::NAN
+                }
+            })
             .collect();
         let Some(least) = costs.iter().copied().reduce(f64::min) else {
             return 0.0;
@@ -197,7 +204,17 @@ impl Mip {
             return 0.0;
         }
         // decimal fractions, and multiples of the least cost
-        for unit in [1.0, 0.1, 0.01, 0.001, 1e-4, least, least / 2.0, least / 3.0, 1.0 / 32.0] {
+        for unit in [
+            1.0,
+            0.1,
+            0.01,
+            0.001,
+            1e-4,
+            least,
+            least / 2.0,
+            least / 3.0,
+            1.0 / 32.0,
+        ] {
             let whole = |c: &f64| {
                 let k = c / unit;
                 k < 1e9 && (k - k.round()).abs() < 1e-9 * k.max(1.0)

@@ -4,11 +4,11 @@
 //! the search is then a good guess, as any of this kind.
 
 use super::model::Change;
-use super::relaxation::{Control, Relaxation, Solved};
+use super::relaxation::{Control, Muted, Relaxation, Solved};
 use crate::model::instance::{ColumnKind, Instance};
 use crate::solve::answer::Answer;
 use crate::solve::lp::Ended;
-use crate::solve::{ModelStatus, Monitor, Settings, SolverStatus, nlp};
+use crate::solve::{ModelStatus, Settings, SolverStatus, nlp};
 use std::rc::Rc;
 
 /// The instance under a node's bounds.
@@ -20,22 +20,6 @@ pub struct Nonlinear {
     point: Rc<Vec<f64>>,
     /// Every value so far was a global one.
     pub convex: bool,
-}
-
-/// Passes on that the person wants to stop, and no lines of the many small solves.
-pub struct Muted<'m>(pub &'m mut dyn Monitor);
-
-impl Monitor for Muted<'_> {
-    fn log(&mut self, _: &str) {}
-    fn interrupted(&mut self) -> bool {
-        self.0.interrupted()
-    }
-    fn row_name(&self, row: usize) -> String {
-        self.0.row_name(row)
-    }
-    fn column_name(&self, column: usize) -> String {
-        self.0.column_name(column)
-    }
 }
 
 impl Nonlinear {

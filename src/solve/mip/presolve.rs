@@ -77,9 +77,18 @@ fn singletons(mip: &mut Mip, idle: &mut [bool]) -> Option<bool> {
         let (Some((j, a)), None) = (entries.next(), entries.next()) else {
             continue;
         };
-        let rest: f64 = p.rows.line(i).filter(|e| e.0 != j).map(|(k, b)| b * p.lower[k]).sum();
+        let rest: f64 = p
+            .rows
+            .line(i)
+            .filter(|e| e.0 != j)
+            .map(|(k, b)| b * p.lower[k])
+            .sum();
         let ends = [(p.row_lower[i] - rest) / a, (p.row_upper[i] - rest) / a];
-        let (mut l, mut u) = if a > 0.0 { (ends[0], ends[1]) } else { (ends[1], ends[0]) };
+        let (mut l, mut u) = if a > 0.0 {
+            (ends[0], ends[1])
+        } else {
+            (ends[1], ends[0])
+        };
         if mip.integer[j] {
             (l, u) = ((l - FEASIBLE).ceil(), (u + FEASIBLE).floor());
         }
@@ -100,7 +109,11 @@ fn singletons(mip: &mut Mip, idle: &mut [bool]) -> Option<bool> {
 /// Drops sides that bounds imply, and tightens coefficients of binaries.
 fn rows(mip: &mut Mip, idle: &mut [bool]) -> bool {
     let mut changed = false;
-    let Mip { problem: p, integer, .. } = mip;
+    let Mip {
+        problem: p,
+        integer,
+        ..
+    } = mip;
     let mut new: Vec<(usize, usize, f64)> = Vec::new();
     for i in 0..p.row_lower.len() {
         if idle[i] {
@@ -136,7 +149,11 @@ fn rows(mip: &mut Mip, idle: &mut [bool]) -> bool {
             _ => continue,
         };
         let mut most = if sign > 0.0 { high } else { -low };
-        let mut side = if sign > 0.0 { p.row_upper[i] } else { -p.row_lower[i] };
+        let mut side = if sign > 0.0 {
+            p.row_upper[i]
+        } else {
+            -p.row_lower[i]
+        };
         for (j, a) in p.rows.line(i) {
             let a = sign * a;
             if !integer[j] || p.lower[j] != 0.0 || p.upper[j] != 1.0 {
@@ -186,7 +203,11 @@ fn dual_fixing(mip: &mut Mip, idle: &[bool], in_set: &[bool]) -> bool {
         let (mut up, mut down) = (0, 0);
         for (i, a) in p.columns.line(j).filter(|e| !idle[e.0]) {
             let blocks = [p.row_lower[i].is_finite(), p.row_upper[i].is_finite()];
-            let [low, high] = if a > 0.0 { blocks } else { [blocks[1], blocks[0]] };
+            let [low, high] = if a > 0.0 {
+                blocks
+            } else {
+                [blocks[1], blocks[0]]
+            };
             down += usize::from(low);
             up += usize::from(high);
         }
@@ -212,7 +233,9 @@ fn assemble(work: &Mip, idle: &[bool], in_set: &[bool]) -> Reduced {
         number[j] = columns.len() as u32;
         columns.push(j as u32);
     }
-    let values: Vec<f64> = (0..n).map(|j| if open(j) { 0.0 } else { p.lower[j] }).collect();
+    let values: Vec<f64> = (0..n)
+        .map(|j| if open(j) { 0.0 } else { p.lower[j] })
+        .collect();
     let mut problem = Problem {
         rows: Sparse::new(),
         offset: p.offset + p.cost.iter().zip(&values).map(|(c, x)| c * x).sum::<f64>(),
@@ -255,5 +278,9 @@ fn assemble(work: &Mip, idle: &[bool], in_set: &[bool]) -> Reduced {
         sets,
         problem,
     };
-    Reduced { mip, columns, values }
+    Reduced {
+        mip,
+        columns,
+        values,
+    }
 }

@@ -41,12 +41,20 @@ impl Activity {
 
     /// The least activity.
     pub fn least(&self) -> f64 {
-        if self.low_infinite > 0 { f64::NEG_INFINITY } else { self.low }
+        if self.low_infinite > 0 {
+            f64::NEG_INFINITY
+        } else {
+            self.low
+        }
     }
 
     /// The largest activity.
     pub fn most(&self) -> f64 {
-        if self.high_infinite > 0 { f64::INFINITY } else { self.high }
+        if self.high_infinite > 0 {
+            f64::INFINITY
+        } else {
+            self.high
+        }
     }
 
     /// What rounding may have done to it.
@@ -106,20 +114,27 @@ impl Propagator {
         loop {
             while let Some(i) = self.queue.pop_front() {
                 self.queued[i as usize] = false;
-                let length = mip.problem.rows.start[i as usize + 1] - mip.problem.rows.start[i as usize];
+                let length =
+                    mip.problem.rows.start[i as usize + 1] - mip.problem.rows.start[i as usize];
                 budget = budget.saturating_sub(length);
                 fine &= budget == 0 || self.row(mip, i as usize, lower, upper);
                 if !fine || budget == 0 {
-                    self.queue.drain(..).for_each(|i| self.queued[i as usize] = false);
+                    self.queue
+                        .drain(..)
+                        .for_each(|i| self.queued[i as usize] = false);
                 }
             }
             let before = self.moved.len();
             if !fine || !self.thresholds_and_sets(mip, lower, upper) {
-                self.queue.drain(..).for_each(|i| self.queued[i as usize] = false);
+                self.queue
+                    .drain(..)
+                    .for_each(|i| self.queued[i as usize] = false);
                 return false;
             }
             if self.moved.len() == before || budget == 0 {
-                self.queue.drain(..).for_each(|i| self.queued[i as usize] = false);
+                self.queue
+                    .drain(..)
+                    .for_each(|i| self.queued[i as usize] = false);
                 return true;
             }
         }
@@ -174,8 +189,16 @@ impl Propagator {
                     new.abs() < 1e7 && (old.is_infinite() || (new - old).abs() > 0.5 * range)
                 };
                 let range = u - l;
-                new_l = if new_l > l && much(new_l, l, range) { new_l - slack(new_l) } else { l };
-                new_u = if new_u < u && much(new_u, u, range) { new_u + slack(new_u) } else { u };
+                new_l = if new_l > l && much(new_l, l, range) {
+                    new_l - slack(new_l)
+                } else {
+                    l
+                };
+                new_u = if new_u < u && much(new_u, u, range) {
+                    new_u + slack(new_u)
+                } else {
+                    u
+                };
             }
             if !self.set(mip, j, new_l, new_u, lower, upper) {
                 return false;
@@ -185,7 +208,15 @@ impl Propagator {
     }
 
     /// False: the bounds cross.
-    fn set(&mut self, mip: &Mip, j: usize, l: f64, u: f64, lower: &mut [f64], upper: &mut [f64]) -> bool {
+    fn set(
+        &mut self,
+        mip: &Mip,
+        j: usize,
+        l: f64,
+        u: f64,
+        lower: &mut [f64],
+        upper: &mut [f64],
+    ) -> bool {
         let (l, u) = (l.max(lower[j]), u.min(upper[j]));
         if l > u + FEASIBLE * l.abs().max(1.0) {
             return false;
@@ -224,7 +255,10 @@ impl Propagator {
             for (k, &j) in set.columns.iter().enumerate() {
                 let j = j as usize;
                 let far = k + reach < last || k > first + reach;
-                if far && (lower[j] != 0.0 || upper[j] != 0.0) && !self.set(mip, j, 0.0, 0.0, lower, upper) {
+                if far
+                    && (lower[j] != 0.0 || upper[j] != 0.0)
+                    && !self.set(mip, j, 0.0, 0.0, lower, upper)
+                {
                     return false;
                 }
             }

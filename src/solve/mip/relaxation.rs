@@ -21,6 +21,22 @@ pub enum Solved {
     Stopped(Ended),
 }
 
+/// Passes on that the person wants to stop, and no lines of the many small solves.
+pub struct Muted<'m>(pub &'m mut dyn Monitor);
+
+impl Monitor for Muted<'_> {
+    fn log(&mut self, _: &str) {}
+    fn interrupted(&mut self) -> bool {
+        self.0.interrupted()
+    }
+    fn row_name(&self, row: usize) -> String {
+        self.0.row_name(row)
+    }
+    fn column_name(&self, column: usize) -> String {
+        self.0.column_name(column)
+    }
+}
+
 /// Limits of a search, and the person.
 pub struct Control<'m> {
     /// For the log, and Ctrl-C.

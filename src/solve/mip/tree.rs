@@ -215,7 +215,10 @@ impl<'a, R: Relaxation> Search<'a, R> {
 
     /// A value that only a better solution is below.
     pub(super) fn cutoff(&self) -> f64 {
-        let asked = self.aim.cutoff.map_or(f64::INFINITY, |c| self.units.inner(c));
+        let asked = self
+            .aim
+            .cutoff
+            .map_or(f64::INFINITY, |c| self.units.inner(c));
         let Some((v, _)) = &self.best else {
             return asked;
         };
@@ -280,7 +283,12 @@ impl<'a, R: Relaxation> Search<'a, R> {
 
     fn note(&mut self, parent: Option<u32>, change: Option<Change>, value: f64) -> u32 {
         if self.aim.record && self.records.len() < 100_000 {
-            self.records.push(Record { parent, change, value, fate: "open" });
+            self.records.push(Record {
+                parent,
+                change,
+                value,
+                fate: "open",
+            });
         }
         self.made += 1;
         self.made - 1
@@ -309,7 +317,9 @@ impl<'a, R: Relaxation> Search<'a, R> {
             }
             columns.push(c.column);
         }
-        let fine = self.propagator.run(self.mip, Some(&columns), &mut self.lower, &mut self.upper);
+        let fine = self
+            .propagator
+            .run(self.mip, Some(&columns), &mut self.lower, &mut self.upper);
         self.send_bounds();
         fine
     }
@@ -318,12 +328,19 @@ impl<'a, R: Relaxation> Search<'a, R> {
     pub(super) fn send_bounds(&mut self) {
         for column in 0..self.lower.len() {
             let (lower, upper) = (self.lower[column], self.upper[column]);
-            self.relaxation.set_bounds(Change { column, lower, upper });
+            self.relaxation.set_bounds(Change {
+                column,
+                lower,
+                upper,
+            });
         }
     }
 
     fn narrow(&mut self, c: &Change) -> bool {
-        let (l, u) = (c.lower.max(self.lower[c.column]), c.upper.min(self.upper[c.column]));
+        let (l, u) = (
+            c.lower.max(self.lower[c.column]),
+            c.upper.min(self.upper[c.column]),
+        );
         (self.lower[c.column], self.upper[c.column]) = (l, u);
         l <= u
     }
@@ -336,11 +353,17 @@ impl<'a, R: Relaxation> Search<'a, R> {
             }
         }
         let columns: Vec<usize> = changes.iter().map(|c| c.column).collect();
-        let fine = self.propagator.run(self.mip, Some(&columns), &mut self.lower, &mut self.upper);
+        let fine = self
+            .propagator
+            .run(self.mip, Some(&columns), &mut self.lower, &mut self.upper);
         for &column in columns.iter().chain(&self.propagator.moved) {
             let (lower, upper) = (self.lower[column], self.upper[column]);
             if lower <= upper {
-                self.relaxation.set_bounds(Change { column, lower, upper });
+                self.relaxation.set_bounds(Change {
+                    column,
+                    lower,
+                    upper,
+                });
             }
         }
         fine
@@ -348,7 +371,14 @@ impl<'a, R: Relaxation> Search<'a, R> {
 
     /// From a node down until nothing is left below it. Some: why the search must end.
     fn plunge(&mut self, node: Node<R::Start>, control: &mut Control) -> Option<End> {
-        let Node { mut bound, mut depth, mut number, mut path, start, mut from } = node;
+        let Node {
+            mut bound,
+            mut depth,
+            mut number,
+            mut path,
+            start,
+            mut from,
+        } = node;
         if !self.load(&path) {
             self.fate(number, "infeasible");
             return None;
@@ -356,8 +386,19 @@ impl<'a, R: Relaxation> Search<'a, R> {
         self.relaxation.restart(&start);
         let stop = |s: &mut Self, bound, depth, number, path, from, end| {
             let start = s.relaxation.start();
-            s.bound = s.open.peek().map_or(bound, |n| n.bound.min(bound)).max(s.bound);
-            s.open.push(Node { bound, depth, number, path, start, from });
+            s.bound = s
+                .open
+                .peek()
+                .map_or(bound, |n| n.bound.min(bound))
+                .max(s.bound);
+            s.open.push(Node {
+                bound,
+                depth,
+                number,
+                path,
+                start,
+                from,
+            });
             Some(end)
         };
         let mut resolves = 0;
@@ -367,11 +408,17 @@ impl<'a, R: Relaxation> Search<'a, R> {
             let value = match solved {
                 Solved::Value(v) => v,
                 Solved::Infeasible | Solved::Cutoff => {
-                    let fate = if solved == Solved::Cutoff { "bound" } else { "infeasible" };
+                    let fate = if solved == Solved::Cutoff {
+                        "bound"
+                    } else {
+                        "infeasible"
+                    };
                     self.fate(number, fate);
                     return None;
                 }
-                Solved::Unbounded => return stop(self, bound, depth, number, path, from, End::Unbounded),
+                Solved::Unbounded => {
+                    return stop(self, bound, depth, number, path, from, End::Unbounded);
+                }
                 Solved::Stopped(why) => {
                     return stop(self, bound, depth, number, path, from, End::Stopped(why));
                 }
@@ -412,7 +459,10 @@ impl<'a, R: Relaxation> Search<'a, R> {
                     self.fate(number, "infeasible");
                     return None;
                 }
-                path = Some(Rc::new(Path { changes: changes.clone(), parent: path }));
+                path = Some(Rc::new(Path {
+                    changes: changes.clone(),
+                    parent: path,
+                }));
                 resolves += 1;
                 continue;
             }
@@ -434,7 +484,13 @@ impl<'a, R: Relaxation> Search<'a, R> {
                     return None;
                 }
             }
-            let Some(Branch::Two { sides, column, far, first }) = branch else {
+            let Some(Branch::Two {
+                sides,
+                column,
+                far,
+                first,
+            }) = branch
+            else {
                 self.fate(number, "infeasible");
                 return None;
             };
@@ -455,7 +511,10 @@ impl<'a, R: Relaxation> Search<'a, R> {
                     bound,
                     depth: depth + 1,
                     number: s.note(Some(parent), changes.first().copied(), bound),
-                    path: Some(Rc::new(Path { changes, parent: path.clone() })),
+                    path: Some(Rc::new(Path {
+                        changes,
+                        parent: path.clone(),
+                    })),
                     start: start.clone(),
                     from: column.map(|j| (j, side, far[side])),
                 }
@@ -473,7 +532,8 @@ impl<'a, R: Relaxation> Search<'a, R> {
                     return None;
                 }
             }
-            (bound, depth, number, path, from) = (next.bound, next.depth, next.number, next.path, next.from);
+            (bound, depth, number, path, from) =
+                (next.bound, next.depth, next.number, next.path, next.from);
             resolves = 0;
             let least = self.open.peek().map_or(bound, |n| n.bound.min(bound));
             self.bound = self.bound.max(least);
@@ -504,9 +564,17 @@ impl<'a, R: Relaxation> Search<'a, R> {
             }
             let far = (room / d.abs() + 1e-6).floor();
             if d > 0.0 && x[j] - l < 1e-9 && l + far < u {
-                changes.push(Change { column: j, lower: l, upper: l + far });
+                changes.push(Change {
+                    column: j,
+                    lower: l,
+                    upper: l + far,
+                });
             } else if d < 0.0 && u - x[j] < 1e-9 && u - far > l {
-                changes.push(Change { column: j, lower: u - far, upper: u });
+                changes.push(Change {
+                    column: j,
+                    lower: u - far,
+                    upper: u,
+                });
             }
         }
         if changes.is_empty() {
@@ -533,7 +601,11 @@ impl<'a, R: Relaxation> Search<'a, R> {
         for (j, y) in y.iter_mut().enumerate() {
             let t = self.mip.threshold[j];
             if self.mip.integer[j] || y.abs() <= super::model::INTEGRAL {
-                *y = if self.mip.integer[j] || t > 0.0 { y.round() } else { *y };
+                *y = if self.mip.integer[j] || t > 0.0 {
+                    y.round()
+                } else {
+                    *y
+                };
             }
             if t > 0.0 && (*y - t).abs() <= super::model::INTEGRAL * t.max(1.0) {
                 *y = y.max(t);
@@ -568,17 +640,39 @@ impl<'a, R: Relaxation> Search<'a, R> {
         for (column, &y) in y.iter().enumerate() {
             let t = self.mip.threshold[column];
             if self.mip.integer[column] {
-                self.relaxation.set_bounds(Change { column, lower: y, upper: y });
+                self.relaxation.set_bounds(Change {
+                    column,
+                    lower: y,
+                    upper: y,
+                });
             } else if t > 0.0 && y == 0.0 {
-                self.relaxation.set_bounds(Change { column, lower: 0.0, upper: 0.0 });
+                self.relaxation.set_bounds(Change {
+                    column,
+                    lower: 0.0,
+                    upper: 0.0,
+                });
             } else if t > 0.0 {
                 let (lower, upper) = (self.lower[column].max(t), self.upper[column]);
-                self.relaxation.set_bounds(Change { column, lower, upper });
+                self.relaxation.set_bounds(Change {
+                    column,
+                    lower,
+                    upper,
+                });
             }
         }
-        for column in self.mip.sets.iter().flat_map(|s| &s.columns).map(|&j| j as usize) {
+        for column in self
+            .mip
+            .sets
+            .iter()
+            .flat_map(|s| &s.columns)
+            .map(|&j| j as usize)
+        {
             if y[column] == 0.0 {
-                self.relaxation.set_bounds(Change { column, lower: 0.0, upper: 0.0 });
+                self.relaxation.set_bounds(Change {
+                    column,
+                    lower: 0.0,
+                    upper: 0.0,
+                });
             }
         }
         let solved = self.relaxation.solve(f64::INFINITY, control);
@@ -597,7 +691,10 @@ impl<'a, R: Relaxation> Search<'a, R> {
     }
 
     pub(super) fn take(&mut self, value: f64, x: Vec<f64>, control: &mut Control) {
-        let asked = self.aim.cutoff.map_or(f64::INFINITY, |c| self.units.inner(c));
+        let asked = self
+            .aim
+            .cutoff
+            .map_or(f64::INFINITY, |c| self.units.inner(c));
         if value <= asked && self.best.as_ref().is_none_or(|b| value < b.0) {
             self.best = Some((value, x));
             self.next_log = 0.0;
@@ -612,7 +709,13 @@ impl<'a, R: Relaxation> Search<'a, R> {
             return;
         }
         self.next_log = seconds + 2.0;
-        let shown = |v: f64| if v.is_finite() { format!("{:.10}", self.units.shown(v)) } else { "-".into() };
+        let shown = |v: f64| {
+            if v.is_finite() {
+                format!("{:.10}", self.units.shown(v))
+            } else {
+                "-".into()
+            }
+        };
         let gap = match &self.best {
             Some((v, _)) => {
                 let (v, b) = (self.units.shown(*v), self.units.shown(self.bound));

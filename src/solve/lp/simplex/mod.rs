@@ -499,7 +499,11 @@ impl Simplex {
         let slot = self.slot[variable];
         match slot {
             NONBASIC => None,
-            _ => self.factor.as_mut()?.backward(&[(slot as usize, 1.0)]).cloned(),
+            _ => self
+                .factor
+                .as_mut()?
+                .backward(&[(slot as usize, 1.0)])
+                .cloned(),
         }
     }
 

@@ -1,0 +1,209 @@
+//! The search of a linear program: presolve, scaling, cuts at the root, tree.
+
+use super::cuts::Separator;
+use super::linear::Linear;
+use super::model::{Change, Mip, Units};
+use super::presolve;
+use super::relaxation::{Control, Muted, Relaxation, Solved};
+use super::tree::{Aim, End, Record, Search};
+use crate::solve::lp::Limits;
+
+/// What a search gave, in columns of the instance, for a minimisation.
+pub struct Found {
+    /// The best point.
+    pub x: Option<Vec<f64>>,
+    /// No solution is better.
+    pub bound: f64,
+    /// Its value.
+    pub value: f64,
+    /// Nodes solved.
+    pub nodes: u64,
+    /// Why the search ended.
+    pub end: End,
+    /// A part of the tree was given up.
+    pub incomplete: bool,
+    /// Values of relaxations are bounds.
+    pub exact: bool,
+    /// What became of the nodes.
+    pub records: Vec<Record>,
+}
+
+impl Found {
+    /// Of a program without a solution, seen before any search.
+    pub fn empty() -> Self {
+        Self {
+            x: None,
+            bound: f64::INFINITY,
+            value: f64::INFINITY,
+            nodes: 0,
+            end: End::Complete,
+            incomplete: false,
+            exact: true,
+            records: Vec::new(),
+        }
+    }
+}
+
+/// The best solution of a linear program with discrete columns; `start` may be one.
+pub fn search_linear(mip: &Mip, aim: Aim, start: Option<Vec<f64>>, control: &mut Control) -> Found {
+    let Some(reduced) = presolve::reduce(mip, &[]) else {
+        return Found::empty();
+    };
+    let line = format!(
+        "presolve: {} rows, {} columns, {} of them integer",
+        reduced.mip.problem.m(),
+        reduced.mip.problem.n(),
+        reduced.mip.integer.iter().filter(|i| **i).count()
+    );
+    control.limits.log(control.monitor, &line);
+    let (scaled, scaling) = reduced.mip.scaled();
+    let units = Units {
+        price: scaling.price,
+        offset: reduced.mip.problem.offset,
+    };
+    let mut linear = Linear::new(&scaled);
+    let solved = strengthen(&scaled, &mut linear, 30, control);
+    let near = |mip: &Mip, fixed: &[Change], cutoff: f64, control: &mut Control| {
+        nearby(mip, fixed, cutoff, control)
+    };
+    let mut search = Search::new(&scaled, linear, aim, units);
+    search.neighbourhood = Some(&near);
+    if solved == Solved::Infeasible {
+        return Found::empty();
+    }
+    if let Some(x) = start {
+        let mut y = reduced.reduce(&x);
+        y.iter_mut().zip(&scaling.column).for_each(|(x, c)| *x /= c);
+        search.offer(&y, control);
+    }
+    let mut end = search.run(control);
+    if end == End::Unbounded && search.best.is_none() {
+        // Unbounded, if there is a solution at all.
+        let mut anything = mip.clone();
+        anything.problem.cost.fill(0.0);
+        let some = search_linear(&anything, Aim::default(), None, control);
+        return Found {
+            end: if some.end == End::Complete && some.x.is_none() {
+                End::Complete
+            } else {
+                End::Unbounded
+            },
+            bound: f64::NEG_INFINITY,
+            value: some
+                .x
+                .as_ref()
+                .map_or(f64::INFINITY, |x| mip.value(x) + mip.problem.offset),
+            ..some
+        };
+    }
+    if end == End::Gap && search.best.is_none() {
+        end = End::Complete;
+    }
+    let restore = |x: &Vec<f64>| {
+        let x: Vec<f64> = x.iter().zip(&scaling.column).map(|(x, c)| x * c).collect();
+        reduced.restore(&x)
+    };
+    let mut records = std::mem::take(&mut search.records);
+    for r in &mut records {
+        r.value = units.shown(r.value);
+        if let Some(c) = &mut r.change {
+            let factor = scaling.column[c.column];
+            *c = Change {
+                column: reduced.columns[c.column] as usize,
+                lower: c.lower * factor,
+                upper: c.upper * factor,
+            };
+        }
+    }
+    Found {
+        value: search
+            .best
+            .as_ref()
+            .map_or(f64::INFINITY, |b| units.shown(b.0)),
+        x: search.best.as_ref().map(|b| restore(&b.1)),
+        bound: units.shown(search.bound),
+        nodes: search.nodes,
+        incomplete: search.incomplete,
+        exact: true,
+        end,
+        records,
+    }
+}
+
+/// Adds cuts to the root's relaxation while they help.
+fn strengthen(mip: &Mip, linear: &mut Linear, rounds: usize, control: &mut Control) -> Solved {
+    let first = mip.problem.m();
+    let mut solved = linear.solve(f64::INFINITY, control);
+    let Solved::Value(start) = solved else {
+        return solved;
+    };
+    let (mut value, mut idle) = (start, 0);
+    let separator = Separator::new(mip, &mip.problem.lower, &mip.problem.upper);
+    for _ in 0..rounds {
+        let x = linear.x().to_vec();
+        if mip.is_discrete(&x) || control.stop(control.iterations).is_some() || idle >= 3 {
+            break;
+        }
+        let cuts = separator.separate(linear);
+        if cuts.is_empty() {
+            break;
+        }
+        linear.add(&cuts);
+        solved = linear.solve(f64::INFINITY, control);
+        let Solved::Value(v) = solved else {
+            break;
+        };
+        idle = match v - value > 1e-3 * (v - start).max(1e-9 * v.abs()) + 1e-9 {
+            true => 0,
+            false => idle + 1,
+        };
+        value = v;
+        linear.drop_idle(first);
+    }
+    let rows = linear.problem.m() - first;
+    let line = format!("cuts: {rows}, bound {start:.10} to {value:.10} (scaled)");
+    control.limits.log(control.monitor, &line);
+    solved
+}
+
+/// A search of a few nodes where some columns are fixed.
+fn nearby(mip: &Mip, fixed: &[Change], cutoff: f64, control: &mut Control) -> Option<Vec<f64>> {
+    let reduced = presolve::reduce(mip, fixed)?;
+    let units = Units {
+        price: 1.0,
+        offset: reduced.mip.problem.offset - mip.problem.offset,
+    };
+    let aim = Aim {
+        nodes: 100,
+        cutoff: cutoff.is_finite().then_some(cutoff),
+        relative_gap: 1e-3,
+        ..Aim::default()
+    };
+    let mut sub = Control {
+        limits: Limits {
+            iterations: control
+                .limits
+                .iterations
+                .min(control.iterations + 1000 + control.iterations / 5),
+            ..control.limits
+        },
+        iterations: control.iterations,
+        monitor: &mut *control.monitor,
+    };
+    let mut linear = Linear::new(&reduced.mip);
+    let mut quiet = Control {
+        monitor: &mut Muted(sub.monitor),
+        limits: sub.limits,
+        iterations: sub.iterations,
+    };
+    let solved = strengthen(&reduced.mip, &mut linear, 5, &mut quiet);
+    let mut best = None;
+    if solved != Solved::Infeasible {
+        let mut search = Search::new(&reduced.mip, linear, aim, units);
+        search.run(&mut quiet);
+        best = search.best.take();
+    }
+    sub.iterations = quiet.iterations;
+    control.iterations = sub.iterations;
+    best.map(|b| reduced.restore(&b.1))
+}
