@@ -53,6 +53,7 @@ impl Builder {
             nonlinear: self.nonlinear,
             objective: None,
             matched: None,
+            discrete: Default::default(),
         }
     }
 }

@@ -214,7 +214,6 @@ pub const CODES: &[Code] = &[
     row("E0418", Warning, "too many variables", "free variables stand in fewer rows than there are variables"),
     row("E0422", Execution, "model cannot be solved", "rows and columns do not match, or functions have no value at the start"),
     row("E0424", Execution, "scenarios", "the dictionary of the scenarios cannot be used"),
-    row("E0425", Execution, "discrete variables", "bounds leave them undecided; there is no solver for them"),
     row("E0426", Warning, "option file", "an option file, or a line of it, is not used"),
 
     row("E0470", Execution, "file not written", "the folder or the disk does not allow it"),

@@ -49,12 +49,16 @@ pub fn solve(s: &SolveReport, color: bool) -> String {
     }
     if let Some(search) = &s.search {
         let Number(bound) = search.bound;
-        let _ = write!(out, "    bound {}", digits(bound));
-        if let Some(Number(gap)) = search.gap {
-            let _ = write!(out, ", gap {} %", digits((gap * 1e5).round() / 1e3));
+        let mut parts = Vec::new();
+        if bound.is_finite() {
+            parts.push(format!("bound {}", digits(bound)));
+        }
+        if let Some(Number(gap)) = search.gap.filter(|g| g.0.is_finite()) {
+            parts.push(format!("gap {} %", digits((gap * 1e5).round() / 1e3)));
         }
         let plural = if search.nodes == 1 { "" } else { "s" };
-        let _ = writeln!(out, ", {} node{plural}", grouped(search.nodes as usize));
+        parts.push(format!("{} node{plural}", grouped(search.nodes as usize)));
+        let _ = writeln!(out, "    {}", parts.join(", "));
     }
     if s.solver_status.code != 1 {
         let _ = writeln!(

@@ -92,11 +92,26 @@ pub fn answer(
         (false, End::Unbounded) => S::UnboundedNoSolution,
         _ => S::NoSolution,
     };
+    let infeasible = answer.status == S::IntegerInfeasible;
     let outcome = &mut answer.outcome;
     outcome.iterations = iterations;
     outcome.solver = NAME;
     outcome.basis = None;
-    outcome.message = None;
+    outcome.message = match () {
+        () if infeasible && !found.exact => {
+            Some("not convex: the nonlinear solver found no point, which proves nothing".into())
+        }
+        () if infeasible && found.nodes == 0 => {
+            Some("the bounds and rows contradict each other before any search".into())
+        }
+        () if found.incomplete => {
+            Some("parts of the tree were given up: the numbers broke down there".into())
+        }
+        () if complete && !found.exact && found.end == End::Complete => {
+            Some("not shown to be convex: a better solution is possible".into())
+        }
+        () => None,
+    };
     outcome.status = match found.end {
         End::Complete if found.incomplete => SolverStatus::TerminatedBySolver,
         End::Complete | End::Gap | End::Unbounded => SolverStatus::NormalCompletion,
@@ -105,7 +120,10 @@ pub fn answer(
         End::Stopped(Ended::Interrupted) => SolverStatus::UserInterrupt,
         _ => SolverStatus::TerminatedBySolver,
     };
-    let shown = instance.sign() * bound;
+    let shown = match (answer.status, instance.objective) {
+        (S::Optimal, Some(o)) => answer.outcome.level[o.column as usize],
+        _ => instance.sign() * bound,
+    };
     answer.search = Some(Report {
         bound: shown,
         nodes: found.nodes,

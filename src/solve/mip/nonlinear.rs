@@ -20,6 +20,8 @@ pub struct Nonlinear {
     point: Rc<Vec<f64>>,
     /// Every value so far was a global one.
     pub convex: bool,
+    /// The root is solved: what is infeasible below it is not tried from elsewhere.
+    rooted: bool,
 }
 
 impl Nonlinear {
@@ -29,13 +31,19 @@ impl Nonlinear {
         relaxed.columns.kind.fill(ColumnKind::Continuous);
         relaxed.discrete = Default::default();
         let level = &instance.columns.level;
+        let mut settings = settings.clone();
+        settings
+            .options
+            .insert(0, ("nlp_attempts".into(), "few".into()));
         Self {
             instance: relaxed,
-            choice: choice.map(str::to_string),
-            settings: settings.clone(),
+            // of a convex quadratic program it says that its answer is a global one
+            choice: Some(choice.unwrap_or("clarabel").to_string()),
+            settings,
             first: level.clone(),
             point: Rc::new(level.clone()),
             convex: true,
+            rooted: false,
         }
     }
 
@@ -89,11 +97,13 @@ impl Relaxation for Nonlinear {
                         o.sense.sign() * answer.outcome.level[o.column as usize]
                     });
                     self.point = Rc::new(answer.outcome.level);
+                    self.rooted = true;
                     return Solved::Value(value);
                 }
                 S::Infeasible | S::InfeasibleNoSolution => return Solved::Infeasible,
                 S::Unbounded | S::UnboundedNoSolution => return Solved::Unbounded,
                 // from elsewhere it may be feasible
+                S::LocallyInfeasible if self.rooted => return Solved::Infeasible,
                 S::LocallyInfeasible => solved = Solved::Infeasible,
                 _ => {}
             }

@@ -225,7 +225,9 @@ impl<'a, R: Relaxation> Search<'a, R> {
         let cheat = self.aim.cheat / self.units.price;
         let better = match self.step > 0.0 && self.relaxation.is_exact() {
             true => self.step * (1.0 - 1e-6),
-            false => 1e-9 * v.abs().max(1e-3),
+            false if self.relaxation.is_linear() => 1e-9 * v.abs().max(1e-3),
+            // what a nonlinear solver leaves of digits
+            false => 1e-7 * v.abs().max(0.1),
         };
         (v - better.max(cheat)).min(asked)
     }
@@ -278,7 +280,12 @@ impl<'a, R: Relaxation> Search<'a, R> {
         };
         let (v, b) = (self.units.shown(*v), self.units.shown(self.bound));
         let gap = v - b;
-        gap <= self.aim.absolute_gap || gap <= self.aim.relative_gap * v.abs().max(1e-10)
+        let least = if self.relaxation.is_linear() {
+            1e-9
+        } else {
+            1e-8
+        };
+        gap <= self.aim.absolute_gap.max(least) || gap <= self.aim.relative_gap * v.abs().max(1e-10)
     }
 
     fn note(&mut self, parent: Option<u32>, change: Option<Change>, value: f64) -> u32 {
