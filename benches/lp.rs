@@ -123,6 +123,7 @@ fn read_mps(text: &str) -> Instance {
             sense: Sense::Minimize,
         }),
         matched: None,
+        discrete: Default::default(),
     }
 }
 

@@ -337,6 +337,7 @@ fn instance_of(columns: usize, rows: usize, nonlinear: Vec<KernelTerms>) -> Inst
         nonlinear,
         objective: None,
         matched: None,
+        discrete: Default::default(),
     }
 }
 

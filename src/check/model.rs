@@ -486,7 +486,10 @@ impl Compiler {
             .label("discrete")
             .other(declared, "declared here")
             .other(solve, "solved here")
-            .help(format!("`solve … using {relaxed}` solves the relaxation")),
+            .help(format!(
+                "`solve … using {}` decides it; `using {relaxed}` solves the relaxation",
+                &relaxed[1..]
+            )),
         )
     }
 

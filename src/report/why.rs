@@ -79,6 +79,27 @@ impl Explanation {
                 excess,
                 shown,
             } => self.irreducible(members, *excess, *shown, instance, names),
+            Finding::Discrete(found) => {
+                let mut text = String::from(match found.shown {
+                    true => {
+                        "These rows contradict each other, with all bounds, because of the discrete variables named; \
+                             without any one of them there is a solution:"
+                    }
+                    false => {
+                        "These rows contradict each other, with all bounds, because of the discrete variables named; \
+                              it was not shown that all of them are needed:"
+                    }
+                });
+                for &i in &found.rows {
+                    let name = self.row(i, names);
+                    text.push_str(&format!("\n    row {name} {}", relation(instance, i)));
+                }
+                for &j in &found.columns {
+                    let name = self.column(j, names);
+                    text.push_str(&format!("\n    {name} is discrete"));
+                }
+                text
+            }
             Finding::Ray(parts) => {
                 let mut text = String::from(
                     "The objective improves without end: from any feasible point one may go on and \

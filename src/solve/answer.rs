@@ -110,6 +110,10 @@ pub fn certify(
     let why = match answer.status {
         ModelStatus::Infeasible | ModelStatus::InfeasibleNoSolution => "the model is infeasible",
         ModelStatus::Unbounded | ModelStatus::UnboundedNoSolution => "the model is unbounded",
+        ModelStatus::IntegerInfeasible | ModelStatus::NoSolution => "there is no solution",
+        _ if answer.search.is_some() => {
+            return super::mip::certified(instance, &answer.outcome, settings, monitor);
+        }
         _ => return lp::certify::certify(instance, &answer.outcome, settings, monitor),
     };
     let nothing = Unproved {

@@ -7,6 +7,8 @@
 //! It is made for teaching and for small and middling models.
 
 mod branching;
+mod certify;
+pub mod conflict;
 pub mod cuts;
 mod driver;
 mod heuristics;
@@ -236,6 +238,21 @@ pub fn fixed(instance: &Instance, x: &[f64]) -> Instance {
     }
     out.discrete = Default::default();
     out
+}
+
+/// A proved interval for the best value of a linear program with discrete columns, near its answer.
+pub fn certified(
+    instance: &Instance,
+    outcome: &Outcome,
+    settings: &Settings,
+    monitor: &mut dyn Monitor,
+) -> Result<lp::certify::Proof, SolveError> {
+    let solution = fixed(instance, &outcome.level);
+    let proof = lp::certify::certify(&solution, outcome, settings, monitor)?;
+    let value = instance
+        .objective
+        .map_or(0.0, |o| outcome.level[o.column as usize]);
+    certify::certify(instance, proof, value, settings, monitor)
 }
 
 /// The answer at a solution of the search.

@@ -17,7 +17,7 @@
 //! Marginals are those of the final branch: the derivative of the optimal value as long as the pairs
 //! stay on their pieces.
 
-mod bound;
+pub(in crate::solve) mod bound;
 pub mod pairs;
 pub mod pieces;
 pub mod relaxation;

@@ -26,6 +26,8 @@ pub enum Finding {
         /// Whether that none can be spared was shown.
         shown: bool,
     },
+    /// Rows that contradict each other because these columns must be discrete.
+    Discrete(crate::solve::mip::conflict::Conflict),
     /// A direction of columns along which the objective improves without end.
     Ray(Vec<(usize, f64)>),
     /// The rows and columns with the largest violations: index, violation, level asked for.
@@ -112,6 +114,12 @@ pub fn findings(
                 settings,
                 monitor,
             ));
+        }
+        ModelStatus::IntegerInfeasible if linear => {
+            // The relaxation may be infeasible already.
+            let relaxed = irreducible(instance, &[], settings, monitor);
+            let discrete = || crate::solve::mip::conflict::conflict(instance, settings, monitor);
+            out.extend(relaxed.or_else(|| discrete().map(Finding::Discrete)));
         }
         ModelStatus::Unbounded | ModelStatus::UnboundedNoSolution => {
             out.extend(point::ray(instance, &answer.outcome.ray));

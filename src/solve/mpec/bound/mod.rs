@@ -204,7 +204,7 @@ const NOISE: f64 = 1e-9;
 
 /// What can be proved about a node: by its multipliers, by those that are not small, or else in rational arithmetic
 /// if it is small.
-fn prove_node(p: &Problem, y: &[f64], empty: bool) -> f64 {
+pub(in crate::solve) fn prove_node(p: &Problem, y: &[f64], empty: bool) -> f64 {
     let none = f64::NEG_INFINITY;
     let by = |y: &[f64]| match empty {
         true if weak::is_empty(p, y) => f64::INFINITY,
