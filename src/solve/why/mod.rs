@@ -118,7 +118,8 @@ pub fn findings(
         ModelStatus::IntegerInfeasible if linear => {
             // The relaxation may be infeasible already.
             let relaxed = irreducible(instance, &[], settings, monitor);
-            let mut discrete = || crate::solve::mip::conflict::conflict(instance, settings, monitor);
+            let mut discrete =
+                || crate::solve::mip::conflict::conflict(instance, settings, monitor);
             out.extend(relaxed.or_else(|| discrete().map(Finding::Discrete)));
         }
         ModelStatus::Unbounded | ModelStatus::UnboundedNoSolution => {
