@@ -100,7 +100,11 @@ fn told(case: &Case) -> (String, bool) {
     };
     let right = match list.as_slice() {
         [d] => {
-            let fix = d.help.is_some() || d.label.contains("write") || d.label.contains("missing");
+            // "expected a name" is what the grammar says where nothing better is known.
+            let guess = d.help.as_ref().is_some_and(|h| h.starts_with("expected"));
+            let fix = d.help.is_some() && !guess
+                || d.label.contains("write")
+                || d.label.contains("missing");
             finished.map.place(d.span).is_some() && fix
         }
         _ => false,

@@ -223,9 +223,9 @@ impl Compiler {
                         "E0325",
                         t.span,
                         format!(
-                            "`{}` is a {} and cannot be assigned",
+                            "`{}` is {} and cannot be assigned",
                             symbol.name,
-                            symbol.kind_name()
+                            symbol.a_kind()
                         ),
                     )
                     .label("not assignable")

@@ -385,7 +385,7 @@ impl Compiler {
                             true => "decimals stand behind a point: `1.5`".to_owned(),
                             false if dim == 0 => "write `/ 5 /`".to_owned(),
                             false => format!(
-                                "write each label and its number: `/ {} 1, … /`",
+                                "write each label and its number, with no comma between them: `/ {} 1, … /`",
                                 vec!["a"; dim].join(".")
                             ),
                         }),
@@ -394,6 +394,14 @@ impl Compiler {
                 }
             };
             let (span, key) = (record.span, record.key);
+            if dim == 0 && !key.is_empty() {
+                let message = format!("the scalar `{}` gets one number", symbol.name);
+                self.report(
+                    Diagnostic::error("E0345", span, message)
+                        .help("write `/ 5 /`; no blank parts thousands"),
+                );
+                continue;
+            }
             if self.expand(s, key, span, defines, &mut keys).is_err() {
                 if self.errors() >= super::MAX_ERRORS {
                     break;

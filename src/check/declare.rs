@@ -102,11 +102,7 @@ impl Compiler {
                     Diagnostic::error(
                         "E0333",
                         d.name.span,
-                        format!(
-                            "`{}` is declared already, as a {}",
-                            d.name.name,
-                            old.kind_name()
-                        ),
+                        format!("`{}` is declared already, as {}", d.name.name, old.a_kind()),
                     )
                     .label("declared again")
                     .other(old.declared, "first declared here")
@@ -217,6 +213,29 @@ impl Compiler {
 
     pub(super) fn declare_sets(&mut self, list: &[SetDecl], map: &SourceMap) -> Result<(), Failed> {
         for set in list {
+            if let (Some(over), None) = (&set.symbol.domain, set.symbol.data)
+                && over.len() > 1
+                && over.iter().all(|n| {
+                    &*n.name.name != "*"
+                        && self.symbols.find(&n.name.name).is_none()
+                        && !self.is_lost(&n.name.name)
+                })
+            {
+                let names: Vec<&str> = over.iter().map(|n| &*n.name.name).collect();
+                let (name, at) = (
+                    &set.symbol.name.name,
+                    over[0].name.span.to(over[over.len() - 1].name.span),
+                );
+                let d = Diagnostic::error("E0302", at, "none of these is a set")
+                    .label("in parentheses stand the sets that it runs over")
+                    .help(format!(
+                        "elements stand between slashes: `set {name} / {} /;`",
+                        names.join(", ")
+                    ));
+                self.report(d);
+                self.lose_declaration(name);
+                continue;
+            }
             let mut d = set.symbol.clone();
             let new = self.symbols.find(&d.name.name).is_none();
             let explicit = d.domain.is_some();
@@ -495,9 +514,9 @@ impl Compiler {
                         "E0338",
                         n.span,
                         format!(
-                            "`{}` is a {}; a model is made of equations",
+                            "`{}` is {}; a model is made of equations",
                             n.name,
-                            symbol.kind_name()
+                            symbol.a_kind()
                         ),
                     )
                     .label("not an equation")
@@ -523,9 +542,9 @@ impl Compiler {
                             "E0338",
                             column.span,
                             format!(
-                                "`{}` is a {}; an equation is paired with a variable",
+                                "`{}` is {}; an equation is paired with a variable",
                                 column.name,
-                                symbol.kind_name()
+                                symbol.a_kind()
                             ),
                         )
                         .label("not a variable")

@@ -38,13 +38,21 @@ impl Compiler {
             .label("unknown symbol");
         let d = match near {
             Some(n) => d.help(format!("did you mean `{n}`?")),
+            None if self.store.universe.get(&id.name).is_some() => d.help(format!(
+                "`{0}` is a label of a set, not a set: quote it, `'{0}'`, or name the set",
+                id.name
+            )),
             None => d.help(DECLARE_FIRST),
         };
         self.unknown(id, d)
     }
 
     /// The equation that a definition is for.
-    pub(super) fn lookup_equation(&mut self, id: &Ident) -> Result<SymbolId, Failed> {
+    pub(super) fn lookup_equation(
+        &mut self,
+        id: &Ident,
+        indices: &[Expr],
+    ) -> Result<SymbolId, Failed> {
         if self.named(id).is_some() {
             return self.lookup(id);
         }
@@ -63,8 +71,9 @@ impl Compiler {
         let d = match &near {
             Some(n) => d.help(format!("did you mean `{n}`?")),
             None => d.help(format!(
-                "declare it before: `equation {};`, with its indices if it has any",
-                id.name
+                "declare it before: `equation {}{};`",
+                id.name,
+                named_indices(indices)
             )),
         };
         near.iter().for_each(|n| self.lose(n));
@@ -89,14 +98,11 @@ impl Compiler {
         if self.symbols.get(s).is_set() {
             return Ok(s);
         }
-        let (kind, declared) = (
-            self.symbols.get(s).kind_name(),
-            self.symbols.get(s).declared,
-        );
+        let (kind, declared) = (self.symbols.get(s).a_kind(), self.symbols.get(s).declared);
         self.fail(
-            Diagnostic::error("E0302", id.span, format!("`{}` is a {kind}; a set is expected here", id.name))
+            Diagnostic::error("E0302", id.span, format!("`{}` is {kind}; a set is expected here", id.name))
                 .label("not a set")
-                .other(declared, format!("declared as a {kind} here"))
+                .other(declared, format!("declared as {kind} here"))
                 .help("an index position takes a set that is under control, a quoted label, or a lag such as `t-1`"),
         )
     }
@@ -382,10 +388,14 @@ impl Compiler {
                             attr.span,
                             format!("a parameter has no attribute `.{}`", attr.name),
                         )
+                        .help(format!(
+                            "a parameter is its values: write `{}`",
+                            symbol.name
+                        ))
                         .label("not there")
                         .other(
                             symbol.declared,
-                            format!("`{}` is a {}", symbol.name, symbol.kind_name()),
+                            format!("`{}` is {}", symbol.name, symbol.a_kind()),
                         ),
                     );
                 }
@@ -419,9 +429,9 @@ impl Compiler {
                             "E0310",
                             name.span,
                             format!(
-                                "`{}` is a {}; outside equations it needs an attribute",
+                                "`{}` is {}; outside equations it needs an attribute",
                                 symbol.name,
-                                symbol.kind_name()
+                                symbol.a_kind()
                             ),
                         )
                         .label("which of its numbers?")
@@ -439,7 +449,7 @@ impl Compiler {
                         Diagnostic::error(
                             "E0315",
                             name.span,
-                            format!("a {} is not a number", symbol.kind_name()),
+                            format!("{} is not a number", symbol.a_kind()),
                         )
                         .label("an attribute is expected")
                         .other(symbol.declared, "declared here")
@@ -816,6 +826,22 @@ impl Compiler {
             None => d.help(DECLARE_FIRST),
         };
         self.unknown(name, d)
+    }
+}
+
+/// `(i,j)`, if that is what stands there.
+fn named_indices(indices: &[Expr]) -> String {
+    let name = |e: &Expr| match &e.kind {
+        ExprKind::Apply {
+            name,
+            attribute: None,
+            arguments: None,
+        } => Some(name.name.to_string()),
+        _ => None,
+    };
+    match indices.iter().map(name).collect::<Option<Vec<_>>>() {
+        Some(names) if !names.is_empty() => format!("({})", names.join(",")),
+        _ => String::new(),
     }
 }
 

@@ -194,6 +194,15 @@ impl Compiler {
                     "the indices `{}` and `{last}` are not bound here",
                     others.join("`, `")
                 );
+                let list = self.lost.unbound.join(",");
+                first.help = Some(match self.in_equation {
+                    true => format!(
+                        "sum over them, `sum(({list}), …)`, or add them to the equation's domain, `e({list})..`"
+                    ),
+                    false => format!(
+                        "sum over them, `sum(({list}), …)`, or write them on the left, `p({list}) = …`"
+                    ),
+                });
                 also(first, name.span, "nor is this");
             }
             Some(_) => {}

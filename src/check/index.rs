@@ -431,6 +431,9 @@ impl Compiler {
         let (name, set_name) = (&symbol.name, &set.name);
         let help = match nearest(text, known) {
             Some(n) => format!("did you mean `{quote}{n}{quote}`?"),
+            None if quote.is_empty() => format!(
+                "add `{text}` to `{set_name}`, or correct the label; a label with a blank stands in quotes"
+            ),
             None => format!("add `{quote}{text}{quote}` to `{set_name}`, or correct the label"),
         };
         let d = Diagnostic::error(

@@ -17,7 +17,7 @@ impl Compiler {
                 Diagnostic::error(
                     "E0350",
                     s.model.span,
-                    format!("`{}` is a {}, not a model", symbol.name, symbol.kind_name()),
+                    format!("`{}` is {}, not a model", symbol.name, symbol.a_kind()),
                 )
                 .label("a model is expected")
                 .other(symbol.declared, "declared here")
@@ -287,7 +287,7 @@ impl Compiler {
         let symbol = self.symbols.get(v).clone();
         let SymbolKind::Variable(kind) = symbol.kind else {
             return self.fail(
-                Diagnostic::error("E0357", name.span, format!("the objective must be a variable; `{}` is a {}", symbol.name, symbol.kind_name()))
+                Diagnostic::error("E0357", name.span, format!("the objective must be a variable; `{}` is {}", symbol.name, symbol.a_kind()))
                     .label("not a variable")
                     .other(symbol.declared, "declared here")
                     .help("declare a free variable and an equation that defines it: `variable z; equation cost; cost.. z =e= …;`"),
@@ -398,9 +398,14 @@ impl Compiler {
                         n.span,
                         what,
                         "E0361",
-                        format!(
+                        match &n.kind {
+                            NodeKind::Call(f, _) if is_nonsmooth(*f) => format!(
+                                "solve it `using dnlp`, or write it with inequalities: `y =g= x; y =g= -x` for `y = abs(x)`"
+                            ),
+                            _ => format!(
                             "solve it `using nlp`, or reformulate the equation `{name}`; a level (`x.l`) is data and may be multiplied"
                         ),
+                        },
                     ));
                 } else if smooth_only {
                     match &n.kind {

@@ -307,9 +307,9 @@ impl Compiler {
                     "E0331",
                     item.name.span,
                     format!(
-                        "`{}` is a {}: only sets and parameters are projected to",
+                        "`{}` is {}: only sets and parameters are projected to",
                         item.name.name,
-                        target.kind_name()
+                        target.a_kind()
                     ),
                 )
                 .other(target.declared, "declared here"),

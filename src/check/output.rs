@@ -52,18 +52,19 @@ impl Compiler {
                             }
                         }
                         (SymbolKind::Variable(_) | SymbolKind::Equation(_), None) => {
-                            bare.push((r.name.clone(), symbol.kind_name()));
+                            bare.push((r.name.clone(), symbol.a_kind()));
                             continue;
                         }
                         (SymbolKind::Model(_) | SymbolKind::File(_), Some(a)) => {
                             Some(self.object_attribute(s, a)?)
                         }
                         (_, Some(a)) => {
-                            return self.unknown_attribute(
-                                a,
-                                &symbol.name,
-                                symbol.kind_name(),
-                                "none",
+                            let message =
+                                format!("{} has no attribute `.{}`", symbol.a_kind(), a.name);
+                            return self.fail(
+                                Diagnostic::error("E0314", a.span, message)
+                                    .label("not an attribute")
+                                    .help(format!("write `display {};`", symbol.name)),
                             );
                         }
                         (_, None) => None,
@@ -78,7 +79,7 @@ impl Compiler {
         if let Some((first, kind)) = bare.first() {
             let levels: Vec<String> = bare.iter().map(|(n, _)| format!("{}.l", n.name)).collect();
             let message = match bare.len() {
-                1 => format!("`{}` is a {kind}; say which number to display", first.name),
+                1 => format!("`{}` is {kind}; say which number to display", first.name),
                 _ => format!(
                     "variables and equations are displayed with an attribute: {} have none",
                     listed(&bare)

@@ -101,10 +101,10 @@ impl Compiler {
                     || symbol.dim() != 0
                     || variable.attribute.is_some()
                 {
-                    let (declared, kind) = (symbol.declared, symbol.kind_name());
+                    let (declared, kind) = (symbol.declared, symbol.a_kind());
                     return self.fail(
                         Diagnostic::error("E0321", variable.span, "`for` counts with a scalar")
-                            .label(format!("this is a {kind}"))
+                            .label(format!("this is {kind}"))
                             .other(declared, "declared here")
                             .help("declare `scalar k;`, or run over a set with `loop(i, …)`"),
                     );
@@ -255,7 +255,7 @@ impl Compiler {
     }
 
     fn equate(&mut self, e: &Equate, span: Span) -> Result<(), Failed> {
-        let s = self.lookup_equation(&e.name)?;
+        let s = self.lookup_equation(&e.name, &e.indices)?;
         self.shape(s, &e.indices);
         let symbol = self.symbols.get(s).clone();
         let SymbolKind::Equation(defined) = symbol.kind else {
@@ -263,11 +263,7 @@ impl Compiler {
                 Diagnostic::error(
                     "E0326",
                     e.name.span,
-                    format!(
-                        "`{}` is a {}, not an equation",
-                        symbol.name,
-                        symbol.kind_name()
-                    ),
+                    format!("`{}` is {}, not an equation", symbol.name, symbol.a_kind()),
                 )
                 .label("an equation is expected before `..`")
                 .other(symbol.declared, "declared here")

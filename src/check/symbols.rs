@@ -126,6 +126,22 @@ impl Symbol {
         }
     }
 
+    /// The same with its article.
+    pub fn a_kind(&self) -> &'static str {
+        match self.kind {
+            SymbolKind::Set { .. } => "a set",
+            SymbolKind::Alias(_) => "an alias",
+            SymbolKind::Parameter { scalar: true } => "a scalar",
+            SymbolKind::Parameter { scalar: false } => "a parameter",
+            SymbolKind::Variable(_) => "a variable",
+            SymbolKind::Equation(_) => "an equation",
+            SymbolKind::Model(_) => "a model",
+            SymbolKind::File(_) => "a file",
+            SymbolKind::Acronym(_) => "an acronym",
+            SymbolKind::Figure(_) => "a figure",
+        }
+    }
+
     /// Whether it has levels, marginals and bounds.
     pub fn has_attributes(&self) -> bool {
         matches!(self.kind, SymbolKind::Variable(_) | SymbolKind::Equation(_))

@@ -95,6 +95,7 @@ pub const CODES: &[Code] = &[
     row("E0233", Error, "`end` of a block", "blocks end with `);`"),
     row("E0234", Warning, "bound read as a text", "`variable x >= 0` declares a text, not a bound"),
     row("E0235", Error, "sum of another language", "`sum(i, term)`, `sum((i,j), term)`"),
+    row("E0236", Error, "head of a block", "`loop(i, … );`, `for(k = 1 to 5, … );`, `if(c, … );`, `while(c, … );`"),
 
     row("E0241", Error, "open group of labels", "`)` is missing"),
     row("E0242", Error, "open quote in data", "a quote is not closed on its line"),

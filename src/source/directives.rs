@@ -470,7 +470,7 @@ impl Preprocessor<'_> {
                 }
                 let near = nearest(word, all.iter().map(String::as_str));
                 let help = near.map_or(
-                    "directives begin with `$` in the first column".into(),
+                    "take the line out; docs/language.md lists the directives".into(),
                     |n| format!("did you mean `${n}`?"),
                 );
                 return refuse(

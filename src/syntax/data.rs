@@ -801,6 +801,11 @@ impl<'a> DataReader<'a> {
         let d = Diagnostic::error("E0243", self.span(at, at + len), message);
         Box::new(match found {
             Some(';') => d.help("is the closing `/` of these data missing?"),
+            Some('.') => d.help("a range of labels is written `1*5`; a number begins with a digit or with `.` and a digit"),
+            Some('%') => d.help("write 15 percent as `0.15`"),
+            Some('$' | '€' | '£') => d.help("numbers stand without a unit"),
+            Some('|') => d.help("blanks stand between the columns of a table, and no lines"),
+            Some('-') => d.help("blanks stand between the columns of a table, and no lines; a label that begins with `-` stands in quotes"),
             _ => d.help(
                 "labels with other signs than letters, digits, `_`, `-`, `+` stand in quotes",
             ),

@@ -117,10 +117,13 @@ pub(super) fn explain(
     if let Some(found) = foreign::statement(&f) {
         return found;
     }
+    if let Some(found) = missing_semicolon(&f).or_else(|| other_end(&f)) {
+        return found;
+    }
     if let Some(d) = neighbours::equation(&f) {
         return Explanation::of(d);
     }
-    if let Some(found) = missing_semicolon(&f).or_else(|| foreign::keyword_inside(&f)) {
+    if let Some(found) = foreign::keyword_inside(&f) {
         return found;
     }
     if let Some(d) = neighbours::at_token(&f).or_else(|| slip(&f)) {
@@ -183,6 +186,39 @@ fn missing_semicolon(f: &Failure<'_>) -> Option<Explanation> {
         let (end, start) = (end.hi, start.lo);
         found.go_on = GoOn::Divided { end, start };
     }
+    Some(found)
+}
+
+/// `,`, `:` or `.` in the place of `;`.
+fn other_end(f: &Failure<'_>) -> Option<Explanation> {
+    let token = f.token(f.at);
+    let first = f.text[..f.at].trim_end();
+    if !matches!(token, "," | ":" | ".") || !f.text[f.at..].starts_with(token) {
+        return None;
+    }
+    let rest = &f.text[f.at + 1..];
+    let second = f.at + 1 + rest.len() - rest.trim_start().len();
+    let ends = rest.trim().is_empty();
+    if !ends && !(f.text[f.at..second].contains('\n') && begins_statement(f.text, second))
+        || Grammar::parse(f.rule, first).is_err()
+    {
+        return None;
+    }
+    let missing = f
+        .error(
+            "E0201",
+            f.at,
+            1,
+            format!("`;` ends a statement, not `{token}`"),
+        )
+        .label("write `;`");
+    let mut found = Explanation::of(missing);
+    let end = f.span(first.len().saturating_sub(1), first.len()).hi;
+    let start = match ends {
+        true => f.raw.span.hi,
+        false => f.span(second, second + 1).lo,
+    };
+    found.go_on = GoOn::Divided { end, start };
     Some(found)
 }
 
@@ -365,7 +401,8 @@ fn in_declaration(f: &Failure<'_>, token: &str) -> Option<Diagnostic> {
     let name = &name[name
         .rfind(|c: char| c.is_whitespace() || c == ',')
         .map_or(0, |n| n + 1)..];
-    if f.raw.class == Class::Equation && f.text[f.at..].starts_with("..") {
+    let here = f.span(f.at, f.at).lo as usize;
+    if f.raw.class == Class::Equation && f.expanded[here..].starts_with("..") {
         return Some(
             f.error(
                 "E0221",
@@ -378,12 +415,21 @@ fn in_declaration(f: &Failure<'_>, token: &str) -> Option<Diagnostic> {
             )),
         );
     }
+    if f.raw.class == Class::Variable
+        && f.text.contains(['<', '>'])
+        && token.starts_with(|c: char| c.is_ascii_digit())
+    {
+        return Some(
+            f.error("E0220", f.at, token.len(), "a declaration gives no bounds")
+                .help("declare `variable x;` and assign the bounds: `x.lo = 0; x.up = 5;`"),
+        );
+    }
     if token.starts_with(|c: char| c.is_ascii_digit())
         && f.text[..f.at].trim_end().ends_with(['(', ','])
     {
         return Some(
             f.error(
-                "E0210",
+                "E0220",
                 f.at,
                 token.len(),
                 "an index position is a set, not a number",

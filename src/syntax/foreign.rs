@@ -480,10 +480,34 @@ fn misspelled(f: &Failure<'_>, word: &str, rest: &str, lead: usize) -> Option<Ex
         "figure",
         "abort",
     ];
-    if f.raw.class != Class::Algebra
-        || word.len() < 3
-        || !rest.starts_with(|c: char| c.is_ascii_alphabetic())
-    {
+    if f.raw.class != Class::Algebra || word.len() < 3 {
+        return None;
+    }
+    let after = f.expanded[f.raw.span.hi as usize..].trim_start();
+    if rest.is_empty() && after.to_ascii_lowercase().starts_with("variable") {
+        const KINDS: [&str; 8] = [
+            "free",
+            "positive",
+            "nonnegative",
+            "negative",
+            "binary",
+            "integer",
+            "semicont",
+            "semiint",
+        ];
+        let meant = nearest(word, KINDS).unwrap_or("positive");
+        let d = f.error(
+            "E0219",
+            lead,
+            word.len(),
+            format!("`{word}` is no kind of variable"),
+        );
+        return Some(Explanation::of(
+            d.label(format!("write `{meant}`"))
+                .help(format!("there are: {}", KINDS.join(", "))),
+        ));
+    }
+    if !rest.starts_with(|c: char| c.is_ascii_alphabetic()) {
         return None;
     }
     let meant = nearest(word, KEYWORDS)?;

@@ -15,6 +15,11 @@ pub(super) fn equation(f: &Failure<'_>) -> Option<Diagnostic> {
     let bytes = f.text.as_bytes();
     let dots = top_level(bytes, 0, |b| b.starts_with(b".."));
     let relation = top_level(bytes, dots.map_or(0, |d| d + 2), is_relation);
+    if let Some(at) = dots
+        && let Some(d) = after_dots(f, lead, at)
+    {
+        return Some(d);
+    }
     match (dots, relation) {
         (None, Some(at)) => without_dots(f, lead, at),
         (None, None) => bound(f, lead),
@@ -29,6 +34,43 @@ pub(super) fn equation(f: &Failure<'_>) -> Option<Diagnostic> {
                     .help("write two equations, or bounds: `x.lo = 1; x.up = 4;`"),
             )
         }
+    }
+}
+
+/// `e... x =e= 1`, `e..(i) x(i) =l= 1`
+fn after_dots(f: &Failure<'_>, lead: usize, dots: usize) -> Option<Diagnostic> {
+    let bytes = f.text.as_bytes();
+    let name = f.text[lead..dots].trim();
+    match bytes.get(dots + 2) {
+        Some(b'.') => Some(
+            f.error(
+                "E0221",
+                dots,
+                3,
+                "two dots stand behind the name of an equation, not three",
+            )
+            .help(format!("write `{name}.. left =e= right;`")),
+        ),
+        Some(b'(') => {
+            let close = closing(bytes, dots + 2)?;
+            let indices = &f.text[dots + 3..close];
+            let simple = indices
+                .bytes()
+                .all(|b| b.is_ascii_alphanumeric() || matches!(b, b',' | b' ' | b'_'));
+            let next = f.text[close + 1..]
+                .trim_start()
+                .starts_with(|c: char| c.is_ascii_alphanumeric() || c == '(');
+            (simple && next && !name.ends_with(')')).then(|| {
+                f.error(
+                    "E0221",
+                    dots + 2,
+                    close - dots - 1,
+                    "the indices of an equation stand before the dots",
+                )
+                .help(format!("write `{name}({indices}).. left =e= right;`"))
+            })
+        }
+        _ => None,
     }
 }
 
@@ -306,7 +348,12 @@ const OPERATORS: &[(&str, &str)] = &[
 /// Operators of other languages.
 pub(super) fn at_token(f: &Failure<'_>) -> Option<Diagnostic> {
     let bytes = f.text.as_bytes();
-    if let Some(d) = sum(f).or_else(|| display(f)).or_else(|| solve(f)) {
+    if let Some(d) = sum(f)
+        .or_else(|| display(f))
+        .or_else(|| solve(f))
+        .or_else(|| control(f))
+        .or_else(|| no_name(f))
+    {
         return Some(d);
     }
     let here = |op: &str| bytes.get(f.at..f.at + op.len()) == Some(op.as_bytes());
@@ -455,9 +502,29 @@ fn missing_operator(f: &Failure<'_>) -> Option<Diagnostic> {
                     .label("write `.`"),
             )
         }
+        t if t != "("
+            && is_function(
+                &before[before
+                    .rfind(|c: char| !c.is_ascii_alphanumeric())
+                    .map_or(0, |n| n + 1)..],
+            ) =>
+        {
+            let name = &before[before
+                .rfind(|c: char| !c.is_ascii_alphanumeric())
+                .map_or(0, |n| n + 1)..];
+            Some(
+                f.error(
+                    "E0212",
+                    f.at,
+                    token.len(),
+                    format!("`{name}` takes its argument in parentheses"),
+                )
+                .help(format!("write `{name}({token})`")),
+            )
+        }
         t if t == "(" || t.starts_with(|c: char| c.is_ascii_alphanumeric()) => {
             let help = "write `*` between factors, `+` or `-` between terms";
-            (f.at > 0 && before.contains('=')).then(|| {
+            (f.at > 0 && (before.contains('=') || before.contains(".."))).then(|| {
                 f.error(
                     "E0212",
                     f.at,
@@ -468,6 +535,81 @@ fn missing_operator(f: &Failure<'_>) -> Option<Diagnostic> {
                 .help(help)
             })
         }
+        _ => None,
+    }
+}
+
+fn is_function(word: &str) -> bool {
+    const WORDS: [&str; 10] = [
+        "ord", "card", "sqrt", "exp", "log", "abs", "sqr", "sin", "cos", "floor",
+    ];
+    WORDS.iter().any(|w| word.eq_ignore_ascii_case(w))
+}
+
+/// `3 = a`, `(a) = b`: nothing begins like this.
+fn no_name(f: &Failure<'_>) -> Option<Diagnostic> {
+    let lead = f.text.len() - f.text.trim_start().len();
+    let first = f.token(lead);
+    let sign = first.starts_with(|c: char| {
+        c.is_ascii_digit() || matches!(c, '(' | '[' | '=' | '\'' | '"' | '+' | '-')
+    });
+    (f.raw.class == Class::Algebra && f.at == lead && sign).then(|| {
+        f.error(
+            "E0210",
+            lead,
+            first.len(),
+            "a statement begins with a keyword, or with the name of what it assigns or defines",
+        )
+        .help("write `a = 3;` for an assignment, `e.. x =l= 3;` for an equation")
+    })
+}
+
+/// Slips in the heads of `loop`, `for`, `if` and `while`.
+fn control(f: &Failure<'_>) -> Option<Diagnostic> {
+    if f.raw.class != Class::Other {
+        return None;
+    }
+    let text = f.text.trim_start();
+    let word = text[..words::word_end(text.as_bytes(), 0)].to_ascii_lowercase();
+    let open = f.text.find('(')?;
+    if f.at < open || !matches!(word.as_str(), "loop" | "for" | "if" | "while") {
+        return None;
+    }
+    let token = f.token(f.at);
+    let head = &f.text[open + 1..f.at];
+    let say = |message: &str, help: &str| {
+        Some(
+            f.error("E0236", f.at, token.len().max(1), message)
+                .help(help),
+        )
+    };
+    match word.as_str() {
+        // Further on the head is not to blame.
+        _ if top_comma(head) && word != "for" => None,
+        "for"
+            if head.contains(';')
+                || top_level(head.as_bytes(), 0, |b| b.starts_with(b","))
+                    .is_some_and(|at| head[at..].contains(';')) =>
+        {
+            None
+        }
+        "for"
+            if !head.to_ascii_lowercase().contains(" to ")
+                && !head.to_ascii_lowercase().contains("downto") =>
+        {
+            say(
+                "`for` counts with a scalar from one number to another",
+                "write `for(k = 1 to 5, … );`; over the elements of a set runs `loop(i, … );`",
+            )
+        }
+        _ if closing(f.text.as_bytes(), open).is_some_and(|c| c < f.at) => say(
+            "the statements of a block stand inside of its parentheses",
+            "write `if(a > 0, b = 2; );`, `loop(i, … );`",
+        ),
+        _ if token.starts_with(|c: char| c.is_ascii_alphabetic()) && word != "for" => say(
+            "a comma is missing before the first statement of the block",
+            "write `loop(i, … );`, `if(a > 0, … );`",
+        ),
         _ => None,
     }
 }

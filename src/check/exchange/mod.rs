@@ -102,12 +102,12 @@ pub fn wanted(symbols: &Symbols, items: &[ExchangeItem]) -> Loaded<Vec<Wanted>> 
             )));
         };
         if !has_data(&symbols.get(symbol).kind) {
-            let kind = symbols.get(symbol).kind_name();
+            let kind = symbols.get(symbol).a_kind();
             return Err(Box::new(
                 Diagnostic::execution(
                     "E0475",
                     name.span,
-                    format!("`{}` is a {kind}; it has no data to exchange", name.name),
+                    format!("`{}` is {kind}; it has no data to exchange", name.name),
                 )
                 .label("a set, parameter, variable or equation is expected"),
             ));

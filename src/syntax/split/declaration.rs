@@ -144,6 +144,15 @@ impl Splitter {
                     if self.missing_semicolon(text, i) {
                         return true;
                     }
+                    if b == b'=' && !matches!(self.class, Class::File | Class::Model) {
+                        // No data follow; a `/` divides.
+                        let end = memchr::memchr(b';', &bytes[i..]).map(|n| i + n);
+                        let line =
+                            memchr::memchr(b'\n', &bytes[i..]).map_or(bytes.len(), |n| i + n);
+                        self.pos = end.filter(|e| *e < line).unwrap_or(i + 1);
+                        self.last_end = self.pos;
+                        continue;
+                    }
                     self.pos += 1;
                     self.last_end = self.pos;
                 }
