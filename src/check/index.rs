@@ -412,6 +412,9 @@ impl Compiler {
             Some(DomainPosition::Set(d)) => self.symbols.root(*d),
             _ => UNIVERSE,
         };
+        if self.is_torn(set) {
+            return Err(Failed);
+        }
         let set = self.symbols.get(set);
         let table = self.store.table(set.table);
         if table.is_empty() && !set.has_data && !set.assigned {

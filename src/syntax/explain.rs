@@ -11,6 +11,7 @@ use super::build::Condensed;
 use super::foreign::{self, Language};
 use super::grammar::{Grammar, Rule};
 use super::neighbours;
+use super::slips;
 use super::split::Raw;
 use super::words::{self, Class};
 use crate::diag::Diagnostic;
@@ -126,7 +127,7 @@ pub(super) fn explain(
     if let Some(found) = foreign::keyword_inside(&f) {
         return found;
     }
-    if let Some(d) = neighbours::at_token(&f).or_else(|| slip(&f)) {
+    if let Some(d) = slips::at_token(&f).or_else(|| slip(&f)) {
         let mut found = Explanation::of(d);
         if found.code() == "E0230" {
             // A comment mark of another language spoils its line.
@@ -415,6 +416,17 @@ fn in_declaration(f: &Failure<'_>, token: &str) -> Option<Diagnostic> {
             )),
         );
     }
+    if matches!(token, "-" | ".") && before_is_name(f.text, f.at) {
+        return Some(
+            f.error(
+                "E0209",
+                f.at,
+                1,
+                format!("`{token}` cannot stand in a name"),
+            )
+            .help("names consist of letters, digits and `_`: `unit_cost`"),
+        );
+    }
     if f.raw.class == Class::Variable
         && f.text.contains(['<', '>'])
         && token.starts_with(|c: char| c.is_ascii_digit())
@@ -467,6 +479,10 @@ fn in_declaration(f: &Failure<'_>, token: &str) -> Option<Diagnostic> {
         );
     }
     None
+}
+
+fn before_is_name(text: &str, at: usize) -> bool {
+    text[..at].ends_with(|c: char| c.is_ascii_alphanumeric() || c == '_')
 }
 
 /// Whether the parenthesis at `at` closes none before it.

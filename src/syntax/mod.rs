@@ -18,6 +18,7 @@ mod fields;
 mod foreign;
 mod grammar;
 mod neighbours;
+mod slips;
 mod split;
 pub mod table;
 mod words;

@@ -1,0 +1,531 @@
+//! Slips inside of statements, many from other languages: operators, sums, heads of blocks, lists, missing operands.
+//!
+//! Only statements that did not parse come here, so nothing legal is refused.
+
+use super::explain::{Failure, closing, is_relation};
+use super::neighbours::{is_sum, top_level};
+use super::words::{self, Class};
+use crate::diag::Diagnostic;
+
+/// The innermost open parenthesis before a byte, and the word before it.
+fn enclosing(text: &str, at: usize) -> Option<(usize, &str)> {
+    let bytes = text.as_bytes();
+    let mut depth = 0usize;
+    let open = (0..at).rev().find(|&i| {
+        match bytes[i] {
+            b')' | b']' | b'}' => depth += 1,
+            b'(' | b'[' | b'{' if depth == 0 => return true,
+            b'(' | b'[' | b'{' => depth -= 1,
+            _ => {}
+        }
+        false
+    })?;
+    let before = text[..open].trim_end();
+    let start = before
+        .rfind(|c: char| !c.is_ascii_alphanumeric() && c != '_')
+        .map_or(0, |n| n + 1);
+    Some((open, &before[start..]))
+}
+
+/// Slips inside of sums: `sum(i, j, …)`, `sum(i in I, …)`, `sum(c(i)*x(i))`.
+fn sum(f: &Failure<'_>) -> Option<Diagnostic> {
+    let token = f.token(f.at);
+    let (open, word) = enclosing(f.text, f.at)?;
+    // `sum((i in I, j in J), …)`
+    let (open, word) = match word.is_empty() {
+        true => enclosing(f.text, open).unwrap_or((open, word)),
+        false => (open, word),
+    };
+    if !is_sum(word) {
+        return None;
+    }
+    let inside = &f.text[open + 1..f.at];
+    let first = inside
+        .split([',', ' ', '('])
+        .find(|w| !w.is_empty())
+        .unwrap_or("i");
+    let lower = token.to_ascii_lowercase();
+    let say = |message: &str, help: String| {
+        Some(
+            f.error("E0235", f.at, token.len().max(1), message)
+                .help(help),
+        )
+    };
+    match lower.as_str() {
+        "in" => say(
+            "a sum names its index alone, without `in`",
+            format!("write `{word}({first}, …)`, or `{word}((i,j), …)` for several indices"),
+        ),
+        "for" => say(
+            "a sum names its index first",
+            format!("write `{word}(i, …)`, or `{word}((i,j), …)` for several indices"),
+        ),
+        "," => say(
+            "several indices of a sum stand in parentheses of their own",
+            format!("write `{word}((i,j), …)`"),
+        ),
+        ":" | "|" => say(
+            "a comma stands between the index of a sum and its term",
+            format!(
+                "write `{word}({first}, …)`; a condition follows the index behind `$`: `{word}({first}$(a({first}) > 0), …)`"
+            ),
+        ),
+        _ if !top_comma(inside) => say(
+            "a sum names its index first, then its term",
+            format!("write `{word}(i, …)`, or `{word}((i,j), …)` for several indices"),
+        ),
+        _ => None,
+    }
+}
+
+/// Whether a comma stands outside of parentheses.
+fn top_comma(text: &str) -> bool {
+    top_level(text.as_bytes(), 0, |b| b[0] == b',').is_some()
+}
+
+/// Signs of other languages, what is said about them, and what is written here.
+#[rustfmt::skip]
+const OPERATORS: &[(&str, &str)] = &[
+    ("!=", "<>"), ("&&", "and"), ("||", "or"), ("/\\", "and"), ("\\/", "or"), (".*", "*"), (".^", "**"), ("./", "/"), (".+", "+"),
+    ("^", "**"), ("=<", "<="), ("=>", "->"), ("~=", "<>"), ("∈", "sum(i, …)"), ("&", "and"), ("|", "or"),
+    ("!", "not"), ("~", "not"), ("·", "*"),
+];
+
+/// Operators of other languages.
+pub(super) fn at_token(f: &Failure<'_>) -> Option<Diagnostic> {
+    let bytes = f.text.as_bytes();
+    if let Some(d) = sum(f)
+        .or_else(|| display(f))
+        .or_else(|| solve(f))
+        .or_else(|| control(f))
+        .or_else(|| no_name(f))
+        .or_else(|| operand(f))
+    {
+        return Some(d);
+    }
+    let here = |op: &str| bytes.get(f.at..f.at + op.len()) == Some(op.as_bytes());
+    // pest may stop at the second sign of an operator.
+    let found = |op: &str| {
+        let starts = [f.at, f.at.saturating_sub(1)];
+        starts
+            .into_iter()
+            .find(|&i| bytes.get(i..i + op.len()) == Some(op.as_bytes()))
+    };
+    let say = |at: usize, op: &str, help: String| {
+        f.error("E0232", at, op.len(), format!("`{op}` is not an operator"))
+            .help(help)
+    };
+    if let Some(at) = found("==") {
+        return Some(
+            say(
+                at,
+                "==",
+                "write `=` in assignments and conditions, `=e=` in equations".into(),
+            )
+            .label("write `=`"),
+        );
+    }
+    if here("...") {
+        return Some(
+            f.error(
+                "E0232",
+                f.at,
+                3,
+                "a statement goes over several lines without a sign",
+            )
+            .help("leave `...` out"),
+        );
+    }
+    if let Some(at) = found("//") {
+        return Some(
+            f.error("E0230", at, 2, "`//` does not begin a comment in this file")
+                .help("`$eolCom //` makes it one; files named `.blk` have it from the start"),
+        );
+    }
+    for (op, write) in OPERATORS {
+        let at = if op.len() == 2 {
+            found(op)
+        } else {
+            here(op).then_some(f.at)
+        };
+        if let Some(at) = at {
+            return Some(say(at, op, format!("write `{write}`")).label(format!("write `{write}`")));
+        }
+    }
+    if here("%") && !f.text[f.at + 1..].contains('%') {
+        let number = f.text[..f.at]
+            .trim_end()
+            .ends_with(|c: char| c.is_ascii_digit());
+        let ends = f.text[f.at + 1..]
+            .trim_start()
+            .starts_with(|c: char| !c.is_ascii_alphanumeric() && c != '(')
+            || f.text[f.at + 1..].trim().is_empty();
+        return Some(match number && ends {
+            true => say(f.at, "%", "write 5 percent as `0.05`".into()),
+            false => say(f.at, "%", "write `mod(x, y)` for the remainder; a comment is a line with `*` in its first column".into()),
+        });
+    }
+    if bytes.get(f.at + 1) == Some(&b'=')
+        && matches!(bytes.get(f.at), Some(b'+' | b'-' | b'*' | b'/'))
+    {
+        let op = &f.text[f.at..f.at + 2];
+        return Some(say(
+            f.at,
+            op,
+            format!("write the left side again: `a = a {} b`", &op[..1]),
+        ));
+    }
+    if here("#") {
+        return Some(
+            f.error("E0230", f.at, 1, "`#` does not begin a comment")
+                .help("a comment is a line with `*` in its first column; in a `.blk` file also `//`; `$onEolCom` allows `!!` to the end of the line"),
+        );
+    }
+    if here(":") && f.raw.class == Class::Algebra {
+        return Some(
+            f.error("E0221", f.at, 1, "`:` does not begin an equation")
+                .label("write `..`")
+                .help("an equation is defined as `e(i).. left =e= right;`"),
+        );
+    }
+    if here("?") {
+        return Some(say(
+            f.at,
+            "?",
+            "write `ifThen(c, a, b)`, or `a$c + b$(not c)`".into(),
+        ));
+    }
+    let unary = matches!(bytes.get(f.at), Some(b'-' | b'+' | b'*' | b'/'));
+    if unary
+        && f.text[..f.at]
+            .trim_end()
+            .ends_with(['+', '-', '*', '/', '$', '='])
+    {
+        return Some(
+            f.error("E0212", f.at, 1, "two operators in a row")
+                .label("this one needs parentheses")
+                .help("write `a*(-b)`, `$(-c)`"),
+        );
+    }
+    missing_operator(f)
+}
+
+/// `2 x`, `f d(i,j)`, `3(x + y)`, `1,5`, `a where b`.
+fn missing_operator(f: &Failure<'_>) -> Option<Diagnostic> {
+    let token = f.token(f.at);
+    let before = f.text[..f.at].trim_end();
+    let operand =
+        before.ends_with(|c: char| c.is_ascii_alphanumeric() || matches!(c, ')' | ']' | '}' | '_'));
+    if f.raw.class != Class::Algebra || !operand {
+        return None;
+    }
+    match token.to_ascii_lowercase().as_str() {
+        "where" | "if" | "for" | "when" => Some(
+            f.error(
+                "E0232",
+                f.at,
+                token.len(),
+                format!("`{token}` is not an operator"),
+            )
+            .help("a condition stands behind `$`: `e(i)$(a(i) > 0).. …`, `x$(a > 0)`"),
+        ),
+        "div" | "mod" => Some(
+            f.error(
+                "E0232",
+                f.at,
+                token.len(),
+                format!("`{token}` is not an operator"),
+            )
+            .help(match token.len() {
+                3 if token.eq_ignore_ascii_case("mod") => "write `mod(x, y)`",
+                _ => "write `floor(x/y)`",
+            }),
+        ),
+        "," if before.ends_with(|c: char| c.is_ascii_digit())
+            && f.text[f.at + 1..].starts_with(|c: char| c.is_ascii_digit()) =>
+        {
+            Some(
+                f.error("E0209", f.at, 1, "decimals stand behind a point")
+                    .label("write `.`"),
+            )
+        }
+        t if t != "("
+            && is_function(
+                &before[before
+                    .rfind(|c: char| !c.is_ascii_alphanumeric())
+                    .map_or(0, |n| n + 1)..],
+            ) =>
+        {
+            let name = &before[before
+                .rfind(|c: char| !c.is_ascii_alphanumeric())
+                .map_or(0, |n| n + 1)..];
+            Some(
+                f.error(
+                    "E0212",
+                    f.at,
+                    token.len(),
+                    format!("`{name}` takes its argument in parentheses"),
+                )
+                .help(format!("write `{name}({token})`")),
+            )
+        }
+        t if t == "(" || t.starts_with(|c: char| c.is_ascii_alphanumeric()) => {
+            let help = "write `*` between factors, `+` or `-` between terms";
+            (f.at > 0 && (before.contains('=') || before.contains(".."))).then(|| {
+                f.error(
+                    "E0212",
+                    f.at,
+                    token.len(),
+                    format!("an operator is missing before `{token}`"),
+                )
+                .label("missing operator")
+                .help(help)
+            })
+        }
+        _ => None,
+    }
+}
+
+fn is_function(word: &str) -> bool {
+    const WORDS: [&str; 10] = [
+        "ord", "card", "sqrt", "exp", "log", "abs", "sqr", "sin", "cos", "floor",
+    ];
+    WORDS.iter().any(|w| word.eq_ignore_ascii_case(w))
+}
+
+/// `3 = a`, `(a) = b`: nothing begins like this.
+fn no_name(f: &Failure<'_>) -> Option<Diagnostic> {
+    let lead = f.text.len() - f.text.trim_start().len();
+    let first = f.token(lead);
+    let sign = first.starts_with(|c: char| {
+        c.is_ascii_digit() || matches!(c, '(' | '[' | '=' | '\'' | '"' | '+' | '-')
+    });
+    (f.raw.class == Class::Algebra && f.at == lead && sign).then(|| {
+        f.error(
+            "E0210",
+            lead,
+            first.len(),
+            "a statement begins with a keyword, or with the name of what it assigns or defines",
+        )
+        .help("write `a = 3;` for an assignment, `e.. x =l= 3;` for an equation")
+    })
+}
+
+/// What stands where an operand should, or where one is missing.
+fn operand(f: &Failure<'_>) -> Option<Diagnostic> {
+    let bytes = f.text.as_bytes();
+    let token = f.token(f.at);
+    let before = f.text[..f.at].trim_end();
+    let enclosing = enclosing(f.text, f.at);
+    let open = enclosing.map(|(at, _)| bytes[at]);
+    let list = enclosing.is_some_and(|(at, word)| bytes[at] == b'[' && word.is_empty());
+    let say = |code, at, len, message: String, help: &str| {
+        Some(f.error(code, at, len, message).help(help))
+    };
+    match token {
+        "[" | "("
+            if before.ends_with([']', ')'])
+                && before[..before.len() - 1].ends_with(|c: char| c.is_ascii_alphanumeric())
+                && f.raw.class == Class::Algebra =>
+        {
+            say(
+                "E0210",
+                f.at,
+                1,
+                "all indices stand in one pair of parentheses".into(),
+                "write `x(i,j)`; between factors stands `*`",
+            )
+        }
+        "@" => say(
+            "E0231",
+            f.at,
+            1,
+            "`@` cannot stand in an expression".into(),
+            "functions and sums have no mark: `sum(i, x(i))`, `exp(x)`; a formula that is used often can be a `$macro f(x) (…)`",
+        ),
+        "$" if bytes.get(f.at + 1).is_some_and(u8::is_ascii_alphabetic)
+            && !before.ends_with(|c: char| c.is_ascii_alphanumeric() || c == ')') =>
+        {
+            say(
+                "E0231",
+                f.at,
+                1,
+                "a cell of a spreadsheet has no value here".into(),
+                "give the number a name: `scalar price / 2.5 /;`, and use the name",
+            )
+        }
+        "," if list => say(
+            "E0231",
+            f.at,
+            1,
+            "a list of numbers is no value".into(),
+            "numbers belong to labels: `set i / a, b, c /; parameter p(i) / a 1, b 2, c 3 /;`",
+        ),
+        "," if open.is_none()
+            && f.raw.class == Class::Algebra
+            && before
+                .bytes()
+                .all(|b| b.is_ascii_alphanumeric() || b == b'_') =>
+        {
+            say(
+                "E0210",
+                f.at,
+                1,
+                "an assignment has one name on its left".into(),
+                "write `a = 1; b = 2;`",
+            )
+        }
+        ")" | "]" | "}" => {
+            let (at, _) = enclosing?;
+            let closes = matches!((bytes[at], token), (b'(', ")") | (b'[', "]") | (b'{', "}"));
+            (!closes).then(|| {
+                f.error(
+                    "E0202",
+                    f.at,
+                    1,
+                    format!("`{}` is closed by `{token}`", bytes[at] as char),
+                )
+                .other(f.span(at, at + 1), "opened here")
+                .help("the closing parenthesis is of the kind of the opening one")
+            })
+        }
+        "=" if is_relation(&bytes[f.at..]) && before.ends_with(['+', '-', '*', '/']) => say(
+            "E0212",
+            before.len() - 1,
+            1,
+            "an operand is missing behind this operator".into(),
+            "write what is added or multiplied, or take the operator out",
+        ),
+        "" if before.len() > 2 && is_relation(&bytes[before.len() - 3..]) => say(
+            "E0210",
+            before.len() - 3,
+            3,
+            "the right side of the equation is missing".into(),
+            "write an expression behind the relation, at least `0`",
+        ),
+        "" if f.raw.class == Class::Algebra && !before.contains(['=', '.']) => {
+            let lead = f.text.len() - f.text.trim_start().len();
+            say(
+                "E0210",
+                lead,
+                before.len() - lead,
+                "this is not a statement".into(),
+                "values are shown with `display x.l;`, assigned with `p = …;`, related in equations with `e.. … =e= …;`",
+            )
+        }
+        _ => None,
+    }
+}
+
+/// Slips in the heads of `loop`, `for`, `if` and `while`.
+fn control(f: &Failure<'_>) -> Option<Diagnostic> {
+    if f.raw.class != Class::Other {
+        return None;
+    }
+    let text = f.text.trim_start();
+    let word = text[..words::word_end(text.as_bytes(), 0)].to_ascii_lowercase();
+    let open = f.text.find('(')?;
+    if f.at < open || !matches!(word.as_str(), "loop" | "for" | "if" | "while") {
+        return None;
+    }
+    let token = f.token(f.at);
+    let head = &f.text[open + 1..f.at];
+    let say = |message: &str, help: &str| {
+        Some(
+            f.error("E0236", f.at, token.len().max(1), message)
+                .help(help),
+        )
+    };
+    match word.as_str() {
+        // Further on the head is not to blame.
+        _ if top_comma(head) && word != "for" => None,
+        "for"
+            if head.contains(';')
+                || top_level(head.as_bytes(), 0, |b| b.starts_with(b","))
+                    .is_some_and(|at| head[at..].contains(';')) =>
+        {
+            None
+        }
+        "for"
+            if !head.to_ascii_lowercase().contains(" to ")
+                && !head.to_ascii_lowercase().contains("downto") =>
+        {
+            say(
+                "`for` counts with a scalar from one number to another",
+                "write `for(k = 1 to 5, … );`; over the elements of a set runs `loop(i, … );`",
+            )
+        }
+        _ if closing(f.text.as_bytes(), open).is_some_and(|c| c < f.at) => say(
+            "the statements of a block stand inside of its parentheses",
+            "write `if(a > 0, b = 2; );`, `loop(i, … );`",
+        ),
+        _ if token.starts_with(|c: char| c.is_ascii_alphabetic()) && word != "for" => say(
+            "a comma is missing before the first statement of the block",
+            "write `loop(i, … );`, `if(a > 0, … );`",
+        ),
+        _ => None,
+    }
+}
+
+/// `display sum(…)`, `display 2*x.l`, `display(x)`
+fn display(f: &Failure<'_>) -> Option<Diagnostic> {
+    let text = f.text.trim_start();
+    let lead = f.text.len() - text.len();
+    let word = words::word_end(text.as_bytes(), 0);
+    if !text[..word].eq_ignore_ascii_case("display") {
+        return None;
+    }
+    let rest = text[word..].trim_start();
+    let lo = f.text.len() - rest.len();
+    let len = rest.trim_end().len();
+    if rest.starts_with('(') && closing(rest.as_bytes(), 0) == Some(len - 1) {
+        let inside = rest[1..len - 1].trim();
+        return Some(
+            f.error(
+                "E0328",
+                lo,
+                len,
+                "`display` takes its symbols without parentheses",
+            )
+            .help(format!("write `display {inside};`")),
+        );
+    }
+    let expression = is_sum(&rest[..words::word_end(rest.as_bytes(), 0)])
+        || matches!(f.token(f.at), "*" | "+" | "-" | "/" | "(")
+        || rest.starts_with(|c: char| c.is_ascii_digit());
+    expression.then(|| {
+        f.error(
+            "E0328",
+            lo.max(lead),
+            len,
+            "`display` takes symbols, not expressions",
+        )
+        .help("assign it first: `parameter total; total = …; display total;`")
+    })
+}
+
+/// `minimizing sum(…)`, `minimizing (z)`
+fn solve(f: &Failure<'_>) -> Option<Diagnostic> {
+    let first = &f.text.trim_start()[..words::word_end(f.text.trim_start().as_bytes(), 0)];
+    if !first.eq_ignore_ascii_case("solve") {
+        return None;
+    }
+    let lower = f.text.to_ascii_lowercase();
+    let at = ["minimi", "maximi"].iter().find_map(|w| lower.find(w))?;
+    let from = words::word_end(f.text.as_bytes(), at);
+    let rest = f.text[from..].trim();
+    let lo = from + f.text[from..].len() - f.text[from..].trim_start().len();
+    let d = f.error(
+        "E0357",
+        lo,
+        rest.len(),
+        "the objective is the name of a variable",
+    );
+    Some(match rest.strip_prefix('(').and_then(|r| r.strip_suffix(')')) {
+        Some(name) if name.trim().bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_') => d.help(format!("write `minimizing {}`", name.trim())),
+        _ if rest.starts_with(|c: char| c.is_ascii_alphabetic() || c == '(' || c.is_ascii_digit()) && rest.contains(['(', '*', '+', '-']) => {
+            d.help("declare `variable z; equation obj;`, write `obj.. z =e= …;` and `minimizing z`")
+        }
+        _ => return None,
+    })
+}
