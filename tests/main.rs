@@ -8,6 +8,7 @@ mod complementarity;
 mod corpus;
 mod derivatives;
 mod docs;
+mod formulation;
 mod functions;
 mod library;
 mod mcp_corpus;

@@ -196,15 +196,14 @@ impl Compiler {
         let dim = symbol.dim();
         let slots: Vec<Slot> = (0..dim).map(|_| self.new_slot()).collect();
         for (p, &s) in slots.iter().enumerate() {
+            let set = match symbol.domain.get(p) {
+                _ if dim == 1 => id,
+                Some(&DomainPosition::Set(d)) => d,
+                _ => UNIVERSE,
+            };
             out.slots.push(s);
-            out.sets.push(if dim == 1 {
-                symbol.table
-            } else {
-                match symbol.domain[p] {
-                    DomainPosition::Set(d) => self.symbols.get(d).table,
-                    _ => self.symbols.get(UNIVERSE).table,
-                }
-            });
+            out.sets.push(self.symbols.get(set).table);
+            out.names.push(set);
         }
         let parts: Vec<Part> = slots.into_iter().map(Part::Slot).collect();
         out.members.push(Driver {

@@ -225,6 +225,8 @@ pub struct Domain {
     pub slots: Vec<Slot>,
     /// The set of each slot (what the label must be a member of).
     pub sets: Vec<TableId>,
+    /// The set, or the alias of one, that each slot runs over, as it was written.
+    pub names: Vec<SymbolId>,
     /// Tuple sets and the index sets: all must hold.
     pub members: Vec<Driver>,
     /// Conjuncts of the condition.
@@ -307,7 +309,7 @@ pub enum Shown {
 }
 
 /// A solve.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct SolveCode {
     /// The model.
     pub model: SymbolId,

@@ -44,6 +44,16 @@ pub enum Command {
     Why(WhyArgs),
     /// Solves a model in many ways and shows how long each takes and how large its error is.
     Bench(BenchArgs),
+    /// Shows a model as formulas: sets, data, variables, objective, equations, bounds. Nothing is run.
+    Show(ShowArgs),
+    /// Derives the dual of a linear model, with its indices.
+    Dual(DeriveArgs),
+    /// Derives the optimality conditions of a smooth model, with its indices.
+    Kkt(DeriveArgs),
+    /// Shows in which intervals the prices and the solution of a linear model hold.
+    Range(RangeArgs),
+    /// Says in words what a model decides, what its answer is, and what binds.
+    Explain(ExplainArgs),
     /// Shows the generated rows and columns as readable algebra, with names and numbers.
     List(ListArgs),
     /// Shows what is in a GDX file, the data files of GAMS: all symbols, or the records of one.
@@ -163,6 +173,115 @@ pub struct WhyArgs {
     #[arg(long, value_name = "FILE|-", value_hint = ValueHint::FilePath)]
     pub json: Option<PathBuf>,
     /// How it is solved.
+    #[command(flatten)]
+    pub solve: SolveArgs,
+}
+
+/// How formulas are written.
+#[derive(ValueEnum, Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum FormulaFormat {
+    /// For the terminal.
+    #[default]
+    Text,
+    /// For LaTeX with amsmath.
+    Latex,
+    /// A page with MathML.
+    Html,
+}
+
+/// Arguments of `bmod show`.
+#[derive(Args, Debug, Clone)]
+pub struct ShowArgs {
+    /// The model and what all commands share.
+    #[command(flatten)]
+    pub model: ModelArgs,
+    /// The model; without, the one that is solved last.
+    #[arg(long = "model", value_name = "M")]
+    pub name: Option<String>,
+    /// How formulas are written.
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormulaFormat,
+}
+
+/// Which model of a text is meant.
+#[derive(Args, Debug, Clone)]
+pub struct ChosenArgs {
+    /// The model; without, the one that is solved last.
+    #[arg(long = "model", value_name = "M")]
+    pub name: Option<String>,
+    /// The solve whose data and answer are taken, counted from 1; without, the last one.
+    #[arg(long = "solve", value_name = "K")]
+    pub number: Option<usize>,
+}
+
+/// How tables are written.
+#[derive(ValueEnum, Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum TableFormat {
+    /// For the terminal.
+    #[default]
+    Text,
+    /// Comma-separated values, with all digits.
+    Csv,
+    /// JSON, with all digits.
+    Json,
+}
+
+/// Arguments of `bmod range`.
+#[derive(Args, Debug, Clone)]
+pub struct RangeArgs {
+    /// The model and what all commands share.
+    #[command(flatten)]
+    pub model: ModelArgs,
+    /// Rows and columns to look at: a symbol, or one of its members. Without, all.
+    #[arg(value_name = "NAME")]
+    pub names: Vec<String>,
+    /// Which model is meant.
+    #[command(flatten)]
+    pub chosen: ChosenArgs,
+    /// How the tables are written.
+    #[arg(long, value_enum, default_value_t)]
+    pub format: TableFormat,
+    /// How the model is solved.
+    #[command(flatten)]
+    pub solve: SolveArgs,
+}
+
+/// Arguments of `bmod explain`.
+#[derive(Args, Debug, Clone)]
+pub struct ExplainArgs {
+    /// The model and what all commands share.
+    #[command(flatten)]
+    pub model: ModelArgs,
+    /// Which model is meant.
+    #[command(flatten)]
+    pub chosen: ChosenArgs,
+    /// How the model is solved.
+    #[command(flatten)]
+    pub solve: SolveArgs,
+}
+
+/// Arguments of `bmod dual` and `bmod kkt`.
+#[derive(Args, Debug, Clone)]
+pub struct DeriveArgs {
+    /// The model and what all commands share.
+    #[command(flatten)]
+    pub model: ModelArgs,
+    /// Which model is meant.
+    #[command(flatten)]
+    pub chosen: ChosenArgs,
+    /// How formulas are written.
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormulaFormat,
+    /// Writes it as a model that runs by itself; - is standard output.
+    #[arg(long, value_name = "OUT.blk", value_hint = ValueHint::FilePath)]
+    pub as_model: Option<PathBuf>,
+    /// The model that is written includes the text instead of its data.
+    #[arg(long, requires = "as_model")]
+    pub include: bool,
+    /// Generates it and compares it entry by entry with the model it comes from.
+    #[arg(long)]
+    pub check: bool,
+    /// How the model is solved.
     #[command(flatten)]
     pub solve: SolveArgs,
 }

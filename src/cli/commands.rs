@@ -34,6 +34,11 @@ pub fn execute(cli: &Cli) -> u8 {
             finished.end.exit()
         }
         Command::Bench(a) => super::bench::bench(a),
+        Command::Show(a) => super::show::show(a),
+        Command::Dual(a) => super::dual::dual(a),
+        Command::Kkt(a) => super::kkt::kkt(a),
+        Command::Range(a) => super::range::range(a),
+        Command::Explain(a) => super::explain::run(a),
         Command::Why(a) => super::why::why(a),
         Command::List(a) => list(a),
         Command::Gdx(a) => super::gdx::show(a),
@@ -119,6 +124,50 @@ pub(super) fn carry_out_silently(
         ..Task::new(model, Output::Quiet)
     };
     Ok(carry_out(task, options, after))
+}
+
+/// Compiles a model, tells what is wrong with it, and hands it on if nothing is; the exit status.
+pub(super) fn compiled(
+    model: &ModelArgs,
+    f: &mut dyn FnMut(crate::check::Program, &mut dyn crate::host::Host) -> u8,
+) -> u8 {
+    let mut host = SystemHost::new(
+        &model.file,
+        Path::new("."),
+        &model.allow_read,
+        Output::Quiet,
+    );
+    let extension = model.file.extension();
+    let preprocess = PreprocessOptions {
+        defines: model.define.clone(),
+        slash_comments: extension.is_some_and(|e| e.eq_ignore_ascii_case("blk")),
+        max_memory: None,
+    };
+    let (diagnostics, map, program) =
+        match crate::check::compile(&mut host, &name(model), preprocess) {
+            Err(e) => (vec![e.0], e.1, None),
+            Ok(mut p) => {
+                let found = std::mem::take(&mut p.diagnostics);
+                match found
+                    .iter()
+                    .any(|d| d.severity == crate::diag::Severity::Error)
+                {
+                    true => (found, p.map, None),
+                    false => (Vec::new(), crate::source::SourceMap::default(), Some(p)),
+                }
+            }
+        };
+    let Some(program) = program else {
+        let finished = Finished {
+            end: RunStatus::CompilationError,
+            report: Report::default(),
+            diagnostics,
+            map,
+        };
+        tell(&finished, model.message_format);
+        return finished.end.exit();
+    };
+    f(program, &mut host)
 }
 
 /// Writes diagnostics for the person, or for a program.

@@ -3,9 +3,15 @@
 pub mod args;
 pub mod bench;
 pub mod commands;
+pub mod derive;
+pub mod dual;
+pub mod explain;
 mod gdx;
 pub mod host;
+pub mod kkt;
 pub mod new;
+pub mod range;
+pub mod show;
 pub mod test;
 pub mod watch;
 pub mod why;

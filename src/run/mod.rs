@@ -25,11 +25,13 @@ mod scan;
 mod scenarios;
 mod show;
 mod solve;
+mod study;
 mod support;
 
 pub use eval::Frame;
 pub use generate::{GenerateOptions, Generated};
 pub use options::{ListOptions, ModelState, Options};
+pub use study::{Studied, StudyChoice};
 
 use crate::check::Program;
 use crate::check::node::*;
@@ -79,6 +81,9 @@ pub struct Machine<'h> {
     pub report: crate::report::json::Report,
     /// Solves that are kept for `--solution`.
     kept: Vec<solve::KeptSolve>,
+    /// The solve that is looked at when the run is over, and how many there were.
+    studied: Option<Box<Studied>>,
+    solves_seen: usize,
     /// Files of `put`.
     pub put: options::PutState,
     /// Files that data go to and come from.
@@ -135,6 +140,8 @@ impl<'h> Machine<'h> {
             formats: FxHashMap::default(),
             report: crate::report::json::Report::default(),
             kept: Vec::new(),
+            studied: None,
+            solves_seen: 0,
             put: options::PutState::default(),
             transfer: exchange::ExchangeState::default(),
             host: RefCell::new(host),
@@ -217,6 +224,11 @@ impl<'h> Machine<'h> {
     /// Whether there were more execution errors than `maxExecError` lets pass.
     pub fn failed(&self) -> bool {
         self.statements_failed() > self.most_errors
+    }
+
+    /// The symbol of a table.
+    pub fn table_owner(&self, t: TableId) -> Option<SymbolId> {
+        self.table_symbol(t)
     }
 
     /// The symbol of a table.

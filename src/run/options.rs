@@ -39,6 +39,8 @@ pub struct Options {
     pub color: bool,
     /// `bmod list`: generate, print rows and columns, do not solve: how many per block.
     pub list: Option<ListOptions>,
+    /// Keep a solve, to be looked at when the run is over.
+    pub study: Option<super::StudyChoice>,
     /// The statement that runs just now.
     pub at: Cell<Span>,
 }
@@ -69,6 +71,7 @@ impl Default for Options {
             all: false,
             color: false,
             list: None,
+            study: None,
             at: Cell::default(),
         }
     }

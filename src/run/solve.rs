@@ -96,6 +96,9 @@ impl Machine<'_> {
             scale: self.model_option(s.model, "scaleopt", 0.0) != 0.0,
             keep_paired: matches!(s.using, "mcp" | "mpec" | "rmpec"),
         };
+        if self.study(s, span) {
+            return Flow::Next;
+        }
         let name = self.symbols.get(s.model).name.to_string();
         self.host().progress(&format!("generating {name}"));
         // Equations have slots of their own: the loop around the solve keeps its labels.
@@ -149,6 +152,7 @@ impl Machine<'_> {
         match result {
             Ok(mut a) => {
                 self.certified(s, &generated, &mut a, &settings);
+                self.study_answer(&generated, &a);
                 let end = self.elapsed();
                 let seconds = json::Seconds {
                     generate: generated_at - begin,

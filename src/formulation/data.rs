@@ -1,0 +1,307 @@
+//! The sets and data that a derived model needs, as statements with the values they had at the solve.
+
+use super::text::attribute_name;
+use super::tree::*;
+use super::{NewData, Row};
+use crate::check::node::SymbolId;
+use crate::check::symbols::{DomainPosition, Store, SymbolKind, Symbols, UNIVERSE};
+use crate::data::table::Table;
+use crate::data::universe::Label;
+use crate::data::value::{is_eps, is_na};
+use rustc_hash::FxHashSet;
+use std::collections::BTreeSet;
+use std::fmt::Write;
+
+/// A number as the language reads it, with all its digits.
+pub fn number(x: f64) -> String {
+    match x {
+        _ if is_eps(x) => "eps".into(),
+        _ if is_na(x) => "na".into(),
+        f64::INFINITY => "inf".into(),
+        f64::NEG_INFINITY => "-inf".into(),
+        _ if x.is_nan() => "na".into(),
+        _ => {
+            let plain = format!("{x}");
+            match plain.len() > 17 {
+                true => format!("{x:e}"),
+                false => plain,
+            }
+        }
+    }
+}
+
+/// A label or a text in quotes.
+pub fn quoted(text: &str) -> String {
+    match text.contains('\'') {
+        true => format!("\"{}\"", text.replace('"', "'")),
+        false => format!("'{text}'"),
+    }
+}
+
+/// What a derived model needs of the user's data.
+pub struct Data<'a> {
+    symbols: &'a Symbols,
+    store: &'a Store,
+    sets: BTreeSet<SymbolId>,
+    parameters: BTreeSet<SymbolId>,
+    attributes: BTreeSet<(SymbolId, u32)>,
+}
+
+impl<'a> Data<'a> {
+    /// Nothing yet.
+    pub fn new(symbols: &'a Symbols, store: &'a Store) -> Self {
+        Self {
+            symbols,
+            store,
+            sets: BTreeSet::new(),
+            parameters: BTreeSet::new(),
+            attributes: BTreeSet::new(),
+        }
+    }
+
+    /// A set or an alias, with the sets it is a subset of.
+    pub fn set(&mut self, s: SymbolId) {
+        if s == UNIVERSE || !self.symbols.get(s).is_set() || !self.sets.insert(s) {
+            return;
+        }
+        self.set(self.symbols.root(s));
+        self.domain_of(s);
+    }
+
+    /// The sets that a symbol is declared over.
+    pub fn domain_of(&mut self, s: SymbolId) {
+        for p in &self.symbols.get(s).domain {
+            if let DomainPosition::Set(d) = p {
+                self.set(*d);
+            }
+        }
+    }
+
+    /// What a row needs.
+    pub fn row(&mut self, r: &Row) {
+        r.domain.iter().for_each(|s| self.set(*s));
+        r.key.iter().for_each(|p| self.part(p));
+        r.binder.conditions.iter().for_each(|c| self.expr(c));
+        self.expr(&r.left);
+        self.expr(&r.right);
+    }
+
+    /// What an expression needs.
+    pub fn expr(&mut self, e: &Expr) {
+        e.walk(&mut |e| {
+            e.parts(&mut |p| self.part(p));
+            match e {
+                Expr::Data(Source::Parameter(p), _) => {
+                    self.parameters.insert(*p);
+                    self.domain_of(*p);
+                }
+                Expr::Data(Source::Attribute(s, o), _) => {
+                    self.attributes.insert((*s, *o));
+                    self.domain_of(*s);
+                }
+                Expr::Member(s, _) | Expr::Card(s) => self.set(*s),
+                _ => {}
+            }
+        });
+    }
+
+    fn part(&mut self, p: &Part) {
+        match p {
+            Part::Singleton(s, _) => self.set(*s),
+            Part::Lag(l) => {
+                self.set(l.set);
+                self.part(&l.base);
+            }
+            _ => {}
+        }
+    }
+
+    /// All of it as statements.
+    pub fn statements(&self) -> String {
+        let mut out = self.order();
+        for &s in &self.sets {
+            let symbol = self.symbols.get(s);
+            if let SymbolKind::Alias(root) = symbol.kind {
+                let root = match root {
+                    UNIVERSE => "*".to_string(),
+                    r => self.symbols.get(r).name.to_string(),
+                };
+                let _ = writeln!(out, "Alias ({root},{});", symbol.name);
+                continue;
+            }
+            let singleton = matches!(symbol.kind, SymbolKind::Set { singleton: true });
+            let word = if singleton { "Singleton set" } else { "Set" };
+            let table = self.store.table(symbol.table);
+            let head = self.head(s, &symbol.name);
+            let keys = records(table).map(|(k, _)| k.to_vec());
+            write_records(
+                self.store,
+                &mut out,
+                word,
+                &head,
+                &symbol.text,
+                true,
+                keys.map(|k| (k, 1.0)),
+            );
+        }
+        for &p in &self.parameters {
+            let symbol = self.symbols.get(p);
+            let table = self.store.table(symbol.table);
+            let head = self.head(p, &symbol.name);
+            let all = records(table).map(|(k, v)| (k.to_vec(), v));
+            write_records(
+                self.store,
+                &mut out,
+                "Parameter",
+                &head,
+                &symbol.text,
+                false,
+                all,
+            );
+        }
+        for &(s, offset) in &self.attributes {
+            let symbol = self.symbols.get(s);
+            let table = self.store.table(symbol.table + offset);
+            let head = self.head(s, &attribute_name(self.symbols, s, offset));
+            let text = format!(
+                "{}.{} at the solve",
+                symbol.name,
+                super::text::attribute_word(offset)
+            );
+            let default = table.default_value();
+            if default == 0.0 {
+                let all = records(table).map(|(k, v)| (k.to_vec(), v));
+                write_records(self.store, &mut out, "Parameter", &head, &text, false, all);
+                continue;
+            }
+            // What is not stored has another value than 0.
+            let mut keys = vec![Vec::new()];
+            for p in &symbol.domain {
+                let set = match p {
+                    DomainPosition::Set(d) => self.symbols.root(*d),
+                    _ => UNIVERSE,
+                };
+                let members = self.store.table(self.symbols.get(set).table);
+                let longer = |k: &Vec<Label>| {
+                    let k = k.clone();
+                    records(members).map(move |(m, _)| [k.as_slice(), m].concat())
+                };
+                keys = keys.iter().flat_map(longer).collect();
+            }
+            let all = keys.into_iter().map(|k| {
+                let v = table.get(&k);
+                (k, v)
+            });
+            write_records(self.store, &mut out, "Parameter", &head, &text, false, all);
+        }
+        out.push('\n');
+        out
+    }
+
+    /// Labels in the order they had, where the sets alone would bring them up in another one.
+    fn order(&self) -> String {
+        let mut seen: FxHashSet<Label> = FxHashSet::default();
+        let mut order: Vec<Label> = Vec::new();
+        for &s in &self.sets {
+            if matches!(self.symbols.get(s).kind, SymbolKind::Alias(_)) {
+                continue;
+            }
+            for (k, _) in records(self.store.table(self.symbols.get(s).table)) {
+                order.extend(k.iter().filter(|l| seen.insert(**l)));
+            }
+        }
+        if order.is_sorted() {
+            return String::new();
+        }
+        order.sort_unstable();
+        let mut name = "labels_in_order".to_string();
+        while self.symbols.find(&name).is_some() {
+            name.push('_');
+        }
+        let labels: Vec<String> = order
+            .iter()
+            .map(|l| quoted(self.store.universe.name(*l)))
+            .collect();
+        format!(
+            "Set {name} 'the labels in the order of the text'\n   / {} /;\n",
+            labels.join("\n     ")
+        )
+    }
+
+    fn head(&self, s: SymbolId, name: &str) -> String {
+        head(
+            self.symbols,
+            name,
+            &super::derive::domain_of(self.symbols, s),
+        )
+    }
+}
+
+fn head(symbols: &Symbols, name: &str, domain: &[SymbolId]) -> String {
+    let sets: Vec<&str> = domain.iter().map(|s| &*symbols.get(*s).name).collect();
+    match sets.is_empty() || sets == ["*"] {
+        true if sets.is_empty() => name.to_string(),
+        _ => format!("{name}({})", sets.join(",")),
+    }
+}
+
+/// The records of a table in label order, tidy or not.
+fn records(t: &Table) -> impl Iterator<Item = (&[Label], f64)> {
+    (0..t.len() as u32).map(|r| (t.key(r), t.value(r)))
+}
+
+/// Data that a derivation introduces, as a statement.
+pub fn statement(symbols: &Symbols, store: &Store, d: &NewData) -> String {
+    let mut out = String::new();
+    let word = if d.is_set { "Set" } else { "Parameter" };
+    let head = head(symbols, &d.name, &d.domain);
+    write_records(
+        store,
+        &mut out,
+        word,
+        &head,
+        &d.text,
+        d.is_set,
+        d.records.iter().cloned(),
+    );
+    out
+}
+
+fn write_records(
+    store: &Store,
+    out: &mut String,
+    word: &str,
+    head: &str,
+    text: &str,
+    is_set: bool,
+    records: impl Iterator<Item = (Vec<Label>, f64)>,
+) {
+    let _ = write!(out, "{word} {head}");
+    if !text.is_empty() {
+        let _ = write!(out, " {}", quoted(text));
+    }
+    let mut any = false;
+    for (key, v) in records {
+        out.push_str(if any { ",\n     " } else { "\n   / " });
+        any = true;
+        for (n, l) in key.iter().enumerate() {
+            if n > 0 {
+                out.push('.');
+            }
+            out.push_str(&quoted(store.universe.name(*l)));
+        }
+        if !is_set {
+            if !key.is_empty() {
+                out.push(' ');
+            }
+            out.push_str(&number(v));
+        }
+    }
+    if !any && !is_set {
+        // A parameter without records is 0 everywhere.
+        out.push_str(" / /");
+    } else {
+        out.push_str(if any { " /" } else { " / /" });
+    }
+    out.push_str(";\n");
+}

@@ -1,0 +1,693 @@
+//! What the dual and the optimality conditions share: the primal with its formulas and its numbers, names, and rows of
+//! columns.
+
+use super::gradient::{Term, gradient};
+use super::invert::{Inverted, invert, target_sets};
+use super::lower::Equation;
+use super::tree::*;
+use super::{Formulation, Multiplier, NewData, Origin, Sign};
+use crate::check::node::SymbolId;
+use crate::check::symbols::{DomainPosition, Store, SymbolKind, Symbols, UNIVERSE};
+use crate::data::universe::Label;
+use crate::run::Generated;
+use crate::syntax::ast::{ModelItem, VariableKind};
+use rustc_hash::FxHashSet;
+
+/// A model of the user at one of its solves.
+pub struct Primal {
+    /// Its name.
+    pub name: String,
+    /// Problem type.
+    pub using: String,
+    /// Direction and objective variable.
+    pub objective: Option<(Sense, SymbolId)>,
+    /// Its equations, as formulas.
+    pub equations: Vec<Equation>,
+    /// The indices of its formulas.
+    pub indices: Indices,
+    /// How many tuples each equation runs over; more than it has rows where some of these are empty.
+    pub tuples: Vec<usize>,
+    /// Its instance with the data of the solve.
+    pub generated: Generated,
+    /// The answer of the solve, by the columns and rows of the instance.
+    pub answer: Option<Values>,
+}
+
+/// Levels and marginals.
+#[derive(Clone, Debug, Default)]
+pub struct Values {
+    /// Levels by column.
+    pub level: Vec<f64>,
+    /// Marginals by column.
+    pub column_marginal: Vec<f64>,
+    /// Levels by row, constants on the right side.
+    pub activity: Vec<f64>,
+    /// Marginals by row.
+    pub row_marginal: Vec<f64>,
+}
+
+/// The objective function after its variable was eliminated.
+pub struct Eliminated {
+    /// The equation that defined it.
+    pub equation: usize,
+    /// The objective function.
+    pub function: Expr,
+}
+
+/// A derivation at work.
+pub struct Derivation<'a> {
+    /// All names.
+    pub symbols: &'a Symbols,
+    /// Data as they were at the solve.
+    pub store: &'a Store,
+    /// The model.
+    pub primal: &'a Primal,
+    /// What comes out.
+    pub out: Formulation,
+    /// The objective function, where its variable could be eliminated.
+    pub eliminated: Option<Eliminated>,
+    /// Terms by equation.
+    terms: Vec<Vec<Term>>,
+    /// The multiplier of each equation.
+    multipliers: Vec<Option<usize>>,
+    /// Multipliers are those of the text with the opposite sign.
+    flip: bool,
+    taken: FxHashSet<String>,
+}
+
+impl<'a> Derivation<'a> {
+    /// Begins; `Err` says which equation has no derivatives, and why.
+    pub fn new(
+        symbols: &'a Symbols,
+        store: &'a Store,
+        primal: &'a Primal,
+        name: String,
+        using: &str,
+    ) -> Result<Self, (usize, String)> {
+        let taken = symbols.iter().map(|(_, s)| s.name.to_lowercase()).collect();
+        let mut indices = primal.indices.clone();
+        let mut terms = Vec::new();
+        for (k, e) in primal.equations.iter().enumerate() {
+            terms.push(gradient(&e.left, &e.right, &mut indices).map_err(|why| (k, why))?);
+        }
+        let mut d = Self {
+            symbols,
+            store,
+            primal,
+            out: Formulation {
+                name,
+                using: using.into(),
+                objective: None,
+                objective_name: String::new(),
+                own: Vec::new(),
+                multipliers: Vec::new(),
+                rows: Vec::new(),
+                data: Vec::new(),
+                start: Vec::new(),
+                indices,
+                flipped: false,
+                by_instance: Vec::new(),
+                notes: Vec::new(),
+            },
+            eliminated: None,
+            multipliers: vec![None; terms.len()],
+            terms,
+            flip: false,
+            taken,
+        };
+        d.eliminated = d.eliminate();
+        Ok(d)
+    }
+
+    /// A name that is not in use yet.
+    pub fn fresh(&mut self, wanted: &str) -> String {
+        let mut name = wanted.to_string();
+        let mut n = 2;
+        while !self.taken.insert(name.to_lowercase()) {
+            name = format!("{wanted}_{n}");
+            n += 1;
+        }
+        name
+    }
+
+    /// The objective function, where one `=e=` row without indices defines its variable and nothing else holds it.
+    fn eliminate(&self) -> Option<Eliminated> {
+        let (_, z) = self.primal.objective?;
+        let of_z = |t: &&Term| t.variable == Variable::Own(z);
+        let mut found = None;
+        for (k, e) in self.primal.equations.iter().enumerate() {
+            let mut mine = self.terms[k].iter().filter(of_z);
+            let Some(t) = mine.next() else { continue };
+            let alone = mine.next().is_none() && found.is_none();
+            let scalar = e.binder == Binder::default() && e.key.is_empty();
+            let free = t.binder == Binder::default();
+            if !alone || !scalar || !free || e.relation != Relation::Equal {
+                return None;
+            }
+            let a = t.coefficient();
+            let by_others = self.terms[k]
+                .iter()
+                .filter(|o| o.variable != t.variable)
+                .any(|o| o.factors.iter().any(|(_, f)| mentions(f, z)));
+            if a.has_variable() || a.opaque().is_some() || by_others {
+                return None;
+            }
+            found = Some((k, a));
+        }
+        let (k, a) = found?;
+        let columns = &self.primal.generated.instance.columns;
+        let origin = &self.primal.generated.origin;
+        let at = origin.columns.symbol(z)?.start as usize;
+        if columns.lower[at].is_finite() || columns.upper[at].is_finite() {
+            return None;
+        }
+        let e = &self.primal.equations[k];
+        let whole = sum(vec![(true, e.left.clone()), (false, e.right.clone())]);
+        let zero = |e| match e {
+            Expr::Variable(Variable::Own(s), _) if s == z => Some(Expr::Number(0.0)),
+            e => Some(e),
+        };
+        let rest = whole.map(&mut { zero }, &mut |p| Some(p.clone()))?;
+        Some(Eliminated {
+            equation: k,
+            function: over(rest, a),
+        })
+    }
+
+    /// Whether an equation is the one that defines the objective, and is gone.
+    pub fn is_eliminated(&self, equation: usize) -> bool {
+        self.eliminated
+            .as_ref()
+            .is_some_and(|o| o.equation == equation)
+    }
+
+    /// The objective variable, where it was eliminated.
+    pub fn eliminated_variable(&self) -> Option<SymbolId> {
+        self.eliminated.as_ref()?;
+        self.primal.objective.map(|o| o.1)
+    }
+
+    /// Where the text pairs an equation with a variable that is not in this model, that variable is its multiplier's name.
+    fn names_of_text(&self) -> Vec<Option<SymbolId>> {
+        let mut pairs: Vec<(SymbolId, SymbolId)> = Vec::new();
+        for (_, s) in self.symbols.iter() {
+            let SymbolKind::Model(m) = &s.kind else {
+                continue;
+            };
+            for item in m.items.iter().flatten() {
+                if let ModelItem::Pair { rows, column } = item
+                    && let Some(v) = self.symbols.find(&column.name)
+                {
+                    let rows = rows.iter().filter_map(|r| self.symbols.find(&r.name));
+                    pairs.extend(rows.map(|r| (r, v)));
+                }
+            }
+        }
+        let used = |v: SymbolId| {
+            let columns = &self.primal.generated.origin.columns;
+            columns.symbol(v).is_some()
+        };
+        let mut names: Vec<Option<SymbolId>> = Vec::new();
+        for e in &self.primal.equations {
+            let dim = self.symbols.get(e.symbol).dim();
+            let of = |p: &&(SymbolId, SymbolId)| {
+                p.0 == e.symbol && !used(p.1) && self.symbols.get(p.1).dim() == dim
+            };
+            let name = pairs.iter().find(of).map(|p| p.1);
+            let name = name.filter(|v| !names.contains(&Some(*v)));
+            names.push(name);
+        }
+        names
+    }
+
+    /// Introduces the multipliers of the rows, with the sign that GAMS's marginals have, or, if `as_in_text`, with the one
+    /// that the text gives to the variables it pairs with these rows.
+    pub fn multipliers_of_rows(&mut self, as_in_text: bool) {
+        let minimum = self.is_minimum();
+        let names = self.names_of_text();
+        let sign = |e: &Equation| match (e.relation, minimum) {
+            (Relation::Equal, _) => Some(Sign::Free),
+            (Relation::Greater, true) | (Relation::Less, false) => Some(Sign::Positive),
+            (Relation::Less, true) | (Relation::Greater, false) => Some(Sign::Negative),
+            (Relation::Free, _) => None,
+        };
+        let equations = &self.primal.equations;
+        let opposite = equations.iter().zip(&names).any(|(e, name)| {
+            let kind = name.map(|v| &self.symbols.get(v).kind);
+            matches!(
+                (kind, sign(e)),
+                (
+                    Some(SymbolKind::Variable(VariableKind::Positive)),
+                    Some(Sign::Negative)
+                ) | (
+                    Some(SymbolKind::Variable(VariableKind::Negative)),
+                    Some(Sign::Positive)
+                )
+            )
+        });
+        self.flip = as_in_text && opposite;
+        self.out.flipped = self.flip;
+        for (k, e) in equations.iter().enumerate() {
+            let Some(sign) = sign(e).filter(|_| !self.is_eliminated(k)) else {
+                continue;
+            };
+            let name = match names[k] {
+                Some(v) => self.symbols.get(v).name.to_string(),
+                None => self.fresh(&format!("y_{}", self.symbols.get(e.symbol).name)),
+            };
+            let domain = domain_of(self.symbols, e.symbol);
+            self.multipliers[k] = Some(self.out.multipliers.len());
+            self.out.multipliers.push(Multiplier {
+                name,
+                domain,
+                sign: self.flipped(sign),
+                origin: Origin::Row(e.symbol),
+            });
+        }
+        if self.flip {
+            self.out.notes.push(
+                "The text pairs these rows with variables of the opposite sign: the multipliers here are the marginals times -1."
+                    .into(),
+            );
+        }
+    }
+
+    /// The sign of a multiplier as it is shown.
+    pub fn flipped(&self, sign: Sign) -> Sign {
+        match (sign, self.flip) {
+            (Sign::Positive, true) => Sign::Negative,
+            (Sign::Negative, true) => Sign::Positive,
+            (s, _) => s,
+        }
+    }
+
+    /// A multiplier with its key, as an expression with GAMS's sign.
+    pub fn multiplier(&self, number: usize, key: Vec<Part>) -> Expr {
+        let y = Expr::Variable(Variable::Multiplier(number), key);
+        if self.flip { negate(y) } else { y }
+    }
+
+    /// The number of the multiplier of an equation.
+    pub fn multiplier_number(&self, equation: usize) -> Option<usize> {
+        self.multipliers[equation]
+    }
+
+    /// The declared kind of a variable.
+    pub fn kind(&self, v: SymbolId) -> VariableKind {
+        kind(self.symbols, v)
+    }
+
+    /// The multiplier of an equation with its key.
+    pub fn multiplier_of(&self, equation: usize) -> Option<Expr> {
+        let key = self.primal.equations[equation].key.clone();
+        Some(self.multiplier(self.multipliers[equation]?, key))
+    }
+
+    /// Whether the objective is to be small.
+    pub fn is_minimum(&self) -> bool {
+        !matches!(self.primal.objective, Some((Sense::Maximize, _)))
+    }
+
+    /// The user's variables with columns, but for an eliminated objective.
+    pub fn variables(&self) -> Vec<SymbolId> {
+        let gone = self.eliminated_variable();
+        let blocks = self.primal.generated.origin.columns.list.iter();
+        blocks
+            .map(|b| b.symbol)
+            .filter(|s| Some(*s) != gone)
+            .collect()
+    }
+
+    /// Whether a column of a variable stands in no row with a multiplier, and in the objective at most linearly.
+    pub fn is_without_row(&self, v: SymbolId) -> bool {
+        let g = &self.primal.generated;
+        let Some(block) = g.origin.columns.symbol(v) else {
+            return false;
+        };
+        let gone = self.eliminated.as_ref().and_then(|o| {
+            let rows = g
+                .origin
+                .rows
+                .symbol(self.primal.equations[o.equation].symbol);
+            rows.map(|b| b.start as usize)
+        });
+        let mut alone = vec![true; block.len as usize];
+        let mut seen = |j: u32| {
+            if let Some(a) = j
+                .checked_sub(block.start)
+                .and_then(|k| alone.get_mut(k as usize))
+            {
+                *a = false;
+            }
+        };
+        let relation = &g.instance.rows.relation;
+        let m = &g.instance.matrix;
+        for i in (0..relation.len()).filter(|&i| Some(i) != gone && relation[i] != Relation::Free) {
+            m.row(i).for_each(|(j, _)| seen(j as u32));
+        }
+        for k in &g.instance.nonlinear {
+            let width = k.kernel.variables as usize;
+            for (t, &i) in k.row.iter().enumerate() {
+                if relation[i as usize] != Relation::Free {
+                    k.columns[t * width..(t + 1) * width]
+                        .iter()
+                        .for_each(|j| seen(*j));
+                }
+            }
+        }
+        alone.contains(&true)
+    }
+
+    /// The columns of a variable: keys, lower and upper bounds.
+    pub fn columns(&self, v: SymbolId) -> Vec<(&'a [Label], f64, f64)> {
+        let primal: &'a Primal = self.primal;
+        let Some(b) = primal.generated.origin.columns.symbol(v) else {
+            return Vec::new();
+        };
+        let c = &primal.generated.instance.columns;
+        (b.start..b.start + b.len)
+            .map(|j| (b.key(j), c.lower[j as usize], c.upper[j as usize]))
+            .collect()
+    }
+
+    /// The row of a variable's columns: its indices, what the equations add to it (with their multipliers), and what the
+    /// objective adds.
+    pub fn column_row(&mut self, v: SymbolId) -> Result<ColumnRow, String> {
+        let me = Variable::Own(v);
+        let mut cost_terms = Vec::new();
+        if let Some(o) = &self.eliminated {
+            let f = o.function.clone();
+            cost_terms = gradient(&f, &Expr::Number(0.0), &mut self.out.indices)?;
+            cost_terms.retain(|t| t.variable == me);
+        }
+        let terms: Vec<(usize, Term)> = self
+            .terms
+            .iter()
+            .enumerate()
+            .filter(|(k, _)| self.multipliers[*k].is_some())
+            .flat_map(|(k, t)| {
+                t.iter()
+                    .filter(|t| t.variable == me)
+                    .map(move |t| (k, t.clone()))
+            })
+            .collect();
+        let references: Vec<&[Part]> = terms
+            .iter()
+            .map(|t| t.1.key.as_slice())
+            .chain(cost_terms.iter().map(|t| t.key.as_slice()))
+            .collect();
+        let sets = target_sets(
+            self.symbols,
+            &self.out.indices,
+            &self.symbols.get(v).domain,
+            &references,
+        );
+        let target: Vec<IndexId> = sets.iter().map(|s| self.out.indices.add(*s)).collect();
+        let mut rows = Vec::new();
+        let mut done: Vec<usize> = Vec::new();
+        for (k, t) in &terms {
+            if done.contains(k) {
+                continue;
+            }
+            let e = &self.primal.equations[*k];
+            if let Some(why) = opaque(e, t) {
+                done.push(*k);
+                rows.push(self.by_instance(*k, v, &target, why)?);
+                continue;
+            }
+            let y = self.multiplier_of(*k);
+            let i = invert(
+                self.symbols,
+                &self.out.indices,
+                t,
+                &e.binder,
+                y.as_ref(),
+                &target,
+            );
+            rows.push(i);
+        }
+        let mut cost = Vec::new();
+        let nothing = Binder::default();
+        for t in &cost_terms {
+            if let Some(e) = &self.eliminated
+                && let Some(why) = opaque(&self.primal.equations[e.equation], t)
+            {
+                cost = vec![self.by_instance(e.equation, v, &target, why)?];
+                break;
+            }
+            cost.push(invert(
+                self.symbols,
+                &self.out.indices,
+                t,
+                &nothing,
+                None,
+                &target,
+            ));
+        }
+        if self.eliminated.is_none() && self.primal.objective.is_some_and(|o| o.1 == v) {
+            cost.push(Inverted {
+                conditions: Vec::new(),
+                body: Expr::Number(1.0),
+            });
+        }
+        let common = common(&mut rows, &mut cost);
+        let add = |list: Vec<Inverted>| {
+            sum(list
+                .into_iter()
+                .map(|i| (false, guarded(i.body, i.conditions)))
+                .collect())
+        };
+        Ok(ColumnRow {
+            sets,
+            target,
+            conditions: common,
+            rows: add(rows),
+            cost: add(cost),
+        })
+    }
+
+    /// The coefficients of a variable in an equation as data, where they cannot be written in symbols.
+    fn by_instance(
+        &mut self,
+        equation: usize,
+        v: SymbolId,
+        target: &[IndexId],
+        why: &str,
+    ) -> Result<Inverted, String> {
+        let e = &self.primal.equations[equation];
+        let (en, vn) = (
+            self.symbols.get(e.symbol).name.to_string(),
+            self.symbols.get(v).name.to_string(),
+        );
+        let g = &self.primal.generated;
+        let (Some(rows), Some(columns)) =
+            (g.origin.rows.symbol(e.symbol), g.origin.columns.symbol(v))
+        else {
+            return Ok(Inverted {
+                conditions: vec![],
+                body: Expr::Number(0.0),
+            });
+        };
+        let nonlinear = g.instance.nonlinear_rows();
+        let mut records = Vec::new();
+        let inside = |j: usize| (columns.start..columns.start + columns.len).contains(&(j as u32));
+        // The objective's function is what is left when its variable is solved for.
+        let divisor = |i: usize| match self.is_eliminated(equation) {
+            true => {
+                let z = self.primal.objective.map(|o| o.1);
+                let z = z
+                    .and_then(|z| g.origin.columns.symbol(z))
+                    .map(|b| b.start as usize);
+                let a = g.instance.matrix.row(i).find(|(j, _)| Some(*j) == z);
+                -a.map_or(1.0, |a| a.1)
+            }
+            false => 1.0,
+        };
+        for i in rows.start..rows.start + rows.len {
+            if nonlinear[i as usize] {
+                return Err(format!("`{en}` is nonlinear, and it depends on {why}"));
+            }
+            for (j, a) in g
+                .instance
+                .matrix
+                .row(i as usize)
+                .filter(|(j, _)| inside(*j))
+            {
+                let key = [rows.key(i), columns.key(j as u32)].concat();
+                records.push((key, a / divisor(i as usize)));
+            }
+        }
+        self.out.by_instance.push(format!("{vn} in {en}: {why}"));
+        let mut domain = domain_of(self.symbols, e.symbol);
+        let row: Vec<IndexId> = domain.iter().map(|s| self.out.indices.add(*s)).collect();
+        domain.extend(domain_of(self.symbols, v));
+        let name = self.fresh(&format!("a_{en}_{vn}"));
+        let data = self.out.data.len();
+        self.out.data.push(NewData {
+            name,
+            text: format!("coefficients of {vn} in {en}"),
+            domain,
+            is_set: false,
+            records,
+        });
+        let parts =
+            |list: &[IndexId]| -> Vec<Part> { list.iter().map(|k| Part::Index(*k)).collect() };
+        let a = Expr::Data(Source::New(data), [parts(&row), parts(target)].concat());
+        let y = match self.multipliers[equation] {
+            Some(m) => self.multiplier(m, parts(&row)),
+            None => Expr::Number(1.0),
+        };
+        let binder = Binder {
+            indices: row,
+            conditions: Vec::new(),
+        };
+        Ok(Inverted {
+            conditions: Vec::new(),
+            body: sum_over(binder, times(a, y)),
+        })
+    }
+
+    /// A set of records as data, guarded by it; no condition where it has all tuples.
+    pub fn membership(
+        &mut self,
+        name: &str,
+        text: String,
+        domain: Vec<SymbolId>,
+        over: &[SymbolId],
+        target: &[IndexId],
+        keys: Vec<Vec<Label>>,
+    ) -> Option<Expr> {
+        let size = |s: &SymbolId| self.store.table(self.symbols.get(*s).table).len();
+        let all: usize = over.iter().map(size).product();
+        if keys.len() == all {
+            return None;
+        }
+        let name = self.fresh(name);
+        self.out.data.push(NewData {
+            name,
+            text,
+            domain,
+            is_set: true,
+            records: keys.into_iter().map(|k| (k, 1.0)).collect(),
+        });
+        let key = target.iter().map(|j| Part::Index(*j)).collect();
+        Some(Expr::NewMember(self.out.data.len() - 1, key))
+    }
+
+    /// The constants of an equation on its right side, under what it runs over.
+    pub fn right_side(&mut self, equation: usize) -> (Binder, Vec<Part>, Expr) {
+        let e = &self.primal.equations[equation];
+        let (left, right) = (e.left.without_variables(), e.right.without_variables());
+        let b = sum(vec![(false, right), (true, left)]);
+        let dark = |c: &Expr| c.opaque();
+        let why = dark(&b).or_else(|| e.binder.conditions.iter().find_map(dark));
+        let Some(why) = why else {
+            return (e.binder.clone(), e.key.clone(), b);
+        };
+        let en = self.symbols.get(e.symbol).name.to_string();
+        let g = &self.primal.generated;
+        let mut records = Vec::new();
+        if let Some(rows) = g.origin.rows.symbol(e.symbol) {
+            for i in rows.start..rows.start + rows.len {
+                records.push((rows.key(i).to_vec(), g.instance.rows.rhs[i as usize]));
+            }
+        }
+        self.out
+            .by_instance
+            .push(format!("right side of {en}: {why}"));
+        let domain = domain_of(self.symbols, e.symbol);
+        let row: Vec<IndexId> = domain.iter().map(|s| self.out.indices.add(*s)).collect();
+        let name = self.fresh(&format!("b_{en}"));
+        self.out.data.push(NewData {
+            name,
+            text: format!("right side of {en}"),
+            domain,
+            is_set: false,
+            records,
+        });
+        let key: Vec<Part> = row.iter().map(|k| Part::Index(*k)).collect();
+        let b = Expr::Data(Source::New(self.out.data.len() - 1), key.clone());
+        let binder = Binder {
+            indices: row,
+            conditions: Vec::new(),
+        };
+        (binder, key, b)
+    }
+}
+
+/// The row of a variable's columns.
+pub struct ColumnRow {
+    /// The sets it runs over.
+    pub sets: Vec<SymbolId>,
+    /// Its indices.
+    pub target: Vec<IndexId>,
+    /// What holds of all its terms.
+    pub conditions: Vec<Expr>,
+    /// `Σ coefficient · multiplier` over the equations.
+    pub rows: Expr,
+    /// The derivative of the objective.
+    pub cost: Expr,
+}
+
+impl ColumnRow {
+    /// Its key.
+    pub fn key(&self) -> Vec<Part> {
+        self.target.iter().map(|j| Part::Index(*j)).collect()
+    }
+
+    /// What it runs over, with one more condition.
+    pub fn binder(&self, more: Option<Expr>) -> Binder {
+        let mut conditions = self.conditions.clone();
+        conditions.extend(more);
+        Binder {
+            indices: self.target.clone(),
+            conditions,
+        }
+    }
+}
+
+/// Takes the conditions out that all terms share.
+fn common(rows: &mut [Inverted], cost: &mut [Inverted]) -> Vec<Expr> {
+    let mut all = rows.iter().chain(cost.iter());
+    let Some(first) = all.next() else {
+        return Vec::new();
+    };
+    let mut common = first.conditions.clone();
+    common.retain(|c| all.clone().all(|i| i.conditions.contains(c)));
+    for i in rows.iter_mut().chain(cost) {
+        i.conditions.retain(|c| !common.contains(c));
+    }
+    common
+}
+
+fn opaque(e: &Equation, t: &Term) -> Option<&'static str> {
+    let row = e.binder.conditions.iter().chain(&t.binder.conditions);
+    let all = row.chain(t.factors.iter().map(|(_, f)| f));
+    let in_key = |k: &[Part]| Expr::Member(UNIVERSE, k.to_vec()).opaque();
+    let mut found = all.filter_map(Expr::opaque);
+    found
+        .next()
+        .or_else(|| in_key(&t.key))
+        .or_else(|| in_key(&e.key))
+}
+
+fn mentions(e: &Expr, v: SymbolId) -> bool {
+    e.any(&|e| matches!(e, Expr::Variable(Variable::Own(s), _) if *s == v))
+}
+
+/// The declared kind of a variable.
+pub fn kind(symbols: &Symbols, v: SymbolId) -> VariableKind {
+    match symbols.get(v).kind {
+        SymbolKind::Variable(k) => k,
+        _ => VariableKind::Free,
+    }
+}
+
+/// The sets that a symbol is declared over; the universe where none is known.
+pub fn domain_of(symbols: &Symbols, s: SymbolId) -> Vec<SymbolId> {
+    let set = |p: &DomainPosition| match p {
+        DomainPosition::Set(s) => symbols.root(*s),
+        _ => UNIVERSE,
+    };
+    symbols.get(s).domain.iter().map(set).collect()
+}

@@ -1,0 +1,218 @@
+//! The dual of a linear program, with indices and with GAMS's signs: its levels are the primal's marginals.
+
+use super::derive::{Derivation, Primal, domain_of};
+use super::tree::*;
+use super::{Formulation, Multiplier, Origin, Row, Sign};
+use crate::check::node::SymbolId;
+use crate::check::symbols::{Store, Symbols, attribute};
+use crate::data::universe::Label;
+
+/// Derives the dual of a linear model. `as_in_text`: multipliers have the signs of the variables that the text pairs with
+/// their rows. `Err` says why there is none.
+pub fn dual(
+    symbols: &Symbols,
+    store: &Store,
+    primal: &Primal,
+    as_in_text: bool,
+) -> Result<Formulation, String> {
+    let Some((sense, _)) = primal.objective else {
+        return Err("the model has no objective: nothing is minimised or maximised".into());
+    };
+    let name = format!("dual_{}", primal.name);
+    let mut d = Derivation::new(symbols, store, primal, name.clone(), "lp")
+        .map_err(|(k, why)| format!("`{}`: {why}", symbols.get(primal.equations[k].symbol).name))?;
+    d.out.name = d.fresh(&name);
+    d.multipliers_of_rows(as_in_text);
+    let mut objective = Vec::new();
+    for k in 0..primal.equations.len() {
+        let Some(number) = d.multiplier_number(k) else {
+            continue;
+        };
+        let (binder, key, b) = d.right_side(k);
+        let y = d.multiplier(number, key);
+        objective.push((false, sum_over(binder, times(b, y))));
+    }
+    for v in d.variables() {
+        let mut bounds = column(&mut d, v)?;
+        objective.append(&mut bounds);
+    }
+    if let Some(o) = &d.eliminated {
+        objective.push((false, o.function.without_variables()));
+    }
+    let other = match sense {
+        Sense::Minimize => Sense::Maximize,
+        Sense::Maximize => Sense::Minimize,
+    };
+    d.out.objective = Some((other, sum(objective)));
+    d.out.objective_name = d.fresh("dual_objective");
+    Ok(d.out)
+}
+
+/// The columns of a variable that have the same sign.
+struct Class {
+    sign: Sign,
+    keys: Vec<usize>,
+}
+
+/// The rows of a variable's columns, and what their bounds add to the objective.
+fn column(d: &mut Derivation, v: SymbolId) -> Result<Vec<(bool, Expr)>, String> {
+    let columns = d.columns(v);
+    let row = d.column_row(v)?;
+    let name = d.symbols.get(v).name.to_string();
+    let minimum = d.is_minimum();
+    let classes = classes(&columns);
+    let mut objective = Vec::new();
+    // Bounds that are not said by the sign: multipliers of their own.
+    let mut bounds = Vec::new();
+    let single = (classes.len() == 1).then(|| classes[0].sign);
+    let sign_of = |lo: f64, up: f64| single.unwrap_or(SIGNS[class_of(lo, up)]);
+    let pick = |test: &dyn Fn(f64, f64) -> bool| -> Vec<Vec<Label>> {
+        let wanted = columns.iter().filter(|(_, lo, up)| test(*lo, *up));
+        wanted.map(|(key, ..)| key.to_vec()).collect()
+    };
+    let kinds = [
+        (
+            "lo",
+            attribute::LO,
+            pick(&|lo, up| {
+                lo.is_finite() && lo != up && !(sign_of(lo, up) == Sign::Positive && lo == 0.0)
+            }),
+        ),
+        (
+            "up",
+            attribute::UP,
+            pick(&|lo, up| {
+                up.is_finite() && lo != up && !(sign_of(lo, up) == Sign::Negative && up == 0.0)
+            }),
+        ),
+        ("fx", attribute::LO, pick(&|lo, up| lo == up)),
+    ];
+    for (which, offset, keys) in kinds {
+        if keys.is_empty() {
+            continue;
+        }
+        let (origin, sign, text) = match (which, minimum) {
+            ("lo", m) => (
+                Origin::Lower(v),
+                if m { Sign::Positive } else { Sign::Negative },
+                "a lower bound",
+            ),
+            ("up", m) => (
+                Origin::Upper(v),
+                if m { Sign::Negative } else { Sign::Positive },
+                "an upper bound",
+            ),
+            _ => (Origin::Fixed(v), Sign::Free, "a fixed value"),
+        };
+        let domain = domain_of(d.symbols, v);
+        let multiplier = Multiplier {
+            name: d.fresh(&format!("y_{which}_{name}")),
+            domain: domain.clone(),
+            sign: d.flipped(sign),
+            origin,
+        };
+        let number = d.out.multipliers.len();
+        d.out.multipliers.push(multiplier);
+        let y = d.multiplier(number, row.key());
+        let guard = d.membership(
+            &format!("has_{which}_{name}"),
+            format!("columns of {name} with {text}"),
+            domain,
+            &row.sets,
+            &row.target,
+            keys,
+        );
+        bounds.push((false, guarded(y.clone(), guard.iter().cloned().collect())));
+        let bound = Expr::Data(Source::Attribute(v, offset), row.key());
+        let binder = match &guard {
+            // The conditions of the row hold where there is such a column.
+            Some(g) => Binder {
+                indices: row.target.clone(),
+                conditions: vec![g.clone()],
+            },
+            None => row.binder(None),
+        };
+        objective.push((false, sum_over(binder, times(bound, y))));
+    }
+    bounds.insert(0, (false, row.rows.clone()));
+    let left = sum(bounds);
+    for (n, class) in classes.iter().enumerate() {
+        let keys = class.keys.iter().map(|&i| columns[i].0.to_vec()).collect();
+        let (suffix, guard) = match classes.len() {
+            1 => (String::new(), None),
+            _ => {
+                let word = match class.sign {
+                    Sign::Positive => "positive",
+                    Sign::Negative => "negative",
+                    Sign::Free => "free",
+                };
+                let guard = d.membership(
+                    &format!("{word}_{name}"),
+                    format!("columns of {name} that are {word}"),
+                    domain_of(d.symbols, v),
+                    &row.sets,
+                    &row.target,
+                    keys,
+                );
+                (format!("_{}", n + 1), guard)
+            }
+        };
+        let relation = match (class.sign, minimum) {
+            (Sign::Free, _) => Relation::Equal,
+            (Sign::Positive, true) | (Sign::Negative, false) => Relation::Less,
+            _ => Relation::Greater,
+        };
+        let text = format!("dual of {name}");
+        let row_name = d.fresh(&format!("dual_{name}{suffix}"));
+        d.out.rows.push(Row {
+            name: row_name,
+            text,
+            domain: domain_of(d.symbols, v),
+            key: row.key(),
+            binder: row.binder(guard),
+            left: left.clone(),
+            relation,
+            right: row.cost.clone(),
+            pair: Some(Variable::Own(v)),
+        });
+    }
+    Ok(objective)
+}
+
+const SIGNS: [Sign; 3] = [Sign::Positive, Sign::Negative, Sign::Free];
+
+/// The place in [`SIGNS`] of what bounds say of a sign.
+fn class_of(lower: f64, upper: f64) -> usize {
+    match (lower, upper) {
+        _ if lower >= 0.0 => 0,
+        _ if upper <= 0.0 => 1,
+        _ => 2,
+    }
+}
+
+/// Columns that are at least 0, at most 0, and others.
+fn classes(columns: &[(&[Label], f64, f64)]) -> Vec<Class> {
+    let mut out: Vec<Class> = SIGNS
+        .map(|sign| Class {
+            sign,
+            keys: Vec::new(),
+        })
+        .into();
+    for (i, &(_, lo, up)) in columns.iter().enumerate() {
+        out[class_of(lo, up)].keys.push(i);
+    }
+    out.retain(|c| !c.keys.is_empty());
+    if let [one] = out.as_mut_slice() {
+        // A sign that no column needs is none.
+        let mut each = columns.iter();
+        let needed = match one.sign {
+            Sign::Positive => each.any(|c| c.1 == 0.0 && c.2 > 0.0),
+            Sign::Negative => each.any(|c| c.2 == 0.0 && c.1 < 0.0),
+            Sign::Free => true,
+        };
+        if !needed {
+            one.sign = Sign::Free;
+        }
+    }
+    out
+}

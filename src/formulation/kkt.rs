@@ -1,0 +1,276 @@
+//! The optimality conditions of a smooth program (Karush, Kuhn, Tucker) as a complementarity problem, with indices.
+//!
+//! Of a minimum, `∇f − Σ y ∇g ⟂ l ≤ x ≤ u` and each row with its multiplier; of a maximum the same with opposite signs, so
+//! that the multipliers are GAMS's marginals.
+
+use super::derive::{Derivation, Primal, domain_of};
+use super::tree::*;
+use super::{Assignment, Formulation, NewData, Row};
+use crate::check::node::SymbolId;
+use crate::check::symbols::{Store, Symbols};
+use crate::data::table::Table;
+use crate::data::universe::Label;
+use crate::data::value::EPS;
+use crate::syntax::ast::VariableKind;
+
+/// Why there are no optimality conditions, and the equation that is to blame.
+pub type Refusal = (Option<usize>, String);
+
+/// Derives the optimality conditions of a model.
+pub fn kkt(symbols: &Symbols, store: &Store, primal: &Primal) -> Result<Formulation, Refusal> {
+    if primal.objective.is_none() {
+        let why = "the model has no objective: nothing is minimised or maximised";
+        return Err((None, why.into()));
+    }
+    let name = format!("kkt_{}", primal.name);
+    let mut d = Derivation::new(symbols, store, primal, name.clone(), "mcp")
+        .map_err(|(k, why)| (Some(k), why))?;
+    d.out.name = d.fresh(&name);
+    d.multipliers_of_rows(false);
+    for v in d.variables() {
+        d.out.own.push(v);
+        stationarity(&mut d, v).map_err(|why| (None, why))?;
+    }
+    for k in 0..primal.equations.len() {
+        feasibility(&mut d, k);
+    }
+    for v in d.variables() {
+        start_of_columns(&mut d, v);
+    }
+    Ok(d.out)
+}
+
+/// `∇f − Σ y ∇g ⟂ x`
+fn stationarity(d: &mut Derivation, v: SymbolId) -> Result<(), String> {
+    let row = d.column_row(v)?;
+    let columns = d.columns(v);
+    let name = d.symbols.get(v).name.to_string();
+    let each = |test: &dyn Fn(f64, f64) -> bool| columns.iter().all(|c| test(c.1, c.2));
+    let relation = match () {
+        () if each(&|lo, up| !lo.is_finite() && !up.is_finite()) => Relation::Equal,
+        () if each(&|lo, up| lo.is_finite() && !up.is_finite()) => Relation::Greater,
+        () if each(&|lo, up| !lo.is_finite() && up.is_finite()) => Relation::Less,
+        () => Relation::Free,
+    };
+    let keys: Vec<Vec<Label>> = columns.iter().map(|c| c.0.to_vec()).collect();
+    let guard = match is_exact(d, &row.conditions, &row.sets, &row.target, keys.len()) {
+        true => None,
+        false => d.membership(
+            &format!("in_{name}"),
+            format!("columns of {name}"),
+            domain_of(d.symbols, v),
+            &row.sets,
+            &row.target,
+            keys,
+        ),
+    };
+    let left = match d.is_minimum() {
+        true => sum(vec![(false, row.cost.clone()), (true, row.rows.clone())]),
+        false => sum(vec![(false, row.rows.clone()), (true, row.cost.clone())]),
+    };
+    // A variable that stands in no row is kept in the model by a coefficient eps.
+    let left = match d.is_without_row(v) {
+        true => {
+            let eps = times(
+                Expr::Number(EPS),
+                Expr::Variable(Variable::Own(v), row.key()),
+            );
+            sum(vec![(false, left), (false, eps)])
+        }
+        false => left,
+    };
+    let row_name = d.fresh(&format!("stat_{name}"));
+    d.out.rows.push(Row {
+        name: row_name,
+        text: format!("stationarity in {name}"),
+        domain: domain_of(d.symbols, v),
+        key: row.key(),
+        binder: row.binder(guard),
+        left,
+        relation,
+        right: Expr::Number(0.0),
+        pair: Some(Variable::Own(v)),
+    });
+    Ok(())
+}
+
+/// Whether conditions leave as many tuples of these sets as there are columns; false where that is not easily seen.
+fn is_exact(
+    d: &Derivation,
+    conditions: &[Expr],
+    sets: &[SymbolId],
+    target: &[IndexId],
+    columns: usize,
+) -> bool {
+    let table = |s: SymbolId| -> &Table { d.store.table(d.symbols.get(d.symbols.root(s)).table) };
+    let mut tests: Vec<(&Table, Vec<usize>)> = Vec::new();
+    for c in conditions {
+        let Expr::Member(s, key) = c else {
+            return false;
+        };
+        let place = |p: &Part| match p {
+            Part::Index(k) => target.iter().position(|j| j == k),
+            _ => None,
+        };
+        match key.iter().map(place).collect::<Option<Vec<usize>>>() {
+            Some(places) => tests.push((table(*s), places)),
+            None => return false,
+        }
+    }
+    let all = |t: &(&Table, Vec<usize>)| (0..target.len()).all(|q| t.1.contains(&q));
+    let Some((driver, places)) = tests.iter().find(|t| all(t)) else {
+        let size: usize = sets.iter().map(|s| table(*s).len()).product();
+        return tests.is_empty() && size == columns
+            || matches!(tests.as_slice(), [(t, p)] if t.len() * size
+                / p.iter().map(|&q| table(sets[q]).len()).product::<usize>().max(1) == columns
+                && p.iter().enumerate().all(|(n, q)| !p[..n].contains(q)));
+    };
+    let count = (0..driver.len() as u32).filter(|&r| {
+        let key = driver.key(r);
+        let mut tuple = vec![0; target.len()];
+        places.iter().zip(key).for_each(|(&q, l)| tuple[q] = *l);
+        let repeated = places.iter().zip(key).all(|(&q, l)| tuple[q] == *l);
+        let inside = sets
+            .iter()
+            .zip(&tuple)
+            .all(|(s, l)| table(*s).find(&[*l]).is_some());
+        let others = tests.iter().all(|(t, places)| {
+            let key: Vec<Label> = places.iter().map(|&q| tuple[q]).collect();
+            t.find(&key).is_some()
+        });
+        repeated && inside && others
+    });
+    count.count() == columns
+}
+
+/// A row of the model, with its multiplier.
+fn feasibility(d: &mut Derivation, k: usize) {
+    let Some(y) = d.multiplier_number(k) else {
+        return;
+    };
+    let e = &d.primal.equations[k];
+    let name = d.symbols.get(e.symbol).name.to_string();
+    let Some(block) = d.primal.generated.origin.rows.symbol(e.symbol) else {
+        // All its rows are empty: there is nothing to hold.
+        return;
+    };
+    let rows: Vec<u32> = (block.start..block.start + block.len).collect();
+    let mut binder = e.binder.clone();
+    if d.primal.tuples[k] != rows.len() {
+        let name = d.fresh(&format!("rows_{name}"));
+        d.out.data.push(NewData {
+            name,
+            text: format!(
+                "rows of {} that hold a variable",
+                d.symbols.get(e.symbol).name
+            ),
+            domain: domain_of(d.symbols, e.symbol),
+            is_set: true,
+            records: rows.iter().map(|&i| (block.key(i).to_vec(), 1.0)).collect(),
+        });
+        binder
+            .conditions
+            .push(Expr::NewMember(d.out.data.len() - 1, e.key.clone()));
+    }
+    // Of a maximum the function of the row is what is left over.
+    let (left, right, relation) = match d.is_minimum() {
+        true => (e.left.clone(), e.right.clone(), e.relation),
+        false => (
+            e.right.clone(),
+            e.left.clone(),
+            match e.relation {
+                Relation::Greater => Relation::Less,
+                Relation::Less => Relation::Greater,
+                r => r,
+            },
+        ),
+    };
+    let row_name = d.fresh(&format!("row_{name}"));
+    d.out.rows.push(Row {
+        name: row_name,
+        text: d.symbols.get(e.symbol).text.to_string(),
+        domain: domain_of(d.symbols, e.symbol),
+        key: e.key.clone(),
+        binder,
+        left,
+        relation,
+        right,
+        pair: Some(Variable::Multiplier(y)),
+    });
+    let Some(a) = &d.primal.answer else { return };
+    let records: Vec<(Vec<Label>, f64)> = rows
+        .iter()
+        .map(|&i| (block.key(i).to_vec(), a.row_marginal[i as usize]))
+        .collect();
+    let target = d.out.multipliers[y].name.clone();
+    let domain = domain_of(d.symbols, e.symbol);
+    assign(d, &format!("m_{name}"), &target, "l", domain, records);
+}
+
+/// Levels and bounds of a variable as they were at the solve.
+fn start_of_columns(d: &mut Derivation, v: SymbolId) {
+    let columns = d.columns(v);
+    let name = d.symbols.get(v).name.to_string();
+    let domain = domain_of(d.symbols, v);
+    let (lower, upper) = match d.kind(v) {
+        VariableKind::Positive => (0.0, f64::INFINITY),
+        VariableKind::Negative => (f64::NEG_INFINITY, 0.0),
+        _ => (f64::NEG_INFINITY, f64::INFINITY),
+    };
+    // What is 0 is stored as eps, so that the record is there.
+    let stored = |x: f64| if x == 0.0 { EPS } else { x };
+    let mut differing =
+        |bound: f64, pick: &dyn Fn(&(&[Label], f64, f64)) -> f64, word: &'static str| {
+            let records: Vec<(Vec<Label>, f64)> = columns
+                .iter()
+                .filter(|c| pick(c) != bound)
+                .map(|c| (c.0.to_vec(), stored(pick(c))))
+                .collect();
+            assign(
+                d,
+                &format!("{word}_{name}"),
+                &name,
+                word,
+                domain.clone(),
+                records,
+            );
+        };
+    differing(lower, &|c| c.1, "lo");
+    differing(upper, &|c| c.2, "up");
+    let Some(a) = &d.primal.answer else { return };
+    let Some(b) = d.primal.generated.origin.columns.symbol(v) else {
+        return;
+    };
+    let levels = (b.start..b.start + b.len).map(|j| (b.key(j).to_vec(), a.level[j as usize]));
+    let records: Vec<(Vec<Label>, f64)> = levels.collect();
+    assign(d, &format!("l_{name}"), &name, "l", domain, records);
+}
+
+/// `target.attribute(…)$data(…) = data(…);`
+fn assign(
+    d: &mut Derivation,
+    name: &str,
+    target: &str,
+    attribute: &'static str,
+    domain: Vec<SymbolId>,
+    mut records: Vec<(Vec<Label>, f64)>,
+) {
+    records.retain(|r| r.1 != 0.0);
+    if records.is_empty() {
+        return;
+    }
+    let name = d.fresh(name);
+    let indices = domain.iter().map(|s| d.out.indices.add(*s)).collect();
+    d.out.start.push(Assignment {
+        target: target.to_string(),
+        attribute,
+        indices,
+        data: NewData {
+            name,
+            text: format!("{target}.{attribute} at the solve"),
+            domain,
+            is_set: false,
+            records,
+        },
+    });
+}

@@ -1,0 +1,148 @@
+//! The formulation itself: formulas of a model, its dual, its optimality conditions, with indices.
+//!
+//! [`lower`] makes formulas of the checked tree, [`gradient`] takes them apart into terms (derivatives in symbols),
+//! [`invert`] sees a term from its column, [`dual`] and [`kkt`] put these together, [`text`] writes the result as a model,
+//! [`math`] as formulas (text, LaTeX, MathML), [`check`] compares matrices. All of it is data: trees of [`tree`].
+
+pub mod check;
+pub mod data;
+pub mod derive;
+pub mod dual;
+pub mod explain;
+pub mod gradient;
+pub mod invert;
+pub mod kkt;
+pub mod lower;
+pub mod math;
+pub mod names;
+pub mod page;
+pub mod range;
+pub mod render;
+pub mod show;
+pub mod side;
+pub mod study;
+pub mod text;
+pub mod tree;
+
+use crate::check::node::SymbolId;
+use crate::data::universe::Label;
+use tree::{Binder, Expr, Indices, Part, Relation, Sense, Variable};
+
+/// The sign of a variable.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Sign {
+    /// Any.
+    Free,
+    /// At least 0.
+    Positive,
+    /// At most 0.
+    Negative,
+}
+
+/// Where a multiplier comes from.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Origin {
+    /// From the rows of an equation.
+    Row(SymbolId),
+    /// From the lower bounds of a variable.
+    Lower(SymbolId),
+    /// From the upper bounds of a variable.
+    Upper(SymbolId),
+    /// From the columns of a variable that are fixed.
+    Fixed(SymbolId),
+}
+
+/// A variable that the derivation introduces.
+#[derive(Clone, Debug)]
+pub struct Multiplier {
+    /// Its name.
+    pub name: String,
+    /// The sets that it runs over.
+    pub domain: Vec<SymbolId>,
+    /// Its sign.
+    pub sign: Sign,
+    /// What it belongs to.
+    pub origin: Origin,
+}
+
+/// Data that the derivation introduces.
+#[derive(Clone, Debug)]
+pub struct NewData {
+    /// Its name.
+    pub name: String,
+    /// Explanatory text.
+    pub text: String,
+    /// The sets that it runs over.
+    pub domain: Vec<SymbolId>,
+    /// Whether it is a set.
+    pub is_set: bool,
+    /// Its records in label order; 1 for members.
+    pub records: Vec<(Vec<Label>, f64)>,
+}
+
+/// A start value or bound: `target.attribute(…)$data(…) = data(…)`.
+#[derive(Clone, Debug)]
+pub struct Assignment {
+    /// Name of the variable.
+    pub target: String,
+    /// The attribute.
+    pub attribute: &'static str,
+    /// The indices that it runs over.
+    pub indices: Vec<tree::IndexId>,
+    /// Its values.
+    pub data: NewData,
+}
+
+/// The rows of an equation.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// Its name.
+    pub name: String,
+    /// Explanatory text.
+    pub text: String,
+    /// The sets that it runs over.
+    pub domain: Vec<SymbolId>,
+    /// Labels of its rows.
+    pub key: Vec<Part>,
+    /// What it runs over.
+    pub binder: Binder,
+    /// Left side.
+    pub left: Expr,
+    /// Relation.
+    pub relation: Relation,
+    /// Right side.
+    pub right: Expr,
+    /// The variable it is paired with: in the dual the column it comes from, in complementarity problems its partner.
+    pub pair: Option<Variable>,
+}
+
+/// A model as formulas.
+#[derive(Clone, Debug)]
+pub struct Formulation {
+    /// Its name.
+    pub name: String,
+    /// Problem type.
+    pub using: String,
+    /// Direction and objective function; None for complementarity problems.
+    pub objective: Option<(Sense, Expr)>,
+    /// Name of the variable that the objective function is called when it is written as a model.
+    pub objective_name: String,
+    /// The user's variables in it.
+    pub own: Vec<SymbolId>,
+    /// Variables that it introduces.
+    pub multipliers: Vec<Multiplier>,
+    /// Its equations.
+    pub rows: Vec<Row>,
+    /// Data that it introduces.
+    pub data: Vec<NewData>,
+    /// Levels and bounds at which it begins.
+    pub start: Vec<Assignment>,
+    /// Its indices.
+    pub indices: Indices,
+    /// Whether its multipliers are those of GAMS times -1, as the text has them.
+    pub flipped: bool,
+    /// What could not be written in symbols: equation and variable, and why.
+    pub by_instance: Vec<String>,
+    /// What else is to be said.
+    pub notes: Vec<String>,
+}

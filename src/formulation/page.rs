@@ -1,0 +1,551 @@
+//! A formulation as a page: headings, formulas, legends and tables, as text, LaTeX or HTML.
+
+use super::math::{Math, explained, listed, name, symbol_name};
+use super::render::{escaped, latex, mathml, plain, text, wrapped};
+use super::tree::*;
+use super::{Formulation, Origin, Sign};
+use crate::check::node::SymbolId;
+use crate::check::symbols::{Store, SymbolKind, Symbols};
+use std::fmt::Write;
+
+pub use super::math::Setter;
+
+/// How a page is written.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Format {
+    /// For a terminal of so many characters.
+    Text(usize),
+    /// LaTeX with amsmath.
+    Latex,
+    /// HTML with MathML.
+    Html,
+}
+
+/// One formula with what belongs to it.
+#[derive(Clone, Debug)]
+pub struct Formula {
+    /// The name of its equation.
+    pub name: String,
+    /// The formula.
+    pub math: Math,
+    /// What it runs over.
+    pub runs: Option<Math>,
+    /// Words beside it.
+    pub words: String,
+}
+
+/// A part of a page.
+#[derive(Clone, Debug)]
+pub enum Block {
+    /// A heading.
+    Heading(String),
+    /// A sentence.
+    Words(String),
+    /// Formulas, aligned.
+    Formulas(Vec<Formula>),
+    /// Symbols with words, and units.
+    Legend(Vec<(Math, String, String)>),
+    /// A table of formulas and words.
+    Pairs([String; 2], Vec<(Math, Math)>),
+    /// A table of words: head and rows.
+    Table(Vec<String>, Vec<Vec<String>>),
+}
+
+/// A page.
+pub type Page = Vec<Block>;
+
+/// The parts of a formulation: objective, rows, variables with their signs.
+pub fn formulas(s: &mut Setter, symbols: &Symbols, f: &Formulation) -> Page {
+    let mut out = Vec::new();
+    if let Some((sense, e)) = &f.objective {
+        let word = match sense {
+            Sense::Minimize => "minimize",
+            Sense::Maximize => "maximize",
+        };
+        let math = s.expr(e);
+        out.push(Block::Formulas(vec![Formula {
+            name: word.into(),
+            math,
+            runs: None,
+            words: String::new(),
+        }]));
+        if !f.rows.is_empty() {
+            out.push(Block::Words("subject to".into()));
+        }
+    }
+    let rows = f.rows.iter().map(|r| {
+        let (math, runs) = s.row(r);
+        Formula {
+            name: r.name.clone(),
+            math,
+            runs,
+            words: explained(&r.text).1.to_string(),
+        }
+    });
+    let rows: Vec<Formula> = rows.collect();
+    out.push(Block::Formulas(rows));
+    let signs: Vec<Formula> = f
+        .multipliers
+        .iter()
+        .enumerate()
+        .map(|(n, m)| {
+            let base = s.variable(Variable::Multiplier(n));
+            let sets = m
+                .domain
+                .iter()
+                .map(|d| Math::Name(symbol_name(symbols, *d)));
+            let sets: Vec<Math> = sets.collect();
+            let indexed = match sets.is_empty() {
+                true => base,
+                false => Math::Indexed(Box::new(base), sets),
+            };
+            let (relation, right) = match m.sign {
+                Sign::Free => ("", Math::Words(" free".into())),
+                Sign::Positive => ("≥", Math::Number("0".into())),
+                Sign::Negative => ("≤", Math::Number("0".into())),
+            };
+            let mut row = vec![indexed];
+            if !relation.is_empty() {
+                row.push(Math::Operator(relation));
+            }
+            row.push(right);
+            let named = |s: SymbolId| symbols.get(s).name.to_string();
+            let words = match m.origin {
+                Origin::Row(e) => format!("multiplier of {}", named(e)),
+                Origin::Lower(v) => format!("multiplier of the lower bounds of {}", named(v)),
+                Origin::Upper(v) => format!("multiplier of the upper bounds of {}", named(v)),
+                Origin::Fixed(v) => format!("multiplier of the fixed values of {}", named(v)),
+            };
+            Formula {
+                name: String::new(),
+                math: Math::Row(row),
+                runs: None,
+                words,
+            }
+        })
+        .collect();
+    if !signs.is_empty() {
+        out.push(Block::Words("with".into()));
+        out.push(Block::Formulas(signs));
+    }
+    out
+}
+
+/// The user's symbols in a formulation with their explanatory texts: sets, data, variables.
+pub fn legend(symbols: &Symbols, store: &Store, f: &Formulation) -> Page {
+    let _ = store;
+    let mut used: Vec<SymbolId> = f.own.clone();
+    let mut see = |e: &Expr| {
+        e.walk(&mut |e| match e {
+            Expr::Data(Source::Parameter(s) | Source::Attribute(s, _), _)
+            | Expr::Member(s, _)
+            | Expr::Card(s)
+            | Expr::Variable(Variable::Own(s), _) => used.push(*s),
+            Expr::Aggregate(_, d, _) => {
+                used.extend(d.indices.iter().map(|k| f.indices.set[*k]));
+            }
+            _ => {}
+        });
+    };
+    for r in &f.rows {
+        see(&r.left);
+        see(&r.right);
+        r.binder.conditions.iter().for_each(&mut see);
+    }
+    if let Some((_, e)) = &f.objective {
+        see(e);
+    }
+    for r in &f.rows {
+        used.extend(r.binder.indices.iter().map(|k| f.indices.set[*k]));
+    }
+    used.sort_unstable();
+    used.dedup();
+    let mut out = Vec::new();
+    for (title, pick) in [("Sets", 0), ("Data", 1), ("Variables", 2)] {
+        let kind = |s: &SymbolId| match symbols.get(*s).kind {
+            SymbolKind::Set { .. } | SymbolKind::Alias(_) => 0,
+            SymbolKind::Parameter { .. } => 1,
+            _ => 2,
+        };
+        let rows: Vec<(Math, String, String)> = used
+            .iter()
+            .filter(|s| **s != 0 && kind(s) == pick)
+            .map(|&s| entry(symbols, s))
+            .collect();
+        if !rows.is_empty() {
+            out.push(Block::Heading(title.into()));
+            out.push(Block::Legend(rows));
+        }
+    }
+    out
+}
+
+fn entry(symbols: &Symbols, s: SymbolId) -> (Math, String, String) {
+    let symbol = symbols.get(s);
+    let (_, words, unit) = explained(&symbol.text);
+    let base = Math::Name(symbol_name(symbols, s));
+    let domain: Vec<String> = symbols.domain_names(symbol);
+    let is_set = symbol.is_set();
+    let plain = domain.is_empty() || is_set && domain == ["*"];
+    let math = match plain || matches!(symbol.kind, SymbolKind::Alias(_)) {
+        true => base,
+        false => {
+            let parts = domain.iter().map(|d| Math::Name(name(d))).collect();
+            Math::Indexed(Box::new(base), parts)
+        }
+    };
+    let words = match symbol.kind {
+        SymbolKind::Alias(root) => format!("another index over {}", symbols.get(root).name),
+        _ => words.to_string(),
+    };
+    (math, words, unit.unwrap_or_default().to_string())
+}
+
+/// With commas.
+pub fn tuple(names: &[String]) -> Math {
+    listed(names.iter().map(|n| Math::Name(name(n))).collect())
+}
+
+/// Writes a page.
+pub fn write(page: &Page, format: Format, title: &str) -> String {
+    match format {
+        Format::Text(width) => as_text(page, width),
+        Format::Latex => as_latex(page, title),
+        Format::Html => as_html(page, title),
+    }
+}
+
+fn pad(t: &str, width: usize) -> String {
+    let n = t.chars().count();
+    format!("{t}{}", " ".repeat(width.saturating_sub(n)))
+}
+
+fn as_text(page: &Page, width: usize) -> String {
+    let mut out = String::new();
+    for b in page {
+        match b {
+            Block::Heading(t) => {
+                let _ = writeln!(out, "\n{t}\n{}", "─".repeat(t.chars().count()));
+            }
+            Block::Words(t) => {
+                let _ = writeln!(out, "{}", filled(t, width));
+            }
+            Block::Formulas(list) => formulas_text(&mut out, list, width),
+            Block::Legend(rows) => {
+                let rows: Vec<(String, &String, &String)> =
+                    rows.iter().map(|r| (text(&r.0), &r.1, &r.2)).collect();
+                let w = rows.iter().map(|r| r.0.chars().count()).max().unwrap_or(0);
+                for (symbol, words, unit) in rows {
+                    let unit = match unit.is_empty() {
+                        true => String::new(),
+                        false => format!(" [{unit}]"),
+                    };
+                    let line = format!("  {}  {words}{unit}", pad(&symbol, w));
+                    let _ = writeln!(out, "{}", line.trim_end());
+                }
+            }
+            Block::Pairs(head, rows) => {
+                let rows: Vec<[String; 2]> = rows.iter().map(|(a, b)| [text(a), text(b)]).collect();
+                let all = std::iter::once(head).chain(&rows);
+                let w = all
+                    .map(|r| r[0].chars().count())
+                    .max()
+                    .unwrap_or(0)
+                    .min(width / 2);
+                for r in std::iter::once(head).chain(&rows) {
+                    let _ = writeln!(out, "  {}  │ {}", pad(&r[0], w), r[1]);
+                }
+            }
+            Block::Table(head, rows) => table_text(&mut out, head, rows),
+        }
+    }
+    out
+}
+
+fn formulas_text(out: &mut String, list: &[Formula], width: usize) {
+    let w = list
+        .iter()
+        .map(|f| f.name.chars().count())
+        .max()
+        .unwrap_or(0);
+    for f in list {
+        let indent = if w == 0 { 2 } else { w + 4 };
+        let body = wrapped(&f.math, width, indent);
+        let mut line = match w {
+            0 => format!("  {body}"),
+            _ => format!("  {}  {body}", pad(&f.name, w)),
+        };
+        if let Some(r) = &f.runs {
+            let runs = format!("for all {}", text(r));
+            let last = line.rsplit('\n').next().unwrap_or_default().chars().count();
+            match last + 3 + runs.chars().count() <= width {
+                true => line.push_str(&format!("   {runs}")),
+                false => line.push_str(&format!("\n{}{runs}", " ".repeat(indent + 2))),
+            }
+        }
+        if !f.words.is_empty() && f.name.is_empty() {
+            line.push_str(&format!("   {}", f.words));
+        }
+        let _ = writeln!(out, "{line}");
+    }
+}
+
+fn table_text(out: &mut String, head: &[String], rows: &[Vec<String>]) {
+    let all = || std::iter::once(head).chain(rows.iter().map(Vec::as_slice));
+    let widths: Vec<usize> = (0..head.len())
+        .map(|c| {
+            let cells = all().filter_map(|r| r.get(c));
+            cells.map(|t| t.chars().count()).max().unwrap_or(0)
+        })
+        .collect();
+    for r in all() {
+        let cells = r.iter().zip(&widths).enumerate().map(|(n, (t, w))| {
+            let number = t.starts_with(|c: char| c.is_ascii_digit() || "-−+∞".contains(c));
+            match n > 0 && number {
+                true => format!("{}{t}", " ".repeat(w.saturating_sub(t.chars().count()))),
+                false => pad(t, *w),
+            }
+        });
+        let line = cells.collect::<Vec<_>>().join("  ");
+        let _ = writeln!(out, "  {}", line.trim_end());
+    }
+}
+
+/// Words in lines of at most `width` characters.
+pub fn filled(t: &str, width: usize) -> String {
+    let mut out = String::new();
+    let mut column = 0;
+    for word in t.split_whitespace() {
+        let n = word.chars().count();
+        if column > 0 && column + 1 + n > width {
+            out.push('\n');
+            column = 0;
+        } else if column > 0 {
+            out.push(' ');
+            column += 1;
+        }
+        out.push_str(word);
+        column += n;
+    }
+    out
+}
+
+fn as_latex(page: &Page, title: &str) -> String {
+    let mut out = String::from(
+        "\\documentclass{article}\n\\usepackage[utf8]{inputenc}\n\\usepackage{amsmath}\n\\begin{document}\n",
+    );
+    let _ = writeln!(out, "\\section*{{{}}}", escaped(title));
+    for b in page {
+        match b {
+            Block::Heading(t) => {
+                let _ = writeln!(out, "\\subsection*{{{}}}", escaped(t));
+            }
+            Block::Words(t) => {
+                let _ = writeln!(out, "{}\n", latex_words(t));
+            }
+            Block::Formulas(list) => {
+                if list.is_empty() {
+                    continue;
+                }
+                out.push_str("\\begin{align*}\n");
+                for (n, f) in list.iter().enumerate() {
+                    let runs = f
+                        .runs
+                        .as_ref()
+                        .map(|r| format!(" && \\forall\\, {}", latex(r)));
+                    let words = match f.name.is_empty() {
+                        true if !f.words.is_empty() => {
+                            format!(" && \\text{{{}}}", latex_words(&f.words))
+                        }
+                        _ => runs.unwrap_or_default(),
+                    };
+                    let end = if n + 1 < list.len() { " \\\\" } else { "" };
+                    let _ = writeln!(
+                        out,
+                        "\\text{{{}}} \\quad & {}{words}{end}",
+                        escaped(&f.name),
+                        latex(&f.math)
+                    );
+                }
+                out.push_str("\\end{align*}\n");
+            }
+            Block::Legend(rows) => {
+                out.push_str("\\begin{tabular}{lll}\n");
+                for (m, words, unit) in rows {
+                    let _ = writeln!(
+                        out,
+                        "${}$ & {} & {} \\\\",
+                        latex(m),
+                        latex_words(words),
+                        latex_words(unit)
+                    );
+                }
+                out.push_str("\\end{tabular}\n\n");
+            }
+            Block::Pairs(head, rows) => {
+                let _ = writeln!(
+                    out,
+                    "\\begin{{tabular}}{{l|l}}\n{} & {} \\\\ \\hline",
+                    escaped(&head[0]),
+                    escaped(&head[1])
+                );
+                for (a, b) in rows {
+                    let _ = writeln!(out, "${}$ & ${}$ \\\\", latex(a), latex(b));
+                }
+                out.push_str("\\end{tabular}\n\n");
+            }
+            Block::Table(head, rows) => {
+                let columns = "l".repeat(head.len());
+                let line = |r: &[String]| {
+                    r.iter()
+                        .map(|t| latex_words(t))
+                        .collect::<Vec<_>>()
+                        .join(" & ")
+                };
+                let _ = writeln!(
+                    out,
+                    "\\begin{{tabular}}{{{columns}}}\n{} \\\\ \\hline",
+                    line(head)
+                );
+                for r in rows {
+                    let _ = writeln!(out, "{} \\\\", line(r));
+                }
+                out.push_str("\\end{tabular}\n\n");
+            }
+        }
+    }
+    out.push_str("\\end{document}\n");
+    out
+}
+
+/// Words in LaTeX: what the default fonts lack is written as mathematics.
+fn latex_words(t: &str) -> String {
+    let mut out = String::new();
+    for c in escaped(t).chars() {
+        match c {
+            '≤' => out.push_str("$\\le$"),
+            '≥' => out.push_str("$\\ge$"),
+            '∞' => out.push_str("$\\infty$"),
+            c if super::math::command(&c.to_string()).is_some() => {
+                let _ = write!(
+                    out,
+                    "$\\{}$",
+                    super::math::command(&c.to_string()).unwrap_or_default()
+                );
+            }
+            c if c.is_ascii() || ('\u{a0}'..='\u{ff}').contains(&c) => out.push(c),
+            _ => out.push('?'),
+        }
+    }
+    out
+}
+
+/// The look of a page that stands alone; also of `bmod report`.
+pub const STYLE: &str = "body{font:16px/1.5 system-ui,sans-serif;max-width:60em;margin:2em auto;padding:0 1em;color:#1b1b1b}\
+h1{font-size:1.6em}h2{font-size:1.15em;margin:1.6em 0 .4em;border-bottom:1px solid #ccc}\
+table{border-collapse:collapse;margin:.5em 0}td,th{padding:.15em 1em .15em 0;text-align:left;vertical-align:baseline}\
+th{font-weight:600;border-bottom:1px solid #999}td.n,th.n{text-align:right;font-variant-numeric:tabular-nums}\
+td.name{color:#666;font-size:.9em}td.runs{color:#444;padding-left:2em}math{font-size:1.08em}mtext{font-family:system-ui,sans-serif;font-size:.92em}\
+.f td{padding:.35em .6em .35em 0}@media print{body{font-size:11pt;max-width:none;margin:0}h2{break-after:avoid}tr{break-inside:avoid}}\
+@page{size:A4;margin:18mm}";
+
+fn as_html(page: &Page, title: &str) -> String {
+    let mut out = format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>{0}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n<h1>{0}</h1>\n",
+        plain(title)
+    );
+    out.push_str(&body(page));
+    out.push_str("</body>\n</html>\n");
+    out
+}
+
+/// The blocks of a page as HTML.
+pub fn body(page: &Page) -> String {
+    let math = |m: &Math| format!("<math>{}</math>", mathml(m));
+    let display = |m: &Math| format!("<math displaystyle=\"true\">{}</math>", mathml(m));
+    let mut out = String::new();
+    for b in page {
+        match b {
+            Block::Heading(t) => {
+                let _ = writeln!(out, "<h2>{}</h2>", plain(t));
+            }
+            Block::Words(t) => {
+                let _ = writeln!(out, "<p>{}</p>", plain(t));
+            }
+            Block::Formulas(list) => {
+                out.push_str("<table class=\"f\">\n");
+                for f in list {
+                    let runs = f.runs.as_ref().map(|r| format!("for all {}", math(r)));
+                    let runs = runs.unwrap_or_default();
+                    let words = if f.name.is_empty() {
+                        plain(&f.words)
+                    } else {
+                        String::new()
+                    };
+                    let _ = writeln!(
+                        out,
+                        "<tr title=\"{}\"><td class=\"name\">{}</td><td>{}</td><td class=\"runs\">{runs}{words}</td></tr>",
+                        plain(&f.words).replace('"', "&quot;"),
+                        plain(&f.name),
+                        display(&f.math),
+                    );
+                }
+                out.push_str("</table>\n");
+            }
+            Block::Legend(rows) => {
+                out.push_str("<table>\n");
+                for (m, words, unit) in rows {
+                    let _ = writeln!(
+                        out,
+                        "<tr><td>{}</td><td>{}</td><td>{}</td></tr>",
+                        math(m),
+                        plain(words),
+                        plain(unit)
+                    );
+                }
+                out.push_str("</table>\n");
+            }
+            Block::Pairs(head, rows) => {
+                let _ = writeln!(
+                    out,
+                    "<table>\n<tr><th>{}</th><th>{}</th></tr>",
+                    plain(&head[0]),
+                    plain(&head[1])
+                );
+                for (a, b) in rows {
+                    let _ = writeln!(out, "<tr><td>{}</td><td>{}</td></tr>", math(a), math(b));
+                }
+                out.push_str("</table>\n");
+            }
+            Block::Table(head, rows) => table_html(&mut out, head, rows),
+        }
+    }
+    out
+}
+
+fn table_html(out: &mut String, head: &[String], rows: &[Vec<String>]) {
+    let number = |t: &str| t.starts_with(|c: char| c.is_ascii_digit() || "-−+∞".contains(c));
+    let numeric: Vec<bool> = (0..head.len())
+        .map(|c| {
+            rows.iter()
+                .all(|r| r.get(c).is_none_or(|t| t.is_empty() || number(t)))
+        })
+        .collect();
+    let cell = |tag: &str, n: usize, t: &str| {
+        let class = if numeric[n] { " class=\"n\"" } else { "" };
+        format!("<{tag}{class}>{}</{tag}>", plain(t))
+    };
+    out.push_str("<table class=\"sortable\">\n<thead><tr>");
+    head.iter()
+        .enumerate()
+        .for_each(|(n, t)| out.push_str(&cell("th", n, t)));
+    out.push_str("</tr></thead>\n<tbody>\n");
+    for r in rows {
+        out.push_str("<tr>");
+        r.iter()
+            .enumerate()
+            .for_each(|(n, t)| out.push_str(&cell("td", n, t)));
+        out.push_str("</tr>\n");
+    }
+    out.push_str("</tbody></table>\n");
+}

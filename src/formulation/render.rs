@@ -1,0 +1,370 @@
+//! Formulas as text for the terminal, as LaTeX, and as MathML.
+
+use super::math::{Math, Name, command};
+
+/// Text in one line.
+pub fn text(m: &Math) -> String {
+    match m {
+        Math::Number(t) | Math::Words(t) => t.clone(),
+        Math::Name(n) => match n.below.is_empty() {
+            true => n.base.clone(),
+            false => format!("{}_{}", n.base, n.below),
+        },
+        Math::Quoted(t) => format!("'{t}'"),
+        Math::Operator(":") => " : ".into(),
+        Math::Operator(",") => ", ".into(),
+        Math::Operator(o) => format!(" {o} "),
+        Math::Prefix(o) => (*o).to_string(),
+        Math::Row(list) => {
+            let mut out = String::new();
+            for (n, m) in list.iter().enumerate() {
+                let factors = n > 0 && is_factor(&list[n - 1]) && is_factor(m);
+                if factors {
+                    out.push('·');
+                }
+                out.push_str(&text(m));
+            }
+            out
+        }
+        Math::Parentheses(m) => format!("({})", text(m)),
+        Math::Bracket(m) => format!("[{}]", text(m)),
+        Math::Indexed(base, parts) => {
+            let parts: Vec<String> = parts.iter().map(text).collect();
+            format!("{}({})", text(base), parts.join(","))
+        }
+        Math::Bar(m, upper) => format!("{}{}", text(m), if *upper { ".up" } else { ".lo" }),
+        Math::Marked(m, "*") => format!("{}.l", text(m)),
+        Math::Marked(m, word) => format!("{}.{word}", text(m)),
+        Math::Fraction(a, b) => format!("{}/{}", tight(a), tight(b)),
+        Math::Power(a, b) => match superscript(&text(b)) {
+            Some(s) => format!("{}{s}", text(a)),
+            None => format!("{}^{}", text(a), tight(b)),
+        },
+        Math::Root(m) => format!("√{}", tight(m)),
+        Math::Absolute(m) => format!("|{}|", text(m)),
+        Math::Big(op, under, body) => format!("{op}{{{}}} {}", text(under), text(body)),
+        Math::Function(f, args) => {
+            let args: Vec<String> = args.iter().map(text).collect();
+            format!("{f}({})", args.join(", "))
+        }
+    }
+}
+
+fn is_factor(m: &Math) -> bool {
+    !matches!(m, Math::Operator(_) | Math::Prefix(_) | Math::Words(_))
+}
+
+/// In parentheses unless it is one piece.
+fn tight(m: &Math) -> String {
+    match m {
+        Math::Row(list) if list.len() > 1 => format!("({})", text(m)),
+        Math::Fraction(..) | Math::Big(..) => format!("({})", text(m)),
+        m => text(m),
+    }
+}
+
+fn superscript(t: &str) -> Option<String> {
+    let one = |c: char| {
+        Some(match c {
+            '0' => '⁰',
+            '1' => '¹',
+            '2' => '²',
+            '3' => '³',
+            '4' => '⁴',
+            '5' => '⁵',
+            '6' => '⁶',
+            '7' => '⁷',
+            '8' => '⁸',
+            '9' => '⁹',
+            '−' => '⁻',
+            _ => return None,
+        })
+    };
+    t.chars().map(one).collect()
+}
+
+/// Text in lines of at most `width` characters: broken before `+`, `−` and relations of the outermost row. Lines behind
+/// the first begin with `indent` blanks.
+pub fn wrapped(m: &Math, width: usize, indent: usize) -> String {
+    let mut pieces: Vec<String> = Vec::new();
+    flatten(m, &mut pieces);
+    let mut out = String::new();
+    let mut column = indent;
+    for p in pieces {
+        let length = p.chars().count();
+        if column + length > width && column > indent {
+            while out.ends_with(' ') {
+                out.pop();
+            }
+            out.push('\n');
+            out.push_str(&" ".repeat(indent));
+            column = indent;
+            let p = p.trim_start();
+            out.push_str(p);
+            column += p.chars().count();
+            continue;
+        }
+        out.push_str(&p);
+        column += length;
+    }
+    out
+}
+
+/// Pieces between which a line may break; each begins with its operator.
+fn flatten(m: &Math, out: &mut Vec<String>) {
+    let Math::Row(list) = m else {
+        out.push(text(m));
+        return;
+    };
+    let mut piece = String::new();
+    for (n, m) in list.iter().enumerate() {
+        match m {
+            Math::Operator(o) if !matches!(*o, ":" | ",") => {
+                out.push(std::mem::take(&mut piece));
+                piece = format!(" {o} ");
+            }
+            Math::Row(_) if piece.trim().chars().count() <= 1 => {
+                let mut inner = Vec::new();
+                flatten(m, &mut inner);
+                if let Some(first) = inner.first_mut() {
+                    *first = format!("{piece}{first}");
+                }
+                piece = inner.pop().unwrap_or_default();
+                out.append(&mut inner);
+            }
+            m => {
+                if n > 0 && is_factor(&list[n - 1]) && is_factor(m) {
+                    piece.push('·');
+                }
+                piece.push_str(&text(m));
+            }
+        }
+    }
+    out.push(piece);
+    out.retain(|p| !p.is_empty());
+}
+
+/// LaTeX for a formula, with amsmath.
+pub fn latex(m: &Math) -> String {
+    match m {
+        Math::Number(t) => t.replace('−', "-").replace('∞', "\\infty "),
+        Math::Words(t) => format!("\\text{{{}}}", escaped(t)),
+        Math::Name(n) => latex_name(n),
+        Math::Quoted(t) => format!("\\text{{{}}}", escaped(t)),
+        Math::Operator(o) | Math::Prefix(o) => format!(" {} ", latex_operator(o)),
+        Math::Row(list) => {
+            let mut out = String::new();
+            for (n, m) in list.iter().enumerate() {
+                if n > 0 && is_factor(&list[n - 1]) && is_factor(m) {
+                    let numbers = matches!(m, Math::Number(_) | Math::Fraction(..));
+                    out.push_str(if numbers { " \\cdot " } else { "\\," });
+                }
+                out.push_str(&latex(m));
+            }
+            out
+        }
+        Math::Parentheses(m) => format!("\\left({}\\right)", latex(m)),
+        Math::Bracket(m) => format!("\\left[{}\\right]", latex(m)),
+        Math::Indexed(base, parts) => {
+            let single = parts
+                .iter()
+                .all(|p| matches!(p, Math::Name(n) if is_letter(n)));
+            let parts: Vec<String> = parts.iter().map(latex).collect();
+            let parts = parts.join(if single { " " } else { "," });
+            match &**base {
+                // A symbol with a subscript of its own takes the indices behind it.
+                Math::Name(n) if !n.below.is_empty() && n.latex.is_none() => {
+                    format!(
+                        "{}_{{\\mathrm{{{}}},{parts}}}",
+                        letters(&n.base),
+                        escaped(&n.below)
+                    )
+                }
+                base => format!("{{{}}}_{{{parts}}}", latex(base)),
+            }
+        }
+        Math::Bar(m, true) => format!("\\overline{{{}}}", latex(m)),
+        Math::Bar(m, false) => format!("\\underline{{{}}}", latex(m)),
+        Math::Marked(m, "*") => format!("{{{}}}^{{*}}", latex(m)),
+        Math::Marked(m, word) => format!("{{{}}}^{{\\mathrm{{{word}}}}}", latex(m)),
+        Math::Fraction(a, b) => format!("\\frac{{{}}}{{{}}}", latex(a), latex(b)),
+        Math::Power(a, b) => format!("{{{}}}^{{{}}}", latex(a), latex(b)),
+        Math::Root(m) => format!("\\sqrt{{{}}}", latex(m)),
+        Math::Absolute(m) => format!("\\left|{}\\right|", latex(m)),
+        Math::Big(op, under, body) => {
+            let op = match *op {
+                "∑" => "\\sum",
+                "∏" => "\\prod",
+                "min" => "\\min",
+                "max" => "\\max",
+                "⋀" => "\\bigwedge",
+                _ => "\\bigvee",
+            };
+            format!("{op}_{{{}}} {}", latex(under), latex(body))
+        }
+        Math::Function(f, args) => {
+            let args: Vec<String> = args.iter().map(latex).collect();
+            let f = match *f {
+                "ln" | "sin" | "cos" | "tan" | "sinh" | "cosh" | "tanh" | "min" | "max" => {
+                    format!("\\{f}")
+                }
+                "Φ" => "\\Phi".to_string(),
+                f => format!("\\operatorname{{{}}}", escaped(f)),
+            };
+            format!("{f}\\left({}\\right)", args.join(", "))
+        }
+    }
+}
+
+fn is_letter(n: &Name) -> bool {
+    n.base.chars().count() == 1 && n.below.is_empty()
+}
+
+/// Letters in LaTeX: one alone in italics, a Greek one by its command, a word upright.
+fn letters(base: &str) -> String {
+    match (command(base), base.chars().count()) {
+        (Some(c), _) => format!("\\{c} "),
+        (None, 1) => escaped(base),
+        _ => format!("\\mathrm{{{}}}", escaped(base)),
+    }
+}
+
+fn latex_name(n: &Name) -> String {
+    if let Some(l) = &n.latex {
+        return l.clone();
+    }
+    match n.below.is_empty() {
+        true => letters(&n.base),
+        false => format!("{}_{{\\mathrm{{{}}}}}", letters(&n.base), escaped(&n.below)),
+    }
+}
+
+/// A text in LaTeX.
+pub fn escaped(t: &str) -> String {
+    let mut out = String::new();
+    for c in t.chars() {
+        match c {
+            '#' | '$' | '%' | '&' | '_' | '{' | '}' => {
+                out.push('\\');
+                out.push(c);
+            }
+            '\\' => out.push_str("\\textbackslash{}"),
+            '~' => out.push_str("\\textasciitilde{}"),
+            '^' => out.push_str("\\textasciicircum{}"),
+            '−' => out.push('-'),
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+fn latex_operator(o: &str) -> &str {
+    match o {
+        "−" => "-",
+        "≤" => "\\le",
+        "≥" => "\\ge",
+        "≠" => "\\ne",
+        "∈" => "\\in",
+        "∧" => "\\wedge",
+        "∨" => "\\vee",
+        "⊻" => "\\oplus",
+        "⇒" => "\\Rightarrow",
+        "⇔" => "\\Leftrightarrow",
+        "¬" => "\\neg",
+        "⟂" => "\\perp",
+        "⊕" => "\\oplus",
+        "⊖" => "\\ominus",
+        "⋚" => "\\lessgtr",
+        "…" => "\\ldots",
+        o => o,
+    }
+}
+
+/// MathML for a formula, without the outermost element.
+pub fn mathml(m: &Math) -> String {
+    let row = |m: &Math| format!("<mrow>{}</mrow>", mathml(m));
+    match m {
+        Math::Number(t) => format!("<mn>{t}</mn>"),
+        Math::Words(t) | Math::Quoted(t) => format!("<mtext>{}</mtext>", plain(t)),
+        Math::Name(n) => match n.below.is_empty() {
+            true => identifier(&n.base),
+            false => format!(
+                "<msub>{}<mtext>{}</mtext></msub>",
+                identifier(&n.base),
+                plain(&n.below)
+            ),
+        },
+        Math::Operator(o) | Math::Prefix(o) => format!("<mo>{}</mo>", plain(o)),
+        Math::Row(list) => {
+            let mut out = String::new();
+            for (n, m) in list.iter().enumerate() {
+                if n > 0 && is_factor(&list[n - 1]) && is_factor(m) {
+                    let numbers = matches!(m, Math::Number(_));
+                    out.push_str(if numbers {
+                        "<mo>·</mo>"
+                    } else {
+                        "<mspace width=\"0.17em\"/>"
+                    });
+                }
+                out.push_str(&mathml(m));
+            }
+            out
+        }
+        Math::Parentheses(m) => format!("<mrow><mo>(</mo>{}<mo>)</mo></mrow>", mathml(m)),
+        Math::Bracket(m) => format!("<mrow><mo>[</mo>{}<mo>]</mo></mrow>", mathml(m)),
+        Math::Indexed(base, parts) => {
+            let single = parts
+                .iter()
+                .all(|p| matches!(p, Math::Name(n) if is_letter(n)));
+            let comma = if single {
+                "<mspace width=\"0.1em\"/>"
+            } else {
+                "<mo separator=\"true\">,</mo>"
+            };
+            let parts: Vec<String> = parts.iter().map(row).collect();
+            let parts = parts.join(comma);
+            match &**base {
+                Math::Name(n) if !n.below.is_empty() => format!(
+                    "<msub>{}<mrow><mtext>{}</mtext><mo separator=\"true\">,</mo>{parts}</mrow></msub>",
+                    identifier(&n.base),
+                    plain(&n.below)
+                ),
+                base => format!("<msub>{}<mrow>{parts}</mrow></msub>", row(base)),
+            }
+        }
+        Math::Bar(m, true) => format!("<mover>{}<mo stretchy=\"true\">¯</mo></mover>", row(m)),
+        Math::Bar(m, false) => format!("<munder>{}<mo stretchy=\"true\">_</mo></munder>", row(m)),
+        Math::Marked(m, word) => format!("<msup>{}<mtext>{}</mtext></msup>", row(m), plain(word)),
+        Math::Fraction(a, b) => format!("<mfrac>{}{}</mfrac>", row(a), row(b)),
+        Math::Power(a, b) => format!("<msup>{}{}</msup>", row(a), row(b)),
+        Math::Root(m) => format!("<msqrt>{}</msqrt>", mathml(m)),
+        Math::Absolute(m) => format!("<mrow><mo>|</mo>{}<mo>|</mo></mrow>", mathml(m)),
+        Math::Big(op, under, body) => {
+            let word = op.chars().all(char::is_alphabetic);
+            let op = match word {
+                true => format!("<mi>{op}</mi>"),
+                false => format!("<mo largeop=\"true\" movablelimits=\"false\">{op}</mo>"),
+            };
+            format!("<munder>{op}{}</munder>{}", row(under), mathml(body))
+        }
+        Math::Function(f, args) => {
+            let args: Vec<String> = args.iter().map(row).collect();
+            let args = args.join("<mo separator=\"true\">,</mo>");
+            format!("<mi>{}</mi><mo>(</mo>{args}<mo>)</mo>", plain(f))
+        }
+    }
+}
+
+fn identifier(t: &str) -> String {
+    match t.chars().count() {
+        1 => format!("<mi>{}</mi>", plain(t)),
+        _ => format!("<mtext>{}</mtext>", plain(t)),
+    }
+}
+
+/// A text in HTML.
+pub fn plain(t: &str) -> String {
+    t.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+}

@@ -1,0 +1,408 @@
+//! A model as it was written, as formulas.
+
+use super::derive::{domain_of, kind};
+use super::lower::{Equation, Lowering};
+use super::math::Math;
+use super::page::{Block, Formula, Page, Setter, formulas, legend};
+use super::tree::*;
+use super::{Formulation, Row};
+use crate::check::node::{
+    Code, CodeKind, EquationDef, ModelRow, Node, NodeKind, SolveCode, SymbolId, TableId, Target,
+};
+use crate::check::symbols::{Store, SymbolKind, Symbols, attribute};
+use crate::diag::nearest;
+use crate::syntax::ast::{ModelItem, VariableKind};
+
+/// What a model consists of, with its objective if some solve says one.
+pub struct Chosen {
+    /// The model.
+    pub model: SymbolId,
+    /// Its equations and pairs.
+    pub rows: Vec<ModelRow>,
+    /// Direction and objective variable.
+    pub objective: Option<(Sense, SymbolId)>,
+    /// Problem type, if it is solved.
+    pub using: Option<String>,
+}
+
+/// The model of this name, or the one that is solved last; `Err` says why there is none.
+pub fn choose(symbols: &Symbols, code: &[Code], name: Option<&str>) -> Result<Chosen, String> {
+    let mut solves = Vec::new();
+    solves_of(code, &mut solves);
+    if let Some(name) = name {
+        let is_model = |s: &SymbolId| matches!(symbols.get(*s).kind, SymbolKind::Model(_));
+        let Some(model) = symbols.find(name).filter(is_model) else {
+            return Err(unknown(symbols, name));
+        };
+        solves.retain(|s| s.model == model);
+        if solves.is_empty() {
+            let SymbolKind::Model(info) = &symbols.get(model).kind else {
+                return Err(unknown(symbols, name));
+            };
+            let mut rows = Vec::new();
+            collect(symbols, info.items.as_deref().unwrap_or(&[]), &mut rows, 0);
+            return Ok(Chosen {
+                model,
+                rows,
+                objective: None,
+                using: None,
+            });
+        }
+    }
+    match solves.last() {
+        Some(s) => Ok(Chosen {
+            model: s.model,
+            rows: s.equations.clone(),
+            objective: s.objective,
+            using: Some(s.using.to_string()),
+        }),
+        None => {
+            let models: Vec<&str> = symbols
+                .iter()
+                .filter(|(_, s)| matches!(s.kind, SymbolKind::Model(_)))
+                .map(|(_, s)| &*s.name)
+                .collect();
+            match models.as_slice() {
+                [] => Err("the text has no model".into()),
+                [one] => choose(symbols, code, Some(one)),
+                many => Err(format!(
+                    "no model is solved; say which with `--model`: {}",
+                    many.join(", ")
+                )),
+            }
+        }
+    }
+}
+
+/// There is no model of this name; the nearest is shown.
+pub fn unknown(symbols: &Symbols, name: &str) -> String {
+    let models = symbols
+        .iter()
+        .filter(|(_, s)| matches!(s.kind, SymbolKind::Model(_)));
+    let names: Vec<&str> = models.map(|(_, s)| &*s.name).collect();
+    match nearest(name, names.iter().copied()) {
+        Some(n) => format!("there is no model `{name}`; did you mean `{n}`?"),
+        None if names.is_empty() => format!("there is no model `{name}`: the text has none"),
+        None => format!(
+            "there is no model `{name}`; there are: {}",
+            names.join(", ")
+        ),
+    }
+}
+
+fn solves_of<'a>(code: &'a [Code], out: &mut Vec<&'a SolveCode>) {
+    for c in code {
+        match &c.kind {
+            CodeKind::Solve(s) => out.push(s),
+            CodeKind::Loop(_, b) | CodeKind::While(_, b) | CodeKind::Repeat(b, _) => {
+                solves_of(b, out)
+            }
+            CodeKind::For { body, .. } => solves_of(body, out),
+            CodeKind::If(branches, other) => {
+                branches.iter().for_each(|(_, b)| solves_of(b, out));
+                solves_of(other, out);
+            }
+            _ => {}
+        }
+    }
+}
+
+/// The equations of a model that no solve names.
+fn collect(symbols: &Symbols, items: &[ModelItem], rows: &mut Vec<ModelRow>, depth: usize) {
+    let add =
+        |name: &crate::syntax::ast::Ident, pair: Option<SymbolId>, rows: &mut Vec<ModelRow>| {
+            let Some(s) = symbols.find(&name.name) else {
+                return;
+            };
+            match &symbols.get(s).kind {
+                SymbolKind::Equation(Some(definition)) => {
+                    let known = rows.iter_mut().find(|r| r.definition == *definition);
+                    match known {
+                        Some(r) => r.pair = r.pair.or(pair),
+                        None => rows.push(ModelRow {
+                            definition: *definition,
+                            pair,
+                            span: name.span,
+                        }),
+                    }
+                }
+                SymbolKind::Model(m) if depth < 50 => {
+                    collect(symbols, m.items.as_deref().unwrap_or(&[]), rows, depth + 1);
+                }
+                _ => {}
+            }
+        };
+    for item in items {
+        match item {
+            ModelItem::Add(name) => add(name, None, rows),
+            ModelItem::Pair {
+                rows: names,
+                column,
+            } => {
+                let v = symbols.find(&column.name);
+                names.iter().for_each(|n| add(n, v, rows));
+            }
+            ModelItem::Remove(name) => {
+                let gone = symbols.find(&name.name).map(|s| &symbols.get(s).kind);
+                if let Some(SymbolKind::Equation(Some(d))) = gone {
+                    rows.retain(|r| r.definition != *d);
+                }
+            }
+            ModelItem::All(_) | ModelItem::Limit(..) => {}
+        }
+    }
+}
+
+/// The model as formulas.
+pub fn formulation(
+    symbols: &Symbols,
+    owner: &dyn Fn(TableId) -> Option<SymbolId>,
+    equations: &[EquationDef],
+    chosen: &Chosen,
+) -> Formulation {
+    let mut lowering = Lowering::new(symbols, owner);
+    let lowered: Vec<Equation> = chosen
+        .rows
+        .iter()
+        .map(|r| lowering.equation(&equations[r.definition]))
+        .collect();
+    let mut own: Vec<SymbolId> = Vec::new();
+    let mut see = |e: &Expr| {
+        e.walk(&mut |e| {
+            if let Expr::Variable(Variable::Own(s), _) = e
+                && !own.contains(s)
+            {
+                own.push(*s);
+            }
+        });
+    };
+    for e in &lowered {
+        see(&e.left);
+        see(&e.right);
+    }
+    own.sort_unstable();
+    let rows = lowered.iter().zip(&chosen.rows).map(|(e, r)| {
+        let symbol = symbols.get(e.symbol);
+        Row {
+            name: symbol.name.to_string(),
+            text: symbol.text.to_string(),
+            domain: domain_of(symbols, e.symbol),
+            key: e.key.clone(),
+            binder: e.binder.clone(),
+            left: e.left.clone(),
+            relation: e.relation,
+            right: e.right.clone(),
+            pair: r.pair.map(Variable::Own),
+        }
+    });
+    let rows: Vec<Row> = rows.collect();
+    let objective = chosen
+        .objective
+        .map(|(sense, z)| (sense, Expr::Variable(Variable::Own(z), Vec::new())));
+    Formulation {
+        name: symbols.get(chosen.model).name.to_string(),
+        using: chosen.using.clone().unwrap_or_default(),
+        objective,
+        objective_name: String::new(),
+        own,
+        multipliers: Vec::new(),
+        rows,
+        data: Vec::new(),
+        start: Vec::new(),
+        indices: lowering.indices,
+        flipped: false,
+        by_instance: Vec::new(),
+        notes: Vec::new(),
+    }
+}
+
+/// A bound as the text assigns it.
+struct Assigned {
+    variable: SymbolId,
+    offset: u32,
+    binder: Binder,
+    key: Vec<Part>,
+    value: Expr,
+    /// It holds for all records.
+    covers: bool,
+}
+
+/// The assignments to bounds of these variables that hold at the end; those that cannot be told without running are the
+/// attribute itself.
+fn assigned_bounds(
+    symbols: &Symbols,
+    owner: &dyn Fn(TableId) -> Option<SymbolId>,
+    code: &[Code],
+    f: &mut Formulation,
+) -> Vec<Assigned> {
+    let mut out: Vec<Assigned> = Vec::new();
+    let own = f.own.clone();
+    let mut lowering = Lowering::new(symbols, owner);
+    lowering.indices = std::mem::take(&mut f.indices);
+    let mut each = |c: &Code, top: bool| {
+        let CodeKind::Assign {
+            domain,
+            target,
+            key,
+            value,
+            covers,
+        } = &c.kind
+        else {
+            return;
+        };
+        let (v, offsets) = match *target {
+            Target::Fix(s) => (s, vec![attribute::LO, attribute::UP]),
+            Target::Table(t) => {
+                let Some(s) = owner(t) else { return };
+                (s, vec![t - symbols.get(s).table])
+            }
+            _ => return,
+        };
+        let is_bound = |o: &u32| matches!(*o, attribute::LO | attribute::UP);
+        if !own.contains(&v) || !offsets.iter().all(is_bound) {
+            return;
+        }
+        let whole = *covers || symbols.get(v).dim() == 0;
+        if top {
+            let binder = lowering.domain(domain);
+            let node = Node::data(NodeKind::Var(v, key.clone()), c.span);
+            let Expr::Variable(_, key) = lowering.expr(&node) else {
+                return;
+            };
+            let value = lowering.expr(value);
+            for offset in offsets {
+                out.retain(|a| !(whole && (a.variable, a.offset) == (v, offset)));
+                out.push(Assigned {
+                    variable: v,
+                    offset,
+                    binder: binder.clone(),
+                    key: key.clone(),
+                    value: value.clone(),
+                    covers: whole,
+                });
+            }
+            return;
+        }
+        let indices: Vec<IndexId> = domain_of(symbols, v)
+            .iter()
+            .map(|s| lowering.indices.add(*s))
+            .collect();
+        let key: Vec<Part> = indices.iter().map(|k| Part::Index(*k)).collect();
+        for offset in offsets {
+            out.retain(|a| (a.variable, a.offset) != (v, offset));
+            out.push(Assigned {
+                variable: v,
+                offset,
+                binder: Binder {
+                    indices: indices.clone(),
+                    conditions: Vec::new(),
+                },
+                key: key.clone(),
+                value: Expr::Data(Source::Attribute(v, offset), key.clone()),
+                covers: true,
+            });
+        }
+    };
+    walk(code, true, &mut each);
+    f.indices = lowering.indices;
+    out
+}
+
+fn walk(code: &[Code], top: bool, f: &mut dyn FnMut(&Code, bool)) {
+    for c in code {
+        f(c, top);
+        match &c.kind {
+            CodeKind::Loop(_, b) | CodeKind::While(_, b) | CodeKind::Repeat(b, _) => {
+                walk(b, false, f)
+            }
+            CodeKind::For { body, .. } => walk(body, false, f),
+            CodeKind::If(branches, other) => {
+                branches.iter().for_each(|(_, b)| walk(b, false, f));
+                walk(other, false, f);
+            }
+            _ => {}
+        }
+    }
+}
+
+/// The page: legend, objective, rows, bounds.
+pub fn page(
+    symbols: &Symbols,
+    store: &Store,
+    owner: &dyn Fn(TableId) -> Option<SymbolId>,
+    equations: &[EquationDef],
+    code: &[Code],
+    chosen: &Chosen,
+) -> Page {
+    let mut f = formulation(symbols, owner, equations, chosen);
+    let bounds = assigned_bounds(symbols, owner, code, &mut f);
+    let mut out = legend(symbols, store, &f);
+    out.push(Block::Heading(heading(&f)));
+    let mut s = Setter::new(symbols, store, &f);
+    out.extend(formulas(&mut s, symbols, &f));
+    let mut lines = Vec::new();
+    for &v in &f.own {
+        let mine: Vec<&Assigned> = bounds.iter().filter(|b| b.variable == v).collect();
+        let covered = |o: u32| mine.iter().any(|b| b.offset == o && b.covers);
+        let sign = match kind(symbols, v) {
+            VariableKind::Positive if !covered(attribute::LO) => Some("≥"),
+            VariableKind::Negative if !covered(attribute::UP) => Some("≤"),
+            _ => None,
+        };
+        if let Some(sign) = sign {
+            let base = s.variable(Variable::Own(v));
+            let names = symbols.domain_names(symbols.get(v));
+            let names: Vec<Math> = names
+                .iter()
+                .map(|n| Math::Name(super::math::name(n)))
+                .collect();
+            let base = match names.is_empty() {
+                true => base,
+                false => Math::Indexed(Box::new(base), names),
+            };
+            lines.push(line(
+                vec![base, Math::Operator(sign), Math::Number("0".into())],
+                None,
+            ));
+        }
+        for b in &mine {
+            // What fixes says both.
+            let twin =
+                |o: &&&Assigned| o.offset != b.offset && o.value == b.value && o.key == b.key;
+            let fixed = mine.iter().any(|o| twin(&o));
+            let relation = match (fixed, b.offset) {
+                (true, attribute::UP) => continue,
+                (true, _) => "=",
+                (false, attribute::LO) => "≥",
+                (false, _) => "≤",
+            };
+            let before = s.names.enter(&b.binder.indices);
+            let left = s.expr(&Expr::Variable(Variable::Own(v), b.key.clone()));
+            let right = s.expr(&b.value);
+            let runs = (b.binder != Binder::default()).then(|| s.domain(&b.binder));
+            s.names.leave(before);
+            lines.push(line(vec![left, Math::Operator(relation), right], runs));
+        }
+    }
+    if !lines.is_empty() {
+        out.push(Block::Words("with".into()));
+        out.push(Block::Formulas(lines));
+    }
+    out
+}
+
+fn line(row: Vec<Math>, runs: Option<Math>) -> Formula {
+    Formula {
+        name: String::new(),
+        math: Math::Row(row),
+        runs,
+        words: String::new(),
+    }
+}
+
+fn heading(f: &Formulation) -> String {
+    match f.using.is_empty() {
+        true => format!("Model {}", f.name),
+        false => format!("Model {} ({})", f.name, f.using),
+    }
+}

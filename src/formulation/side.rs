@@ -1,0 +1,282 @@
+//! A model and its dual side by side, and complementary slackness in numbers.
+
+use super::derive::{Derivation, Primal};
+use super::math::{Math, name, symbol_name};
+use super::page::{Block, Page, Setter, formulas};
+use super::tree::*;
+use super::{Formulation, Origin, Row, Sign};
+use crate::check::node::SymbolId;
+use crate::check::symbols::{Store, Symbols};
+use crate::model::instance::Relation as RowRelation;
+
+/// More lines of numbers than this are not shown.
+const MAX_LINES: usize = 40;
+
+/// The model itself as a formulation, its objective variable eliminated where a derivation does that.
+pub fn own(d: &Derivation) -> Formulation {
+    let primal = d.primal;
+    let rows = primal
+        .equations
+        .iter()
+        .enumerate()
+        .filter(|(k, _)| !d.is_eliminated(*k));
+    let rows = rows.map(|(_, e)| {
+        let symbol = d.symbols.get(e.symbol);
+        Row {
+            name: symbol.name.to_string(),
+            text: symbol.text.to_string(),
+            domain: Vec::new(),
+            key: e.key.clone(),
+            binder: e.binder.clone(),
+            left: e.left.clone(),
+            relation: e.relation,
+            right: e.right.clone(),
+            pair: None,
+        }
+    });
+    let objective = primal.objective.map(|(sense, z)| match &d.eliminated {
+        Some(o) => (sense, o.function.clone()),
+        None => (sense, Expr::Variable(Variable::Own(z), Vec::new())),
+    });
+    Formulation {
+        name: primal.name.clone(),
+        using: primal.using.clone(),
+        objective,
+        own: d.variables(),
+        rows: rows.collect(),
+        multipliers: Vec::new(),
+        data: Vec::new(),
+        start: Vec::new(),
+        ..d.out.clone()
+    }
+}
+
+/// Primal, dual, and what is paired with what.
+pub fn page(symbols: &Symbols, store: &Store, primal: &Formulation, dual: &Formulation) -> Page {
+    let mut out = vec![Block::Heading(format!("Primal: {}", primal.name))];
+    let mut s = Setter::new(symbols, store, primal);
+    out.extend(formulas(&mut s, symbols, primal));
+    let signs: Vec<Math> = primal.own.iter().map(|v| sign(symbols, dual, *v)).collect();
+    out.push(Block::Words("with".into()));
+    out.push(Block::Formulas(
+        signs
+            .iter()
+            .map(|m| super::page::Formula {
+                name: String::new(),
+                math: m.clone(),
+                runs: None,
+                words: String::new(),
+            })
+            .collect(),
+    ));
+    out.push(Block::Heading(format!("Dual: {}", dual.name)));
+    let mut t = Setter::new(symbols, store, dual);
+    out.extend(formulas(&mut t, symbols, dual));
+    out.extend(dual.notes.iter().map(|n| Block::Words(n.clone())));
+    out.push(Block::Heading("What is paired with what".into()));
+    let mut pairs = Vec::new();
+    for (n, m) in dual.multipliers.iter().enumerate() {
+        let Origin::Row(e) = m.origin else { continue };
+        let relation = primal
+            .rows
+            .iter()
+            .find(|r| r.name == *symbols.get(e).name)
+            .map_or(Relation::Equal, |r| r.relation);
+        let left = indexed(symbols, Math::Name(name(&symbols.get(e).name)), &m.domain);
+        let left = Math::Row(vec![
+            left,
+            Math::Operator(word(relation)),
+            Math::Words("…".into()),
+        ]);
+        let right = indexed(symbols, t.variable(Variable::Multiplier(n)), &m.domain);
+        pairs.push((left, signed(right, m.sign)));
+    }
+    for (v, left) in primal.own.iter().zip(signs) {
+        for r in dual
+            .rows
+            .iter()
+            .filter(|r| r.pair == Some(Variable::Own(*v)))
+        {
+            let right = indexed(symbols, Math::Name(name(&r.name)), &r.domain);
+            let right = Math::Row(vec![
+                right,
+                Math::Operator(word(r.relation)),
+                Math::Words("…".into()),
+            ]);
+            pairs.push((left.clone(), right));
+        }
+    }
+    out.push(Block::Pairs(["primal".into(), "dual".into()], pairs));
+    out
+}
+
+fn indexed(symbols: &Symbols, base: Math, domain: &[SymbolId]) -> Math {
+    if domain.is_empty() {
+        return base;
+    }
+    let sets = domain.iter().map(|s| Math::Name(symbol_name(symbols, *s)));
+    Math::Indexed(Box::new(base), sets.collect())
+}
+
+fn word(r: Relation) -> &'static str {
+    match r {
+        Relation::Equal => "=",
+        Relation::Greater => "≥",
+        Relation::Less => "≤",
+        Relation::Free => "⋚",
+    }
+}
+
+fn signed(m: Math, sign: Sign) -> Math {
+    match sign {
+        Sign::Free => Math::Row(vec![m, Math::Words(" free".into())]),
+        Sign::Positive => Math::Row(vec![m, Math::Operator("≥"), Math::Number("0".into())]),
+        Sign::Negative => Math::Row(vec![m, Math::Operator("≤"), Math::Number("0".into())]),
+    }
+}
+
+/// A variable with the sign that its rows in the dual give it.
+fn sign(symbols: &Symbols, dual: &Formulation, v: SymbolId) -> Math {
+    let maximum = matches!(dual.objective, Some((Sense::Maximize, _)));
+    let rows: Vec<&Row> = dual
+        .rows
+        .iter()
+        .filter(|r| r.pair == Some(Variable::Own(v)))
+        .collect();
+    let sign = match rows.as_slice() {
+        [one] => match (one.relation, maximum) {
+            (Relation::Less, true) | (Relation::Greater, false) => Sign::Positive,
+            (Relation::Greater, true) | (Relation::Less, false) => Sign::Negative,
+            _ => Sign::Free,
+        },
+        _ => Sign::Free,
+    };
+    let base = Math::Name(symbol_name(symbols, v));
+    signed(
+        indexed(symbols, base, &super::derive::domain_of(symbols, v)),
+        sign,
+    )
+}
+
+/// A number as people read it: seven digits.
+pub fn short(x: f64) -> String {
+    if x == 0.0 || x.abs() < 1e-12 {
+        return "0".into();
+    }
+    if !x.is_finite() {
+        return if x > 0.0 {
+            "∞".into()
+        } else {
+            "−∞".into()
+        };
+    }
+    let digits = 6 - x.abs().log10().floor() as i32;
+    let text = match (-3..=12).contains(&digits) {
+        true => format!("{x:.*}", digits.max(0) as usize),
+        false => return format!("{x:.6e}").replace('-', "−"),
+    };
+    let text = match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_string(),
+        false => text,
+    };
+    text.replace('-', "−")
+}
+
+/// Complementary slackness in numbers; empty without an answer.
+pub fn slackness(symbols: &Symbols, store: &Store, primal: &Primal, flipped: bool) -> Page {
+    let Some(a) = &primal.answer else {
+        return Vec::new();
+    };
+    let g = &primal.generated;
+    let p = &g.instance;
+    let z = p.objective.map(|o| o.column as usize);
+    let mut lines = Vec::new();
+    let named = |b: &crate::model::origin::Block, i: u32| {
+        super::text::record(store, &symbols.get(b.symbol).name, b.key(i))
+    };
+    let near = |x: f64, size: f64| x.abs() <= 1e-7 * (1.0 + size.abs());
+    for b in &g.origin.rows.list {
+        for i in b.start..b.start + b.len {
+            let k = i as usize;
+            let sign = match p.rows.relation[k] {
+                RowRelation::Greater => "≥",
+                RowRelation::Less => "≤",
+                _ => continue,
+            };
+            let flip = if flipped { -1.0 } else { 1.0 };
+            let (left, right) = (a.activity[k], p.rows.rhs[k]);
+            let y = flip * a.row_marginal[k];
+            let slack = (left - right).abs();
+            let mut line = format!("{}: {} {sign} {}", named(b, i), short(left), short(right));
+            line.push_str(&match near(slack, right) {
+                true if near(y, 0.0) => ", tight, and its multiplier is 0".to_string(),
+                true => format!(", tight: its multiplier is {}", short(y)),
+                false => format!(", slack {}, so its multiplier is 0", short(slack)),
+            });
+            lines.push(line);
+        }
+    }
+    // A column's reduced cost is what its row in the dual leaves.
+    let (gone, cost) = costs(p);
+    let maximum = p.sign() < 0.0;
+    for b in &g.origin.columns.list {
+        for j in b.start..b.start + b.len {
+            let k = j as usize;
+            let (lo, up) = (p.columns.lower[k], p.columns.upper[k]);
+            if gone && Some(k) == z || !lo.is_finite() && !up.is_finite() {
+                continue;
+            }
+            let (x, d) = (a.level[k], a.column_marginal[k]);
+            let at_lower = near(x - lo, x);
+            let sign = if at_lower != maximum { "≤" } else { "≥" };
+            let (left, right) = (cost[k] - d, cost[k]);
+            let name = named(b, j);
+            lines.push(match near(d, 0.0) {
+                true => format!(
+                    "{name}: {0} = {0}, tight; its level is {1}",
+                    short(right),
+                    short(x)
+                ),
+                false => format!(
+                    "{name}: {} {sign} {}, slack {}, so it is at its {} bound, {}",
+                    short(left),
+                    short(right),
+                    short(d.abs()),
+                    if at_lower { "lower" } else { "upper" },
+                    short(x)
+                ),
+            });
+        }
+    }
+    let more = lines.len().saturating_sub(MAX_LINES);
+    lines.truncate(MAX_LINES);
+    if more > 0 {
+        lines.push(format!("… and {more} more"));
+    }
+    if lines.is_empty() {
+        return Vec::new();
+    }
+    let mut out = vec![Block::Heading("Complementary slackness in numbers".into())];
+    out.extend(lines.into_iter().map(|l| Block::Words(format!("  {l}"))));
+    out
+}
+
+/// Whether one row defines the objective variable, and the costs of the columns.
+pub fn costs(p: &crate::model::instance::Instance) -> (bool, Vec<f64>) {
+    let mut cost = vec![0.0; p.column_count()];
+    let Some(z) = p.objective.map(|o| o.column as usize) else {
+        return (false, cost);
+    };
+    let mut rows = (0..p.row_count()).filter(|&i| p.matrix.row(i).any(|(j, v)| j == z && v != 0.0));
+    match (rows.next(), rows.next()) {
+        (Some(i), None) if p.rows.relation[i] == RowRelation::Equal => {
+            let a = p.matrix.row(i).find(|t| t.0 == z).map_or(1.0, |t| t.1);
+            p.matrix.row(i).for_each(|(j, v)| cost[j] = -v / a);
+            (true, cost)
+        }
+        _ => {
+            cost[z] = 1.0;
+            (false, cost)
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! From a run to a primal with formulas and numbers.
+
+use super::derive::{Primal, Values};
+use super::lower::{Equation, Lowering};
+use super::tree::{Expr, Indices, Part, Variable, guarded};
+use crate::model::instance::Instance;
+use crate::model::origin::Blocks;
+use crate::run::{Machine, Studied};
+use crate::solve::answer::{Answer, answer};
+use crate::solve::{Monitor, Settings};
+
+/// The model of the solve that a run was asked to look at; None where there was none.
+pub fn primal(m: &mut Machine) -> Option<(Primal, Studied)> {
+    let (studied, generated) = m.take_study()?;
+    let generated = generated?;
+    let owner = |t| m.table_owner(t);
+    let mut lowering = Lowering::new(&m.symbols, &owner);
+    let mut equations: Vec<Equation> = studied
+        .code
+        .equations
+        .iter()
+        .map(|r| lowering.equation(&m.equations[r.definition]))
+        .collect();
+    let indices: Indices = lowering.indices;
+    for &(v, set) in &studied.code.limits {
+        // The model has the variable in this set only.
+        let limited = |e| match e {
+            Expr::Variable(Variable::Own(s), key) if s == v => {
+                let inside = Expr::Member(set, key.clone());
+                Some(guarded(Expr::Variable(Variable::Own(s), key), vec![inside]))
+            }
+            e => Some(e),
+        };
+        let change = |e: &Expr| e.map(&mut { limited }, &mut |p| Some(p.clone()));
+        for e in &mut equations {
+            e.left = change(&e.left).unwrap_or(Expr::Number(0.0));
+            e.right = change(&e.right).unwrap_or(Expr::Number(0.0));
+        }
+    }
+    for e in &mut equations {
+        // Where a lead in its name leaves the set an equation has no row.
+        for p in &e.key {
+            if let Part::Lag(l) = p
+                && !l.circular
+            {
+                let inside = Expr::Member(m.symbols.root(l.set), vec![p.clone()]);
+                e.binder.conditions.push(inside);
+            }
+        }
+    }
+    let tuples = studied.code.equations.iter();
+    let tuples = tuples.map(|r| m.tuple_count(r.definition)).collect();
+    let answer = studied.answer.as_ref().map(|(origin, a)| {
+        let columns = |v: &[f64]| moved(&origin.columns, v, &generated.origin.columns);
+        let rows = |v: &[f64]| moved(&origin.rows, v, &generated.origin.rows);
+        Values {
+            level: columns(&a.outcome.level),
+            column_marginal: columns(&a.outcome.column_marginal),
+            activity: rows(&a.activity),
+            row_marginal: rows(&a.outcome.row_marginal),
+        }
+    });
+    let primal = Primal {
+        name: m.symbols.get(studied.code.model).name.to_string(),
+        using: studied.code.using.to_string(),
+        objective: studied.code.objective,
+        equations,
+        tuples,
+        indices,
+        generated,
+        answer,
+    };
+    Some((primal, studied))
+}
+
+/// Values by the rows or columns of another instance of the model; 0 where there was none.
+fn moved(from: &Blocks, values: &[f64], to: &Blocks) -> Vec<f64> {
+    let mut out = Vec::new();
+    for b in &to.list {
+        let old = from.symbol(b.symbol);
+        for i in b.start..b.start + b.len {
+            let at = old.and_then(|o| o.find(b.key(i)));
+            let value = at.and_then(|at| values.get(at as usize));
+            out.push(value.copied().unwrap_or(0.0));
+        }
+    }
+    out
+}
+
+/// Solves a linear instance.
+pub fn solve_linear(
+    p: &Instance,
+    settings: &Settings,
+    monitor: &mut dyn Monitor,
+) -> Option<Answer> {
+    answer("lp", None, p, settings, monitor).ok()
+}

@@ -1,0 +1,511 @@
+//! A formulation as a model: statements of the language.
+
+use super::data::{Data, number, quoted};
+use super::names::Names;
+use super::tree::*;
+use super::{Formulation, Row, Sign};
+use crate::check::functions::name_of;
+use crate::check::node::SymbolId;
+use crate::check::symbols::{Store, Symbols, attribute};
+use crate::report::names::join;
+use crate::syntax::ast::VariableKind;
+use rustc_hash::FxHashSet;
+use std::fmt::Write;
+
+/// Writes expressions as statements of the language.
+pub struct Writer<'a> {
+    symbols: &'a Symbols,
+    store: &'a Store,
+    f: &'a Formulation,
+    /// Names of indices.
+    pub names: Names<'a>,
+    /// Whether attributes of the user's variables are parameters of the model (it stands alone).
+    pub alone: bool,
+}
+
+/// How tightly an operator binds.
+mod level {
+    pub const OR: u8 = 1;
+    pub const AND: u8 = 2;
+    pub const NOT: u8 = 3;
+    pub const RELATION: u8 = 4;
+    pub const SUM: u8 = 5;
+    pub const PRODUCT: u8 = 6;
+    pub const POWER: u8 = 7;
+    pub const DOLLAR: u8 = 8;
+    pub const ATOM: u8 = 9;
+}
+
+/// The name of an attribute's parameter in a model that stands alone.
+pub fn attribute_name(symbols: &Symbols, s: SymbolId, offset: u32) -> String {
+    format!("{}_{}", symbols.get(s).name, attribute_word(offset))
+}
+
+/// `l`, `m`, `lo` …
+pub fn attribute_word(offset: u32) -> &'static str {
+    match offset {
+        attribute::L => "l",
+        attribute::M => "m",
+        attribute::LO => "lo",
+        attribute::UP => "up",
+        attribute::SCALE => "scale",
+        attribute::PRIOR => "prior",
+        _ => "stage",
+    }
+}
+
+impl<'a> Writer<'a> {
+    /// A writer for the expressions of a formulation.
+    pub fn new(symbols: &'a Symbols, store: &'a Store, f: &'a Formulation, alone: bool) -> Self {
+        let own = symbols.iter().map(|(_, s)| s.name.to_lowercase());
+        let new = f.data.iter().map(|d| d.name.to_lowercase());
+        let rows = f.rows.iter().map(|r| r.name.to_lowercase());
+        let multipliers = f.multipliers.iter().map(|m| m.name.to_lowercase());
+        let taken: FxHashSet<String> = own.chain(new).chain(rows).chain(multipliers).collect();
+        Self {
+            symbols,
+            store,
+            f,
+            names: Names::new(symbols, &f.indices, taken),
+            alone,
+        }
+    }
+
+    fn name(&self, s: SymbolId) -> &'a str {
+        &self.symbols.get(s).name
+    }
+
+    fn variable(&self, v: Variable) -> String {
+        match v {
+            Variable::Own(s) => self.name(s).to_string(),
+            Variable::Multiplier(n) => self.f.multipliers[n].name.clone(),
+        }
+    }
+
+    fn part(&mut self, p: &Part) -> String {
+        match p {
+            Part::Index(k) => self.names.of(*k).to_string(),
+            Part::Label(l) => quoted(self.store.universe.name(*l)),
+            Part::Singleton(s, _) => self.name(*s).to_string(),
+            Part::Lag(l) => {
+                let base = self.part(&l.base);
+                let (sign, offset) = match &l.offset {
+                    Expr::Number(x) if *x < 0.0 => ('-', Expr::Number(-x)),
+                    Expr::Negate(e) => ('-', (**e).clone()),
+                    e => ('+', e.clone()),
+                };
+                let offset = self.at(&offset, level::POWER);
+                match l.circular {
+                    true => format!("{base}{sign}{sign}{offset}"),
+                    false => format!("{base}{sign}{offset}"),
+                }
+            }
+        }
+    }
+
+    fn key(&mut self, key: &[Part]) -> String {
+        if key.is_empty() {
+            return String::new();
+        }
+        let mut parts: Vec<String> = Vec::new();
+        for p in key {
+            // A singleton stands for all its positions.
+            if !matches!(p, Part::Singleton(_, n) if *n > 0) {
+                parts.push(self.part(p));
+            }
+        }
+        format!("({})", parts.join(","))
+    }
+
+    fn source(&self, s: Source, key: &str) -> String {
+        match s {
+            Source::Parameter(p) => format!("{}{key}", self.name(p)),
+            Source::Attribute(v, offset) if self.alone => {
+                format!("{}{key}", attribute_name(self.symbols, v, offset))
+            }
+            Source::Attribute(v, offset) => {
+                format!("{}.{}{key}", self.name(v), attribute_word(offset))
+            }
+            Source::New(n) => format!("{}{key}", self.f.data[n].name),
+        }
+    }
+
+    /// An expression.
+    pub fn expr(&mut self, e: &Expr) -> String {
+        self.at(e, 0)
+    }
+
+    /// An expression, in parentheses if it binds less tightly than its place asks.
+    fn at(&mut self, e: &Expr, place: u8) -> String {
+        let (text, mine) = self.plain(e);
+        if mine < place {
+            format!("({text})")
+        } else {
+            text
+        }
+    }
+
+    #[allow(clippy::too_many_lines)] // one match
+    fn plain(&mut self, e: &Expr) -> (String, u8) {
+        use level::*;
+        match e {
+            Expr::Number(x) => match number(*x) {
+                t if t.starts_with('-') => (t, SUM),
+                t => (t, ATOM),
+            },
+            Expr::Data(s, k) => {
+                let key = self.key(k);
+                (self.source(*s, &key), ATOM)
+            }
+            Expr::Member(s, k) => {
+                let key = self.key(k);
+                (format!("{}{key}", self.name(*s)), ATOM)
+            }
+            Expr::NewMember(n, k) => {
+                let key = self.key(k);
+                (format!("{}{key}", self.f.data[*n].name), ATOM)
+            }
+            Expr::Variable(v, k) => {
+                let key = self.key(k);
+                (format!("{}{key}", self.variable(*v)), ATOM)
+            }
+            Expr::Ord(_, p) => (format!("ord({})", self.part(p)), ATOM),
+            Expr::Card(s) => (format!("card({})", self.name(*s)), ATOM),
+            Expr::SameAs(a, b) => {
+                let (a, b) = (self.part(a), self.part(b));
+                (format!("sameas({a},{b})"), ATOM)
+            }
+            Expr::LabelAttribute(a, _, p) => {
+                let p = self.part(p);
+                (format!("{p}.{}", label_word(*a)), ATOM)
+            }
+            Expr::Negate(a) => (format!("-{}", self.at(a, PRODUCT)), SUM),
+            Expr::Not(a) => (format!("not {}", self.at(a, RELATION)), NOT),
+            Expr::Sum(t) => {
+                let mut out = String::new();
+                for (n, (minus, e)) in t.iter().enumerate() {
+                    let text = self.at(e, PRODUCT);
+                    out.push_str(match (n, minus) {
+                        (0, false) => "",
+                        (0, true) => "-",
+                        (_, false) => " + ",
+                        (_, true) => " - ",
+                    });
+                    out.push_str(&text);
+                }
+                (out, SUM)
+            }
+            Expr::Product(t) => {
+                let mut out = String::new();
+                for (n, (divide, e)) in t.iter().enumerate() {
+                    let text = self.at(e, POWER);
+                    out.push_str(match (n, divide) {
+                        (0, false) => "",
+                        (0, true) => "1/",
+                        (_, false) => "*",
+                        (_, true) => "/",
+                    });
+                    out.push_str(&text);
+                }
+                (out, PRODUCT)
+            }
+            Expr::Binary(op, a, b) => {
+                let (word, mine) = match op {
+                    BinaryOp::Power => ("**", POWER),
+                    BinaryOp::And => (" and ", AND),
+                    BinaryOp::Or => (" or ", OR),
+                    BinaryOp::Xor => (" xor ", OR),
+                    BinaryOp::Implies => (" imp ", 0),
+                    BinaryOp::Equivalent => (" eqv ", 0),
+                    BinaryOp::Eq => (" = ", RELATION),
+                    BinaryOp::Ne => (" <> ", RELATION),
+                    BinaryOp::Lt => (" < ", RELATION),
+                    BinaryOp::Le => (" <= ", RELATION),
+                    BinaryOp::Gt => (" > ", RELATION),
+                    BinaryOp::Ge => (" >= ", RELATION),
+                    _ => (" + ", SUM),
+                };
+                let (a, b) = (self.at(a, mine + 1), self.at(b, mine + 1));
+                (format!("{a}{word}{b}"), mine)
+            }
+            Expr::Call(f, args) => {
+                let args: Vec<String> = args.iter().map(|a| self.expr(a)).collect();
+                (format!("{}({})", name_of(*f), args.join(",")), ATOM)
+            }
+            Expr::DataCall(f, args) => {
+                let args: Vec<String> = args.iter().map(|a| self.expr(a)).collect();
+                let word = match f {
+                    DataFunction::Fact => "fact",
+                    DataFunction::Mapval => "mapval",
+                    _ => "pi",
+                };
+                match args.is_empty() {
+                    true => (word.to_string(), ATOM),
+                    false => (format!("{word}({})", args.join(",")), ATOM),
+                }
+            }
+            Expr::Dollar(a, c) => {
+                let (a, c) = (self.at(a, DOLLAR), self.expr(c));
+                (format!("{a}$({c})"), DOLLAR)
+            }
+            Expr::Aggregate(op, d, e) => {
+                let word = match op {
+                    AggregateOp::Sum => "sum",
+                    AggregateOp::Prod => "prod",
+                    AggregateOp::Smin => "smin",
+                    AggregateOp::Smax => "smax",
+                    AggregateOp::Sand => "sand",
+                    AggregateOp::Sor => "sor",
+                };
+                let before = self.names.enter(&d.indices);
+                let domain = self.domain(d);
+                let body = self.expr(e);
+                self.names.leave(before);
+                (format!("{word}({domain}, {body})"), ATOM)
+            }
+            Expr::Opaque(why) => (format!("[{why}]"), ATOM),
+        }
+    }
+
+    /// `(i,j)$(…)`, `arc(i,j)$(…)`: what a sum runs over; its indices have names.
+    fn domain(&mut self, d: &Binder) -> String {
+        let covers = |c: &Expr| match c {
+            Expr::Member(_, k) | Expr::NewMember(_, k) => {
+                let plain = |p: &Part| matches!(p, Part::Index(_));
+                let has = |i: &IndexId| k.contains(&Part::Index(*i));
+                k.len() > 1 && k.iter().all(plain) && d.indices.iter().all(has)
+            }
+            _ => false,
+        };
+        let tuple = d.conditions.iter().position(covers);
+        let head = match tuple {
+            Some(t) => self.expr(&d.conditions[t]),
+            None => {
+                let names: Vec<String> = d
+                    .indices
+                    .iter()
+                    .map(|k| self.names.of(*k).to_string())
+                    .collect();
+                match names.as_slice() {
+                    [one] => one.clone(),
+                    _ => format!("({})", names.join(",")),
+                }
+            }
+        };
+        let rest = d.conditions.iter().enumerate();
+        let rest: Vec<Expr> = rest
+            .filter(|(n, _)| Some(*n) != tuple)
+            .map(|(_, c)| c.clone())
+            .collect();
+        match conjunction(rest) {
+            None => head,
+            Some(c) => format!("{head}${}", self.condition(&c)),
+        }
+    }
+
+    /// A condition behind `$`.
+    fn condition(&mut self, c: &Expr) -> String {
+        format!("({})", self.expr(c))
+    }
+
+    /// The definition of a row.
+    pub fn row(&mut self, r: &Row) -> String {
+        let before = self.names.enter(&r.binder.indices);
+        // Indices of the row that are in its key control it; others would be sums.
+        let key = self.key(&r.key);
+        let condition = conjunction(r.binder.conditions.clone());
+        let condition = condition.map(|c| format!("${}", self.condition(&c)));
+        let (left, right) = (self.expr(&r.left), self.expr(&r.right));
+        self.names.leave(before);
+        let relation = match r.relation {
+            Relation::Equal => "=e=",
+            Relation::Greater => "=g=",
+            Relation::Less => "=l=",
+            Relation::Free => "=n=",
+        };
+        let condition = condition.unwrap_or_default();
+        format!(
+            "{}{key}{condition}..\n   {left} {relation} {right};\n",
+            r.name
+        )
+    }
+}
+
+fn label_word(a: LabelAttribute) -> &'static str {
+    use LabelAttribute as A;
+    match a {
+        A::Val => "val",
+        A::Pos => "pos",
+        A::Ord => "ord",
+        A::Off => "off",
+        A::Rev => "rev",
+        A::Uel => "uel",
+        A::Len => "len",
+        A::TextLen => "tlen",
+        A::TextVal => "tval",
+        A::First => "first",
+        A::Last => "last",
+    }
+}
+
+/// The whole model as text. `include`: the file of the user's text, which is then included instead of its data; `solve`:
+/// what stands behind the model.
+pub fn model(
+    symbols: &Symbols,
+    store: &Store,
+    f: &Formulation,
+    include: Option<&str>,
+    head: &str,
+    solve: bool,
+) -> String {
+    let mut w = Writer::new(symbols, store, f, include.is_none());
+    let mut rows = String::new();
+    for r in &f.rows {
+        let _ = writeln!(rows, "{}", w.row(r));
+    }
+    let objective = f.objective.as_ref().map(|(sense, e)| (*sense, w.expr(e)));
+    let mut equations: Vec<String> = f
+        .rows
+        .iter()
+        .map(|r| declaration(symbols, &r.name, &r.domain, &r.text))
+        .collect();
+    let mut free: Vec<String> = Vec::new();
+    if let Some((_, e)) = &objective {
+        let name = &f.objective_name;
+        let _ = writeln!(rows, "{name}_row..\n   {name} =e= {e};\n");
+        equations.push(format!("   {name}_row"));
+        free.push(format!("   {name}"));
+    }
+    let mut start = String::new();
+    for a in &f.start {
+        let before = w.names.enter(&a.indices);
+        let key: Vec<Part> = a.indices.iter().map(|k| Part::Index(*k)).collect();
+        let key = w.key(&key);
+        w.names.leave(before);
+        let (target, word, data) = (&a.target, a.attribute, &a.data.name);
+        let _ = writeln!(start, "{target}.{word}{key}${data}{key} = {data}{key};");
+    }
+    let mut data = Data::new(symbols, store);
+    for &(set, _) in &w.names.aliases {
+        data.set(set);
+    }
+    w.names.used.iter().for_each(|&s| data.set(s));
+    f.rows.iter().for_each(|r| data.row(r));
+    if let Some((_, e)) = &f.objective {
+        data.expr(e);
+    }
+    let new = || f.data.iter().chain(f.start.iter().map(|a| &a.data));
+    new().flat_map(|d| &d.domain).for_each(|s| data.set(*s));
+    for m in &f.multipliers {
+        m.domain.iter().for_each(|s| data.set(*s));
+    }
+    for v in &f.own {
+        data.domain_of(*v);
+    }
+    let mut out = String::new();
+    out.push_str(head);
+    match include {
+        Some(file) => {
+            let _ = writeln!(out, "$include {file}\n");
+        }
+        None => out.push_str(&data.statements()),
+    }
+    for (set, name) in &w.names.aliases {
+        let _ = writeln!(out, "Alias ({},{name});", symbols.get(*set).name);
+    }
+    for d in new() {
+        out.push_str(&super::data::statement(symbols, store, d));
+    }
+    // The user's variables with the kind that they were declared with, discrete ones relaxed.
+    let own = |sign: Sign| {
+        let of = f.own.iter().filter(move |v| {
+            let kind = super::derive::kind(symbols, **v);
+            include.is_none() && sign_of(kind) == sign
+        });
+        of.map(|v| {
+            let s = symbols.get(*v);
+            let domain = super::derive::domain_of(symbols, *v);
+            declaration(symbols, &s.name, &domain, &s.text)
+        })
+    };
+    let list = |sign: Sign| {
+        let of = f.multipliers.iter().filter(move |m| m.sign == sign);
+        let new = of.map(|m| declaration(symbols, &m.name, &m.domain, ""));
+        own(sign).chain(new)
+    };
+    free.extend(list(Sign::Free));
+    let mut declare = |word: &str, list: Vec<String>| {
+        if !list.is_empty() {
+            let _ = writeln!(out, "{word}\n{};\n", list.join("\n"));
+        }
+    };
+    declare("Variables", free);
+    declare("Positive variables", list(Sign::Positive).collect());
+    declare("Negative variables", list(Sign::Negative).collect());
+    declare("Equations", equations);
+    out.push_str("* An index of a larger set stands for one of a smaller set under a condition that says so.\n$onUni\n\n");
+    out.push_str(&rows);
+    out.push_str("$offUni\n\n");
+    let mut items: Vec<String> = Vec::new();
+    for r in &f.rows {
+        items.push(match (r.pair, f.objective.is_some()) {
+            (Some(v), false) => format!("{}.{}", r.name, w.variable(v)),
+            _ => r.name.clone(),
+        });
+    }
+    if objective.is_some() {
+        items.push(format!("{}_row", f.objective_name));
+    }
+    let _ = writeln!(out, "Model {} / {} /;\n", f.name, items.join(", "));
+    out.push_str(&start);
+    if solve {
+        let _ = match &objective {
+            Some((sense, _)) => {
+                let word = match sense {
+                    Sense::Minimize => "minimizing",
+                    Sense::Maximize => "maximizing",
+                };
+                writeln!(
+                    out,
+                    "solve {} using {} {word} {};",
+                    f.name, f.using, f.objective_name
+                )
+            }
+            None => writeln!(out, "solve {} using {};", f.name, f.using),
+        };
+    }
+    out
+}
+
+fn sign_of(kind: VariableKind) -> Sign {
+    match kind {
+        VariableKind::Positive => Sign::Positive,
+        VariableKind::Negative => Sign::Negative,
+        _ => Sign::Free,
+    }
+}
+
+fn declaration(symbols: &Symbols, name: &str, domain: &[SymbolId], text: &str) -> String {
+    let sets: Vec<String> = domain
+        .iter()
+        .map(|s| symbols.get(*s).name.to_string())
+        .collect();
+    let sets = match sets.is_empty() {
+        true => String::new(),
+        false => format!("({})", sets.join(",")),
+    };
+    let text = match text.is_empty() {
+        true => String::new(),
+        false => format!(" {}", quoted(text)),
+    };
+    format!("   {name}{sets}{text}")
+}
+
+/// `x('a','b')`
+pub fn record(store: &Store, name: &str, key: &[crate::data::universe::Label]) -> String {
+    let labels: Vec<String> = key
+        .iter()
+        .map(|l| store.universe.name(*l).to_string())
+        .collect();
+    join(name, &labels)
+}
