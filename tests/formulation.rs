@@ -407,3 +407,116 @@ fn conditions_of_models_drawn_at_random_are_those_of_automatic_derivatives() {
     }
     assert!(count * 2 > cases(), "{count}");
 }
+
+/// All entries of a matrix by the names of their rows and columns, right-hand sides among them.
+fn entries(
+    i: &check::Instance,
+    rename: &dyn Fn(&str) -> String,
+) -> std::collections::BTreeMap<(String, Vec<String>, String, Vec<String>), f64> {
+    let mut out = std::collections::BTreeMap::new();
+    let g = &i.generated.instance;
+    for r in 0..g.row_count() {
+        let (row, row_key) = &i.rows[r];
+        for (c, v) in g.matrix.row(r) {
+            let (column, key) = &i.columns[c];
+            let at = (rename(row), row_key.clone(), rename(column), key.clone());
+            out.insert(at, v);
+        }
+        let at = (
+            rename(row),
+            row_key.clone(),
+            format!("{:?}", g.rows.relation[r]),
+            Vec::new(),
+        );
+        out.insert(at, g.rows.rhs[r]);
+    }
+    for c in 0..g.column_count() {
+        let (column, key) = &i.columns[c];
+        for (word, v) in [("lower", g.columns.lower[c]), ("upper", g.columns.upper[c])] {
+            out.insert((word.into(), Vec::new(), rename(column), key.clone()), v);
+        }
+    }
+    out
+}
+
+#[test]
+fn the_kinematic_theorem_written_by_hand_is_the_dual_of_the_static_one() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/wall.blk");
+    let mut found = Vec::new();
+    for model in ["static", "kinematic"] {
+        let mut host = SystemHost::new(&file, Path::new("."), &[], Output::Quiet);
+        let mut options = options(true);
+        options.study = Some(StudyChoice {
+            model: Some(model.into()),
+            generate_only: true,
+            ..StudyChoice::default()
+        });
+        session::run(
+            &mut host,
+            &file.to_string_lossy(),
+            blk(),
+            options,
+            false,
+            &mut |m| {
+                let (primal, _) = study::primal(m).expect("it is solved");
+                found.push(match model {
+                    "static" => {
+                        let dual =
+                            bmod::formulation::dual::dual(&m.symbols, &m.store, &primal, true)
+                                .expect("a dual");
+                        assert!(dual.by_instance.is_empty());
+                        let text = bmod::formulation::text::model(
+                            &m.symbols, &m.store, &dual, None, "", true,
+                        );
+                        entries(&check::generate(&text).expect("generated"), &|n| {
+                            let names = [
+                                ("dual_alpha", "norm"),
+                                ("dual_x", "normal"),
+                                ("dual_objective_row", "work"),
+                                ("dual_objective", "rate"),
+                            ];
+                            let known = names.iter().find(|k| k.0 == n);
+                            known.map_or(n.to_string(), |k| k.1.to_string())
+                        })
+                    }
+                    _ => {
+                        let records = |b| check::records(&m.symbols, &m.store, b);
+                        let o = &primal.generated.origin;
+                        let (rows, columns) = (records(&o.rows), records(&o.columns));
+                        entries(
+                            &check::Instance {
+                                generated: primal.generated,
+                                rows,
+                                columns,
+                            },
+                            &str::to_string,
+                        )
+                    }
+                });
+            },
+        );
+    }
+    let (derived, by_hand) = (&found[0], &found[1]);
+    let known: Vec<_> = by_hand
+        .keys()
+        .filter(|k| !derived.contains_key(*k))
+        .take(3)
+        .collect();
+    let new: Vec<_> = derived
+        .keys()
+        .filter(|k| !by_hand.contains_key(*k))
+        .take(3)
+        .collect();
+    assert!(
+        known.is_empty() && new.is_empty(),
+        "only by hand: {known:?}; only derived: {new:?}"
+    );
+    for (k, v) in by_hand {
+        let d = derived[k];
+        assert!(
+            (d - v).abs() <= 1e-12 * v.abs().max(1.0) || d == *v,
+            "{k:?}: {d} and {v}"
+        );
+    }
+    assert!(by_hand.len() > 2000);
+}

@@ -54,6 +54,8 @@ pub enum Command {
     Range(RangeArgs),
     /// Says in words what a model decides, what its answer is, and what binds.
     Explain(ExplainArgs),
+    /// Writes formulas, data, solution, ranges and figures on one page.
+    Report(ReportArgs),
     /// Shows the generated rows and columns as readable algebra, with names and numbers.
     List(ListArgs),
     /// Shows what is in a GDX file, the data files of GAMS: all symbols, or the records of one.
@@ -252,6 +254,23 @@ pub struct ExplainArgs {
     /// The model and what all commands share.
     #[command(flatten)]
     pub model: ModelArgs,
+    /// Which model is meant.
+    #[command(flatten)]
+    pub chosen: ChosenArgs,
+    /// How the model is solved.
+    #[command(flatten)]
+    pub solve: SolveArgs,
+}
+
+/// Arguments of `bmod report`.
+#[derive(Args, Debug, Clone)]
+pub struct ReportArgs {
+    /// The model and what all commands share.
+    #[command(flatten)]
+    pub model: ModelArgs,
+    /// The page; it needs no other file.
+    #[arg(long, value_name = "OUT.html", value_hint = ValueHint::FilePath)]
+    pub html: PathBuf,
     /// Which model is meant.
     #[command(flatten)]
     pub chosen: ChosenArgs,

@@ -39,6 +39,7 @@ pub fn execute(cli: &Cli) -> u8 {
         Command::Kkt(a) => super::kkt::kkt(a),
         Command::Range(a) => super::range::range(a),
         Command::Explain(a) => super::explain::run(a),
+        Command::Report(a) => super::report::report(a),
         Command::Why(a) => super::why::why(a),
         Command::List(a) => list(a),
         Command::Gdx(a) => super::gdx::show(a),

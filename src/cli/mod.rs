@@ -11,6 +11,7 @@ pub mod host;
 pub mod kkt;
 pub mod new;
 pub mod range;
+pub mod report;
 pub mod show;
 pub mod test;
 pub mod watch;

@@ -336,7 +336,9 @@ pub fn dual(
         let by_upper = bound(&|o| o == Origin::Upper(symbol));
         let fixed = bound(&|o| o == Origin::Fixed(symbol));
         let Some(&i) = row_of.get(name) else {
-            if !transposed[j].is_empty() || cost[j] != 0.0 {
+            // Without a multiplier it is a row of numbers, which holds, or the dual could not be generated.
+            let bounded = [by_lower, by_upper, fixed].iter().any(Option::is_some);
+            if !transposed[j].is_empty() || bounded {
                 c.differ(format!("the column {name:?} has no row in the dual"));
             }
             continue;

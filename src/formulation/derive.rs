@@ -450,7 +450,11 @@ impl<'a> Derivation<'a> {
                 body: Expr::Number(1.0),
             });
         }
-        let common = common(&mut rows, &mut cost);
+        // A column that stands in no row has one of its own all the same.
+        let common = match self.is_without_row(v) {
+            true => Vec::new(),
+            false => common(&mut rows, &mut cost),
+        };
         let add = |list: Vec<Inverted>| {
             sum(list
                 .into_iter()

@@ -248,10 +248,13 @@ pub fn slackness(symbols: &Symbols, store: &Store, primal: &Primal, flipped: boo
             });
         }
     }
-    let more = lines.len().saturating_sub(MAX_LINES);
-    lines.truncate(MAX_LINES);
-    if more > 0 {
-        lines.push(format!("… and {more} more"));
+    if lines.len() > MAX_LINES {
+        let tight = lines.iter().filter(|l| l.contains(", tight")).count();
+        lines = vec![format!(
+            "{} pairs of a row or column with its multiplier: {tight} are tight, {} have a slack and a multiplier of 0.",
+            lines.len(),
+            lines.len() - tight
+        )];
     }
     if lines.is_empty() {
         return Vec::new();

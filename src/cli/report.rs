@@ -1,0 +1,269 @@
+//! `bmod report --html`: formulas, data, solution, ranges, figures and certificate on one page that needs nothing else.
+
+use super::args::{EXECUTION, ReportArgs};
+use super::commands::{Task, carry_out, name, options};
+use super::host::{Output, write_whole};
+use super::range;
+use crate::check::symbols::SymbolKind;
+use crate::formulation::derive::Primal;
+use crate::formulation::explain::{Explained, explain};
+use crate::formulation::page::{Block, Page, STYLE, body};
+use crate::formulation::render::plain;
+use crate::formulation::side::short;
+use crate::formulation::{show, study};
+use crate::model::origin::Blocks;
+use crate::report::json::SolveReport;
+use crate::run::{Machine, Options, Studied, StudyChoice};
+use crate::solve::ModelStatus;
+use std::fmt::Write;
+use std::path::Path;
+
+/// Records of a table that are shown.
+const MAX_RECORDS: usize = 400;
+/// Rows and columns up to which ranges are found.
+const MAX_RANGES: usize = 200;
+
+/// Sorts a table by the column whose head is clicked.
+const SCRIPT: &str = "document.querySelectorAll('table.sortable th').forEach((th,c)=>th.addEventListener('click',()=>{\
+const t=th.closest('table'),n=[...th.parentNode.children].indexOf(th),b=t.tBodies[0],d=th.dataset.d=th.dataset.d==='1'?'-1':'1';\
+const v=r=>{const x=r.cells[n].textContent.replace('−','-').replace('∞','Infinity'),f=parseFloat(x);return isNaN(f)?x:f};\
+[...b.rows].sort((p,q)=>{const x=v(p),y=v(q);return d*(x<y?-1:x>y?1:0)}).forEach(r=>b.append(r))}));";
+
+/// Carries out `bmod report`; its exit status.
+pub fn report(a: &ReportArgs) -> u8 {
+    let Ok(out) = tempfile::tempdir() else {
+        eprintln!("bmod: no folder for temporary files");
+        return EXECUTION;
+    };
+    let options = Options {
+        quiet: true,
+        study: Some(StudyChoice {
+            model: a.chosen.name.clone(),
+            number: a.chosen.number,
+            generate_only: false,
+        }),
+        ..options(&a.solve)
+    };
+    let task = Task {
+        out: out.path(),
+        ..Task::new(&a.model, Output::Quiet)
+    };
+    let mut studied = None;
+    let mut text = String::new();
+    let finished = carry_out(task, options, &mut |m| {
+        if let Some((primal, s)) = study::primal(m) {
+            text = sections(m, &primal, &s);
+            studied = Some(s.number);
+        }
+    });
+    let Some(number) = studied else {
+        eprintln!(
+            "bmod: nothing is solved in {}: there is nothing to report",
+            name(&a.model)
+        );
+        return finished.end.exit().max(EXECUTION);
+    };
+    let solves = &finished.report.solves;
+    text.push_str(&certificate(solves.get(number - 1).or(solves.last())));
+    text.push_str(&figures(out.path()));
+    let title = a
+        .model
+        .file
+        .file_stem()
+        .unwrap_or_default()
+        .to_string_lossy();
+    let page = format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>{0}</title>\n<style>{STYLE}\
+         th{{cursor:pointer}}svg{{max-width:100%;height:auto}}</style>\n</head>\n<body>\n<h1>{0}</h1>\n{text}<script>{SCRIPT}</script>\n</body>\n</html>\n",
+        plain(&title)
+    );
+    match write_whole(&a.html, page.as_bytes()) {
+        Ok(()) => finished.end.exit(),
+        Err(e) => {
+            eprintln!("bmod: {} could not be written: {e}", a.html.display());
+            EXECUTION
+        }
+    }
+}
+
+fn sections(m: &Machine, primal: &Primal, studied: &Studied) -> String {
+    let status = studied
+        .answer
+        .as_ref()
+        .map_or(ModelStatus::NoSolution, |a| a.1.status);
+    let i = &primal.generated.instance;
+    let small = i.row_count() + i.column_count() <= MAX_RANGES;
+    let wanted = small && i.is_linear() && i.objective.is_some() && status == ModelStatus::Optimal;
+    let ranges = if wanted {
+        range::of(m, primal, &[])
+    } else {
+        None
+    };
+    let mut page: Page = vec![Block::Heading("In words".into())];
+    let words = explain(&Explained {
+        symbols: &m.symbols,
+        store: &m.store,
+        primal,
+        status,
+        ranges: ranges.as_ref(),
+    });
+    page.extend(words.into_iter().map(Block::Words));
+    let chosen = show::Chosen {
+        model: studied.code.model,
+        rows: studied.code.equations.clone(),
+        objective: primal.objective,
+        using: Some(primal.using.clone()),
+    };
+    let owner = |t| m.table_owner(t);
+    page.extend(show::page(
+        &m.symbols,
+        &m.store,
+        &owner,
+        &m.equations,
+        &[],
+        &chosen,
+    ));
+    page.extend(data(m, primal));
+    page.extend(solution(m, primal));
+    if let Some(r) = &ranges {
+        page.extend(range::page(m, primal, r));
+    }
+    body(&page)
+}
+
+/// The parameters that the equations read.
+fn data(m: &Machine, primal: &Primal) -> Page {
+    use crate::formulation::tree::{Expr, Source};
+    let mut used = Vec::new();
+    let mut see = |e: &Expr| {
+        e.walk(&mut |e| {
+            if let Expr::Data(Source::Parameter(p), _) = e {
+                used.push(*p);
+            }
+        });
+    };
+    for e in &primal.equations {
+        see(&e.left);
+        see(&e.right);
+        e.binder.conditions.iter().for_each(&mut see);
+    }
+    used.sort_unstable();
+    used.dedup();
+    let mut out = Vec::new();
+    for p in used {
+        let symbol = m.symbols.get(p);
+        if !matches!(symbol.kind, SymbolKind::Parameter { .. }) {
+            continue;
+        }
+        let table = m.store.table(symbol.table);
+        out.push(Block::Heading(
+            format!("{} {}", symbol.name, symbol.text)
+                .trim()
+                .to_string(),
+        ));
+        let mut head = m.symbols.domain_names(symbol);
+        head.push("value".into());
+        let rows = table.iter().take(MAX_RECORDS).map(|(key, v)| {
+            let labels = key.iter().map(|l| m.store.universe.name(*l).to_string());
+            labels.chain([short(v)]).collect()
+        });
+        out.push(Block::Table(head, rows.collect()));
+        if table.len() > MAX_RECORDS {
+            out.push(Block::Words(format!(
+                "… and {} more",
+                table.len() - MAX_RECORDS
+            )));
+        }
+    }
+    out
+}
+
+/// Levels, bounds and marginals.
+fn solution(m: &Machine, primal: &Primal) -> Page {
+    let Some(a) = &primal.answer else {
+        return Vec::new();
+    };
+    let g = &primal.generated;
+    let c = &g.instance.columns;
+    let mut out = Vec::new();
+    let mut tables = |blocks: &Blocks, head: [&str; 4], numbers: &dyn Fn(usize) -> [f64; 4]| {
+        for b in &blocks.list {
+            let symbol = m.symbols.get(b.symbol);
+            out.push(Block::Heading(
+                format!("{} {}", symbol.name, symbol.text)
+                    .trim()
+                    .to_string(),
+            ));
+            let mut names = m.symbols.domain_names(symbol);
+            names.extend(head.map(String::from));
+            let rows = (b.start..b.start + b.len).take(MAX_RECORDS).map(|i| {
+                let labels = b
+                    .key(i)
+                    .iter()
+                    .map(|l| m.store.universe.name(*l).to_string());
+                labels.chain(numbers(i as usize).map(short)).collect()
+            });
+            out.push(Block::Table(names, rows.collect()));
+            if b.len as usize > MAX_RECORDS {
+                out.push(Block::Words(format!(
+                    "… and {} more",
+                    b.len as usize - MAX_RECORDS
+                )));
+            }
+        }
+    };
+    tables(
+        &g.origin.columns,
+        ["lower", "level", "upper", "marginal"],
+        &|j| [c.lower[j], a.level[j], c.upper[j], a.column_marginal[j]],
+    );
+    tables(
+        &g.origin.rows,
+        ["level", "right side", "slack", "marginal"],
+        &|i| {
+            let rhs = g.instance.rows.rhs[i];
+            [
+                a.activity[i],
+                rhs,
+                (a.activity[i] - rhs).abs(),
+                a.row_marginal[i],
+            ]
+        },
+    );
+    out
+}
+
+/// How the solve ended, and how well.
+fn certificate(solve: Option<&SolveReport>) -> String {
+    let Some(s) = solve else { return String::new() };
+    let text = crate::report::summary::solve(s, false);
+    format!(
+        "<h2>Certificate and times</h2>\n<pre>{}</pre>\n",
+        plain(&text)
+    )
+}
+
+/// The figures that the model drew.
+fn figures(folder: &Path) -> String {
+    let mut files: Vec<_> = std::fs::read_dir(folder)
+        .into_iter()
+        .flatten()
+        .flatten()
+        .map(|f| f.path())
+        .collect();
+    files.sort();
+    let mut out = String::new();
+    for f in files
+        .iter()
+        .filter(|f| f.extension().is_some_and(|e| e == "svg"))
+    {
+        let Ok(svg) = std::fs::read_to_string(f) else {
+            continue;
+        };
+        // The XML declaration has no place inside a page.
+        let svg = svg.find("<svg").map_or("", |at| &svg[at..]);
+        let name = f.file_name().unwrap_or_default().to_string_lossy();
+        let _ = writeln!(out, "<h2>{}</h2>\n{svg}", plain(&name));
+    }
+    out
+}
