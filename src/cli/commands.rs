@@ -142,7 +142,7 @@ pub(super) fn compiled(
     let preprocess = PreprocessOptions {
         defines: model.define.clone(),
         slash_comments: extension.is_some_and(|e| e.eq_ignore_ascii_case("blk")),
-        max_memory: None,
+        ..PreprocessOptions::default()
     };
     let (diagnostics, map, program) =
         match crate::check::compile(&mut host, &name(model), preprocess) {

@@ -3,8 +3,8 @@
 use super::args::DeriveArgs;
 use super::derive::{Derived, finish, studied};
 use crate::check::functions::{is_nonsmooth, name_of};
-use crate::check::node::{AggregateOp, EquationDef, NodeKind};
-use crate::check::walk_node;
+use crate::check::node::{AggregateOp, EquationDef, Node, NodeKind};
+use crate::check::visit::Visitor;
 use crate::diag::Diagnostic;
 use crate::formulation::derive::{Derivation, Primal};
 use crate::formulation::math::{Math, name};
@@ -108,9 +108,9 @@ fn refusal(
 
 /// The first place in an equation that is not smooth.
 fn kink(e: &EquationDef) -> Option<Span> {
-    let mut found = None;
-    for side in [&e.left, &e.right] {
-        walk_node(side, &mut |n| {
+    struct Kinks(Option<Span>);
+    impl<'a> Visitor<'a> for Kinks {
+        fn node(&mut self, n: &'a Node) {
             let kink = match &n.kind {
                 NodeKind::Call(f, _) => {
                     is_nonsmooth(*f) || matches!(name_of(*f), "gamma" | "loggamma")
@@ -118,10 +118,14 @@ fn kink(e: &EquationDef) -> Option<Span> {
                 NodeKind::Aggregate(op, ..) => matches!(op, AggregateOp::Smin | AggregateOp::Smax),
                 _ => false,
             };
-            if found.is_none() && n.has_var && kink {
-                found = Some(n.span);
+            if self.0.is_none() && n.has_var && kink {
+                self.0 = Some(n.span);
             }
-        });
+            n.walk(self);
+        }
     }
-    found
+    let mut kinks = Kinks(None);
+    kinks.node(&e.left);
+    kinks.node(&e.right);
+    kinks.0
 }

@@ -246,6 +246,7 @@ fn assigned_bounds(
             key,
             value,
             covers,
+            ..
         } = &c.kind
         else {
             return;
