@@ -102,7 +102,7 @@ fn no_solve(m: &Machine, chosen: &ChosenArgs) -> Diagnostic {
 pub fn finish(a: &DeriveArgs, m: &Machine, d: &Derived, primal: &Primal) -> u8 {
     let to_stdout = a.as_model.as_deref() == Some(Path::new("-"));
     let mut status = 0;
-    if !to_stdout {
+    if a.as_model.is_none() {
         tell(&write(&d.page, format(a.format), &d.title));
     }
     let f = &d.formulation;
@@ -144,9 +144,18 @@ pub fn finish(a: &DeriveArgs, m: &Machine, d: &Derived, primal: &Primal) -> u8 {
         let text = text::model(&m.symbols, &m.store, f, include, &head, true);
         if to_stdout {
             tell(&text);
-        } else if let Err(e) = write_whole(path, text.as_bytes()) {
-            eprintln!("bmod: {} could not be written: {e}", path.display());
-            status = EXECUTION;
+        } else {
+            match write_whole(path, text.as_bytes()) {
+                Ok(()) => say(format!(
+                    "{} is written: the model {}",
+                    path.display(),
+                    f.name
+                )),
+                Err(e) => {
+                    eprintln!("bmod: {} could not be written: {e}", path.display());
+                    status = EXECUTION;
+                }
+            }
         }
     }
     status

@@ -18,7 +18,8 @@ use crate::source::Span;
 pub fn kkt(a: &DeriveArgs) -> u8 {
     studied(&a.model, &a.solve, &a.chosen, &mut |m, primal, studied| {
         let (symbols, store) = (&m.symbols, &m.store);
-        let f = kkt::kkt(symbols, store, &primal).map_err(|r| refusal(m, &primal, &studied, r))?;
+        let f = kkt::kkt(symbols, store, &primal, false)
+            .map_err(|r| refusal(m, &primal, &studied, r))?;
         let mut page = Vec::new();
         let mut s = Setter::new(symbols, store, &f);
         page.push(Block::Heading(format!("Lagrangian of {}", primal.name)));
@@ -40,9 +41,14 @@ pub fn kkt(a: &DeriveArgs) -> u8 {
             "Optimality conditions (Karush, Kuhn, Tucker)".into(),
         ));
         page.extend(formulas(&mut s, symbols, &f));
-        let check = a
-            .check
-            .then(|| check::checked_kkt(symbols, store, &primal).map(|c| c.1));
+        // What is written is what was generated.
+        let mut checked =
+            (a.check || a.as_model.is_some()).then(|| check::checked_kkt(symbols, store, &primal));
+        let f = match &mut checked {
+            Some(Ok((written, _))) => written.clone(),
+            _ => f.clone(),
+        };
+        let check = checked.map(|c| c.map(|c| c.1)).filter(|_| a.check);
         let derived = Derived {
             page,
             title: format!("The optimality conditions of {}", primal.name),

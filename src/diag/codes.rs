@@ -216,6 +216,10 @@ pub const CODES: &[Code] = &[
     row("E0422", Execution, "model cannot be solved", "rows and columns do not match, or functions have no value at the start"),
     row("E0424", Execution, "scenarios", "the dictionary of the scenarios cannot be used"),
     row("E0426", Warning, "option file", "an option file, or a line of it, is not used"),
+    row("E0430", Execution, "no solve to derive from", "the model that is meant is not solved, or there is no solve with this number"),
+    row("E0431", Execution, "no linear dual", "no objective, discrete variables, or equations that are not linear"),
+    row("E0432", Execution, "no optimality conditions", "no objective, kinks, or a function whose derivative the language lacks"),
+    row("E0433", Execution, "no ranges", "they belong to a linear program that was solved to an optimum"),
 
     row("E0470", Execution, "file not written", "the folder or the disk does not allow it"),
     row("E0471", Execution, "file not read", "the file cannot be opened"),

@@ -681,8 +681,12 @@ pub fn checked_kkt(
     store: &Store,
     primal: &Primal,
 ) -> Result<(Formulation, Comparison), String> {
-    let f = super::kkt::kkt(symbols, store, primal).map_err(|(_, why)| why)?;
-    let d = generate(&super::text::model(symbols, store, &f, None, "", true))?;
+    let derived = |keep| -> Result<(Formulation, Instance), String> {
+        let f = super::kkt::kkt(symbols, store, primal, keep).map_err(|(_, why)| why)?;
+        let text = super::text::model(symbols, store, &f, None, "", true);
+        generate(&text).map(|d| (f, d))
+    };
+    let (f, d) = derived(false).or_else(|why| derived(true).map_err(|_| why))?;
     let c = kkt(symbols, store, primal, &f, &d, POINTS);
     Ok((f, c))
 }

@@ -16,8 +16,14 @@ use crate::syntax::ast::VariableKind;
 /// Why there are no optimality conditions, and the equation that is to blame.
 pub type Refusal = (Option<usize>, String);
 
-/// Derives the optimality conditions of a model.
-pub fn kkt(symbols: &Symbols, store: &Store, primal: &Primal) -> Result<Formulation, Refusal> {
+/// Derives the optimality conditions of a model. `keep`: each row holds its partner, with a coefficient eps, so that rows
+/// whose terms cancel are not empty.
+pub fn kkt(
+    symbols: &Symbols,
+    store: &Store,
+    primal: &Primal,
+    keep: bool,
+) -> Result<Formulation, Refusal> {
     if primal.objective.is_none() {
         let why = "the model has no objective: nothing is minimised or maximised";
         return Err((None, why.into()));
@@ -29,10 +35,10 @@ pub fn kkt(symbols: &Symbols, store: &Store, primal: &Primal) -> Result<Formulat
     d.multipliers_of_rows(false);
     for v in d.variables() {
         d.out.own.push(v);
-        stationarity(&mut d, v).map_err(|why| (None, why))?;
+        stationarity(&mut d, v, keep).map_err(|why| (None, why))?;
     }
     for k in 0..primal.equations.len() {
-        feasibility(&mut d, k);
+        feasibility(&mut d, k, keep);
     }
     for v in d.variables() {
         start_of_columns(&mut d, v);
@@ -41,7 +47,7 @@ pub fn kkt(symbols: &Symbols, store: &Store, primal: &Primal) -> Result<Formulat
 }
 
 /// `∇f − Σ y ∇g ⟂ x`
-fn stationarity(d: &mut Derivation, v: SymbolId) -> Result<(), String> {
+fn stationarity(d: &mut Derivation, v: SymbolId, keep: bool) -> Result<(), String> {
     let row = d.column_row(v)?;
     let columns = d.columns(v);
     let name = d.symbols.get(v).name.to_string();
@@ -69,7 +75,7 @@ fn stationarity(d: &mut Derivation, v: SymbolId) -> Result<(), String> {
         false => sum(vec![(false, row.rows.clone()), (true, row.cost.clone())]),
     };
     // A variable that stands in no row is kept in the model by a coefficient eps.
-    let left = match d.is_without_row(v) {
+    let left = match keep || d.is_without_row(v) {
         true => {
             let eps = times(
                 Expr::Number(EPS),
@@ -144,7 +150,7 @@ fn is_exact(
 }
 
 /// A row of the model, with its multiplier.
-fn feasibility(d: &mut Derivation, k: usize) {
+fn feasibility(d: &mut Derivation, k: usize, keep: bool) {
     let Some(y) = d.multiplier_number(k) else {
         return;
     };
@@ -184,6 +190,13 @@ fn feasibility(d: &mut Derivation, k: usize) {
                 r => r,
             },
         ),
+    };
+    let left = match keep {
+        true => {
+            let y = Expr::Variable(Variable::Multiplier(y), e.key.clone());
+            sum(vec![(false, left), (false, times(Expr::Number(EPS), y))])
+        }
+        false => left,
     };
     let row_name = d.fresh(&format!("row_{name}"));
     d.out.rows.push(Row {

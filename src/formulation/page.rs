@@ -225,7 +225,8 @@ fn as_text(page: &Page, width: usize) -> String {
     for b in page {
         match b {
             Block::Heading(t) => {
-                let _ = writeln!(out, "\n{t}\n{}", "─".repeat(t.chars().count()));
+                let gap = if out.is_empty() { "" } else { "\n" };
+                let _ = writeln!(out, "{gap}{t}\n{}", "─".repeat(t.chars().count()));
             }
             Block::Words(t) => {
                 let _ = writeln!(out, "{}", filled(t, width));
