@@ -158,7 +158,9 @@ fn strengthen(mip: &Mip, linear: &mut Linear, rounds: usize, control: &mut Contr
             false => idle + 1,
         };
         value = v;
-        linear.drop_idle(first);
+        if linear.drop_idle(first) {
+            solved = linear.solve(f64::INFINITY, control);
+        }
     }
     let rows = linear.problem.m() - first;
     let line = format!("cuts: {rows}, bound {start:.10} to {value:.10} (scaled)");

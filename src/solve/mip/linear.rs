@@ -57,14 +57,14 @@ impl Linear {
         self.rebuild(&basis);
     }
 
-    /// Takes rows from `first` on that do not bind away.
-    pub fn drop_idle(&mut self, first: usize) {
+    /// Takes rows from `first` on that do not bind away. Whether there were any: the basis is to be solved from again.
+    pub fn drop_idle(&mut self, first: usize) -> bool {
         let mut basis = self.simplex.basis();
         let keep: Vec<bool> = (0..self.problem.m())
             .map(|i| i < first || basis[self.n + i] != State::Basic)
             .collect();
         if keep.iter().all(|k| *k) {
-            return;
+            return false;
         }
         let old = std::mem::take(&mut self.problem.rows);
         self.problem.rows = crate::solve::lp::form::Sparse::new();
@@ -79,6 +79,7 @@ impl Linear {
         }
         (self.problem.row_lower, self.problem.row_upper) = (lower, upper);
         self.rebuild(&basis);
+        true
     }
 
     fn rebuild(&mut self, basis: &Basis) {
