@@ -11,11 +11,11 @@ use super::model::{Change, Mip};
 use super::relaxation::Control;
 use crate::model::instance::Instance;
 use crate::solve::lp::certify::Proof;
-use crate::solve::lp::form::{Form, Problem};
+use crate::solve::lp::form::{Form, Point, Problem};
 use crate::solve::lp::simplex::{Basis, Simplex};
-use crate::solve::lp::{Ended, Limits};
+use crate::solve::lp::{self, Ended, Limits};
 use crate::solve::mpec::bound::prove_node;
-use crate::solve::{Monitor, Settings, SolveError};
+use crate::solve::{Monitor, Outcome, Quiet, Settings, SolveError};
 use std::rc::Rc;
 use std::time::Instant;
 
@@ -28,6 +28,12 @@ struct Open {
 
 /// How many nodes a proof may take.
 const NODES: usize = 200_000;
+
+/// Seconds it may take.
+const PATIENCE: f64 = 600.0;
+
+/// Proves a bound of a node, for its solution, with more effort.
+type Slowly<'s> = &'s dyn Fn(&Problem, &Point) -> Option<f64>;
 
 /// Proves what it can of the lower bound (of a maximum: the upper one); the other side of `proof` is the
 /// solution's, whose value is about `value`.
@@ -53,7 +59,31 @@ pub fn certify(
     if !reached.is_finite() {
         reached = form.sign * value;
     }
-    let bound = lowest(&mip, reached, &mut control);
+    control.limits.seconds = control.limits.seconds.min(PATIENCE);
+    // Where multipliers alone prove nothing (columns without bounds), the way of linear programs is gone.
+    let mut quiet = settings.clone();
+    (quiet.log, quiet.time_limit) = (false, PATIENCE);
+    let slowly = |p: &Problem, at: &Point| {
+        let mut node = instance.clone();
+        for (k, &j) in form.columns.iter().enumerate() {
+            node.columns.lower[j as usize] = p.lower[k];
+            node.columns.upper[j as usize] = p.upper[k];
+        }
+        let (level, row_marginal, column_marginal) = form.point(&node, at);
+        let outcome = Outcome {
+            level,
+            row_marginal,
+            column_marginal,
+            ..super::nothing(&node).outcome
+        };
+        let proof = lp::certify::certify(&node, &outcome, &quiet, &mut Quiet).ok()?;
+        Some(if form.sign > 0.0 {
+            proof.low
+        } else {
+            -proof.high
+        })
+    };
+    let bound = lowest(&mip, reached, &slowly, &mut control);
     let why = "the search for a proof was cut short, or numbers broke down in it";
     let missing = (bound == f64::NEG_INFINITY).then_some(crate::solve::lp::certify::Unproved {
         why,
@@ -69,7 +99,7 @@ pub fn certify(
 }
 
 /// A number that no solution's value is below, constant included; about `reached` if the search comes to its end.
-fn lowest(mip: &Mip, reached: f64, control: &mut Control) -> f64 {
+fn lowest(mip: &Mip, reached: f64, slowly: Slowly, control: &mut Control) -> f64 {
     let step = whole_values(mip);
     // What is enough: the solution's value, or more than the next smaller value.
     let enough = match step {
@@ -99,7 +129,12 @@ fn lowest(mip: &Mip, reached: f64, control: &mut Control) -> f64 {
         simplex.set_basis(&open.basis);
         let ended = simplex.resolve(&mut |_| control.stop(0));
         let proved = match &ended {
-            Ended::Solved => simplex.point().map(|at| prove_node(&p, &at.y, false)),
+            Ended::Solved => simplex
+                .point()
+                .map(|at| match prove_node(&p, &at.y, false) {
+                    f64::NEG_INFINITY => slowly(&p, &at).unwrap_or(f64::NEG_INFINITY),
+                    bound => bound,
+                }),
             Ended::Infeasible(y) => Some(prove_node(&p, y, true)),
             _ => None,
         };
