@@ -9,24 +9,19 @@ use std::time::Instant;
 use bmod::model::certificate;
 use bmod::model::instance::{Columns, Instance, Objective, Relation, Rows, Sense, SparseRows};
 use bmod::solve::lp::Clarabel;
-use bmod::solve::{Monitor, Outcome, Settings, Solver};
+use bmod::solve::{Budget, Limits, Monitor, Outcome, Settings, Solver};
 
-struct Quiet(bool);
+struct Log(Instant);
 
-impl Monitor for Quiet {
+impl Monitor for Log {
     fn log(&mut self, line: &str) {
-        if self.0 {
-            println!("{line}");
-        }
+        println!("{line}");
     }
     fn interrupted(&mut self) -> bool {
         false
     }
-    fn row_name(&self, row: usize) -> String {
-        format!("row {row}")
-    }
-    fn column_name(&self, column: usize) -> String {
-        format!("column {column}")
+    fn seconds(&mut self) -> f64 {
+        self.0.elapsed().as_secs_f64()
     }
 }
 
@@ -149,12 +144,14 @@ fn main() {
     for option in options.iter().filter_map(|o| o.split_once('=')) {
         settings.options.push((option.0.into(), option.1.into()));
     }
-    settings.log = options.iter().any(|o| o == "--log");
+    let log = options.iter().any(|o| o == "--log");
     for file in files {
         let text = std::fs::read_to_string(&file).expect("a readable file");
         let instance = read_mps(&text);
         let start = Instant::now();
-        let outcome = Clarabel.solve(&instance, &settings, &mut Quiet(settings.log));
+        let mut monitor = Log(start);
+        let budget = Budget::new(&mut monitor, Limits::default(), log);
+        let outcome = Clarabel.solve(&instance, &settings, &budget);
         let seconds = start.elapsed().as_secs_f64();
         match outcome {
             Ok(o) => println!(

@@ -10,7 +10,8 @@
 
 use std::time::Instant;
 
-use bmod::solve::mcp::{Monitor, Outcome, Settings, Status, solve};
+use bmod::solve::mcp::{NoHelp, Outcome, Problem, Settings, Status, solve};
+use bmod::solve::{Budget, Limits, Monitor};
 
 #[path = "../tests/common/mod.rs"]
 mod common;
@@ -19,7 +20,7 @@ mod complementarity;
 #[path = "../tests/walls/mod.rs"]
 mod walls;
 
-struct Log(bool);
+struct Log(Instant);
 
 impl Monitor for Log {
     fn log(&mut self, line: &str) {
@@ -28,9 +29,15 @@ impl Monitor for Log {
     fn interrupted(&mut self) -> bool {
         false
     }
-    fn wants_log(&self) -> bool {
-        self.0
+    fn seconds(&mut self) -> f64 {
+        self.0.elapsed().as_secs_f64()
     }
+}
+
+fn logged(problem: &mut dyn Problem, settings: &Settings, log: bool) -> Outcome {
+    let mut monitor = Log(Instant::now());
+    let budget = Budget::new(&mut monitor, Limits::default(), log);
+    solve(problem, settings, &budget, &mut NoHelp)
 }
 
 /// Seconds this process has computed, whatever else the machine does; off Linux, seconds of the clock.
@@ -51,7 +58,7 @@ fn one(courses: usize, width: usize, friction: f64, associated: bool, log: bool)
     let mut wall = walls::wall(courses, width, friction, associated);
     let settings = Settings::default();
     let begin = seconds();
-    let outcome = solve(&mut wall, &settings, &mut Log(log));
+    let outcome = logged(&mut wall, &settings, log);
     let seconds = seconds() - begin;
     println!(
         "| {courses} × {width} | {} | {friction:.2}, {} | {:.9} | {} | {} | {} | {} | {:.0e} | {seconds:.2} |{}",
@@ -100,11 +107,7 @@ fn obstacle(sizes: &[usize]) {
     println!("| --- | --- | --- | --- | --- | --- | --- |");
     for &n in sizes {
         let (settings, begin) = (Settings::default(), seconds());
-        let outcome = solve(
-            &mut walls::obstacle(n),
-            &settings,
-            &mut Log(sizes.len() == 1),
-        );
+        let outcome = logged(&mut walls::obstacle(n), &settings, sizes.len() == 1);
         println!(
             "| {n} | {} | {} | {} | {} | {:.0e} | {:.2} |",
             outcome.majors,

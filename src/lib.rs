@@ -82,6 +82,6 @@ pub use api::{
 };
 pub use diag::Severity;
 pub use host::{Host, HostError};
+pub use model::outcome::{ModelStatus, SolverStatus};
 pub use report::diagnostic::{Diagnostic, Place, Related};
 pub use report::json::{Display, Number, Residual, RunStatus, Seconds};
-pub use solve::{ModelStatus, SolverStatus};

@@ -5,7 +5,8 @@ use crate::diag::{Diagnostic, Severity};
 use crate::host::Host;
 use crate::report::json::{Report, RunStatus};
 use crate::run::{Machine, Options};
-use crate::source::{PreprocessOptions, SourceMap};
+use crate::solve::registry::OPTION_TABLES;
+use crate::source::{PreprocessOptions, SourceMap, Span};
 
 /// What is left of a run.
 pub struct Finished {
@@ -34,7 +35,7 @@ pub fn run(
         diagnostics,
         map,
     };
-    let mut program = match check::compile(host, path, preprocess) {
+    let mut program = match check::compile(host, path, preprocess, OPTION_TABLES) {
         Ok(p) => p,
         Err(e) => return failed(RunStatus::CompilationError, vec![e.0], e.1),
     };
@@ -44,6 +45,10 @@ pub fn run(
     }
     if check_only {
         return failed(RunStatus::Ok, diagnostics, program.map);
+    }
+    if let Some(message) = &options.refused {
+        diagnostics.push(Diagnostic::error("E0329", Span::default(), message));
+        return failed(RunStatus::CompilationError, diagnostics, program.map);
     }
     let (mut machine, code) = Machine::new(program, host, options);
     machine.run(&code);

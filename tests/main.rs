@@ -1,6 +1,7 @@
 //! All tests from outside in one program, built and linked once. `robustness.rs` is another: it measures the memory of its process.
 
 mod api;
+mod backends;
 mod bad_input;
 mod certify;
 mod common;
@@ -17,6 +18,7 @@ mod mcp_walls;
 mod mistakes;
 mod mpec;
 mod nonlinear;
+mod options;
 mod planner;
 mod scenes;
 mod suite;

@@ -5,8 +5,9 @@
 
 use crate::walls::obstacle;
 use bmod::solve::mcp::{
-    EvalError, Monitor, Outcome, Problem, Settings, Silent, Status, natural_residual, solve,
+    EvalError, NoHelp, Outcome, Problem, Settings, Status, natural_residual, solve,
 };
+use bmod::solve::{Budget, Limits, Monitor, Quiet};
 use proptest::prelude::*;
 
 const INF: f64 = f64::INFINITY;
@@ -74,7 +75,12 @@ impl Model {
     }
 
     fn solve(&mut self) -> Outcome {
-        solve(self, &Settings::default(), &mut Silent)
+        solve(
+            self,
+            &Settings::default(),
+            &Budget::unlimited(&mut Quiet::default()),
+            &mut NoHelp,
+        )
     }
 
     /// Solves, and does not believe the status.
@@ -434,7 +440,12 @@ fn bounds_written_as_rows() {
             preprocess,
             ..Settings::default()
         };
-        let outcome = solve(&mut model, &settings, &mut Silent);
+        let outcome = solve(
+            &mut model,
+            &settings,
+            &Budget::unlimited(&mut Quiet::default()),
+            &mut NoHelp,
+        );
         assert_eq!(outcome.status, Status::Solved);
         outcome.x
     };
@@ -444,7 +455,12 @@ fn bounds_written_as_rows() {
 
 #[test]
 fn many_unknowns_in_a_band() {
-    let outcome = solve(&mut obstacle(10_000), &Settings::default(), &mut Silent);
+    let outcome = solve(
+        &mut obstacle(10_000),
+        &Settings::default(),
+        &Budget::unlimited(&mut Quiet::default()),
+        &mut NoHelp,
+    );
     assert_eq!(outcome.status, Status::Solved);
     assert!(outcome.residual <= 1e-8 && outcome.x.iter().any(|x| *x > 0.0));
 }
@@ -457,21 +473,31 @@ impl Monitor for Impatient {
     fn interrupted(&mut self) -> bool {
         true
     }
-    fn wants_log(&self) -> bool {
-        true
+    fn seconds(&mut self) -> f64 {
+        0.0
     }
 }
 
 #[test]
 fn limits_and_interruption() {
-    let interrupted = solve(&mut obstacle(50), &Settings::default(), &mut Impatient);
+    let mut impatient = Impatient;
+    let budget = Budget::new(&mut impatient, Limits::default(), true);
+    let interrupted = solve(
+        &mut obstacle(50),
+        &Settings::default(),
+        &budget,
+        &mut NoHelp,
+    );
     assert_eq!(interrupted.status, Status::Interrupted);
-    let settings = Settings {
-        time_limit: 0.0,
-        ..Settings::default()
+    let mut quiet = Quiet::default();
+    let limits = Limits {
+        seconds: 0.0,
+        ..Limits::default()
     };
+    let budget = Budget::new(&mut quiet, limits, false);
+    let settings = Settings::default();
     assert_eq!(
-        solve(&mut obstacle(50), &settings, &mut Silent).status,
+        solve(&mut obstacle(50), &settings, &budget, &mut NoHelp).status,
         Status::TimeLimit
     );
     let settings = Settings {
@@ -479,7 +505,13 @@ fn limits_and_interruption() {
         ..Settings::default()
     };
     assert_eq!(
-        solve(&mut obstacle(50), &settings, &mut Silent).status,
+        solve(
+            &mut obstacle(50),
+            &settings,
+            &Budget::unlimited(&mut Quiet::default()),
+            &mut NoHelp
+        )
+        .status,
         Status::IterationLimit
     );
 }
@@ -564,7 +596,7 @@ proptest! {
         let solve_with = |preprocess| {
             let mut model = Model::linear(&m, &long).bounds(&lower, &vec![INF; 2 * n]);
             let settings = Settings { preprocess, ..Settings::default() };
-            let outcome = solve(&mut model, &settings, &mut Silent);
+            let outcome = solve(&mut model, &settings, &Budget::unlimited(&mut Quiet::default()), &mut NoHelp);
             assert_eq!(outcome.status, Status::Solved);
             assert!(outcome.residual <= 1e-8);
             outcome.x

@@ -1,13 +1,15 @@
 //! Walls of blocks straight through the complementarity solver: large ones are in `benches/mcp.rs`.
 
 use crate::walls::wall;
-use bmod::solve::mcp::{Outcome, Settings, Silent, Status, solve};
+use bmod::solve::mcp::{NoHelp, Outcome, Settings, Status, solve};
+use bmod::solve::{Budget, Quiet};
 
 fn run(courses: usize, width: usize, friction: f64, associated: bool) -> Outcome {
     let outcome = solve(
         &mut wall(courses, width, friction, associated),
         &Settings::default(),
-        &mut Silent,
+        &Budget::unlimited(&mut Quiet::default()),
+        &mut NoHelp,
     );
     assert_eq!(outcome.status, Status::Solved);
     assert!(outcome.residual <= 1e-9, "{}", outcome.residual);

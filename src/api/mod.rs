@@ -18,6 +18,7 @@ use crate::check;
 use crate::data::input::{Input, InputData};
 use crate::host::Host;
 use crate::session;
+use crate::solve::registry::OPTION_TABLES;
 use crate::source::PreprocessOptions;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -285,7 +286,7 @@ impl Model {
             inputs: self.inputs.clone(),
         };
         if check_only {
-            return match check::compile(host, &self.name, preprocess) {
+            return match check::compile(host, &self.name, preprocess, OPTION_TABLES) {
                 Ok(program) => Run::checked(&self.name, program),
                 Err(e) => Run::unreadable(&self.name, e.0, e.1),
             };

@@ -125,7 +125,7 @@ impl Options {
             keep_solutions: self.keep_solutions,
             ..run::Options::default()
         };
-        options.set(&self.pairs);
+        options.refused = options.set(&self.pairs).err();
         options
     }
 }

@@ -463,7 +463,7 @@ pub const SOLVERS: &[&str] = &[
     "zoom",
 ];
 
-/// Problem types.
+/// Words that `option` takes a solver for: the problem types, and `emp`.
 pub const PROBLEM_TYPES: &[&str] = &[
     "lp", "rmip", "mip", "nlp", "dnlp", "rminlp", "minlp", "qcp", "rmiqcp", "miqcp", "cns", "mcp",
     "mpec", "rmpec", "emp",

@@ -30,6 +30,7 @@ mod table;
 
 use crate::diag::{Diagnostic, Severity};
 use crate::host::Host;
+use crate::model::option::OptionTable;
 use crate::source::{Ending, Known, PreprocessOptions, SourceMap, Span, Switches, predefined};
 use crate::syntax::Parser;
 use crate::syntax::ast::StmtKind;
@@ -106,15 +107,19 @@ pub(crate) struct Compiler {
     taken: usize,
     /// Data from outside the text.
     inputs: input::Inputs,
+    /// What solvers take.
+    solver_options: &'static [&'static OptionTable],
     modes: Switches,
     lost: follow::Lost,
 }
 
-/// Compiles a file: parses, checks and carries out its data statements.
+/// Compiles a file: parses, checks and carries out its data statements. The `option` statement takes the options of
+/// these tables besides its own.
 pub fn compile(
     host: &mut dyn Host,
     path: &str,
     mut options: PreprocessOptions,
+    solver_options: &'static [&'static OptionTable],
 ) -> Result<Program, Box<(Diagnostic, SourceMap)>> {
     let max_memory = options.max_memory;
     let inputs = std::mem::take(&mut options.inputs);
@@ -123,6 +128,7 @@ pub fn compile(
     let mut c = Compiler::new();
     c.max_memory = max_memory;
     c.inputs = input::Inputs::new(inputs);
+    c.solver_options = solver_options;
     let mut code = Vec::new();
     loop {
         let next = parser.next(&c);
@@ -224,6 +230,7 @@ impl Compiler {
             max_memory: None,
             taken: 0,
             inputs: input::Inputs::default(),
+            solver_options: &[],
             modes: Switches::default(),
             lost: follow::Lost::default(),
         }

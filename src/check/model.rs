@@ -5,6 +5,7 @@ use super::node::*;
 use super::symbols::{DomainPosition, SymbolKind};
 use super::{Compiler, Failed};
 use crate::diag::{Diagnostic, nearest};
+use crate::model::problem_type::{Discrete, ProblemType};
 use crate::source::{Known, Span};
 use crate::syntax::ast::{Ident, ModelItem, Solve, VariableKind};
 
@@ -24,33 +25,9 @@ impl Compiler {
                 .help("declare one: `model m / all /;`"),
             );
         };
-        let using = s.using.name.to_lowercase();
-        let Some(using) = functions::PROBLEM_TYPES
-            .iter()
-            .find(|t| **t == using)
-            .copied()
-        else {
-            let near = nearest(&using, functions::PROBLEM_TYPES.iter().copied()).unwrap_or("lp");
-            return self.fail(
-                Diagnostic::error(
-                    "E0351",
-                    s.using.span,
-                    format!("there is no problem type `{}`", s.using.name),
-                )
-                .label("unknown problem type")
-                .help(format!(
-                    "did you mean `{near}`? there are: {}",
-                    functions::PROBLEM_TYPES.join(", ")
-                )),
-            );
+        let Some(using) = ProblemType::from_name(&s.using.name) else {
+            return self.no_problem_type(&s.using);
         };
-        if using == "emp" {
-            return self.fail(
-                Diagnostic::error("E0352", s.using.span, "`emp` is not there")
-                    .label("not supported")
-                    .help("state the optimality conditions as an `mcp`"),
-            );
-        }
         let items = info.items.clone().unwrap_or_default();
         let mut rows: Vec<ModelRow> = Vec::new();
         let mut limits = Vec::new();
@@ -73,7 +50,7 @@ impl Compiler {
                 .help("list equations in it: `model m / all /;`"),
             );
         }
-        let has_objective = !matches!(using, "mcp" | "cns");
+        let has_objective = using.has_objective();
         let objective = match &s.objective {
             Some((sense, name)) if has_objective => Some((*sense, self.objective(name, &rows)?)),
             Some((_, name)) => {
@@ -104,7 +81,7 @@ impl Compiler {
         let whole = !rows
             .iter()
             .any(|r| self.lost.definitions.contains(&r.definition));
-        if matches!(using, "mcp" | "mpec" | "rmpec") && whole {
+        if using.has_pairs() && whole {
             failed |= self.check_pairs(&rows, using).is_err();
         }
         if failed {
@@ -128,6 +105,28 @@ impl Compiler {
             objective,
             scenario,
         })))
+    }
+
+    fn no_problem_type<T>(&mut self, name: &Ident) -> Result<T, Failed> {
+        if name.name.eq_ignore_ascii_case("emp") {
+            return self.fail(
+                Diagnostic::error("E0352", name.span, "`emp` is not there")
+                    .label("not supported")
+                    .help("state the optimality conditions as an `mcp`"),
+            );
+        }
+        let names = ProblemType::ALL.map(ProblemType::name);
+        let near = nearest(&name.name, names).unwrap_or("lp");
+        let there_are = names.join(", ");
+        self.fail(
+            Diagnostic::error(
+                "E0351",
+                name.span,
+                format!("there is no problem type `{}`", name.name),
+            )
+            .label("unknown problem type")
+            .help(format!("did you mean `{near}`? there are: {there_are}")),
+        )
     }
 
     /// After a solve, levels and marginals are there: of the equations and of what stands in them.
@@ -350,12 +349,16 @@ impl Compiler {
     }
 
     /// Whether an equation may stand in a model of this type.
-    fn check_class(&mut self, definition: usize, using: &str, solve: Span) -> Result<(), Failed> {
+    fn check_class(
+        &mut self,
+        definition: usize,
+        using: ProblemType,
+        solve: Span,
+    ) -> Result<(), Failed> {
         let e = &self.equations[definition];
         let name = self.symbols.get(e.symbol).name.clone();
-        let linear_only = matches!(using, "lp" | "rmip" | "mip");
-        let smooth_only =
-            !matches!(using, "dnlp" | "rminlp" | "minlp" | "mcp" | "cns") && !linear_only;
+        let linear_only = using.is_linear();
+        let smooth_only = !using.allows_kinks() && !linear_only;
         let mut found: Option<(Span, String, &'static str, String)> = None;
         for side in [&e.left, &e.right] {
             side.each(|n| {
@@ -365,7 +368,7 @@ impl Compiler {
                 if let NodeKind::Binary(op, ..) = &n.kind
                     && *op != BinaryOp::Power
                 {
-                    if using != "dnlp" {
+                    if using != ProblemType::Dnlp {
                         found = Some((
                             n.span,
                             "a relation between variables has no derivative".into(),
@@ -375,7 +378,7 @@ impl Compiler {
                         ));
                     }
                 } else if let NodeKind::Not(_) = &n.kind
-                    && using != "dnlp"
+                    && using != ProblemType::Dnlp
                 {
                     found = Some((
                         n.span,
@@ -444,10 +447,10 @@ impl Compiler {
     fn check_discrete(
         &mut self,
         rows: &[ModelRow],
-        using: &str,
+        using: ProblemType,
         solve: Span,
     ) -> Result<(), Failed> {
-        if !matches!(using, "lp" | "nlp" | "dnlp" | "qcp" | "mcp" | "cns") {
+        if using.discrete() != Discrete::Forbidden {
             return Ok(());
         }
         let mut discrete = None;
@@ -477,11 +480,7 @@ impl Compiler {
             self.symbols.get(v).name.clone(),
             self.symbols.get(v).declared,
         );
-        let relaxed = match using {
-            "lp" => "rmip",
-            "qcp" => "rmiqcp",
-            _ => "rminlp",
-        };
+        let relaxed = using.relaxation();
         self.fail(
             Diagnostic::error(
                 "E0363",
@@ -493,13 +492,13 @@ impl Compiler {
             .other(solve, "solved here")
             .help(format!(
                 "`solve … using {}` decides it; `using {relaxed}` solves the relaxation",
-                &relaxed[1..]
+                &relaxed.name()[1..]
             )),
         )
     }
 
     /// The rules of matching that can be seen in the text.
-    fn check_pairs(&mut self, rows: &[ModelRow], using: &str) -> Result<(), Failed> {
+    fn check_pairs(&mut self, rows: &[ModelRow], using: ProblemType) -> Result<(), Failed> {
         let mut failed = false;
         let paired: Vec<(SymbolId, Span)> = rows
             .iter()
@@ -534,7 +533,7 @@ impl Compiler {
             let e = &self.equations[r.definition];
             let (eq, relation) = (self.symbols.get(e.symbol).clone(), e.relation);
             let Some(v) = r.pair else {
-                if using == "mcp" && relation != Relation::Equal {
+                if using == ProblemType::Mcp && relation != Relation::Equal {
                     failed |= self
                         .fail::<()>(
                             Diagnostic::error("E0364", r.span, format!("the inequality `{}` has no partner", eq.name))

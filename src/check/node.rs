@@ -5,6 +5,7 @@
 
 use crate::data::universe::Label;
 use crate::model::instance::Function;
+use crate::model::problem_type::ProblemType;
 use crate::source::Span;
 pub use crate::syntax::ast::{AggregateOp, BinaryOp, Relation, Sense};
 use std::any::Any;
@@ -317,8 +318,8 @@ pub struct SolveCode {
     pub equations: Vec<ModelRow>,
     /// Variables that have only the columns whose labels are in a set.
     pub limits: Vec<(SymbolId, SymbolId)>,
-    /// Problem type, lower case.
-    pub using: &'static str,
+    /// Problem type.
+    pub using: ProblemType,
     /// Direction and objective variable.
     pub objective: Option<(Sense, SymbolId)>,
     /// The dictionary of the scenarios.

@@ -6,7 +6,7 @@ use super::output::{display_attribute, shown_offset};
 use super::symbols::SymbolKind;
 use super::{Compiler, Failed};
 use crate::diag::{Diagnostic, nearest};
-use crate::solve::OWN_OPTIONS;
+use crate::model::option::{Accepted, OptionRow, Refused, check};
 use crate::syntax::ast::{Ident, OptionForm, OptionItem, OptionValue};
 
 /// Options of the `option` statement that are numbers or switches, besides solver choices.
@@ -173,8 +173,8 @@ impl Compiler {
                 Ok(Some(CodeKind::Clear(s, offset)))
             }
             OptionForm::Assign(v) => {
-                if !is_statement_option(&lower) && !OWN_OPTIONS.contains(&lower.as_str()) {
-                    return self.unknown_option(item);
+                if !is_statement_option(&lower) {
+                    return self.solver_option(item, lower, v);
                 }
                 if let OptionValue::Text(t, span) = v
                     && functions::PROBLEM_TYPES.contains(&lower.as_str())
@@ -214,6 +214,45 @@ impl Compiler {
         }
     }
 
+    /// An option that a solver takes.
+    fn solver_option(
+        &mut self,
+        item: &OptionItem,
+        name: String,
+        value: &OptionValue,
+    ) -> Result<Option<CodeKind>, Failed> {
+        let (text, code, span) = match value {
+            OptionValue::Number(x) => (x.to_string(), OptionCode::Number(*x), item.name.span),
+            OptionValue::Text(t, span) => (t.to_string(), OptionCode::Text(t.clone()), *span),
+        };
+        if text.eq_ignore_ascii_case("default") && self.solver_row(&name).is_some() {
+            return Ok(Some(CodeKind::Option(name.into(), code)));
+        }
+        match check(self.solver_options, &name, &text) {
+            Ok(Accepted::Taken) => Ok(Some(CodeKind::Option(name.into(), code))),
+            Ok(Accepted::Ignored) => {
+                self.report(
+                    Diagnostic::warning(
+                        "E0329",
+                        item.name.span,
+                        format!("the option `{name}` means nothing here"),
+                    )
+                    .label("passed over"),
+                );
+                Ok(None)
+            }
+            Err(Refused::Unknown(_)) => self.unknown_option(item),
+            Err(refused) => {
+                let (message, _) = refused.words(&name, &text);
+                self.fail(Diagnostic::error("E0329", span, message).label("not such a value"))
+            }
+        }
+    }
+
+    fn solver_row(&self, name: &str) -> Option<&'static OptionRow> {
+        self.solver_options.iter().find_map(|t| t.find(name))
+    }
+
     /// An error for a value that the option cannot have.
     fn fitting_value(
         &mut self,
@@ -240,9 +279,10 @@ impl Compiler {
     }
 
     fn unknown_option<T>(&mut self, item: &OptionItem) -> Result<T, Failed> {
-        let known = [OPTIONS, OWN_OPTIONS, functions::PROBLEM_TYPES];
-        let near = nearest(&item.name.name, known.into_iter().flatten().copied());
-        let near = near.map(str::to_string);
+        let statement = [OPTIONS, functions::PROBLEM_TYPES].into_iter().flatten();
+        let solver = self.solver_options.iter().flat_map(|t| t.all());
+        let known = statement.copied().chain(solver.map(|r| r.name));
+        let near = nearest(&item.name.name, known).map(str::to_string);
         let d = Diagnostic::error(
             "E0329",
             item.name.span,

@@ -2,9 +2,12 @@
 //! `--NAME=VALUE`, and exit status 1 for a wrong command line.
 
 use std::ffi::OsString;
+use std::io::Write;
 use std::path::PathBuf;
 use std::sync::LazyLock;
 
+use crate::model::option::{self, OptionTable};
+use crate::solve::registry::{BACKENDS, OPTION_TABLES};
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum, ValueHint};
 
 /// Exit status: the command line is wrong.
@@ -435,37 +438,12 @@ fn positive(text: &str) -> Result<f64, String> {
 static LONG_VERSION: LazyLock<String> = LazyLock::new(|| {
     let mut text = env!("CARGO_PKG_VERSION").to_string();
     text.push_str("\nsolvers:");
-    for (name, what) in SOLVERS {
+    for backend in BACKENDS {
+        let (name, what) = (backend.name(), backend.version());
         text.push_str(&format!("\n  {name:<10} {what}"));
     }
     text
 });
-
-/// The solvers inside, with the versions of what they are made of.
-pub const SOLVERS: &[(&str, &str)] = &[
-    (
-        "clarabel",
-        "lp: interior point, Clarabel 0.11.1, with a simplex finish on feral 0.22.0",
-    ),
-    (
-        "bmcp",
-        "mcp, cns: bmod's own, on feral 0.22.0 and faer 0.24",
-    ),
-    #[cfg(feature = "ipopt")]
-    (
-        "ipopt",
-        "nlp, dnlp, qcp: Ipopt of the system, through ipopt-sys 0.6",
-    ),
-    #[cfg(feature = "pounce")]
-    (
-        "pounce",
-        "nlp, dnlp, qcp: Ipopt's algorithm in Rust, pounce 0.14.0",
-    ),
-    (
-        "bmpec",
-        "mpec, rmpec: bmod's own, on the nonlinear solver and the simplex method",
-    ),
-];
 
 /// What became of the arguments.
 #[derive(Debug)]
@@ -478,6 +456,13 @@ pub enum Parsed {
 
 /// Reads the arguments (the program's name first) and prints help or usage errors itself.
 pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Parsed {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    if let [_, help, options, backend @ ..] = &arguments[..]
+        && help == "help"
+        && options == "options"
+    {
+        return solver_options(backend.first().and_then(|b| b.to_str()));
+    }
     match try_parse(arguments) {
         Ok(cli) => Parsed::Run(Box::new(cli)),
         Err(e) => {
@@ -486,6 +471,20 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Parsed {
             Parsed::Exit(if e.use_stderr() { USAGE } else { 0 })
         }
     }
+}
+
+/// `bmod help options [BACKEND]`: the options of the solvers.
+fn solver_options(backend: Option<&str>) -> Parsed {
+    let of = |t: &&OptionTable| backend.is_none_or(|b| t.backend.eq_ignore_ascii_case(b));
+    let tables: Vec<&OptionTable> = OPTION_TABLES.iter().copied().filter(of).collect();
+    if tables.is_empty() {
+        let names: Vec<&str> = OPTION_TABLES.iter().map(|t| t.backend).collect();
+        eprintln!("bmod: there are options of {}", names.join(", "));
+        return Parsed::Exit(USAGE);
+    }
+    // A reader that has gone away is no error of ours.
+    let _ = std::io::stdout().write_all(option::text(&tables, backend.is_some()).as_bytes());
+    Parsed::Exit(0)
 }
 
 /// Reads the arguments (the program's name first).
@@ -630,7 +629,7 @@ mod tests {
     fn versions_are_those_of_the_lock_file() {
         let lock = include_str!("../../Cargo.lock").to_lowercase();
         let mut count = 0;
-        for (_, what) in SOLVERS {
+        for what in BACKENDS.iter().map(|b| b.version()) {
             let words: Vec<String> = what.split([' ', ',']).map(str::to_lowercase).collect();
             let numbered = |w: &&[String]| w[1].starts_with(|c: char| c.is_ascii_digit());
             for w in words.windows(2).filter(numbered) {

@@ -1,6 +1,7 @@
 //! `bmod bench`: how long until the answer is good to so many digits.
 
 use std::path::Path;
+use std::time::Instant;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -11,10 +12,10 @@ use crate::report::figure::png;
 use crate::report::study;
 use crate::run::Options;
 use crate::solve::study::{Study, study as run_study};
-use crate::solve::{Monitor, Settings};
+use crate::solve::{Limits, Monitor, Settings};
 
 /// Nothing is said while it is timed.
-struct Silent;
+struct Silent(Instant);
 
 impl Monitor for Silent {
     fn log(&mut self, _: &str) {}
@@ -23,28 +24,31 @@ impl Monitor for Silent {
         interrupted()
     }
 
-    fn row_name(&self, row: usize) -> String {
-        format!("row {row}")
-    }
-
-    fn column_name(&self, column: usize) -> String {
-        format!("column {column}")
+    fn seconds(&mut self) -> f64 {
+        self.0.elapsed().as_secs_f64()
     }
 }
 
 /// Carries out `bmod bench`; its exit status.
 pub fn bench(a: &BenchArgs) -> u8 {
+    let base = match options(&a.solve) {
+        Ok(o) => o,
+        Err(status) => return status,
+    };
     let options = Options {
         keep_solutions: true,
         quiet: true,
         collect: false,
         time_limit: f64::INFINITY,
-        ..options(&a.solve)
+        ..base
     };
     let settings = Settings {
-        time_limit: a.solve.time_limit.unwrap_or(120.0),
-        options: options.for_solvers(),
+        options: options.solver_options.clone(),
         ..Settings::default()
+    };
+    let limits = Limits {
+        seconds: a.solve.time_limit.unwrap_or(120.0),
+        ..Limits::default()
     };
     let file = name(&a.model);
     let mut studies: Vec<(String, Study)> = Vec::new();
@@ -76,8 +80,9 @@ pub fn bench(a: &BenchArgs) -> u8 {
                 using,
                 instance,
                 &settings,
+                limits,
                 a.repeat,
-                &mut Silent,
+                &mut Silent(Instant::now()),
                 &mut progress,
             );
             bar.finish_and_clear();

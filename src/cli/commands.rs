@@ -13,6 +13,7 @@ use crate::report::diagnostics::{self, Look};
 use crate::report::json::{Report, RunStatus};
 use crate::run::{ListOptions, Machine, Options};
 use crate::session::{self, Finished};
+use crate::solve::registry::OPTION_TABLES;
 use crate::source::PreprocessOptions;
 
 /// Carries out a command; its exit status.
@@ -145,7 +146,7 @@ pub(super) fn compiled(
         ..PreprocessOptions::default()
     };
     let (diagnostics, map, program) =
-        match crate::check::compile(&mut host, &name(model), preprocess) {
+        match crate::check::compile(&mut host, &name(model), preprocess, OPTION_TABLES) {
             Err(e) => (vec![e.0], e.1, None),
             Ok(mut p) => {
                 let found = std::mem::take(&mut p.diagnostics);
@@ -191,14 +192,24 @@ fn tell(finished: &Finished, format: MessageFormat) {
     }
 }
 
-/// Options as the command line has them.
-pub(super) fn options(a: &SolveArgs) -> Options {
+/// Options as the command line has them; Err: the exit status, after what is wrong was said.
+pub(super) fn options(a: &SolveArgs) -> Result<Options, u8> {
     let mut options = Options {
         time_limit: a.time_limit.unwrap_or(f64::INFINITY),
         ..Options::default()
     };
-    options.set(&a.option);
-    options
+    match options.set(&a.option) {
+        Ok(ignored) => {
+            for name in ignored {
+                eprintln!("bmod: --option {name}: it means nothing here and is passed over");
+            }
+            Ok(options)
+        }
+        Err(message) => {
+            eprintln!("bmod: --option: {message}");
+            Err(USAGE)
+        }
+    }
 }
 
 fn run(a: &RunArgs) -> u8 {
@@ -206,6 +217,10 @@ fn run(a: &RunArgs) -> u8 {
     let (output, is_terminal) = match json_to_stdout {
         true => (Output::Error, std::io::stderr().is_terminal()),
         false => (Output::Standard, std::io::stdout().is_terminal()),
+    };
+    let base = match options(&a.solve) {
+        Ok(o) => o,
+        Err(status) => return status,
     };
     let options = Options {
         certify: a.certify,
@@ -215,7 +230,7 @@ fn run(a: &RunArgs) -> u8 {
         quiet: a.quiet,
         all: a.all,
         color: Look::stream(is_terminal).color,
-        ..options(&a.solve)
+        ..base
     };
     let file = name(&a.model);
     let mut solutions = None;

@@ -53,6 +53,10 @@ pub fn studied(
     chosen: &ChosenArgs,
     f: &mut dyn FnMut(&mut Machine, Primal, Studied) -> Result<u8, Diagnostic>,
 ) -> u8 {
+    let base = match options(solve) {
+        Ok(o) => o,
+        Err(status) => return status,
+    };
     let options = Options {
         quiet: true,
         collect: false,
@@ -61,7 +65,7 @@ pub fn studied(
             number: chosen.number,
             generate_only: false,
         }),
-        ..options(solve)
+        ..base
     };
     let mut status = 0;
     let finished = carry_out_silently(model, options, &mut |m| {

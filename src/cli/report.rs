@@ -35,6 +35,10 @@ pub fn report(a: &ReportArgs) -> u8 {
         eprintln!("bmod: no folder for temporary files");
         return EXECUTION;
     };
+    let base = match options(&a.solve) {
+        Ok(o) => o,
+        Err(status) => return status,
+    };
     let options = Options {
         quiet: true,
         study: Some(StudyChoice {
@@ -42,7 +46,7 @@ pub fn report(a: &ReportArgs) -> u8 {
             number: a.chosen.number,
             generate_only: false,
         }),
-        ..options(&a.solve)
+        ..base
     };
     let task = Task {
         out: out.path(),

@@ -33,10 +33,14 @@ pub fn test(a: &TestArgs) -> u8 {
             file: path.clone(),
             ..a.model()
         };
+        let base = match options(&a.solve) {
+            Ok(o) => o,
+            Err(status) => return status,
+        };
         let options = Options {
             quiet: true,
             collect: false,
-            ..options(&a.solve)
+            ..base
         };
         let mut wrong = Vec::new();
         let status = carry_out_silently(&model, options, &mut |m| {

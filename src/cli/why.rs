@@ -10,11 +10,15 @@ use crate::session;
 
 /// Carries out `bmod why`; its exit status.
 pub fn why(a: &WhyArgs) -> u8 {
+    let base = match options(&a.solve) {
+        Ok(o) => o,
+        Err(status) => return status,
+    };
     let options = Options {
         why: true,
         quiet: true,
         collect: a.json.is_some(),
-        ..options(&a.solve)
+        ..base
     };
     // The model's own output and files are not wanted here.
     let finished = match carry_out_silently(&a.model, options, &mut |_| {}) {

@@ -6,7 +6,7 @@
 //! it, which one more linear program says.
 
 use crate::model::instance::{Instance, Objective, Relation, Sense};
-use crate::solve::{ModelStatus, Quiet, Settings};
+use crate::solve::ModelStatus;
 
 /// A row's right-hand side.
 #[derive(Clone, Debug)]
@@ -122,7 +122,7 @@ fn extreme(mut p: Instance, column: usize, sense: Sense) -> Option<f64> {
         Sense::Minimize => f64::NEG_INFINITY,
         Sense::Maximize => f64::INFINITY,
     };
-    let a = super::study::solve_linear(&p, &Settings::default(), &mut Quiet)?;
+    let a = super::study::solve_linear(&p)?;
     match a.status {
         ModelStatus::Optimal => Some(a.outcome.level[column]),
         ModelStatus::Unbounded | ModelStatus::UnboundedNoSolution => Some(far),

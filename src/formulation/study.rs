@@ -5,9 +5,10 @@ use super::lower::{Equation, Lowering};
 use super::tree::{Expr, Indices, Part, Variable, guarded};
 use crate::model::instance::Instance;
 use crate::model::origin::Blocks;
+use crate::model::problem_type::ProblemType;
 use crate::run::{Machine, Studied};
 use crate::solve::answer::{Answer, answer};
-use crate::solve::{Monitor, Settings};
+use crate::solve::{Budget, Quiet, Settings};
 
 /// The model of the solve that a run was asked to look at; None where there was none.
 pub fn primal(m: &mut Machine) -> Option<(Primal, Studied)> {
@@ -88,10 +89,8 @@ fn moved(from: &Blocks, values: &[f64], to: &Blocks) -> Vec<f64> {
 }
 
 /// Solves a linear instance.
-pub fn solve_linear(
-    p: &Instance,
-    settings: &Settings,
-    monitor: &mut dyn Monitor,
-) -> Option<Answer> {
-    answer("lp", None, p, settings, monitor).ok()
+pub fn solve_linear(p: &Instance) -> Option<Answer> {
+    let mut quiet = Quiet::default();
+    let budget = Budget::unlimited(&mut quiet);
+    answer(ProblemType::Lp, None, p, &Settings::default(), &budget).ok()
 }

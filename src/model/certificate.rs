@@ -24,8 +24,8 @@
 //! tolerance is [`TOLERANCE`].
 
 use super::instance::{Instance, Relation, Sense};
+use super::outcome::{Claim, ModelStatus, Outcome};
 use super::sum::Sum;
-use crate::solve::{Claim, ModelStatus, Outcome};
 
 /// Relative tolerance for primal and dual residuals and the gap.
 pub const TOLERANCE: f64 = 1e-6;
@@ -520,7 +520,7 @@ pub fn is_beyond_bounds(instance: &Instance) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solve::SolverStatus;
+    use crate::model::outcome::SolverStatus;
     use crate::solve::conformance::linear as program;
 
     fn outcome(level: &[f64], row_marginal: &[f64], claim: Claim, ray: &[f64]) -> Outcome {

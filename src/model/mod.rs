@@ -2,5 +2,8 @@
 pub mod certificate;
 pub mod certificate_nlp;
 pub mod instance;
+pub mod option;
 pub mod origin;
+pub mod outcome;
+pub mod problem_type;
 pub mod sum;

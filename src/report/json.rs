@@ -9,7 +9,7 @@ use serde::{Serialize, Serializer};
 use super::diagnostic::Diagnostic;
 use crate::data::value;
 use crate::model::certificate::Residuals;
-use crate::solve::{ModelStatus, SolverStatus};
+use crate::model::outcome::{ModelStatus, SolverStatus};
 
 /// Number of the report's format.
 pub const FORMAT: u32 = 1;

@@ -10,14 +10,15 @@ use serde::{Serialize, Serializer, ser::SerializeSeq};
 use super::json::{FORMAT, Number};
 use super::names::Names;
 use crate::model::instance::{Instance, Relation, Sense};
-use crate::solve::Outcome;
+use crate::model::outcome::Outcome;
+use crate::model::problem_type::ProblemType;
 
 /// One solve: what was solved, and the answer.
 pub struct Solved<'a> {
     /// The model.
     pub model: &'a str,
-    /// `lp`, `mcp` …
-    pub using: &'a str,
+    /// The problem type.
+    pub using: ProblemType,
     /// What was solved.
     pub instance: &'a Instance,
     /// The answer.
@@ -136,7 +137,7 @@ pub fn to_json(file: &str, solves: &[Solved<'_>]) -> String {
         let matched = instance.matched.iter().flatten().enumerate();
         Solve {
             model: solved.model,
-            using: solved.using,
+            using: solved.using.name(),
             sense: instance.objective.map(|o| match o.sense {
                 Sense::Minimize => "min",
                 Sense::Maximize => "max",

@@ -186,7 +186,7 @@ fn time(seconds: f64) -> String {
 mod tests {
     use super::super::json::{Residual, Seconds};
     use super::*;
-    use crate::solve::{ModelStatus, SolverStatus};
+    use crate::model::outcome::{ModelStatus, SolverStatus};
 
     fn report() -> SolveReport {
         SolveReport {

@@ -41,7 +41,7 @@ use crate::diag::{Diagnostic, Severity};
 use crate::host::Host;
 use crate::source::{SourceMap, Span};
 use random::Random;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 
@@ -108,6 +108,8 @@ pub struct Machine<'h> {
     started: f64,
     table_symbols: Vec<SymbolId>,
     slots: usize,
+    /// Option files of which it was said what is passed over.
+    passed_over: FxHashSet<String>,
 }
 
 impl<'h> Machine<'h> {
@@ -136,6 +138,7 @@ impl<'h> Machine<'h> {
             equations: Rc::new(program.equations),
             map: program.map,
             options,
+            passed_over: FxHashSet::default(),
             models: FxHashMap::default(),
             formats: FxHashMap::default(),
             report: crate::report::json::Report::default(),

@@ -6,18 +6,10 @@
 use super::Machine;
 use crate::check::node::SymbolId;
 use crate::diag::Diagnostic;
+use crate::model::option::{Accepted, OptionTable, check};
+use crate::model::problem_type::ProblemType;
+use crate::solve::registry;
 use crate::source::Span;
-
-/// Names of the files that a solver of ours reads, by problem type and chosen solver.
-fn solvers(using: &str, choice: Option<&str>) -> &'static [&'static str] {
-    match (using, choice) {
-        ("mcp" | "cns", None | Some("path" | "bmcp")) => &["path"],
-        ("mcp" | "cns", _) => &[],
-        (_, None | Some("pounce")) => &["pounce", "ipopt"],
-        (_, Some("ipopt" | "ipopth")) => &["ipopt"],
-        _ => &[],
-    }
-}
 
 /// `opt`, `op2` … `op9`, `o10` … `999`, as GAMS names them.
 fn extension(number: u32) -> String {
@@ -29,10 +21,10 @@ fn extension(number: u32) -> String {
     }
 }
 
-/// The options of a file; Err: a line that has no value.
-fn parse(text: &str) -> Result<Vec<(String, String)>, String> {
+/// The options of a file, with the numbers of their lines; Err: a line that has no value.
+fn parse(text: &str) -> Result<Vec<(usize, String, String)>, String> {
     let mut out = Vec::new();
-    for line in text.lines() {
+    for (number, line) in text.lines().enumerate() {
         let line = line.split('#').next().unwrap_or_default().trim();
         if line.is_empty() || line.starts_with('*') {
             continue;
@@ -45,54 +37,39 @@ fn parse(text: &str) -> Result<Vec<(String, String)>, String> {
         if value.is_empty() {
             return Err(line.to_string());
         }
-        out.push((name.to_string(), value.to_string()));
+        out.push((number + 1, name.to_string(), value.to_string()));
     }
     Ok(out)
 }
 
-/// What says how a solver prints, writes, or which libraries it loads: of no concern here.
-fn is_about_the_installation(name: &str) -> bool {
-    const NAMES: [&str; 6] = [
-        "linear_solver",
-        "print_level",
-        "hsllib",
-        "pardisolib",
-        "output_file",
-        "file_print_level",
-    ];
-    NAMES.contains(&name.to_lowercase().as_str())
-}
-
 impl Machine<'_> {
-    /// Options of the model's option file, if it has one.
+    /// Options of the model's option file, if it has one. None: one of them is refused, which was said.
     pub(super) fn option_file(
         &mut self,
         model: SymbolId,
-        using: &str,
+        using: ProblemType,
         span: Span,
-    ) -> Vec<(String, String)> {
+    ) -> Option<Vec<(String, String)>> {
         let number = self.model_option(model, "optfile", 0.0);
         if !(1.0..1000.0).contains(&number) {
-            return Vec::new();
+            return Some(Vec::new());
         }
+        let choice = self.options.texts.get(using.name()).cloned();
+        let (names, tables) = registry::option_file(using, choice.as_deref());
         let extension = extension(number as u32);
-        let choice = self.options.texts.get(using).cloned();
-        let files: Vec<String> = solvers(using, choice.as_deref())
-            .iter()
-            .map(|s| format!("{s}.{extension}"))
-            .collect();
+        let files: Vec<String> = names.iter().map(|s| format!("{s}.{extension}")).collect();
         let warn = |message: String, help: &str| {
             Diagnostic::warning("E0426", span, message)
                 .label("at this solve")
                 .help(help)
         };
         if files.is_empty() {
-            let name = choice.as_deref().unwrap_or(using).to_string();
+            let name = choice.as_deref().unwrap_or(using.name()).to_string();
             self.note(warn(
                 format!("the options of `{name}` are not read: another solver runs here"),
                 "options of the solvers inside stand in `ipopt.opt` and `path.opt`",
             ));
-            return Vec::new();
+            return Some(Vec::new());
         }
         for file in &files {
             if !self.file_exists(file, span) {
@@ -102,20 +79,17 @@ impl Machine<'_> {
                 Ok(text) => text,
                 Err(d) => {
                     self.note(*d);
-                    return Vec::new();
+                    return Some(Vec::new());
                 }
             };
             return match parse(&text) {
-                Ok(mut options) => {
-                    options.retain(|(name, _)| !is_about_the_installation(name));
-                    options
-                }
+                Ok(options) => self.checked(file, options, &tables, span),
                 Err(line) => {
                     self.note(warn(
                         format!("the option file `{file}` is not used: `{line}` has no value"),
                         "a line holds a name and a value",
                     ));
-                    Vec::new()
+                    Some(Vec::new())
                 }
             };
         }
@@ -126,7 +100,50 @@ impl Machine<'_> {
             ),
             "it stands beside the model, or in the current folder",
         ));
-        Vec::new()
+        Some(Vec::new())
+    }
+
+    /// Those of a file's options that count; None if one is refused.
+    fn checked(
+        &mut self,
+        file: &str,
+        options: Vec<(usize, String, String)>,
+        tables: &[&OptionTable],
+        span: Span,
+    ) -> Option<Vec<(String, String)>> {
+        let (mut taken, mut ignored) = (Vec::new(), Vec::new());
+        for (line, name, value) in options {
+            match check(tables, &name, &value) {
+                Ok(Accepted::Taken) => taken.push((name, value)),
+                Ok(Accepted::Ignored) => ignored.push(name),
+                Err(refused) => {
+                    let (message, help) = refused.words(&name, &value);
+                    let help = help.unwrap_or_else(|| {
+                        let backend = tables.first().map_or("", |t| t.backend);
+                        format!("`bmod help options {backend}` lists the options")
+                    });
+                    let message = format!("`{file}`, line {line}: {message}");
+                    self.note(
+                        Diagnostic::execution("E0426", span, message)
+                            .label("at this solve")
+                            .help(help),
+                    );
+                    return None;
+                }
+            }
+        }
+        if !ignored.is_empty() && self.passed_over.insert(file.to_string()) {
+            let names = ignored.join("`, `");
+            self.note(
+                Diagnostic::warning(
+                    "E0426",
+                    span,
+                    format!("`{file}`: `{names}` mean nothing here and are passed over"),
+                )
+                .label("at this solve"),
+            );
+        }
+        Some(taken)
     }
 }
 
@@ -138,11 +155,11 @@ mod tests {
     fn lines_are_names_and_values() {
         let text = "* how\ntol 1e-9\n\nmax_iter = 50 # few\nmu_strategy=\"adaptive\"\n";
         let want = [
-            ("tol", "1e-9"),
-            ("max_iter", "50"),
-            ("mu_strategy", "adaptive"),
+            (2, "tol", "1e-9"),
+            (4, "max_iter", "50"),
+            (5, "mu_strategy", "adaptive"),
         ];
-        let want = want.map(|(a, b)| (a.to_string(), b.to_string()));
+        let want = want.map(|(n, a, b)| (n, a.to_string(), b.to_string()));
         assert_eq!(parse(text), Ok(want.to_vec()));
         assert_eq!(parse("tol\n"), Err("tol".into()));
         assert_eq!(

@@ -2,8 +2,9 @@
 
 use crate::check::node::{OptionCode, SymbolId};
 use crate::check::option::is_statement_option;
+use crate::model::option::{Accepted, Refused, check, switch};
 use crate::report::textfile::TextFile;
-use crate::solve::OWN_OPTIONS;
+use crate::solve::registry::OPTION_TABLES;
 use crate::source::{Span, named_constant};
 use rustc_hash::FxHashMap;
 use std::cell::Cell;
@@ -19,8 +20,10 @@ pub struct Options {
     pub texts: FxHashMap<String, String>,
     /// Numeric options, lower case.
     pub numbers: FxHashMap<String, f64>,
-    /// `--option K=V` for the solvers: what no `option` statement takes.
+    /// Options of solvers, from `--option K=V` and from `option` statements; what was said last counts.
     pub solver_options: Vec<(String, String)>,
+    /// What is wrong with an option that was asked for from outside: the run does not begin.
+    pub refused: Option<String>,
     /// `--option log=1`: print the solver's log.
     pub log: bool,
     /// `--certify`
@@ -62,6 +65,7 @@ impl Default for Options {
             texts: FxHashMap::default(),
             numbers: FxHashMap::default(),
             solver_options: Vec::new(),
+            refused: None,
             log: false,
             certify: false,
             why: false,
@@ -78,25 +82,54 @@ impl Default for Options {
 }
 
 impl Options {
-    /// `--option K=V`: what the language knows as an `option` statement before the first statement would
-    /// set it, the rest for the solvers.
-    pub fn set(&mut self, pairs: &[(String, String)]) {
+    /// `--option K=V`, as the statement `option K = V` before the first statement would set it. Gives the names that
+    /// mean nothing here; Err: what is wrong with one of them, in a sentence.
+    pub fn set(&mut self, pairs: &[(String, String)]) -> Result<Vec<String>, String> {
+        let mut ignored = Vec::new();
         for (name, value) in pairs {
             let name = name.to_lowercase();
             if name == "log" {
-                self.log = value != "0";
-            } else if is_statement_option(&name) || OWN_OPTIONS.contains(&name.as_str()) {
-                let number = value.parse().map(OptionCode::Number);
-                let value = number.unwrap_or_else(|_| OptionCode::Text(value.as_str().into()));
-                self.assign(&name, &value);
-            } else {
-                self.solver_options.push((name, value.clone()));
+                self.log = switch(value).unwrap_or(true);
+                continue;
+            }
+            let number = value.parse().map(OptionCode::Number);
+            let code = number.unwrap_or_else(|_| OptionCode::Text(value.as_str().into()));
+            if is_statement_option(&name) {
+                self.assign(&name, &code);
+                continue;
+            }
+            match check(OPTION_TABLES, &name, value) {
+                Ok(Accepted::Taken) => self.solver_options.push((name, value.clone())),
+                Ok(Accepted::Ignored) => ignored.push(name),
+                Err(refused) => {
+                    let (message, help) = refused.words(&name, value);
+                    return Err(match (help, refused) {
+                        (Some(help), _) => format!("{message}; {help}"),
+                        (None, Refused::Unknown(_)) => {
+                            format!("{message}; `bmod help options` lists them")
+                        }
+                        (None, Refused::Value(_)) => message,
+                    });
+                }
             }
         }
+        Ok(ignored)
     }
 
     /// What an `option` statement does; `name` in lower case.
     pub fn assign(&mut self, name: &str, value: &OptionCode) {
+        if !is_statement_option(name) {
+            let text = match value {
+                OptionCode::Flag => return,
+                OptionCode::Number(x) => x.to_string(),
+                OptionCode::Text(t) => t.to_string(),
+            };
+            self.solver_options.retain(|(k, _)| k != name);
+            if !text.eq_ignore_ascii_case("default") {
+                self.solver_options.push((name.to_string(), text));
+            }
+            return;
+        }
         let (number, text) = match value {
             OptionCode::Flag => return,
             OptionCode::Number(x) => (Some(*x), None),
@@ -114,17 +147,6 @@ impl Options {
         self.texts.remove(name);
         self.numbers.extend(number.map(|x| (name.to_string(), x)));
         self.texts.extend(text.map(|t| (name.to_string(), t)));
-    }
-
-    /// Options of other solvers, from the command line, and bmod's own, as the `option` statements
-    /// left them.
-    pub fn for_solvers(&self) -> Vec<(String, String)> {
-        let own = OWN_OPTIONS.iter().filter_map(|&name| {
-            let text = self.texts.get(name).cloned();
-            let value = text.or_else(|| Some(self.number(name)?.to_string()))?;
-            Some((name.to_string(), value))
-        });
-        self.solver_options.iter().cloned().chain(own).collect()
     }
 
     /// `option gams_power = on`: `x**y` is exp(y·log x), with its rounding, as GAMS computes it.

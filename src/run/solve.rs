@@ -9,31 +9,42 @@ use crate::data::value::{EPS, NA};
 use crate::diag::Diagnostic;
 use crate::model::instance::{ColumnKind, Instance, Relation};
 use crate::model::origin::{Blocks, Origin};
+use crate::model::outcome::{ModelStatus, SolverStatus};
+use crate::model::problem_type::ProblemType;
 use crate::report::names::Names;
 use crate::report::why::{Explanation, explain};
 use crate::report::{json, levels, listing, solution, summary};
 use crate::solve::answer::{Answer, answer, certify};
 use crate::solve::mip::{self, Aim};
 use crate::solve::why;
-use crate::solve::{ModelStatus, Monitor, Settings, SolverStatus};
+use crate::solve::{Budget, Limits, Monitor, Progress, Settings};
 use crate::source::Span;
 
 /// A solver's line to the run.
 struct RunMonitor<'a, 'h> {
     machine: &'a Machine<'h>,
     origin: &'a Origin,
-    log: bool,
 }
 
 impl Monitor for RunMonitor<'_, '_> {
     fn log(&mut self, line: &str) {
-        if self.log {
-            self.machine.print(&format!("{line}\n"));
-        }
+        self.machine.print(&format!("{line}\n"));
     }
 
     fn interrupted(&mut self) -> bool {
         self.machine.host().interrupted()
+    }
+
+    fn seconds(&mut self) -> f64 {
+        self.machine.host().elapsed()
+    }
+
+    fn memory(&mut self) -> usize {
+        self.machine.host().memory()
+    }
+
+    fn progress(&mut self, progress: &Progress) {
+        self.machine.host().progress(&progress.line());
     }
 
     fn row_name(&self, row: usize) -> String {
@@ -94,7 +105,7 @@ impl Machine<'_> {
         let options = GenerateOptions {
             hold_fixed: self.model_option(s.model, "holdfixed", 0.0) != 0.0,
             scale: self.model_option(s.model, "scaleopt", 0.0) != 0.0,
-            keep_paired: matches!(s.using, "mcp" | "mpec" | "rmpec"),
+            keep_paired: s.using.has_pairs(),
         };
         if self.study(s, span) {
             return Flow::Next;
@@ -118,55 +129,35 @@ impl Machine<'_> {
             self.report.solves.push(self.not_solved(s, &generated));
             return Flow::Next;
         }
-        if s.using == "mpec"
-            && let Some(column) = generated.instance.columns.first_undecided()
-        {
-            let name = self.origin_name(&generated.origin.columns, column);
-            let message =
-                format!("an `mpec` with discrete variables is not solved, and {name} is not fixed");
-            let help = "`solve … using rmpec` solves the relaxation; the run ends here";
-            self.note(
-                Diagnostic::execution("E0425", span, message)
-                    .label("not solved")
-                    .help(help),
-            );
-            self.report.solves.push(self.not_solved(s, &generated));
+        let Some(mut options) = self.option_file(s.model, s.using, span) else {
             return Flow::Stop;
-        }
-        let mut settings = self.settings(s.model);
-        let mut options = self.option_file(s.model, s.using, span);
-        // The command line has the last word.
-        options.append(&mut settings.options);
-        settings.options = options;
+        };
+        // The command line and the `option` statement have the last word.
+        options.extend(self.options.solver_options.iter().cloned());
+        let settings = Settings {
+            options,
+            search: self.search_aim(s.model),
+        };
         self.host().progress(&format!(
             "solving {name}: {} rows, {} columns",
             generated.instance.row_count(),
             generated.instance.column_count()
         ));
-        if matches!(s.using, "mcp" | "cns") {
-            self.examine(
-                &generated.instance,
-                &generated.origin,
-                s.using == "cns",
-                span,
-            );
+        if s.using.is_system() {
+            let square = s.using == ProblemType::Cns;
+            self.examine(&generated.instance, &generated.origin, square, span);
         }
-        let choice = self.options.texts.get(s.using).cloned();
+        let choice = self.options.texts.get(s.using.name()).cloned();
         let mut monitor = RunMonitor {
             machine: self,
             origin: &generated.origin,
-            log: settings.log,
         };
-        let result = answer(
-            s.using,
-            choice.as_deref(),
-            &generated.instance,
-            &settings,
-            &mut monitor,
-        );
+        let budget = Budget::new(&mut monitor, self.limits(s.model), self.options.log);
+        let instance = &generated.instance;
+        let result = answer(s.using, choice.as_deref(), instance, &settings, &budget);
         match result {
             Ok(mut a) => {
-                self.certified(s, &generated, &mut a, &settings);
+                self.certified(s, &generated, &mut a);
                 self.study_answer(&generated, &a);
                 let end = self.elapsed();
                 let seconds = json::Seconds {
@@ -241,17 +232,14 @@ impl Machine<'_> {
         Flow::Next
     }
 
-    fn settings(&self, model: SymbolId) -> Settings {
+    fn limits(&self, model: SymbolId) -> Limits {
         let left = (self.options.time_limit - self.elapsed()).max(0.0);
-        Settings {
-            time_limit: self.model_option(model, "reslim", 1e10).min(left),
-            iteration_limit: self
-                .model_option(model, "iterlim", 2_147_483_647.0)
-                .clamp(0.0, 1e18) as u64,
-            evaluation_error_limit: self.model_option(model, "domlim", 0.0).clamp(0.0, 1e18) as u64,
-            options: self.options.for_solvers(),
-            log: self.options.log,
-            search: self.search_aim(model),
+        let count = |name, default: f64| self.model_option(model, name, default).clamp(0.0, 1e18);
+        Limits {
+            seconds: self.model_option(model, "reslim", 1e10).min(left),
+            iterations: count("iterlim", 2_147_483_647.0) as u64,
+            evaluation_failures: count("domlim", 0.0) as u64,
+            memory: self.options.max_memory,
         }
     }
 
@@ -280,10 +268,10 @@ impl Machine<'_> {
 
     /// A proved interval for the objective of a linear program, where `certify` asks for one. Why
     /// there is none, or one side only, goes to the answer's message.
-    fn certified(&self, s: &SolveCode, g: &Generated, a: &mut Answer, settings: &Settings) {
+    fn certified(&self, s: &SolveCode, g: &Generated, a: &mut Answer) {
         let wanted = self.options.certify || self.options.number("certify") == Some(1.0);
         let linear = g.instance.is_linear() && g.instance.objective.is_some();
-        if !wanted || !linear || matches!(s.using, "mpec" | "rmpec") {
+        if !wanted || !linear || s.using.has_pairs() {
             return;
         }
         self.host()
@@ -291,9 +279,13 @@ impl Machine<'_> {
         let mut monitor = RunMonitor {
             machine: self,
             origin: &g.origin,
-            log: settings.log,
         };
-        let Ok(proof) = certify(&g.instance, a, settings, &mut monitor) else {
+        let limits = Limits {
+            iterations: u64::MAX,
+            ..self.limits(s.model)
+        };
+        let budget = Budget::new(&mut monitor, limits, self.options.log);
+        let Ok(proof) = certify(&g.instance, a, &budget) else {
             return;
         };
         let mut parts: Vec<String> = a.outcome.message.take().into_iter().collect();
@@ -521,11 +513,9 @@ impl Machine<'_> {
             iterations: a.outcome.iterations,
             seconds,
             residual: r.into(),
-            complementarity_sum: if matches!(s.using, "mpec" | "rmpec") {
-                r.complementarity_sum
-            } else {
-                None
-            },
+            complementarity_sum: r
+                .complementarity_sum
+                .filter(|_| s.using.has_pairs() && s.using.has_objective()),
             bounds: a.bounds.map(|b| b.map(json::Number)),
             stationarity: a.stationarity.map(|s| s.name()),
             message: self.solve_message(g, a),
@@ -622,13 +612,12 @@ impl Machine<'_> {
 
     /// What explains the status, for `bmod why`.
     fn explanation(&self, s: &SolveCode, g: &Generated, a: &Answer) -> Explanation {
-        let settings = self.settings(s.model);
         let mut monitor = RunMonitor {
             machine: self,
             origin: &g.origin,
-            log: settings.log,
         };
-        let found = why::findings(s.using, &g.instance, a, &settings, &mut monitor);
+        let budget = Budget::new(&mut monitor, self.limits(s.model), self.options.log);
+        let found = why::findings(s.using, &g.instance, a, &budget);
         let names = RunNames {
             machine: self,
             origin: &g.origin,
@@ -786,14 +775,14 @@ fn stored(marginals: &[f64], outside: impl Fn(usize) -> bool) -> Vec<f64> {
 /// A solve that is kept for `--solution` and `bmod bench`.
 pub struct KeptSolve {
     model: String,
-    using: &'static str,
+    using: ProblemType,
     generated: Generated,
     answer: Answer,
 }
 
 impl KeptSolve {
     /// The model's name, the problem type and the instance.
-    pub fn parts(&self) -> (&str, &'static str, &Instance) {
+    pub fn parts(&self) -> (&str, ProblemType, &Instance) {
         (&self.model, self.using, &self.generated.instance)
     }
 }

@@ -92,7 +92,7 @@ impl Machine<'_> {
         self.store.refresh_universe();
         self.store.tables.iter_mut().for_each(Table::tidy);
         let options = GenerateOptions {
-            keep_paired: matches!(s.code.using, "mcp" | "mpec" | "rmpec"),
+            keep_paired: s.code.using.has_pairs(),
             ..GenerateOptions::default()
         };
         let mut frame: Frame = vec![0; self.slots];

@@ -5,18 +5,22 @@
 
 use std::cell::OnceCell;
 
+use super::backend::{Backend, Task, choose};
+use super::budget::Size;
 use super::lp::certify::{Proof, Unproved};
 use super::lp::least;
 use super::mpec::Stationarity;
 use super::mpec::pairs::Program;
 use super::nlp::relaxation::is_infeasible;
+use super::registry::BACKENDS;
 use super::{
-    Claim, ModelStatus, Monitor, Outcome, Settings, SolveError, Solver, complementarity, lp, noise,
+    Budget, Claim, ModelStatus, Outcome, Settings, SolveError, Solver, complementarity, lp, noise,
 };
 use crate::autodiff::Evaluator;
 use crate::model::certificate::{self, Linearised, Residuals, TOLERANCE};
-use crate::model::certificate_nlp::linearise;
+use crate::model::certificate_nlp::{kkt_residual, linearise};
 use crate::model::instance::{Instance, Relation};
+use crate::model::problem_type::ProblemType;
 
 /// A solver's point with its certificate.
 #[derive(Clone, Debug)]
@@ -38,6 +42,36 @@ pub struct Answer {
 }
 
 impl Answer {
+    /// An outcome with its residuals on the instance, and the status that follows from them and from its rays: all that a
+    /// backend without knowledge of its own needs. A stationary point of a nonlinear program is called locally optimal.
+    pub fn certified(instance: &Instance, outcome: Outcome) -> Self {
+        if instance.is_linear() && instance.objective.is_some() {
+            let at = certificate::linearise(instance, &outcome);
+            let residuals = certificate::residuals(instance, &outcome, &at);
+            let status = certificate::linear_status(instance, &outcome, &residuals);
+            return Self::new(outcome, residuals, status, at.activity);
+        }
+        let mut evaluator = Evaluator::new(instance);
+        let (level, marginal) = (&outcome.level, &outcome.row_marginal);
+        match kkt_residual(instance, &mut evaluator, level, marginal) {
+            Ok((residuals, at)) => {
+                let status = match residuals.is_feasible(TOLERANCE) {
+                    true if residuals.dual_relative <= TOLERANCE => ModelStatus::LocallyOptimal,
+                    true => ModelStatus::Feasible,
+                    false => ModelStatus::IntermediateInfeasible,
+                };
+                Self::new(outcome, residuals, status, at.activity)
+            }
+            Err(_) => {
+                let activity = activity(instance, level);
+                let sizes = vec![1.0; activity.len()];
+                let residuals = certificate::primal(instance, level, &activity, &sizes);
+                let status = ModelStatus::IntermediateInfeasible;
+                Self::new(outcome, residuals, status, activity)
+            }
+        }
+    }
+
     /// Without anything that is particular to a problem type.
     pub fn new(
         outcome: Outcome,
@@ -69,52 +103,84 @@ impl Answer {
     }
 }
 
-/// Solves an instance of a problem type (`lp`, `mcp` …) with the solver chosen for it, if any.
+/// Solves an instance of a problem type with the backend chosen for it, if any.
 pub fn answer(
-    using: &str,
+    using: ProblemType,
     choice: Option<&str>,
     instance: &Instance,
     settings: &Settings,
-    monitor: &mut dyn Monitor,
+    budget: &Budget,
 ) -> Result<Answer, SolveError> {
-    let discrete = matches!(using, "mip" | "miqcp" | "minlp");
-    let undecided = discrete && instance.columns.first_undecided().is_some();
-    let has_pairs = instance.matched.iter().flatten().any(Option::is_some);
-    let mut found = match using {
-        "mcp" => complementary(instance, settings, monitor),
-        "cns" => square(instance, settings, monitor),
-        _ if undecided => super::mip::answer(choice, instance, settings, monitor),
-        "mpec" | "rmpec" if has_pairs => super::mpec::answer(choice, instance, settings, monitor),
-        _ if instance.is_linear() && instance.objective.is_some() => match choice {
-            Some("mcp" | "bmcp") => linear_shown(&super::kkt::Kkt, instance, settings, monitor),
-            _ => linear_shown(&lp::Clarabel, instance, settings, monitor),
-        },
-        _ => super::nlp::answer(choice, instance, settings, monitor),
-    }?;
+    let task = Task {
+        using,
+        choice,
+        instance,
+    };
+    answer_with(BACKENDS, &task, settings, budget)
+}
+
+/// The same with these backends.
+pub fn answer_with(
+    backends: &[&dyn Backend],
+    task: &Task,
+    settings: &Settings,
+    budget: &Budget,
+) -> Result<Answer, SolveError> {
+    let Some(backend) = choose(backends, task) else {
+        let using = task.using;
+        let message = match task.has_integers() {
+            true => format!(
+                "there is no solver for `{using}` with discrete variables; `using {}` solves the relaxation",
+                using.relaxation()
+            ),
+            false => format!("there is no solver for this `{using}` in this build"),
+        };
+        return Err(SolveError::new(message));
+    };
+    affords_hessian(task, budget)?;
+    let mut found = backend.solve(task, settings, budget)?;
     noise::quiet(&mut found.outcome.column_marginal);
-    if using != "mcp" {
+    if task.using != ProblemType::Mcp {
         // there they are levels
         noise::quiet(&mut found.outcome.row_marginal);
     }
     Ok(found)
 }
 
+/// To compile the program of a second derivative takes a microsecond or two, several times in a solve.
+const OPERATIONS_PER_DERIVATIVE: f64 = 3e3;
+
+/// Err where the second derivatives do not fit into the memory that is left: their pattern is made before anything else.
+fn affords_hessian(task: &Task, budget: &Budget) -> Result<(), SolveError> {
+    let entries = || {
+        let of_terms = task.instance.nonlinear.iter().map(|t| {
+            let v = f64::from(t.kernel.variables);
+            t.row.len() as f64 * v * (v + 1.0) / 2.0
+        });
+        of_terms.sum()
+    };
+    let size = || {
+        let nonzeros = entries();
+        Size {
+            what: "the matrix of second derivatives",
+            nonzeros,
+            operations: nonzeros * OPERATIONS_PER_DERIVATIVE,
+        }
+    };
+    budget.affords(size).map_err(SolveError::new)
+}
+
 /// A proved interval for the optimal value of a linear instance, near its answer.
-pub fn certify(
-    instance: &Instance,
-    answer: &Answer,
-    settings: &Settings,
-    monitor: &mut dyn Monitor,
-) -> Result<Proof, SolveError> {
+pub fn certify(instance: &Instance, answer: &Answer, budget: &Budget) -> Result<Proof, SolveError> {
     // What the status says is the better answer.
     let why = match answer.status {
         ModelStatus::Infeasible | ModelStatus::InfeasibleNoSolution => "the model is infeasible",
         ModelStatus::Unbounded | ModelStatus::UnboundedNoSolution => "the model is unbounded",
         ModelStatus::IntegerInfeasible | ModelStatus::NoSolution => "there is no solution",
         _ if answer.search.is_some() => {
-            return super::mip::certified(instance, &answer.outcome, settings, monitor);
+            return super::mip::certified(instance, &answer.outcome, budget);
         }
-        _ => return lp::certify::certify(instance, &answer.outcome, settings, monitor),
+        _ => return lp::certify::certify(instance, &answer.outcome, budget),
     };
     let nothing = Unproved {
         why,
@@ -133,13 +199,10 @@ pub(super) fn linear(
     solver: &dyn Solver,
     instance: &Instance,
     settings: &Settings,
-    monitor: &mut dyn Monitor,
+    budget: &Budget,
 ) -> Result<Answer, SolveError> {
-    let outcome = solver.solve(instance, settings, monitor)?;
-    let at = certificate::linearise(instance, &outcome);
-    let residuals = certificate::residuals(instance, &outcome, &at);
-    let status = certificate::linear_status(instance, &outcome, &residuals);
-    Ok(Answer::new(outcome, residuals, status, at.activity))
+    let outcome = solver.solve(instance, settings, budget)?;
+    Ok(Answer::certified(instance, outcome))
 }
 
 /// The same for what people see: an infeasible program at its least violation.
@@ -147,11 +210,11 @@ pub(super) fn linear_shown(
     solver: &dyn Solver,
     instance: &Instance,
     settings: &Settings,
-    monitor: &mut dyn Monitor,
+    budget: &Budget,
 ) -> Result<Answer, SolveError> {
-    let mut found = linear(solver, instance, settings, monitor)?;
+    let mut found = linear(solver, instance, settings, budget)?;
     if found.status == ModelStatus::Infeasible {
-        least::report_least_violation(instance, settings, monitor, &mut found.outcome);
+        least::report_least_violation(instance, budget, &mut found.outcome);
         let at = certificate::linearise(instance, &found.outcome);
         found.residuals = certificate::residuals(instance, &found.outcome, &at);
         found.activity = at.activity;
@@ -176,20 +239,19 @@ pub(super) fn primal(instance: &Instance, x: &[f64]) -> (Vec<f64>, Residuals) {
     (activity, residuals)
 }
 
-fn complementary(
+pub(super) fn complementary(
     instance: &Instance,
     settings: &Settings,
-    monitor: &mut dyn Monitor,
+    budget: &Budget,
 ) -> Result<Answer, SolveError> {
     let known = OnceCell::new();
-    let hopeless = |monitor: &mut dyn Monitor| {
-        *known.get_or_init(|| is_impossible(instance, settings, monitor).unwrap_or(false))
-    };
-    let outcome = complementarity::solve(instance, false, settings, monitor, &hopeless)?;
+    let hopeless =
+        |budget: &Budget| *known.get_or_init(|| is_impossible(instance, budget).unwrap_or(false));
+    let outcome = complementarity::solve(instance, false, settings, budget, &hopeless)?;
     let at = linearised(instance, &outcome);
     let residuals = certificate::complementarity(instance, &outcome.level, &at);
     let status = match certificate::complementarity_status(&residuals, outcome.claim) {
-        ModelStatus::LocallyInfeasible if hopeless(monitor) => ModelStatus::Infeasible,
+        ModelStatus::LocallyInfeasible if hopeless(budget) => ModelStatus::Infeasible,
         status => status,
     };
     Ok(Answer::new(outcome, residuals, status, at.activity))
@@ -207,32 +269,28 @@ fn linearised(instance: &Instance, outcome: &Outcome) -> Linearised {
 
 /// Whether the linear rows and the bounds alone, what the pairs imply without their products, have no solution.
 /// That is what GAMS's solvers call infeasible; a nonlinear row that cannot hold is locally infeasible there.
-fn is_impossible(
-    instance: &Instance,
-    settings: &Settings,
-    monitor: &mut dyn Monitor,
-) -> Result<bool, SolveError> {
+fn is_impossible(instance: &Instance, budget: &Budget) -> Result<bool, SolveError> {
     let mut rows = Program::new(instance)?.envelope;
     for (relation, nonlinear) in rows.rows.relation.iter_mut().zip(instance.nonlinear_rows()) {
         if nonlinear {
             *relation = Relation::Free;
         }
     }
-    Ok(is_infeasible(&rows, settings, monitor))
+    Ok(is_infeasible(&rows, budget))
 }
 
-fn square(
+pub(super) fn square(
     instance: &Instance,
     settings: &Settings,
-    monitor: &mut dyn Monitor,
+    budget: &Budget,
 ) -> Result<Answer, SolveError> {
-    let outcome = complementarity::solve(instance, true, settings, monitor, &|_| false)?;
+    let outcome = complementarity::solve(instance, true, settings, budget, &|_| false)?;
     let at = linearised(instance, &outcome);
     let residuals = certificate::primal(instance, &outcome.level, &at.activity, &at.row_size);
     let status = if residuals.is_feasible(TOLERANCE) {
         ModelStatus::Solved
     } else if certificate::is_beyond_bounds(instance)
-        || outcome.claim != Claim::Unfinished && is_impossible(instance, settings, monitor)?
+        || outcome.claim != Claim::Unfinished && is_impossible(instance, budget)?
     {
         ModelStatus::Infeasible
     } else if outcome.claim != Claim::Unfinished {

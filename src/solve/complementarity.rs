@@ -2,11 +2,15 @@
 //!
 //! What happens at a solution is decided by the bounds: F is left minus right whatever the relation.
 
+use super::answer::{self, Answer};
+use super::backend::{Backend, Supports, Task, Terms};
 use super::mcp;
 use super::pairing::{match_rows, refuse};
-use super::{Claim, Monitor, Outcome, Settings, SolveError, SolverStatus};
+use super::{Budget, Claim, Outcome, Settings, SolveError, SolverStatus};
 use crate::autodiff::Evaluator;
 use crate::model::instance::Instance;
+use crate::model::option::OptionTable;
+use crate::model::problem_type::ProblemType;
 use crate::solve::noise;
 
 /// Rows and columns put side by side.
@@ -169,103 +173,73 @@ impl mcp::Problem for Square<'_> {
     }
 }
 
-/// The run's monitor, as the complementarity solver wants it.
-struct Line<'a> {
-    monitor: &'a mut dyn Monitor,
+/// The complementarity solver as a backend; by name also for linear programs, whose optimality conditions it solves.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Bmcp;
+
+impl Backend for Bmcp {
+    fn name(&self) -> &'static str {
+        "bmcp"
+    }
+
+    fn aliases(&self) -> &'static [&'static str] {
+        &["path", "mcp"]
+    }
+
+    fn version(&self) -> &'static str {
+        "mcp, cns: bmod's own, on feral 0.22.0 and faer 0.24"
+    }
+
+    fn supports(&self) -> Supports {
+        Supports {
+            types: &[ProblemType::Mcp, ProblemType::Cns],
+            terms: Terms::Kinks,
+            linear: true,
+            pairs: true,
+            integers: false,
+            largest: usize::MAX,
+            only_by_name: false,
+        }
+    }
+
+    fn options(&self) -> &'static OptionTable {
+        &mcp::OPTIONS
+    }
+
+    fn solve(
+        &self,
+        task: &Task,
+        settings: &Settings,
+        budget: &Budget,
+    ) -> Result<Answer, SolveError> {
+        match task.using {
+            ProblemType::Cns => answer::square(task.instance, settings, budget),
+            _ => answer::complementary(task.instance, settings, budget),
+        }
+    }
+}
+
+/// What the complementarity solver asks.
+struct Help<'a, 'm> {
+    budget: &'a Budget<'m>,
     names: Names<'a>,
     hopeless: Hopeless<'a>,
-    log: bool,
 }
 
 /// Whether it can be proved, at the price of a linear program, that there is no solution.
-type Hopeless<'a> = &'a dyn Fn(&mut dyn Monitor) -> bool;
+type Hopeless<'a> = &'a dyn Fn(&Budget) -> bool;
 
 /// What index k of a complementarity problem is called.
-type Names<'a> = &'a dyn Fn(&dyn Monitor, usize) -> String;
+type Names<'a> = &'a dyn Fn(usize) -> String;
 
-impl mcp::Monitor for Line<'_> {
-    fn log(&mut self, line: &str) {
-        self.monitor.log(line);
-    }
-
-    fn interrupted(&mut self) -> bool {
-        self.monitor.interrupted()
-    }
-
-    fn wants_log(&self) -> bool {
-        self.log
-    }
-
-    fn hopeless(&mut self) -> bool {
-        (self.hopeless)(self.monitor)
+impl mcp::Help for Help<'_, '_> {
+    fn proves_infeasible(&mut self) -> bool {
+        (self.hopeless)(self.budget)
     }
 
     fn name(&self, i: usize) -> String {
-        (self.names)(self.monitor, i)
+        (self.names)(i)
     }
-}
-
-/// The value of an option that is a number, none of which may be negative.
-fn number(name: &str, value: &str) -> Result<f64, SolveError> {
-    match value.parse::<f64>() {
-        Ok(number) if number >= 0.0 => Ok(number),
-        _ => refuse(
-            format!("the option `{name}` needs a number ≥ 0, not `{value}`"),
-            None,
-            None,
-        ),
-    }
-}
-
-/// Options by PATH's names.
-fn options(settings: &Settings) -> Result<mcp::Settings, SolveError> {
-    let mut s = mcp::Settings {
-        time_limit: settings.time_limit,
-        ..mcp::Settings::default()
-    };
-    s.cumulative_iteration_limit = s
-        .cumulative_iteration_limit
-        .min(settings.iteration_limit as usize);
-    for (name, value) in &settings.options {
-        let name = name.to_lowercase();
-        let yes = !matches!(value.to_lowercase().as_str(), "no" | "0" | "off" | "false");
-        match name.as_str() {
-            "crash_method" => s.crash_method = !value.eq_ignore_ascii_case("none"),
-            "preprocess" => s.preprocess = yes,
-            "output" => {
-                s.output_crash_iterations = yes;
-                s.output_major_iterations = yes;
-                s.output_minor_iterations = yes;
-                s.output_final_statistics = yes;
-            }
-            "output_crash_iterations" => s.output_crash_iterations = yes,
-            "output_major_iterations" => s.output_major_iterations = yes,
-            "output_minor_iterations" => s.output_minor_iterations = yes,
-            "output_final_statistics" => s.output_final_statistics = yes,
-            "convergence_tolerance" | "proximal_perturbation" | "time_limit" => {
-                let number = number(&name, value)?;
-                match name.as_str() {
-                    "convergence_tolerance" => s.convergence_tolerance = number,
-                    "proximal_perturbation" => s.proximal_perturbation = number,
-                    _ => s.time_limit = s.time_limit.min(number),
-                }
-            }
-            _ => {
-                let limit = match name.as_str() {
-                    "crash_iteration_limit" => &mut s.crash_iteration_limit,
-                    "major_iteration_limit" => &mut s.major_iteration_limit,
-                    "cumulative_iteration_limit" => &mut s.cumulative_iteration_limit,
-                    "minor_iteration_limit" => &mut s.minor_iteration_limit,
-                    "nms_memory_size" => &mut s.nms_memory_size,
-                    "restart_limit" => s.restart_limit.insert(0),
-                    // Options of PATH that mean nothing here.
-                    _ => continue,
-                };
-                *limit = number(&name, value)?.min(1e15) as usize;
-            }
-        }
-    }
-    Ok(s)
 }
 
 /// Runs the complementarity solver: its outcome, and how it ended in GAMS's terms.
@@ -273,21 +247,22 @@ pub(super) fn run(
     problem: &mut dyn mcp::Problem,
     names: Names,
     settings: &Settings,
-    monitor: &mut dyn Monitor,
+    budget: &Budget,
     hopeless: Hopeless,
 ) -> Result<(mcp::Outcome, SolverStatus), SolveError> {
-    let limits = options(settings)?;
-    let log = settings.log;
-    let out = mcp::solve(
-        problem,
-        &limits,
-        &mut Line {
-            monitor,
-            names,
-            hopeless,
-            log,
-        },
-    );
+    let mut limits = mcp::Settings::with(&settings.options);
+    let left = usize::try_from(budget.iterations_left()).unwrap_or(usize::MAX);
+    limits.cumulative_iteration_limit = limits.cumulative_iteration_limit.min(left);
+    let mut help = Help {
+        budget,
+        names,
+        hopeless,
+    };
+    let seconds = limits.time_limit;
+    let out = budget.within(seconds, u64::MAX, |budget| {
+        mcp::solve(problem, &limits, budget, &mut help)
+    });
+    budget.spend((out.majors + out.pivots) as u64);
     let status = match out.status {
         mcp::Status::Solved => SolverStatus::NormalCompletion,
         mcp::Status::IterationLimit => SolverStatus::IterationInterrupt,
@@ -307,20 +282,16 @@ pub fn solve(
     instance: &Instance,
     square: bool,
     settings: &Settings,
-    monitor: &mut dyn Monitor,
+    budget: &Budget,
     hopeless: Hopeless,
 ) -> Result<Outcome, SolveError> {
     let mut problem = Square::new(instance, square)?;
     let row_of = problem.row_of.clone();
-    let names = |monitor: &dyn Monitor, j: usize| match row_of[j] {
-        Some(r) => format!(
-            "{}.{}",
-            monitor.row_name(r as usize),
-            monitor.column_name(j)
-        ),
-        None => monitor.column_name(j),
+    let names = |j: usize| match row_of[j] {
+        Some(r) => format!("{}.{}", budget.row_name(r as usize), budget.column_name(j)),
+        None => budget.column_name(j),
     };
-    let (mut out, status) = run(&mut problem, &names, settings, monitor, hopeless)?;
+    let (mut out, status) = run(&mut problem, &names, settings, budget, hopeless)?;
     let (lower, upper) = (&instance.columns.lower, &instance.columns.upper);
     noise::snap(&mut out.x, lower, upper);
     if square && out.status != mcp::Status::Solved {

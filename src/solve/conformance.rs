@@ -2,7 +2,7 @@
 //! them: primal, infeasible and unbounded variants, degenerate and badly scaled ones, every kind
 //! of bound, no rows, no columns.
 
-use super::{Claim, ModelStatus, Monitor, Outcome, Settings, SolveError, Solver};
+use super::{Budget, Claim, ModelStatus, Outcome, Settings, SolveError, Solver};
 use crate::model::certificate;
 use crate::model::instance::{
     ColumnKind, Columns, Instance, Objective, Relation, Rows, Sense, SparseRows,
@@ -76,7 +76,11 @@ pub fn push_row(instance: &mut Instance, coefficients: &[f64], relation: Relatio
 /// Solves, and checks that the certificate confirms the claim.
 fn run(solver: &dyn Solver, instance: &Instance) -> Outcome {
     let o = solver
-        .solve(instance, &Settings::default(), &mut Quiet)
+        .solve(
+            instance,
+            &Settings::default(),
+            &Budget::unlimited(&mut Quiet::default()),
+        )
         .expect("a valid instance");
     let residuals = certificate::linear(instance, &o);
     let status = certificate::linear_status(instance, &o, &residuals);
@@ -121,9 +125,9 @@ impl Solver for With<'_> {
         &self,
         instance: &Instance,
         _: &Settings,
-        monitor: &mut dyn Monitor,
+        budget: &Budget,
     ) -> Result<Outcome, SolveError> {
-        self.0.solve(instance, self.1, monitor)
+        self.0.solve(instance, self.1, budget)
     }
 }
 
@@ -451,7 +455,11 @@ fn unbounded(solver: &dyn Solver) {
 fn refused(solver: &dyn Solver) {
     let refuse = |instance: &Instance| -> SolveError {
         solver
-            .solve(instance, &Settings::default(), &mut Quiet)
+            .solve(
+                instance,
+                &Settings::default(),
+                &Budget::unlimited(&mut Quiet::default()),
+            )
             .expect_err("an invalid instance")
     };
     let mut crossed = linear(Sense::Minimize, &[1., 1.], &[(0., 1.), (3., 2.)], &[]);

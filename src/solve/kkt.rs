@@ -4,9 +4,12 @@
 //! l ≤ x ≤ u ⟂ c − Aᵀy and y (free | ≥ 0 | ≤ 0) ⟂ Ax − b. The pivoting solver ends at a basic
 //! solution with residuals near the rounding error, where interior points give six digits.
 
+use super::answer::{Answer, linear_shown};
+use super::backend::{Backend, Supports, Task};
 use super::complementarity::run;
-use super::{Claim, Monitor, Outcome, Settings, SolveError, Solver, mcp};
+use super::{Budget, Claim, Outcome, Settings, SolveError, Solver, lp, mcp};
 use crate::model::instance::{Instance, Relation};
+use crate::model::option::OptionTable;
 
 /// The optimality conditions of a linear program.
 struct Conditions<'a> {
@@ -134,15 +137,15 @@ impl Solver for Kkt {
         &self,
         instance: &Instance,
         settings: &Settings,
-        monitor: &mut dyn Monitor,
+        budget: &Budget,
     ) -> Result<Outcome, SolveError> {
         let n = instance.column_count();
         let mut problem = Conditions::new(instance);
-        let names = |monitor: &dyn Monitor, k: usize| match k.checked_sub(n) {
-            None => monitor.column_name(k),
-            Some(row) => monitor.row_name(row),
+        let names = |k: usize| match k.checked_sub(n) {
+            None => budget.column_name(k),
+            Some(row) => budget.row_name(row),
         };
-        let (out, status) = run(&mut problem, &names, settings, monitor, &|_| false)?;
+        let (out, status) = run(&mut problem, &names, settings, budget, &|_| false)?;
         let sign = instance.sign();
         let solved = out.status == mcp::Status::Solved;
         Ok(Outcome {
@@ -158,5 +161,39 @@ impl Solver for Kkt {
                 .then(|| "the optimality conditions were not solved: the model may be infeasible or unbounded".into()),
             basis: None,
         })
+    }
+}
+
+impl Backend for Kkt {
+    fn name(&self) -> &'static str {
+        "bmcp"
+    }
+
+    fn aliases(&self) -> &'static [&'static str] {
+        &["mcp"]
+    }
+
+    fn version(&self) -> &'static str {
+        "lp: the optimality conditions as an mcp"
+    }
+
+    fn supports(&self) -> Supports {
+        Supports {
+            only_by_name: true,
+            ..lp::SUPPORTS
+        }
+    }
+
+    fn options(&self) -> &'static OptionTable {
+        &mcp::OPTIONS
+    }
+
+    fn solve(
+        &self,
+        task: &Task,
+        settings: &Settings,
+        budget: &Budget,
+    ) -> Result<Answer, SolveError> {
+        linear_shown(self, task.instance, settings, budget)
     }
 }

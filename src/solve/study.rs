@@ -5,12 +5,11 @@
 //! largest residual is smallest. Models without objective are judged by their natural residual.
 //! Times are medians; everything else is the same in every run, and on any number of threads.
 
-use std::time::Instant;
-
 use super::answer::{Answer, answer};
 use super::lp::certify::certify;
-use super::{ModelStatus, Monitor, Settings};
+use super::{Budget, Limits, ModelStatus, Monitor, Settings};
 use crate::model::instance::Instance;
+use crate::model::problem_type::ProblemType;
 
 /// A way to solve.
 #[derive(Clone, Debug, PartialEq)]
@@ -86,15 +85,16 @@ fn way(
 }
 
 /// The ways that there are for a problem type.
-pub fn ways(using: &str, instance: &Instance) -> Vec<Way> {
+pub fn ways(using: ProblemType, instance: &Instance) -> Vec<Way> {
+    use ProblemType::{Cns, Mcp, Mpec, Rmpec};
     let mut out = Vec::new();
     match using {
-        "mcp" | "cns" => {
+        Mcp | Cns => {
             for t in ["1e-2", "1e-4", "1e-6", "1e-8", "1e-10", "1e-12"] {
                 out.push(way("bmcp", t, None, &[("convergence_tolerance", t)]));
             }
         }
-        "mpec" | "rmpec" => {
+        Mpec | Rmpec => {
             for starts in ["0", "4"] {
                 let options = [("mpec_starts", starts)];
                 out.push(way("bmod, random starts", starts, None, &options));
@@ -157,9 +157,10 @@ pub fn ways(using: &str, instance: &Instance) -> Vec<Way> {
 /// Runs a study; each way `repeat` times. `progress` hears how many solves are done, of how many, and
 /// what is next.
 pub fn study(
-    using: &str,
+    using: ProblemType,
     instance: &Instance,
     settings: &Settings,
+    limits: Limits,
     repeat: usize,
     monitor: &mut dyn Monitor,
     progress: &mut dyn FnMut(usize, usize, &str),
@@ -181,9 +182,9 @@ pub fn study(
             if monitor.interrupted() {
                 break;
             }
-            let begin = Instant::now();
-            let result = answer(using, way.choice, instance, &settings, monitor);
-            times.push(begin.elapsed().as_secs_f64());
+            let budget = Budget::new(&mut *monitor, limits, false);
+            let result = answer(using, way.choice, instance, &settings, &budget);
+            times.push(budget.seconds());
             match result {
                 Ok(a) => last = Some(a),
                 Err(_) => break,
@@ -216,7 +217,8 @@ pub fn study(
         }
     }
     progress(done, total, "the reference");
-    let reference = reference(using, instance, settings, best.as_ref(), monitor);
+    let budget = Budget::new(monitor, limits, false);
+    let reference = reference(using, instance, best.as_ref(), &budget);
     let value = match reference {
         Reference::Proved(lo, hi) => Some(0.5 * lo + 0.5 * hi),
         Reference::Best(v) => Some(v),
@@ -242,21 +244,14 @@ fn merit(a: &Answer) -> (bool, f64) {
 }
 
 fn is_solution(a: &Answer) -> bool {
-    matches!(
-        a.status,
-        ModelStatus::Optimal
-            | ModelStatus::LocallyOptimal
-            | ModelStatus::Solved
-            | ModelStatus::SolvedUnique
-    )
+    a.status.is_solution()
 }
 
 fn reference(
-    using: &str,
+    using: ProblemType,
     instance: &Instance,
-    settings: &Settings,
     best: Option<&Answer>,
-    monitor: &mut dyn Monitor,
+    budget: &Budget,
 ) -> Reference {
     let Some(best) = best else {
         return Reference::None;
@@ -264,9 +259,9 @@ fn reference(
     let Some(objective) = instance.objective else {
         return Reference::Residual;
     };
-    let linear = instance.is_linear() && !matches!(using, "mpec" | "rmpec");
+    let linear = instance.is_linear() && !using.has_pairs();
     if linear
-        && let Ok(p) = certify(instance, &best.outcome, settings, monitor)
+        && let Ok(p) = certify(instance, &best.outcome, budget)
         && p.low.is_finite()
         && p.high.is_finite()
     {

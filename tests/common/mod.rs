@@ -9,6 +9,8 @@ use std::time::Instant;
 
 use bmod::cli::host::{Output, SystemHost};
 use bmod::host::{Host, HostError};
+use bmod::model::instance::Instance;
+use bmod::model::problem_type::ProblemType;
 use bmod::report::json::{RunStatus, SolveReport};
 use bmod::run::Options;
 use bmod::session::{self, Finished};
@@ -174,4 +176,21 @@ pub fn last_solve(finished: &Finished) -> Result<SolveReport, String> {
             |d| format!("line {}: {}", finished.map.line(d.span), d.message),
         )),
     }
+}
+
+/// The problem types and instances of a text's solves, as they were before them.
+pub fn instances(text: &str) -> Vec<(ProblemType, Instance)> {
+    let mut host = Memory::text(text);
+    let options = Options {
+        keep_solutions: true,
+        ..quiet()
+    };
+    let mut out = Vec::new();
+    let finished = session::run(&mut host, "m.blk", blk(), options, false, &mut |m| {
+        let kept = m.kept().iter().map(|k| k.parts());
+        out = kept.map(|(_, using, i)| (using, i.clone())).collect();
+    });
+    let said: Vec<&String> = finished.diagnostics.iter().map(|d| &d.message).collect();
+    assert!(!out.is_empty(), "{said:?}\n{text}");
+    out
 }

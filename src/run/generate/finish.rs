@@ -105,7 +105,7 @@ impl Builder<'_, '_> {
         if self.options.keep_paired {
             self.check_partners(&rows, &columns, &matched_rows, &alone);
         }
-        if self.options.keep_paired || solve.using == "cns" {
+        if self.options.keep_paired || solve.using.is_system() {
             self.match_columns(&rows, &columns, &matched_rows);
             self.fix_unlimited(&rows, &matched_rows);
         }

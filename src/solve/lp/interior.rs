@@ -20,7 +20,7 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
@@ -28,9 +28,12 @@ use clarabel::solver::{
     ZeroConeT,
 };
 
+use super::Ended;
 use super::form::{Point, Problem, Sparse};
 use super::scale::power_of_two;
-use super::{Ended, Limits};
+use crate::solve::budget::Size;
+use crate::solve::factor_size::symmetric_size;
+use crate::solve::{Budget, Stop};
 
 /// What one run gave.
 #[derive(Debug)]
@@ -80,14 +83,8 @@ enum Source {
 }
 
 /// Runs Clarabel, on ½xᵀPx + cᵀx where the upper triangle of a positive semidefinite P is given by
-/// columns. `interrupted` is asked every few milliseconds.
-pub fn solve(
-    p: &Problem,
-    hessian: Option<&Sparse>,
-    aim: Aim,
-    limits: &Limits,
-    interrupted: &mut dyn FnMut() -> bool,
-) -> Run {
+/// columns. The budget is asked every few milliseconds; a factorisation that it does not afford is not begun.
+pub fn solve(p: &Problem, hessian: Option<&Sparse>, aim: Aim, budget: &Budget) -> Run {
     let fixed: Vec<bool> = (0..p.n()).map(|j| p.lower[j] == p.upper[j]).collect();
     let number: Vec<usize> = fixed
         .iter()
@@ -125,8 +122,8 @@ pub fn solve(
     .collect();
     let settings = DefaultSettings {
         verbose: false,
-        max_iter: u32::try_from(limits.iterations.min(500)).unwrap_or(500),
-        time_limit: limits.seconds_left(),
+        max_iter: u32::try_from(budget.iterations_left().min(500)).unwrap_or(500),
+        time_limit: budget.seconds_left(),
         direct_solve_method: "auto".into(),
         max_threads: 1,
         // Clarabel's own presolve drops rows with |b| ≥ 1e20; infinite sides are not sent.
@@ -139,6 +136,22 @@ pub fn solve(
         tol_feas: tolerance,
         ..settings.clone()
     };
+    let point = Point {
+        x: (0..p.n())
+            .map(|j| if fixed[j] { p.lower[j] } else { 0.0 })
+            .collect(),
+        y: vec![0.0; p.m()],
+        d: vec![0.0; p.n()],
+    };
+    if let Err(why) = budget.affords(|| kkt_size(&a, hessian, free)) {
+        budget.log(format!("clarabel: {why}"));
+        return Run {
+            point,
+            ended: Ended::TooLarge(why),
+            iterations: 0,
+            almost: false,
+        };
+    }
     let stop = Arc::new(AtomicBool::new(false));
     let objective = match hessian {
         None => CscMatrix::zeros((free, free)),
@@ -154,36 +167,30 @@ pub fn solve(
         solver.set_termination_callback(move |_: &_| flag.load(Ordering::Relaxed));
         solver.solve();
         if aim == Aim::Digits && solver.solution.status == SolverStatus::Solved {
-            refine(&mut solver, [&q, &b], asked(FINE), limits)?;
+            refine(&mut solver, [&q, &b], asked(FINE))?;
         }
         Some(solver.solution)
     };
-    // Clarabel's callback must own what it sees, so the monitor is asked from this thread.
+    // Clarabel's callback must own what it sees, so the budget is asked from this thread.
     #[cfg(not(feature = "system"))]
     let solution = {
-        stop.store(interrupted(), Ordering::Relaxed);
+        stop.store(budget.is_over(), Ordering::Relaxed);
         run()
     };
     #[cfg(feature = "system")]
     let solution = std::thread::scope(|scope| {
         let worker = scope.spawn(run);
-        let start = Instant::now();
+        let start = budget.seconds();
         while !worker.is_finished() {
-            let pause = start.elapsed().as_micros() as u64 / 16;
-            std::thread::park_timeout(Duration::from_micros(pause.clamp(20, 20_000)));
-            if interrupted() {
+            let pause = (budget.seconds() - start) * 1e6 / 16.0;
+            std::thread::park_timeout(Duration::from_micros((pause as u64).clamp(20, 20_000)));
+            if budget.is_over() {
                 stop.store(true, Ordering::Relaxed);
             }
         }
         worker.join().ok().flatten()
     });
-    let mut point = Point {
-        x: (0..p.n())
-            .map(|j| if fixed[j] { p.lower[j] } else { 0.0 })
-            .collect(),
-        y: vec![0.0; p.m()],
-        d: vec![0.0; p.n()],
-    };
+    let mut point = point;
     let Some(solution) = solution else {
         return Run {
             point,
@@ -224,7 +231,10 @@ pub fn solve(
         }
         SolverStatus::MaxIterations => (Ended::Iterations, false),
         SolverStatus::MaxTime => (Ended::Time, false),
-        SolverStatus::CallbackTerminated => (Ended::Interrupted, false),
+        SolverStatus::CallbackTerminated => {
+            let stop = budget.stopped().unwrap_or(Stop::Interrupted);
+            (Ended::from(stop), false)
+        }
         SolverStatus::Unsolved
         | SolverStatus::NumericalError
         | SolverStatus::InsufficientProgress => (Ended::Failed, false),
@@ -253,7 +263,6 @@ fn refine(
     solver: &mut DefaultSolver<f64>,
     [q, b]: [&[f64]; 2],
     fine: DefaultSettings<f64>,
-    limits: &Limits,
 ) -> Option<()> {
     let times = |v: &[f64], by: f64| v.iter().map(|v| v * by).collect::<Vec<f64>>();
     let top = |v: &[f64]| v.iter().fold(0.0f64, |t, v| t.max(v.abs()));
@@ -268,7 +277,6 @@ fn refine(
     for (beta, kappa) in [(beta, kappa), (1.0, 1.0)] {
         let settings = DefaultSettings {
             max_iter: fine.max_iter.min(FINE_ITERATIONS),
-            time_limit: limits.seconds_left(),
             ..fine.clone()
         };
         solver.update_settings(settings).ok()?;
@@ -291,6 +299,24 @@ fn refine(
         }
     }
     Some(())
+}
+
+/// What the factors of Clarabel's KKT matrix [P Aᵀ; A −I] cost.
+fn kkt_size(a: &CscMatrix<f64>, hessian: Option<&Sparse>, free: usize) -> Size {
+    let constraint = (0..a.n).flat_map(|j| {
+        let rows = &a.rowval[a.colptr[j]..a.colptr[j + 1]];
+        rows.iter().map(move |&i| (free + i, j))
+    });
+    let objective = hessian
+        .into_iter()
+        .flat_map(entries)
+        .map(|(j, i, _)| (i, j));
+    let inside = objective.filter(|&(i, j)| i < free && j < free);
+    symmetric_size(
+        "the factor of the KKT matrix",
+        free + a.m,
+        constraint.chain(inside),
+    )
 }
 
 fn entries(h: &Sparse) -> impl Iterator<Item = (usize, usize, f64)> + '_ {

@@ -10,26 +10,20 @@
 
 use super::form::{Form, Point, Problem, Sparse};
 use super::scale::Scaling;
-use super::{Accuracy, Ended, Limits, auto};
+use super::{Accuracy, Ended, auto};
 use crate::model::instance::Instance;
-use crate::solve::{Monitor, Outcome, Settings};
-use std::time::Instant;
+use crate::solve::{Budget, Outcome};
 
 /// Replaces levels and marginals of an infeasible program by those of the least violation, if that is found.
-pub fn report_least_violation(
-    instance: &Instance,
-    settings: &Settings,
-    monitor: &mut dyn Monitor,
-    outcome: &mut Outcome,
-) {
+pub fn report_least_violation(instance: &Instance, budget: &Budget, outcome: &mut Outcome) {
     let Ok(form) = Form::new(instance) else {
         return;
     };
-    let limits = Limits::of(settings, Instant::now());
     let elastic = elastic(&form.problem);
     let scaling = Scaling::new(&elastic);
     let scaled = scaling.apply(&elastic);
-    let answer = auto(&scaled, Accuracy::Standard, &limits, monitor);
+    let answer = auto(&scaled, Accuracy::Standard, budget);
+    budget.spend(answer.iterations);
     outcome.iterations += answer.iterations;
     if answer.ended != Ended::Solved {
         return;

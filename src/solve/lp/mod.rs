@@ -8,16 +8,20 @@ pub mod crossover;
 pub mod form;
 pub mod interior;
 pub mod least;
+mod options;
 pub mod scale;
 pub mod simplex;
 
-use std::time::Instant;
-
+use super::answer::{Answer, linear_shown};
+use super::backend::{Backend, Supports, Task, Terms};
 use super::noise;
-use super::{Claim, Monitor, Outcome, Settings, SolveError, Solver, SolverStatus};
+use super::{Budget, Claim, Outcome, Settings, SolveError, Solver, SolverStatus, Stop};
 use crate::model::instance::Instance;
+use crate::model::option::OptionTable;
+use crate::model::problem_type::ProblemType;
 use form::{Form, Point, Problem};
 use interior::Aim;
+pub use options::OPTIONS;
 use scale::Scaling;
 use simplex::{Basis, Simplex};
 
@@ -38,6 +42,8 @@ pub enum Ended {
     Interrupted,
     /// Numerical trouble.
     Failed,
+    /// Not begun: why.
+    TooLarge(String),
 }
 
 impl Ended {
@@ -51,48 +57,15 @@ impl Ended {
             Self::Time => "time limit",
             Self::Interrupted => "interrupted",
             Self::Failed => "stuck",
+            Self::TooLarge(_) => "too large",
         }
-    }
-}
-
-/// Limits of a method.
-#[derive(Clone, Copy, Debug)]
-pub struct Limits {
-    /// When the solve began.
-    pub start: Instant,
-    /// Seconds from then on.
-    pub seconds: f64,
-    /// Iterations.
-    pub iterations: u64,
-}
-
-impl Limits {
-    /// Those that the settings give a solve that began then.
-    pub fn of(settings: &Settings, start: Instant) -> Self {
-        Self {
-            start,
-            seconds: settings.time_limit,
-            iterations: settings.iteration_limit,
-        }
-    }
-
-    /// Seconds left.
-    pub fn seconds_left(&self) -> f64 {
-        (self.seconds - self.start.elapsed().as_secs_f64()).max(0.0)
-    }
-
-    /// A line of the log that ends with the seconds so far.
-    pub(super) fn log(&self, monitor: &mut dyn Monitor, line: &str) {
-        let seconds = self.start.elapsed().as_secs_f64();
-        monitor.log(&format!("{line}, {seconds:.2} s"));
     }
 }
 
 /// The solver of linear programs, `option lp = clarabel`: small programs by the simplex method,
 /// larger ones by Clarabel's interior-point method and a finish by the simplex method.
 ///
-/// Options: `method` = `auto`, `interior`, `simplex`, `crossover`; `tolerance` of the interior point;
-/// `lp_accuracy` = `fast`, `standard`, `high` or a tolerance (see [`Accuracy`]).
+/// Its options: [`OPTIONS`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Clarabel;
 
@@ -119,21 +92,14 @@ enum Accuracy {
 
 impl Accuracy {
     /// From the options; a tolerance above 1e-9 is fast, below 1e-12 high.
-    fn new(settings: &Settings) -> Result<Self, SolveError> {
-        let Some(text) = settings.option("lp_accuracy") else {
-            return Ok(Self::Standard);
-        };
+    fn new(settings: &Settings) -> Self {
+        let text = settings.option("lp_accuracy").unwrap_or_default();
         match (text.as_str(), text.parse::<f64>()) {
-            ("fast", _) => Ok(Self::Fast(1e-8)),
-            ("standard", _) => Ok(Self::Standard),
-            ("high", _) => Ok(Self::High),
-            (_, Ok(t)) if t > 1e-9 && t < 1.0 => Ok(Self::Fast(t)),
-            (_, Ok(t)) if (1e-12..=1e-9).contains(&t) => Ok(Self::Standard),
-            (_, Ok(t)) if t > 0.0 && t < 1e-12 => Ok(Self::High),
-            _ => Err(SolveError::new(format!(
-                "the option `lp_accuracy` takes `fast`, `standard`, `high` or a tolerance, not \
-                     `{text}`"
-            ))),
+            ("fast", _) => Self::Fast(1e-8),
+            ("high", _) => Self::High,
+            (_, Ok(t)) if t > 1e-9 => Self::Fast(t),
+            (_, Ok(t)) if t < 1e-12 => Self::High,
+            _ => Self::Standard,
         }
     }
 }
@@ -157,7 +123,7 @@ impl Solver for Clarabel {
         &self,
         instance: &Instance,
         settings: &Settings,
-        monitor: &mut dyn Monitor,
+        budget: &Budget,
     ) -> Result<Outcome, SolveError> {
         let method = match settings.option("method").as_deref() {
             Some("interior") => Method::Interior,
@@ -165,7 +131,110 @@ impl Solver for Clarabel {
             Some("simplex") => Method::Simplex,
             _ => Method::Auto,
         };
-        solve(instance, settings, monitor, method)
+        solve(instance, settings, budget, method)
+    }
+}
+
+/// The problem types whose linear instances are linear programs.
+const TYPES: &[ProblemType] = &[
+    ProblemType::Lp,
+    ProblemType::Rmip,
+    ProblemType::Mip,
+    ProblemType::Nlp,
+    ProblemType::Dnlp,
+    ProblemType::Rminlp,
+    ProblemType::Minlp,
+    ProblemType::Qcp,
+    ProblemType::Rmiqcp,
+    ProblemType::Miqcp,
+    ProblemType::Mpec,
+    ProblemType::Rmpec,
+];
+
+/// What both linear backends take.
+pub(super) const SUPPORTS: Supports = Supports {
+    types: TYPES,
+    terms: Terms::Linear,
+    linear: true,
+    pairs: false,
+    integers: false,
+    largest: usize::MAX,
+    only_by_name: false,
+};
+
+impl Backend for Clarabel {
+    fn name(&self) -> &'static str {
+        "clarabel"
+    }
+
+    fn version(&self) -> &'static str {
+        "lp: interior point, Clarabel 0.11.1, with a simplex finish on feral 0.22.0"
+    }
+
+    fn supports(&self) -> Supports {
+        SUPPORTS
+    }
+
+    fn options(&self) -> &'static OptionTable {
+        &OPTIONS
+    }
+
+    fn solve(
+        &self,
+        task: &Task,
+        settings: &Settings,
+        budget: &Budget,
+    ) -> Result<Answer, SolveError> {
+        linear_shown(self, task.instance, settings, budget)
+    }
+}
+
+/// The simplex method alone, `option lp = simplex`.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SimplexAlone;
+
+impl Solver for SimplexAlone {
+    fn name(&self) -> &'static str {
+        "simplex"
+    }
+
+    fn solve(
+        &self,
+        instance: &Instance,
+        settings: &Settings,
+        budget: &Budget,
+    ) -> Result<Outcome, SolveError> {
+        solve(instance, settings, budget, Method::Simplex)
+    }
+}
+
+impl Backend for SimplexAlone {
+    fn name(&self) -> &'static str {
+        "simplex"
+    }
+
+    fn version(&self) -> &'static str {
+        "lp: the simplex method alone, bmod's own, on feral 0.22.0"
+    }
+
+    fn supports(&self) -> Supports {
+        Supports {
+            only_by_name: true,
+            ..SUPPORTS
+        }
+    }
+
+    fn options(&self) -> &'static OptionTable {
+        &OPTIONS
+    }
+
+    fn solve(
+        &self,
+        task: &Task,
+        settings: &Settings,
+        budget: &Budget,
+    ) -> Result<Answer, SolveError> {
+        linear_shown(self, task.instance, settings, budget)
     }
 }
 
@@ -178,14 +247,14 @@ impl Solver for Restart {
         &self,
         instance: &Instance,
         settings: &Settings,
-        monitor: &mut dyn Monitor,
+        budget: &Budget,
     ) -> Result<Outcome, SolveError> {
-        solve(instance, settings, monitor, Method::Restart(self))
+        solve(instance, settings, budget, Method::Restart(self))
     }
 }
 
 /// What a way gave, in the units of the scaled problem.
-struct Answer {
+struct Gave {
     point: Point,
     ended: Ended,
     iterations: u64,
@@ -200,7 +269,7 @@ struct Answer {
 fn solve(
     instance: &Instance,
     settings: &Settings,
-    monitor: &mut dyn Monitor,
+    budget: &Budget,
     method: Method,
 ) -> Result<Outcome, SolveError> {
     if !instance.is_linear() {
@@ -208,40 +277,37 @@ fn solve(
             "the model has nonlinear terms; this solver takes linear models",
         ));
     }
-    let limits = Limits::of(settings, Instant::now());
-    let accuracy = Accuracy::new(settings)?;
-    let tolerance = settings
-        .option("tolerance")
-        .and_then(|t| t.parse::<f64>().ok());
-    let tolerance = tolerance.filter(|t| *t > 0.0 && *t < 1.0);
+    let accuracy = Accuracy::new(settings);
+    let tolerance = settings.number("tolerance");
     let form = Form::new(instance)?;
     let scaling = Scaling::new(&form.problem);
     let scaled = scaling.apply(&form.problem);
-    limits.log(monitor, "scaling");
+    budget.log_timed("scaling");
     let small = scaled.m() + scaled.n() <= SMALL;
     let answer = match (method, accuracy) {
         (Method::Interior, _) => {
             let aim = Aim::Tolerance(tolerance.unwrap_or(1e-10));
-            interior_only(&scaled, aim, &limits, monitor)
+            interior_only(&scaled, aim, budget)
         }
         (Method::Auto, Accuracy::Fast(t)) if !small => {
-            let answer = interior_only(&scaled, Aim::Tolerance(t), &limits, monitor);
+            let answer = interior_only(&scaled, Aim::Tolerance(t), budget);
             match answer.ended {
                 // Whatever is no solution is looked at more closely.
                 Ended::Solved | Ended::Time | Ended::Interrupted => answer,
-                _ => finished(&scaled, accuracy, &limits, monitor),
+                _ => finished(&scaled, accuracy, budget),
             }
         }
-        (Method::Crossover, _) => finished(&scaled, accuracy, &limits, monitor),
-        (Method::Simplex, _) => simplex_only(&scaled, accuracy, &limits, monitor),
-        (Method::Auto, _) => auto(&scaled, accuracy, &limits, monitor),
+        (Method::Crossover, _) => finished(&scaled, accuracy, budget),
+        (Method::Simplex, _) => simplex_only(&scaled, accuracy, budget),
+        (Method::Auto, _) => auto(&scaled, accuracy, budget),
         (Method::Restart(from), _) => {
             let columns = form.columns.iter().map(|&j| from.columns[j as usize]);
             let rows = form.rows.iter().map(|&i| from.rows[i as usize]);
             let basis = columns.chain(rows).collect();
-            restarted(&scaled, &basis, accuracy, &limits, monitor)
+            restarted(&scaled, &basis, accuracy, budget)
         }
     };
+    budget.spend(answer.iterations);
     let (claim, status) = match answer.ended {
         Ended::Solved if answer.almost => (Claim::Unfinished, SolverStatus::TerminatedBySolver),
         Ended::Solved => (Claim::Solved, SolverStatus::NormalCompletion),
@@ -250,7 +316,12 @@ fn solve(
         Ended::Iterations => (Claim::Unfinished, SolverStatus::IterationInterrupt),
         Ended::Time => (Claim::Unfinished, SolverStatus::ResourceInterrupt),
         Ended::Interrupted => (Claim::Unfinished, SolverStatus::UserInterrupt),
+        Ended::TooLarge(_) => (Claim::Unfinished, SolverStatus::ResourceInterrupt),
         Ended::Failed => (Claim::Unfinished, SolverStatus::TerminatedBySolver),
+    };
+    let message = match &answer.ended {
+        Ended::TooLarge(why) => Some(why.clone()),
+        _ => answer.remark.map(str::to_string),
     };
     let ray = match answer.ended {
         Ended::Infeasible(mut y) => {
@@ -275,89 +346,76 @@ fn solve(
         iterations: answer.iterations,
         solver: answer.solver,
         ray,
-        message: answer.remark.map(str::to_string),
+        message,
         basis: answer.basis,
     })
 }
 
-/// Whether the simplex method must stop.
-fn watch<'a>(
-    limits: &'a Limits,
-    monitor: &'a mut dyn Monitor,
-) -> impl FnMut(u64) -> Option<Ended> + 'a {
-    move |iterations| {
-        if monitor.interrupted() {
-            Some(Ended::Interrupted)
-        } else if iterations >= limits.iterations {
-            Some(Ended::Iterations)
-        } else if limits.seconds_left() <= 0.0 {
-            Some(Ended::Time)
-        } else {
-            None
+impl From<Stop> for Ended {
+    fn from(stop: Stop) -> Self {
+        match stop {
+            Stop::Interrupted => Self::Interrupted,
+            Stop::Time | Stop::Memory => Self::Time,
+            Stop::Iterations | Stop::Evaluations => Self::Iterations,
         }
     }
 }
 
-fn simplex_only(
-    p: &Problem,
-    accuracy: Accuracy,
-    limits: &Limits,
-    monitor: &mut dyn Monitor,
-) -> Answer {
+/// Whether the simplex method must stop after so many iterations of its own: at this many at most.
+pub fn watch<'a>(budget: &'a Budget, most: u64) -> impl FnMut(u64) -> Option<Ended> + 'a {
+    let most = most.min(budget.iterations_left());
+    move |iterations| match iterations >= most {
+        true => Some(Ended::Iterations),
+        false => budget.stop().map(Ended::from),
+    }
+}
+
+fn simplex_only(p: &Problem, accuracy: Accuracy, budget: &Budget) -> Gave {
     let mut simplex = Simplex::new(p);
-    let ended = simplex.solve(&mut watch(limits, monitor));
+    let ended = simplex.solve(&mut watch(budget, u64::MAX));
     if ended == Ended::Solved {
-        tighten(&mut simplex, accuracy, limits, monitor);
+        tighten(&mut simplex, accuracy, budget);
     }
     simplex_answer(simplex, ended)
 }
 
-fn restarted(
-    p: &Problem,
-    basis: &Basis,
-    accuracy: Accuracy,
-    limits: &Limits,
-    monitor: &mut dyn Monitor,
-) -> Answer {
-    let cut = Limits {
-        iterations: limits.iterations.min((100 + p.m() + p.n()) as u64),
-        ..*limits
-    };
+fn restarted(p: &Problem, basis: &Basis, accuracy: Accuracy, budget: &Budget) -> Gave {
+    let most = (100 + p.m() + p.n()) as u64;
     let mut simplex = Simplex::new(p);
-    let ended = simplex.solve_from_basis(basis, &mut watch(&cut, monitor));
+    let ended = simplex.solve_from_basis(basis, &mut watch(budget, most));
     if ended != Ended::Solved {
-        return auto(p, accuracy, limits, monitor);
+        return auto(p, accuracy, budget);
     }
     let line = format!("simplex: solved after {} iterations", simplex.iterations);
-    limits.log(monitor, &line);
-    tighten(&mut simplex, accuracy, limits, monitor);
+    budget.log_timed(&line);
+    tighten(&mut simplex, accuracy, budget);
     simplex_answer(simplex, ended)
 }
 
-fn tighten(simplex: &mut Simplex, accuracy: Accuracy, limits: &Limits, monitor: &mut dyn Monitor) {
+fn tighten(simplex: &mut Simplex, accuracy: Accuracy, budget: &Budget) {
     if matches!(accuracy, Accuracy::Fast(_)) {
         return;
     }
     let before = simplex.iterations;
-    let mut tight = simplex.tighten(&mut watch(limits, monitor));
+    let mut tight = simplex.tighten(&mut watch(budget, u64::MAX));
     if accuracy == Accuracy::High {
         let finest = [(1e-14, 1e-13), (1e-14, 1e-14)];
-        tight &= simplex.tighten_to(&finest, &mut watch(limits, monitor));
+        tight &= simplex.tighten_to(&finest, &mut watch(budget, u64::MAX));
     }
     let pivots = simplex.iterations - before;
     let word = if tight { "" } else { "not " };
     let line = format!("tightened after {pivots} pivots: {word}to rounding");
-    limits.log(monitor, &line);
+    budget.log_timed(&line);
 }
 
-fn simplex_answer(mut simplex: Simplex, ended: Ended) -> Answer {
+fn simplex_answer(mut simplex: Simplex, ended: Ended) -> Gave {
     let point = simplex.point();
     let others = match (&ended, &point) {
         (Ended::Solved, Some(_)) => simplex.others(),
         _ => (false, false),
     };
     let basis = (ended == Ended::Solved).then(|| simplex.basis());
-    Answer {
+    Gave {
         ended: if point.is_none() {
             Ended::Failed
         } else {
@@ -377,12 +435,12 @@ fn simplex_answer(mut simplex: Simplex, ended: Ended) -> Answer {
     }
 }
 
-fn interior_only(p: &Problem, aim: Aim, limits: &Limits, monitor: &mut dyn Monitor) -> Answer {
+fn interior_only(p: &Problem, aim: Aim, budget: &Budget) -> Gave {
     let run = match trivial(p) {
         Some(run) => run,
-        None => interior::solve(p, None, aim, limits, &mut || monitor.interrupted()),
+        None => interior::solve(p, None, aim, budget),
     };
-    Answer {
+    Gave {
         point: run.point,
         ended: run.ended,
         iterations: run.iterations,
@@ -401,43 +459,39 @@ const LARGE: usize = 3000;
 
 /// Small programs by the simplex method, others by the interior point and its finish; where one
 /// fails the other is tried.
-fn auto(p: &Problem, accuracy: Accuracy, limits: &Limits, monitor: &mut dyn Monitor) -> Answer {
+fn auto(p: &Problem, accuracy: Accuracy, budget: &Budget) -> Gave {
     if p.m() + p.n() > SMALL {
-        return finished(p, accuracy, limits, monitor);
+        return finished(p, accuracy, budget);
     }
     let mut simplex = Simplex::new(p);
     let effort = 1000 + 20 * (p.m() + p.n()) as u64;
-    let cut = Limits {
-        iterations: limits.iterations.min(effort),
-        ..*limits
-    };
-    let ended = simplex.solve(&mut watch(&cut, monitor));
-    let stuck =
-        ended == Ended::Failed || (ended == Ended::Iterations && effort < limits.iterations);
+    let left = budget.iterations_left();
+    let ended = simplex.solve(&mut watch(budget, effort));
+    let stuck = ended == Ended::Failed || (ended == Ended::Iterations && effort < left);
     if stuck {
-        return finished(p, accuracy, limits, monitor);
+        return finished(p, accuracy, budget);
     }
     if ended == Ended::Solved {
-        tighten(&mut simplex, accuracy, limits, monitor);
+        tighten(&mut simplex, accuracy, budget);
     }
     simplex_answer(simplex, ended)
 }
 
 /// Interior point, then a basis from it, then the simplex method.
-fn finished(p: &Problem, accuracy: Accuracy, limits: &Limits, monitor: &mut dyn Monitor) -> Answer {
+fn finished(p: &Problem, accuracy: Accuracy, budget: &Budget) -> Gave {
     let aim = match p.m() + p.n() > LARGE {
         true => Aim::Digits,
         false => Aim::Tolerance(1e-10),
     };
-    let mut answer = interior_only(p, aim, limits, monitor);
+    let mut answer = interior_only(p, aim, budget);
     let mut simplex = Simplex::new(p);
-    let mut cut = *limits;
+    let mut most = u64::MAX;
     match answer.ended {
         Ended::Solved => {
             let wide = crossover::is_wide(p, &answer.point);
             let of_face = wide.then(|| {
                 let face = crossover::face(p, &answer.point);
-                interior_only(&face, Aim::Tolerance(1e-10), limits, monitor)
+                interior_only(&face, Aim::Tolerance(1e-10), budget)
             });
             let of_face = of_face.filter(|f| f.ended == Ended::Solved);
             if let Some(f) = &of_face {
@@ -449,29 +503,29 @@ fn finished(p: &Problem, accuracy: Accuracy, limits: &Limits, monitor: &mut dyn 
                 ""
             };
             let line = format!("interior point: {} iterations{word}", answer.iterations);
-            limits.log(monitor, &line);
+            budget.log_timed(&line);
             let of_face = of_face.as_ref().map(|f| &f.point);
             let start = crossover::start(p, &answer.point, of_face);
-            let end = simplex.push(&start, &mut watch(limits, monitor));
+            let end = simplex.push(&start, &mut watch(budget, u64::MAX));
             let count = simplex.iterations;
             let word = if end.is_ok() { "" } else { ", incomplete" };
             let outside = simplex.violation();
             let line = format!("crossover: {count} pushes{word}, bounds hold to {outside:.0e}");
-            limits.log(monitor, &line);
+            budget.log_timed(&line);
         }
         // A direction is no point: the simplex method finds one from which it leads on.
-        Ended::Unbounded(_) | Ended::Failed => {}
+        Ended::Unbounded(_) | Ended::Failed | Ended::TooLarge(_) => {}
         Ended::Infeasible(ref y) if p.proves_infeasible(y) => return answer,
         // An exact proof is worth some effort.
         Ended::Infeasible(_) => {
-            cut.iterations = cut.iterations.min(1000 + 2 * (p.m() + p.n()) as u64);
+            most = 1000 + 2 * (p.m() + p.n()) as u64;
         }
         _ => return answer,
     }
-    let ended = simplex.solve(&mut watch(&cut, monitor));
+    let ended = simplex.solve(&mut watch(budget, most));
     let pivots = simplex.iterations;
     let line = format!("simplex: {} after {pivots} iterations in all", ended.word());
-    limits.log(monitor, &line);
+    budget.log_timed(&line);
     let useful = matches!(
         ended,
         Ended::Solved | Ended::Infeasible(_) | Ended::Unbounded(_)
@@ -485,7 +539,7 @@ fn finished(p: &Problem, accuracy: Accuracy, limits: &Limits, monitor: &mut dyn 
         return answer;
     }
     if ended == Ended::Solved {
-        tighten(&mut simplex, accuracy, limits, monitor);
+        tighten(&mut simplex, accuracy, budget);
     }
     let mut done = simplex_answer(simplex, ended);
     if done.ended == Ended::Failed {

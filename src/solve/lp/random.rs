@@ -6,6 +6,7 @@ use proptest::prelude::*;
 use super::{Clarabel, certify};
 use crate::model::certificate;
 use crate::model::instance::{Instance, Relation, Sense};
+use crate::solve::Budget;
 use crate::solve::conformance::{Quiet, Row, linear};
 use crate::solve::{Claim, ModelStatus, Outcome, Settings, Solver};
 
@@ -67,7 +68,11 @@ fn run(method: &str, instance: &Instance) -> (ModelStatus, Outcome) {
     let mut settings = Settings::default();
     settings.options.push(("method".into(), method.into()));
     let o = Clarabel
-        .solve(instance, &settings, &mut Quiet)
+        .solve(
+            instance,
+            &settings,
+            &Budget::unlimited(&mut Quiet::default()),
+        )
         .expect("a valid instance");
     let residuals = certificate::linear(instance, &o);
     (certificate::linear_status(instance, &o, &residuals), o)
@@ -132,9 +137,8 @@ proptest! {
     fn proofs_hold_the_value(p in parts()) {
         let instance = p.instance();
         let (status, o) = run("simplex", &instance);
-        let settings = Settings::default();
         let proof = |exact| {
-            certify::certify_by(&instance, &o, &settings, &mut Quiet, exact).expect("valid")
+            certify::certify_by(&instance, &o, &Budget::unlimited(&mut Quiet::default()), exact).expect("valid")
         };
         let (exact, wide) = (proof(true), proof(false));
         if status == ModelStatus::Optimal {

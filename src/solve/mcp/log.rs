@@ -9,7 +9,7 @@ fn worst(run: &Run, point: &Point) -> String {
         .get(point.worst)
         .copied()
         .unwrap_or(point.worst);
-    run.monitor.name(index)
+    run.help.name(index)
 }
 
 /// Parts of the log that can be left out.
@@ -22,7 +22,7 @@ pub(super) enum Part {
 
 /// Whether a part of the log is wanted.
 fn wants(run: &Run, part: Part) -> bool {
-    run.monitor.wants_log()
+    run.budget.wants_log()
         && match part {
             Part::Crash => run.settings.output_crash_iterations,
             Part::Majors => run.settings.output_major_iterations,
@@ -34,7 +34,7 @@ fn wants(run: &Run, part: Part) -> bool {
 pub(super) fn note(run: &mut Run, part: Part, text: impl FnOnce() -> String) {
     if wants(run, part) {
         let line = text();
-        run.monitor.log(&line);
+        run.budget.log(&line);
     }
 }
 

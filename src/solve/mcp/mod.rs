@@ -42,6 +42,7 @@ mod log;
 mod majors;
 mod merit;
 mod multifrontal;
+mod options;
 mod path;
 mod portfolio;
 mod presolve;
@@ -52,7 +53,9 @@ mod smoothing;
 mod starts;
 mod vertex;
 
+use super::Budget;
 pub use merit::natural_residual;
+pub use options::OPTIONS;
 
 /// min. description: find l ≤ x ≤ u with x = mid(l, u, x − F(x)).
 pub trait Problem {
@@ -119,7 +122,7 @@ pub struct Settings {
     /// Random restarts, after all methods failed from the given start. Default: up to 30, while they are cheap or have cost
     /// no more than what was tried before.
     pub restart_limit: Option<usize>,
-    /// Wall-clock seconds. Default 1000.
+    /// Seconds. Default: no limit but the budget's.
     pub time_limit: f64,
     /// Whether simple rows are turned into bounds and fixed variables removed first. Default true.
     pub preprocess: bool,
@@ -150,7 +153,7 @@ impl Default for Settings {
             watchdog_limit: 10,
             nms_memory_size: 10,
             restart_limit: None,
-            time_limit: 1000.0,
+            time_limit: f64::INFINITY,
             preprocess: true,
             fallbacks: true,
             output_crash_iterations: true,
@@ -171,7 +174,7 @@ pub enum Status {
     IterationLimit,
     /// The time limit ended the run.
     TimeLimit,
-    /// The monitor asked to stop.
+    /// The user asked to stop.
     Interrupted,
     /// All methods from all starts failed. No proof that there is no solution.
     NoSolution,
@@ -212,17 +215,11 @@ pub struct Outcome {
     pub message: String,
 }
 
-/// Log lines and interruption.
-pub trait Monitor {
-    /// Takes one line of the log (without line end).
-    fn log(&mut self, line: &str);
-    /// Asked now and then; true ends the run with [`Status::Interrupted`].
-    fn interrupted(&mut self) -> bool;
-    /// False saves the work of composing log lines.
-    fn wants_log(&self) -> bool;
-    /// Asked once, when the main method has failed: true if it is known that there is no solution. Ends the run with
+/// What the solver may ask about the problem.
+pub trait Help {
+    /// Asked once, when the main method has failed: true if it is proved that there is no solution. Ends the run with
     /// [`Status::NoSolution`].
-    fn hopeless(&mut self) -> bool {
+    fn proves_infeasible(&mut self) -> bool {
         false
     }
     /// Names of row i and of its variable, for the log.
@@ -231,19 +228,11 @@ pub trait Monitor {
     }
 }
 
-/// A monitor that wants nothing.
+/// Knows nothing about the problem.
 #[derive(Debug, Default, Clone, Copy)]
-pub struct Silent;
+pub struct NoHelp;
 
-impl Monitor for Silent {
-    fn log(&mut self, _line: &str) {}
-    fn interrupted(&mut self) -> bool {
-        false
-    }
-    fn wants_log(&self) -> bool {
-        false
-    }
-}
+impl Help for NoHelp {}
 
 /// Bounds beyond this count as infinite, as in PATH and GAMS.
 const INFINITY: f64 = 1e20;
@@ -253,6 +242,11 @@ const INFINITY: f64 = 1e20;
 /// Never panics on numbers: bad bounds, functions undefined at the start, singular Jacobians and
 /// problems without a solution end in a [`Status`]. `Solved` is said only of a point whose natural
 /// residual was recomputed, on the problem as given, from a fresh F.
-pub fn solve(problem: &mut dyn Problem, settings: &Settings, monitor: &mut dyn Monitor) -> Outcome {
-    portfolio::solve(problem, settings, monitor)
+pub fn solve(
+    problem: &mut dyn Problem,
+    settings: &Settings,
+    budget: &Budget,
+    help: &mut dyn Help,
+) -> Outcome {
+    portfolio::solve(problem, settings, budget, help)
 }

@@ -666,8 +666,9 @@ impl<'a> Path<'a> {
 #[cfg(test)]
 mod tests {
     use super::super::factor::Builder;
-    use super::super::{EvalError, Problem, Settings, Silent};
+    use super::super::{EvalError, NoHelp, Problem, Settings};
     use super::*;
+    use crate::solve::{Budget, Quiet};
     use feral::SparseColMatrix;
 
     /// Something to count the factorisations of.
@@ -779,8 +780,10 @@ mod tests {
                 cover,
                 tolerance: HARRIS,
             };
-            let (settings, mut nothing, mut silent) = (Settings::default(), Nothing, Silent);
-            let mut run = Run::new(&mut nothing, &settings, &mut silent, None);
+            let (settings, mut nothing, mut help) = (Settings::default(), Nothing, NoHelp);
+            let mut quiet = Quiet::default();
+            let budget = Budget::unlimited(&mut quiet);
+            let mut run = Run::new(&mut nothing, &settings, &budget, &mut help);
             let mut solved = false;
             for limit in 1..200 {
                 let mut path = Path::new(&problem, &start, 3);
@@ -822,8 +825,10 @@ mod tests {
             cover: true,
             tolerance: HARRIS,
         };
-        let (settings, mut nothing, mut silent) = (Settings::default(), Nothing, Silent);
-        let mut run = Run::new(&mut nothing, &settings, &mut silent, None);
+        let (settings, mut nothing, mut help) = (Settings::default(), Nothing, NoHelp);
+        let mut quiet = Quiet::default();
+        let budget = Budget::unlimited(&mut quiet);
+        let mut run = Run::new(&mut nothing, &settings, &budget, &mut help);
         let result = follow(&mut run, &problem, &start, 100, 1).expect("no limit on time");
         assert_eq!(result.end, PathEnd::Ray);
         assert!(run.pivots <= 3);

@@ -6,8 +6,6 @@
 //! that are linear and not monotone (bimatrix games) often yield to one path from the right start,
 //! so many are tried ([`starts`]).
 
-use std::time::{Duration, Instant};
-
 use super::log;
 use super::majors::{Crash, INTERIOR, majors};
 use super::merit::natural_residual;
@@ -17,7 +15,8 @@ use super::run::{End, Point, Run, Stop, bound};
 use super::semismooth::semismooth;
 use super::smoothing::smoothing;
 use super::starts::starts;
-use super::{Monitor, Outcome, Problem, Settings, Status};
+use super::{Help, Outcome, Problem, Settings, Status};
+use crate::solve::Budget;
 
 /// A method of the portfolio.
 #[derive(Debug, Clone, Copy)]
@@ -54,13 +53,13 @@ impl Method {
 pub(super) fn solve(
     problem: &mut dyn Problem,
     settings: &Settings,
-    monitor: &mut dyn Monitor,
+    budget: &Budget,
+    help: &mut dyn Help,
 ) -> Outcome {
     if let Some(outcome) = invalid(problem) {
         return outcome;
     }
-    let deadline = deadline(settings);
-    let statistics = monitor.wants_log() && settings.output_final_statistics;
+    let statistics = budget.wants_log() && settings.output_final_statistics;
     // Without iterations the start is judged as it is, which the presolve would move.
     let preprocess = settings.preprocess && settings.cumulative_iteration_limit > 0;
     let mut reduced = Reduced::new(problem, preprocess);
@@ -73,10 +72,10 @@ pub(super) fn solve(
             reduced.dropped(),
             reduced.reports()
         );
-        monitor.log(&line);
+        budget.log(&line);
     }
     let original = reduced.kept.clone();
-    let mut run = Run::new(&mut reduced, settings, &mut *monitor, deadline);
+    let mut run = Run::new(&mut reduced, settings, budget, &mut *help);
     run.original = original;
     let (end, restarts) = search(&mut run);
     let mut outcome = Outcome {
@@ -106,11 +105,11 @@ pub(super) fn solve(
     if let (Some(error), true) = (error, outcome.status == Status::EvaluationFailed) {
         let at = error
             .row
-            .map_or(String::new(), |row| format!("row {}: ", monitor.name(row)));
+            .map_or(String::new(), |row| format!("row {}: ", help.name(row)));
         outcome.message = format!("{at}{}", error.message);
     }
     if statistics {
-        let at = worst.map_or(String::new(), |i| format!(" ({})", monitor.name(i)));
+        let at = worst.map_or(String::new(), |i| format!(" ({})", help.name(i)));
         let line = format!(
             "{:?}: residual {:.2e}{at}, method {}; majors {}, pivots {}, crash {}, factorisations {}",
             outcome.status,
@@ -121,7 +120,7 @@ pub(super) fn solve(
             outcome.crash_iterations,
             outcome.factorisations
         );
-        monitor.log(&line);
+        budget.log(&line);
     }
     outcome
 }
@@ -132,12 +131,6 @@ const RESTARTS: usize = 30;
 const CHEAP: usize = 300_000;
 /// Otherwise all work may become this multiple of that from the given start.
 const MULTIPLE: usize = 2;
-
-fn deadline(settings: &Settings) -> Option<Instant> {
-    // Durations beyond a century overflow; they mean no limit.
-    let seconds = settings.time_limit;
-    (seconds < 3e9).then(|| Instant::now() + Duration::from_secs_f64(seconds.max(0.0)))
-}
 
 /// The verdict: a fresh F at x on the problem as given. Returns where the residual is largest.
 fn judge(
@@ -164,9 +157,9 @@ fn judge(
         Status::Solved
     } else {
         match end {
-            Err(Stop::Time) => Status::TimeLimit,
+            Err(Stop::Time | Stop::Memory) => Status::TimeLimit,
             Err(Stop::Interrupted) => Status::Interrupted,
-            Err(Stop::Pivots) => Status::IterationLimit,
+            Err(Stop::Iterations | Stop::Evaluations) => Status::IterationLimit,
             Ok(()) if !evaluated => Status::EvaluationFailed,
             Ok(()) => Status::NoSolution,
         }
@@ -208,7 +201,7 @@ fn attempt(run: &mut Run, restarts: &mut usize) -> Result<(), Stop> {
             }
         }
         for (tried, method) in methods.into_iter().enumerate() {
-            if tried == 1 && run.monitor.hopeless() || succeeds(run, method, start.clone())? {
+            if tried == 1 && run.help.proves_infeasible() || succeeds(run, method, start.clone())? {
                 return Ok(());
             }
         }

@@ -1,21 +1,13 @@
 //! What all methods share during one call of the solver: the problem, its counted evaluations,
 //! the limits, the best point.
 
-use std::time::Instant;
-
 use feral::SparseColMatrix;
 
 use super::factor::Fill;
 use super::merit::natural_residual;
-use super::{EvalError, INFINITY, Monitor, Problem, Settings};
-
-/// Why a run must end now.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Stop {
-    Time,
-    Interrupted,
-    Pivots,
-}
+use super::{EvalError, Help, INFINITY, Problem, Settings};
+use crate::solve::Budget;
+pub(super) use crate::solve::budget::Stop;
 
 /// How a method ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -66,10 +58,11 @@ impl Patience {
 }
 
 /// One call of the solver.
-pub(super) struct Run<'a> {
+pub(super) struct Run<'a, 'm> {
     pub(super) problem: &'a mut dyn Problem,
     pub(super) settings: &'a Settings,
-    pub(super) monitor: &'a mut dyn Monitor,
+    pub(super) budget: &'a Budget<'m>,
+    pub(super) help: &'a mut dyn Help,
     pub(super) n: usize,
     pub(super) lower: Vec<f64>,
     pub(super) upper: Vec<f64>,
@@ -90,7 +83,6 @@ pub(super) struct Run<'a> {
     pub(super) fill: Fill,
     /// Index of variable k in the problem as given, for names in the log.
     pub(super) original: Vec<usize>,
-    deadline: Option<Instant>,
 }
 
 /// Pivots that cost as much as a factorisation where factors are sparse.
@@ -107,12 +99,12 @@ pub(super) fn bound(b: f64) -> f64 {
     }
 }
 
-impl<'a> Run<'a> {
+impl<'a, 'm> Run<'a, 'm> {
     pub(super) fn new(
         problem: &'a mut dyn Problem,
         settings: &'a Settings,
-        monitor: &'a mut dyn Monitor,
-        deadline: Option<Instant>,
+        budget: &'a Budget<'m>,
+        help: &'a mut dyn Help,
     ) -> Self {
         let n = problem.n();
         let fill = {
@@ -124,7 +116,8 @@ impl<'a> Run<'a> {
         Run {
             problem,
             settings,
-            monitor,
+            budget,
+            help,
             n,
             lower,
             upper,
@@ -139,22 +132,15 @@ impl<'a> Run<'a> {
             last_error: None,
             fill,
             original: (0..n).collect(),
-            deadline,
         }
     }
 
     /// Time, interruption and the limit on pivots.
     pub(super) fn check(&mut self) -> Result<(), Stop> {
         if self.pivots >= self.settings.cumulative_iteration_limit {
-            return Err(Stop::Pivots);
+            return Err(Stop::Iterations);
         }
-        if self.deadline.is_some_and(|d| Instant::now() >= d) {
-            return Err(Stop::Time);
-        }
-        if self.monitor.interrupted() {
-            return Err(Stop::Interrupted);
-        }
-        Ok(())
+        self.budget.stop().map_or(Ok(()), Err)
     }
 
     /// What was done so far: factorisations and pivots, in terms of factorisations, times unknowns.

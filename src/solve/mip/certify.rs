@@ -13,11 +13,10 @@ use crate::model::instance::Instance;
 use crate::solve::lp::certify::Proof;
 use crate::solve::lp::form::{Form, Point, Problem};
 use crate::solve::lp::simplex::{Basis, Simplex};
-use crate::solve::lp::{self, Ended, Limits};
+use crate::solve::lp::{self, Ended};
 use crate::solve::mpec::bound::prove_node;
-use crate::solve::{Monitor, Outcome, Quiet, Settings, SolveError};
+use crate::solve::{Budget, Outcome, SolveError};
 use std::rc::Rc;
-use std::time::Instant;
 
 /// Bounds of a node, all of them, and where to start.
 struct Open {
@@ -39,18 +38,24 @@ type Slowly<'s> = &'s dyn Fn(&Problem, &Point) -> Option<f64>;
 /// solution's, whose value is about `value`.
 pub fn certify(
     instance: &Instance,
+    proof: Proof,
+    value: f64,
+    budget: &Budget,
+) -> Result<Proof, SolveError> {
+    budget.within(PATIENCE, u64::MAX, |budget| {
+        prove(instance, proof, value, budget)
+    })
+}
+
+fn prove(
+    instance: &Instance,
     mut proof: Proof,
     value: f64,
-    settings: &Settings,
-    monitor: &mut dyn Monitor,
+    budget: &Budget,
 ) -> Result<Proof, SolveError> {
     let form = Form::exact(instance)?;
     let mip = Mip::new(form.problem.clone(), instance, &form.columns, false);
-    let mut control = Control {
-        monitor,
-        limits: Limits::of(settings, Instant::now()),
-        iterations: 0,
-    };
+    let mut control = Control::new(budget);
     // As a minimum.
     let mut reached = match form.sign > 0.0 {
         true => proof.high,
@@ -59,10 +64,7 @@ pub fn certify(
     if !reached.is_finite() {
         reached = form.sign * value;
     }
-    control.limits.seconds = control.limits.seconds.min(PATIENCE);
     // Where multipliers alone prove nothing (columns without bounds), the way of linear programs is gone.
-    let mut quiet = settings.clone();
-    (quiet.log, quiet.time_limit) = (false, PATIENCE);
     let slowly = |p: &Problem, at: &Point| {
         let mut node = instance.clone();
         for (k, &j) in form.columns.iter().enumerate() {
@@ -76,7 +78,8 @@ pub fn certify(
             column_marginal,
             ..super::nothing(&node).outcome
         };
-        let proof = lp::certify::certify(&node, &outcome, &quiet, &mut Quiet).ok()?;
+        let proof = budget.aside(|budget| lp::certify::certify(&node, &outcome, budget));
+        let proof = proof.ok()?;
         Some(if form.sign > 0.0 {
             proof.low
         } else {

@@ -5,13 +5,11 @@
 
 use super::driver::search_linear;
 use super::model::Mip;
-use super::relaxation::{Control, Muted};
+use super::relaxation::Control;
 use super::tree::{Aim, End};
 use crate::model::instance::Instance;
-use crate::solve::lp::Limits;
+use crate::solve::Budget;
 use crate::solve::lp::form::Form;
-use crate::solve::{Monitor, Settings};
-use std::time::Instant;
 
 /// Seconds for all of it.
 const PATIENCE: f64 = 30.0;
@@ -29,24 +27,17 @@ pub struct Conflict {
 }
 
 /// Finds one; None: the search says that there is a solution, or nothing in time.
-pub fn conflict(
-    instance: &Instance,
-    settings: &Settings,
-    monitor: &mut dyn Monitor,
-) -> Option<Conflict> {
+pub fn conflict(instance: &Instance, budget: &Budget) -> Option<Conflict> {
+    budget.within(PATIENCE, u64::MAX, |budget| {
+        budget.silently(|budget| find(instance, budget))
+    })
+}
+
+fn find(instance: &Instance, budget: &Budget) -> Option<Conflict> {
     let form = Form::new(instance).ok()?;
     let mut mip = Mip::new(form.problem.clone(), instance, &form.columns, false);
     mip.problem.cost.fill(0.0);
-    let limits = Limits {
-        start: Instant::now(),
-        seconds: PATIENCE.min(settings.time_limit),
-        iterations: u64::MAX,
-    };
-    let mut control = Control {
-        monitor: &mut Muted(monitor),
-        limits,
-        iterations: 0,
-    };
+    let mut control = Control::new(budget);
     let mut shown = true;
     // Whether there is no solution; not known counts as no.
     let mut empty = |mip: &Mip, control: &mut Control| {

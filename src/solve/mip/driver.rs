@@ -4,9 +4,8 @@ use super::cuts::Separator;
 use super::linear::Linear;
 use super::model::{Change, Mip, Units};
 use super::presolve;
-use super::relaxation::{Control, Muted, Relaxation, Solved};
+use super::relaxation::{Control, Relaxation, Solved};
 use super::tree::{Aim, End, Record, Search};
-use crate::solve::lp::Limits;
 
 /// What a search gave, in columns of the instance, for a minimisation.
 pub struct Found {
@@ -55,7 +54,7 @@ pub fn search_linear(mip: &Mip, aim: Aim, start: Option<Vec<f64>>, control: &mut
         reduced.mip.problem.n(),
         reduced.mip.integer.iter().filter(|i| **i).count()
     );
-    control.limits.log(control.monitor, &line);
+    control.budget.log_timed(&line);
     let (scaled, scaling) = reduced.mip.scaled();
     let units = Units {
         price: scaling.price,
@@ -164,7 +163,7 @@ fn strengthen(mip: &Mip, linear: &mut Linear, rounds: usize, control: &mut Contr
     }
     let rows = linear.problem.m() - first;
     let line = format!("cuts: {rows}, bound {start:.10} to {value:.10} (scaled)");
-    control.limits.log(control.monitor, &line);
+    control.budget.log_timed(&line);
     solved
 }
 
@@ -181,31 +180,21 @@ fn nearby(mip: &Mip, fixed: &[Change], cutoff: f64, control: &mut Control) -> Op
         relative_gap: 1e-3,
         ..Aim::default()
     };
+    let last = control.iterations + 1000 + control.iterations / 5;
     let mut sub = Control {
-        limits: Limits {
-            iterations: control
-                .limits
-                .iterations
-                .min(control.iterations + 1000 + control.iterations / 5),
-            ..control.limits
-        },
+        budget: control.budget,
+        last: control.last.min(last),
         iterations: control.iterations,
-        monitor: &mut *control.monitor,
     };
     let mut linear = Linear::new(&reduced.mip);
-    let mut quiet = Control {
-        monitor: &mut Muted(sub.monitor),
-        limits: sub.limits,
-        iterations: sub.iterations,
-    };
-    let solved = strengthen(&reduced.mip, &mut linear, 5, &mut quiet);
     let mut best = None;
-    if solved != Solved::Infeasible {
-        let mut search = Search::new(&reduced.mip, linear, aim, units);
-        search.run(&mut quiet);
-        best = search.best.take();
-    }
-    sub.iterations = quiet.iterations;
+    control.budget.silently(|_| {
+        if strengthen(&reduced.mip, &mut linear, 5, &mut sub) != Solved::Infeasible {
+            let mut search = Search::new(&reduced.mip, linear, aim, units);
+            search.run(&mut sub);
+            best = search.best.take();
+        }
+    });
     control.iterations = sub.iterations;
     best.map(|b| reduced.restore(&b.1))
 }

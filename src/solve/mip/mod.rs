@@ -23,15 +23,18 @@ pub mod tree;
 pub use tree::{Aim, Record};
 
 use super::answer::{Answer, linear as solve_linear};
+use super::backend::{Backend, Supports, Task, Terms};
 use super::lp::form::Form;
-use super::lp::{self, Ended, Limits};
-use super::{Claim, ModelStatus, Monitor, Outcome, Settings, SolveError, SolverStatus, nlp};
+use super::lp::{self, Ended};
+use super::{Budget, Claim, ModelStatus, Outcome, Settings, SolveError, SolverStatus, nlp};
 use crate::model::certificate::Residuals;
 use crate::model::instance::{ColumnKind, Instance};
+use crate::model::option::OptionTable;
+use crate::model::problem_type::ProblemType;
 use driver::{Found, search_linear};
 use model::{Mip, Units};
 use nonlinear::Nonlinear;
-use relaxation::{Control, Muted};
+use relaxation::Control;
 use tree::{End, Search};
 
 /// Name of this solver.
@@ -48,19 +51,62 @@ pub struct Report {
     pub records: Vec<Record>,
 }
 
+/// Its options: none but those of the `option` statement (`optcr`, `nodlim` …).
+pub const OPTIONS: OptionTable = OptionTable {
+    backend: NAME,
+    title: "mip, miqcp, minlp: bmod's own; `optcr`, `optca`, `nodlim`, `cutoff`, `cheat`, `tryint`, `prioropt` are options or attributes of the model",
+    rows: &[],
+    more: None,
+    ignored: &[],
+};
+
+/// Branch and bound as a backend.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Bmip;
+
+impl Backend for Bmip {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn version(&self) -> &'static str {
+        "mip, miqcp, minlp: bmod's own, on the simplex method and the nonlinear solver"
+    }
+
+    fn supports(&self) -> Supports {
+        Supports {
+            types: &[ProblemType::Mip, ProblemType::Miqcp, ProblemType::Minlp],
+            terms: Terms::Kinks,
+            linear: true,
+            pairs: false,
+            integers: true,
+            largest: usize::MAX,
+            only_by_name: false,
+        }
+    }
+
+    fn options(&self) -> &'static OptionTable {
+        &OPTIONS
+    }
+
+    fn solve(
+        &self,
+        task: &Task,
+        settings: &Settings,
+        budget: &Budget,
+    ) -> Result<Answer, SolveError> {
+        answer(task.choice, task.instance, settings, budget)
+    }
+}
+
 /// Solves an instance with discrete columns.
 pub fn answer(
     choice: Option<&str>,
     instance: &Instance,
     settings: &Settings,
-    monitor: &mut dyn Monitor,
+    budget: &Budget,
 ) -> Result<Answer, SolveError> {
-    let limits = Limits::of(settings, std::time::Instant::now());
-    let mut control = Control {
-        monitor,
-        limits,
-        iterations: 0,
-    };
+    let mut control = Control::new(budget);
     let mut aim = settings.search;
     aim.cutoff = aim.cutoff.map(|c| instance.sign() * c);
     let found = match instance.is_linear() {
@@ -68,11 +114,9 @@ pub fn answer(
         false => nonlinear_search(choice, instance, aim, settings, &mut control)?,
     };
     let iterations = control.iterations;
+    budget.spend(iterations);
     let (mut answer, complete) = match &found.x {
-        Some(x) => (
-            solution(choice, instance, x, settings, control.monitor)?,
-            true,
-        ),
+        Some(x) => (solution(choice, instance, x, settings, budget)?, true),
         None => (nothing(instance), false),
     };
     let bound = if found.x.is_some() && found.exact {
@@ -184,16 +228,17 @@ fn nonlinear_search(
     settings: &Settings,
     control: &mut Control,
 ) -> Result<Found, SolveError> {
-    let mip = Mip::of_nonlinear(instance, aim.priorities)?;
+    let mip = Mip::of_nonlinear(instance, aim.priorities);
     let mut first = instance.clone();
     first.columns.lower.copy_from_slice(&mip.problem.lower);
     first.columns.upper.copy_from_slice(&mip.problem.upper);
     let mut relaxation = Nonlinear::new(&first, choice, settings);
     // What keeps the solver from starting is said before anything else.
-    let mut once = settings.clone();
-    once.iteration_limit = 1;
-    once.log = false;
-    nlp::answer(choice, &first, &once, &mut Muted(control.monitor))?;
+    control.budget.aside(|budget| {
+        budget.within(f64::INFINITY, 1, |budget| {
+            nlp::answer(choice, &first, settings, budget).map(|_| ())
+        })
+    })?;
     relaxation.convex = true;
     let units = Units {
         price: 1.0,
@@ -244,15 +289,14 @@ pub fn fixed(instance: &Instance, x: &[f64]) -> Instance {
 pub fn certified(
     instance: &Instance,
     outcome: &Outcome,
-    settings: &Settings,
-    monitor: &mut dyn Monitor,
+    budget: &Budget,
 ) -> Result<lp::certify::Proof, SolveError> {
     let solution = fixed(instance, &outcome.level);
-    let proof = lp::certify::certify(&solution, outcome, settings, monitor)?;
+    let proof = lp::certify::certify(&solution, outcome, budget)?;
     let value = instance
         .objective
         .map_or(0.0, |o| outcome.level[o.column as usize]);
-    certify::certify(instance, proof, value, settings, monitor)
+    certify::certify(instance, proof, value, budget)
 }
 
 /// The answer at a solution of the search.
@@ -261,16 +305,13 @@ fn solution(
     instance: &Instance,
     x: &[f64],
     settings: &Settings,
-    monitor: &mut dyn Monitor,
+    budget: &Budget,
 ) -> Result<Answer, SolveError> {
     let fixed = fixed(instance, x);
-    let mut rest = settings.clone();
-    (rest.time_limit, rest.iteration_limit, rest.log) = (1e10, 2_147_483_647, false);
-    let mut muted = Muted(monitor);
-    let answer = match instance.is_linear() {
-        true => solve_linear(&lp::Clarabel, &fixed, &rest, &mut muted),
-        false => nlp::answer(choice, &fixed, &rest, &mut muted),
-    };
+    let answer = budget.after_all(GRACE, |budget| match instance.is_linear() {
+        true => solve_linear(&lp::Clarabel, &fixed, settings, budget),
+        false => nlp::answer(choice, &fixed, settings, budget),
+    });
     if let Ok(a) = answer
         && matches!(a.status, ModelStatus::Optimal | ModelStatus::LocallyOptimal)
     {
@@ -289,6 +330,9 @@ fn solution(
         activity,
     ))
 }
+
+/// Seconds for the marginals of a solution when the time is used up.
+const GRACE: f64 = 1.5;
 
 /// Without a solution levels and marginals stay as they were.
 fn nothing(instance: &Instance) -> Answer {

@@ -4,7 +4,7 @@
 //! the search is then a good guess, as any of this kind.
 
 use super::model::Change;
-use super::relaxation::{Control, Muted, Relaxation, Solved};
+use super::relaxation::{Control, Relaxation, Solved};
 use crate::model::instance::{ColumnKind, Instance};
 use crate::solve::answer::Answer;
 use crate::solve::lp::Ended;
@@ -53,12 +53,11 @@ impl Nonlinear {
         for (j, x) in columns.level.iter_mut().enumerate() {
             *x = from[j].max(columns.lower[j]).min(columns.upper[j]);
         }
-        let mut settings = self.settings.clone();
-        settings.time_limit = control.limits.seconds_left();
-        settings.log = false;
         let choice = self.choice.as_deref();
-        let mut muted = Muted(control.monitor);
-        let answer = nlp::answer(choice, &self.instance, &settings, &mut muted).ok()?;
+        let answer = control
+            .budget
+            .aside(|budget| nlp::answer(choice, &self.instance, &self.settings, budget));
+        let answer = answer.ok()?;
         control.iterations += answer.outcome.iterations;
         Some(answer)
     }

@@ -1,8 +1,8 @@
 //! What a search asks of a relaxation.
 
 use super::model::Change;
-use crate::solve::Monitor;
-use crate::solve::lp::{Ended, Limits};
+use crate::solve::Budget;
+use crate::solve::lp::Ended;
 
 /// How the solution of a relaxation ended.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,43 +21,31 @@ pub enum Solved {
     Stopped(Ended),
 }
 
-/// Passes on that the person wants to stop, and no lines of the many small solves.
-pub struct Muted<'m>(pub &'m mut dyn Monitor);
-
-impl Monitor for Muted<'_> {
-    fn log(&mut self, _: &str) {}
-    fn interrupted(&mut self) -> bool {
-        self.0.interrupted()
-    }
-    fn row_name(&self, row: usize) -> String {
-        self.0.row_name(row)
-    }
-    fn column_name(&self, column: usize) -> String {
-        self.0.column_name(column)
-    }
-}
-
-/// Limits of a search, and the person.
-pub struct Control<'m> {
-    /// For the log, and Ctrl-C.
-    pub monitor: &'m mut dyn Monitor,
-    /// Time and iterations.
-    pub limits: Limits,
+/// What a search may spend.
+pub struct Control<'b, 'm> {
+    /// Asked for time and the user.
+    pub budget: &'b Budget<'m>,
+    /// Iterations at which the search ends.
+    pub last: u64,
     /// Iterations so far.
     pub iterations: u64,
 }
 
-impl Control<'_> {
+impl<'b, 'm> Control<'b, 'm> {
+    /// With all iterations that are left.
+    pub fn new(budget: &'b Budget<'m>) -> Self {
+        Self {
+            budget,
+            last: budget.iterations_left(),
+            iterations: 0,
+        }
+    }
+
     /// Why to stop after so many iterations.
     pub fn stop(&mut self, iterations: u64) -> Option<Ended> {
-        if self.monitor.interrupted() {
-            Some(Ended::Interrupted)
-        } else if iterations >= self.limits.iterations {
-            Some(Ended::Iterations)
-        } else if self.limits.seconds_left() <= 0.0 {
-            Some(Ended::Time)
-        } else {
-            None
+        match iterations >= self.last {
+            true => Some(Ended::Iterations),
+            false => self.budget.stop().map(Ended::from),
         }
     }
 }

@@ -13,6 +13,7 @@ use super::branching::{Branch, Pseudo};
 use super::model::{Change, Mip, Units};
 use super::propagate::Propagator;
 use super::relaxation::{Control, Relaxation, Solved};
+use crate::solve::Progress;
 use crate::solve::lp::Ended;
 use std::collections::BinaryHeap;
 use std::rc::Rc;
@@ -168,22 +169,7 @@ pub struct Search<'a, R: Relaxation> {
     next_log: f64,
     /// Nodes made.
     made: u32,
-    /// Nodes whose relaxation was not solved.
-    failures: u32,
 }
-
-/// What reduced costs did to a node.
-enum Fixed {
-    /// Nothing that its point does not satisfy.
-    Nothing,
-    /// The point is to be computed again.
-    Moved,
-    /// Nothing better is left below it.
-    Empty,
-}
-
-/// How many nodes may be divided without a value of their relaxation.
-const FAILURES: u32 = 200;
 
 /// What heuristics have cost.
 #[derive(Default)]
@@ -225,7 +211,6 @@ impl<'a, R: Relaxation> Search<'a, R> {
             dives: Dives::default(),
             next_log: 0.0,
             made: 0,
-            failures: 0,
         }
     }
 
@@ -467,25 +452,9 @@ impl<'a, R: Relaxation> Search<'a, R> {
             if depth == 0 {
                 self.bound = self.bound.max(bound);
             }
-            if resolves < 5 && !failed {
-                match self.fix_by_costs(value, depth == 0) {
-                    Fixed::Nothing => {}
-                    Fixed::Moved => {
-                        resolves += 1;
-                        continue;
-                    }
-                    Fixed::Empty => {
-                        self.fate(number, "bound");
-                        return None;
-                    }
-                }
-            }
-            if failed {
-                self.failures += 1;
-                if self.failures > FAILURES {
-                    self.incomplete = true;
-                    return None;
-                }
+            if resolves < 5 && !failed && self.fix_by_costs(value, depth == 0) {
+                resolves += 1;
+                continue;
             }
             let point = self.relaxation.x().to_vec();
             let mut branch = match failed {
@@ -585,14 +554,14 @@ impl<'a, R: Relaxation> Search<'a, R> {
         }
     }
 
-    /// Integer columns whose reduced costs keep them from going far. What that does to the node.
-    fn fix_by_costs(&mut self, value: f64, at_root: bool) -> Fixed {
+    /// Integer columns whose reduced costs keep them from going far. Whether one got fixed that the point must leave.
+    fn fix_by_costs(&mut self, value: f64, at_root: bool) -> bool {
         let room = self.cutoff() - value;
         if !room.is_finite() {
-            return Fixed::Nothing;
+            return false;
         }
         let Some(reduced) = self.relaxation.reduced() else {
-            return Fixed::Nothing;
+            return false;
         };
         let x = self.relaxation.x();
         let mut changes = Vec::new();
@@ -617,7 +586,7 @@ impl<'a, R: Relaxation> Search<'a, R> {
             }
         }
         if changes.is_empty() {
-            return Fixed::Nothing;
+            return false;
         }
         let x = x.to_vec();
         if at_root {
@@ -627,13 +596,11 @@ impl<'a, R: Relaxation> Search<'a, R> {
             }
         }
         if !self.apply(&changes) {
-            return Fixed::Empty;
+            // Nothing better is left here: the next solve says so.
+            return true;
         }
         let outside = |j: &usize| x[*j] < self.lower[*j] - 1e-9 || x[*j] > self.upper[*j] + 1e-9;
-        match self.propagator.moved.iter().any(|j| outside(j)) {
-            true => Fixed::Moved,
-            false => Fixed::Nothing,
-        }
+        self.propagator.moved.iter().any(|j| outside(j))
     }
 
     /// Takes a point as a solution if its integers, rounded, are one; the rest is solved for where need be.
@@ -745,8 +712,8 @@ impl<'a, R: Relaxation> Search<'a, R> {
 
     /// A line of progress: now and then, and for every new solution.
     fn log(&mut self, control: &mut Control, last: bool) {
-        let seconds = control.limits.start.elapsed().as_secs_f64();
-        if seconds < self.next_log && !last {
+        let seconds = control.budget.seconds();
+        if seconds < self.next_log && !last || self.neighbourhood.is_none() {
             return;
         }
         self.next_log = seconds + 2.0;
@@ -772,6 +739,16 @@ impl<'a, R: Relaxation> Search<'a, R> {
             shown(self.best.as_ref().map_or(f64::INFINITY, |b| b.0)),
             control.iterations,
         );
-        control.monitor.log(&line);
+        control.budget.log(&line);
+        let shown = |v: f64| Some(self.units.shown(v)).filter(|v| v.is_finite());
+        let best = self.best.as_ref().and_then(|b| shown(b.0));
+        let bound = shown(self.bound);
+        control.budget.progress(Progress {
+            method: "branch and bound",
+            iteration: self.nodes,
+            objective: best,
+            gap: best.zip(bound).map(|(v, b)| (v - b) / v.abs().max(1e-10)),
+            ..Progress::default()
+        });
     }
 }

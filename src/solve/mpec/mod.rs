@@ -29,14 +29,20 @@ mod swaps;
 mod tree;
 
 use super::answer::Answer;
+use super::backend::{Backend, Supports, Task, Terms};
 use super::lp::{Clarabel, Ended, Restart};
-use super::{Claim, ModelStatus, Monitor, Outcome, Settings, SolveError, Solver, SolverStatus};
+use super::{
+    Budget, Claim, ModelStatus, Outcome, Settings, SolveError, Solver, SolverStatus, Stop,
+};
+use crate::model::instance::Instance;
+use crate::model::option::OptionTable;
+use crate::model::problem_type::ProblemType;
 use pairs::{Judged, Piece, Program};
 use relaxation::{Kind, Relaxed};
+pub use settings::OPTIONS;
 use settings::{Method, Options};
 use stationarity::Verdict;
 use std::collections::HashSet;
-use std::time::Instant;
 
 /// What is known about stationarity, for the report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,14 +66,53 @@ impl Stationarity {
     }
 }
 
+/// The solver of programs with pairs.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Bmpec;
+
+impl Backend for Bmpec {
+    fn name(&self) -> &'static str {
+        "bmpec"
+    }
+
+    fn version(&self) -> &'static str {
+        "mpec, rmpec: bmod's own, on the nonlinear solver and the simplex method"
+    }
+
+    fn supports(&self) -> Supports {
+        Supports {
+            types: &[ProblemType::Mpec, ProblemType::Rmpec],
+            terms: Terms::Smooth,
+            linear: true,
+            pairs: true,
+            integers: false,
+            largest: usize::MAX,
+            only_by_name: false,
+        }
+    }
+
+    fn options(&self) -> &'static OptionTable {
+        &OPTIONS
+    }
+
+    fn solve(
+        &self,
+        task: &Task,
+        settings: &Settings,
+        budget: &Budget,
+    ) -> Result<Answer, SolveError> {
+        answer(task.choice, task.instance, settings, budget)
+    }
+}
+
 /// Solves, and says what the answer is worth.
 pub fn answer(
     choice: Option<&str>,
-    instance: &crate::model::instance::Instance,
+    instance: &Instance,
     settings: &Settings,
-    monitor: &mut dyn Monitor,
+    budget: &Budget,
 ) -> Result<Answer, SolveError> {
-    let options = Options::new(settings)?;
+    let options = Options::new(settings);
     let program = Program::new(instance)?;
     super::lp::form::validate(&program.envelope)?;
     let mut search = Search {
@@ -75,16 +120,14 @@ pub fn answer(
         options,
         choice,
         settings,
-        monitor,
-        begin: Instant::now(),
-        iterations: 0,
+        budget,
         enough: u64::MAX,
         best: None,
         reserve: None,
+        fallback: None,
         empty: false,
         seen: HashSet::new(),
         notes: Vec::new(),
-        stopped: None,
     };
     search.run()
 }
@@ -104,28 +147,27 @@ struct Found {
     verdict: Option<Stationarity>,
 }
 
-struct Search<'a> {
+struct Search<'a, 'm> {
     program: &'a Program<'a>,
     options: Options,
     choice: Option<&'a str>,
     settings: &'a Settings,
-    monitor: &'a mut dyn Monitor,
-    begin: Instant,
-    iterations: u64,
+    budget: &'a Budget<'m>,
     /// Iterations after which no further nonlinear program of the present phase is begun or continued.
     enough: u64,
     best: Option<Found>,
     /// The least infeasible of the points that are not feasible.
     reserve: Option<Found>,
+    /// A point that satisfies everything, in case that nothing better is found: its branch was not solved.
+    fallback: Option<Found>,
     /// No point satisfies all pairs, proved.
     empty: bool,
     /// Branches that were solved.
     seen: HashSet<Vec<Piece>>,
     notes: Vec<String>,
-    stopped: Option<SolverStatus>,
 }
 
-impl Search<'_> {
+impl Search<'_, '_> {
     fn run(&mut self) -> Result<Answer, SolveError> {
         let start: Vec<f64> = {
             let c = &self.program.instance.columns;
@@ -166,22 +208,13 @@ impl Search<'_> {
         self.finish()
     }
 
-    fn is_over(&mut self) -> bool {
-        if self.stopped.is_none() {
-            if self.monitor.interrupted() {
-                self.stopped = Some(SolverStatus::UserInterrupt);
-            } else if self.seconds_left() <= 0.0 {
-                self.stopped = Some(SolverStatus::ResourceInterrupt);
-            } else if self.iterations >= self.settings.iteration_limit {
-                self.stopped = Some(SolverStatus::IterationInterrupt);
-            }
-        }
-        self.stopped.is_some()
+    fn is_over(&self) -> bool {
+        self.budget.is_over()
     }
 
     /// Limits the phase that begins, in iterations times rows and columns.
     fn allow(&mut self, work: u64) {
-        self.enough = self.iterations + work / self.size();
+        self.enough = self.budget.iterations() + work / self.size();
     }
 
     /// Rows and columns, what an iteration costs.
@@ -190,34 +223,41 @@ impl Search<'_> {
         (instance.row_count() + instance.column_count()).max(1) as u64
     }
 
-    fn is_spent(&mut self) -> bool {
-        self.iterations >= self.enough || self.is_over()
+    fn is_spent(&self) -> bool {
+        self.left() == 0 || self.is_over()
     }
 
-    fn seconds_left(&self) -> f64 {
-        (self.settings.time_limit - self.begin.elapsed().as_secs_f64()).max(0.0)
+    /// Iterations that are left for the present phase.
+    fn left(&self) -> u64 {
+        self.enough.saturating_sub(self.budget.iterations())
     }
 
-    /// Settings of a program that is solved on the way.
+    /// Options of a program that is solved on the way: the user's come last and win.
     fn sub_settings(&self, extra: &[(&str, &str)]) -> Settings {
-        let mut s = self.settings.clone();
-        s.time_limit = self.seconds_left();
-        s.iteration_limit = s.iteration_limit.saturating_sub(self.iterations);
-        s.log = false;
         let own = |(k, v): &(&str, &str)| (k.to_string(), v.to_string());
-        // The person's options come last and win.
-        s.options = extra.iter().map(own).collect();
-        s.options.extend(self.settings.options.iter().cloned());
-        s
+        let mut options: Vec<(String, String)> = extra.iter().map(own).collect();
+        options.extend(self.settings.options.iter().cloned());
+        Settings {
+            options,
+            ..self.settings.clone()
+        }
     }
 
-    /// The same for a nonlinear program, within the present phase.
-    fn program_settings(&self, extra: &[(&str, &str)]) -> Settings {
+    /// A nonlinear program on the way, within the present phase and so many iterations.
+    fn program(
+        &self,
+        instance: &Instance,
+        extra: &[(&str, &str)],
+        most: u64,
+    ) -> Result<Answer, SolveError> {
         let short = [("nlp_search", "no"), ("nlp_attempts", "few")];
-        let mut s = self.sub_settings(&[&short, extra].concat());
-        let left = self.enough.saturating_sub(self.iterations);
-        s.iteration_limit = s.iteration_limit.min(left);
-        s
+        let settings = self.sub_settings(&[&short, extra].concat());
+        let most = most.min(self.left());
+        self.budget.silently(|budget| {
+            budget.within(f64::INFINITY, most, |budget| {
+                super::nlp::answer(self.choice, instance, &settings, budget)
+            })
+        })
     }
 
     /// Solves a branch and keeps what it gives. None if it was solved before or is not feasible.
@@ -261,16 +301,12 @@ impl Search<'_> {
         }
         let instance = self.program.branch(&pieces, start);
         let answer = match instance.is_linear() {
-            true => {
-                let mut settings = self.sub_settings(&[]);
-                settings.iteration_limit = settings.iteration_limit.min(most);
-                super::answer::linear(solver, &instance, &settings, self.monitor)
-            }
-            false => {
-                let mut settings = self.program_settings(&[]);
-                settings.iteration_limit = settings.iteration_limit.min(most);
-                super::nlp::answer(self.choice, &instance, &settings, self.monitor)
-            }
+            true => self.budget.silently(|budget| {
+                budget.within(f64::INFINITY, most, |budget| {
+                    super::answer::linear(solver, &instance, self.settings, budget)
+                })
+            }),
+            false => self.program(&instance, &[], most),
         };
         let answer = match answer {
             Ok(a) => a,
@@ -281,7 +317,6 @@ impl Search<'_> {
             }
             Err(e) => return Err(e),
         };
-        self.iterations += answer.outcome.iterations;
         let judged = self.program.judge(&answer.outcome.level);
         let objective = self.program.objective(&answer.outcome.level);
         self.log(&format!(
@@ -375,6 +410,43 @@ impl Search<'_> {
         Ok(found)
     }
 
+    /// Keeps a point that satisfies everything, for the case that nothing is left to solve its branch with.
+    fn keep_point(&mut self, level: &[f64], pieces: Vec<Piece>) {
+        let judged = self.program.judge(level);
+        if !judged.feasible {
+            return;
+        }
+        let found = self.as_found(level, pieces, judged);
+        let better = |old: &Found| found.objective < old.objective;
+        if self.fallback.as_ref().is_none_or(better) {
+            self.fallback = Some(found);
+        }
+    }
+
+    /// A feasible point that no program has led to.
+    fn as_found(&self, level: &[f64], pieces: Vec<Piece>, judged: Judged) -> Found {
+        let outcome = Outcome {
+            level: level.to_vec(),
+            row_marginal: vec![0.0; self.program.instance.row_count()],
+            column_marginal: vec![0.0; level.len()],
+            claim: Claim::Unfinished,
+            status: SolverStatus::NormalCompletion,
+            iterations: 0,
+            solver: "bmpec",
+            ray: Vec::new(),
+            message: None,
+            basis: None,
+        };
+        let (residuals, activity) = (judged.residuals.clone(), judged.activity.clone());
+        Found {
+            pieces,
+            answer: Answer::new(outcome, residuals, ModelStatus::Feasible, activity),
+            objective: self.program.objective(level),
+            judged,
+            verdict: None,
+        }
+    }
+
     /// A point that satisfies the pairs, from a start, by the complementarity solver: where the rows and
     /// columns without partners are equally many equations and free columns.
     fn equilibrium(&mut self, start: &[f64], options: &[(&str, &str)]) -> Option<Vec<f64>> {
@@ -382,32 +454,26 @@ impl Search<'_> {
         instance.objective = None;
         instance.columns.level.copy_from_slice(start);
         let settings = self.sub_settings(options);
-        let (monitor, hopeless) = (&mut *self.monitor, |_: &mut dyn Monitor| false);
-        let out =
-            super::complementarity::solve(&instance, false, &settings, monitor, &hopeless).ok()?;
-        self.iterations += out.iterations;
+        let out = self.budget.silently(|budget| {
+            super::complementarity::solve(&instance, false, &settings, budget, &|_| false)
+        });
+        let out = out.ok()?;
         let judged = self.program.judge(&out.level);
         let value = self.program.sign() * self.program.objective(&out.level);
         self.log(&format!(
             "equilibrium: objective {value:.10}, natural residual {:.1e}",
             judged.residuals.natural.unwrap_or(f64::NAN)
         ));
-        judged.feasible.then_some(out.level)
+        if !judged.feasible {
+            return None;
+        }
+        let pieces = self.program.nearest(&out.level);
+        self.keep_point(&out.level, pieces);
+        Some(out.level)
     }
 
     fn check(&mut self, level: &[f64]) -> Verdict {
-        let left = self.seconds_left();
-        let begin = Instant::now();
-        let monitor = &mut *self.monitor;
-        let mut stop = |_| {
-            if monitor.interrupted() {
-                Some(Ended::Interrupted)
-            } else if begin.elapsed().as_secs_f64() > left {
-                Some(Ended::Time)
-            } else {
-                None
-            }
-        };
+        let mut stop = |_| self.budget.stop().map(Ended::from);
         stationarity::check(self.program, level, self.options.nodes, &mut stop)
     }
 
@@ -422,7 +488,7 @@ impl Search<'_> {
         let parts: Vec<String> = order
             .iter()
             .take(4)
-            .map(|&j| format!("{} {:+.3}", self.monitor.column_name(j), direction[j]))
+            .map(|&j| format!("{} {:+.3}", self.budget.column_name(j), direction[j]))
             .collect();
         format!("{}{more}", parts.join(", "))
     }
@@ -438,30 +504,7 @@ impl Search<'_> {
             }
             return Ok(());
         }
-        let outcome = Outcome {
-            level: start.to_vec(),
-            row_marginal: vec![0.0; self.program.instance.row_count()],
-            column_marginal: vec![0.0; start.len()],
-            claim: Claim::Unfinished,
-            status: SolverStatus::NormalCompletion,
-            iterations: 0,
-            solver: "bmpec",
-            ray: Vec::new(),
-            message: None,
-            basis: None,
-        };
-        let found = Found {
-            pieces,
-            answer: Answer::new(
-                outcome,
-                judged.residuals.clone(),
-                ModelStatus::Feasible,
-                judged.activity.clone(),
-            ),
-            objective: self.program.objective(start),
-            judged,
-            verdict: None,
-        };
+        let found = self.as_found(start, pieces, judged);
         let verdict = self.check(start);
         self.conclude(found, verdict);
         Ok(())
@@ -492,10 +535,8 @@ impl Search<'_> {
         let mut missed = 0;
         loop {
             relaxed.tighten(self.program, mu, &x);
-            let settings =
-                self.program_settings(&[("bound_relax_factor", "0"), ("mu_strategy", "adaptive")]);
-            let a = super::nlp::answer(self.choice, &relaxed.instance, &settings, self.monitor)?;
-            self.iterations += a.outcome.iterations;
+            let extra = [("bound_relax_factor", "0"), ("mu_strategy", "adaptive")];
+            let a = self.program(&relaxed.instance, &extra, u64::MAX)?;
             let y = &a.outcome.level[..n];
             let judged = self.program.judge(y);
             self.log(&format!(
@@ -504,6 +545,11 @@ impl Search<'_> {
                 self.program.sign() * self.program.objective(y),
                 judged.residuals.complementarity_sum.unwrap_or(f64::NAN),
             ));
+            if judged.feasible {
+                let level = y.to_vec();
+                let pieces = self.program.nearest(&level);
+                self.keep_point(&level, pieces);
+            }
             let usable = a.residuals.is_feasible(1e-4) && y.iter().all(|v| v.is_finite());
             missed = if usable { 0 } else { missed + 1 };
             if usable {
@@ -545,18 +591,20 @@ impl Search<'_> {
         Ok(())
     }
 
-    fn log(&mut self, line: &str) {
-        if self.settings.log {
-            self.monitor.log(line);
-        }
+    fn log(&self, line: &str) {
+        self.budget.log(line);
     }
 
     /// Turns what was found into an answer.
     fn finish(&mut self) -> Result<Answer, SolveError> {
+        if let Some(found) = self.fallback.take()
+            && (self.best.is_none() || self.budget.stopped().is_some())
+        {
+            self.keep(&found);
+        }
         let searched = self.options.method != Method::Check;
         if searched && self.best.is_none() && !self.is_over() {
-            let settings = self.sub_settings(&[]);
-            match bound::any(self.program, &settings, self.monitor) {
+            match bound::any(self.program, self.budget) {
                 bound::Any::Point(level) => self.improve(&level)?,
                 bound::Any::Empty => self.empty = true,
                 bound::Any::Unknown => {}
@@ -576,9 +624,9 @@ impl Search<'_> {
             _ => ModelStatus::Feasible,
         };
         let mut outcome = found.answer.outcome;
-        outcome.iterations = self.iterations;
+        outcome.iterations = self.budget.iterations();
         outcome.solver = "bmpec";
-        outcome.status = match (status, self.stopped) {
+        outcome.status = match (status, self.budget.stopped().map(Stop::status)) {
             (ModelStatus::Feasible, Some(s)) => s,
             (_, Some(SolverStatus::UserInterrupt)) => SolverStatus::UserInterrupt,
             _ => SolverStatus::NormalCompletion,
@@ -604,11 +652,9 @@ impl Search<'_> {
         if self.options.bound == settings::Bound::None || self.is_over() {
             return Ok(None);
         }
-        let settings = self.sub_settings(&[]);
         let (program, bound) = (self.program, self.options.bound);
         let level = &found.answer.outcome.level;
-        let proof = bound::lower(program, level, bound, &settings, self.monitor);
-        self.iterations += proof.iterations;
+        let proof = bound::lower(program, level, bound, self.budget);
         self.notes.extend(proof.note);
         if let Some(level) = proof.better {
             self.improve(&level)?;
@@ -628,11 +674,11 @@ impl Search<'_> {
     /// No feasible point was found: is there none?
     fn infeasible(&mut self) -> Result<Answer, SolveError> {
         self.allow(FIRST_WORK.max(FIRST_ITERATIONS * self.size()));
-        let settings = self.program_settings(&[("nlp_attempts", "all")]);
+        let stopped = self.budget.stop();
         let envelope = &self.program.envelope;
         let mut a = match envelope.is_linear() {
-            true => super::answer::linear_shown(&Clarabel, envelope, &settings, self.monitor)?,
-            false => super::nlp::answer(self.choice, envelope, &settings, self.monitor)?,
+            true => super::answer::linear_shown(&Clarabel, envelope, self.settings, self.budget)?,
+            false => self.program(envelope, &[("nlp_attempts", "all")], u64::MAX)?,
         };
         let proved = matches!(
             a.status,
@@ -642,7 +688,7 @@ impl Search<'_> {
             if let Some(r) = self.reserve.take() {
                 a = r.answer;
             }
-            a.status = match self.stopped {
+            a.status = match stopped {
                 _ if self.empty => ModelStatus::Infeasible,
                 Some(_) => ModelStatus::IntermediateInfeasible,
                 None => ModelStatus::LocallyInfeasible,
@@ -655,8 +701,8 @@ impl Search<'_> {
         }
         let judged = self.program.judge(&a.outcome.level);
         a.outcome.solver = "bmpec";
-        a.outcome.iterations += self.iterations;
-        a.outcome.status = self.stopped.unwrap_or(SolverStatus::NormalCompletion);
+        a.outcome.iterations = self.budget.iterations();
+        a.outcome.status = stopped.map_or(SolverStatus::NormalCompletion, Stop::status);
         a.outcome.message = (!self.notes.is_empty()).then(|| self.notes.join("; "));
         Ok(Answer::new(
             a.outcome,

@@ -111,15 +111,14 @@ impl Pieces {
     }
 
     /// An optimal basis of a branch.
-    pub fn basis(&mut self, pieces: &[Piece]) -> Option<Restart> {
-        let mut stop = |_| None;
+    pub fn basis(&mut self, pieces: &[Piece], stop: Stop) -> Option<Restart> {
         let Split { a, b, bounds } = &mut self.split;
         for (side, weight) in [(&mut *a, 1.0), (&mut *b, 0.0)] {
             for (k, &piece) in pieces.iter().enumerate() {
                 side.restrict(k, Some(piece), bounds[k], self.rhs[k]);
             }
             side.price(weight, &[]);
-            side.solve(&self.rhs, &mut stop)?;
+            side.solve(&self.rhs, stop)?;
         }
         let total = |[a, b]: [usize; 2]| vec![State::Free; a + b];
         let mut out = Restart {

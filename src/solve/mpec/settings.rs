@@ -1,6 +1,7 @@
 //! Options of the solver for programs with equilibrium constraints.
 
-use crate::solve::{Settings, SolveError};
+use crate::model::option::{Kind, OptionTable, row, switch};
+use crate::solve::Settings;
 
 /// Which way to go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,70 +69,87 @@ impl Default for Options {
 }
 
 impl Options {
-    /// Reads them. Errors: a value that an option does not take.
-    pub fn new(settings: &Settings) -> Result<Self, SolveError> {
+    /// Reads them; the table has passed their values.
+    pub fn new(settings: &Settings) -> Self {
         let mut out = Self::default();
-        for (name, value) in &settings.options {
-            let name = name.to_lowercase();
-            let Some(option) = name.strip_prefix("mpec_") else {
-                continue;
-            };
+        for (name, value) in settings.of(&OPTIONS) {
             let text = value.to_lowercase();
-            let number = text.parse::<f64>().ok().filter(|v| *v >= 0.0);
-            let refused = |takes: &str| {
-                SolveError::new(format!("the option `{name}` takes {takes}, not `{value}`"))
-            };
-            match option {
-                "method" => {
-                    out.method = match text.as_str() {
-                        "auto" => Method::Auto,
-                        "relaxation" => Method::Relaxation,
-                        "penalty" => Method::Penalty,
-                        "pieces" => Method::Pieces,
-                        "check" => Method::Check,
-                        _ => {
-                            return Err(refused(
-                                "`auto`, `relaxation`, `penalty`, `pieces` or `check`",
-                            ));
-                        }
-                    }
-                }
-                "relaxation" => {
-                    out.aggregate = match text.as_str() {
-                        "scholtes" => false,
-                        "aggregate" => true,
-                        _ => return Err(refused("`scholtes` or `aggregate`")),
-                    }
-                }
-                "swaps" => {
-                    out.swaps = match text.as_str() {
-                        "yes" => true,
-                        "no" => false,
-                        _ => return Err(refused("`yes` or `no`")),
-                    }
-                }
-                "bound" => {
-                    out.bound = match (text.as_str(), number) {
-                        ("none" | "no", _) => Bound::None,
-                        ("quick" | "yes", _) => Bound::Quick,
-                        (_, Some(s)) => Bound::Seconds(s),
-                        _ => return Err(refused("`none`, `quick` or seconds")),
-                    }
-                }
-                "mu" | "mu_end" | "factor" | "starts" | "nodes" => {
-                    let v = number.ok_or_else(|| refused("a number that is not negative"))?;
-                    match option {
-                        "mu" => out.mu = v,
-                        "mu_end" => out.last = v,
-                        "starts" => out.starts = v as usize,
-                        "nodes" => out.nodes = v as usize,
-                        _ if v > 0.0 && v < 1.0 => out.factor = v,
-                        _ => return Err(refused("a number between 0 and 1")),
-                    }
-                }
+            let number = text.parse::<f64>().unwrap_or(0.0);
+            match (name.to_lowercase().as_str(), text.as_str()) {
+                ("mpec_method", "auto") => out.method = Method::Auto,
+                ("mpec_method", "relaxation") => out.method = Method::Relaxation,
+                ("mpec_method", "penalty") => out.method = Method::Penalty,
+                ("mpec_method", "pieces") => out.method = Method::Pieces,
+                ("mpec_method", _) => out.method = Method::Check,
+                ("mpec_relaxation", text) => out.aggregate = text == "aggregate",
+                ("mpec_swaps", text) => out.swaps = switch(text).unwrap_or(true),
+                ("mpec_bound", "none" | "no") => out.bound = Bound::None,
+                ("mpec_bound", "quick" | "yes") => out.bound = Bound::Quick,
+                ("mpec_bound", _) => out.bound = Bound::Seconds(number),
+                ("mpec_mu", _) => out.mu = number,
+                ("mpec_mu_end", _) => out.last = number,
+                ("mpec_factor", _) => out.factor = number,
+                ("mpec_starts", _) => out.starts = number as usize,
+                ("mpec_nodes", _) => out.nodes = number as usize,
                 _ => {}
             }
         }
-        Ok(out)
+        out
     }
 }
+
+const LIMITLESS: Kind = Kind::Real(0.0, f64::INFINITY);
+
+/// What `mpec` and `rmpec` take.
+pub const OPTIONS: OptionTable = OptionTable {
+    backend: "bmpec",
+    title: "mpec, rmpec: bmod's own, on the linear, nonlinear and complementarity solvers",
+    rows: &[
+        row(
+            "mpec_method",
+            Kind::Words(&["auto", "relaxation", "penalty", "pieces", "check"]),
+            "auto",
+            "what leads to the branch: `pieces` where it applies, otherwise `relaxation`, and `penalty` where that fails; `check` judges the levels as they are",
+        ),
+        row(
+            "mpec_relaxation",
+            Kind::Words(&["scholtes", "aggregate"]),
+            "scholtes",
+            "every product at most μ, or their sum",
+        ),
+        row("mpec_mu", LIMITLESS, "1e-2", "first μ"),
+        row(
+            "mpec_factor",
+            Kind::Inside(0.0, 1.0),
+            "0.1",
+            "what μ is multiplied by from one program to the next",
+        ),
+        row("mpec_mu_end", LIMITLESS, "1e-8", "last μ"),
+        row(
+            "mpec_starts",
+            Kind::Whole(0.0, 1e9),
+            "4",
+            "random starts after the first local solution",
+        ),
+        row(
+            "mpec_swaps",
+            Kind::Switch,
+            "yes",
+            "whether anything better than the first local solution is looked for",
+        ),
+        row(
+            "mpec_nodes",
+            Kind::Whole(0.0, 1e9),
+            "300",
+            "nodes of a search for a descent direction",
+        ),
+        row(
+            "mpec_bound",
+            Kind::WordsOrReal(&["none", "no", "quick", "yes"], 0.0, f64::INFINITY),
+            "none",
+            "how long a lower bound is looked for: `quick` is a thousand nodes, a number is seconds",
+        ),
+    ],
+    more: None,
+    ignored: &[],
+};

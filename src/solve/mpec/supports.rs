@@ -10,8 +10,8 @@
 
 use super::pieces::{Pieces, Round, Solution};
 use super::{Found, ModelStatus, Piece, Search, SolveError, Stationarity};
-use crate::solve::lp::Ended;
-use std::time::Instant;
+use crate::solve::lp::watch;
+use crate::solve::{Budget, Progress};
 
 /// Swaps, in simplex iterations.
 const SWAPS: u64 = 80_000;
@@ -31,7 +31,7 @@ const DESCENTS: [usize; 2] = [250, 6];
 /// Share of the time left that the search may take: the branch that it ends on has to be solved in the rest.
 const SEARCH: f64 = 0.9;
 
-impl Search<'_> {
+impl Search<'_, '_> {
     /// False if the method does not apply or finds nothing.
     pub(super) fn supports(&mut self, start: &[f64]) -> Result<bool, SolveError> {
         let Some(mut pieces) = Pieces::new(self.program) else {
@@ -45,7 +45,7 @@ impl Search<'_> {
         }
         levels.extend(self.equilibrium(&vec![0.0; start.len()], &[("crash_method", "none")]));
         let best = self.best_support(&mut pieces, &levels);
-        self.iterations += pieces.iterations();
+        self.budget.spend(pieces.iterations());
         match best {
             Some(best) => self.settle(&mut pieces, best, start),
             None => Ok(false),
@@ -53,16 +53,30 @@ impl Search<'_> {
     }
 
     fn best_support(&mut self, pieces: &mut Pieces, levels: &[Vec<f64>]) -> Option<Solution> {
-        let (left, begin) = (SEARCH * self.seconds_left(), Instant::now());
-        let (monitor, log) = (&mut *self.monitor, self.settings.log);
+        let seconds = SEARCH * self.budget.seconds_left();
+        self.budget.within(seconds, u64::MAX, |budget| {
+            self.search_supports(pieces, levels, budget)
+        })
+    }
+
+    fn search_supports(
+        &self,
+        pieces: &mut Pieces,
+        levels: &[Vec<f64>],
+        budget: &Budget,
+    ) -> Option<Solution> {
         let sign = self.program.sign();
-        let mut stop = |_| (begin.elapsed().as_secs_f64() > left).then_some(Ended::Time);
+        // Each side counts its own iterations.
+        let mut stop = watch(budget, u64::MAX);
         let mut best: Option<Solution> = None;
-        let mut keep = |what: &str, found: Option<Solution>, best: &mut Option<Solution>| {
+        let keep = |what: &str, found: Option<Solution>, best: &mut Option<Solution>| {
             let Some(s) = found else { return };
-            if log {
-                monitor.log(&format!("{what}: {:.10}", sign * s.a.value));
-            }
+            budget.log(format!("{what}: {:.10}", sign * s.a.value));
+            budget.progress(Progress {
+                method: "pieces",
+                objective: Some(sign * s.a.value),
+                ..Progress::default()
+            });
             // Of points that differ by rounding the first is kept.
             let enough = |b: &Solution| s.a.value < b.a.value - 1e-10 * b.a.value.abs().max(1.0);
             if best.as_ref().is_none_or(enough) {
@@ -138,9 +152,14 @@ impl Search<'_> {
     ) -> Result<bool, SolveError> {
         let mut level = start.to_vec();
         pieces.write(&best, &mut level);
+        let complete = self.program.complete(level.clone());
+        self.keep_point(&complete, best.pieces.clone());
         let mut on: Vec<Piece> = best.pieces;
         for _ in 0..20 {
-            let basis = pieces.basis(&on);
+            if self.is_over() {
+                break;
+            }
+            let basis = pieces.basis(&on, &mut watch(self.budget, u64::MAX));
             let Some(mut found): Option<Found> = self.branch_from(basis, on.clone(), &level)?
             else {
                 break;
@@ -162,6 +181,6 @@ impl Search<'_> {
             }
             on = there;
         }
-        Ok(self.best.is_some())
+        Ok(self.best.is_some() || self.is_over())
     }
 }

@@ -19,7 +19,7 @@ const WORK: u64 = 100_000;
 /// Iterations of a branch that a swap leads to.
 const SHORT: u64 = 100;
 
-impl Search<'_> {
+impl Search<'_, '_> {
     /// Swaps and starts from what was found first.
     pub(super) fn explore(&mut self, kind: Kind, start: &[f64]) -> Result<(), SolveError> {
         let exhausted = self.swaps()?;

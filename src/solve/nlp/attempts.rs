@@ -1,7 +1,7 @@
 //! Attempts other than a plain run of the provider: from where an earlier solve ended, Newton's method on the equations, Clarabel
 //! for convex quadratic programs, rounded kinks, and the elastic form.
 
-use super::driver::{Driver, why_stop};
+use super::driver::Driver;
 use super::elastic::Elastic;
 use super::growth::Growth;
 use super::newton;
@@ -14,7 +14,6 @@ use super::slp::Effort;
 use super::trial::{Trial, polished};
 use crate::model::certificate_nlp::is_locally_infeasible;
 use crate::solve::SolveError;
-use crate::solve::lp::Limits;
 use std::sync::{Arc, Mutex};
 
 /// Residuals of a point that is taken without a run.
@@ -23,7 +22,7 @@ const SHARPLY: f64 = 1e-9;
 /// The part of a right-hand side by which such a point may miss it: one that has become smaller is meant so, however small it is.
 const SHARE: f64 = 1e-3;
 
-impl Driver<'_> {
+impl Driver<'_, '_> {
     /// Where an earlier solve ended, linear programs from there, and Newton's method where there is nothing to choose. Whether
     /// that settles it.
     pub(super) fn settle_without_provider(&mut self) -> Result<bool, SolveError> {
@@ -77,31 +76,24 @@ impl Driver<'_> {
 
     /// Newton's method on the equations, where they leave nothing to choose.
     fn attempt_newton(&mut self) {
-        let deadline = self.deadline();
-        let limit = self.settings.evaluation_error_limit;
-        let mut problem = lock(&*self.problem);
-        let mut stopped = None;
-        let run = newton::solve(&mut *problem, &mut |failures| {
-            stopped = why_stop(self.monitor.interrupted(), deadline, limit, failures);
-            stopped.is_some()
+        if !self.affords_factors() {
+            return;
+        }
+        let budget = self.budget;
+        let run = newton::solve(&mut *lock(&*self.problem), &mut |failures| {
+            budget.stop_after_failures(failures).is_some()
         });
-        drop(problem);
-        self.stopped = stopped.or(self.stopped);
         if let Some(run) = run {
-            self.iterations += run.steps;
-            if self.settings.log {
-                self.monitor
-                    .log(&format!("{} steps of Newton's method", run.steps));
-            }
+            self.spend(run.steps);
+            budget.log(format!("{} steps of Newton's method", run.steps));
             let trial = self.judge(run.x, run.lambda, Ended::Acceptable);
             self.keep(trial);
         }
     }
 
     pub(super) fn attempt_quadratic(&mut self, quadratic: &Quadratic) {
-        let limits = Limits::of(self.settings, self.begin);
-        let solution = quadratic.solve(&limits, &mut || self.monitor.interrupted());
-        self.iterations += solution.iterations;
+        let solution = quadratic.solve(self.budget);
+        self.spend(solution.iterations);
         self.note_end(solution.ended);
         let trial = self.judge(solution.x, solution.lambda, solution.ended);
         self.keep(trial);
@@ -111,7 +103,7 @@ impl Driver<'_> {
     pub(super) fn round_kinks(&mut self) -> Result<(), SolveError> {
         let mut x = self.start.clone();
         for (k, delta) in ROUNDING.into_iter().enumerate() {
-            if self.stopped.is_some() {
+            if self.is_stopped() {
                 break;
             }
             let mut problem = Problem::smoothed(self.instance, delta);
@@ -151,7 +143,7 @@ impl Driver<'_> {
             let optimal = trial.is_optimal();
             self.note_infeasibility(&trial);
             self.keep(trial);
-            if optimal || self.stopped.is_some() {
+            if optimal || self.is_stopped() {
                 return Ok(());
             }
         }
@@ -196,7 +188,7 @@ impl Driver<'_> {
         if trial.is_feasible() {
             let x = trial.x.clone();
             self.keep(trial);
-            if self.stopped.is_none() {
+            if !self.is_stopped() {
                 self.attempt_from(x, NEAR)?;
             }
             return Ok(());

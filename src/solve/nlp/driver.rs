@@ -30,10 +30,12 @@ use super::slp;
 use super::trial::{Trial, active_set, clean, polished, residuals_at, tidy, without_noise};
 use crate::autodiff::{ErrorKind, EvalFailure, Evaluator, Kinks, kinks};
 use crate::model::instance::Instance;
+use crate::solve::budget::{self, Budget, Size, Stop};
+use crate::solve::factor_size::symmetric_size;
 use crate::solve::random::Random;
-use crate::solve::{Monitor, OWN_OPTIONS, Settings, SolveError, SolverStatus, answer::Answer};
+use crate::solve::{Settings, SolveError, answer::Answer};
+use std::cell::OnceCell;
 use std::sync::{Arc, Mutex};
-use std::time::{Duration, Instant};
 
 /// An objective better than this, at a feasible point, is called unbounded (GAMS's solvers: 1e15).
 const UNBOUNDED: f64 = 1e15;
@@ -48,7 +50,7 @@ pub fn solve(
     provider: &dyn Provider,
     convexity: Convexity,
     settings: &Settings,
-    monitor: &mut dyn Monitor,
+    budget: &Budget,
 ) -> Result<Answer, SolveError> {
     let columns = &instance.columns;
     for j in 0..instance.column_count() {
@@ -62,16 +64,16 @@ pub fn solve(
         }
     }
     let mut problem = Problem::new(instance);
-    if settings.option("warm_start_init_point").as_deref() == Some("yes") {
+    if settings.switch("warm_start_init_point") == Some(true) {
         problem.use_marginals(instance);
     }
     let start = problem.start().to_vec();
     check_start(instance, &mut problem, &start)?;
     let quadratic = match convexity {
         Convexity::Ignored => None,
-        Convexity::Used | Convexity::Asked => Quadratic::new(&mut problem),
+        Convexity::Used | Convexity::Asked => Quadratic::new(&mut problem, budget),
     };
-    let mut driver = Driver::new(instance, problem, provider, settings, monitor);
+    let mut driver = Driver::new(instance, problem, provider, settings, budget);
     driver.message = (convexity == Convexity::Asked && quadratic.is_none()).then(|| {
         let name = provider.name();
         format!(
@@ -95,22 +97,6 @@ fn placed(nlp: &dyn Nlp, x: &[f64], by: f64, anywhere: bool, seed: u64) -> Vec<f
         (x + (2.0 * r - 1.0) * by * x.abs().max(1.0)).max(l).min(u)
     };
     x.iter().zip(lower.iter().zip(upper)).map(place).collect()
-}
-
-/// Whether the person, the time or evaluations that failed (0: any number may) end the solve.
-pub(super) fn why_stop(
-    interrupted: bool,
-    deadline: Option<Instant>,
-    limit: u64,
-    failures: u64,
-) -> Option<SolverStatus> {
-    if interrupted {
-        Some(SolverStatus::UserInterrupt)
-    } else if deadline.is_some_and(|d| Instant::now() > d) {
-        Some(SolverStatus::ResourceInterrupt)
-    } else {
-        (limit > 0 && failures > limit).then_some(SolverStatus::EvaluationInterrupt)
-    }
 }
 
 /// What to do about a point that is all but a solution.
@@ -152,7 +138,7 @@ fn start_failure(e: &EvalFailure) -> SolveError {
     }
 }
 
-pub(super) struct Driver<'a> {
+pub(super) struct Driver<'a, 'm> {
     /// For instances with kinks: derivatives a hair beside them.
     kinks: Option<Evaluator>,
     /// A minimum of the violations, and multipliers of all rows that may prove it.
@@ -160,7 +146,7 @@ pub(super) struct Driver<'a> {
     pub(super) instance: &'a Instance,
     pub(super) provider: &'a dyn Provider,
     pub(super) settings: &'a Settings,
-    pub(super) monitor: &'a mut dyn Monitor,
+    pub(super) budget: &'a Budget<'m>,
     /// A point that satisfies the KKT conditions is a global optimum.
     pub(super) convex: Option<Convexity>,
     /// The model asks for this provider.
@@ -171,10 +157,7 @@ pub(super) struct Driver<'a> {
     pub(super) message: Option<String>,
     pub(super) start: Vec<f64>,
     pub(super) problem: Arc<Mutex<Problem>>,
-    pub(super) begin: Instant,
     pub(super) iterations: u64,
-    /// Why no further attempt may be made.
-    pub(super) stopped: Option<SolverStatus>,
     pub(super) best: Option<Trial>,
     /// How the last run of the provider ended.
     ended: Ended,
@@ -190,19 +173,21 @@ pub(super) struct Driver<'a> {
     pub(super) elastic_tried: bool,
     /// Work after which no further attempt is begun.
     enough: f64,
+    /// What factors of the KKT matrix cost, once that is known.
+    factors: OnceCell<Size>,
     /// Iterations one attempt may take.
     pub(super) patience: u64,
     /// What is done about runs that lead far away.
     pub(super) growth: Growth,
 }
 
-impl<'a> Driver<'a> {
+impl<'a, 'm> Driver<'a, 'm> {
     pub(super) fn new(
         instance: &'a Instance,
         problem: Problem,
         provider: &'a dyn Provider,
         settings: &'a Settings,
-        monitor: &'a mut dyn Monitor,
+        budget: &'a Budget<'m>,
     ) -> Self {
         Self {
             kinks: kinks(instance).map(|_| Evaluator::smoothed(instance, FINEST)),
@@ -210,16 +195,14 @@ impl<'a> Driver<'a> {
             instance,
             provider,
             settings,
-            monitor,
+            budget,
             convex: None,
             named: false,
             solver: provider.name(),
             message: None,
             start: problem.start().to_vec(),
             problem: Arc::new(Mutex::new(problem)),
-            begin: Instant::now(),
             iterations: 0,
-            stopped: None,
             best: None,
             ended: Ended::Broken,
             failures: 0,
@@ -228,13 +211,14 @@ impl<'a> Driver<'a> {
             repeated: false,
             elastic_tried: false,
             enough: f64::INFINITY,
+            factors: OnceCell::new(),
             patience: FIRST_PATIENCE,
             growth: Growth::Watched(0),
         }
     }
 }
 
-impl Driver<'_> {
+impl Driver<'_, '_> {
     fn run(&mut self, quadratic: Option<Quadratic>) -> Result<Answer, SolveError> {
         let (n, m) = lock(&*self.problem).size();
         if n == 0 || m == 0 && self.is_constant() {
@@ -256,7 +240,9 @@ impl Driver<'_> {
         }
         let before = self.iterations;
         self.attempt(From::Start, &[])?;
-        self.enough = ENOUGH.max(TIMES * self.work());
+        if self.enough > 0.0 {
+            self.enough = ENOUGH.max(TIMES * self.work());
+        }
         if self.is_settled() {
             // there is an answer: to look for a better one may not take much longer
             self.patience = (4 * (self.iterations - before)).clamp(LEAST_PATIENCE, PATIENCE);
@@ -342,7 +328,7 @@ impl Driver<'_> {
         let square = self.is_square();
         let mut agreed = true;
         for (k, (from, options)) in BETTER.into_iter().enumerate() {
-            if self.stopped.is_some() || (k >= AGREEMENT && agreed) || self.work() > 5.0 * CHEAP {
+            if self.is_stopped() || (k >= AGREEMENT && agreed) || self.work() > 5.0 * CHEAP {
                 break;
             }
             if square && matches!(from, From::Linearised) {
@@ -370,8 +356,7 @@ impl Driver<'_> {
 
     /// Whether there may be several local optima, and the person lets us look for them.
     fn wants_search(&self) -> bool {
-        let asked = self.settings.option("nlp_search");
-        !matches!(asked.as_deref(), Some("0" | "no" | "off"))
+        self.settings.switch("nlp_search").unwrap_or(true)
     }
 
     /// How much of the schedule is tried: one program of a sequence is not worth all of it.
@@ -389,7 +374,7 @@ impl Driver<'_> {
 
     /// Nothing more needs to be tried.
     pub(super) fn is_settled(&self) -> bool {
-        self.stopped.is_some()
+        self.is_stopped()
             || self
                 .best
                 .as_ref()
@@ -403,15 +388,43 @@ impl Driver<'_> {
             }
     }
 
-    fn iterations_left(&self) -> u64 {
-        self.settings
-            .iteration_limit
-            .saturating_sub(self.iterations)
+    /// Whether no further attempt may be made.
+    pub(super) fn is_stopped(&self) -> bool {
+        self.budget.is_over()
     }
 
-    pub(super) fn deadline(&self) -> Option<Instant> {
-        (self.settings.time_limit < 1e9)
-            .then(|| self.begin + Duration::from_secs_f64(self.settings.time_limit.max(0.0)))
+    /// Whether the budget leaves room for factors of the KKT matrix, which solvers make in one piece.
+    pub(super) fn affords_factors(&mut self) -> bool {
+        let size = || {
+            *self.factors.get_or_init(|| {
+                let problem = lock(&*self.problem);
+                let (n, m) = problem.size();
+                let (rows, columns) = problem.jacobian_pattern();
+                let jacobian = rows.iter().zip(columns);
+                let jacobian = jacobian.map(|(&i, &j)| (n + i as usize, j as usize));
+                let (rows, columns) = problem.hessian_pattern();
+                let hessian = rows.iter().zip(columns);
+                let hessian = hessian.map(|(&i, &j)| (i as usize, j as usize));
+                let off_diagonal = jacobian.chain(hessian).filter(|(i, j)| i != j);
+                symmetric_size("the factor of the KKT matrix", n + m, off_diagonal)
+            })
+        };
+        match self.budget.affords(size) {
+            Ok(()) => true,
+            Err(why) => {
+                self.budget.log(&why);
+                self.message = Some(why);
+                // no further attempt
+                self.enough = 0.0;
+                false
+            }
+        }
+    }
+
+    /// Counts iterations.
+    pub(super) fn spend(&mut self, iterations: u64) {
+        self.iterations += iterations;
+        self.budget.spend(iterations);
     }
 
     /// None where this start is the same as the person's, or is a solution.
@@ -453,18 +466,14 @@ impl Driver<'_> {
     pub(super) fn linearised_from(&mut self, x: Vec<f64>, effort: slp::Effort) -> Option<Vec<f64>> {
         let mut problem = lock(&*self.problem);
         problem.set_start(x);
-        let deadline = self.deadline();
-        let own = self.settings.option("max_iter");
-        let own = own.and_then(|n| n.parse().ok()).unwrap_or(u64::MAX);
-        let steps = effort.steps.min(self.iterations_left()).min(own);
-        let run = slp::solve(&mut *problem, slp::Effort { steps, ..effort }, &mut || {
-            self.monitor.interrupted() || deadline.is_some_and(|d| Instant::now() > d)
-        })?;
+        let own = self.settings.number("max_iter");
+        let own = own.map_or(u64::MAX, |n| n as u64);
+        let steps = effort.steps.min(self.budget.iterations_left()).min(own);
+        let effort = slp::Effort { steps, ..effort };
+        let run = slp::solve(&mut *problem, effort, self.budget)?;
         drop(problem);
-        self.iterations += run.steps;
-        if self.settings.log {
-            self.monitor.log(&format!("{} linear programs", run.steps));
-        }
+        self.spend(run.steps);
+        self.budget.log(format!("{} linear programs", run.steps));
         let trial = self.judge(run.x.clone(), run.lambda, Ended::Acceptable);
         let optimal = trial.is_optimal();
         self.keep(trial);
@@ -493,13 +502,13 @@ impl Driver<'_> {
         let shared: Shared = self.problem.clone();
         let mut solution = self.call(shared.clone(), extra)?;
         if solution.ended == Ended::InvalidNumber
-            && self.stopped.is_none()
+            && !self.is_stopped()
             && let Some(beside) = self.beside(&x)
         {
             lock(&*self.problem).set_start(beside);
             solution = self.call(shared, extra)?;
         }
-        if solution.ended == Ended::TooFewDegrees && self.stopped.is_none() {
+        if solution.ended == Ended::TooFewDegrees && !self.is_stopped() {
             if !self.elastic_tried {
                 self.attempt_elastic()?;
             }
@@ -508,7 +517,7 @@ impl Driver<'_> {
         let mut trial = self.judge(solution.x, solution.lambda, solution.ended);
         if let Some(options) = nearly(&trial)
             && !self.repeated
-            && self.stopped.is_none()
+            && !self.is_stopped()
         {
             self.repeated = true;
             let shared: Shared = self.problem.clone();
@@ -526,15 +535,9 @@ impl Driver<'_> {
 
     /// Whether how a solver ended leaves room for a further attempt.
     pub(super) fn note_end(&mut self, ended: Ended) {
-        self.stopped = match ended {
-            _ if self.stopped.is_some() => self.stopped,
-            Ended::Stopped if self.monitor.interrupted() => Some(SolverStatus::UserInterrupt),
-            Ended::Time => Some(SolverStatus::ResourceInterrupt),
-            Ended::Iterations if self.iterations >= self.settings.iteration_limit => {
-                Some(SolverStatus::IterationInterrupt)
-            }
-            _ => None,
-        };
+        if ended == Ended::Time {
+            self.budget.end(Stop::Time);
+        }
     }
 
     pub(super) fn call(
@@ -542,6 +545,16 @@ impl Driver<'_> {
         nlp: Shared,
         extra: &[(&str, &str)],
     ) -> Result<Solution, SolveError> {
+        if !self.affords_factors() {
+            let nlp = lock(&nlp);
+            return Ok(Solution {
+                ended: Ended::TooLarge,
+                x: nlp.start().to_vec(),
+                lambda: vec![0.0; nlp.size().1],
+                objective: f64::NAN,
+                iterations: 0,
+            });
+        }
         let mut options: Vec<(String, String)> = Vec::new();
         let mut put = |k: &str, v: &str| {
             options.retain(|(old, _)| !old.eq_ignore_ascii_case(k));
@@ -550,12 +563,10 @@ impl Driver<'_> {
         for (k, v) in BASE.iter().chain(extra) {
             put(k, v);
         }
-        for (k, v) in &self.settings.options {
-            if !OWN_OPTIONS.contains(&k.to_lowercase().as_str()) {
-                put(k, v);
-            }
+        for (k, v) in self.settings.of(self.provider.options()) {
+            put(k, v);
         }
-        let left = self.iterations_left();
+        let left = self.budget.iterations_left();
         let cap = if options.iter().any(|(k, _)| k == "max_iter") {
             u64::MAX
         } else {
@@ -563,22 +574,21 @@ impl Driver<'_> {
             let affordable = (self.enough - self.work()) / self.work_of_iteration();
             self.patience.min(affordable.max(100.0) as u64)
         };
-        let deadline = self.deadline();
-        let (monitor, log) = (&mut *self.monitor, self.settings.log);
+        let (budget, log) = (self.budget, self.budget.wants_log());
+        let name = self.provider.name();
         if log {
             let extra: Vec<String> = extra.iter().map(|(k, v)| format!(", {k} {v}")).collect();
-            monitor.log(&format!("{}{}", self.provider.name(), extra.concat()));
+            budget.log(format!("{name}{}", extra.concat()));
         }
-        let limit = self.settings.evaluation_error_limit;
-        let mut stopped = None;
+        let sign = self.instance.sign();
         let mut header = log;
         let mut watch = |p: &Progress| {
             if header {
                 header = false;
-                monitor.log("   iter       objective     primal       dual         mu      step");
+                budget.log("   iter       objective     primal       dual         mu      step");
             }
             if log {
-                monitor.log(&format!(
+                budget.log(format!(
                     "{:>7}{} {:>15.8e} {:>10.2e} {:>10.2e} {:>10.2e} {:>9.2e}",
                     p.iteration,
                     if p.restoration { 'r' } else { ' ' },
@@ -589,22 +599,30 @@ impl Driver<'_> {
                     p.step
                 ));
             }
+            budget.progress(budget::Progress {
+                method: name,
+                iteration: p.iteration,
+                objective: Some(sign * p.objective),
+                primal: Some(p.primal),
+                dual: Some(p.dual),
+                ..budget::Progress::default()
+            });
             let failures = lock(&*nlp).failures();
-            stopped = stopped.or(why_stop(monitor.interrupted(), deadline, limit, failures));
             let unbounded = p.objective < -UNBOUNDED && p.primal < 1e-3;
             let astray = unbounded || p.objective > LOST;
-            stopped.is_none() && (p.restoration || !astray)
+            let stopped = budget.stop_after_failures(failures).is_some();
+            !stopped && (p.restoration || !astray)
         };
+        let seconds = Some(budget.seconds_left()).filter(|s| *s < 1e9);
         let mut control = Control {
             options,
             iterations: left.min(cap),
-            deadline,
+            seconds: seconds.map(|s| s.max(1e-3)),
             watch: &mut watch,
         };
         let result = self.provider.solve(nlp.clone(), &mut control);
         let solution = result.map_err(SolveError::new)?;
-        self.iterations += solution.iterations;
-        self.stopped = stopped.or(self.stopped);
+        self.spend(solution.iterations);
         self.note_end(solution.ended);
         self.ended = solution.ended;
         self.failures += usize::from(solution.ended == Ended::Infeasible);
@@ -619,6 +637,7 @@ impl Driver<'_> {
 
     /// Puts a point into the bounds and computes its residuals.
     pub(super) fn judge(&mut self, mut x: Vec<f64>, lambda: Vec<f64>, ended: Ended) -> Trial {
+        let affords = self.affords_factors();
         let mut problem = lock(&*self.problem);
         let kinks = &mut self.kinks;
         {
@@ -636,7 +655,7 @@ impl Driver<'_> {
             Some(t) if t.is_optimal() || !plain.is_optimal() => t,
             _ => plain,
         };
-        let nearly = best.residual() < 1e-2 && best.residual() > 1e-13;
+        let nearly = affords && best.residual() < 1e-2 && best.residual() > 1e-13;
         if nearly
             && let Some(t) = polished(self.instance, &mut problem, kinks, &best, 1e-6)
             && t.residual() < best.residual()
@@ -647,8 +666,8 @@ impl Driver<'_> {
             best = t;
         }
         clean(self.instance, &mut best);
-        if self.settings.log {
-            self.monitor.log(&format!(
+        if self.budget.wants_log() {
+            self.budget.log(format!(
                 "{ended:?}: objective {:.10e}, residuals of the model: primal {:.2e}, dual {:.2e}",
                 best.objective, best.residuals.primal_relative, best.residuals.dual_relative
             ));
@@ -680,7 +699,7 @@ impl Driver<'_> {
             let Some(best) = self.best.clone().filter(Trial::is_optimal) else {
                 return Ok(());
             };
-            if self.stopped.is_some() {
+            if self.is_stopped() {
                 return Ok(());
             }
             let Some(x) = self.beyond_saddle(&best) else {
@@ -706,6 +725,9 @@ impl Driver<'_> {
 
     /// A point beyond the saddle, if the trial is one.
     fn beyond_saddle(&mut self, t: &Trial) -> Option<Vec<f64>> {
+        if !self.affords_factors() {
+            return None;
+        }
         let mut problem = lock(&*self.problem);
         let (lower, upper) = (problem.bounds().0.to_vec(), problem.bounds().1.to_vec());
         let active = active_set(self.instance, &problem, t, 1e-6);

@@ -34,7 +34,7 @@ pub(super) enum Growth {
     Ignored,
 }
 
-impl Driver<'_> {
+impl Driver<'_, '_> {
     /// What a run from a start led to, or what was found out about where it was going.
     pub(super) fn follow(&mut self, start: Vec<f64>, trial: Trial) -> Result<Trial, SolveError> {
         let Growth::Watched(times) = self.growth else {
@@ -45,7 +45,7 @@ impl Driver<'_> {
         let astray = trial.ended == Ended::Diverging || trial.receding || far;
         // a second time only for points that the rows allow
         let tried = times == TIMES || times > 0 && !trial.is_feasible();
-        if trial.is_optimal() || !astray || tried || self.stopped.is_some() {
+        if trial.is_optimal() || !astray || tried || self.is_stopped() {
             return Ok(trial);
         }
         let beyond = is_far(BOXES[1]);
@@ -67,7 +67,7 @@ impl Driver<'_> {
         let mut before: Option<f64> = None;
         let mut start = start;
         for reach in BOXES {
-            if self.stopped.is_some() {
+            if self.is_stopped() {
                 break;
             }
             let Some(inside) = self.confined(&start, reach)? else {
@@ -104,9 +104,7 @@ impl Driver<'_> {
 
     /// A certified point of the program in a box.
     fn confined(&mut self, start: &[f64], reach: f64) -> Result<Option<Trial>, SolveError> {
-        if self.settings.log {
-            self.monitor.log(&format!("within ±{reach:e}"));
-        }
+        self.budget.log(format!("within ±{reach:e}"));
         let eliminated = self.eliminated();
         let mut instance = self.instance.clone();
         let columns = &mut instance.columns;
@@ -124,9 +122,8 @@ impl Driver<'_> {
         let start = inside.map(|(x, (&l, &u))| x.max(l).min(u)).collect();
         problem.set_start(start);
         let (provider, settings) = (self.provider, self.settings);
-        let mut inner = Driver::new(&instance, problem, provider, settings, self.monitor);
+        let mut inner = Driver::new(&instance, problem, provider, settings, self.budget);
         inner.growth = Growth::Ignored;
-        inner.begin = self.begin;
         inner.iterations = self.iterations;
         inner.attempt(From::Start, &[])?;
         inner.leave_saddles()?;
@@ -136,7 +133,7 @@ impl Driver<'_> {
         }
         let best = inner.best.take();
         let found = best.filter(|t| t.is_stationary() || inner.is_unbounded(t));
-        (self.iterations, self.stopped) = (inner.iterations, inner.stopped);
+        self.iterations = inner.iterations;
         Ok(found)
     }
 }

@@ -10,7 +10,9 @@
 // the only module that talks to C
 #![allow(unsafe_code)]
 
+use super::options::IPOPT_OPTIONS;
 use super::provider::{Control, Ended, Progress, Provider, Shared, Solution, lock};
+use crate::model::option::OptionTable;
 use ipopt_sys as c;
 use std::ffi::{CString, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -26,7 +28,6 @@ struct State<'a, 'c> {
     nlp: Shared,
     control: &'a mut Control<'c>,
     iterations: u64,
-    timed_out: bool,
 }
 
 /// Integer options; other numbers are real.
@@ -70,10 +71,18 @@ impl Provider for Ipopt {
         "ipopt"
     }
 
+    fn version(&self) -> &'static str {
+        "nlp, dnlp, qcp: Ipopt of the system, through ipopt-sys 0.6"
+    }
+
+    fn options(&self) -> &'static OptionTable {
+        &IPOPT_OPTIONS
+    }
+
     fn solve(&self, nlp: Shared, control: &mut Control<'_>) -> Result<Solution, String> {
         let _turn = lock(&ONE_AT_A_TIME);
         let (n, m) = lock(&nlp).size();
-        let mut options = control.all_options()?;
+        let mut options = control.all_options();
         options.push(("option_file_name".into(), String::new()));
         let mut problem: c::CNLP_ProblemPtr = std::ptr::null_mut();
         // SAFETY: the out-pointer is valid, the callbacks have the required signatures.
@@ -106,7 +115,6 @@ impl Provider for Ipopt {
             nlp,
             control,
             iterations: 0,
-            timed_out: false,
         };
         let solution = result.map(|()| {
             let data: *mut c_void = (&raw mut state).cast();
@@ -126,12 +134,7 @@ impl Provider for Ipopt {
         });
         // SAFETY: created above, freed once.
         unsafe { c::cnlp_free_problem(problem) };
-        solution.map(|mut s| {
-            if state.timed_out {
-                s.ended = Ended::Time;
-            }
-            s
-        })
+        solution
     }
 }
 
@@ -411,13 +414,6 @@ unsafe extern "C" fn intermediate(
 ) -> c::CNLP_Bool {
     with(data, |s| {
         s.iterations = u64::try_from(iteration).unwrap_or(0);
-        if s.control
-            .deadline
-            .is_some_and(|d| std::time::Instant::now() > d)
-        {
-            s.timed_out = true;
-            return None;
-        }
         let go_on = (s.control.watch)(&Progress {
             iteration: s.iterations,
             objective,

@@ -15,6 +15,7 @@ mod growth;
 #[cfg(feature = "ipopt")]
 pub mod ipopt;
 mod newton;
+mod options;
 pub mod polish;
 #[cfg(feature = "pounce")]
 pub mod pounce;
@@ -29,9 +30,16 @@ mod trial;
 mod verdict;
 
 use super::answer::{Answer, linear};
-use super::{Monitor, Outcome, Settings, SolveError, Solver, lp};
+use super::backend::{Backend, Supports, Task, Terms};
+use super::{Budget, Settings, SolveError, lp};
 use crate::model::instance::Instance;
+use crate::model::option::OptionTable;
 use epigraph::Epigraph;
+#[cfg(feature = "ipopt")]
+pub use options::IPOPT_OPTIONS;
+#[cfg(feature = "pounce")]
+pub use options::POUNCE_OPTIONS;
+pub use options::SHARED_OPTIONS;
 use provider::Provider;
 
 /// Name of the threads on which providers run that may panic.
@@ -55,7 +63,7 @@ pub fn answer(
     choice: Option<&str>,
     instance: &Instance,
     settings: &Settings,
-    monitor: &mut dyn Monitor,
+    budget: &Budget,
 ) -> Result<Answer, SolveError> {
     let all = providers();
     let named = choice.and_then(|c| all.iter().find(|p| p.name().eq_ignore_ascii_case(c)));
@@ -72,14 +80,14 @@ pub fn answer(
     if let Some(epigraph) = Epigraph::new(instance) {
         let smooth = &epigraph.instance;
         let answer = match smooth.is_linear() {
-            true => linear(&lp::Clarabel, smooth, settings, monitor),
-            false => driver::solve(smooth, provider, convexity, settings, monitor),
+            true => linear(&lp::Clarabel, smooth, settings, budget),
+            false => driver::solve(smooth, provider, convexity, settings, budget),
         };
         if let Some(answer) = answer.ok().and_then(|a| epigraph.restore(instance, a)) {
             return Ok(answer);
         }
     }
-    driver::solve(instance, provider, convexity, settings, monitor)
+    driver::solve(instance, provider, convexity, settings, budget)
 }
 
 /// What is made of a convex quadratic program.
@@ -93,21 +101,37 @@ pub enum Convexity {
     Asked,
 }
 
-/// A nonlinear solver by name, for callers that want the bare outcome.
-#[derive(Clone, Copy, Debug)]
-pub struct Nonlinear(pub &'static str);
+/// A nonlinear solver as a backend.
+#[derive(Clone, Copy)]
+pub struct Nonlinear(pub &'static dyn Provider);
 
-impl Solver for Nonlinear {
+impl Backend for Nonlinear {
     fn name(&self) -> &'static str {
-        self.0
+        self.0.name()
+    }
+
+    fn version(&self) -> &'static str {
+        self.0.version()
+    }
+
+    fn supports(&self) -> Supports {
+        Supports {
+            terms: Terms::Kinks,
+            linear: false,
+            ..lp::SUPPORTS
+        }
+    }
+
+    fn options(&self) -> &'static OptionTable {
+        self.0.options()
     }
 
     fn solve(
         &self,
-        instance: &Instance,
+        task: &Task,
         settings: &Settings,
-        monitor: &mut dyn Monitor,
-    ) -> Result<Outcome, SolveError> {
-        answer(Some(self.0), instance, settings, monitor).map(|a| a.outcome)
+        budget: &Budget,
+    ) -> Result<Answer, SolveError> {
+        answer(task.choice, task.instance, settings, budget)
     }
 }

@@ -7,10 +7,13 @@
 //! shared, progress comes back through a channel, and a panic ends the thread, not the program.
 //! Without its restoration phase wired in, every hard case ends `RestorationFailed`.
 
+use super::options::{INSTALLATION, POUNCE_OPTIONS, is_described};
 use super::provider::{Control, Ended, Progress, Provider, Shared, Solution, lock};
+use crate::model::option::{Kind, OptionRow, OptionTable, row};
 use pounce_algorithm::application::{
     IpoptApplication, Ma57Config, default_backend_factory, feral_config_from_options,
 };
+use pounce_common::reg_options::{DefaultValue, OptionType, RegisteredOption};
 use pounce_common::types::{Index, Number};
 use pounce_nlp::ApplicationReturnStatus as Status;
 use pounce_nlp::return_codes::AlgorithmMode;
@@ -24,6 +27,7 @@ use pounce_restoration::resto_inner_solver::{
 };
 use std::cell::RefCell;
 use std::rc::Rc;
+use std::sync::OnceLock;
 #[cfg(feature = "system")]
 use std::sync::mpsc::channel;
 
@@ -36,9 +40,17 @@ impl Provider for Pounce {
         "pounce"
     }
 
+    fn version(&self) -> &'static str {
+        "nlp, dnlp, qcp: Ipopt's algorithm in Rust, pounce 0.14.0"
+    }
+
+    fn options(&self) -> &'static OptionTable {
+        &POUNCE_OPTIONS
+    }
+
     fn solve(&self, nlp: Shared, control: &mut Control<'_>) -> Result<Solution, String> {
-        let mut options = control.all_options()?;
-        if let Some(s) = control.seconds() {
+        let mut options = control.all_options();
+        if let Some(s) = control.seconds {
             options.push(("max_wall_time".into(), format!("{s:.6}")));
         }
         // Without threads nobody can be asked; the time limit holds.
@@ -90,6 +102,57 @@ fn on_a_thread(
     }
 }
 
+/// pounce's options that the table does not describe, from its own list.
+pub fn further_options() -> &'static [OptionRow] {
+    static ROWS: OnceLock<Vec<OptionRow>> = OnceLock::new();
+    ROWS.get_or_init(|| {
+        let mut app = IpoptApplication::new();
+        if app.initialize().is_err() {
+            return Vec::new();
+        }
+        let all = app.registered_options().registered_options_in_order();
+        let known = |name: &str| is_described(name) || INSTALLATION.contains(&name);
+        let further = all.iter().filter(|o| !known(&o.name));
+        further.map(|o| described(o)).collect()
+    })
+}
+
+/// A row from pounce's description. It lives as long as the program: the list is made once.
+fn described(o: &RegisteredOption) -> OptionRow {
+    let leak = |text: &str| -> &'static str { Box::leak(text.to_string().into_boxed_str()) };
+    let low = if o.has_lower {
+        o.lower
+    } else {
+        f64::NEG_INFINITY
+    };
+    let high = if o.has_upper { o.upper } else { f64::INFINITY };
+    let kind = match o.option_type {
+        OptionType::OT_Number if o.lower_strict || o.upper_strict => Kind::Inside(low, high),
+        OptionType::OT_Number => Kind::Real(low, high),
+        OptionType::OT_Integer => Kind::Whole(low, high),
+        OptionType::OT_String | OptionType::OT_Unknown => {
+            let words = o.valid_strings.iter().map(|e| leak(&e.value));
+            let words: Vec<&'static str> = words.collect();
+            match words.is_empty() || words.contains(&"*") {
+                true => Kind::Text,
+                false => Kind::Words(words.leak()),
+            }
+        }
+    };
+    let default = match &o.default {
+        DefaultValue::None => String::new(),
+        DefaultValue::Number(v) => format!("{v:e}"),
+        DefaultValue::Integer(v) => v.to_string(),
+        DefaultValue::String(v) => v.clone(),
+    };
+    row(
+        leak(&o.name),
+        kind,
+        leak(&default),
+        leak(&o.short_description),
+    )
+}
+
 /// Solves; `tell` hears of each iteration, and says whether to go on.
 fn run(
     nlp: Shared,
@@ -100,9 +163,10 @@ fn run(
     for (k, v) in options {
         app.options_mut()
             .read_from_str(&format!("{k} \"{v}\"\n"), true)
-            .map_err(|e| format!("pounce does not take the option `{k} {v}` ({e:?})"))?;
+            .map_err(|_| format!("pounce does not take the option `{k} {v}`"))?;
     }
-    app.initialize().map_err(|e| format!("{e:?}"))?;
+    app.initialize()
+        .map_err(|e| format!("pounce could not begin: {}", e.message))?;
     let configuration = feral_config_from_options(app.options());
     let mint = move || -> InnerBackendFactoryFactory {
         let configuration = configuration.clone();

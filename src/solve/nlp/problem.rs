@@ -80,6 +80,10 @@ fn entries((rows, columns): (&[u32], &[u32]), value: Vec<f64>) -> Vec<Entry> {
     place.zip(value).map(entry).collect()
 }
 
+/// Violation up to which a point on the way counts as one that satisfies the constraints: well within what the certificate
+/// asks for, whose units may be smaller.
+const SEEN_TOLERANCE: f64 = 1e-8;
+
 /// Where f comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ObjectiveForm {
@@ -137,6 +141,8 @@ pub struct Problem {
     lambda: Vec<f64>,
     activity_at: Option<Vec<f64>>,
     derivative_at: Option<Vec<f64>>,
+    /// The best point that satisfies the constraints of those at which they were evaluated, with its objective.
+    pub best_seen: Option<(f64, Vec<f64>)>,
     /// Evaluations that failed.
     pub failure_count: u64,
     /// The last of them.
@@ -275,6 +281,7 @@ impl Problem {
             lambda: vec![0.0; m],
             activity_at: None,
             derivative_at: None,
+            best_seen: None,
             failure_count: 0,
             last_failure: None,
             evaluator,
@@ -347,6 +354,34 @@ impl Problem {
         }
     }
 
+    /// Keeps x if it satisfies bounds and constraints, whose values are known there, and is better than what was kept.
+    fn note(&mut self, x: &[f64]) {
+        let f = match self.form {
+            ObjectiveForm::Nothing | ObjectiveForm::Constant => 0.0,
+            ObjectiveForm::Variable { variable } => self.sign * x[variable],
+            ObjectiveForm::Row {
+                row, coefficient, ..
+            } => self.sign * (self.rhs[row] - self.activity[row]) / coefficient,
+        };
+        if !f.is_finite() || self.best_seen.as_ref().is_some_and(|b| b.0 <= f) {
+            return;
+        }
+        let within = |v: f64, l: f64, u: f64| {
+            let room = SEEN_TOLERANCE * v.abs().max(1.0);
+            v >= l - room && v <= u + room
+        };
+        let mut bounds = x.iter().zip(self.lower.iter().zip(&self.upper));
+        let mut rows = self
+            .rows
+            .iter()
+            .zip(self.row_lower.iter().zip(&self.row_upper));
+        if bounds.all(|(&v, (&l, &u))| within(v, l, u))
+            && rows.all(|(&i, (&l, &u))| within(self.activity[i as usize], l, u))
+        {
+            self.best_seen = Some((f, x.to_vec()));
+        }
+    }
+
     fn fail(&mut self, failure: EvalFailure) {
         self.failure_count += 1;
         self.last_failure = Some(failure);
@@ -362,6 +397,7 @@ impl Problem {
         match self.evaluator.rows(&self.full, &mut self.activity) {
             Ok(()) => {
                 self.activity_at = Some(x.to_vec());
+                self.note(x);
                 Some(())
             }
             Err(e) => {

@@ -1,8 +1,8 @@
 //! What the driver and the solvers of nonlinear programs say to each other.
 
 use super::problem::Nlp;
+use crate::model::option::OptionTable;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Instant;
 
 /// How a provider says it ended, in Ipopt's distinctions.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -31,6 +31,8 @@ pub enum Ended {
     InvalidNumber,
     /// An option was refused.
     InvalidOption,
+    /// Not begun: its factors do not fit.
+    TooLarge,
     /// Anything else.
     Broken,
 }
@@ -75,32 +77,19 @@ pub struct Control<'c> {
     pub options: Vec<(String, String)>,
     /// Iterations.
     pub iterations: u64,
-    /// When to stop.
-    pub deadline: Option<Instant>,
+    /// Seconds left, if there is a limit.
+    pub seconds: Option<f64>,
     /// Called once per iteration; false stops.
     pub watch: &'c mut dyn FnMut(&Progress) -> bool,
 }
 
 impl Control<'_> {
-    /// What is to be set: silence, the iteration limit, and what was asked for. Err: an option that
-    /// is not available.
-    pub fn all_options(&self) -> Result<Vec<(String, String)>, String> {
+    /// What is to be set: silence, the iteration limit, and what was asked for.
+    pub fn all_options(&self) -> Vec<(String, String)> {
         let limit = self.iterations.min(1_000_000_000).to_string();
         let own = [("print_level", "0"), ("sb", "yes"), ("max_iter", &limit)];
         let own = own.map(|(k, v)| (k.to_string(), v.to_string()));
-        match self.options.iter().find(|(k, _)| is_forbidden(k)) {
-            Some((k, _)) => Err(format!("the option `{k}` is not available here")),
-            None => Ok(own.into_iter().chain(self.options.clone()).collect()),
-        }
-    }
-
-    /// Seconds left.
-    pub fn seconds(&self) -> Option<f64> {
-        self.deadline.map(|d| {
-            d.saturating_duration_since(Instant::now())
-                .as_secs_f64()
-                .max(1e-3)
-        })
+        own.into_iter().chain(self.options.clone()).collect()
     }
 }
 
@@ -113,27 +102,14 @@ pub fn lock<T: ?Sized>(nlp: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 /// A solver of nonlinear programs.
-pub trait Provider {
+pub trait Provider: Sync {
     /// Lower-case name.
     fn name(&self) -> &'static str;
+    /// What it is made of.
+    fn version(&self) -> &'static str;
+    /// The options that it takes.
+    fn options(&self) -> &'static OptionTable;
 
     /// Solves. Err: an option that the provider does not take, in words.
     fn solve(&self, nlp: Shared, control: &mut Control<'_>) -> Result<Solution, String>;
-}
-
-/// Options that would make a provider read or write files, or print.
-fn is_forbidden(option: &str) -> bool {
-    const FORBIDDEN: [&str; 10] = [
-        "output_file",
-        "option_file_name",
-        "file_print_level",
-        "file_append",
-        "print_level",
-        "hsllib",
-        "pardisolib",
-        "print_options_documentation",
-        "print_user_options",
-        "journal",
-    ];
-    FORBIDDEN.contains(&option.to_lowercase().as_str())
 }

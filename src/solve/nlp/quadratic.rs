@@ -13,9 +13,11 @@
 use super::problem::{Entry, Nlp, ObjectiveForm, Problem};
 use super::provider::{Ended, Solution};
 use crate::autodiff::Degree;
+use crate::solve::Budget;
+use crate::solve::factor_size::symmetric_size;
+use crate::solve::lp;
 use crate::solve::lp::form::{self, Sparse};
 use crate::solve::lp::interior::{self, Aim};
-use crate::solve::lp::{self, Limits};
 use faer::Side;
 use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
 use faer::sparse::{SparseColMat, Triplet};
@@ -35,7 +37,7 @@ pub struct Quadratic {
 
 impl Quadratic {
     /// Takes a problem apart; None where it is none of the kind.
-    pub fn new(problem: &mut Problem) -> Option<Self> {
+    pub fn new(problem: &mut Problem, budget: &Budget) -> Option<Self> {
         let ObjectiveForm::Row { row, .. } = problem.form() else {
             return None;
         };
@@ -48,7 +50,9 @@ impl Quadratic {
         let origin = vec![0.0; n];
         let mut entries = problem.hessian_entries(&origin, &vec![0.0; m])?;
         entries.retain(|e| e.2 != 0.0);
-        if !is_semidefinite(n, &entries) {
+        let pattern = || entries.iter().map(|e| (e.0, e.1)).filter(|(i, j)| i != j);
+        let size = || symmetric_size("the factor of the Hessian", n, pattern());
+        if budget.affords(size).is_err() || !is_semidefinite(n, &entries) {
             return None;
         }
         let mut cost = vec![0.0; n];
@@ -78,15 +82,9 @@ impl Quadratic {
     }
 
     /// Runs Clarabel. Multipliers λ as in L = f + λᵀg.
-    pub fn solve(&self, limits: &Limits, interrupted: &mut dyn FnMut() -> bool) -> Solution {
+    pub fn solve(&self, budget: &Budget) -> Solution {
         let hessian = Some(&self.hessian);
-        let run = interior::solve(
-            &self.linear,
-            hessian,
-            Aim::Tolerance(TOLERANCE),
-            limits,
-            interrupted,
-        );
+        let run = interior::solve(&self.linear, hessian, Aim::Tolerance(TOLERANCE), budget);
         Solution {
             ended: match run.ended {
                 lp::Ended::Solved => Ended::Solved,
@@ -95,7 +93,7 @@ impl Quadratic {
                 lp::Ended::Iterations => Ended::Iterations,
                 lp::Ended::Time => Ended::Time,
                 lp::Ended::Interrupted => Ended::Stopped,
-                lp::Ended::Failed => Ended::Failed,
+                lp::Ended::Failed | lp::Ended::TooLarge(_) => Ended::Failed,
             },
             x: run.point.x,
             lambda: run.point.y.iter().map(|y| -y).collect(),

@@ -9,21 +9,16 @@ use crate::model::certificate::proves_infeasible;
 use crate::model::instance::{Function, Instance, KernelTerms, Op, Relation, SparseRows};
 use crate::solve::interval::Interval;
 use crate::solve::lp::Clarabel;
-use crate::solve::{Claim, Monitor, Settings, Solver};
+use crate::solve::{Budget, Claim, Settings, Solver};
 
 /// What a function value may be off by, relative to its size.
 const ROUNDING: f64 = 1e-14;
 
 /// Whether the linear relaxation is infeasible.
-pub fn is_infeasible(instance: &Instance, settings: &Settings, monitor: &mut dyn Monitor) -> bool {
+pub fn is_infeasible(instance: &Instance, budget: &Budget) -> bool {
     let relaxed = relax(instance);
-    // options of a nonlinear solver mean something else, or nothing, to this one
-    let settings = Settings {
-        options: Vec::new(),
-        log: false,
-        ..settings.clone()
-    };
-    match Clarabel.solve(&relaxed, &settings, monitor) {
+    let settings = Settings::default();
+    match budget.aside(|budget| Clarabel.solve(&relaxed, &settings, budget)) {
         Ok(o) => o.claim == Claim::Infeasible && proves_infeasible(&relaxed, &o.ray),
         Err(_) => false,
     }

@@ -12,6 +12,7 @@
 
 use super::problem::Nlp;
 use super::quadratic::by_rows;
+use crate::solve::Budget;
 use crate::solve::lp::Ended;
 use crate::solve::lp::form::{Point, Problem, Sparse};
 use crate::solve::lp::scale::Scaling;
@@ -104,7 +105,7 @@ impl Slopes {
 
 /// Runs from the start point, with so much effort at most. None where the start has no values or derivatives,
 /// where the problem is too large, and where it leads to infinity.
-pub fn solve(nlp: &mut dyn Nlp, effort: Effort, stop: &mut dyn FnMut() -> bool) -> Option<Run> {
+pub fn solve(nlp: &mut dyn Nlp, effort: Effort, budget: &Budget) -> Option<Run> {
     let (n, m) = nlp.size();
     if n + m > LARGEST {
         return None;
@@ -124,10 +125,10 @@ pub fn solve(nlp: &mut dyn Nlp, effort: Effort, stop: &mut dyn FnMut() -> bool) 
     let mut weight = 0.0;
     let mut basis = basis_at(nlp, &x, &here);
     let mut pivots = effort.pivots * (n + m) as u64;
-    while run.steps < effort.steps && radius > SMALLEST && !stop() {
+    while run.steps < effort.steps && radius > SMALLEST && !budget.is_over() {
         run.steps += 1;
         let program = linearised(nlp, &x, &here, &slopes, penalty, radius);
-        let Some((step, y)) = minimum(&program, &mut basis, &mut pivots) else {
+        let Some((step, y)) = minimum(&program, &mut basis, &mut pivots, budget) else {
             break;
         };
         run.lambda = y.iter().map(|y| -y).collect();
@@ -255,13 +256,18 @@ fn linearised(
 
 /// Solution and multipliers of a program, from a basis, which is renewed, or from that of all logicals. None: not within so
 /// many pivots, which are taken off.
-fn minimum(program: &Problem, basis: &mut Basis, pivots: &mut u64) -> Option<(Vec<f64>, Vec<f64>)> {
+fn minimum(
+    program: &Problem,
+    basis: &mut Basis,
+    pivots: &mut u64,
+    budget: &Budget,
+) -> Option<(Vec<f64>, Vec<f64>)> {
     let scaling = Scaling::new(program);
     let scaled = scaling.apply(program);
     for from in [basis.clone(), Basis::new()] {
         let mut simplex = Simplex::new(&scaled);
         simplex.limit = *pivots;
-        let ended = simplex.solve_from_basis(&from, &mut |_| None);
+        let ended = simplex.solve_from_basis(&from, &mut |_| budget.stop().map(Ended::from));
         *pivots = pivots.saturating_sub(simplex.iterations);
         if ended == Ended::Solved {
             let Point { x, y, .. } = scaling.restore(simplex.point()?);
@@ -276,6 +282,7 @@ fn minimum(program: &Problem, basis: &mut Basis, pivots: &mut u64) -> Option<(Ve
 mod tests {
     use super::*;
     use crate::model::instance::*;
+    use crate::solve::Quiet;
     use crate::solve::nlp::problem::Problem;
 
     /// max 2x + y, x ≤ 3, in a disc of radius 5 around 0, or on its rim.
@@ -323,8 +330,9 @@ mod tests {
             }),
             ..Instance::default()
         };
-        solve(&mut Problem::new(&instance), Effort::FULL, &mut || false)
-            .expect("the problem is small")
+        let mut quiet = Quiet::default();
+        let budget = Budget::unlimited(&mut quiet);
+        solve(&mut Problem::new(&instance), Effort::FULL, &budget).expect("the problem is small")
     }
 
     #[test]

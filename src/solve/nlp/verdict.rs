@@ -9,24 +9,31 @@ use super::trial::Trial;
 use crate::autodiff::{Degree, Evaluator};
 use crate::model::certificate_nlp::{is_locally_infeasible, violations};
 use crate::model::instance::{Instance, Relation};
-use crate::solve::{Claim, ModelStatus, Outcome, SolverStatus, answer::Answer};
+use crate::solve::{Claim, ModelStatus, Outcome, SolverStatus, Stop, answer::Answer};
 
-impl Driver<'_> {
+impl Driver<'_, '_> {
     /// Whether it is certain that there is no feasible point; asked where none was found.
     pub(super) fn is_impossible(&mut self) -> bool {
         let lacks_point = !self.best.as_ref().is_some_and(Trial::is_feasible);
         self.impossible = lacks_point
-            && self.stopped.is_none()
-            && relaxation::is_infeasible(self.instance, self.settings, self.monitor);
+            && !self.is_stopped()
+            && relaxation::is_infeasible(self.instance, self.budget);
         self.impossible
     }
 
     /// Turns the best trial into an answer.
     pub(super) fn finish(&mut self) -> Answer {
-        let best = self.best.take().unwrap_or_else(|| {
+        let lacks_optimum = !self.best.as_ref().is_some_and(Trial::is_optimal);
+        if self.best.is_none() || lacks_optimum && self.is_stopped() {
+            // what was stopped may have left a feasible point for worse ones
             let m = lock(&*self.problem).size().1;
-            self.judge(self.start.clone(), vec![0.0; m], Ended::Broken)
-        });
+            let seen = lock(&*self.problem).best_seen.take().map(|b| b.1);
+            for x in [Some(self.start.clone()), seen].into_iter().flatten() {
+                let trial = self.judge(x, vec![0.0; m], Ended::Broken);
+                self.keep(trial);
+            }
+        }
+        let best = self.best.take().expect("a point was kept");
         let unbounded = self.is_unbounded(&best);
         let mut problem = lock(&*self.problem);
         let affine = is_affine(self.instance, problem.evaluator(), &best.level);
@@ -64,13 +71,15 @@ impl Driver<'_> {
             ModelStatus::Infeasible | ModelStatus::LocallyInfeasible => Claim::Infeasible,
             _ => Claim::Unfinished,
         };
-        let solver_status = match (claim, self.stopped) {
+        let solver_status = match (claim, self.budget.stopped().map(Stop::status)) {
             (Claim::Unfinished, Some(s)) => s,
             (Claim::Unfinished, None) => match best.ended {
                 // the limit was the person's, not that of an attempt
                 Ended::Iterations if self.settings.option("max_iter").is_some() => {
                     SolverStatus::IterationInterrupt
                 }
+                Ended::TooLarge => SolverStatus::ResourceInterrupt,
+                Ended::Broken if self.message.is_some() => SolverStatus::ResourceInterrupt,
                 Ended::Broken => SolverStatus::InternalSolverFailure,
                 _ => SolverStatus::TerminatedBySolver,
             },
@@ -82,7 +91,7 @@ impl Driver<'_> {
                     .into(),
             ),
             (ModelStatus::Feasible | ModelStatus::IntermediateInfeasible, Some(f)) => {
-                let row = self.monitor.row_name(f.row as usize);
+                let row = self.budget.row_name(f.row as usize);
                 Some(format!("the last evaluation that failed: {f} in {row}"))
             }
             (ModelStatus::LocallyOptimal, _) if self.convex.is_some() => {

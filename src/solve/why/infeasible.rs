@@ -7,15 +7,14 @@
 //! once is needed in the end: with any one dropped, the rest can be satisfied.
 
 use std::collections::BTreeSet;
-use std::time::Instant;
 
 use super::Finding;
 use crate::model::instance::Instance;
-use crate::solve::lp::Ended;
+use crate::solve::Budget;
 use crate::solve::lp::form::{Form, Problem, Sparse};
 use crate::solve::lp::scale::Scaling;
 use crate::solve::lp::simplex::Simplex;
-use crate::solve::{Monitor, Settings};
+use crate::solve::lp::{Ended, watch};
 
 /// A member of the set.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
@@ -41,19 +40,14 @@ enum Tested {
 
 /// Finds one such set, from a proof's multipliers for the instance's rows (or from none). None: no
 /// contradiction was found.
-pub fn irreducible(
-    instance: &Instance,
-    ray: &[f64],
-    settings: &Settings,
-    monitor: &mut dyn Monitor,
-) -> Option<Finding> {
+pub fn irreducible(instance: &Instance, ray: &[f64], budget: &Budget) -> Option<Finding> {
+    budget.within(PATIENCE, u64::MAX, |budget| members(instance, ray, budget))
+}
+
+fn members(instance: &Instance, ray: &[f64], budget: &Budget) -> Option<Finding> {
     let form = Form::new(instance).ok()?;
     let scaling = Scaling::new(&form.problem);
     let p = scaling.apply(&form.problem);
-    let begin = Instant::now();
-    let patience = PATIENCE.min(settings.time_limit);
-    let mut stop =
-        |m: &mut dyn Monitor| m.interrupted() || begin.elapsed().as_secs_f64() > patience;
     let mut set: BTreeSet<Member> = BTreeSet::new();
     if ray.len() == instance.row_count() {
         let y: Vec<f64> = form
@@ -75,11 +69,11 @@ pub fn irreducible(
     // A proof that holds up to rounding may miss a member: then everything is looked at.
     let mut tested = Tested::Unknown;
     if !set.is_empty() {
-        tested = test(&p, &set, monitor, &mut stop);
+        tested = test(&p, &set, budget);
     }
     if !matches!(tested, Tested::Infeasible(..)) {
         set = all();
-        tested = test(&p, &set, monitor, &mut stop);
+        tested = test(&p, &set, budget);
     }
     let Tested::Infeasible(mut members, mut excess) = tested else {
         return None;
@@ -90,7 +84,7 @@ pub fn irreducible(
     while let Some(&member) = set.iter().find(|m| !needed.contains(m)) {
         let mut rest = set.clone();
         rest.remove(&member);
-        match test(&p, &rest, monitor, &mut stop) {
+        match test(&p, &rest, budget) {
             Tested::Infeasible(fewer, by) => {
                 set = fewer.iter().map(|m| m.0).collect();
                 // What was needed before is needed still; a proof has it.
@@ -162,13 +156,8 @@ fn support(p: &Problem, y: &[f64]) -> (Vec<(Member, f64)>, f64) {
 }
 
 /// Whether the members alone can be satisfied.
-fn test(
-    p: &Problem,
-    set: &BTreeSet<Member>,
-    monitor: &mut dyn Monitor,
-    stop: &mut dyn FnMut(&mut dyn Monitor) -> bool,
-) -> Tested {
-    if stop(monitor) {
+fn test(p: &Problem, set: &BTreeSet<Member>, budget: &Budget) -> Tested {
+    if budget.is_over() {
         return Tested::Unknown;
     }
     // Only what the members touch.
@@ -218,10 +207,7 @@ fn test(
     sub.columns = sub.rows.transpose(columns.len());
     let mut simplex = Simplex::new(&sub);
     let most = 5000 + 50 * (sub.m() + sub.n()) as u64;
-    let ended = simplex.solve(&mut |iterations| {
-        let over = iterations > most || stop(monitor);
-        over.then_some(Ended::Iterations)
-    });
+    let ended = simplex.solve(&mut watch(budget, most));
     match ended {
         Ended::Solved => Tested::Feasible,
         Ended::Infeasible(y) => {
@@ -246,7 +232,7 @@ mod tests {
     use crate::model::instance::{Relation, Sense};
     use crate::solve::conformance::{Quiet, linear};
     use crate::solve::lp::Clarabel;
-    use crate::solve::{Claim, Solver};
+    use crate::solve::{Claim, Settings, Solver};
 
     /// Whether the members alone can be satisfied, asked of the whole solver.
     fn satisfiable(instance: &Instance, members: &[Member]) -> bool {
@@ -265,7 +251,9 @@ mod tests {
                 i.rows.relation[r] = Relation::Free;
             }
         }
-        let o = Clarabel.solve(&i, &Settings::default(), &mut Quiet);
+        let mut quiet = Quiet::default();
+        let budget = Budget::unlimited(&mut quiet);
+        let o = Clarabel.solve(&i, &Settings::default(), &budget);
         o.expect("a linear instance").claim != Claim::Infeasible
     }
 
@@ -281,7 +269,7 @@ mod tests {
         ];
         let bounds = [(0., 3.), (-5., 50.), (0., inf)];
         let instance = linear(Sense::Minimize, &[1., 1., 1.], &bounds, &rows);
-        let found = irreducible(&instance, &[], &Settings::default(), &mut Quiet);
+        let found = irreducible(&instance, &[], &Budget::unlimited(&mut Quiet::default()));
         let Some(Finding::Irreducible { members, shown, .. }) = found else {
             panic!("it is infeasible: {found:?}");
         };

@@ -8,8 +8,9 @@ mod pairs;
 mod point;
 
 use super::answer::Answer;
-use super::{ModelStatus, Monitor, Settings};
+use super::{Budget, ModelStatus};
 use crate::model::instance::Instance;
+use crate::model::problem_type::ProblemType;
 
 pub use infeasible::{Member, irreducible};
 
@@ -89,50 +90,38 @@ const FEW: usize = 5;
 
 /// What explains the status of an answer.
 pub fn findings(
-    using: &str,
+    using: ProblemType,
     instance: &Instance,
     answer: &Answer,
-    settings: &Settings,
-    monitor: &mut dyn Monitor,
+    budget: &Budget,
 ) -> Vec<Finding> {
     let mut out = Vec::new();
     let x = &answer.outcome.level;
     let linear = instance.is_linear() && instance.objective.is_some();
-    let solved = matches!(
-        answer.status,
-        ModelStatus::Optimal
-            | ModelStatus::LocallyOptimal
-            | ModelStatus::Solved
-            | ModelStatus::SolvedUnique
-    );
+    let solved = answer.status.is_solution();
     let scaling = point::scaling(instance, x);
     match answer.status {
         ModelStatus::Infeasible | ModelStatus::InfeasibleNoSolution if linear => {
-            out.extend(irreducible(
-                instance,
-                &answer.outcome.ray,
-                settings,
-                monitor,
-            ));
+            out.extend(irreducible(instance, &answer.outcome.ray, budget));
         }
         ModelStatus::IntegerInfeasible if linear => {
             // The relaxation may be infeasible already.
-            let relaxed = irreducible(instance, &[], settings, monitor);
-            let mut discrete =
-                || crate::solve::mip::conflict::conflict(instance, settings, monitor);
+            let relaxed = irreducible(instance, &[], budget);
+            let discrete = || crate::solve::mip::conflict::conflict(instance, budget);
             out.extend(relaxed.or_else(|| discrete().map(Finding::Discrete)));
         }
         ModelStatus::Unbounded | ModelStatus::UnboundedNoSolution => {
             out.extend(point::ray(instance, &answer.outcome.ray));
         }
-        _ if matches!(using, "mcp" | "cns") => {
-            let found = (!solved).then(|| pairs::findings(instance, using == "cns", x));
+        _ if using.is_system() => {
+            let square = using == ProblemType::Cns;
+            let found = (!solved).then(|| pairs::findings(instance, square, x));
             out.extend(found.into_iter().flatten());
         }
         _ if linear => {
             // Also where the solver gave up: an infeasible program is infeasible.
             if !solved && !answer.residuals.is_feasible(1e-6) {
-                out.extend(irreducible(instance, &[], settings, monitor));
+                out.extend(irreducible(instance, &[], budget));
             }
             if !solved && out.is_empty() {
                 out.extend(point::inaccurate(instance, answer));

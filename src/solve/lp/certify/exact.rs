@@ -15,9 +15,9 @@ use num_traits::{Signed, ToPrimitive, Zero};
 
 use super::super::form::Problem;
 use super::super::simplex::{Simplex, State};
-use super::super::{Ended, Limits, watch};
+use super::super::{Ended, watch};
 use super::Unproved;
-use crate::solve::Monitor;
+use crate::solve::Budget;
 use crate::solve::interval::Interval;
 
 /// What the basis proves.
@@ -35,21 +35,13 @@ fn rational(x: f64) -> BigRational {
 
 /// Solves the program and its basis exactly, with at most so much work (word operations, roughly).
 /// None: it was not solved, or not within that.
-pub fn value(
-    p: &Problem,
-    effort: u64,
-    limits: &Limits,
-    monitor: &mut dyn Monitor,
-) -> Option<Value> {
+pub fn value(p: &Problem, effort: u64, budget: &Budget) -> Option<Value> {
     let mut simplex = Simplex::new(p);
-    let most = Limits {
-        iterations: limits.iterations.min(2000 + 20 * (p.m() + p.n()) as u64),
-        ..*limits
-    };
-    if simplex.solve(&mut watch(&most, monitor)) != Ended::Solved {
+    let most = 2000 + 20 * (p.m() + p.n()) as u64;
+    if simplex.solve(&mut watch(budget, most)) != Ended::Solved {
         return None;
     }
-    simplex.tighten(&mut watch(&most, monitor));
+    simplex.tighten(&mut watch(budget, most));
     let basis = simplex.basis();
     let (n, m) = (p.n(), p.m());
     let columns: Vec<usize> = (0..n).filter(|&j| basis[j] == State::Basic).collect();

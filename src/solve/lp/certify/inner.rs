@@ -14,32 +14,28 @@
 //! How much must be mixed in depends on the inequalities that do not hold yet, and those are few: a second point
 //! gives room in proportion to what they lack, often a thousand times as much ([`room_for`]).
 
+use super::super::Ended;
 use super::super::form::{Problem, Sparse};
 use super::super::interior::{self, Aim};
-use super::super::{Ended, Limits};
 use super::polyhedron::Polyhedron;
+use crate::solve::Budget;
 
 /// Slacks below this are none.
 pub const SLACK: f64 = 1e-7;
 
 /// A point with room around it, as nearly as floating-point numbers go. None: none was found.
 /// `near` is a point that is (nearly) optimal.
-pub fn point(
-    poly: &Polyhedron,
-    near: &[f64],
-    limits: &Limits,
-    interrupted: &mut dyn FnMut() -> bool,
-) -> Option<Vec<f64>> {
+pub fn point(poly: &Polyhedron, near: &[f64], budget: &Budget) -> Option<Vec<f64>> {
     let value: f64 = poly.cost.iter().zip(near).map(|(c, x)| c * x).sum();
     let limit = value + if value == 0.0 { 1.0 } else { value.abs() };
     for limit in [limit, f64::INFINITY] {
-        if let Some((x, slack)) = search(poly, Room::Equal, limit, limits, interrupted)
+        if let Some((x, slack)) = search(poly, Room::Equal, limit, budget)
             && slack > SLACK
         {
             return Some(x);
         }
     }
-    Some(search(poly, Room::Each, f64::INFINITY, limits, interrupted)?.0)
+    Some(search(poly, Room::Each, f64::INFINITY, budget)?.0)
 }
 
 /// A point between `central`, which has room everywhere, and one that has the most room where `lack` (of the
@@ -48,8 +44,7 @@ pub fn room_for(
     lack: &[f64],
     poly: &Polyhedron,
     central: &[f64],
-    limits: &Limits,
-    interrupted: &mut dyn FnMut() -> bool,
+    budget: &Budget,
 ) -> Option<Vec<f64>> {
     let most = lack.iter().fold(0.0f64, |t, &v| t.max(v));
     if most <= 0.0 {
@@ -57,7 +52,7 @@ pub fn room_for(
     }
     let share: Vec<f64> = lack.iter().map(|v| (v / most).max(LEAST)).collect();
     let value: f64 = poly.cost.iter().zip(central).map(|(c, x)| c * x).sum();
-    let (x, slack) = search(poly, Room::Shares(&share), value, limits, interrupted)?;
+    let (x, slack) = search(poly, Room::Shares(&share), value, budget)?;
     let mix = |(a, b): (&f64, &f64)| a + CENTRAL * (b - a);
     (slack > SLACK).then(|| x.iter().zip(central).map(mix).collect())
 }
@@ -83,8 +78,7 @@ fn search(
     poly: &Polyhedron,
     room: Room<'_>,
     limit: f64,
-    limits: &Limits,
-    interrupted: &mut dyn FnMut() -> bool,
+    budget: &Budget,
 ) -> Option<(Vec<f64>, f64)> {
     let n = poly.n();
     let mut p = Problem {
@@ -148,7 +142,7 @@ fn search(
         p.row_upper.push(limit);
     }
     p.columns = p.rows.transpose(p.cost.len());
-    let run = interior::solve(&p, None, Aim::Tolerance(1e-9), limits, interrupted);
+    let run = interior::solve(&p, None, Aim::Tolerance(1e-9), budget);
     if run.ended != Ended::Solved {
         return None;
     }

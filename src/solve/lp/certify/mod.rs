@@ -28,10 +28,10 @@ use super::crossover;
 use super::form::{Form, Point, Problem};
 use super::scale::Scaling;
 use super::simplex::{Simplex, State, Wide};
-use super::{Ended, Limits, SolveError, watch};
+use super::{Ended, SolveError, watch};
 use crate::model::instance::Instance;
 use crate::solve::interval::{Interval, WideSum, two_sum};
-use crate::solve::{Monitor, Outcome, Quiet, Settings};
+use crate::solve::{Budget, Limits, Outcome, Quiet};
 use polyhedron::Polyhedron;
 use system::System;
 
@@ -95,21 +95,17 @@ const SMALL: usize = 120;
 pub fn certify(
     instance: &Instance,
     outcome: &Outcome,
-    settings: &Settings,
-    monitor: &mut dyn Monitor,
+    budget: &Budget,
 ) -> Result<Proof, SolveError> {
-    certify_by(instance, outcome, settings, monitor, true)
+    certify_by(instance, outcome, budget, true)
 }
 
 /// A lower bound of a small program in rational arithmetic, without its offset; −∞ if none was proved.
 pub fn exact_low(p: &Problem) -> f64 {
-    let limits = Limits {
-        start: std::time::Instant::now(),
-        seconds: f64::INFINITY,
-        iterations: u64::MAX,
-    };
+    let mut quiet = Quiet::default();
+    let budget = Budget::new(&mut quiet, Limits::default(), false);
     let small = p.m() + p.n() <= SMALL;
-    let value = small.then(|| exact::value(p, 2_000_000, &limits, &mut Quiet));
+    let value = small.then(|| exact::value(p, 2_000_000, &budget));
     let value = value.flatten().and_then(|v| v.lower.ok());
     value.map_or(f64::NEG_INFINITY, |v| v.low)
 }
@@ -118,14 +114,12 @@ pub fn exact_low(p: &Problem) -> f64 {
 pub(super) fn certify_by(
     instance: &Instance,
     outcome: &Outcome,
-    settings: &Settings,
-    monitor: &mut dyn Monitor,
+    budget: &Budget,
     by_basis: bool,
 ) -> Result<Proof, SolveError> {
     let form = Form::exact(instance)?;
     let scaling = Scaling::new(&form.problem);
     let p = scaling.apply(&form.problem);
-    let limits = Limits::of(settings, std::time::Instant::now());
     let why = |why| Unproved {
         why,
         row: None,
@@ -139,25 +133,25 @@ pub(super) fn certify_by(
         let small = p.m() + p.n() <= SMALL;
         if by_basis
             && small
-            && let Some(value) = exact::value(&p, 2_000_000, &limits, monitor)
+            && let Some(value) = exact::value(&p, 2_000_000, budget)
         {
             (upper, lower) = (value.upper, value.lower);
         }
         let near = scaling.carry(form.near(outcome));
         let basis = outcome.basis.as_deref();
         let basis = basis.filter(|b| b.len() == p.n() + p.m());
-        let [x, y] = vertex(&p, near, basis, &limits, monitor);
+        let [x, y] = vertex(&p, near, basis, budget);
         if upper.is_err() {
-            upper = side(&p, &Polyhedron::primal(&p), x, &limits, monitor, true);
+            upper = side(&p, &Polyhedron::primal(&p), x, budget, true);
         }
         if lower.is_err() {
-            lower = side(&p, &Polyhedron::dual(&p), y, &limits, monitor, false);
+            lower = side(&p, &Polyhedron::dual(&p), y, budget, false);
         }
         let missing = upper.is_err() || lower.is_err();
         if missing
             && by_basis
             && !small
-            && let Some(value) = exact::value(&p, 200_000_000, &limits, monitor)
+            && let Some(value) = exact::value(&p, 200_000_000, budget)
         {
             upper = upper.or(value.upper);
             lower = lower.or(value.lower);
@@ -199,27 +193,18 @@ pub(super) fn certify_by(
 /// The vertex at a point (if there are several optimal ones, a vertex of the same value), to nearly
 /// twice the working precision: what rounding violates is not in the way then. The point itself
 /// where none is found.
-fn vertex(
-    p: &Problem,
-    near: Point,
-    basis: Option<&[State]>,
-    limits: &Limits,
-    monitor: &mut dyn Monitor,
-) -> [Wide; 2] {
+fn vertex(p: &Problem, near: Point, basis: Option<&[State]>, budget: &Budget) -> [Wide; 2] {
     let mut simplex = Simplex::new(p);
     // A few pivots settle which of the columns at 0 are basic.
-    let most = Limits {
-        iterations: limits.iterations.min((p.m() + p.n()) as u64),
-        ..*limits
-    };
+    let most = (p.m() + p.n()) as u64;
     match basis {
         Some(basis) => simplex.set_basis(basis),
         None => {
             let start = crossover::start(p, &near, None);
-            let _ = simplex.push(&start, &mut watch(&most, monitor));
+            let _ = simplex.push(&start, &mut watch(budget, most));
         }
     }
-    let solved = simplex.solve(&mut watch(&most, monitor)) == Ended::Solved;
+    let solved = simplex.solve(&mut watch(budget, most)) == Ended::Solved;
     if solved {
         let tolerances = [
             (1e-11, 1e-11),
@@ -227,10 +212,10 @@ fn vertex(
             (1e-14, 1e-13),
             (1e-14, 1e-14),
         ];
-        simplex.tighten_to(&tolerances, &mut watch(&most, monitor));
+        simplex.tighten_to(&tolerances, &mut watch(budget, most));
     }
     let wide = simplex.wide_point().filter(|_| solved);
-    monitor.log(&format!("vertex: {} pivots", simplex.iterations));
+    budget.log(format!("vertex: {} pivots", simplex.iterations));
     wide.unwrap_or_else(|| {
         [near.x, near.y].map(|v| {
             let zero = vec![0.0; v.len()];
@@ -244,8 +229,7 @@ fn side(
     p: &Problem,
     poly: &Polyhedron,
     (mut near, mut near_low): Wide,
-    limits: &Limits,
-    monitor: &mut dyn Monitor,
+    budget: &Budget,
     primal: bool,
 ) -> Result<Interval, Unproved> {
     let fail = |why, row: Option<usize>, column: Option<usize>| {
@@ -259,7 +243,7 @@ fn side(
     } else {
         "no multipliers with room inside their bounds were found"
     };
-    let Some(inner) = inner::point(poly, &near, limits, &mut || monitor.interrupted()) else {
+    let Some(inner) = inner::point(poly, &near, budget) else {
         return fail(nothing, None, None);
     };
     // Room of a variable or row between its sides, at both points.
@@ -291,7 +275,7 @@ fn side(
             unit.push(terms.fold(target.abs().max(1e-3), f64::max));
         }
     }
-    let mut stop = || monitor.interrupted() || limits.seconds_left() <= 0.0;
+    let mut stop = || budget.is_over();
     let mut system = match System::new(poly, equations, &free, unit, &mut stop) {
         Ok(s) => s,
         Err(Some(row)) => {
@@ -304,10 +288,10 @@ fn side(
         Err(None) => return fail("the equations could not be solved reliably", None, None),
     };
     let what = if primal { "point" } else { "multipliers" };
-    monitor.log(&format!(
+    budget.log(format!(
         "{what}: {} equations verified after {:.2} s",
         system.rows().len(),
-        limits.start.elapsed().as_secs_f64()
+        budget.seconds()
     ));
     // The value of a mixture; Err: what its rows, then its columns, lack (nothing: numbers broke down).
     let mut at = |inner: &[f64], theta: f64| {
@@ -337,7 +321,7 @@ fn side(
     };
     let mut best = least(|theta| at(&inner, theta));
     if !best.as_ref().is_ok_and(|b| b.0 <= LITTLE) {
-        let roomy = inner::room_for(&lack, poly, &inner, limits, &mut || monitor.interrupted());
+        let roomy = inner::room_for(&lack, poly, &inner, budget);
         let second = roomy.map(|roomy| least(|theta| at(&roomy, theta)));
         let better = |a: Interval, b: Interval| match primal {
             true => a.high < b.high,
@@ -418,16 +402,18 @@ fn lack(poly: &Polyhedron, x: &Enclosed, system: &System) -> Vec<f64> {
 mod tests {
     use super::*;
     use crate::model::instance::{Relation, Sense};
+    use crate::solve::Settings;
     use crate::solve::Solver;
-    use crate::solve::conformance::{self, Quiet};
+    use crate::solve::conformance;
     use crate::solve::lp::Clarabel;
 
     fn proof(instance: &Instance) -> Proof {
         let settings = Settings::default();
+        let (mut quiet, mut again) = (Quiet::default(), Quiet::default());
         let outcome = Clarabel
-            .solve(instance, &settings, &mut Quiet)
+            .solve(instance, &settings, &Budget::unlimited(&mut quiet))
             .expect("a linear instance");
-        certify(instance, &outcome, &settings, &mut Quiet).expect("a linear instance")
+        certify(instance, &outcome, &Budget::unlimited(&mut again)).expect("a linear instance")
     }
 
     const INF: f64 = f64::INFINITY;

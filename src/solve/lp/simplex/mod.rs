@@ -29,26 +29,11 @@ mod unique;
 
 use super::Ended;
 use super::form::{Point, Problem, Sparse};
+pub use crate::model::outcome::{Basis, BasisStatus as State};
 use crate::model::sum::Sum;
 use crate::solve::interval::{WideSum, two_sum};
 use factor::{Entries, Factor, Failure, ZERO};
 use std::rc::Rc;
-
-/// Where a variable is in a basis.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum State {
-    /// In the basis.
-    Basic,
-    /// At its lower bound.
-    Lower,
-    /// At its upper bound.
-    Upper,
-    /// Without bounds, at 0.
-    Free,
-}
-
-/// A basis: one state per column, then one per row.
-pub type Basis = Vec<State>;
 
 /// Numbers as pairs `high + low`.
 pub type Wide = (Vec<f64>, Vec<f64>);

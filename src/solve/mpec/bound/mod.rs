@@ -11,15 +11,13 @@ mod products;
 mod sides;
 pub mod weak;
 
-use std::time::Instant;
-
 use super::pairs::Program;
 use super::settings::Bound;
 use super::split::{shifts, whole};
 use super::tree::{self, Lpcc, Prover};
+use crate::solve::Budget;
 use crate::solve::lp::form::Problem;
-use crate::solve::lp::{Ended, certify};
-use crate::solve::{Monitor, Settings};
+use crate::solve::lp::{Ended, certify, watch};
 use products::Products;
 
 /// A gap up to this, relative to the objective if that is above 1, is closed.
@@ -36,8 +34,6 @@ pub struct Proof {
     pub value: Option<f64>,
     /// A point that satisfies all pairs and is better than the one that was given.
     pub better: Option<Vec<f64>>,
-    /// Iterations of the linear programs.
-    pub iterations: u64,
     /// What there is to say.
     pub note: Option<String>,
 }
@@ -61,45 +57,37 @@ const ROOM: f64 = 1e-2;
 const NODES: usize = 1_000;
 
 /// A lower bound of the (minimised) objective; `level` is the best point known.
-pub fn lower(
-    program: &Program,
-    level: &[f64],
-    wanted: Bound,
-    settings: &Settings,
-    monitor: &mut dyn Monitor,
-) -> Proof {
-    let begin = Instant::now();
+pub fn lower(program: &Program, level: &[f64], wanted: Bound, budget: &Budget) -> Proof {
+    let seconds = match wanted {
+        Bound::Seconds(s) => s,
+        Bound::None | Bound::Quick => f64::INFINITY,
+    };
+    budget.within(seconds, u64::MAX, |budget| {
+        prove(program, level, wanted, budget)
+    })
+}
+
+fn prove(program: &Program, level: &[f64], wanted: Bound, budget: &Budget) -> Proof {
     let mut proof = Proof {
         value: None,
         better: None,
-        iterations: 0,
         note: None,
     };
     if !program.envelope.is_linear() {
         proof.note = Some("no lower bound: the model is not linear without its pairs".into());
         return proof;
     }
-    let mut settings = settings.clone();
     let (limits, nodes) = match wanted {
-        Bound::Seconds(s) => {
-            settings.time_limit = settings.time_limit.min(s);
-            (PRODUCTS[1], usize::MAX)
-        }
+        Bound::Seconds(_) => (PRODUCTS[1], usize::MAX),
         _ => (PRODUCTS[0], NODES),
     };
     let best = program.objective(level);
     let unit = best.abs().max(1.0);
     // The best point is to be well inside.
     let cutoff = best + GAP * unit;
-    let mut products = Products {
-        settings: &settings,
-        monitor: &mut *monitor,
-        begin,
-        iterations: 0,
-    };
+    let mut products = Products { budget };
     let mut problem = whole(program);
     let low = products.bound(program, &mut problem, best + ROOM * unit, level, limits);
-    proof.iterations += products.iterations;
     if is_closed(low, best) {
         proof.value = Some(low);
         return proof;
@@ -110,20 +98,24 @@ pub fn lower(
         enough: f64::NEG_INFINITY,
         gap: 0.5 * GAP * unit,
     };
-    let mut watch = |iterations| watch(iterations, begin, &settings, monitor);
-    proof.iterations += weak::derive(&mut problem, cutoff, level, &mut watch);
+    budget.spend(weak::derive(
+        &mut problem,
+        cutoff,
+        level,
+        &mut watch(budget, u64::MAX),
+    ));
     let found = search(
         program,
         &problem,
         &limits,
         Some(&mut prove_node),
-        &mut watch,
+        &mut watch(budget, u64::MAX),
     );
-    monitor.log(&format!(
+    budget.log(format!(
         "branch and bound: {} nodes, bound {}",
         found.nodes, found.bound
     ));
-    proof.iterations += found.iterations;
+    budget.spend(found.iterations);
     proof.better = found.best.map(|b| b.1);
     let low = low.max(found.bound);
     match low.is_finite() {
@@ -145,7 +137,7 @@ pub enum Any {
 
 /// A point that satisfies all pairs of a linear program, where the other methods find none; or a proof that there
 /// is none.
-pub fn any(program: &Program, settings: &Settings, monitor: &mut dyn Monitor) -> Any {
+pub fn any(program: &Program, budget: &Budget) -> Any {
     if !program.envelope.is_linear() {
         return Any::Unknown;
     }
@@ -155,8 +147,7 @@ pub fn any(program: &Program, settings: &Settings, monitor: &mut dyn Monitor) ->
         enough: f64::INFINITY,
         gap: 0.0,
     };
-    let begin = Instant::now();
-    let mut watch = |iterations| watch(iterations, begin, settings, monitor);
+    let mut watch = watch(budget, u64::MAX);
     let problem = whole(program);
     let found = search(program, &problem, &limits, None, &mut watch);
     if let Some((_, level)) = found.best {
@@ -182,21 +173,6 @@ fn search(
         rhs: &shifts(program),
     };
     lpcc.search(limits, prover, stop)
-}
-
-fn watch(
-    iterations: u64,
-    begin: Instant,
-    settings: &Settings,
-    monitor: &mut dyn Monitor,
-) -> Option<Ended> {
-    if monitor.interrupted() {
-        Some(Ended::Interrupted)
-    } else if begin.elapsed().as_secs_f64() > settings.time_limit {
-        Some(Ended::Time)
-    } else {
-        (iterations > settings.iteration_limit).then_some(Ended::Iterations)
-    }
 }
 
 /// Multipliers this small beside the largest may be rounding. They price columns that have no bounds.

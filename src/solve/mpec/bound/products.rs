@@ -35,8 +35,6 @@
 //! solution have N = max |z_j| / Z_j > 1. H proves |z_j| ≤ R_j + N ε_j for it, where R_j + ε_j ≤ ¾ Z_j has been computed with
 //! directed rounding. Hence |z_j| ≤ ¾ N Z_j for all of them, and N ≤ ¾ N: a contradiction. So N ≤ 1.
 
-use std::time::Instant;
-
 use faer::linalg::solvers::Svd;
 use faer::{Mat, Scale};
 
@@ -44,22 +42,16 @@ use super::super::pairs::Program;
 use super::cone::{Search, Space};
 use super::sides::{Factor, Half, Sides};
 use super::weak;
+use crate::solve::Budget;
 use crate::solve::interval::{Interval, WideSum};
 use crate::solve::lp::Ended;
 use crate::solve::lp::form::Problem;
 use crate::solve::lp::simplex::Simplex;
-use crate::solve::{Monitor, Settings};
 
 /// The state of a proof.
-pub struct Products<'a> {
-    /// Limits.
-    pub settings: &'a Settings,
-    /// Of the caller.
-    pub monitor: &'a mut dyn Monitor,
-    /// When the solve began.
-    pub begin: Instant,
-    /// Of the linear programs so far.
-    pub iterations: u64,
+pub struct Products<'a, 'm> {
+    /// What it may spend.
+    pub budget: &'a Budget<'m>,
 }
 
 /// What is tried at most.
@@ -95,7 +87,7 @@ const LOOK: usize = 500;
 /// Distance at which the search has come to its end.
 const FOUND: f64 = 1e-12;
 
-impl Products<'_> {
+impl Products<'_, '_> {
     /// The bound, −∞ if none is proved. `level` is the best solution known, `cutoff` a little above its
     /// value. The columns of side A in `whole`, the program without its pairs, get the bounds that solutions not above the
     /// cutoff have.
@@ -114,14 +106,15 @@ impl Products<'_> {
         };
         let mut first = sides.first();
         let known = sides.pick(true, level);
-        self.iterations += self.watched(|stop| weak::derive(&mut first, cutoff, &known, stop));
+        let derived = self.watched(|stop| weak::derive(&mut first, cutoff, &known, stop));
+        self.budget.spend(derived);
         for (k, &j) in sides.columns(true).iter().enumerate() {
             whole.lower[j] = whole.lower[j].max(first.lower[k]);
             whole.upper[j] = whole.upper[j].min(first.upper[k]);
         }
         let mut simplex = Simplex::new(&first);
         let solved = self.watched(|stop| simplex.solve(stop)) == Ended::Solved;
-        self.iterations += simplex.iterations;
+        self.budget.spend(simplex.iterations);
         let y = simplex.point().filter(|_| solved);
         let low = y.map_or(none, |p| {
             weak::bound(&first, &first.cost, &p.y) + first.offset
@@ -224,15 +217,12 @@ impl Products<'_> {
     }
 
     fn log(&mut self, what: &str) {
-        let seconds = self.begin.elapsed().as_secs_f64();
-        self.monitor
-            .log(&format!("products: {what}, {seconds:.1} s"));
+        self.budget.log_timed(&format!("products: {what}"));
     }
 
     /// Runs with the limits.
     fn watched<T>(&mut self, run: impl FnOnce(&mut dyn FnMut(u64) -> Option<Ended>) -> T) -> T {
-        let (begin, settings) = (self.begin, self.settings);
-        run(&mut |iterations| super::watch(iterations, begin, settings, self.monitor))
+        run(&mut super::watch(self.budget, u64::MAX))
     }
 }
 

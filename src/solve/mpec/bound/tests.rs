@@ -7,7 +7,7 @@ use crate::model::instance::{INF, Instance, Relation, Sense};
 use crate::solve::answer::{Answer, linear};
 use crate::solve::conformance::{self, Quiet, Row};
 use crate::solve::lp::Clarabel;
-use crate::solve::{ModelStatus, Settings};
+use crate::solve::{Budget, ModelStatus, Settings};
 
 /// Small whole numbers from a fixed seed.
 struct Dice(u64);
@@ -41,7 +41,13 @@ fn by_enumeration(instance: &Instance) -> Option<f64> {
     let mut least: Option<f64> = None;
     for p in pieces {
         let branch = program.branch(&p, &start);
-        let a = linear(&Clarabel, &branch, &Settings::default(), &mut Quiet).expect("linear");
+        let a = linear(
+            &Clarabel,
+            &branch,
+            &Settings::default(),
+            &Budget::unlimited(&mut Quiet::default()),
+        )
+        .expect("linear");
         let value = match a.status {
             ModelStatus::Optimal => program.objective(&a.outcome.level),
             ModelStatus::Unbounded => f64::NEG_INFINITY,
@@ -56,7 +62,9 @@ fn by_enumeration(instance: &Instance) -> Option<f64> {
 fn solve(instance: &Instance) -> Answer {
     let mut settings = Settings::default();
     settings.options.push(("mpec_bound".into(), "quick".into()));
-    super::super::answer(None, instance, &settings, &mut Quiet).expect("an answer")
+    let mut quiet = Quiet::default();
+    let budget = Budget::unlimited(&mut quiet);
+    super::super::answer(None, instance, &settings, &budget).expect("an answer")
 }
 
 /// Whether the gap was closed; None where there is no finite minimum.
@@ -208,13 +216,9 @@ fn products_alone_are_below_the_global_minimum() {
         };
         let program = Program::new(&instance).expect("pairs");
         let level = solve(&instance).outcome.level;
-        let settings = Settings::default();
-        let mut products = Products {
-            settings: &settings,
-            monitor: &mut Quiet,
-            begin: std::time::Instant::now(),
-            iterations: 0,
-        };
+        let mut quiet = Quiet::default();
+        let budget = Budget::unlimited(&mut quiet);
+        let mut products = Products { budget: &budget };
         let limits = Limits {
             products: 1_000,
             steps: 2_000,

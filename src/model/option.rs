@@ -1,0 +1,329 @@
+//! Options of solvers, declared as tables: what each backend takes, and what it means.
+//!
+//! The tables are what the checker, the command line, option files, `bmod help options` and `docs/options.md` know about
+//! options; a value that has passed [`check`] is one that the backend takes.
+
+use crate::diag::nearest;
+use std::fmt::Write;
+
+/// The values that an option takes.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum Kind {
+    /// One of these words.
+    Words(&'static [&'static str]),
+    /// `yes` or `no`; also `on`, `off`, `true`, `false`, 1, 0.
+    Switch,
+    /// A whole number from the first to the second.
+    Whole(f64, f64),
+    /// A number from the first to the second.
+    Real(f64, f64),
+    /// A number between the two.
+    Inside(f64, f64),
+    /// One of these words, or a number from the first to the second.
+    WordsOrReal(&'static [&'static str], f64, f64),
+    /// Any text.
+    Text,
+}
+
+/// An option.
+#[derive(Clone, Debug)]
+pub struct OptionRow {
+    /// Its name, lower case.
+    pub name: &'static str,
+    /// What it takes.
+    pub kind: Kind,
+    /// What holds where it is not set, as it would be written.
+    pub default: &'static str,
+    /// What it does, in a sentence without full stop.
+    pub meaning: &'static str,
+}
+
+/// A row of a table.
+pub const fn row(
+    name: &'static str,
+    kind: Kind,
+    default: &'static str,
+    meaning: &'static str,
+) -> OptionRow {
+    OptionRow {
+        name,
+        kind,
+        default,
+        meaning,
+    }
+}
+
+/// The options of a backend.
+#[derive(Clone, Copy, Debug)]
+pub struct OptionTable {
+    /// The backend, lower case, as in `bmod help options BACKEND`.
+    pub backend: &'static str,
+    /// Which models it solves.
+    pub title: &'static str,
+    /// Its options.
+    pub rows: &'static [OptionRow],
+    /// Further options that the solver inside knows, if it can tell.
+    pub more: Option<fn() -> &'static [OptionRow]>,
+    /// Names that the solver of the same kind has in GAMS and that mean nothing here: they are passed over with a
+    /// warning.
+    pub ignored: &'static [&'static str],
+}
+
+impl OptionTable {
+    /// All rows.
+    pub fn all(&self) -> impl Iterator<Item = &'static OptionRow> {
+        let more = self.more.map_or(&[][..], |more| more());
+        self.rows.iter().chain(more)
+    }
+
+    /// The option of that name, in any case.
+    pub fn find(&self, name: &str) -> Option<&'static OptionRow> {
+        self.all().find(|r| r.name.eq_ignore_ascii_case(name))
+    }
+
+    /// Whether the name is one of [`OptionTable::ignored`].
+    pub fn ignores(&self, name: &str) -> bool {
+        self.ignored.iter().any(|i| i.eq_ignore_ascii_case(name))
+    }
+}
+
+/// Why an option is refused.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Refused {
+    /// No table has it; the nearest name.
+    Unknown(Option<String>),
+    /// The value is not one that it takes; what it takes.
+    Value(String),
+}
+
+impl Refused {
+    /// The problem in a sentence without full stop, and how to fix it.
+    pub fn words(&self, name: &str, value: &str) -> (String, Option<String>) {
+        match self {
+            Self::Unknown(near) => (
+                format!("there is no option `{name}`"),
+                near.as_ref().map(|n| format!("did you mean `{n}`?")),
+            ),
+            Self::Value(takes) => (
+                format!("the option `{name}` takes {takes}, not `{value}`"),
+                None,
+            ),
+        }
+    }
+}
+
+/// Whether an option counts, if it is not refused.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Accepted {
+    /// A backend takes it.
+    Taken,
+    /// It means nothing here.
+    Ignored,
+}
+
+/// Looks an option up. A name that several tables have must have a value that all of them take.
+pub fn check(tables: &[&OptionTable], name: &str, value: &str) -> Result<Accepted, Refused> {
+    let rows: Vec<&OptionRow> = tables.iter().filter_map(|t| t.find(name)).collect();
+    if rows.is_empty() {
+        if tables.iter().any(|t| t.ignores(name)) {
+            return Ok(Accepted::Ignored);
+        }
+        let known = tables.iter().flat_map(|t| t.all()).map(|r| r.name);
+        return Err(Refused::Unknown(nearest(name, known).map(str::to_string)));
+    }
+    match rows.iter().find(|r| !r.kind.takes(value)) {
+        Some(r) => Err(Refused::Value(r.kind.words())),
+        None => Ok(Accepted::Taken),
+    }
+}
+
+/// A switch's value; None if it is none.
+pub fn switch(value: &str) -> Option<bool> {
+    match value.to_lowercase().as_str() {
+        "yes" | "on" | "true" | "1" => Some(true),
+        "no" | "off" | "false" | "0" => Some(false),
+        _ => None,
+    }
+}
+
+impl Kind {
+    /// Whether a value is one of this kind.
+    pub fn takes(&self, value: &str) -> bool {
+        let word = |words: &[&str]| words.iter().any(|w| w.eq_ignore_ascii_case(value));
+        let number = value.parse::<f64>().ok().filter(|v| !v.is_nan());
+        let within = |low: f64, high: f64| number.is_some_and(|v| (low..=high).contains(&v));
+        match *self {
+            Self::Words(words) => word(words),
+            Self::Switch => switch(value).is_some(),
+            Self::Whole(low, high) => {
+                within(low, high) && number.is_some_and(|v| v.is_infinite() || v.fract() == 0.0)
+            }
+            Self::Real(low, high) => within(low, high),
+            Self::Inside(low, high) => number.is_some_and(|v| low < v && v < high),
+            Self::WordsOrReal(words, low, high) => word(words) || within(low, high),
+            Self::Text => true,
+        }
+    }
+
+    /// What it takes: `a whole number from 0 to 8`.
+    pub fn words(&self) -> String {
+        let listed = |words: &[&str], last: &str| -> String {
+            let all: Vec<String> = words.iter().map(|w| format!("`{w}`")).collect();
+            match all.split_last() {
+                Some((end, rest)) if !rest.is_empty() => {
+                    format!("{}{last}{end}", rest.join(", "))
+                }
+                _ => all.concat(),
+            }
+        };
+        let plain = |v: f64| match v != 0.0 && !(1e-4..1e7).contains(&v.abs()) {
+            true => format!("{v:e}"),
+            false => v.to_string(),
+        };
+        let range = |low: f64, high: f64| match (low.is_finite(), high.is_finite()) {
+            (true, true) => format!(" from {} to {}", plain(low), plain(high)),
+            (true, false) => format!(" of at least {}", plain(low)),
+            (false, true) => format!(" of at most {}", plain(high)),
+            (false, false) => String::new(),
+        };
+        match *self {
+            Self::Words(words) => listed(words, " or "),
+            Self::Switch => "`yes` or `no`".into(),
+            Self::Whole(low, high) => format!("a whole number{}", range(low, high)),
+            Self::Real(low, high) => format!("a number{}", range(low, high)),
+            Self::Inside(low, high) => match high.is_finite() {
+                true => format!("a number between {} and {}", plain(low), plain(high)),
+                false => format!("a number above {}", plain(low)),
+            },
+            Self::WordsOrReal(words, low, high) => {
+                format!("{} or a number{}", listed(words, ", "), range(low, high))
+            }
+            Self::Text => "a text".into(),
+        }
+    }
+}
+
+/// The tables as a page in Markdown.
+pub fn page(tables: &[&OptionTable]) -> String {
+    let mut out = String::new();
+    for table in tables {
+        let _ = writeln!(out, "## {}\n\n{}\n", table.backend, table.title);
+        out.push_str("| option | values | default | meaning |\n| --- | --- | --- | --- |\n");
+        for r in table.rows {
+            let values = r.kind.words().replace('|', "\\|");
+            let _ = writeln!(
+                out,
+                "| `{}` | {values} | {} | {} |",
+                r.name, r.default, r.meaning
+            );
+        }
+        if let Some(more) = table.more {
+            let names: Vec<&str> = more().iter().map(|r| r.name).collect();
+            let count = names.len();
+            let _ = writeln!(
+                out,
+                "\nFurther {count} options of the solver inside are passed to it: `bmod help options {}` lists them.",
+                table.backend
+            );
+        }
+        if !table.ignored.is_empty() {
+            let names: Vec<String> = table.ignored.iter().map(|n| format!("`{n}`")).collect();
+            let _ = writeln!(
+                out,
+                "\nThese mean nothing here; they are passed over with a warning: {}.",
+                names.join(", ")
+            );
+        }
+        out.push('\n');
+    }
+    out.truncate(out.trim_end().len());
+    out.push('\n');
+    out
+}
+
+/// The tables for a terminal; `all`: with the further options of the solvers inside.
+pub fn text(tables: &[&OptionTable], all: bool) -> String {
+    let mut out = String::new();
+    for (k, table) in tables.iter().enumerate() {
+        let gap = if k > 0 { "\n" } else { "" };
+        let _ = writeln!(out, "{gap}{}: {}", table.backend, table.title);
+        let more = table.more.filter(|_| all).map_or(&[][..], |more| more());
+        for r in table.rows.iter().chain(more) {
+            let _ = writeln!(
+                out,
+                "\n  {} ({}; default {})",
+                r.name,
+                r.kind.words(),
+                r.default
+            );
+            if !r.meaning.is_empty() {
+                let _ = writeln!(out, "      {}", r.meaning);
+            }
+        }
+        if let (Some(more), false) = (table.more, all) {
+            let count = more().len();
+            let name = table.backend;
+            let _ = writeln!(out, "\n  and {count} more: `bmod help options {name}`");
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TABLE: OptionTable = OptionTable {
+        backend: "toy",
+        title: "for the test",
+        rows: &[
+            row(
+                "accuracy",
+                Kind::WordsOrReal(&["fast", "high"], 0.0, 1.0),
+                "fast",
+                "",
+            ),
+            row("steps", Kind::Whole(0.0, 9.0), "3", ""),
+            row("share", Kind::Inside(0.0, 1.0), "0.5", ""),
+            row("loud", Kind::Switch, "no", ""),
+        ],
+        more: None,
+        ignored: &["print"],
+    };
+
+    #[test]
+    fn names_and_values_are_checked() {
+        let tables = [&TABLE];
+        let taken = |name: &str, value: &str| check(&tables, name, value);
+        for (name, value) in [
+            ("accuracy", "HIGH"),
+            ("Accuracy", "1e-3"),
+            ("steps", "9"),
+            ("share", "0.1"),
+            ("loud", "off"),
+        ] {
+            assert_eq!(taken(name, value), Ok(Accepted::Taken), "{name}={value}");
+        }
+        assert_eq!(taken("print", "7"), Ok(Accepted::Ignored));
+        for (name, value) in [
+            ("accuracy", "2"),
+            ("steps", "1.5"),
+            ("steps", "10"),
+            ("share", "0"),
+            ("share", "abc"),
+            ("loud", "maybe"),
+        ] {
+            let refused = taken(name, value);
+            assert!(matches!(refused, Err(Refused::Value(_))), "{name}={value}");
+        }
+        assert_eq!(
+            taken("acuracy", "high"),
+            Err(Refused::Unknown(Some("accuracy".into())))
+        );
+        let (message, _) = taken("steps", "x").unwrap_err().words("steps", "x");
+        assert_eq!(
+            message,
+            "the option `steps` takes a whole number from 0 to 9, not `x`"
+        );
+    }
+}

@@ -1,0 +1,126 @@
+//! The contract between the pipeline and the solvers: what a backend says of itself, and what it is asked for.
+//!
+//! A backend is a folder with a type that implements [`Backend`], and a line in [`super::registry`]. It sees an
+//! [`Instance`] of numbers, asks the [`Budget`] in every loop, and returns the best point that it has seen. What that point is
+//! worth is measured on the instance as it was given ([`crate::model::certificate`]), whatever the backend says.
+
+use super::answer::Answer;
+use super::{Budget, Settings, SolveError};
+use crate::model::instance::Instance;
+use crate::model::option::OptionTable;
+use crate::model::problem_type::{Discrete, ProblemType};
+
+/// The hardest terms that a backend takes; each kind includes those before it.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub enum Terms {
+    /// Linear rows only.
+    Linear,
+    /// Smooth nonlinear functions.
+    Smooth,
+    /// Functions with kinks.
+    Kinks,
+}
+
+/// What a backend takes.
+#[derive(Clone, Copy, Debug)]
+pub struct Supports {
+    /// Problem types.
+    pub types: &'static [ProblemType],
+    /// Terms of the rows.
+    pub terms: Terms,
+    /// Whether instances that have linear rows only are solved as well.
+    pub linear: bool,
+    /// Whether rows may be paired with columns.
+    pub pairs: bool,
+    /// Whether columns may have to take discrete values.
+    pub integers: bool,
+    /// Rows and columns together at most.
+    pub largest: usize,
+    /// Only where it is named: another backend is the better choice.
+    pub only_by_name: bool,
+}
+
+/// What is to be solved.
+#[derive(Clone, Copy)]
+pub struct Task<'a> {
+    /// The problem type of the `solve` statement.
+    pub using: ProblemType,
+    /// The solver that the user named for the type, lower case.
+    pub choice: Option<&'a str>,
+    /// The numbers.
+    pub instance: &'a Instance,
+}
+
+impl Task<'_> {
+    /// Whether a column is left to take a discrete value.
+    pub fn has_integers(&self) -> bool {
+        self.using.discrete() == Discrete::Decided
+            && self.instance.columns.first_undecided().is_some()
+    }
+
+    /// Whether a row is paired with a column, and the type makes something of it.
+    pub fn has_pairs(&self) -> bool {
+        let pairs = self.instance.matched.iter().flatten();
+        self.using.has_pairs() && pairs.into_iter().any(Option::is_some)
+    }
+}
+
+impl Supports {
+    /// Whether it takes a task.
+    pub fn takes(&self, task: &Task) -> bool {
+        let instance = task.instance;
+        self.types.contains(&task.using)
+            && match instance.is_linear() {
+                true => self.linear,
+                false => self.terms > Terms::Linear,
+            }
+            && (self.pairs || !task.has_pairs())
+            && (self.integers || !task.has_integers())
+            && instance.row_count() + instance.column_count() <= self.largest
+    }
+}
+
+/// A solver.
+pub trait Backend: Sync {
+    /// Lower-case name, as in `option lp = name`.
+    fn name(&self) -> &'static str;
+    /// Other names that the user may call it by.
+    fn aliases(&self) -> &'static [&'static str] {
+        &[]
+    }
+    /// What it is made of, with versions, for `bmod --version`.
+    fn version(&self) -> &'static str;
+    /// What it takes.
+    fn supports(&self) -> Supports;
+    /// Its options.
+    fn options(&self) -> &'static OptionTable;
+    /// Solves a task that it takes. Err: the instance cannot be solved as it is, with the row or column to blame.
+    fn solve(
+        &self,
+        task: &Task,
+        settings: &Settings,
+        budget: &Budget,
+    ) -> Result<Answer, SolveError>;
+}
+
+/// Whether a backend has this name.
+pub fn is_called(backend: &dyn Backend, name: &str) -> bool {
+    let names = [backend.name()]
+        .into_iter()
+        .chain(backend.aliases().iter().copied());
+    names.into_iter().any(|n| n.eq_ignore_ascii_case(name))
+}
+
+/// The backend for a task: the one that the user named if it takes the task, else the first in the list that does.
+pub fn choose<'b>(backends: &[&'b dyn Backend], task: &Task) -> Option<&'b dyn Backend> {
+    let able = || {
+        backends
+            .iter()
+            .copied()
+            .filter(|b| b.supports().takes(task))
+    };
+    let named = |name: &str| able().find(|b| is_called(*b, name));
+    task.choice
+        .and_then(named)
+        .or_else(|| able().find(|b| !b.supports().only_by_name))
+}

@@ -1,0 +1,194 @@
+//! Options of the complementarity solver, by PATH's names where the meaning is PATH's.
+
+use super::Settings;
+use crate::model::option::{Kind, OptionTable, row, switch};
+
+const LIMIT: Kind = Kind::Whole(0.0, 1e15);
+
+/// What `mcp` and `cns` take.
+pub const OPTIONS: OptionTable = OptionTable {
+    backend: "bmcp",
+    title: "mcp, cns: bmod's own, after PATH",
+    rows: &[
+        row(
+            "convergence_tolerance",
+            Kind::Real(0.0, f64::INFINITY),
+            "1e-8",
+            "natural residual at which the problem is solved",
+        ),
+        row(
+            "crash_method",
+            Kind::Words(&["pnewton", "none"]),
+            "pnewton",
+            "projected Newton steps before the first major iteration, or none",
+        ),
+        row("crash_iteration_limit", LIMIT, "50", "crash iterations"),
+        row(
+            "major_iteration_limit",
+            LIMIT,
+            "120",
+            "major iterations of one run of the main method",
+        ),
+        row(
+            "minor_iteration_limit",
+            LIMIT,
+            "0",
+            "pivots of one linear subproblem; 0 chooses by size",
+        ),
+        row(
+            "cumulative_iteration_limit",
+            LIMIT,
+            "10000000",
+            "pivots of all runs together",
+        ),
+        row(
+            "proximal_perturbation",
+            Kind::Real(0.0, f64::INFINITY),
+            "0",
+            "proximal term of the first major iteration",
+        ),
+        row(
+            "nms_memory_size",
+            LIMIT,
+            "10",
+            "memory of the nonmonotone line search",
+        ),
+        row(
+            "restart_limit",
+            LIMIT,
+            "30",
+            "random restarts after all methods have failed; without the option they also end where they would cost more than what went before",
+        ),
+        row(
+            "time_limit",
+            Kind::Real(0.0, f64::INFINITY),
+            "inf",
+            "seconds; `reslim` and `--time-limit` hold as well",
+        ),
+        row(
+            "preprocess",
+            Kind::Switch,
+            "yes",
+            "whether simple rows become bounds and fixed variables leave the problem first",
+        ),
+        row(
+            "output",
+            Kind::Switch,
+            "yes",
+            "with `log=1`: all parts of the log",
+        ),
+        row(
+            "output_crash_iterations",
+            Kind::Switch,
+            "yes",
+            "with `log=1`: crash iterations",
+        ),
+        row(
+            "output_major_iterations",
+            Kind::Switch,
+            "yes",
+            "with `log=1`: major iterations",
+        ),
+        row(
+            "output_minor_iterations",
+            Kind::Switch,
+            "yes",
+            "with `log=1`: a line for each path",
+        ),
+        row(
+            "output_final_statistics",
+            Kind::Switch,
+            "yes",
+            "with `log=1`: size, status, counts, and where the residual is largest",
+        ),
+    ],
+    more: None,
+    ignored: &[
+        "crash_merit_function",
+        "crash_minimum_dimension",
+        "crash_nbchange_limit",
+        "crash_perturb",
+        "crash_searchtype",
+        "factorization_library_name",
+        "factorization_method",
+        "gradient_searchtype",
+        "gradient_step_limit",
+        "infinity_tolerance",
+        "interrupt_limit",
+        "lemke_rank_deficiency_iterations",
+        "lemke_search_type",
+        "lemke_start",
+        "lemke_start_type",
+        "merit_function",
+        "nms",
+        "nms_initial_reference_factor",
+        "nms_maximum_watchdogs",
+        "nms_mstep_frequency",
+        "nms_searchtype",
+        "output_crash_iterations_frequency",
+        "output_errors",
+        "output_factorization_singularities",
+        "output_final_degeneracy_statistics",
+        "output_final_point",
+        "output_final_point_statistics",
+        "output_final_scaling_statistics",
+        "output_final_summary",
+        "output_initial_point",
+        "output_initial_point_statistics",
+        "output_initial_scaling_statistics",
+        "output_initial_statistics",
+        "output_linear_model",
+        "output_listing",
+        "output_major_iterations_frequency",
+        "output_memory",
+        "output_minor_iterations_frequency",
+        "output_model_statistics",
+        "output_options",
+        "output_preprocess_level",
+        "output_restart_log",
+        "output_time",
+        "output_timing",
+        "output_warnings",
+        "return_best_point",
+        "singularity_tolerance",
+        "use_basics",
+        "use_start",
+    ],
+};
+
+impl Settings {
+    /// The defaults with these options, whose values the table has passed.
+    pub fn with(options: &[(String, String)]) -> Self {
+        let mut s = Self::default();
+        for (name, value) in options {
+            let yes = switch(value).unwrap_or(true);
+            let number = value.parse::<f64>().unwrap_or(0.0);
+            let whole = number.min(1e15) as usize;
+            match name.to_lowercase().as_str() {
+                "crash_method" => s.crash_method = !value.eq_ignore_ascii_case("none"),
+                "preprocess" => s.preprocess = yes,
+                "output" => {
+                    s.output_crash_iterations = yes;
+                    s.output_major_iterations = yes;
+                    s.output_minor_iterations = yes;
+                    s.output_final_statistics = yes;
+                }
+                "output_crash_iterations" => s.output_crash_iterations = yes,
+                "output_major_iterations" => s.output_major_iterations = yes,
+                "output_minor_iterations" => s.output_minor_iterations = yes,
+                "output_final_statistics" => s.output_final_statistics = yes,
+                "convergence_tolerance" => s.convergence_tolerance = number,
+                "proximal_perturbation" => s.proximal_perturbation = number,
+                "time_limit" => s.time_limit = number,
+                "crash_iteration_limit" => s.crash_iteration_limit = whole,
+                "major_iteration_limit" => s.major_iteration_limit = whole,
+                "cumulative_iteration_limit" => s.cumulative_iteration_limit = whole,
+                "minor_iteration_limit" => s.minor_iteration_limit = whole,
+                "nms_memory_size" => s.nms_memory_size = whole,
+                "restart_limit" => s.restart_limit = Some(whole),
+                _ => {}
+            }
+        }
+        s
+    }
+}
