@@ -228,7 +228,7 @@ fn nonlinear_search(
     settings: &Settings,
     control: &mut Control,
 ) -> Result<Found, SolveError> {
-    let mip = Mip::of_nonlinear(instance, aim.priorities);
+    let mip = Mip::of_nonlinear(instance, aim.priorities)?;
     let mut first = instance.clone();
     first.columns.lower.copy_from_slice(&mip.problem.lower);
     first.columns.upper.copy_from_slice(&mip.problem.upper);

@@ -1,6 +1,7 @@
 //! A linear program some of whose columns are discrete, and what it means that a point satisfies that.
 
 use crate::model::instance::{ColumnKind, Instance, OrderedSet};
+use crate::solve::SolveError;
 use crate::solve::lp::form::{Form, Problem};
 use crate::solve::lp::scale::Scaling;
 
@@ -119,7 +120,7 @@ impl Mip {
     }
 
     /// The linear rows of an instance, without costs, over all of its columns.
-    pub fn of_nonlinear(instance: &Instance, priorities: bool) -> Self {
+    pub fn of_nonlinear(instance: &Instance, priorities: bool) -> Result<Self, SolveError> {
         let mut rows = instance.clone();
         rows.objective = None;
         let nonlinear = instance.nonlinear_rows();
@@ -129,9 +130,8 @@ impl Mip {
             }
         }
         rows.nonlinear.clear();
-        let form = Form::new(&rows);
-        let (problem, columns) = form.map(|f| (f.problem, f.columns)).unwrap_or_default();
-        Self::new(problem, instance, &columns, priorities)
+        let form = Form::new(&rows)?;
+        Ok(Self::new(form.problem, instance, &form.columns, priorities))
     }
 
     /// How far a value of column j is from what it may be, given its bounds in a node.

@@ -169,7 +169,22 @@ pub struct Search<'a, R: Relaxation> {
     next_log: f64,
     /// Nodes made.
     made: u32,
+    /// Nodes whose relaxation was not solved.
+    failures: u32,
 }
+
+/// What reduced costs did to a node.
+enum Fixed {
+    /// Nothing that its point does not satisfy.
+    Nothing,
+    /// The point is to be computed again.
+    Moved,
+    /// Nothing better is left below it.
+    Empty,
+}
+
+/// How many nodes may be divided without a value of their relaxation.
+const FAILURES: u32 = 200;
 
 /// What heuristics have cost.
 #[derive(Default)]
@@ -211,6 +226,7 @@ impl<'a, R: Relaxation> Search<'a, R> {
             dives: Dives::default(),
             next_log: 0.0,
             made: 0,
+            failures: 0,
         }
     }
 
@@ -452,9 +468,25 @@ impl<'a, R: Relaxation> Search<'a, R> {
             if depth == 0 {
                 self.bound = self.bound.max(bound);
             }
-            if resolves < 5 && !failed && self.fix_by_costs(value, depth == 0) {
-                resolves += 1;
-                continue;
+            if resolves < 5 && !failed {
+                match self.fix_by_costs(value, depth == 0) {
+                    Fixed::Nothing => {}
+                    Fixed::Moved => {
+                        resolves += 1;
+                        continue;
+                    }
+                    Fixed::Empty => {
+                        self.fate(number, "bound");
+                        return None;
+                    }
+                }
+            }
+            if failed {
+                self.failures += 1;
+                if self.failures > FAILURES {
+                    self.incomplete = true;
+                    return None;
+                }
             }
             let point = self.relaxation.x().to_vec();
             let mut branch = match failed {
@@ -554,14 +586,14 @@ impl<'a, R: Relaxation> Search<'a, R> {
         }
     }
 
-    /// Integer columns whose reduced costs keep them from going far. Whether one got fixed that the point must leave.
-    fn fix_by_costs(&mut self, value: f64, at_root: bool) -> bool {
+    /// Integer columns whose reduced costs keep them from going far. What that does to the node.
+    fn fix_by_costs(&mut self, value: f64, at_root: bool) -> Fixed {
         let room = self.cutoff() - value;
         if !room.is_finite() {
-            return false;
+            return Fixed::Nothing;
         }
         let Some(reduced) = self.relaxation.reduced() else {
-            return false;
+            return Fixed::Nothing;
         };
         let x = self.relaxation.x();
         let mut changes = Vec::new();
@@ -586,7 +618,7 @@ impl<'a, R: Relaxation> Search<'a, R> {
             }
         }
         if changes.is_empty() {
-            return false;
+            return Fixed::Nothing;
         }
         let x = x.to_vec();
         if at_root {
@@ -596,11 +628,13 @@ impl<'a, R: Relaxation> Search<'a, R> {
             }
         }
         if !self.apply(&changes) {
-            // Nothing better is left here: the next solve says so.
-            return true;
+            return Fixed::Empty;
         }
         let outside = |j: &usize| x[*j] < self.lower[*j] - 1e-9 || x[*j] > self.upper[*j] + 1e-9;
-        self.propagator.moved.iter().any(|j| outside(j))
+        match self.propagator.moved.iter().any(|j| outside(j)) {
+            true => Fixed::Moved,
+            false => Fixed::Nothing,
+        }
     }
 
     /// Takes a point as a solution if its integers, rounded, are one; the rest is solved for where need be.
@@ -713,7 +747,7 @@ impl<'a, R: Relaxation> Search<'a, R> {
     /// A line of progress: now and then, and for every new solution.
     fn log(&mut self, control: &mut Control, last: bool) {
         let seconds = control.budget.seconds();
-        if seconds < self.next_log && !last || self.neighbourhood.is_none() {
+        if seconds < self.next_log && !last {
             return;
         }
         self.next_log = seconds + 2.0;
