@@ -248,6 +248,9 @@ pub fn dual(
                 continue;
             }
             let (relation, rhs) = (p.rows.relation[i], p.rows.rhs[i]);
+            if relation == Relation::Free {
+                continue;
+            }
             let Some(name) = &name else {
                 if relation != Relation::Free {
                     c.differ(format!("no multiplier of {:?}", p_rows[i]));

@@ -66,6 +66,8 @@ pub struct Derivation<'a> {
     pub out: Formulation,
     /// The objective function, where its variable could be eliminated.
     pub eliminated: Option<Eliminated>,
+    /// What each equation runs over: only the rows that can bind.
+    pub binders: Vec<Binder>,
     /// Terms by equation.
     terms: Vec<Vec<Term>>,
     /// The multiplier of each equation.
@@ -110,13 +112,46 @@ impl<'a> Derivation<'a> {
                 notes: Vec::new(),
             },
             eliminated: None,
+            binders: primal.equations.iter().map(|e| e.binder.clone()).collect(),
             multipliers: vec![None; terms.len()],
             terms,
             flip: false,
             taken,
         };
         d.eliminated = d.eliminate();
+        d.leave_out_unlimited();
         Ok(d)
+    }
+
+    /// Rows whose right side is infinite never bind: their multipliers are left out.
+    fn leave_out_unlimited(&mut self) {
+        let g = &self.primal.generated;
+        for (k, e) in self.primal.equations.iter().enumerate() {
+            let Some(b) = g.origin.rows.symbol(e.symbol) else {
+                continue;
+            };
+            let relation = |i: &u32| g.instance.rows.relation[*i as usize];
+            let rows = b.start..b.start + b.len;
+            let binding: Vec<u32> = rows.filter(|i| relation(i) == e.relation).collect();
+            if binding.len() == b.len as usize {
+                continue;
+            }
+            let name = self.symbols.get(e.symbol).name.to_string();
+            let unique = self.fresh(&format!("binding_{name}"));
+            self.out.data.push(NewData {
+                name: unique,
+                text: format!("rows of {name} with a finite right side"),
+                domain: domain_of(self.symbols, e.symbol),
+                is_set: !e.key.is_empty(),
+                records: binding.iter().map(|&i| (b.key(i).to_vec(), 1.0)).collect(),
+            });
+            let number = self.out.data.len() - 1;
+            let inside = match e.key.is_empty() {
+                true => Expr::Data(Source::New(number), Vec::new()),
+                false => Expr::NewMember(number, e.key.clone()),
+            };
+            self.binders[k].conditions.push(inside);
+        }
     }
 
     /// A name that is not in use yet.
@@ -420,7 +455,7 @@ impl<'a> Derivation<'a> {
                 self.symbols,
                 &self.out.indices,
                 t,
-                &e.binder,
+                &self.binders[*k],
                 y.as_ref(),
                 &target,
             );
@@ -586,7 +621,7 @@ impl<'a> Derivation<'a> {
         let dark = |c: &Expr| c.opaque();
         let why = dark(&b).or_else(|| e.binder.conditions.iter().find_map(dark));
         let Some(why) = why else {
-            return (e.binder.clone(), e.key.clone(), b);
+            return (self.binders[equation].clone(), e.key.clone(), b);
         };
         let en = self.symbols.get(e.symbol).name.to_string();
         let g = &self.primal.generated;

@@ -40,6 +40,22 @@ pub fn kkt(
     for k in 0..primal.equations.len() {
         feasibility(&mut d, k, keep);
     }
+    // A variable whose terms cancel has no column, and stands in the text all the same.
+    let mut own = std::mem::take(&mut d.out.own);
+    let mut see = |e: &Expr| {
+        e.walk(&mut |e| {
+            if let Expr::Variable(Variable::Own(v), _) = e
+                && !own.contains(v)
+            {
+                own.push(*v);
+            }
+        });
+    };
+    for r in &d.out.rows {
+        see(&r.left);
+        see(&r.right);
+    }
+    d.out.own = own;
     for v in d.variables() {
         start_of_columns(&mut d, v);
     }
@@ -161,7 +177,7 @@ fn feasibility(d: &mut Derivation, k: usize, keep: bool) {
         return;
     };
     let rows: Vec<u32> = (block.start..block.start + block.len).collect();
-    let mut binder = e.binder.clone();
+    let mut binder = d.binders[k].clone();
     if d.primal.tuples[k] != rows.len() {
         let name = d.fresh(&format!("rows_{name}"));
         d.out.data.push(NewData {
