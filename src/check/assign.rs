@@ -44,6 +44,9 @@ impl Compiler {
         let s = self.lookup(&t.name)?;
         self.shape(s, &t.indices);
         let target = self.target(s, t)?;
+        if matches!(target, Target::Set(_) | Target::Singleton(_)) {
+            self.changes_control(s, t.span)?;
+        }
         let symbol = self.symbols.get(s).clone();
         let root = self.symbols.root(s);
         let (domain, key, value, covers) = self.scoped(|c| {
@@ -254,6 +257,27 @@ impl Compiler {
             );
         }
         Ok(target)
+    }
+
+    /// An error where a set that a loop around runs over is changed.
+    pub(super) fn changes_control(&mut self, s: SymbolId, span: Span) -> Result<(), Failed> {
+        let root = self.symbols.root(s);
+        if !self
+            .scope
+            .iter()
+            .any(|(c, _)| self.symbols.root(*c) == root)
+        {
+            return Ok(());
+        }
+        let name = self.symbols.get(root).name.clone();
+        let message = format!("the loop runs over `{name}`, which is changed here");
+        self.fail(
+            Diagnostic::error("E0320", span, message)
+                .label("bound by the loop")
+                .help(format!(
+                    "run over the set it is part of: `loop(i$({name}(i)), …)`; or change a copy"
+                )),
+        )
     }
 
     /// What drives a loop around a single assignment to a parameter or set, as GAMS runs it: turns in which the

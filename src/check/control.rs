@@ -49,6 +49,10 @@ impl Compiler {
             {
                 self.equal_item(indices, item.span, &mut out)?;
             } else {
+                let set = self.symbols.find(&item.set.name);
+                if item.indices.is_some() && set.is_some_and(|s| self.controlled(s).is_some()) {
+                    return self.controlled_already(&item.set, item.span);
+                }
                 self.domain_item(&item.set, item.indices.as_deref(), item.span, &mut out)?;
             }
         }
@@ -117,14 +121,7 @@ impl Compiler {
         let symbol = self.symbols.get(id).clone();
         let Some(indices) = indices else {
             if self.controlled(id).is_some() {
-                return self.fail(
-                    Diagnostic::error("E0305", span, format!("`{}` is bound already", set.name))
-                        .label("bound a second time here")
-                        .help(format!(
-                            "use an alias for the inner index: `alias({0},{0}2);` and write `{0}2` here",
-                            symbol.name
-                        )),
-                );
+                return self.controlled_already(set, span);
             }
             return Ok(self.run_over(id, out));
         };
@@ -139,6 +136,18 @@ impl Compiler {
             self.scope.push((id, parts.clone()));
         }
         Ok(parts)
+    }
+
+    fn controlled_already<T>(&mut self, set: &Ident, span: Span) -> Result<T, Failed> {
+        let message = format!("`{}` is bound already", set.name);
+        self.fail(
+            Diagnostic::error("E0305", span, message)
+                .label("bound a second time here")
+                .help(format!(
+                    "use an alias for the inner index: `alias({0},{0}2);` and write `{0}2` here",
+                    set.name
+                )),
+        )
     }
 
     /// `sum(sameas(i,j), …)`: a set that is not under control yet takes the element of the other.

@@ -263,6 +263,15 @@ impl Compiler {
             if !self.take_input(s, &d.defines(), d.name.span)
                 && let Some(body) = d.data
             {
+                if !explicit && new && map.text(body).trim().is_empty() {
+                    let message = format!("how many indices has `{}`?", d.name.name);
+                    self.report(
+                        Diagnostic::error("E0334", d.name.span, message)
+                            .label("neither a domain nor data say")
+                            .help(format!("write `{}(*)`, or leave the data out", d.name.name)),
+                    );
+                    continue;
+                }
                 let _ = self.set_data(s, body, d.name.span, &d.defines(), map);
             }
         }

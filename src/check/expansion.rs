@@ -186,6 +186,10 @@ pub fn range(from: &str, to: &str, most: usize) -> Result<Vec<String>, NoRange> 
     let (Ok(lo), Ok(hi)) = (na.parse::<u64>(), nb.parse::<u64>()) else {
         return Err(NoRange::Unlike);
     };
+    // `x01*x9`, `x1*x010`: how many digits have the labels between?
+    if nb.starts_with('0') && da != db || na.starts_with('0') && da > db {
+        return Err(NoRange::Unlike);
+    }
     if lo.abs_diff(hi) >= most as u64 {
         return Err(NoRange::TooLong(lo.abs_diff(hi).saturating_add(1)));
     }

@@ -7,6 +7,7 @@ use super::symbols::SymbolKind;
 use super::{Compiler, Failed};
 use crate::diag::{Diagnostic, nearest};
 use crate::model::option::{Accepted, OptionRow, Refused, check};
+use crate::source::Span;
 use crate::syntax::ast::{Ident, OptionForm, OptionItem, OptionValue};
 
 /// Options of the `option` statement that are numbers or switches, besides solver choices.
@@ -129,6 +130,7 @@ impl Compiler {
         match &item.form {
             OptionForm::Format(numbers) => {
                 let s = self.lookup(&item.name)?;
+                self.fitting_format(s, numbers, item.name.span)?;
                 Ok(Some(CodeKind::Format(s, numbers.clone())))
             }
             OptionForm::Project {
@@ -168,6 +170,9 @@ impl Compiler {
                         }
                     },
                 };
+                if self.symbols.get(s).is_set() {
+                    self.changes_control(s, *span)?;
+                }
                 let root = self.symbols.root(s);
                 self.symbols.get_mut(root).assigned = true;
                 Ok(Some(CodeKind::Clear(s, offset)))
@@ -251,6 +256,30 @@ impl Compiler {
 
     fn solver_row(&self, name: &str) -> Option<&'static OptionRow> {
         self.solver_options.iter().find_map(|t| t.find(name))
+    }
+
+    /// An error for decimals, row indices or column indices that a display cannot have.
+    fn fitting_format(&mut self, s: SymbolId, numbers: &[i64], span: Span) -> Result<(), Failed> {
+        let symbol = self.symbols.get(s);
+        let (dim, is_set) = (symbol.dim() as i64, symbol.is_set());
+        let fits = match numbers {
+            [d, ..] if !is_set && !(0..=8).contains(d) => false,
+            // A scalar and a single list have no table.
+            [_, 0, list, ..] => *list >= 1,
+            [_, rows, columns, ..] => *rows < dim && (1..=dim - rows).contains(columns),
+            [d] if is_set => (0..=8).contains(d),
+            _ => true,
+        };
+        if fits {
+            return Ok(());
+        }
+        let message = "`option p:d:r:c` takes decimals d from 0 to 8, fewer row indices r than `p` has indices, \
+                       and at most the rest as columns c";
+        self.fail(
+            Diagnostic::error("E0329", span, message)
+                .label(format!("has {dim} indices"))
+                .help("r = 0 displays a list, c records to a line"),
+        )
     }
 
     /// An error for a value that the option cannot have.

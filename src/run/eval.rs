@@ -357,6 +357,10 @@ impl Machine<'_> {
         };
         if args.iter().any(|&x| bad(x)) {
             let word = args.iter().find(|&&x| value::as_acronym(x).is_some());
+            if word.is_none() && !functions::takes_na(f, args.len()) {
+                let at = args.iter().position(|&x| bad(x)).unwrap_or(0);
+                return self.refused(f.name(), "undf", at, span);
+            }
             return self.no_acronym(*word.unwrap_or(&UNDF), span);
         }
         let power = matches!(f, Function::Power | Function::RPower);
@@ -366,7 +370,7 @@ impl Machine<'_> {
             return if functions::takes_na(f, args.len()) {
                 NA
             } else {
-                self.no_na(f.name(), at, span)
+                self.refused(f.name(), "na", at, span)
             };
         }
         let eps = args.iter().any(|&x| is_eps(x));
@@ -449,7 +453,7 @@ impl Machine<'_> {
             return if a.len() < 3 {
                 NA
             } else {
-                self.no_na("the function", at, span)
+                self.refused("the function", "na", at, span)
             };
         }
         if f == D::Fact && a[0] == f64::INFINITY {
@@ -518,11 +522,11 @@ impl Machine<'_> {
         }
     }
 
-    fn no_na(&self, name: &str, at: usize, span: Span) -> f64 {
+    fn refused(&self, name: &str, value: &str, at: usize, span: Span) -> f64 {
         self.execution_error(
             "E0403",
             span,
-            format!("{name} does not take na (argument {})", at + 1),
+            format!("{name} does not take {value} (argument {})", at + 1),
             "guard it with a condition",
         )
     }

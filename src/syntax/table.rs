@@ -175,7 +175,14 @@ impl<'a> TableReader<'a> {
     fn begin_line(&mut self) -> Result<(), Box<Diagnostic>> {
         let bytes = self.text.as_bytes();
         let start = self.at;
-        let stop = memchr::memchr(b'\n', &bytes[start..self.end]).map_or(self.end, |n| start + n);
+        let line_end = |from: usize| {
+            memchr::memchr(b'\n', &bytes[from..self.end]).map_or(self.end, |n| from + n)
+        };
+        let mut stop = line_end(start);
+        // A group of labels may go on in the next line.
+        while !self.header && stop < self.end && in_group(&bytes[start..stop]) {
+            stop = line_end(stop + 1);
+        }
         self.at = stop + 1;
         // The first line may begin behind the table's text.
         let line_start = memchr::memrchr(b'\n', &bytes[..start]).map_or(0, |n| n + 1);
@@ -294,8 +301,19 @@ impl<'a> TableReader<'a> {
             .set_arity(self.dim.saturating_sub(columns).max(1));
         let from = self.reader.position();
         self.reader.key_parts(&mut self.row, 0)?;
-        let to = self.reader.position();
+        let mut to = self.reader.position();
         self.row_span = self.span(from, to);
+        if let Some(n) = memchr::memrchr(b'\n', &self.line.as_bytes()[..to]) {
+            // Values stand in the last line of the label.
+            self.line = &self.line[n + 1..];
+            self.line_base += n as u32 + 1;
+            self.offset = 0;
+            self.known = (0, 0);
+            self.even = even(self.line);
+            to -= n + 1;
+            self.skip(to);
+            to = 0;
+        }
         let reach = self.column(to);
         if let Some(first) = self.columns.first()
             && reach > first.from
@@ -413,6 +431,25 @@ impl<'a> TableReader<'a> {
         self.known = (byte, column);
         column
     }
+}
+
+/// Whether a parenthesis is open at the end of a text.
+fn in_group(bytes: &[u8]) -> bool {
+    if memchr::memchr(b'(', bytes).is_none() {
+        return false;
+    }
+    let (mut depth, mut quote) = (0, None);
+    for &b in bytes {
+        match (quote, b) {
+            (Some(q), _) if b == q => quote = None,
+            (Some(_), _) => {}
+            (None, b'\'' | b'"') => quote = Some(b),
+            (None, b'(') => depth += 1,
+            (None, b')') => depth -= 1,
+            _ => {}
+        }
+    }
+    depth > 0
 }
 
 /// Whether each byte of a text takes one position.

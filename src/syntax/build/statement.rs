@@ -481,16 +481,7 @@ impl Builder<'_> {
     fn put_value(&self, pair: Pair<'_, Rule>, at: Span) -> Built<PutItem> {
         let mut inner = parts(pair);
         let first = need(&mut inner, at, "something to write")?;
-        let mut value = match first.as_rule() {
-            Rule::signed => {
-                let span = self.span(&first);
-                Expr {
-                    kind: ExprKind::Number(signed(first.as_str())),
-                    span,
-                }
-            }
-            _ => self.operand(first)?,
-        };
+        let mut value = self.operand(first)?;
         let (mut align, mut width, mut decimals) = (None, None, None);
         let mut condition = None;
         for p in inner {
