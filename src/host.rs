@@ -13,6 +13,8 @@ pub enum HostError {
     Outside(PathBuf),
     /// The file is not UTF-8: offset of the first bad byte.
     NotUtf8(usize),
+    /// The file was compressed by GAMS (`$compress`): its first line begins with `*GAMS*`.
+    Compressed,
     /// Anything else, in the system's words.
     Other(String),
 }
@@ -23,6 +25,7 @@ impl std::fmt::Display for HostError {
             Self::NotFound => f.write_str("there is no such file"),
             Self::Outside(_) => f.write_str("it lies outside the folders of the model"),
             Self::NotUtf8(at) => write!(f, "byte {} is not UTF-8", at + 1),
+            Self::Compressed => f.write_str("it was compressed by GAMS"),
             Self::Other(why) => f.write_str(why),
         }
     }

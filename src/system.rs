@@ -1,6 +1,6 @@
 //! The system's files, clock and memory. What needs none of them is built without this module.
 //!
-//! Invariant: a model reads only inside its own folder, the current folder, and folders that the user
+//! Invariant: in a sandbox a model reads only inside its own folder, the current folder, and folders that the user
 //! allowed; symbolic links and `..` are resolved before that is decided.
 
 use std::path::{Component, Path, PathBuf};
@@ -16,10 +16,11 @@ pub struct Files {
     /// The current folder.
     pub current: PathBuf,
     allowed: Vec<PathBuf>,
+    sandbox: bool,
 }
 
 impl Files {
-    /// For a model file, and further folders that may be read.
+    /// For a model file, and further folders in which files are looked for. Any file may be read.
     pub fn new(model: &Path, allow_read: &[PathBuf]) -> Self {
         let current = std::env::current_dir()
             .and_then(|d| d.canonicalize())
@@ -36,7 +37,13 @@ impl Files {
                 .filter_map(|d| d.canonicalize().ok())
                 .collect(),
             current,
+            sandbox: false,
         }
+    }
+
+    /// Whether only the model's folder, the current one and those that were allowed may be read.
+    pub fn sandbox(self, sandbox: bool) -> Self {
+        Self { sandbox, ..self }
     }
 
     /// The same, and another folder that may be read.
@@ -47,7 +54,8 @@ impl Files {
 
     fn may_read(&self, real: &Path) -> bool {
         let folder = self.model_folder.canonicalize();
-        self.model.as_deref() == Some(real)
+        !self.sandbox
+            || self.model.as_deref() == Some(real)
             || folder.is_ok_and(|f| real.starts_with(f))
             || real.starts_with(&self.current)
             || self.allowed.iter().any(|d| real.starts_with(d))
@@ -92,6 +100,9 @@ impl Files {
     /// Reads a text, as [`crate::host::Host::read`] does.
     pub fn read(&self, path: &str, from: Option<&Path>) -> Result<(PathBuf, String), HostError> {
         let (known, bytes) = self.read_bytes(path, from)?;
+        if bytes.starts_with(b"*GAMS*") {
+            return Err(HostError::Compressed);
+        }
         match String::from_utf8(bytes) {
             Ok(text) => {
                 // A byte order mark is no part of the text.

@@ -116,12 +116,20 @@ impl Model {
         }
     }
 
+    /// Lets the model read only the files in its own folder, the current one and those of
+    /// [`allow_read`](Self::allow_read): for models of strangers.
+    #[cfg(feature = "system")]
+    pub fn sandbox(&mut self) -> &mut Self {
+        self.files = self.files.take().map(|f| f.sandbox(true));
+        self
+    }
+
     /// Lets the model read files from this folder too.
     #[cfg(feature = "system")]
     pub fn allow_read(&mut self, folder: impl AsRef<std::path::Path>) -> &mut Self {
         let model = std::path::Path::new(&self.name);
         let files = self.files.take();
-        let files = files.unwrap_or_else(|| crate::system::Files::new(model, &[]));
+        let files = files.unwrap_or_else(|| crate::system::Files::new(model, &[]).sandbox(true));
         self.files = Some(files.and_allow(folder.as_ref()));
         self
     }

@@ -525,7 +525,11 @@ pub fn function_value(f: Function, args: &[f64]) -> Result<f64, DomainError> {
             smoothed(f, x, place)
         }
         F::NcpCm if z <= 0.0 => return fail(2, Domain),
-        F::NcpCm => x - z * softplus((x - y) / z),
+        // As GAMS computes it: 1 + e^… loses what is far below 1.
+        F::NcpCm => {
+            let t = (x - y) / z;
+            x - z * (t.max(0.0) + (1.0 + (-t.abs()).exp()).ln())
+        }
         F::NcpF if z < 0.0 => return fail(2, Domain),
         F::NcpF => {
             // √(x² + y² + 2μ) − x − y without cancellation where x + y > 0
@@ -661,11 +665,6 @@ pub(super) fn sigmoid(x: f64) -> f64 {
         let e = x.exp();
         e / (1.0 + e)
     }
-}
-
-/// log(1 + e^x).
-pub(super) fn softplus(x: f64) -> f64 {
-    x.max(0.0) + (-x.abs()).exp().ln_1p()
 }
 
 /// log Σ e^(s·x).

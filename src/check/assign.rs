@@ -298,7 +298,10 @@ impl Compiler {
             } if !domain.slots.is_empty() && domain.conditions.is_empty() => {
                 let mut symbols = self.symbols.iter();
                 let whole = symbols.any(|(_, s)| s.table == *t && !s.has_attributes());
-                whole.then(|| zero_with(value, &domain.slots)).flatten()
+                let read = value.any(|n| matches!(&n.kind, NodeKind::Data(r, _) if r == t));
+                (whole && !read)
+                    .then(|| zero_with(value, &domain.slots))
+                    .flatten()
             }
             _ => None,
         }

@@ -347,7 +347,13 @@ impl Compiler {
         span: Span,
     ) -> Result<Node, Failed> {
         let Some(s) = self.named(name) else {
-            return self.function(name, attr, arguments, span);
+            // `system.gamsRelease` is the function of that name.
+            return match attr {
+                Some(a) if name.name.eq_ignore_ascii_case("system") => {
+                    self.function(a, None, arguments, span)
+                }
+                _ => self.function(name, attr, arguments, span),
+            };
         };
         if self.is_torn(s) {
             return Err(Failed);

@@ -146,7 +146,7 @@ const FUNCTIONS: &[(&str, Callee, usize, usize)] = {
         ("platformcode", Data(D::One), 0, 0),
         ("licenselevel", Data(D::One), 0, 0),
         ("licensestatus", Data(D::Zero), 0, 0),
-        ("gamsrelease", Data(D::GamsVersion), 0, 0),
+        ("gamsrelease", Data(D::GamsRelease), 0, 0),
         ("gamsversion", Data(D::GamsVersion), 0, 0),
         ("handlecollect", Data(D::Zero), 1, 1),
         ("handledelete", Data(D::Zero), 1, 1),
@@ -381,6 +381,11 @@ pub const FILE_ATTRIBUTES: &[&str] = &[
     "lp", "lw", "nd", "nj", "nr", "nw", "nz", "pc", "pdir", "print", "ps", "pw", "sj", "sw", "tf",
     "tj", "tlcc", "tlcr", "tlll", "tm", "tw", "ws", "ts", "tn", "recurse", "title1", "date",
     "time",
+];
+
+/// Solver names of bmod that an option may give.
+pub const OWN_SOLVERS: &[&str] = &[
+    "default", "clarabel", "simplex", "pounce", "ipopt", "bmcp", "mcp", "bmpec",
 ];
 
 /// Solver names that an option may give: bmod's own, and those of GAMS (for which bmod's own stands in).

@@ -207,6 +207,7 @@ pub enum DataFunction {
     /// `numcores`
     One,
     GamsVersion,
+    GamsRelease,
     Sleep,
 }
 

@@ -183,17 +183,13 @@ impl Compiler {
                 }
                 if let OptionValue::Text(t, span) = v
                     && functions::PROBLEM_TYPES.contains(&lower.as_str())
-                    && !functions::SOLVERS.iter().any(|s| s.eq_ignore_ascii_case(t))
+                    && !functions::OWN_SOLVERS
+                        .iter()
+                        .any(|s| s.eq_ignore_ascii_case(t))
                 {
-                    let near = nearest(t, functions::SOLVERS.iter().copied()).map(str::to_string);
-                    let d = Diagnostic::error("E0349", *span, format!("there is no solver `{t}`"))
-                        .label("unknown solver");
-                    return self.fail(match near {
-                        Some(n) => d.help(format!("did you mean `{n}`?")),
-                        None => d.help(
-                            "bmod's own are clarabel (lp), pounce and ipopt (nlp), bmcp (mcp)",
-                        ),
-                    });
+                    self.other_solver(t, *span);
+                    let own = OptionCode::Text("default".into());
+                    return Ok(Some(CodeKind::Option(lower.into(), own)));
                 }
                 self.fitting_value(item, &lower, v)?;
                 let value = match v {
@@ -258,16 +254,33 @@ impl Compiler {
         self.solver_options.iter().find_map(|t| t.find(name))
     }
 
+    /// A warning for a solver that is not there: bmod takes its own.
+    fn other_solver(&mut self, name: &str, span: Span) {
+        let known = functions::SOLVERS
+            .iter()
+            .any(|s| s.eq_ignore_ascii_case(name));
+        let near = nearest(name, functions::OWN_SOLVERS.iter().copied()).filter(|_| !known);
+        let own = functions::OWN_SOLVERS.join(", ");
+        let message = match known {
+            true => format!("the solver `{name}` is not in bmod, which takes its own"),
+            false => format!("there is no solver `{name}`; bmod takes its own"),
+        };
+        let d = Diagnostic::warning("E0349", span, message).label("passed over");
+        self.report(match near {
+            Some(n) => d.help(format!("did you mean `{n}`?")),
+            None => d.help(format!("there are: {own}")),
+        });
+    }
+
     /// An error for decimals, row indices or column indices that a display cannot have.
     fn fitting_format(&mut self, s: SymbolId, numbers: &[i64], span: Span) -> Result<(), Failed> {
         let symbol = self.symbols.get(s);
-        let (dim, is_set) = (symbol.dim() as i64, symbol.is_set());
+        let dim = symbol.dim() as i64;
         let fits = match numbers {
-            [d, ..] if !is_set && !(0..=8).contains(d) => false,
+            [d, ..] if !(0..=8).contains(d) => false,
             // A scalar and a single list have no table.
             [_, 0, list, ..] => *list >= 1,
             [_, rows, columns, ..] => *rows < dim && (1..=dim - rows).contains(columns),
-            [d] if is_set => (0..=8).contains(d),
             _ => true,
         };
         if fits {

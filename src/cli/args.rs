@@ -109,7 +109,10 @@ pub struct ModelArgs {
     /// Sets %NAME% to VALUE, as GAMS's --NAME=VALUE (accepted as well).
     #[arg(short = 'D', value_name = "NAME=VALUE", value_parser = pair)]
     pub define: Vec<(String, String)>,
-    /// A further folder that the model may read; its own and the current one always.
+    /// The model reads only inside its own folder, the current one, and those of --allow-read.
+    #[arg(long)]
+    pub sandbox: bool,
+    /// A further folder in which files are looked for, and which a model in the sandbox may read.
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub allow_read: Vec<PathBuf>,
     /// How diagnostics are written.
@@ -140,8 +143,8 @@ pub struct RunArgs {
     /// Writes the report as JSON; - is standard output, and everything else then goes to standard error.
     #[arg(long, value_name = "FILE|-", value_hint = ValueHint::FilePath)]
     pub json: Option<PathBuf>,
-    /// Writes all rows and columns of every solve as JSON, with all digits.
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    /// Writes all rows and columns of every solve as JSON, with all digits; - is standard output.
+    #[arg(long, value_name = "FILE|-", value_hint = ValueHint::FilePath)]
     pub solution: Option<PathBuf>,
     /// Shows every level and marginal after each solve.
     #[arg(long, conflicts_with = "quiet")]
@@ -412,6 +415,7 @@ impl TestArgs {
         ModelArgs {
             file: PathBuf::new(),
             define: self.define.clone(),
+            sandbox: false,
             allow_read: Vec::new(),
             message_format: MessageFormat::Human,
         }

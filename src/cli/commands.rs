@@ -89,7 +89,8 @@ pub(super) fn carry_out(
 ) -> Finished {
     watch_ctrl_c();
     let model = task.model;
-    let mut host = SystemHost::new(&model.file, task.out, &model.allow_read, task.output);
+    let mut host = SystemHost::new(&model.file, task.out, &model.allow_read, task.output)
+        .sandbox(model.sandbox);
     let extension = model.file.extension();
     let preprocess = PreprocessOptions {
         defines: model.define.clone(),
@@ -214,7 +215,8 @@ pub(super) fn options(a: &SolveArgs) -> Result<Options, u8> {
 
 fn run(a: &RunArgs) -> u8 {
     let json_to_stdout = a.json.as_deref() == Some(Path::new("-"));
-    let (output, is_terminal) = match json_to_stdout {
+    let solution_to_stdout = a.solution.as_deref() == Some(Path::new("-"));
+    let (output, is_terminal) = match json_to_stdout || solution_to_stdout {
         true => (Output::Error, std::io::stderr().is_terminal()),
         false => (Output::Standard, std::io::stdout().is_terminal()),
     };
@@ -253,7 +255,7 @@ fn run(a: &RunArgs) -> u8 {
     }
     if let Some(path) = &a.solution
         && let Some(text) = &solutions
-        && let Err(e) = write_whole(path, text.as_bytes())
+        && let Err(e) = write_to(path, text.as_bytes())
     {
         eprintln!("bmod: {} could not be written: {e}", path.display());
         status = status.max(EXECUTION);
@@ -262,6 +264,15 @@ fn run(a: &RunArgs) -> u8 {
         status = status.max(write_report(finished, &file, path));
     }
     status
+}
+
+/// Writes a file, or standard output for `-`; a reader that has gone away is no error of ours.
+fn write_to(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    if path == Path::new("-") {
+        let _ = std::io::stdout().write_all(bytes);
+        return Ok(());
+    }
+    write_whole(path, bytes)
 }
 
 /// Writes the report of a run as JSON; the exit status that follows from that.
@@ -275,9 +286,7 @@ pub(super) fn write_report(finished: Finished, file: &str, path: &Path) -> u8 {
         ..Report::new(file)
     };
     let text = report.to_json();
-    if path == Path::new("-") {
-        let _ = std::io::stdout().write_all(text.as_bytes());
-    } else if let Err(e) = write_whole(path, text.as_bytes()) {
+    if let Err(e) = write_to(path, text.as_bytes()) {
         eprintln!("bmod: {} could not be written: {e}", path.display());
         return EXECUTION;
     }

@@ -1,8 +1,7 @@
 //! The real world behind [`Host`]: files, clock, terminal, Ctrl-C.
 //!
 //! Invariants:
-//! * A model reads only inside its own folder, the current folder, and folders that the person
-//!   allowed; symbolic links and `..` are resolved before that is decided.
+//! * A model reads what its text names; in a sandbox, see [`Files`].
 //! * A model writes only inside the output folder, whole files or nothing: a file is written under
 //!   a temporary name in the same folder and then renamed.
 //! * Progress is shown only on a terminal and only after a second.
@@ -74,6 +73,12 @@ impl SystemHost {
         }
     }
 
+    /// Whether reading is restricted to the model's folder, the current one and those that were allowed.
+    pub fn sandbox(mut self, sandbox: bool) -> Self {
+        self.files = self.files.clone().sandbox(sandbox);
+        self
+    }
+
     fn clear_progress(&mut self) {
         if let Some(bar) = self.bar.take() {
             bar.finish_and_clear();
@@ -90,8 +95,12 @@ impl SystemHost {
     }
 }
 
-/// Writes a file whole or not at all, with the permissions that new files have.
+/// Writes a file whole or not at all, with the permissions that new files have. What is there already and no ordinary
+/// file (a pipe, a device, a link) stays what it is and is written to.
 pub(super) fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    if std::fs::symlink_metadata(path).is_ok_and(|m| !m.is_file()) {
+        return std::fs::write(path, bytes);
+    }
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
     let mut builder = tempfile::Builder::new();
     builder.prefix(".bmod-");
@@ -154,6 +163,9 @@ impl Host for SystemHost {
         std::fs::create_dir_all(folder).map_err(other)?;
         if target.is_dir() {
             return Err(HostError::Other("there is a folder of that name".into()));
+        }
+        if target.is_symlink() && !target.canonicalize().is_ok_and(|t| t.starts_with(&root)) {
+            return Err(outside());
         }
         write_whole(&target, bytes).map_err(other)?;
         Ok(target
@@ -225,7 +237,7 @@ mod tests {
         fs::write(p.join("model/bad.blk"), b"ab\xff").expect("written");
         fs::write(p.join("secret.blk"), "secret").expect("written");
         let model = p.join("model/m.blk");
-        let host = SystemHost::new(&model, &p.join("out"), &[], Output::Quiet);
+        let host = SystemHost::new(&model, &p.join("out"), &[], Output::Quiet).sandbox(true);
         (root, host)
     }
 
@@ -267,7 +279,9 @@ mod tests {
             ));
         }
         let allow = [root.path().to_path_buf()];
-        let mut open = SystemHost::new(&main, Path::new("."), &allow, Output::Quiet);
+        let mut open = SystemHost::new(&main, Path::new("."), &[], Output::Quiet);
+        assert!(open.read("../secret.blk", Some(&known)).is_ok());
+        let mut open = SystemHost::new(&main, Path::new("."), &allow, Output::Quiet).sandbox(true);
         assert_eq!(
             open.read("../secret.blk", Some(&known)).expect("allowed").1,
             "secret"
@@ -309,7 +323,15 @@ mod tests {
             ));
             std::os::unix::fs::symlink(root.path().join("secret.blk"), out.join("s"))
                 .expect("a link");
-            host.write("s", b"mine").expect("replaces the link");
+            assert!(matches!(
+                host.write("s", b"mine"),
+                Err(HostError::Outside(_))
+            ));
+            std::os::unix::fs::symlink(out.join("b.txt"), out.join("t")).expect("a link");
+            host.write("t", b"through")
+                .expect("written through the link");
+            assert!(out.join("t").is_symlink());
+            assert_eq!(fs::read(&inside).expect("read"), b"through");
             let secret = fs::read(root.path().join("secret.blk")).expect("read");
             assert_eq!(secret, b"secret");
         }

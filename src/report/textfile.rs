@@ -341,7 +341,19 @@ impl TextFile {
         let quoted = !matches!(item, Item::Number(_) | Item::Page);
         if (4..=6).contains(&pc) || pc == 8 {
             if pc != 8 && !quoted {
-                text = text.trim().to_string();
+                // Scientific numbers keep the place of the sign.
+                let sign = if self.get("nr") == 2.0 && !text.contains('-') {
+                    " "
+                } else {
+                    ""
+                };
+                text = format!("{sign}{}", text.trim());
+            }
+            if let (Item::Special(_), Some(width)) = (item, format.width)
+                && width > 0
+                && text.len() > width as usize
+            {
+                text = "*".repeat(width as usize);
             }
             if quoted {
                 text = text.replace('"', "\"\"");

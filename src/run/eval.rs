@@ -52,7 +52,7 @@ impl Machine<'_> {
         if !offset.is_finite() {
             return None;
         }
-        let offset = times * offset.round() as i64;
+        let offset = times * offset.round().clamp(-1e15, 1e15) as i64;
         let set = self.store.table(lag.set);
         let at = i64::from(set.find(&[from])?);
         let n = set.len() as i64;
@@ -517,7 +517,8 @@ impl Machine<'_> {
             D::MaxExecError => self.most_errors as f64,
             D::ErrorLevel | D::Zero | D::Sleep => 0.0,
             D::One => 1.0,
-            D::GamsVersion => 54.0,
+            D::GamsVersion => 546.0,
+            D::GamsRelease => 54.6,
             D::Mapval => unreachable!("handled above"),
         }
     }

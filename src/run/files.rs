@@ -8,6 +8,10 @@ use crate::source::Span;
 impl Machine<'_> {
     /// Writes a whole file; false, and a diagnostic, if that is not possible.
     pub(super) fn write_file(&mut self, name: &str, bytes: &[u8], span: Span) -> bool {
+        if ["/dev/tty", "/dev/stdout", "con:"].contains(&name.to_ascii_lowercase().as_str()) {
+            self.print(&String::from_utf8_lossy(bytes));
+            return true;
+        }
         let written = self.host().write(name, bytes);
         match written {
             Ok(path) => {
@@ -97,6 +101,9 @@ fn refused(code: &'static str, what: &str, name: &str, e: &HostError, span: Span
             .help("put the file beside the model, or allow its folder: `--allow-read DIR`"),
         HostError::NotUtf8(at) => {
             d(format!("byte {} is not UTF-8", at + 1)).help("save the file as UTF-8")
+        }
+        HostError::Compressed => {
+            d("it was compressed by GAMS".into()).help("GAMS unpacks it: `$decompress FILE PLAIN`")
         }
         HostError::Other(why) => d(why.clone()),
     }

@@ -276,6 +276,7 @@ impl Machine<'_> {
             NodeKind::ObjectAttribute(s, a @ ("tmodstat" | "tsolstat")) => {
                 Item::Text(self.status_text(*s, a))
             }
+            NodeKind::SameAs(..) if n.member => Item::Member(truth(self.eval(n, frame))),
             NodeKind::Data(t, _)
                 if self
                     .table_symbol(*t)
@@ -336,10 +337,13 @@ impl Machine<'_> {
                 format!("{h:02}:{m:02}:{s:02}")
             }
             "title" => self.map.title.clone().unwrap_or_else(|| "bmod".into()),
-            "version" => format!("bmod {}", env!("CARGO_PKG_VERSION")),
-            "verid" | "gamsversion" | "gamsrelease" | "buildcode" => {
-                env!("CARGO_PKG_VERSION").into()
-            }
+            "version" => "GAMS Rev 546".into(),
+            "verid" => "LEX546-546".into(),
+            "buildcode" => "LEG".into(),
+            "platform" => "LEX".into(),
+            "gamsversion" => return Item::Number(546.0),
+            "gamsrelease" => return Item::Number(54.6),
+            "gamsreleasemaint" => "54.6.1".into(),
             "page" => return Item::Page,
             "ifile" | "sfile" | "incname" => source().to_string(),
             "fn" => name(path.file_stem()),

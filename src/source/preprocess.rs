@@ -812,11 +812,17 @@ impl<'h> Preprocessor<'h> {
             "tab" => "\t".into(),
             "nullfile" => "/dev/null".into(),
             "platform" | "hostplatform" => "LEX".into(),
-            "version" | "gamsversion" | "gamsrelease" => "54".into(),
+            "version" => "GAMS Rev 546".into(),
+            "gamsversion" => "546".into(),
+            "gamsrelease" => "54.6".into(),
+            "gamsreleasemaint" => "54.6.1".into(),
+            "verid" => "LEX546-546".into(),
+            "buildcode" => "LEG".into(),
             "errorlevel" | "page" | "redirlog" | "licenselevel" | "isalphabeta" => "0".into(),
             "memory" | "tstart" | "tcomp" | "texec" | "tclose" | "elapsed" => "0".into(),
-            "username" | "computername" | "prpage" | "opage" | "verid" | "gstring" | "sstring"
-            | "pfile" => String::new(),
+            "username" | "computername" | "prpage" | "opage" | "gstring" | "sstring" | "pfile" => {
+                String::new()
+            }
             "lp" | "nlp" | "mcp" | "rmip" | "qcp" | "dnlp" | "cns" | "mpec" | "mip" | "minlp"
             | "rminlp" | "rmiqcp" | "miqcp" => "bmod".into(),
             _ => return None,
@@ -1002,6 +1008,11 @@ fn unreadable(name: &str, e: &HostError, span: Span) -> Diagnostic {
             format!("the file `{name}` is not UTF-8 text: byte {at} is not part of a character"),
         )
         .help("save it as UTF-8, for example with `iconv -f LATIN1 -t UTF-8`"),
+        HostError::Compressed => {
+            let message = format!("the file `{name}` was compressed by GAMS");
+            Diagnostic::error("E0102", span, message)
+                .help("GAMS unpacks it: `$decompress FILE PLAIN`; bmod reads the plain text")
+        }
         HostError::Other(why) => Diagnostic::error(
             "E0103",
             span,

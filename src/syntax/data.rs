@@ -813,11 +813,15 @@ impl<'a> DataReader<'a> {
     }
 }
 
+/// Numbers as large are `undf` where they are written, as small ones `eps`.
+pub(super) const LARGE: f64 = 1e300;
+pub(super) const TINY: f64 = 1e-299;
+
 /// The value of a number without its sign: too large is `undf`, too small `eps`.
 fn ordinary(x: f64, minus: bool, digits: &str) -> f64 {
-    if x.is_infinite() {
+    if x >= LARGE {
         UNDF
-    } else if x == 0.0 && is_tiny(digits) {
+    } else if x == 0.0 && is_tiny(digits) || x > 0.0 && x <= TINY {
         EPS
     } else if minus {
         -x

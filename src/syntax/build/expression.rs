@@ -8,6 +8,7 @@ use crate::data::value;
 use crate::diag::Diagnostic;
 use crate::source::Span;
 use crate::syntax::ast::*;
+use crate::syntax::data::{LARGE, TINY};
 use crate::syntax::grammar::Rule;
 
 /// An operator on the stack.
@@ -526,8 +527,11 @@ fn two_operators(at: Span) -> Diagnostic {
 /// A number as written: too large is `undf`, too small is `eps`.
 pub(super) fn number(text: &str) -> f64 {
     let x: f64 = fast_float2::parse(text).unwrap_or(value::UNDF);
-    if x.is_infinite() {
+    if x >= LARGE {
         return value::UNDF;
+    }
+    if x > 0.0 && x <= TINY {
+        return value::EPS;
     }
     if x == 0.0
         && text
