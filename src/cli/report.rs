@@ -160,11 +160,7 @@ fn data(m: &Machine, primal: &Primal) -> Page {
             continue;
         }
         let table = m.store.table(symbol.table);
-        out.push(Block::Heading(
-            format!("{} {}", symbol.name, symbol.text)
-                .trim()
-                .to_string(),
-        ));
+        out.push(Block::Heading(heading(&symbol.name, &symbol.text)));
         let mut head = m.symbols.domain_names(symbol);
         head.push("value".into());
         let rows = table.iter().take(MAX_RECORDS).map(|(key, v)| {
@@ -193,11 +189,7 @@ fn solution(m: &Machine, primal: &Primal) -> Page {
     let mut tables = |blocks: &Blocks, head: [&str; 4], numbers: &dyn Fn(usize) -> [f64; 4]| {
         for b in &blocks.list {
             let symbol = m.symbols.get(b.symbol);
-            out.push(Block::Heading(
-                format!("{} {}", symbol.name, symbol.text)
-                    .trim()
-                    .to_string(),
-            ));
+            out.push(Block::Heading(heading(&symbol.name, &symbol.text)));
             let mut names = m.symbols.domain_names(symbol);
             names.extend(head.map(String::from));
             let rows = (b.start..b.start + b.len).take(MAX_RECORDS).map(|i| {
@@ -235,6 +227,14 @@ fn solution(m: &Machine, primal: &Primal) -> Page {
         },
     );
     out
+}
+
+/// A symbol with its explanatory text.
+fn heading(name: &str, text: &str) -> String {
+    match text.is_empty() {
+        true => name.to_string(),
+        false => format!("{name}: {text}"),
+    }
 }
 
 /// How the solve ended, and how well.

@@ -285,7 +285,10 @@ pub fn mathml(m: &Math) -> String {
     let row = |m: &Math| format!("<mrow>{}</mrow>", mathml(m));
     match m {
         Math::Number(t) => format!("<mn>{t}</mn>"),
-        Math::Words(t) | Math::Quoted(t) => format!("<mtext>{}</mtext>", plain(t)),
+        // Blanks at the ends of a text are not kept.
+        Math::Words(t) | Math::Quoted(t) => {
+            format!("<mtext>{}</mtext>", plain(t).replace(' ', "&#160;"))
+        }
         Math::Name(n) => match n.below.is_empty() {
             true => identifier(&n.base),
             false => format!(
