@@ -1,0 +1,171 @@
+"""Data of Python, NumPy and pandas as columns of labels and numbers, and back."""
+
+from __future__ import annotations
+
+import numbers
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any, Callable, List, Optional, Tuple
+
+from ._errors import DataError
+
+if TYPE_CHECKING:
+    import numpy as np
+
+#: Labels of an index position, each once, and their codes per record.
+Key = Tuple[List[str], bytes]
+
+
+def text_of(label: Any) -> str:
+    """A label as text: 1 and 1.0 are `1`."""
+    if isinstance(label, str):
+        return label
+    if isinstance(label, bool) or label is None:
+        raise TypeError(f"{label!r} is not a label")
+    if isinstance(label, numbers.Real):
+        value = float(label)
+        if value != value:
+            raise TypeError("NaN is not a label")
+        return str(int(value)) if value.is_integer() else repr(value)
+    return str(label)
+
+
+def _keys(name: str, columns: List[Any]) -> List[Key]:
+    """Columns of labels as codes."""
+    import numpy as np
+    import pandas as pd
+
+    out = []
+    for column in columns:
+        codes, labels = pd.factorize(pd.Index(column), use_na_sentinel=True)
+        if len(codes) and codes.min() < 0:
+            raise DataError(f"`{name}`: record {int(codes.argmin()) + 1} has no label")
+        try:
+            texts = [text_of(label) for label in labels]
+        except TypeError as e:
+            raise DataError(f"`{name}`: {e}") from None
+        out.append((texts, codes.astype(np.int32).tobytes()))
+    return out
+
+
+def _numbers(name: str, values: Any) -> "np.ndarray[Any, Any]":
+    import numpy as np
+
+    array = np.asarray(values)
+    if array.dtype.kind not in "biuf":
+        for k, v in enumerate(array.ravel() if isinstance(values, np.ndarray) else values):
+            if not isinstance(v, numbers.Real):
+                raise DataError(f"`{name}`: value {k + 1}, {v!r}, is not a number")
+    try:
+        return np.ascontiguousarray(array, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError) as e:
+        raise DataError(f"`{name}`: {e}") from None
+
+
+def _frame(name: str, data: Any, dimension: Optional[int]) -> Tuple[List[Any], Any]:
+    """A DataFrame: an index and one column, a table of two or more dimensions, or columns of labels and `value`."""
+    import pandas as pd
+
+    columns = list(data.columns)
+    if columns and columns[-1] == "value" and isinstance(data.index, pd.RangeIndex):
+        return [data[c] for c in columns[:-1]], data["value"]
+    if len(columns) == 1 and dimension in (None, data.index.nlevels):
+        return _levels(data.index), data[columns[0]]
+    # A table: its columns are the last positions. Empty cells are no records.
+    stacked = data.stack(list(range(data.columns.nlevels))).dropna()
+    return _levels(stacked.index), stacked
+
+
+def _levels(index: Any) -> List[Any]:
+    return [index.get_level_values(k) for k in range(index.nlevels)]
+
+
+def parameter(
+    name: str,
+    data: Any,
+    domain: Optional[List[str]],
+    members: Callable[[str], List[str]],
+) -> Tuple[List[Key], bytes]:
+    """Data for a parameter. `domain` has the index sets where the model is known; `members` gives a set's labels."""
+    import numpy as np
+    import pandas as pd
+
+    dimension = None if domain is None else len(domain)
+    if hasattr(data, "to_series") and hasattr(data, "dims"):
+        data = data.to_series()  # xarray
+        if not isinstance(data, pd.Series):
+            data = pd.Series(data)
+    if isinstance(data, numbers.Real) or (np.ndim(data) == 0 and isinstance(data, np.ndarray)):
+        columns, values = [], [data if isinstance(data, numbers.Real) else data.item()]
+    elif isinstance(data, pd.Series):
+        columns, values = _levels(data.index), data
+    elif isinstance(data, pd.DataFrame):
+        columns, values = _frame(name, data, dimension)
+    elif isinstance(data, Mapping):
+        keys = [k if isinstance(k, tuple) else (k,) for k in data]
+        wide = {len(k) for k in keys}
+        if len(wide) > 1:
+            raise DataError(f"`{name}`: keys have {min(wide)} and {max(wide)} labels")
+        columns = [list(c) for c in zip(*keys)] if keys else [[] for _ in range(dimension or 1)]
+        values = list(data.values())
+    elif isinstance(data, np.ndarray) or (isinstance(data, (list, tuple)) and not isinstance(data, str)):
+        array = _numbers(name, data)
+        if domain is None or "*" in domain:
+            raise DataError(f"`{name}`: an array needs index sets that the model declares; give a dict or a Series")
+        shape = tuple(len(members(s)) for s in domain)
+        if array.shape != shape:
+            sets = ", ".join(f"{s}: {n}" for s, n in zip(domain, shape))
+            raise DataError(f"`{name}`: the array has the shape {array.shape}; its sets have {shape} members ({sets})")
+        index = pd.MultiIndex.from_product([members(s) for s in domain])
+        columns, values = _levels(index), array.ravel()
+    else:
+        raise DataError(
+            f"`{name}`: {type(data).__name__} is not a number, dict, list, Series, DataFrame or array"
+        )
+    if dimension is not None and len(columns) != dimension:
+        given = "a number was given" if not columns else f"the data have {len(columns)}"
+        raise DataError(f"`{name}` has {dimension} index positions; {given}")
+    return _keys(name, columns), _numbers(name, values).tobytes()
+
+
+def members(
+    name: str, data: Any, dimension: Optional[int]
+) -> Tuple[List[Key], Optional[List[str]]]:
+    """Members of a set: a list of labels or tuples, or a dict with their texts."""
+    import pandas as pd
+
+    texts = None
+    if isinstance(data, Mapping):
+        texts = ["" if t is None else str(t) for t in data.values()]
+        data = list(data)
+    if isinstance(data, str) or not isinstance(data, Iterable):
+        raise DataError(f"`{name}`: a set takes a list of labels, not {data!r}")
+    if isinstance(data, pd.DataFrame):
+        columns = [data[c] for c in data.columns]
+    elif isinstance(data, (pd.Index, pd.Series)):
+        columns = _levels(data) if isinstance(data, pd.Index) else [data]
+    else:
+        keys = [k if isinstance(k, tuple) else (k,) for k in data]
+        wide = {len(k) for k in keys} or {dimension or 1}
+        if len(wide) > 1:
+            raise DataError(f"`{name}`: members have {min(wide)} and {max(wide)} labels")
+        columns = [list(c) for c in zip(*keys)] if keys else [[] for _ in range(wide.pop())]
+    if dimension is not None and len(columns) != dimension:
+        raise DataError(f"`{name}` has {dimension} index positions; its members have {len(columns)}")
+    return _keys(name, columns), texts
+
+
+def index(keys: List[Key], names: List[str]) -> Any:
+    """The pandas index of records: unique labels and codes, no copy per record."""
+    import numpy as np
+    import pandas as pd
+
+    arrays = [np.frombuffer(codes, dtype=np.int32) for _, codes in keys]
+    if len(keys) == 1:
+        labels = np.array(keys[0][0], dtype=object)
+        return pd.Index(labels.take(arrays[0]) if len(labels) else labels, name=names[0])
+    return pd.MultiIndex(
+        levels=[pd.Index(labels, dtype=object) for labels, _ in keys],
+        codes=arrays,
+        names=names,
+        verify_integrity=False,
+    )

@@ -1,0 +1,178 @@
+//! What Python sees of bmod: models, runs, the command line. Data go in and out as columns of numbers and codes of
+//! labels; the package `bmod` around this makes pandas objects of them.
+//!
+//! The interpreter is released while a model runs. The calling thread waits, and looks for signals meanwhile.
+
+mod data;
+mod run;
+
+use bmod::Error;
+use pyo3::exceptions::{PyOSError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+use std::ffi::OsString;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// An exception for what a program asked wrongly.
+fn raise(e: Error) -> PyErr {
+    match e {
+        Error::File { .. } => PyOSError::new_err(e.to_string()),
+        _ => PyValueError::new_err(e.to_string()),
+    }
+}
+
+/// A model: text, files, data from outside.
+#[pyclass(module = "bmod._bmod")]
+struct Model {
+    /// Shared with the runs that are under way: what they use does not change.
+    model: Arc<bmod::Model>,
+}
+
+impl Model {
+    fn change(&mut self) -> &mut bmod::Model {
+        Arc::make_mut(&mut self.model)
+    }
+}
+
+#[pymethods]
+impl Model {
+    #[staticmethod]
+    fn from_text(name: String, text: String) -> Self {
+        Self {
+            model: Arc::new(bmod::Model::from_text(name, text)),
+        }
+    }
+
+    #[staticmethod]
+    fn from_file(path: PathBuf) -> PyResult<Self> {
+        let model = bmod::Model::from_file(path).map_err(raise)?;
+        Ok(Self {
+            model: Arc::new(model),
+        })
+    }
+
+    fn copy(&self) -> Self {
+        Self {
+            model: Arc::clone(&self.model),
+        }
+    }
+
+    fn name(&self) -> String {
+        self.model.name().to_string()
+    }
+
+    fn define(&mut self, name: String, value: String) {
+        self.change().define(name, value);
+    }
+
+    fn file(&mut self, name: String, content: Vec<u8>) {
+        self.change().file(name, content);
+    }
+
+    fn allow_read(&mut self, folder: PathBuf) {
+        self.change().allow_read(folder);
+    }
+
+    fn forget(&mut self, name: &str) {
+        self.change().forget(name);
+    }
+
+    /// Records of a parameter: the labels of each index position, their codes per record (int32), values (float64).
+    fn set_values(
+        &mut self,
+        name: String,
+        labels: Vec<Vec<String>>,
+        codes: Vec<Bound<'_, PyBytes>>,
+        values: &Bound<'_, PyBytes>,
+    ) -> PyResult<()> {
+        let values = data::floats(values.as_bytes());
+        let keys = data::keys(&name, &labels, &codes, values.len())?;
+        if let Some(r) = values.iter().position(|v| v.is_nan()) {
+            return Err(PyValueError::new_err(format!(
+                "`{name}`: the value of {} is not a number (NaN)",
+                data::shown(&keys[r])
+            )));
+        }
+        if labels.is_empty() {
+            let value = values.first().copied().unwrap_or(0.0);
+            self.change().set_scalar(name, value);
+        } else {
+            let records = keys.into_iter().zip(values);
+            self.change().set_parameter(name, records);
+        }
+        Ok(())
+    }
+
+    /// Members of a set in the same form, with their texts (none: no texts).
+    fn set_members(
+        &mut self,
+        name: String,
+        labels: Vec<Vec<String>>,
+        codes: Vec<Bound<'_, PyBytes>>,
+        texts: Option<Vec<String>>,
+    ) -> PyResult<()> {
+        let count = codes.first().map_or(0, |c| c.as_bytes().len() / 4);
+        let keys = data::keys(&name, &labels, &codes, count)?;
+        match texts {
+            Some(t) => self
+                .change()
+                .set_members_with_texts(name, keys.into_iter().zip(t)),
+            None => self.change().set_members(name, keys),
+        };
+        Ok(())
+    }
+
+    /// Compiles only.
+    fn check(&self, py: Python<'_>) -> run::Run {
+        let model = Arc::clone(&self.model);
+        run::Run::new(py.detach(move || model.check()))
+    }
+
+    /// Runs the model; whether Ctrl-C stopped it.
+    #[allow(clippy::too_many_arguments)]
+    fn run(
+        &self,
+        py: Python<'_>,
+        options: Vec<(String, String)>,
+        time_limit: Option<f64>,
+        max_memory: Option<usize>,
+        certify: bool,
+        explain: bool,
+        on_print: Option<Py<PyAny>>,
+        on_progress: Option<Py<PyAny>>,
+    ) -> PyResult<(run::Run, bool)> {
+        let mut all = bmod::Options::default().certify(certify).explain(explain);
+        for (name, value) in options {
+            all = all.option(name, value);
+        }
+        if let Some(seconds) = time_limit {
+            all = all.time_limit(seconds);
+        }
+        if let Some(bytes) = max_memory {
+            all = all.max_memory(bytes);
+        }
+        let model = Arc::clone(&self.model);
+        run::carry_out(py, &model, all, on_print, on_progress)
+    }
+}
+
+/// The command line: the arguments with the program's name first; the exit status.
+#[pyfunction]
+fn main(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
+    const STACK: usize = 256 << 20;
+    const FAILED: u8 = 3;
+    py.detach(|| {
+        let thread = std::thread::Builder::new().stack_size(STACK);
+        let work = thread.spawn(|| bmod::cli::commands::main(arguments));
+        work.map_or(FAILED, |t| t.join().unwrap_or(FAILED))
+    })
+}
+
+#[pymodule]
+fn _bmod(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    m.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    m.add_class::<Model>()?;
+    m.add_class::<run::Run>()?;
+    m.add_function(wrap_pyfunction!(main, m)?)
+}

@@ -1,0 +1,252 @@
+"""Models, data in and out, statuses, figures."""
+
+import math
+import subprocess
+import sys
+import threading
+import time
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import bmod
+
+TRANSPORT = """
+Sets i 'plants' / seattle, san-diego /, j 'markets' / new-york, chicago, topeka /;
+Parameters a(i) / seattle 350, san-diego 600 /, b(j) / new-york 325, chicago 300, topeka 275 /;
+Table d(i,j)
+            new-york chicago topeka
+  seattle     2.5     1.7    1.8
+  san-diego   2.5     1.8    1.4 ;
+Scalar f / 90 /;
+Parameter c(i,j);  c(i,j) = f*d(i,j)/1000;
+Positive variable x(i,j);  Variable z;
+Equations cost, supply(i), demand(j);
+cost..      z =e= sum((i,j), c(i,j)*x(i,j));
+supply(i).. sum(j, x(i,j)) =l= a(i);
+demand(j).. sum(i, x(i,j)) =g= b(j);
+Model transport / all /;
+solve transport using lp minimizing z;
+"""
+
+
+@pytest.fixture
+def transport():
+    return bmod.Model.from_text(TRANSPORT, name="transport.blk")
+
+
+def test_answers(transport):
+    r = transport.solve()
+    assert r.status is bmod.ModelStatus.OPTIMAL and r.status.is_solved
+    assert r.objective == pytest.approx(153.675)
+    x = r["x"]
+    assert list(x.columns) == ["level", "marginal", "lower", "upper"]
+    assert x.index.names == ["i", "j"]
+    assert x.level["seattle", "chicago"] == pytest.approx(300)
+    assert x.upper["seattle", "chicago"] == math.inf
+    assert r["z"].level == pytest.approx(153.675)
+    assert r["demand"].marginal["new-york"] == pytest.approx(0.225)
+    assert r["c"]["seattle", "new-york"] == pytest.approx(0.225)
+    assert r["f"] == 90
+    assert list(r["J"]) == ["new-york", "chicago", "topeka"]
+    assert r.residuals.primal < 1e-9
+    assert [s.model for s in r.solves] == ["transport"]
+    assert "transport" in repr(r) and "<table>" in r._repr_html_()
+
+
+@pytest.mark.parametrize(
+    "demand",
+    [
+        {"new-york": 100, "chicago": 100.0, "topeka": 0},
+        pd.Series([100, 100, 0], index=["new-york", "chicago", "topeka"]),
+        pd.DataFrame({"value": [100, 100, 0]}, index=["new-york", "chicago", "topeka"]),
+        pd.DataFrame({"j": ["new-york", "chicago"], "value": [100, 100]}),
+        np.array([100, 100, 0]),
+        [100, 100, 0],
+    ],
+    ids=["dict", "series", "frame", "columns", "array", "list"],
+)
+def test_data_of_every_shape(transport, demand):
+    transport["b"] = demand
+    r = transport.run()
+    assert r["demand"].level.get("topeka", 0) == 0
+    assert r.objective == pytest.approx(0.09 * (2.5 * 100 + 1.7 * 100))
+
+
+def test_tables_and_arrays_of_two_dimensions(transport):
+    table = pd.DataFrame([[1, 2, 3], [4, 5, 6.0]], index=["seattle", "san-diego"], columns=["new-york", "chicago", "topeka"])
+    transport["d"] = table
+    first = transport.run()["d"]
+    transport["d"] = table.to_numpy()
+    assert transport.run()["d"].equals(first)
+    assert first["san-diego", "chicago"] == 5
+    transport["d"] = table.stack()
+    assert transport.run()["d"].equals(first)
+
+
+def test_sets_then_parameters():
+    m = bmod.Model.from_text("set i / a /; parameter p(i) / a 1 /; scalar s; s = sum(i, p(i));")
+    m["i"] = ["x", "y", 3]
+    m["p"] = {"x": 1, 3: 10}
+    assert m.run()["s"] == 11
+    assert list(m["i"]) == ["x", "y", "3"]
+    m["i"] = {"x": "the first"}
+    m["p"] = {"x": 5}
+    r = m.run()
+    assert r["s"] == 5 and r.texts("i")["x"] == "the first"
+    del m["i"], m["p"]
+    assert m.run()["s"] == 1
+
+
+def test_two_dimensional_sets():
+    m = bmod.Model.from_text("set i / a, b /, arc(i,i); scalar n; n = card(arc);")
+    m["arc"] = [("a", "b"), ("b", "a")]
+    r = m.run()
+    assert r["n"] == 2 and list(r["arc"]) == [("a", "b"), ("b", "a")]
+
+
+@pytest.mark.parametrize(
+    "name, data, words",
+    [
+        ("b", {"new-york": float("nan")}, "NaN"),
+        ("b", {"new-york": "many"}, "not a number"),
+        ("b", {("new-york", "x"): 1}, "1 index position"),
+        ("b", 5, "1 index position"),
+        ("b", [1, 2], "shape"),
+        ("b", {"new-york": 1, "New-York ": 2}, "twice"),
+        ("b", pd.Series([1.0, 2.0], index=["chicago", "chicago"]), "twice"),
+        ("b", pd.Series([1.0], index=[None]), "no label"),
+        ("b", {"new-york": 1j}, "not a number"),
+        ("b", object(), "object"),
+        ("d", {("a",): 1, ("a", "b"): 2}, "labels"),
+        ("i", "seattle", "list"),
+        ("i", ["a", "a"], "twice"),
+        ("x", {("seattle", "topeka"): 1}, "variable"),
+    ],
+)
+def test_bad_data_name_the_symbol(transport, name, data, words):
+    with pytest.raises(bmod.DataError, match=words) as e:
+        transport[name] = data
+    assert f"`{name}`" in str(e.value)
+    assert transport.run().objective == pytest.approx(153.675)
+
+
+def test_unknown_symbols(transport):
+    with pytest.raises(bmod.UnknownSymbolError, match="did you mean"):
+        transport["dd"] = 1
+    with pytest.raises(KeyError):
+        transport.run()["nothing"]
+
+
+def test_a_label_outside_the_domain_has_a_place(transport):
+    transport["b"] = {"boston": 5}
+    with pytest.raises(bmod.CompilationError, match="boston") as e:
+        transport.run()
+    d = e.value.errors[0]
+    assert d.place.file == "transport.blk" and d.place.line == 3
+
+
+def test_errors():
+    with pytest.raises(bmod.CompilationError) as e:
+        bmod.Model.from_text("scalar a;\na = b + 1;", name="m.blk").run()
+    assert (e.value.errors[0].place.line, e.value.errors[0].place.column) == (2, 5)
+    with pytest.raises(bmod.AbortError, match="enough"):
+        bmod.Model.from_text("abort 'enough';").run()
+    with pytest.raises(bmod.ExecutionError):
+        bmod.Model.from_text("scalar a, b; a = 1; b = a / (a - 1);").run()
+    with pytest.raises(OSError):
+        bmod.Model.from_file("there/is/no/such.blk")
+    r = bmod.Model.from_text("scalar a; a = b;").run(check=False)
+    assert not r.ok and r.diagnostics[0].severity == "error"
+
+
+def test_files_defines_and_figures(tmp_path):
+    (tmp_path / "size.inc").write_text("scalar n / %size% /;")
+    (tmp_path / "m.blk").write_text(
+        "$include size.inc\nfigure f { points x = n, y = 1; };\ndraw f 'f.svg';\nfile out / o.txt /; put out 'text'; putclose;"
+    )
+    r = bmod.Model.from_file(tmp_path / "m.blk", define={"size": 7}).run()
+    assert r["n"] == 7
+    assert r.figures["f"]._repr_svg_().startswith("<svg")
+    assert r.files["o.txt"].startswith(b"text")
+    assert not (tmp_path / "f.svg").exists()
+    r.save(tmp_path / "out")
+    assert (tmp_path / "out" / "f.svg").exists()
+
+
+def test_callbacks_and_their_exceptions(transport):
+    printed = []
+    transport.run(on_print=printed.append)
+    assert "optimal" in "".join(printed)
+
+    def fails(text):
+        raise RuntimeError("from the callback")
+
+    with pytest.raises(RuntimeError, match="from the callback"):
+        transport.run(on_print=fails)
+
+
+def test_time_limit_and_options(transport):
+    assert transport.run(options={"lp": "simplex"}).solves[0].solver.startswith("simplex")
+    m = bmod.Model.from_text("scalar n / 0 /; while(1, n = n + 1);")
+    start = time.time()
+    r = m.run(time_limit=0.3, check=False)
+    assert r.stopped and time.time() - start < 10
+
+
+def test_threads_run_side_by_side():
+    m = bmod.Model.from_text("scalar n / 0 /; while(n < 100000, n = n + 1);")
+    ticks = []
+
+    def work():
+        ticks.append(m.run()["n"])
+
+    threads = [threading.Thread(target=work) for _ in range(4)]
+    for t in threads:
+        t.start()
+    for t in threads:
+        t.join()
+    assert ticks == [100000] * 4
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+def test_ctrl_c_returns_what_was_found():
+    code = (
+        "import bmod, os, signal, threading, warnings\n"
+        "warnings.simplefilter('ignore')\n"
+        "threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT)).start()\n"
+        "r = bmod.Model.from_text('scalar n / 0 /; while(1, n = n + 1);').run()\n"
+        "print(r.stopped, r.interrupted, r['n'] > 0)\n"
+    )
+    out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert out.stdout.split() == ["True", "True", "True"], out.stderr
+
+
+def test_command_line(tmp_path):
+    (tmp_path / "m.blk").write_text("scalar n / 3 /; display n;")
+    out = subprocess.run([sys.executable, "-m", "bmod", "run", str(tmp_path / "m.blk")], capture_output=True, text=True)
+    assert out.returncode == 0 and "3.000" in out.stdout
+
+
+def test_models_are_values(transport):
+    other = transport.copy()
+    other["f"] = 180
+    assert other.run().objective == pytest.approx(2 * 153.675)
+    assert transport.run().objective == pytest.approx(153.675)
+    assert str(transport.symbols["d"]) == "d(i,j)"
+
+
+def test_warnings():
+    m = bmod.Model.from_text("set i / a /; alias(i,j); $eolcom #\nscalar s / 1 /; execute 'program';")
+    with pytest.warns(bmod.ModelWarning):
+        m.run()
+
+
+def test_many_records():
+    n = 300_000
+    m = bmod.Model.from_text("set i; parameter p(i<); scalar s; s = sum(i, p(i));")
+    labels = [f"l{k}" for k in range(n)]
+    m["p"] = pd.Series(np.ones(n), index=labels)
+    r = m.run()
+    assert r["s"] == n and len(r["p"]) == n and r["p"].index[5] == "l5"
