@@ -36,7 +36,7 @@ pub fn carry_out(
             let _ = tell.send(Message::Printed(text.to_string()));
         });
     }
-    let (run, interrupted, raised) = py.detach(|| {
+    let (run, interrupted, raised) = py.detach(move || {
         std::thread::scope(|scope| {
             let options = &options;
             let worker = scope.spawn(move || {
@@ -58,9 +58,9 @@ pub fn carry_out(
                 match told.recv_timeout(POLL) {
                     Ok(Message::Done) | Err(RecvTimeoutError::Disconnected) => break,
                     Ok(Message::Printed(text)) => {
-                        let call = |py| on_print.as_ref().map(|f| f.call1(py, (text,)));
                         Python::attach(|py| {
-                            if let Some(Err(e)) = call(py) {
+                            let called = on_print.as_ref().map(|f| f.call1(py, (text,)));
+                            if let Some(Err(e)) = called {
                                 stop(e, py);
                             }
                         });

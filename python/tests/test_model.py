@@ -238,7 +238,7 @@ def test_models_are_values(transport):
 
 
 def test_warnings():
-    m = bmod.Model.from_text("set i / a /; alias(i,j); $eolcom #\nscalar s / 1 /; execute 'program';")
+    m = bmod.Model.from_text("scalar s / 1 /; execute 'program';")
     with pytest.warns(bmod.ModelWarning):
         m.run()
 

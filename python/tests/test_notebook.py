@@ -31,5 +31,5 @@ def test_magic(tmp_path):
     done = execute(notebook, tmp_path).cells
     kinds = [kind for o in done[1].outputs for kind in o.get("data", {})]
     assert "image/svg+xml" in kinds
-    assert "(7.0, 4.0)" in done[2].outputs[0]["data"]["text/plain"]
+    assert "(7.0, np.float64(4.0))" in done[2].outputs[0]["data"]["text/plain"]
     assert "underline" in done[3].outputs[0]["data"]["text/html"]
