@@ -43,9 +43,8 @@ pub fn keys(
         .iter()
         .map(|list| {
             let mut first = HashMap::new();
-            let number = |(n, l): (usize, &String)| {
-                *first.entry(l.trim_end().to_lowercase()).or_insert(n)
-            };
+            let number =
+                |(n, l): (usize, &String)| *first.entry(l.trim_end().to_lowercase()).or_insert(n);
             list.iter().enumerate().map(number).collect()
         })
         .collect();

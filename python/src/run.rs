@@ -280,15 +280,8 @@ fn diagnostic<'py>(py: Python<'py>, d: &Diagnostic) -> PyResult<Bound<'py, PyDic
     out.set_item("label", &d.label)?;
     out.set_item("help", &d.help)?;
     let place = |p: &Option<Place>| {
-        p.as_ref().map(|p| {
-            (
-                p.file.clone(),
-                p.line,
-                p.column,
-                p.end_line,
-                p.end_column,
-            )
-        })
+        p.as_ref()
+            .map(|p| (p.file.clone(), p.line, p.column, p.end_line, p.end_column))
     };
     out.set_item("place", place(&d.place))?;
     let related: Vec<_> = d
