@@ -59,7 +59,7 @@ pub fn run(
         () => RunStatus::Ok,
     };
     diagnostics.extend(machine.take_diagnostics());
-    let report = std::mem::take(&mut machine.report);
+    let report = std::mem::take(&mut *machine.report());
     Finished {
         end,
         report,

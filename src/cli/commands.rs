@@ -8,6 +8,7 @@ use super::args::{
     completions,
 };
 use super::host::{Output, SystemHost, watch_ctrl_c, write_whole};
+use super::watchdog::{Watch, Watchdog};
 use crate::report::diagnostic::{Diagnostic, json_lines};
 use crate::report::diagnostics::{self, Look};
 use crate::report::json::{Report, RunStatus};
@@ -67,6 +68,8 @@ pub(super) struct Task<'a> {
     pub output: Output,
     /// Nothing is carried out.
     pub check_only: bool,
+    /// Where the report goes should a limit end the process.
+    pub json: Option<&'a Path>,
 }
 
 impl<'a> Task<'a> {
@@ -76,6 +79,7 @@ impl<'a> Task<'a> {
             out: Path::new("."),
             output,
             check_only: false,
+            json: None,
         }
     }
 }
@@ -99,6 +103,14 @@ pub(super) fn carry_out(
         ..PreprocessOptions::default()
     };
     let file = name(model);
+    let watchdog = Watchdog::new(Watch {
+        time_limit: options.time_limit,
+        max_memory: options.max_memory,
+        report: options.report.clone(),
+        file: file.clone(),
+        json: task.json.map(Path::to_path_buf),
+        output: task.output,
+    });
     let finished = session::run(
         &mut host,
         &file,
@@ -107,6 +119,7 @@ pub(super) fn carry_out(
         task.check_only,
         after,
     );
+    drop(watchdog);
     host.finish();
     tell(&finished, model.message_format);
     finished
@@ -238,6 +251,7 @@ fn run(a: &RunArgs) -> u8 {
     let mut solutions = None;
     let task = Task {
         out: &a.out,
+        json: a.json.as_deref(),
         ..Task::new(&a.model, output)
     };
     let finished = carry_out(task, options, &mut |m| {
@@ -285,6 +299,11 @@ pub(super) fn write_report(finished: Finished, file: &str, path: &Path) -> u8 {
         files: finished.report.files,
         ..Report::new(file)
     };
+    write_json(&report, path)
+}
+
+/// Writes a report as JSON, whole or not at all.
+pub(super) fn write_json(report: &Report, path: &Path) -> u8 {
     let text = report.to_json();
     if let Err(e) = write_to(path, text.as_bytes()) {
         eprintln!("bmod: {} could not be written: {e}", path.display());

@@ -9,6 +9,7 @@
 use std::io::{IsTerminal, Write};
 use std::path::{Component, Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -95,12 +96,16 @@ impl SystemHost {
     }
 }
 
+/// Held while a file is written: the process does not end in between.
+pub(super) static WRITING: Mutex<()> = Mutex::new(());
+
 /// Writes a file whole or not at all, with the permissions that new files have. What is there already and no ordinary
 /// file (a pipe, a device, a link) stays what it is and is written to.
 pub(super) fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     if std::fs::symlink_metadata(path).is_ok_and(|m| !m.is_file()) {
         return std::fs::write(path, bytes);
     }
+    let _writing = WRITING.lock().unwrap_or_else(PoisonError::into_inner);
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
     let mut builder = tempfile::Builder::new();
     builder.prefix(".bmod-");

@@ -15,6 +15,7 @@ pub mod report;
 pub mod show;
 pub mod test;
 pub mod watch;
+mod watchdog;
 pub mod why;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};

@@ -5,6 +5,7 @@
 //! `"EPS"`, `"NA"`, `"UNDF"`.
 
 use serde::{Serialize, Serializer};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::diagnostic::Diagnostic;
 use crate::data::value;
@@ -56,6 +57,20 @@ pub struct Report {
     pub files: Vec<String>,
     /// What was wrong.
     pub diagnostics: Vec<Diagnostic>,
+    /// The solve that runs just now. Not in the JSON.
+    #[serde(skip)]
+    pub solving: Option<SolveReport>,
+}
+
+/// The report of a run that goes on: another thread may read it.
+#[derive(Clone, Debug, Default)]
+pub struct SharedReport(Arc<Mutex<Report>>);
+
+impl SharedReport {
+    /// The report, for as long as it is held.
+    pub fn get(&self) -> MutexGuard<'_, Report> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
 }
 
 /// How a run ended.

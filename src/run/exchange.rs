@@ -68,7 +68,7 @@ impl Machine<'_> {
         let mut name = format!("{}_p", self.symbols.get(model).name);
         match savepoint {
             1.0 => {}
-            2.0 => name.push_str(&(self.report.solves.len() + 1).to_string()),
+            2.0 => name.push_str(&(self.report().solves.len() + 1).to_string()),
             _ => return,
         }
         let blocks = origin.columns.list.iter().chain(&origin.rows.list);

@@ -135,7 +135,7 @@ impl Machine<'_> {
                 no_error,
             } => {
                 // Behind a solve that was not made (`bmod list`) an abort judges numbers that are not there.
-                let judges = self.options.list.is_none() || self.report.solves.is_empty();
+                let judges = self.options.list.is_none() || self.report().solves.is_empty();
                 if judges && self.holds(condition.as_ref(), frame) {
                     return self.abort(items, *no_error, c.span);
                 }

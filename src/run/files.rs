@@ -16,8 +16,8 @@ impl Machine<'_> {
         match written {
             Ok(path) => {
                 let path = path.display().to_string();
-                if !self.report.files.contains(&path) {
-                    self.report.files.push(path);
+                if !self.report().files.contains(&path) {
+                    self.report().files.push(path);
                 }
                 true
             }
@@ -35,7 +35,7 @@ impl Machine<'_> {
         for (name, bytes) in files.iter().filter(|f| !f.0.is_empty()) {
             let written = self.host().write(name, bytes);
             if let Ok(path) = written {
-                self.report.files.push(path.display().to_string());
+                self.report().files.push(path.display().to_string());
             }
         }
     }

@@ -39,11 +39,13 @@ use crate::check::symbols::{Store, SymbolKind, Symbols};
 use crate::data::universe::Label;
 use crate::diag::{Diagnostic, Severity};
 use crate::host::Host;
+use crate::report::json::Report;
 use crate::source::{SourceMap, Span};
 use random::Random;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
+use std::sync::MutexGuard;
 
 /// More execution errors than this are counted but not kept.
 const MAX_KEPT_ERRORS: usize = 30;
@@ -77,8 +79,6 @@ pub struct Machine<'h> {
     pub models: FxHashMap<SymbolId, ModelState>,
     /// `option p:d:r:c`
     pub formats: FxHashMap<SymbolId, Vec<i64>>,
-    /// What is reported: solves, displays.
-    pub report: crate::report::json::Report,
     /// Solves that are kept for `--solution`.
     kept: Vec<solve::KeptSolve>,
     /// The solve that is looked at when the run is over, and how many there were.
@@ -141,7 +141,6 @@ impl<'h> Machine<'h> {
             passed_over: FxHashSet::default(),
             models: FxHashMap::default(),
             formats: FxHashMap::default(),
-            report: crate::report::json::Report::default(),
             kept: Vec::new(),
             studied: None,
             solves_seen: 0,
@@ -172,6 +171,11 @@ impl<'h> Machine<'h> {
         let flow = self.block(code, &mut frame);
         self.close_put_files();
         flow
+    }
+
+    /// What is reported: solves, displays.
+    pub(crate) fn report(&self) -> MutexGuard<'_, Report> {
+        self.options.report.get()
     }
 
     /// Warnings and errors so far.

@@ -3,6 +3,7 @@
 use crate::check::node::{OptionCode, SymbolId};
 use crate::check::option::is_statement_option;
 use crate::model::option::{Accepted, Refused, check, switch};
+use crate::report::json::SharedReport;
 use crate::report::textfile::TextFile;
 use crate::solve::registry::OPTION_TABLES;
 use crate::source::{Span, named_constant};
@@ -44,6 +45,8 @@ pub struct Options {
     pub list: Option<ListOptions>,
     /// Keep a solve, to be looked at when the run is over.
     pub study: Option<super::StudyChoice>,
+    /// What the run reports, while it does.
+    pub report: SharedReport,
     /// The statement that runs just now.
     pub at: Cell<Span>,
 }
@@ -76,6 +79,7 @@ impl Default for Options {
             color: false,
             list: None,
             study: None,
+            report: SharedReport::default(),
             at: Cell::default(),
         }
     }

@@ -54,7 +54,7 @@ impl Machine<'_> {
                 Shown::Text(t) => {
                     page.line(t.trim_end());
                     if self.options.collect {
-                        self.report.displays.push(Display::Text {
+                        self.report().displays.push(Display::Text {
                             line,
                             text: t.to_string(),
                         });
@@ -184,13 +184,13 @@ impl Machine<'_> {
                 records,
             };
             drop(table);
-            self.report.displays.push(display);
+            self.report().displays.push(display);
         }
     }
 
     fn collect_scalar(&mut self, line: usize, symbol: String, value: f64) {
         if self.options.collect {
-            self.report.displays.push(Display::Scalar {
+            self.report().displays.push(Display::Scalar {
                 line,
                 symbol,
                 value: Number(value),

@@ -87,10 +87,12 @@ impl Machine<'_> {
     }
 
     pub(super) fn solve(&mut self, s: &SolveCode, span: Span, frame: &mut Frame) -> Flow {
-        match s.scenario {
+        let flow = match s.scenario {
             Some(dict) => self.scenarios(dict, s, span, frame),
             None => self.solve_once(s, span, frame),
-        }
+        };
+        self.report().solving = None;
+        flow
     }
 
     pub(super) fn solve_once(&mut self, s: &SolveCode, span: Span, frame: &mut Frame) -> Flow {
@@ -112,6 +114,7 @@ impl Machine<'_> {
         }
         let name = self.symbols.get(s.model).name.to_string();
         self.host().progress(&format!("generating {name}"));
+        self.begins(s, None);
         // Equations have slots of their own: the loop around the solve keeps its labels.
         let mut own = frame.clone();
         let Some(generated) = self.generate(s, options, &mut own) else {
@@ -126,7 +129,7 @@ impl Machine<'_> {
         let generated_at = self.elapsed();
         if let Some(list) = self.options.list.clone() {
             self.print_listing(&name, &generated, &list);
-            self.report.solves.push(self.not_solved(s, &generated));
+            self.report().solves.push(self.not_solved(s, &generated));
             return Flow::Next;
         }
         if s.using == ProblemType::Mpec
@@ -141,7 +144,7 @@ impl Machine<'_> {
                     .label("not solved")
                     .help(help),
             );
-            self.report.solves.push(self.not_solved(s, &generated));
+            self.report().solves.push(self.not_solved(s, &generated));
             return Flow::Stop;
         }
         let Some(mut options) = self.option_file(s.model, s.using, span) else {
@@ -153,6 +156,7 @@ impl Machine<'_> {
             options,
             search: self.search_aim(s.model),
         };
+        self.begins(s, Some(&generated));
         self.host().progress(&format!(
             "solving {name}: {} rows, {} columns",
             generated.instance.row_count(),
@@ -227,7 +231,7 @@ impl Machine<'_> {
                     None => d.label("at this solve"),
                 });
                 let report = self.not_solved(s, &generated);
-                self.report.solves.push(report);
+                self.report().solves.push(report);
                 Flow::Stop
             }
         }
@@ -484,7 +488,7 @@ impl Machine<'_> {
             ),
             ("domusd", 0.0),
             ("marginals", 1.0),
-            ("number", f64::from(self.report.solves.len() as u32 + 1)),
+            ("number", f64::from(self.report().solves.len() as u32 + 1)),
             ("line", self.map.listing_line(self.options.at.get()) as f64),
             ("linkused", 0.0),
         ];
@@ -542,7 +546,7 @@ impl Machine<'_> {
             text.push_str(&self.levels(s.model, g, a));
             self.print(&text);
         }
-        self.report.solves.push(solve);
+        self.report().solves.push(solve);
     }
 
     /// Levels and marginals, where the text shows no numbers itself, or where all are asked for. `solPrint` = 0 or 2, a loop
@@ -568,6 +572,18 @@ impl Machine<'_> {
             row_marginal: &a.outcome.row_marginal,
         };
         levels::levels(&g.instance, &names, &values, all)
+    }
+
+    /// Notes in the report that a solve begins, and what was wrong so far: should the run be ended from outside, this
+    /// is what is known.
+    fn begins(&self, s: &SolveCode, generated: Option<&Generated>) {
+        let empty = Generated::default();
+        let solve = self.not_solved(s, generated.unwrap_or(&empty));
+        let diagnostics =
+            crate::report::diagnostic::Diagnostic::all(&self.diagnostics.borrow(), &self.map);
+        let mut report = self.report();
+        report.solving = Some(solve);
+        report.diagnostics = diagnostics;
     }
 
     /// The report of a model that was generated only.
