@@ -20,6 +20,7 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+#[cfg(feature = "system")]
 use std::time::Duration;
 
 use clarabel::algebra::CscMatrix;
