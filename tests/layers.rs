@@ -40,6 +40,13 @@ const ARROWS: &[(&str, &[&str])] = &[
         &["check", "diag", "host", "report", "run", "source"],
     ),
     (
+        "formulation",
+        &[
+            "autodiff", "check", "data", "diag", "host", "model", "report", "run", "session",
+            "solve", "source", "syntax",
+        ],
+    ),
+    (
         "api",
         &[
             "check", "data", "diag", "host", "model", "report", "run", "session", "solve",
@@ -50,8 +57,19 @@ const ARROWS: &[(&str, &[&str])] = &[
     (
         "cli",
         &[
-            "check", "claims", "diag", "gdx", "host", "model", "report", "run", "session", "solve",
-            "source", "system",
+            "check",
+            "claims",
+            "diag",
+            "formulation",
+            "gdx",
+            "host",
+            "model",
+            "report",
+            "run",
+            "session",
+            "solve",
+            "source",
+            "system",
         ],
     ),
 ];
