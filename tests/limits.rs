@@ -176,7 +176,7 @@ fn slow() -> Vec<(&'static str, String)> {
             "a long put",
             "Set i / 1*100000 /;  Alias(i,j);  File f / 'o.txt' /;  put f;  loop((i,j), put i.tl j.tl /);".into(),
         ),
-        ("a long display", format!("{}Scalar n / 0 /;  while(1, display a;  n = n + 1);", square(40))),
+        ("a long display", format!("{}Scalar n / 0 /;  while(1, display a;  n = n + 1);", square(20))),
         (
             "figures without end",
             format!(

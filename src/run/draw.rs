@@ -65,6 +65,7 @@ impl Machine<'_> {
             return;
         }
         let name = symbol.name.to_string();
+        self.look_soon();
         let Ok(scene) = self.scene(&code, frame) else {
             return;
         };

@@ -243,6 +243,11 @@ impl<'h> Machine<'h> {
         self.table_symbols.get(t as usize).copied()
     }
 
+    /// After a statement that may take long (a solve, a display, a figure): the next [`Machine::keep_going`] looks.
+    pub(crate) fn look_soon(&self) {
+        self.ticks.set(self.ticks.get() | 0xffff);
+    }
+
     /// False once the run is to end: Ctrl-C, or a limit. Cheap enough for inner loops.
     #[inline]
     pub(crate) fn keep_going(&self) -> bool {

@@ -66,6 +66,7 @@ impl Machine<'_> {
         if !self.options.quiet {
             self.print(&page.text);
         }
+        self.look_soon();
     }
 
     fn show(&mut self, s: SymbolId, attr: Option<&'static str>, page: &mut Page) {

@@ -92,6 +92,7 @@ impl Machine<'_> {
             None => self.solve_once(s, span, frame),
         };
         self.report().solving = None;
+        self.look_soon();
         flow
     }
 
