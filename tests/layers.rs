@@ -13,7 +13,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("gdx", &[]),
     ("system", &["host"]),
     ("diag", &["span"]),
-    ("model", &["data"]),
+    ("model", &["data", "diag"]),
     ("autodiff", &["model"]),
     ("source", &["data", "diag", "host", "span"]),
     ("syntax", &["data", "diag", "host", "model", "source"]),
@@ -37,7 +37,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ),
     (
         "session",
-        &["check", "diag", "host", "report", "run", "source"],
+        &["check", "diag", "host", "report", "run", "solve", "source"],
     ),
     (
         "formulation",
@@ -74,13 +74,8 @@ const ARROWS: &[(&str, &[&str])] = &[
     ),
 ];
 
-/// Arrows that go the wrong way and wait for the rebuilding of `solve`: the certificate belongs above `autodiff`,
-/// statuses to `model`, names of options to `model`.
-const NOT_YET: &[(&str, &str)] = &[
-    ("model", "autodiff"),
-    ("model", "solve"),
-    ("check", "solve"),
-];
+/// The arrow that goes the wrong way: the certificate of nonlinear programs belongs above `autodiff`.
+const NOT_YET: &[(&str, &str)] = &[("model", "autodiff")];
 
 /// Names behind `crate::` in a source, without its comments and its tests.
 fn imports(text: &str) -> BTreeSet<String> {
