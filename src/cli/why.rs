@@ -39,10 +39,15 @@ pub fn why(a: &WhyArgs) -> u8 {
 fn text(finished: &session::Finished) -> String {
     let mut out = String::new();
     for s in &finished.report.solves {
-        out.push_str(&summary::solve(s, false));
         if s.solver.is_empty() {
-            out.push_str("  No solver ran; the messages say why.\n");
-        } else if s.why.as_ref().is_none_or(|w| w.text.is_empty()) {
+            out.push_str(&format!(
+                "  {} using {}: not solved; the messages say why\n\n",
+                s.model, s.using
+            ));
+            continue;
+        }
+        out.push_str(&summary::solve(s, false));
+        if s.why.as_ref().is_none_or(|w| w.text.is_empty()) {
             out.push_str("  Nothing is wrong with this solve.\n");
         }
         out.push('\n');
