@@ -124,8 +124,11 @@ fn violation(using: ProblemType, instance: &Instance, x: &[f64]) -> f64 {
     }
 }
 
+/// What is checked of a backend: a task, its optimum where there is one, and its name.
+type Check<'a> = dyn FnMut(&'static dyn Backend, &Task, Option<f64>, &str) + 'a;
+
 /// Calls `check` with every backend and every model that it takes.
-fn each(check: &mut dyn FnMut(&'static dyn Backend, &Task, Option<f64>, &str)) {
+fn each(check: &mut Check) {
     for (k, (text, value)) in MODELS.iter().enumerate() {
         for (using, instance) in instances(text) {
             let task = Task {

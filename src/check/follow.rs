@@ -66,7 +66,7 @@ impl Compiler {
             (group.contains(&d.code) || unreadable)
                 && here.iter().any(|e| group.contains(&e.code) || label(e))
         };
-        if ONCE_PER_STATEMENT.iter().any(|g| said(&g)) {
+        if ONCE_PER_STATEMENT.iter().any(said) {
             return;
         }
         // Labels that one set lacks are one mistake of a data statement.

@@ -402,9 +402,7 @@ impl Compiler {
                         what,
                         "E0361",
                         match &n.kind {
-                            NodeKind::Call(f, _) if is_nonsmooth(*f) => format!(
-                                "solve it `using dnlp`, or write it with inequalities: `y =g= x; y =g= -x` for `y = abs(x)`"
-                            ),
+                            NodeKind::Call(f, _) if is_nonsmooth(*f) => "solve it `using dnlp`, or write it with inequalities: `y =g= x; y =g= -x` for `y = abs(x)`".to_string(),
                             _ => format!(
                             "solve it `using nlp`, or reformulate the equation `{name}`; a level (`x.l`) is data and may be multiplied"
                         ),

@@ -46,13 +46,11 @@ pub fn format(f: FormulaFormat) -> Format {
     }
 }
 
+/// What is made of a solve: an exit status, or why it cannot be made.
+pub type Derive<'a> = dyn FnMut(&mut Machine, Primal, Studied) -> Result<u8, Box<Diagnostic>> + 'a;
+
 /// Runs a model and hands the solve that is meant on; the exit status.
-pub fn studied(
-    model: &ModelArgs,
-    solve: &SolveArgs,
-    chosen: &ChosenArgs,
-    f: &mut dyn FnMut(&mut Machine, Primal, Studied) -> Result<u8, Diagnostic>,
-) -> u8 {
+pub fn studied(model: &ModelArgs, solve: &SolveArgs, chosen: &ChosenArgs, f: &mut Derive) -> u8 {
     let base = match options(solve) {
         Ok(o) => o,
         Err(status) => return status,
@@ -71,12 +69,12 @@ pub fn studied(
     let finished = carry_out_silently(model, options, &mut |m| {
         let result = match study::primal(m) {
             Some((primal, studied)) => f(m, primal, studied),
-            None => Err(no_solve(m, chosen)),
+            None => Err(Box::new(no_solve(m, chosen))),
         };
         match result {
             Ok(s) => status = s,
             Err(d) => {
-                m.say(d);
+                m.say(*d);
                 status = EXECUTION;
             }
         }

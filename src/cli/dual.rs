@@ -41,7 +41,7 @@ pub fn dual(a: &DeriveArgs) -> u8 {
 }
 
 /// Whether a model has a dual of this kind at all.
-fn refuse(m: &Machine, primal: &Primal, studied: &Studied) -> Result<(), Diagnostic> {
+fn refuse(m: &Machine, primal: &Primal, studied: &Studied) -> Result<(), Box<Diagnostic>> {
     let instance = &primal.generated.instance;
     let no = |message: String| {
         Diagnostic::execution("E0431", studied.span, message).label("of this solve")
@@ -51,7 +51,8 @@ fn refuse(m: &Machine, primal: &Primal, studied: &Studied) -> Result<(), Diagnos
             "the model `{}` has no objective, and so no dual",
             primal.name
         );
-        return Err(no(message).help("a dual belongs to a linear program, solved `using lp`"));
+        let help = "a dual belongs to a linear program, solved `using lp`";
+        return Err(no(message).help(help).into());
     }
     let relaxed = primal.using.starts_with('r');
     if let Some(j) = instance.columns.first_undecided().filter(|_| !relaxed) {
@@ -62,7 +63,8 @@ fn refuse(m: &Machine, primal: &Primal, studied: &Studied) -> Result<(), Diagnos
             format!("a model with discrete variables has no linear dual, and {name} is discrete");
         return Err(no(message)
             .other(declared, "declared here")
-            .help("the relaxation has one: `solve … using rmip`"));
+            .help("the relaxation has one: `solve … using rmip`")
+            .into());
     }
     if !instance.is_linear() {
         let row = instance
@@ -84,7 +86,8 @@ fn refuse(m: &Machine, primal: &Primal, studied: &Studied) -> Result<(), Diagnos
         )
         .label("this equation")
         .other(studied.span, "at this solve")
-        .help("`bmod kkt` derives the optimality conditions of a nonlinear program"));
+        .help("`bmod kkt` derives the optimality conditions of a nonlinear program")
+        .into());
     }
     Ok(())
 }

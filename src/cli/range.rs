@@ -23,16 +23,17 @@ pub fn range(a: &RangeArgs) -> u8 {
         };
         let solved = studied.answer.as_ref().map(|(_, a)| a.status);
         if primal.objective.is_none() || !primal.generated.instance.is_linear() {
-            return Err(no("ranges belong to a linear program".into()));
+            return Err(no("ranges belong to a linear program".into()).into());
         }
         if solved != Some(crate::solve::ModelStatus::Optimal) {
             return Err(
                 no("ranges belong to an optimal answer, and there is none".into())
-                    .help("`bmod why` says what is infeasible or unbounded"),
+                    .help("`bmod why` says what is infeasible or unbounded")
+                    .into(),
             );
         }
         let Some(r) = of(m, &primal, &a.names) else {
-            return Err(no("there is no answer".into()));
+            return Err(no("there is no answer".into()).into());
         };
         match a.format {
             TableFormat::Text => tell(&write(&page(m, &primal, &r), Format::Text(100), "")),

@@ -293,9 +293,9 @@ pub fn dual(
     }
     // The transposed matrix by columns of the primal.
     let mut transposed: Vec<Vec<(usize, f64)>> = vec![Vec::new(); p.column_count()];
-    for i in 0..p.row_count() {
+    for (i, multiplier) in of_row.iter().enumerate() {
         for (j, v) in p.matrix.row(i) {
-            if let (Some(y), true) = (of_row[i], v != 0.0) {
+            if let (Some(y), true) = (*multiplier, v != 0.0) {
                 transposed[j].push((y, v * flip));
             }
         }

@@ -243,8 +243,7 @@ impl Explained<'_> {
         let (_, cost) = costs(&g.instance);
         let mut out = Vec::new();
         let mut others = Vec::new();
-        for j in 0..g.instance.column_count() {
-            let d = a.column_marginal[j];
+        for (j, &d) in a.column_marginal.iter().enumerate() {
             let at = a.level[j] == c.lower[j] || a.level[j] == c.upper[j];
             if !at || c.lower[j] == c.upper[j] {
                 continue;

@@ -248,24 +248,24 @@ fn start_of_columns(d: &mut Derivation, v: SymbolId) {
     };
     // What is 0 is stored as eps, so that the record is there.
     let stored = |x: f64| if x == 0.0 { EPS } else { x };
-    let mut differing =
-        |bound: f64, pick: &dyn Fn(&(&[Label], f64, f64)) -> f64, word: &'static str| {
-            let records: Vec<(Vec<Label>, f64)> = columns
-                .iter()
-                .filter(|c| pick(c) != bound)
-                .map(|c| (c.0.to_vec(), stored(pick(c))))
-                .collect();
-            assign(
-                d,
-                &format!("{word}_{name}"),
-                &name,
-                word,
-                domain.clone(),
-                records,
-            );
-        };
-    differing(lower, &|c| c.1, "lo");
-    differing(upper, &|c| c.2, "up");
+    let mut differing = |bound: f64, side: usize, word: &'static str| {
+        let pick = |c: &(&[Label], f64, f64)| [c.1, c.2][side];
+        let records: Vec<(Vec<Label>, f64)> = columns
+            .iter()
+            .filter(|c| pick(c) != bound)
+            .map(|c| (c.0.to_vec(), stored(pick(c))))
+            .collect();
+        assign(
+            d,
+            &format!("{word}_{name}"),
+            &name,
+            word,
+            domain.clone(),
+            records,
+        );
+    };
+    differing(lower, 0, "lo");
+    differing(upper, 1, "up");
     let Some(a) = &d.primal.answer else { return };
     let Some(b) = d.primal.generated.origin.columns.symbol(v) else {
         return;

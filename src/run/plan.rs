@@ -623,12 +623,11 @@ fn base_slot(p: &Part) -> Option<Slot> {
 fn binds(key: &Key, free: &[Slot]) -> Option<Vec<Slot>> {
     let mut new = Vec::new();
     for p in &key.parts {
-        if let Part::Lag(l) = p {
-            if slots_of(&l.offset).iter().any(|s| free.contains(s))
-                || matches!(l.base, Part::Lag(_))
-            {
-                return None;
-            }
+        if let Part::Lag(l) = p
+            && (slots_of(&l.offset).iter().any(|s| free.contains(s))
+                || matches!(l.base, Part::Lag(_)))
+        {
+            return None;
         }
         if let Some(s) = base_slot(p).filter(|s| free.contains(s) && !new.contains(s)) {
             new.push(s);

@@ -224,7 +224,7 @@ impl<'m> Budget<'m> {
     fn is_time_to_look(&self) -> bool {
         let asked = self.asked.get().wrapping_add(1);
         self.asked.set(asked);
-        asked % QUESTIONS_PER_LOOK_AT_MEMORY == 0
+        asked.is_multiple_of(QUESTIONS_PER_LOOK_AT_MEMORY)
     }
 
     /// Whether the work at hand must end.

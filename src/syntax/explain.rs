@@ -200,7 +200,7 @@ fn other_end(f: &Failure<'_>) -> Option<Explanation> {
     let rest = &f.text[f.at + 1..];
     let second = f.at + 1 + rest.len() - rest.trim_start().len();
     let ends = rest.trim().is_empty();
-    if !ends && !(f.text[f.at..second].contains('\n') && begins_statement(f.text, second))
+    if !(ends || f.text[f.at..second].contains('\n') && begins_statement(f.text, second))
         || Grammar::parse(f.rule, first).is_err()
     {
         return None;

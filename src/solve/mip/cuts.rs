@@ -392,7 +392,7 @@ impl<'a> Separator<'a> {
     /// A cut with neither tiny nor very different coefficients, and by how much it is violated.
     fn clean(&self, mut out: Vec<f64>, mut side: f64, values: &[f64]) -> Option<(f64, Cut)> {
         let top = out.iter().fold(0.0f64, |t, a| t.max(a.abs()));
-        if !(top > 1e-9 && top < 1e9) || !side.is_finite() {
+        if !(top > 1e-9 && top < 1e9 && side.is_finite()) {
             return None;
         }
         let scale = 2f64.powi(-(top.log2().round() as i32));

@@ -262,18 +262,18 @@ fn nonlinear_search(
 pub fn fixed(instance: &Instance, x: &[f64]) -> Instance {
     let mut out = instance.clone();
     let c = &mut out.columns;
-    for j in 0..x.len() {
+    for (j, &value) in x.iter().enumerate() {
         match c.kind[j] {
             ColumnKind::Integer | ColumnKind::SemiInteger => {
-                (c.lower[j], c.upper[j]) = (x[j].round(), x[j].round());
+                (c.lower[j], c.upper[j]) = (value.round(), value.round());
             }
-            ColumnKind::SemiContinuous | ColumnKind::OrderedSet if x[j] == 0.0 => {
+            ColumnKind::SemiContinuous | ColumnKind::OrderedSet if value == 0.0 => {
                 (c.lower[j], c.upper[j]) = (0.0, 0.0);
             }
             _ => {}
         }
         c.kind[j] = ColumnKind::Continuous;
-        c.level[j] = x[j];
+        c.level[j] = value;
     }
     for &(j, lower) in &instance.discrete.thresholds {
         let j = j as usize;

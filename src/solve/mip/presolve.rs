@@ -67,8 +67,8 @@ pub fn reduce(mip: &Mip, fixed: &[Change]) -> Option<Reduced> {
 /// Rows of one column become bounds. None: they cross.
 fn singletons(mip: &mut Mip, idle: &mut [bool]) -> Option<bool> {
     let mut changed = false;
-    for i in 0..mip.problem.m() {
-        if idle[i] {
+    for (i, idle) in idle.iter_mut().enumerate() {
+        if *idle {
             continue;
         }
         let p = &mut mip.problem;
@@ -100,7 +100,7 @@ fn singletons(mip: &mut Mip, idle: &mut [bool]) -> Option<bool> {
             return None;
         }
         (p.lower[j], p.upper[j]) = if l > u { (u, u) } else { (l, u) };
-        idle[i] = true;
+        *idle = true;
         changed = true;
     }
     Some(changed)
@@ -115,8 +115,8 @@ fn rows(mip: &mut Mip, idle: &mut [bool]) -> bool {
         ..
     } = mip;
     let mut new: Vec<(usize, usize, f64)> = Vec::new();
-    for i in 0..p.row_lower.len() {
-        if idle[i] {
+    for (i, idle) in idle.iter_mut().enumerate() {
+        if *idle {
             continue;
         }
         // rows as borrowed by Activity
@@ -139,7 +139,7 @@ fn rows(mip: &mut Mip, idle: &mut [bool]) -> bool {
             changed = true;
         }
         if p.row_lower[i].is_infinite() && p.row_upper[i].is_infinite() {
-            idle[i] = true;
+            *idle = true;
             continue;
         }
         // One side, of either direction, as a ≤ row.
@@ -196,8 +196,8 @@ fn rows(mip: &mut Mip, idle: &mut [bool]) -> bool {
 fn dual_fixing(mip: &mut Mip, idle: &[bool], in_set: &[bool]) -> bool {
     let mut changed = false;
     let p = &mut mip.problem;
-    for j in 0..p.cost.len() {
-        if p.lower[j] == p.upper[j] || in_set[j] {
+    for (j, in_set) in in_set.iter().enumerate() {
+        if p.lower[j] == p.upper[j] || *in_set {
             continue;
         }
         let (mut up, mut down) = (0, 0);

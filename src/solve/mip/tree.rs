@@ -631,7 +631,7 @@ impl<'a, R: Relaxation> Search<'a, R> {
             return Fixed::Empty;
         }
         let outside = |j: &usize| x[*j] < self.lower[*j] - 1e-9 || x[*j] > self.upper[*j] + 1e-9;
-        match self.propagator.moved.iter().any(|j| outside(j)) {
+        match self.propagator.moved.iter().any(outside) {
             true => Fixed::Moved,
             false => Fixed::Nothing,
         }
