@@ -166,6 +166,7 @@ fn supports_and_relaxation_agree_on_a_small_wall() {
     let all = small_wall(
         0.65,
         "solve static using lp maximizing alpha;
+option mpec_swaps = yes;
 solve least using mpec minimizing alpha;
 option mpec_method = relaxation;
 solve least using mpec minimizing alpha;",
@@ -186,7 +187,10 @@ solve least using mpec minimizing alpha;",
 /// `bound.blk -D friction=1.2` proves that nothing is below.
 #[test]
 fn a_local_mechanism_is_found_where_friction_is_high() {
-    let all = small_wall(1.2, "solve least using mpec minimizing alpha;");
+    let all = small_wall(
+        1.2,
+        "option mpec_swaps = yes; solve least using mpec minimizing alpha;",
+    );
     let [s] = &all[..] else { panic!("{all:?}") };
     assert!(
         (objective(s) - 40.0 / 49.0).abs() < 1e-9,
@@ -208,7 +212,7 @@ fn load_factors_are_not_above_the_paper() {
         let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
         let file = std::env::temp_dir().join(format!("bmod_least_{k}_{}.blk", std::process::id()));
         let text = format!(
-            "$set scene 1\n$include {}\nsolve least using mpec minimizing alpha;",
+            "$set scene 1\n$include {}\noption mpec_swaps = yes;\nsolve least using mpec minimizing alpha;",
             models.join(format!("walls/example{k}.blk")).display()
         );
         std::fs::write(&file, text).expect("a temporary file");
@@ -237,7 +241,7 @@ fn a_swap_leads_to_the_better_piece() {
                 "Positive Variables x, y; Variable f; Equations cost, F_x;
 cost.. f =e= 0.5*sqr(x - 1) + sqr(y - 1);
 F_x.. x =g= 0;
-Model m / cost, F_x.y /; x.l = 1; option mpec_method = {method}, mpec_starts = 0;
+Model m / cost, F_x.y /; x.l = 1; option mpec_method = {method}, mpec_starts = 0, mpec_swaps = yes;
 solve m using mpec minimizing f;"
             ),
         );

@@ -205,7 +205,8 @@ pub(super) fn linear(
     Ok(Answer::certified(instance, outcome))
 }
 
-/// The same for what people see: an infeasible program at its least violation.
+/// The same for what people see: an infeasible program at its least violation; where that is within the tolerance, as after
+/// data that were rounded, the optimum with the rows moved by it.
 pub(super) fn linear_shown(
     solver: &dyn Solver,
     instance: &Instance,
@@ -218,8 +219,47 @@ pub(super) fn linear_shown(
         let at = certificate::linearise(instance, &found.outcome);
         found.residuals = certificate::residuals(instance, &found.outcome, &at);
         found.activity = at.activity;
+        if found.residuals.is_feasible(TOLERANCE)
+            && let Some(near) = moved(solver, instance, &found, settings, monitor)
+        {
+            return Ok(near);
+        }
     }
     Ok(found)
+}
+
+/// The optimum of the program whose violated rows are moved to where a point has them, if it is one of the program itself to
+/// the tolerance.
+fn moved(
+    solver: &dyn Solver,
+    instance: &Instance,
+    found: &Answer,
+    settings: &Settings,
+    monitor: &mut dyn Monitor,
+) -> Option<Answer> {
+    let mut near = instance.clone();
+    for (i, &a) in found.activity.iter().enumerate() {
+        let rhs = &mut near.rows.rhs[i];
+        *rhs = match instance.rows.relation[i] {
+            Relation::Equal => a,
+            Relation::Greater => rhs.min(a),
+            Relation::Less => rhs.max(a),
+            Relation::Free => *rhs,
+        };
+    }
+    let mut outcome = solver.solve(&near, settings, monitor).ok()?;
+    let at = certificate::linearise(instance, &outcome);
+    let residuals = certificate::residuals(instance, &outcome, &at);
+    if !residuals.is_optimal(TOLERANCE) {
+        return None;
+    }
+    let most = residuals.primal.unwrap_or(0.0);
+    outcome.message = Some(format!(
+        "the rows contradict each other by a rounding error: they hold to {most:.0e}"
+    ));
+    outcome.iterations += found.outcome.iterations;
+    let status = ModelStatus::Optimal;
+    Some(Answer::new(outcome, residuals, status, at.activity))
 }
 
 /// Levels of the rows; not a number where a function has no value.

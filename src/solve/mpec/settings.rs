@@ -44,7 +44,7 @@ pub struct Options {
     pub last: f64,
     /// `mpec_starts`: further starts, after the first local solution.
     pub starts: usize,
-    /// `mpec_swaps` = `yes | no`: whether anything better than the first local solution is looked for.
+    /// `mpec_swaps` = `no | yes`: whether anything better than the first local solution is looked for.
     pub swaps: bool,
     /// `mpec_nodes`: nodes of a search for a descent direction.
     pub nodes: usize,
@@ -61,7 +61,7 @@ impl Default for Options {
             factor: 0.1,
             last: 1e-8,
             starts: 4,
-            swaps: true,
+            swaps: false,
             nodes: 300,
             bound: Bound::None,
         }

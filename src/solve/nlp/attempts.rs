@@ -9,8 +9,7 @@ use super::problem::Problem;
 use super::provider::Ended;
 use super::provider::lock;
 use super::quadratic::Quadratic;
-use super::schedule::{CHEAP, FINEST, FIRST_PATIENCE, LEAST_PATIENCE, NEAR, NEARER, ROUNDING};
-use super::slp::Effort;
+use super::schedule::{DOUBTS, FINEST, NEAR, NEARER, ROUNDING};
 use super::trial::{Trial, polished};
 use crate::model::certificate_nlp::is_locally_infeasible;
 use crate::solve::SolveError;
@@ -33,20 +32,44 @@ impl Driver<'_, '_> {
         }
         if self.is_square() {
             self.attempt_newton();
-            return self.is_settled_by("newton");
+            if self.is_settled_by("newton")? {
+                return Ok(true);
+            }
         }
-        if !again || self.named {
+        if self.named {
             return Ok(false);
         }
-        self.patience = LEAST_PATIENCE;
-        self.linearised_from(self.start.clone(), Effort::NEAR);
-        let settled = self.is_settled_by("slp")?;
-        if settled && LEAST_PATIENCE as f64 * self.work_of_iteration() <= CHEAP {
+        let marginals = again.then(|| lock(&*self.problem).marginals_of(self.instance));
+        let defined = if again { None } else { self.consistent() };
+        let start = defined.unwrap_or_else(|| self.start.clone());
+        self.sequential(start, marginals.as_deref());
+        let settled = self.is_settled_by("slqp")?;
+        if settled {
             self.growth = Growth::Ignored;
             self.search()?;
+        } else if self.infeasibility.is_some() && !self.is_impossible() {
+            return self.doubt();
         }
-        self.patience = FIRST_PATIENCE;
         Ok(settled)
+    }
+
+    /// Where nothing near the start is feasible: from elsewhere. Whether that settles it.
+    fn doubt(&mut self) -> Result<bool, SolveError> {
+        for from in DOUBTS {
+            if let Some(x) = self.start_point(from) {
+                if self.is_square() {
+                    lock(&*self.problem).set_start(x.clone());
+                    self.attempt_newton();
+                }
+                if !self.is_settled() {
+                    self.sequential(x, None);
+                }
+            }
+            if self.best.as_ref().is_some_and(Trial::is_feasible) {
+                return self.is_settled_by("slqp");
+            }
+        }
+        Ok(false)
     }
 
     /// Whether the best point is an answer, of the method of that name if it is no saddle.
@@ -154,7 +177,7 @@ impl Driver<'_, '_> {
     }
 
     /// Keeps an elastic solution whose multipliers prove that there is no feasible point nearby.
-    fn note_infeasibility(&mut self, trial: &Trial) {
+    pub(super) fn note_infeasibility(&mut self, trial: &Trial) {
         let mut problem = lock(&*self.problem);
         // the constraints push with −λ
         let mut y = vec![0.0; self.instance.row_count()];

@@ -23,12 +23,12 @@ use super::problem::{Nlp, Problem};
 use super::provider::{Control, Ended, Progress, Provider, Shared, Solution, lock};
 use super::quadratic::Quadratic;
 use super::schedule::{
-    AGREEMENT, BASE, BESIDE, BETTER, CHEAP, ELASTIC_AFTER, ENOUGH, EXACT, FINEST, FIRST_PATIENCE,
-    From, LEAST_PATIENCE, OVERHEAD, PATIENCE, SCHEDULE, SHARP, SMALL, TIMES,
+    AGREEMENT, BASE, BESIDE, BETTER, CHEAP, DOUBT, ENOUGH, EXACT, FINEST, FIRST_PATIENCE, From,
+    LEAST_PATIENCE, OVERHEAD, PATIENCE, SCHEDULE, SHARP, TIMES,
 };
-use super::slp;
+use super::slqp;
 use super::trial::{Trial, active_set, clean, polished, residuals_at, tidy, without_noise};
-use crate::autodiff::{ErrorKind, EvalFailure, Evaluator, Kinks, kinks};
+use crate::autodiff::{ErrorKind, EvalFailure, Evaluator, kinks};
 use crate::model::instance::Instance;
 use crate::solve::budget::{self, Budget, Size, Stop};
 use crate::solve::factor_size::symmetric_size;
@@ -43,6 +43,9 @@ const UNBOUNDED: f64 = 1e15;
 const LOST: f64 = 1e17;
 /// A point is unbounded evidence from here on, if the provider stopped with diverging iterates.
 const LARGE: f64 = 1e10;
+
+/// What rows without multipliers are widened by, in units of their largest entry.
+const WIDTH: f64 = 1e-8;
 
 /// Solves an instance and certifies the answer.
 pub fn solve(
@@ -161,8 +164,6 @@ pub(super) struct Driver<'a, 'm> {
     pub(super) best: Option<Trial>,
     /// How the last run of the provider ended.
     ended: Ended,
-    /// How many runs ended at a minimum of the violations.
-    failures: usize,
     /// The best point is a saddle from which a run went astray.
     pub(super) at_saddle: bool,
     /// There is no feasible point.
@@ -205,7 +206,6 @@ impl<'a, 'm> Driver<'a, 'm> {
             iterations: 0,
             best: None,
             ended: Ended::Broken,
-            failures: 0,
             at_saddle: false,
             impossible: false,
             repeated: false,
@@ -238,6 +238,12 @@ impl Driver<'_, '_> {
         if self.settle_without_provider()? {
             return Ok(self.finish());
         }
+        if self.impossible {
+            return Ok(self.finish());
+        }
+        if self.infeasibility.is_some() {
+            self.patience = DOUBT;
+        }
         let before = self.iterations;
         self.attempt(From::Start, &[])?;
         if self.enough > 0.0 {
@@ -258,40 +264,29 @@ impl Driver<'_, '_> {
         }
         self.patience = PATIENCE;
         let kinks = kinks(self.instance);
-        if kinks == Some(Kinks::Anywhere) {
+        if kinks.is_some() {
             self.round_kinks()?;
         }
-        let attempts = self.attempts();
-        for (k, (from, options)) in SCHEDULE.into_iter().enumerate() {
-            if self.is_settled() || self.work() > self.enough {
+        for (from, options) in SCHEDULE.into_iter().take(self.attempts()) {
+            let proved =
+                self.infeasibility.is_some() && !self.best.as_ref().is_some_and(Trial::is_feasible);
+            if self.is_settled() || proved || self.work() > self.enough {
                 break;
             }
-            if k >= attempts {
-                return Ok(self.finish());
+            if !self.named
+                && from != From::Start
+                && let Some(x) = self.start_point(from)
+            {
+                self.sequential(x, None);
+                self.leave_saddles()?;
             }
-            let has_point = self.best.as_ref().is_some_and(Trial::is_feasible);
-            let due = k >= ELASTIC_AFTER || self.failures > 1;
-            if due && !self.elastic_tried && !has_point {
-                self.attempt_elastic()?;
+            if !self.is_settled() {
+                self.attempt(from, options)?;
+                self.leave_saddles()?;
             }
-            let proved = self.infeasibility.is_some() && !has_point;
-            if self.is_settled() || proved && self.work() > SMALL {
-                break;
-            }
-            if proved {
-                // it is doubted from elsewhere only
-                self.patience = FIRST_PATIENCE;
-                if !matches!(from, From::Moved(_) | From::Anywhere(_)) {
-                    continue;
-                }
-            }
-            self.attempt(from, options)?;
-            if k == 0 && kinks == Some(Kinks::Roots) && !self.is_settled() {
-                self.round_kinks()?;
-            }
-            self.leave_saddles()?;
         }
-        if !self.is_settled() && self.infeasibility.is_none() && self.work() <= self.enough {
+        let lacks_point = !self.best.as_ref().is_some_and(Trial::is_feasible);
+        if !self.is_settled() && lacks_point && self.infeasibility.is_none() {
             self.attempt_elastic()?;
         }
         self.leave_saddles()?;
@@ -325,14 +320,10 @@ impl Driver<'_, '_> {
         if self.convex.is_some() || self.work() > CHEAP || !self.wants_search() {
             return Ok(());
         }
-        let square = self.is_square();
         let mut agreed = true;
         for (k, (from, options)) in BETTER.into_iter().enumerate() {
             if self.is_stopped() || (k >= AGREEMENT && agreed) || self.work() > 5.0 * CHEAP {
                 break;
-            }
-            if square && matches!(from, From::Linearised) {
-                continue;
             }
             let before = optimal(self);
             let found = self.attempt(from, options)?;
@@ -356,13 +347,13 @@ impl Driver<'_, '_> {
 
     /// Whether there may be several local optima, and the person lets us look for them.
     fn wants_search(&self) -> bool {
-        self.settings.switch("nlp_search").unwrap_or(true)
+        self.settings.switch("nlp_search").unwrap_or(false)
     }
 
     /// How much of the schedule is tried: one program of a sequence is not worth all of it.
     fn attempts(&self) -> usize {
         match self.settings.option("nlp_attempts").as_deref() {
-            Some("few") => 2,
+            Some("few") => 1,
             _ => usize::MAX,
         }
     }
@@ -428,12 +419,11 @@ impl Driver<'_, '_> {
     }
 
     /// None where this start is the same as the person's, or is a solution.
-    fn start_point(&mut self, from: From) -> Option<Vec<f64>> {
+    pub(super) fn start_point(&mut self, from: From) -> Option<Vec<f64>> {
         let (seed, by, anywhere) = match (from, &self.best) {
             (From::Best, Some(best)) => return Some(best.x.clone()),
             (From::Best, None) | (From::Start, _) => return Some(self.start.clone()),
             (From::Consistent, _) => return self.consistent(),
-            (From::Linearised, _) => return self.linearised(),
             (From::Moved(by), _) => (12345, by, false),
             (From::Anywhere(seed), _) => (seed.wrapping_mul(7919), 1.0, true),
         };
@@ -451,33 +441,81 @@ impl Driver<'_, '_> {
         })
     }
 
-    fn consistent(&self) -> Option<Vec<f64>> {
+    pub(super) fn consistent(&self) -> Option<Vec<f64>> {
         let problem = lock(&*self.problem);
         let mut evaluator = Evaluator::new(self.instance);
         consistent_start(self.instance, &problem, &mut evaluator, &self.start)
     }
 
-    /// The point is judged and kept; None where it is an answer.
-    fn linearised(&mut self) -> Option<Vec<f64>> {
-        let start = self.consistent().unwrap_or_else(|| self.start.clone());
-        self.linearised_from(start, slp::Effort::FULL)
-    }
-
-    pub(super) fn linearised_from(&mut self, x: Vec<f64>, effort: slp::Effort) -> Option<Vec<f64>> {
+    /// Sequential programs from a point, judged and kept; with multipliers, from the active set that they name.
+    pub(super) fn sequential(&mut self, x: Vec<f64>, multipliers: Option<&[f64]>) {
         let mut problem = lock(&*self.problem);
         problem.set_start(x);
         let own = self.settings.number("max_iter");
         let own = own.map_or(u64::MAX, |n| n as u64);
-        let steps = effort.steps.min(self.budget.iterations_left()).min(own);
-        let effort = slp::Effort { steps, ..effort };
-        let run = slp::solve(&mut *problem, effort, self.budget)?;
+        let full = slqp::Effort::FULL;
+        let effort = slqp::Effort {
+            steps: full.steps.min(self.budget.iterations_left()).min(own),
+            ..full
+        };
+        let request = slqp::Request {
+            multipliers,
+            effort,
+            width: 0.0,
+        };
+        let run = slqp::solve(&mut *problem, request, self.budget);
+        let failures = problem.failures();
         drop(problem);
+        self.budget.stop_after_failures(failures);
+        let Some(run) = run else { return };
         self.spend(run.steps);
-        self.budget.log(format!("{} linear programs", run.steps));
-        let trial = self.judge(run.x.clone(), run.lambda, Ended::Acceptable);
-        let optimal = trial.is_optimal();
+        let (steps, end) = (run.steps, run.end);
+        self.budget.log(format!("slqp: {end:?} after {steps} steps"));
+        let ended = match run.end {
+            slqp::End::Solved => Ended::Solved,
+            slqp::End::Infeasible => Ended::Infeasible,
+            slqp::End::Diverging => Ended::Diverging,
+            slqp::End::Spent => Ended::Iterations,
+            slqp::End::Stuck => Ended::SmallStep,
+        };
+        let trial = self.judge(run.x, run.lambda, ended);
+        if run.end == slqp::End::Infeasible {
+            self.note_infeasibility(&trial);
+        }
+        let ended = matches!(run.end, slqp::End::Solved | slqp::End::Stuck);
+        let irregular = ended && trial.is_feasible() && !trial.is_optimal();
+        let trial = match irregular {
+            true => self.without_multipliers(trial),
+            false => trial,
+        };
         self.keep(trial);
-        (!optimal).then_some(run.x)
+    }
+
+    /// Where rows have no multipliers, as a square that is to be 0: the point is optimal if the same rows, a little wider, have an
+    /// optimum with multipliers and all but the same value.
+    fn without_multipliers(&mut self, trial: Trial) -> Trial {
+        let mut problem = lock(&*self.problem);
+        problem.set_start(trial.x.clone());
+        let request = slqp::Request {
+            multipliers: None,
+            effort: slqp::Effort::FULL,
+            width: WIDTH,
+        };
+        let run = slqp::solve(&mut *problem, request, self.budget);
+        drop(problem);
+        let Some(run) = run else { return trial };
+        self.spend(run.steps);
+        let wide = self.judge(run.x, run.lambda, Ended::Solved);
+        let near =
+            (wide.objective - trial.objective).abs() <= 1e-3 * trial.objective.abs().max(1.0);
+        match (wide.is_optimal(), near) {
+            (true, true) => Trial {
+                irregular: true,
+                ..trial
+            },
+            (true, false) => wide,
+            _ => trial,
+        }
     }
 
     /// One run of the provider, judged and kept if it is the best so far. The objective of the point if
@@ -625,7 +663,6 @@ impl Driver<'_, '_> {
         self.spend(solution.iterations);
         self.note_end(solution.ended);
         self.ended = solution.ended;
-        self.failures += usize::from(solution.ended == Ended::Infeasible);
         if let Ended::InvalidOption = solution.ended {
             return Err(SolveError::new(format!(
                 "{} does not take one of the options",
@@ -706,6 +743,13 @@ impl Driver<'_, '_> {
                 return Ok(());
             };
             let before = best.objective;
+            if !self.named {
+                self.sequential(x.clone(), None);
+            }
+            let now = self.best.as_ref().map_or(before, |t| t.objective);
+            if now < before - 1e-9 * before.abs().max(1.0) {
+                continue;
+            }
             self.attempt_from(
                 x,
                 &[

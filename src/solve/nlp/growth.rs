@@ -13,7 +13,7 @@
 use super::driver::Driver;
 use super::problem::{Nlp, ObjectiveForm, Problem};
 use super::provider::{Ended, lock};
-use super::schedule::{From, NEAR};
+use super::schedule::From;
 use super::trial::{CONSIDERABLE, FAR, Trial};
 use crate::model::instance::Instance;
 use crate::solve::SolveError;
@@ -125,10 +125,10 @@ impl Driver<'_, '_> {
         let mut inner = Driver::new(&instance, problem, provider, settings, self.budget);
         inner.growth = Growth::Ignored;
         inner.iterations = self.iterations;
-        inner.attempt(From::Start, &[])?;
+        inner.sequential(inner.start.clone(), None);
         inner.leave_saddles()?;
         if !inner.is_settled() {
-            inner.attempt(From::Linearised, NEAR)?;
+            inner.attempt(From::Start, &[])?;
             inner.leave_saddles()?;
         }
         let best = inner.best.take();

@@ -24,7 +24,7 @@ pub mod provider;
 pub mod quadratic;
 pub mod relaxation;
 mod schedule;
-mod slp;
+mod slqp;
 mod symmetric;
 mod trial;
 mod verdict;

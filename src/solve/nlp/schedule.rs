@@ -23,8 +23,6 @@ pub(super) enum From {
     Start,
     /// The person's start, with the variables that the model defines computed.
     Consistent,
-    /// Where sequential linear programming leads to from there.
-    Linearised,
     /// The best point so far.
     Best,
     /// The person's start, moved by this fraction of its size (and at least by this much).
@@ -39,6 +37,8 @@ pub(super) const BESIDE: [f64; 3] = [1e-6, 1e-4, 1e-2];
 /// Iterations that one attempt may take; the first less, for what takes so many is better begun elsewhere.
 pub(super) const PATIENCE: u64 = 3000;
 pub(super) const FIRST_PATIENCE: u64 = 500;
+/// What a proof that nothing nearby is feasible is doubted for.
+pub(super) const DOUBT: u64 = 100;
 /// Where there is an answer, a search for a better one may take this many at least.
 pub(super) const LEAST_PATIENCE: u64 = 50;
 
@@ -65,52 +65,28 @@ pub(super) const SHARP: &[(&str, &str)] = &[("tol", "1e-11"), ("compl_inf_tol", 
 /// Bounds as they are, where a solution owes its objective to their relaxation.
 pub(super) const EXACT: &[(&str, &str)] = &[("bound_relax_factor", "0")];
 
-/// What to try when an attempt has not led to a certified point.
-pub(super) const SCHEDULE: [(From, &[(&str, &str)]); 15] = [
-    (From::Linearised, NEAR),
+/// What to try when neither sequential programs nor a plain run has led to a certified point.
+pub(super) const SCHEDULE: [(From, &[(&str, &str)]); 5] = [
+    (From::Best, NEAR),
     (From::Consistent, &[]),
     (From::Start, NEAR),
     (From::Moved(0.1), NEAR),
-    (From::Consistent, NEAR),
-    (
-        From::Start,
-        &[("mu_strategy", "adaptive"), ("bound_relax_factor", "0")],
-    ),
-    (From::Moved(1.0), &[]),
-    (
-        From::Best,
-        &[
-            ("nlp_scaling_method", "none"),
-            ("bound_push", "1e-6"),
-            ("bound_frac", "1e-6"),
-            ("mu_init", "1e-4"),
-        ],
-    ),
-    (
-        From::Start,
-        &[
-            ("bound_push", "1e-4"),
-            ("bound_frac", "1e-4"),
-            ("mu_init", "1e-2"),
-            ("alpha_for_y", "safer-min-dual-infeas"),
-        ],
-    ),
     (From::Start, CENTRAL),
-    (From::Anywhere(1), NEAR),
-    (From::Anywhere(2), &[]),
-    (From::Anywhere(3), NEAR),
-    (From::Anywhere(4), &[]),
-    (From::Moved(10.0), NEAR),
 ];
 
-/// After so many attempts without a feasible point, or two that ended at a minimum of the violations, the elastic form has
-/// its turn.
-pub(super) const ELASTIC_AFTER: usize = 4;
+/// From where sequential programs doubt a proof that nothing near the start is feasible.
+pub(super) const DOUBTS: [From; 6] = [
+    From::Start,
+    From::Moved(0.1),
+    From::Moved(1.0),
+    From::Anywhere(1),
+    From::Anywhere(2),
+    From::Anywhere(3),
+];
 
 /// What to try to better a certified point of a small nonconvex problem. The first
 /// [`AGREEMENT`] are always tried; the others where these did not agree.
-pub(super) const BETTER: [(From, &[(&str, &str)]); 8] = [
-    (From::Linearised, NEAR),
+pub(super) const BETTER: [(From, &[(&str, &str)]); 7] = [
     (From::Consistent, NEAR),
     (From::Start, NEAR),
     (From::Moved(0.3), &[]),
@@ -124,10 +100,8 @@ pub(super) const AGREEMENT: usize = 5;
 /// Work (iterations times nonzeros) of the first attempts up to which a search for a better optimum is
 /// cheap: a tenth of a second. What was found in the corpus took at most 1e5.
 pub(super) const CHEAP: f64 = 2e5;
-/// Work up to which an infeasibility that is proved is doubted.
-pub(super) const SMALL: f64 = 3e6;
-/// Work after which no further attempt is begun: some seconds, or so many times that of the first attempt.
-pub(super) const ENOUGH: f64 = 1e7;
-pub(super) const TIMES: f64 = 10.0;
+/// Work after which no further attempt is begun: a fifth of a second, or so many times that of the first attempts.
+pub(super) const ENOUGH: f64 = 5e5;
+pub(super) const TIMES: f64 = 4.0;
 /// What an iteration takes however small the program is, in nonzeros.
 pub(super) const OVERHEAD: f64 = 300.0;

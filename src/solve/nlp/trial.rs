@@ -32,11 +32,13 @@ pub(super) struct Trial {
     pub(super) hollow: bool,
     /// The objective gets better without limit.
     pub(super) unbounded: bool,
+    /// The rows have no multipliers here; rows a little wider have, with all but the same value.
+    pub(super) irregular: bool,
 }
 
 impl Trial {
     pub(super) fn is_optimal(&self) -> bool {
-        self.is_stationary() && !self.receding
+        self.is_stationary() && !self.receding || self.irregular
     }
 
     /// Satisfies the conditions of first order.
@@ -131,6 +133,7 @@ pub(super) fn residuals_at(
         receding,
         hollow,
         unbounded: false,
+        irregular: false,
     }
 }
 

@@ -94,6 +94,11 @@ impl Driver<'_, '_> {
                 let row = self.budget.row_name(f.row as usize);
                 Some(format!("the last evaluation that failed: {f} in {row}"))
             }
+            (ModelStatus::LocallyOptimal, _) if best.irregular => Some(
+                "rows have no multipliers at the solution (a square that is to be 0, say): the value is that of the same \
+                 rows a hundred-millionth wider"
+                    .into(),
+            ),
             (ModelStatus::LocallyOptimal, _) if self.convex.is_some() => {
                 Some("convex: a local optimum is a global one".into())
             }

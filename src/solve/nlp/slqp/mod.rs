@@ -1,0 +1,614 @@
+//! Sequential linear and quadratic programming: the active set of a linear program, then Newton's method on it.
+//!
+//! ```text
+//!     φ(x) = f(x) + ν Σᵢ max(aᵢ − gᵢ(x), gᵢ(x) − bᵢ, 0)     over l ≤ x ≤ u
+//! ```
+//!
+//! is made small (Fletcher & Sainz de la Maza 1989; Byrd, Gould, Nocedal & Waltz 2004). A linear program in a trust region says which
+//! rows and bounds hold as equations ([`linear`]): our simplex method, from the last basis; the nonbasic
+//! rows and bounds are independent whatever is degenerate or redundant. A quadratic program with the exact Hessian on these ([`equality`])
+//! gives the step and its multipliers. Variables that occur linearly have no trust region: mostly linear programs take a
+//! few steps from anywhere. While the multipliers have the right signs and no other row or bound is met,
+//! the working set stays and there is no linear program: that is Newton's method. Where no step lessens what is violated, the multipliers
+//! of the linear program prove that the program is infeasible nearby.
+
+mod equality;
+mod linear;
+mod point;
+
+use super::problem::{Entry, Nlp};
+use crate::solve::Budget;
+use equality::{Equality, Working};
+use linear::{Aim, Linear, Step};
+use point::{Frame, Point, Values};
+
+/// What may be spent on it.
+#[derive(Clone, Copy, Debug)]
+pub struct Effort {
+    /// Steps.
+    pub steps: u64,
+    /// Pivots of the simplex method, all programs together, by the number of rows and columns.
+    pub pivots: u64,
+}
+
+impl Effort {
+    /// From anywhere.
+    pub const FULL: Self = Self {
+        steps: 100,
+        pivots: 30,
+    };
+}
+
+/// Variables and constraints at most: each program is factorised afresh.
+const LARGEST: usize = 10_000;
+/// The penalty ν at first, from the same start again, and at most.
+const PENALTIES: [f64; 2] = [10.0, 1e5];
+const MOST_PENALTY: f64 = 1e9;
+/// A step is taken from this part of the promised decrease on.
+const TAKEN: f64 = 0.05;
+/// A point with a larger number is a start for nothing.
+const FARTHEST: f64 = 1e15;
+/// A trust region this small is none.
+const SMALLEST: f64 = 1e-10;
+/// The conditions of first order hold.
+const SOLVED: f64 = 1e-11;
+/// A decrease of φ below this, relative to its size, is rounding.
+const ROUNDING: f64 = 1e-13;
+
+/// How it ended.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum End {
+    /// At a point that satisfies the conditions of first order, as far as numbers say.
+    Solved,
+    /// Where no step lessens what is violated: the multipliers may prove it.
+    Infeasible,
+    /// Far away.
+    Diverging,
+    /// The effort was spent.
+    Spent,
+    /// Steps get short.
+    Stuck,
+}
+
+/// What is asked for besides.
+#[derive(Clone, Copy, Debug)]
+pub struct Request<'a> {
+    /// Start from the active set that these multipliers name.
+    pub multipliers: Option<&'a [f64]>,
+    /// What is spent at most.
+    pub effort: Effort,
+    /// Equations are met by so much, in units of their largest entry: 0, but where they have no multipliers.
+    pub width: f64,
+}
+
+/// Where it ended.
+#[derive(Debug)]
+pub struct Run {
+    /// Point.
+    pub x: Vec<f64>,
+    /// Multipliers λ of the constraints, L = f + λᵀg.
+    pub lambda: Vec<f64>,
+    /// Steps.
+    pub steps: u64,
+    /// How.
+    pub end: End,
+}
+
+/// Runs from the start point. None where the start has no values or derivatives, and where the problem is too large.
+pub fn solve(
+    nlp: &mut dyn Nlp,
+    request: Request<'_>,
+    budget: &Budget,
+) -> Option<Run> {
+    let (n, m) = nlp.size();
+    if n + m > LARGEST {
+        return None;
+    }
+    let mut start = nlp.start().to_vec();
+    for (x, (&l, &u)) in start
+        .iter_mut()
+        .zip(nlp.bounds().0.iter().zip(nlp.bounds().1))
+    {
+        *x = x.max(l).min(u);
+    }
+    let mut run: Option<Run> = None;
+    // where a violation was taken for nothing the way led far away: then it costs more from the start
+    for penalty in PENALTIES {
+        let mut frame = Frame::new(nlp, &start)?;
+        frame.widen(request.width);
+        let values = Values::at(nlp, &frame, &start)?;
+        let at = Point::new(nlp, &frame, start.clone(), values)?;
+        let linear = Linear::new(&frame, &at, request.effort.pivots * (n + m) as u64);
+        let lambda = request.multipliers.map(|l| frame.in_units(l));
+        let mut method = Method {
+            nlp,
+            lambda: lambda.clone().unwrap_or_else(|| vec![0.0; m]),
+            linear,
+            frame,
+            at,
+            penalty,
+            weight: 0.0,
+            radius: 1.0,
+            linear_radius: 1.0,
+            budget,
+            lowered: 0,
+            shift: 1,
+        };
+        let working = lambda.and_then(|l| method.named_by(&l));
+        let before = run.as_ref().map_or(0, |r| r.steps);
+        let (steps, mut end) = method.run(working, request.effort.steps);
+        let violated = method.frame.violation(&method.at.values.g) > 0.0;
+        if violated && matches!(end, End::Solved | End::Stuck) {
+            end = method.prove();
+        }
+        run = Some(Run {
+            lambda: method.frame.multipliers(&method.lambda),
+            x: method.at.x,
+            steps: before + steps,
+            end,
+        });
+        if !(violated && end == End::Diverging) {
+            break;
+        }
+    }
+    run
+}
+
+struct Method<'a> {
+    nlp: &'a mut dyn Nlp,
+    frame: Frame,
+    at: Point,
+    lambda: Vec<f64>,
+    linear: Linear,
+    /// ν in the linear programs.
+    penalty: f64,
+    /// ν in φ: the multipliers say what is enough.
+    weight: f64,
+    /// Trust region of a step, and that of the linear programs.
+    radius: f64,
+    linear_radius: f64,
+    /// How often the weight was lowered.
+    lowered: u32,
+    /// Which shift of the Hessian was enough.
+    shift: usize,
+    budget: &'a Budget<'a>,
+}
+
+/// The quadratic model of φ.
+struct Model<'a> {
+    frame: &'a Frame,
+    at: &'a Point,
+    hessian: &'a [Entry],
+    weight: f64,
+}
+
+impl Model<'_> {
+    /// Change of φ along d.
+    fn change(&self, d: &[f64]) -> f64 {
+        let slope: f64 = self.at.gradient.iter().zip(d).map(|(g, d)| g * d).sum();
+        let twice = |&(i, j, h): &Entry| h * d[i] * d[j] * if i == j { 1.0 } else { 2.0 };
+        let curvature: f64 = self.hessian.iter().map(twice).sum();
+        let along = self.at.along(d);
+        let violation = |i: usize| {
+            let g = self.at.values.g[i];
+            self.frame.missing(i, g + along[i]).abs() - self.frame.missing(i, g).abs()
+        };
+        let violation: f64 = (0..self.frame.m).map(violation).sum();
+        slope + 0.5 * curvature + self.weight * violation
+    }
+
+    /// The part of a direction that can be gone from a step, within bounds, rows that do not hold already, and the trust region.
+    fn longest(&self, from: &[f64], direction: &[f64], working: &Working, radius: f64) -> f64 {
+        let mut part = 1.0_f64;
+        let mut meet = |room: f64, rate: f64| {
+            if rate > 0.0 && room < rate * part {
+                part = (room / rate).max(0.0);
+            }
+        };
+        let frame = self.frame;
+        for j in 0..frame.n {
+            let (x, rate) = (self.at.x[j] + from[j], direction[j]);
+            if working.column[j].is_none() {
+                meet(frame.upper[j] - x, rate);
+                meet(x - frame.lower[j], -rate);
+            }
+            if frame.nonlinear[j] {
+                let most = radius * self.at.unit(j);
+                meet(most - from[j], rate);
+                meet(most + from[j], -rate);
+            }
+        }
+        let (start, along) = (self.at.along(from), self.at.along(direction));
+        for i in (0..frame.m).filter(|&i| working.row[i].is_none()) {
+            let value = self.at.values.g[i] + start[i];
+            let missing = frame.missing(i, value);
+            if missing >= 0.0 {
+                meet(frame.above[i] - value, along[i]);
+            }
+            if missing <= 0.0 {
+                meet(value - frame.below[i], -along[i]);
+            }
+        }
+        part
+    }
+}
+
+fn sum(a: &[f64], t: f64, b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a + t * b).collect()
+}
+
+/// What the linear program says about going on.
+enum Found {
+    Step(Step),
+    End(End),
+}
+
+impl Method<'_> {
+    fn run(
+        &mut self,
+        mut working: Option<Working>,
+        most: u64,
+    ) -> (u64, End) {
+        let mut steps = 0;
+        while steps < most && !self.budget.is_over() {
+            if self.at.residual(&self.frame, &self.lambda) <= SOLVED {
+                return (steps, End::Solved);
+            }
+            if self.radius < SMALLEST {
+                return (steps, End::Stuck);
+            }
+            steps += 1;
+            self.note(steps);
+            if let Some(held) = working.take() {
+                working = self.newton(held);
+                if working.is_some() {
+                    continue;
+                }
+            }
+            let step = match self.program() {
+                Found::Step(step) => step,
+                Found::End(end) => return (steps, end),
+            };
+            match self.step(step) {
+                Ok(next) => working = next,
+                Err(end) => return (steps, end),
+            }
+            if self.at.x.iter().any(|x| x.abs() > FARTHEST) {
+                return (steps, End::Diverging);
+            }
+        }
+        (steps, End::Spent)
+    }
+
+    fn note(&self, step: u64) {
+        self.budget.log_with(|| {
+            format!(
+                "{step:>6}  {:>16.9e}  violation {:.2e}  residual {:.2e}  trust {:.1e} {:.1e}  penalty {:.0e}",
+                self.at.values.f * self.frame.price,
+                self.frame.violation(&self.at.values.g),
+                self.at.residual(&self.frame, &self.lambda),
+                self.radius,
+                self.linear_radius,
+                self.weight,
+            )
+        });
+    }
+
+    /// Whether anything lessens the violations from here, with the multipliers that say no.
+    fn prove(&mut self) -> End {
+        if self.frame.forgive(&self.at.values.g) {
+            return End::Stuck;
+        }
+        let aim = Aim {
+            penalty: 1.0,
+            weight: 0.0,
+            radius: 1.0,
+        };
+        match self.linear.solve(&self.frame, &self.at, aim, self.budget) {
+            Some(best) if best.short > 0.0 => {
+                self.lambda = best.lambda;
+                End::Infeasible
+            }
+            _ => End::Stuck,
+        }
+    }
+
+    /// The working set that multipliers name.
+    fn named_by(&self, lambda: &[f64]) -> Option<Working> {
+        let (frame, at) = (&self.frame, &self.at);
+        let row = |i: usize| match lambda[i] {
+            _ if frame.is_equation(i) => Some(frame.below[i]),
+            l if l > 0.0 => Some(frame.above[i]).filter(|v| v.is_finite()),
+            l if l < 0.0 => Some(frame.below[i]).filter(|v| v.is_finite()),
+            _ => None,
+        };
+        let column = |j: usize| {
+            let bounds = [frame.lower[j], frame.upper[j]];
+            bounds.into_iter().find(|&b| at.x[j] == b)
+        };
+        Some(Working {
+            column: (0..frame.n).map(column).collect(),
+            row: (0..frame.m).map(row).collect(),
+            pull: vec![0.0; frame.m],
+        })
+    }
+
+    /// Newton's step on a working set, which is returned if it may stay. Otherwise nothing has changed, or a step was taken
+    /// that needs another set.
+    fn newton(&mut self, working: Working) -> Option<Working> {
+        let hessian = self.at.hessian(self.nlp, &self.frame, &self.lambda);
+        let quadratic = Equality::new(&self.frame, &self.at, &hessian, &working, &mut self.shift)?;
+        let zero = vec![0.0; self.frame.n];
+        let model = Model {
+            frame: &self.frame,
+            at: &self.at,
+            hessian: &hessian,
+            weight: self.weight,
+        };
+        if quadratic.shifted || model.longest(&zero, &quadratic.d, &working, self.radius) < 1.0 {
+            return None;
+        }
+        let mut next = sum(&self.at.x, 1.0, &quadratic.d);
+        self.frame.into_bounds(&mut next);
+        let values = Values::at(self.nlp, &self.frame, &next)?;
+        let there = Point::new(self.nlp, &self.frame, next, values)?;
+        let before = self.at.residual(&self.frame, &self.lambda);
+        let after = there.residual(&self.frame, &quadratic.lambda);
+        // of Newton's method only what converges
+        if after > 0.5 * before {
+            return None;
+        }
+        self.at = there;
+        self.lambda = quadratic.lambda;
+        self.signs_are_right(&working).then_some(working)
+    }
+
+    /// Whether no row or bound of the set would rather be left, and no other row is violated.
+    fn signs_are_right(&self, working: &Working) -> bool {
+        let frame = &self.frame;
+        let mut reduced = self.at.gradient.clone();
+        for (i, &l) in self.lambda.iter().enumerate().filter(|l| *l.1 != 0.0) {
+            for (j, a) in self.at.rows.line(i) {
+                reduced[j] += l * a;
+            }
+        }
+        let rows = (0..frame.m).all(|i| match working.row[i] {
+            _ if working.pull[i] != 0.0 => false,
+            Some(_) if frame.is_equation(i) => true,
+            Some(side) if side == frame.above[i] => self.lambda[i] >= -SOLVED,
+            Some(_) => self.lambda[i] <= SOLVED,
+            None => frame.missing(i, self.at.values.g[i]) == 0.0,
+        });
+        let columns = (0..frame.n).all(|j| match working.column[j] {
+            _ if frame.lower[j] == frame.upper[j] => true,
+            Some(b) if b == frame.lower[j] => reduced[j] >= -SOLVED,
+            Some(_) => reduced[j] <= SOLVED,
+            None => true,
+        });
+        rows && columns
+    }
+
+    /// The linear program, with a penalty that lets it lessen the violations if anything does.
+    fn program(&mut self) -> Found {
+        let mut radius = self.linear_radius;
+        let mut now = self.frame.violation(&self.at.values.g);
+        let mut least: Option<f64> = None;
+        loop {
+            let aim = Aim {
+                penalty: self.penalty,
+                weight: 1.0,
+                radius,
+            };
+            let Some(step) = self.linear.solve(&self.frame, &self.at, aim, self.budget) else {
+                return Found::End(End::Stuck);
+            };
+            if step.short == 0.0 || now == 0.0 {
+                return Found::Step(step);
+            }
+            // what is possible at most
+            let most = match least {
+                Some(l) => l,
+                None => {
+                    let aim = Aim {
+                        penalty: 1.0,
+                        weight: 0.0,
+                        radius,
+                    };
+                    let Some(best) = self.linear.solve(&self.frame, &self.at, aim, self.budget) else {
+                        return Found::Step(step);
+                    };
+                    if best.short > (1.0 - 1e-7) * now {
+                        if best.confined && radius < 1.0 {
+                            radius = (10.0 * radius).min(1.0);
+                            continue;
+                        }
+                        if self.frame.forgive(&self.at.values.g) {
+                            now = 0.0;
+                            continue;
+                        }
+                        self.lambda = best.lambda;
+                        return Found::End(End::Infeasible);
+                    }
+                    *least.insert(best.short)
+                }
+            };
+            if now - step.short >= 0.1 * (now - most) || self.penalty >= MOST_PENALTY {
+                return Found::Step(step);
+            }
+            self.penalty *= 10.0;
+        }
+    }
+
+    /// A step from the solution of the linear program, if it lessens φ; the working set if that may stay.
+    fn step(&mut self, linear: Step) -> Result<Option<Working>, End> {
+        let working = linear.working;
+        let largest = |l: &[f64]| l.iter().fold(0.0_f64, |t, v| t.max(v.abs()));
+        let mut needed = 2.0 * largest(&linear.lambda);
+        // of rows that are new the linear program knows more
+        let lambda: Vec<f64> = (0..self.frame.m)
+            .map(|i| match (working.row[i], self.lambda[i]) {
+                (None, _) => working.pull[i],
+                (Some(_), 0.0) => linear.lambda[i],
+                (Some(_), l) => l,
+            })
+            .collect();
+        let hessian = self.at.hessian(self.nlp, &self.frame, &lambda);
+        let quadratic = Equality::new(&self.frame, &self.at, &hessian, &working, &mut self.shift);
+        if let Some(q) = &quadratic
+            && !q.shifted
+        {
+            needed = needed.max(2.0 * largest(&q.lambda));
+        }
+        self.reweigh(linear.short, needed.min(MOST_PENALTY));
+        let model = Model {
+            frame: &self.frame,
+            at: &self.at,
+            hessian: &hessian,
+            weight: self.weight,
+        };
+        let phi = |v: &Values, weight: f64, frame: &Frame| v.f + weight * frame.violation(&v.g);
+        let now = phi(&self.at.values, self.weight, &self.frame);
+        // along the solution of the linear program as far as the quadratic model falls
+        let promise = Model {
+            hessian: &[],
+            ..model
+        }
+        .change(&linear.d);
+        let mut part = match self.at.length(&self.frame, &linear.d) {
+            l if l > self.radius => self.radius / l,
+            _ => 1.0,
+        };
+        let zero = vec![0.0; self.frame.n];
+        let scaled = |t: f64| sum(&zero, t, &linear.d);
+        while part > 1e-12 && model.change(&scaled(part)) > 0.1 * part * promise {
+            part *= 0.5;
+        }
+        let cauchy = scaled(part);
+        let mut d = cauchy.clone();
+        let mut full = false;
+        if let Some(q) = &quadratic {
+            // where the model curves downwards beyond what the shift allows
+            let reach = if q.shifted { 16.0 } else { 1.0 };
+            let on = sum(&q.d, -1.0, &cauchy);
+            let far = sum(&zero, reach, &on);
+            let mut t = reach * model.longest(&cauchy, &far, &working, self.radius);
+            let mut best = model.change(&cauchy);
+            for _ in 0..8 {
+                let mut there = sum(&cauchy, t, &on);
+                self.frame.keep_inside(&self.at.x, &mut there);
+                let change = model.change(&there);
+                if change > best && d != cauchy {
+                    break;
+                }
+                if change <= best {
+                    full = t >= 1.0;
+                    (d, best) = (there, change);
+                    if !q.shifted {
+                        break;
+                    }
+                }
+                t *= 0.5;
+            }
+        }
+        let promised = -model.change(&d);
+        let small = promised <= ROUNDING * now.abs().max(1.0);
+        let mut next = sum(&self.at.x, 1.0, &d);
+        self.frame.into_bounds(&mut next);
+        let mut there = Values::at(self.nlp, &self.frame, &next);
+        let ratio = |v: &Option<Values>, frame: &Frame| match v {
+            Some(v) => (now - phi(v, self.weight, frame)) / promised,
+            None => -1.0,
+        };
+        let mut gain = if small {
+            1.0
+        } else {
+            ratio(&there, &self.frame)
+        };
+        // what the curvature of the held rows added on the way is taken off
+        if gain < TAKEN
+            && let (Some(v), Some(q)) = (&there, &quadratic)
+        {
+            let along = self.at.along(&d);
+            let held = |i: usize| v.g[i] - self.at.values.g[i] - along[i];
+            let curvature: Vec<f64> = (0..self.frame.m).map(held).collect();
+            if let Some(off) = q.correction(&curvature) {
+                let mut other = sum(&next, 1.0, &off);
+                self.frame.into_bounds(&mut other);
+                let values = Values::at(self.nlp, &self.frame, &other);
+                let corrected = ratio(&values, &self.frame);
+                if corrected > gain {
+                    (next, there, gain) = (other, values, corrected);
+                }
+            }
+        }
+        let length = self.at.length(&self.frame, &d);
+        self.resize(
+            gain,
+            length,
+            self.at.length(&self.frame, &cauchy),
+            part >= 1.0,
+        );
+        if gain < TAKEN {
+            return Ok(None);
+        }
+        let lambda = match (&quadratic, full) {
+            (Some(q), true) => q.lambda.clone(),
+            _ => linear.lambda,
+        };
+        let point = there.and_then(|v| Point::new(self.nlp, &self.frame, next, v));
+        let Some(point) = point else {
+            return Err(End::Stuck);
+        };
+        if small
+            && point.residual(&self.frame, &lambda) >= self.at.residual(&self.frame, &self.lambda)
+        {
+            if linear.short > 0.0 && self.penalty < MOST_PENALTY {
+                // stationary for this penalty only
+                self.penalty *= 100.0;
+                return Ok(None);
+            }
+            if point.residual(&self.frame, &lambda) < 1e-6 {
+                self.lambda = lambda;
+            }
+            return Err(End::Solved);
+        }
+        self.at = point;
+        self.lambda = lambda;
+        Ok((full && self.signs_are_right(&working)).then_some(working))
+    }
+
+    /// The weight of violations in φ: somewhat above the multipliers. Where it was far above them, it becomes less, for a
+    /// heavy one makes steps short; but not for ever, so that φ is the same in the end.
+    fn reweigh(&mut self, short: f64, needed: f64) {
+        if short > 0.0 {
+            self.weight = self.penalty.max(needed);
+        } else if self.weight < needed {
+            self.weight = needed;
+        } else if self.weight > 8.0 * needed && self.lowered < 30 {
+            self.lowered += 1;
+            self.weight = 2.0 * needed;
+        }
+        if short == 0.0 {
+            self.penalty = (5.0 * needed).clamp(PENALTIES[0], self.penalty.max(PENALTIES[0]));
+        }
+    }
+
+    /// Trust regions after a step.
+    fn resize(&mut self, gain: f64, length: f64, cauchy: f64, whole: bool) {
+        self.radius = match gain {
+            0.9.. => self.radius.max(7.0 * length),
+            0.3.. => self.radius.max(2.0 * length),
+            TAKEN.. => self.radius,
+            _ => 0.5 * self.radius.min(length),
+        };
+        let near = (1.2 * length)
+            .max(1.2 * cauchy)
+            .max(0.1 * self.linear_radius);
+        self.linear_radius = match (gain >= TAKEN, whole) {
+            (true, true) if gain >= 0.9 && cauchy >= 0.5 * length => 7.0 * self.linear_radius,
+            (true, true) => near.min(7.0 * self.linear_radius),
+            _ => (near / 2.4).min(self.linear_radius),
+        };
+        self.linear_radius = self.linear_radius.min(self.radius).max(SMALLEST);
+    }
+}
