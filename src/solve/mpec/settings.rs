@@ -82,7 +82,7 @@ impl Options {
                 ("mpec_method", "pieces") => out.method = Method::Pieces,
                 ("mpec_method", _) => out.method = Method::Check,
                 ("mpec_relaxation", text) => out.aggregate = text == "aggregate",
-                ("mpec_swaps", text) => out.swaps = switch(text).unwrap_or(true),
+                ("mpec_swaps", text) => out.swaps = switch(text).unwrap_or(false),
                 ("mpec_bound", "none" | "no") => out.bound = Bound::None,
                 ("mpec_bound", "quick" | "yes") => out.bound = Bound::Quick,
                 ("mpec_bound", _) => out.bound = Bound::Seconds(number),

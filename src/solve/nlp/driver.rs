@@ -470,7 +470,8 @@ impl Driver<'_, '_> {
         let Some(run) = run else { return };
         self.spend(run.steps);
         let (steps, end) = (run.steps, run.end);
-        self.budget.log(format!("slqp: {end:?} after {steps} steps"));
+        self.budget
+            .log(format!("slqp: {end:?} after {steps} steps"));
         let ended = match run.end {
             slqp::End::Solved => Ended::Solved,
             slqp::End::Infeasible => Ended::Infeasible,
@@ -483,7 +484,8 @@ impl Driver<'_, '_> {
             self.note_infeasibility(&trial);
         }
         let ended = matches!(run.end, slqp::End::Solved | slqp::End::Stuck);
-        let irregular = ended && trial.is_feasible() && !trial.is_optimal();
+        let regular = self.kinks.is_some() || trial.lambda.is_empty();
+        let irregular = ended && !regular && trial.is_feasible() && !trial.is_optimal();
         let trial = match irregular {
             true => self.without_multipliers(trial),
             false => trial,

@@ -95,11 +95,7 @@ pub struct Run {
 }
 
 /// Runs from the start point. None where the start has no values or derivatives, and where the problem is too large.
-pub fn solve(
-    nlp: &mut dyn Nlp,
-    request: Request<'_>,
-    budget: &Budget,
-) -> Option<Run> {
+pub fn solve(nlp: &mut dyn Nlp, request: Request<'_>, budget: &Budget) -> Option<Run> {
     let (n, m) = nlp.size();
     if n + m > LARGEST {
         return None;
@@ -154,7 +150,7 @@ pub fn solve(
     run
 }
 
-struct Method<'a> {
+struct Method<'a, 'm> {
     nlp: &'a mut dyn Nlp,
     frame: Frame,
     at: Point,
@@ -171,7 +167,7 @@ struct Method<'a> {
     lowered: u32,
     /// Which shift of the Hessian was enough.
     shift: usize,
-    budget: &'a Budget<'a>,
+    budget: &'a Budget<'m>,
 }
 
 /// The quadratic model of φ.
@@ -243,12 +239,8 @@ enum Found {
     End(End),
 }
 
-impl Method<'_> {
-    fn run(
-        &mut self,
-        mut working: Option<Working>,
-        most: u64,
-    ) -> (u64, End) {
+impl Method<'_, '_> {
+    fn run(&mut self, mut working: Option<Working>, most: u64) -> (u64, End) {
         let mut steps = 0;
         while steps < most && !self.budget.is_over() {
             if self.at.residual(&self.frame, &self.lambda) <= SOLVED {
@@ -281,8 +273,8 @@ impl Method<'_> {
     }
 
     fn note(&self, step: u64) {
-        self.budget.log_with(|| {
-            format!(
+        if self.budget.wants_log() {
+            self.budget.log(format!(
                 "{step:>6}  {:>16.9e}  violation {:.2e}  residual {:.2e}  trust {:.1e} {:.1e}  penalty {:.0e}",
                 self.at.values.f * self.frame.price,
                 self.frame.violation(&self.at.values.g),
@@ -290,8 +282,8 @@ impl Method<'_> {
                 self.radius,
                 self.linear_radius,
                 self.weight,
-            )
-        });
+            ));
+        }
     }
 
     /// Whether anything lessens the violations from here, with the multipliers that say no.
@@ -414,7 +406,8 @@ impl Method<'_> {
                         weight: 0.0,
                         radius,
                     };
-                    let Some(best) = self.linear.solve(&self.frame, &self.at, aim, self.budget) else {
+                    let Some(best) = self.linear.solve(&self.frame, &self.at, aim, self.budget)
+                    else {
                         return Found::Step(step);
                     };
                     if best.short > (1.0 - 1e-7) * now {
@@ -557,7 +550,10 @@ impl Method<'_> {
         };
         let point = there.and_then(|v| Point::new(self.nlp, &self.frame, next, v));
         let Some(point) = point else {
-            return Err(End::Stuck);
+            // values without derivatives: a kink, beside which there are some
+            self.radius = 0.5 * self.radius.min(length);
+            self.linear_radius = self.linear_radius.min(self.radius);
+            return Ok(None);
         };
         if small
             && point.residual(&self.frame, &lambda) >= self.at.residual(&self.frame, &self.lambda)
@@ -567,8 +563,15 @@ impl Method<'_> {
                 self.penalty *= 100.0;
                 return Ok(None);
             }
-            if point.residual(&self.frame, &lambda) < 1e-6 {
-                self.lambda = lambda;
+            self.at = point;
+            let again = Equality::new(&self.frame, &self.at, &hessian, &working, &mut self.shift);
+            let last = [again, quadratic].into_iter().flatten().map(|q| q.lambda);
+            let mut worth = self.at.residual(&self.frame, &self.lambda);
+            for other in last.chain([lambda]) {
+                let left = self.at.residual(&self.frame, &other);
+                if left < worth {
+                    (self.lambda, worth) = (other, left);
+                }
             }
             return Err(End::Solved);
         }
