@@ -220,7 +220,7 @@ pub(super) fn linear_shown(
         found.residuals = certificate::residuals(instance, &found.outcome, &at);
         found.activity = at.activity;
         if found.residuals.is_feasible(TOLERANCE)
-            && let Some(near) = moved(solver, instance, &found, settings, monitor)
+            && let Some(near) = moved(solver, instance, &found, settings, budget)
         {
             return Ok(near);
         }
@@ -235,7 +235,7 @@ fn moved(
     instance: &Instance,
     found: &Answer,
     settings: &Settings,
-    monitor: &mut dyn Monitor,
+    budget: &Budget,
 ) -> Option<Answer> {
     let mut near = instance.clone();
     for (i, &a) in found.activity.iter().enumerate() {
@@ -247,7 +247,7 @@ fn moved(
             Relation::Free => *rhs,
         };
     }
-    let mut outcome = solver.solve(&near, settings, monitor).ok()?;
+    let mut outcome = solver.solve(&near, settings, budget).ok()?;
     let at = certificate::linearise(instance, &outcome);
     let residuals = certificate::residuals(instance, &outcome, &at);
     if !residuals.is_optimal(TOLERANCE) {

@@ -134,7 +134,7 @@ pub const OPTIONS: OptionTable = OptionTable {
         row(
             "mpec_swaps",
             Kind::Switch,
-            "yes",
+            "no",
             "whether anything better than the first local solution is looked for",
         ),
         row(

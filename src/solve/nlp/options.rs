@@ -19,7 +19,7 @@ pub const SHARED_OPTIONS: OptionTable = OptionTable {
         row(
             "nlp_search",
             Kind::Switch,
-            "yes",
+            "no",
             "whether a better local optimum is looked for where that is cheap",
         ),
     ],
