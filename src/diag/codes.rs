@@ -216,7 +216,7 @@ pub const CODES: &[Code] = &[
     row("E0422", Execution, "model cannot be solved", "rows and columns do not match, or functions have no value at the start"),
     row("E0424", Execution, "scenarios", "the dictionary of the scenarios cannot be used"),
     row("E0425", Execution, "discrete variables", "an mpec whose bounds leave them undecided is not solved"),
-    row("E0426", Warning, "option file", "an option file, or a line of it, is not used"),
+    row("E0426", Execution, "option file", "an option file, or a line of it, is not used"),
     row("E0430", Execution, "no solve to derive from", "the model that is meant is not solved, or there is no solve with this number"),
     row("E0431", Execution, "no linear dual", "no objective, discrete variables, or equations that are not linear"),
     row("E0432", Execution, "no optimality conditions", "no objective, kinks, or a function whose derivative the language lacks"),

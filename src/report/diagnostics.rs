@@ -430,9 +430,9 @@ E0301
         let b = map.add_file("lib/sets.blk", "set x;\n".into());
         let first = map.push_copy(a, 0, 1);
         let second = map.push_copy(b, 4, 5);
-        let d = Diagnostic::warning("W0001", first, "`x` is a set").other(second, "declared here");
+        let d = Diagnostic::warning("E0109", first, "`x` is a set").other(second, "declared here");
         insta::assert_snapshot!(render(&[d], &map, Look::plain()), @r#"
-W0001
+E0109
 
   ! `x` is a set
    ,-[main.blk:1:1]
