@@ -1,7 +1,7 @@
 //! Every command in the pages of `docs/` gives the output that stands under it.
 //!
 //! A block ` ```blk NAME ` is a file; a block ` ```console ` holds commands (`$ bmod …`), each followed by what it prints. Pages
-//! run from top to bottom in a folder of their own, in which `models` is the project's. Times are not compared. `UPDATE_DOCS=1`
+//! run from top to bottom in a folder of their own, in which `models` is the project's. Times and residuals of the size of rounding are not compared. `UPDATE_DOCS=1`
 //! writes the outputs anew.
 
 use std::path::{Path, PathBuf};
@@ -33,15 +33,21 @@ fn output_of(command: &str, folder: &Path) -> String {
     text.concat().trim_end().to_string()
 }
 
-/// Without durations, which are never the same: `6.2 ms`, `0.31 s`.
-fn timeless(text: &str) -> String {
-    let mut out: Vec<&str> = Vec::new();
+/// Without what differs from machine to machine: durations (`6.2 ms`, `0.31 s`) and residuals of the size of rounding (`3e-14`).
+fn lasting(text: &str) -> String {
     let words: Vec<&str> = text.split(' ').collect();
+    let mut out: Vec<String> = Vec::new();
     for (k, word) in words.iter().enumerate() {
+        let (first, rest) = word.split_once('\n').unwrap_or((word, ""));
+        let number = first.trim_end_matches(',').parse::<f64>();
         let next = words.get(k + 1).copied().unwrap_or_default();
         let unit = next.lines().next().unwrap_or_default();
-        let is_duration = word.parse::<f64>().is_ok() && matches!(unit, "ms" | "s");
-        out.push(if is_duration { "_" } else { word });
+        let is_duration = number.is_ok() && matches!(unit, "ms" | "s");
+        let is_rounding = number.is_ok_and(|x| x != 0.0 && x.abs() < 1e-9);
+        out.push(match is_duration || is_rounding {
+            true => format!("_\n{rest}"),
+            false => (*word).to_string(),
+        });
     }
     out.join(" ")
 }
@@ -72,7 +78,7 @@ fn run(page: &str, folder: &Path) -> String {
                 }
                 let claimed = claimed.join("\n").trim_end().to_string();
                 let now = output_of(command, folder);
-                let same = timeless(&claimed) == timeless(&now);
+                let same = lasting(&claimed) == lasting(&now);
                 let text = if same { claimed } else { now };
                 out.push_str(&format!("$ {command}\n{text}\n"));
             }

@@ -1,5 +1,7 @@
 //! Options of the nonlinear backends: those of what both share, and Ipopt's.
 
+#![cfg_attr(not(any(feature = "pounce", feature = "ipopt")), allow(dead_code))]
+
 use crate::model::option::{Kind, OptionRow, OptionTable, row};
 
 const POSITIVE: Kind = Kind::Inside(0.0, f64::INFINITY);

@@ -68,8 +68,8 @@ impl Equality {
             }
         }
         let mut right = vec![0.0; free + held];
-        for i in 0..frame.m {
-            if let (Some(p), Some(side)) = (row[i], working.row[i]) {
+        for (i, &place) in row.iter().enumerate().take(frame.m) {
+            if let (Some(p), Some(side)) = (place, working.row[i]) {
                 let mut rest = side - at.values.g[i];
                 for (j, a) in at.rows.line(i) {
                     match column[j] {

@@ -341,7 +341,7 @@ impl Method<'_, '_> {
             return None;
         }
         let mut next = sum(&self.at.x, 1.0, &quadratic.d);
-        self.frame.into_bounds(&mut next);
+        self.frame.clip(&mut next);
         let values = Values::at(self.nlp, &self.frame, &next)?;
         let there = Point::new(self.nlp, &self.frame, next, values)?;
         let before = self.at.residual(&self.frame, &self.lambda);
@@ -506,7 +506,7 @@ impl Method<'_, '_> {
         let promised = -model.change(&d);
         let small = promised <= ROUNDING * now.abs().max(1.0);
         let mut next = sum(&self.at.x, 1.0, &d);
-        self.frame.into_bounds(&mut next);
+        self.frame.clip(&mut next);
         let mut there = Values::at(self.nlp, &self.frame, &next);
         let ratio = |v: &Option<Values>, frame: &Frame| match v {
             Some(v) => (now - phi(v, self.weight, frame)) / promised,
@@ -526,7 +526,7 @@ impl Method<'_, '_> {
             let curvature: Vec<f64> = (0..self.frame.m).map(held).collect();
             if let Some(off) = q.correction(&curvature) {
                 let mut other = sum(&next, 1.0, &off);
-                self.frame.into_bounds(&mut other);
+                self.frame.clip(&mut other);
                 let values = Values::at(self.nlp, &self.frame, &other);
                 let corrected = ratio(&values, &self.frame);
                 if corrected > gain {

@@ -67,7 +67,7 @@ impl Frame {
         })
     }
 
-    pub(super) fn into_bounds(&self, x: &mut [f64]) {
+    pub(super) fn clip(&self, x: &mut [f64]) {
         for (x, (&l, &u)) in x.iter_mut().zip(self.lower.iter().zip(&self.upper)) {
             *x = x.max(l).min(u);
         }
@@ -122,14 +122,14 @@ impl Frame {
         if (0..self.m).any(far) {
             return false;
         }
-        for i in 0..self.m {
-            let missing = self.missing(i, g[i]);
+        for (i, &level) in g.iter().enumerate().take(self.m) {
+            let missing = self.missing(i, level);
             if missing != 0.0 && self.is_equation(i) {
-                (self.below[i], self.above[i]) = (g[i], g[i]);
+                (self.below[i], self.above[i]) = (level, level);
             } else if missing > 0.0 {
-                self.below[i] = g[i];
+                self.below[i] = level;
             } else if missing < 0.0 {
-                self.above[i] = g[i];
+                self.above[i] = level;
             }
         }
         true
