@@ -1,4 +1,4 @@
-"""Clarabel alone, HiGHS and Ipopt on the models of models/hard, for docs/accuracy.md (pip install highspy casadi).
+"""Clarabel alone, HiGHS and Ipopt on the models of models/hard, for docs/lab/accuracy.md (pip install highspy casadi).
 
     python3 benches/beside.py BMOD [SKIP...]
 

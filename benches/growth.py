@@ -1,4 +1,4 @@
-"""Time of a linear program against the number of contacts, for docs/accuracy.md.
+"""Time of a linear program against the number of contacts, for docs/lab/accuracy.md.
 
     python3 benches/growth.py BMOD [N...]
 

@@ -1,4 +1,4 @@
-"""Time and error of every model of models/hard at each accuracy setting, for docs/accuracy.md.
+"""Time and error of every model of models/hard at each accuracy setting, for docs/lab/accuracy.md.
 
     python3 benches/hard.py BMOD [SKIP...]
 

@@ -1,4 +1,4 @@
-"""HiGHS beside bmod, for docs/accuracy.md (pip install highspy).
+"""HiGHS beside bmod, for docs/lab/accuracy.md (pip install highspy).
 
     bmod run models/walls/example6.blk -D lponly=1 --solution s.json --quiet
     python3 benches/highs.py s.json REFERENCE

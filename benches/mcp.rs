@@ -3,7 +3,7 @@
 //! - `cargo bench --bench mcp -- walls [COURSES×WIDTH…]`: system (7) of growing walls in running bond, from
 //!   the zero start, for three friction coefficients, φ₀ = 0 and φ₀ = φ; then the growth exponents.
 //! - `cargo bench --bench mcp -- corpus [PATH.csv]`: the corpus beside the project, run through the language:
-//!   the table of `docs/mcp.md`, and sums. `PATH.csv` holds lines `file,seconds` of PATH for the ratio of times.
+//!   the table of `docs/lab/mcp.md`, and sums. `PATH.csv` holds lines `file,seconds` of PATH for the ratio of times.
 //! - `cargo bench --bench mcp -- obstacle [N…]`: the obstacle problem on a string of N elements;
 //!   of one N alone with its log.
 //! - `cargo bench --bench mcp -- log COURSES×WIDTH TANPHI 0|phi`: one wall with its log.

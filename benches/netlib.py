@@ -1,4 +1,4 @@
-"""The linear programs of Netlib, for docs/accuracy.md.
+"""The linear programs of Netlib, for docs/lab/accuracy.md.
 
     python3 benches/netlib.py BMOD FOLDER [NAME...]
 

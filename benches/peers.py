@@ -1,6 +1,6 @@
 """bmod beside GAMS (CONOPT, PATH, NLPEC), HiGHS, and CasADi with its Ipopt: processor time of whole processes, answers compared.
 
-    python3 benches/peers.py BMOD [--old BMOD] [--repeat 3] [--only lp,nlp,mcp,mpec,loop] > docs/peers.md
+    python3 benches/peers.py BMOD [--old BMOD] [--repeat 3] [--only lp,nlp,mcp,mpec,loop] > docs/lab/peers.md
 
 Runs the instances of ../shared/corpus (or BMOD_SHARED), models/teaching and loops of solves written here. GAMS takes part if
 GAMS_DIR names its folder or the Python package gamspy_base is installed (its size limit leaves out what is larger); HiGHS needs

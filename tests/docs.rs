@@ -121,3 +121,38 @@ fn commands_of_the_pages_print_what_stands_there() {
         wrong.join("\n")
     );
 }
+
+/// Every relative link in the pages leads to a file of the project.
+#[test]
+fn links_of_the_pages_lead_to_files() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut folders = vec![root.to_path_buf()];
+    let (mut links, mut broken) = (0, Vec::new());
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(&folder).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            if path.is_dir() {
+                if !name.starts_with('.') && !matches!(&*name, "target" | "node_modules" | "dist") {
+                    folders.push(path);
+                }
+            } else if path.extension().is_some_and(|e| e == "md") {
+                let text = std::fs::read_to_string(&path).expect("a page");
+                // Outside of blocks of code.
+                let prose = text.split("```").step_by(2).collect::<String>();
+                for rest in prose.split("](").skip(1) {
+                    let target = rest.split([')', ' ', '#']).next().unwrap_or_default();
+                    if target.is_empty() || target.contains(':') {
+                        continue;
+                    }
+                    links += 1;
+                    if !folder.join(target).exists() {
+                        broken.push(format!("{}: {target}", path.display()));
+                    }
+                }
+            }
+        }
+    }
+    assert!(links > 50, "{links} links");
+    assert!(broken.is_empty(), "{broken:#?}");
+}
