@@ -58,7 +58,7 @@ fn labels(text: &str) -> Vec<String> {
     while let Some(start) = rest.find(['\'', '"']) {
         let quote = &rest[start..=start];
         let inner = &rest[start + 1..];
-        let end = inner.find(quote).expect("a closing quote");
+        let Some(end) = inner.find(quote) else { break };
         out.push(inner[..end].to_string());
         rest = &inner[end + 1..];
     }

@@ -77,7 +77,7 @@ pub mod syntax;
 mod system;
 
 pub use api::{
-    Control, Error, Labels, Model, Options, OutputFile, Progress, Record, Records, Run, Solve,
+    Claim, Control, Error, Labels, Model, Options, OutputFile, Progress, Record, Records, Run, Solve,
     Special, Symbol, SymbolKind, VariableRecord, VariableRecords,
 };
 pub use diag::Severity;

@@ -49,7 +49,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     (
         "api",
         &[
-            "check", "data", "diag", "host", "model", "report", "run", "session", "solve",
+            "check", "claims", "data", "diag", "host", "model", "report", "run", "session", "solve",
             "source", "system",
         ],
     ),

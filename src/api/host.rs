@@ -154,6 +154,9 @@ impl Host for RunHost<'_> {
 
     fn progress(&mut self, message: &str) {
         self.options.control.tell(message, self.elapsed());
+        if let Some(watcher) = &self.options.watcher {
+            watcher(message);
+        }
     }
 
     fn memory(&self) -> usize {

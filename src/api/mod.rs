@@ -11,12 +11,14 @@ mod symbols;
 pub use error::Error;
 pub use labels::Labels;
 pub use options::{Control, Options, Progress};
-pub use run::{OutputFile, Run, Solve};
+pub use run::{Claim, OutputFile, Run, Solve};
 pub use symbols::{Record, Records, Special, Symbol, SymbolKind, VariableRecord, VariableRecords};
 
 use crate::check;
+use crate::claims;
 use crate::data::input::{Input, InputData};
 use crate::host::Host;
+use crate::run::Machine;
 use crate::session;
 use crate::solve::registry::OPTION_TABLES;
 use crate::source::PreprocessOptions;
@@ -310,6 +312,9 @@ impl Model {
                 if options.keeps_solutions() {
                     ended.solution = Some(machine.solutions(&self.name));
                 }
+                if let Some(tolerance) = options.claim_tolerance() {
+                    ended.claims = self.claims(machine, tolerance);
+                }
                 ended.stopped = machine.stopped() || options.control.is_cancelled();
                 let symbols = std::mem::take(&mut machine.symbols);
                 let store = std::mem::take(&mut machine.store);
@@ -317,5 +322,22 @@ impl Model {
             },
         );
         Run::finished(&self.name, finished, ended)
+    }
+
+    /// What the model's own text claims, compared with what the run left.
+    fn claims(&self, machine: &mut Machine, tolerance: f64) -> Vec<Claim> {
+        let text = self.contents.get(&self.name);
+        let text = text.map_or("".into(), |t| String::from_utf8_lossy(t));
+        let all = claims::claims(&text);
+        let broken = claims::broken(machine, &all, tolerance);
+        let found = |line| broken.iter().find(|b| b.0.line == line).map(|b| &b.1);
+        let claim = |c: &claims::Claim| Claim {
+            line: c.line,
+            what: c.what.clone(),
+            value: c.value.clone(),
+            holds: found(c.line).is_none(),
+            found: found(c.line).cloned(),
+        };
+        all.iter().map(claim).collect()
     }
 }

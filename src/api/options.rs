@@ -30,6 +30,8 @@ pub struct Options {
     keep_solutions: bool,
     pub(super) control: Control,
     pub(super) listener: Option<Listener>,
+    pub(super) watcher: Option<Listener>,
+    claims: Option<f64>,
     pub(super) clock: Option<Clock>,
 }
 
@@ -100,12 +102,31 @@ impl Options {
         self
     }
 
+    /// Gets what a long step is doing, while it runs, on the thread that runs. [`Control::progress`] tells another thread.
+    #[must_use]
+    pub fn on_progress(mut self, listener: impl Fn(&str) + Send + Sync + 'static) -> Self {
+        self.watcher = Some(Arc::new(listener));
+        self
+    }
+
+    /// Looks whether what the comments of the text claim (`*= total.l 285`) is so, within a relative tolerance:
+    /// [`super::Run::claims`].
+    #[must_use]
+    pub fn claims(mut self, tolerance: f64) -> Self {
+        self.claims = Some(tolerance);
+        self
+    }
+
     /// Tells the time, in seconds since 1970-01-01 UTC; it must not go back. The default is the system's clock,
     /// with the feature `system`; without it the time stands still and no time limit holds.
     #[must_use]
     pub fn clock(mut self, clock: impl Fn() -> f64 + Send + Sync + 'static) -> Self {
         self.clock = Some(Arc::new(clock));
         self
+    }
+
+    pub(super) fn claim_tolerance(&self) -> Option<f64> {
+        self.claims
     }
 
     pub(super) fn memory_limit(&self) -> Option<usize> {

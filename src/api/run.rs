@@ -50,6 +50,22 @@ pub struct Run {
     report: Report,
     solution: Option<String>,
     stopped: bool,
+    claims: Vec<Claim>,
+}
+
+/// What a comment of the text claims about the run: `*= total.l 285`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Claim {
+    /// Its line in the text, from 1.
+    pub line: usize,
+    /// What it is about: `total.l`, `x.l('a')`, `m.modelstat`.
+    pub what: String,
+    /// The value that it claims.
+    pub value: String,
+    /// Whether it holds.
+    pub holds: bool,
+    /// The value that is there, if it does not.
+    pub found: Option<String>,
 }
 
 /// A file that a model wrote: a figure, a `put` file, data. Nothing is written to disk.
@@ -153,6 +169,7 @@ pub(super) struct Ended {
     pub data: Data,
     pub solution: Option<String>,
     pub stopped: bool,
+    pub claims: Vec<Claim>,
 }
 
 impl Run {
@@ -173,6 +190,7 @@ impl Run {
             diagnostics,
             solution: None,
             stopped: false,
+            claims: Vec::new(),
         }
     }
 
@@ -223,6 +241,7 @@ impl Run {
             data: ended.data,
             solution: ended.solution,
             stopped: ended.stopped,
+            claims: ended.claims,
             ..run
         }
     }
@@ -309,6 +328,12 @@ impl Run {
     pub fn figures(&self) -> impl Iterator<Item = (&str, &str)> {
         let pictures = self.files.iter().filter(|f| f.is_svg());
         pictures.filter_map(|f| Some((&*f.name, f.text()?)))
+    }
+
+    /// What the comments of the text claim, and whether it is so; with [`super::Options::claims`]. Empty if the text
+    /// does not compile.
+    pub fn claims(&self) -> &[Claim] {
+        &self.claims
     }
 
     /// All symbols in order of declaration.

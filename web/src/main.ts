@@ -1,0 +1,329 @@
+// The playground: a text on the left, what comes of it on the right.
+
+import './style.css';
+import { AnswerView } from './answer';
+import { byId, copy, h } from './dom';
+import { Editor } from './editor';
+import { compiled, Engine, Stopped } from './engine';
+import { showExercise } from './exercise';
+import { Figures } from './figures';
+import { fromUrl, load, opened, showGallery } from './gallery';
+import { complete, keep, kept, pack, unpack, type Open } from './project';
+import { Sliders } from './sliders';
+import { Tabs, type TabName } from './tabs';
+import { texts } from './texts';
+import { takeTour } from './tour';
+import { View } from './views';
+import type { Answer, Checked, Place, Project, Settings, Table } from './protocol';
+
+const FIRST = 'wall.blk';
+const LARGEST_FILE = 20e6;
+
+const parameters = new URLSearchParams(location.search);
+const embedded = parameters.has('embed');
+const readOnly = parameters.has('readonly');
+
+let open: Open = { file: 'model.blk', files: { 'model.blk': '' }, values: {} };
+let shown = open.file;
+let last: Answer | undefined;
+
+const runner = new Engine((kind, text) => kind === 'progress' && say(text));
+const checker = new Engine();
+const answerView = new AnswerView();
+const figures = new Figures();
+
+const editor = new Editor(byId('editor'), { readOnly, changed, run: () => void run(), stop });
+const sliders = new Sliders(byId('sliders'), () => void run(true));
+const view = (tab: 'formulas' | 'dual' | 'kkt' | 'words' | 'prices' | 'rows' | 'why') => new View(tab, runner, () => request());
+const tabs = new Tabs(byId('tabs'), byId('panel'), {
+  answer: { element: answerView.element },
+  figures: { element: figures.element },
+  formulas: view('formulas'),
+  dual: view('dual'),
+  kkt: view('kkt'),
+  why: view('why'),
+  json: { element: h('pre', { tabindex: 0 }), show: (e) => void (e.textContent = last ? JSON.stringify(last.report, null, 1) : texts.empty) },
+});
+
+function say(text: string): void {
+  byId('state').textContent = text;
+}
+
+let toastEnds = 0;
+function toast(text: string): void {
+  const e = byId('toast');
+  e.textContent = text;
+  e.hidden = false;
+  clearTimeout(toastEnds);
+  toastEnds = window.setTimeout(() => (e.hidden = true), 5000);
+}
+
+// ---- running ----
+
+function request(): Project & Settings {
+  return { file: open.file, files: complete(open), time_limit: 120, max_memory: 1.5e9, ...sliders.settings() };
+}
+
+let again = false;
+
+/** Runs the model. While a slider moves, one run follows the other, always with the newest values. */
+async function run(following = false): Promise<void> {
+  if (runner.busy) {
+    if (following) again = true;
+    return;
+  }
+  byId<HTMLButtonElement>('stop').disabled = false;
+  document.body.dataset.state = 'running';
+  say(texts.running);
+  const begin = performance.now();
+  try {
+    const answer = await runner.call<Answer>({ do: 'run', ...request() });
+    show(answer, following);
+    say(texts.took((performance.now() - begin) / 1000));
+  } catch (error) {
+    const stopped = error instanceof Stopped;
+    const text = stopped ? texts.stopped : `${texts.broke} (${(error as Error).message})`;
+    answerView.say(text);
+    tabs.show('answer');
+    say(stopped ? texts.stopped : '');
+    again = false;
+  }
+  byId<HTMLButtonElement>('stop').disabled = true;
+  document.body.dataset.state = 'done';
+  if (again) {
+    again = false;
+    void run(true);
+  }
+}
+
+function show(answer: Answer, following: boolean): void {
+  last = answer;
+  const asked = {
+    records: (name: string) => runner.call<Table>({ do: 'records', name }),
+    go: (p: Place) => goTo(p),
+  };
+  answerView.show(answer, asked);
+  const drawn = figures.show(answer.files);
+  showExercise(byId('exercise'), open, answer.claims);
+  tabs.changed();
+  if (following) return;
+  const failed = answer.report.status !== 'ok';
+  const wanted: TabName = failed ? 'answer' : drawn > 0 && tabs.current !== 'answer' ? 'figures' : tabs.current;
+  tabs.show(failed ? 'answer' : wanted);
+}
+
+function stop(): void {
+  again = false;
+  runner.stop();
+  void runner.warm();
+}
+
+// ---- the text ----
+
+let waiting = 0;
+function changed(text: string): void {
+  open.files[shown] = text;
+  if (!embedded) keep(open);
+  sliders.show(open);
+  clearTimeout(waiting);
+  waiting = window.setTimeout(check, 250);
+}
+
+async function check(): Promise<void> {
+  if (checker.busy) {
+    waiting = window.setTimeout(check, 100);
+    return;
+  }
+  const file = shown;
+  try {
+    const { diagnostics } = await checker.call<Checked>({ do: 'check', ...request() });
+    if (file === shown) editor.mark(diagnostics.filter((d) => d.file === undefined || d.file === shown));
+    markFiles(new Set(diagnostics.filter((d) => d.severity !== 'warning').map((d) => d.file)));
+  } catch {
+    // The checker starts anew with the next change.
+  }
+}
+
+function goTo(p: Place): void {
+  if (!(p.file in open.files)) return;
+  if (p.file !== shown) showFile(p.file);
+  editor.go(p);
+}
+
+// ---- files ----
+
+let wrong = new Set<string | undefined>();
+function markFiles(files: Set<string | undefined>): void {
+  wrong = files;
+  drawFiles();
+}
+
+function drawFiles(): void {
+  const names = [open.file, ...Object.keys(open.files).filter((n) => n !== open.file).sort()];
+  const tab = (name: string) =>
+    h('button', {
+      onclick: () => showFile(name), class: name === open.file ? 'main' : undefined,
+      'aria-current': String(name === shown), title: name === open.file ? texts.mainFile : name,
+      onkeydown: (e: Event) => (e as KeyboardEvent).key === 'Delete' && remove(name),
+    }, name, wrong.has(name) ? h('span', { class: 'badge', 'aria-label': texts.messages }, ' !') : null);
+  const close = !readOnly && shown !== open.file && h('button', { onclick: () => remove(shown), 'aria-label': texts.removeFile(shown), title: texts.removeFile(shown) }, '×');
+  const add = !readOnly && h('button', { onclick: newFile, 'aria-label': texts.newFile, title: texts.newFile }, '+');
+  byId('files').replaceChildren(...[...names.map(tab), close, add].filter((e): e is HTMLButtonElement => e !== false));
+}
+
+function showFile(name: string): void {
+  shown = name;
+  editor.show(name, open.files[name] ?? '');
+  drawFiles();
+  void check();
+}
+
+function newFile(): void {
+  const name = prompt(texts.newFileName)?.trim();
+  if (!name) return;
+  open.files[name] ??= '';
+  showFile(name);
+}
+
+function remove(name: string): void {
+  if (name === open.file || readOnly || !confirm(texts.sureToRemove(name))) return;
+  delete open.files[name];
+  showFile(open.file);
+  if (!embedded) keep(open);
+}
+
+async function take(list: FileList): Promise<void> {
+  let count = 0;
+  let model: string | undefined;
+  for (const file of list) {
+    if (file.size > LARGEST_FILE) {
+      toast(texts.tooLarge(file.name));
+      continue;
+    }
+    try {
+      const text = new TextDecoder('utf-8', { fatal: true }).decode(await file.arrayBuffer());
+      open.files[file.name] = text;
+      if (/\.(blk|gms)$/i.test(file.name)) model = file.name;
+      count++;
+    } catch {
+      toast(texts.notText(file.name));
+    }
+  }
+  if (count === 0) return;
+  // A model that is dropped is the one to run; data stay beside the one that is there.
+  if (model) use(opened(model, open.files));
+  else showFile(shown);
+  toast(texts.dropped(count));
+}
+
+function use(project: Open): void {
+  open = project;
+  last = undefined;
+  editor.reset();
+  sliders.reset(open);
+  answerView.say(texts.empty);
+  figures.show({});
+  wrong = new Set();
+  showExercise(byId('exercise'), open, undefined);
+  document.title = `${open.file} · bmod`;
+  showFile(open.file);
+  tabs.changed();
+}
+
+// ---- beginning ----
+
+async function choose(id: string): Promise<void> {
+  try {
+    use(await load(id));
+    history.replaceState(null, '', `${location.search}#model=${id}`);
+    await run();
+  } catch (error) {
+    toast(texts.badUrl(id, (error as Error).message));
+  }
+}
+
+async function begin(): Promise<void> {
+  const hash = new URLSearchParams(location.hash.slice(1));
+  const [url, model, project, text] = ['url', 'model', 'p', 'text'].map((k) => hash.get(k));
+  try {
+    if (project) use(await unpack(project));
+    else if (url) use(await fromUrl(url));
+    else if (text) use(opened('model.blk', { 'model.blk': text }));
+    else if (model) use(await load(model));
+    else use(kept() ?? (await load(FIRST)));
+  } catch (error) {
+    toast(url ? texts.badUrl(url, (error as Error).message) : texts.badLink);
+    use(await load(FIRST).catch(() => open));
+  }
+  const tab = hash.get('tab');
+  if (tab && tabs.has(tab)) tabs.show(tab);
+  // A stranger's model is run because a person says so, or the page around it.
+  if (!project || parameters.has('run')) await run();
+}
+
+byId('run').addEventListener('click', () => void run());
+byId('stop').addEventListener('click', stop);
+byId('examples').addEventListener('click', () => void showGallery(byId<HTMLDialogElement>('gallery'), (id) => void choose(id)));
+byId('tour').addEventListener('click', () => takeTour({ choose, tab: (t) => tabs.show(t), run }));
+byId('skip').addEventListener('click', (e) => {
+  e.preventDefault();
+  editor.view.focus();
+});
+byId('share').addEventListener('click', async () => {
+  history.replaceState(null, '', `${location.search}#p=${await pack(open)}`);
+  toast((await copy(location.href)) ? texts.shared : texts.shareFailed);
+});
+byId('theme').addEventListener('click', () => {
+  const dark = matchMedia('(prefers-color-scheme: dark)').matches;
+  const now = document.documentElement.dataset.theme ?? (dark ? 'dark' : 'light');
+  theme(now === 'dark' ? 'light' : 'dark');
+});
+
+function theme(name: string | null): void {
+  if (name !== 'dark' && name !== 'light') return;
+  document.documentElement.dataset.theme = name;
+  try {
+    localStorage.setItem('bmod.theme', name);
+  } catch {
+    // Then it lasts as long as the page.
+  }
+}
+try {
+  theme(parameters.get('theme') ?? localStorage.getItem('bmod.theme'));
+} catch {
+  // Storage may be forbidden.
+}
+
+for (const kind of ['dragover', 'dragleave', 'drop'] as const) {
+  byId('text').addEventListener(kind, (event) => {
+    if (readOnly || !event.dataTransfer?.types.includes('Files')) return;
+    event.preventDefault();
+    event.stopPropagation();
+    byId('text').classList.toggle('over', kind === 'dragover');
+    if (kind === 'drop') void take(event.dataTransfer.files);
+  }, { capture: true });
+}
+addEventListener('keydown', (e) => {
+  if (e.key === 'F5' || (e.key === 'Enter' && (e.ctrlKey || e.metaKey))) {
+    e.preventDefault();
+    void run();
+  } else if (e.key === 'Escape' && runner.busy && !document.querySelector('dialog[open]')) stop();
+});
+addEventListener('hashchange', () => void begin());
+
+if (embedded) {
+  document.body.classList.add('embed');
+  const link = byId<HTMLAnchorElement>('open');
+  link.hidden = false;
+  link.addEventListener('pointerdown', async () => (link.href = `./#p=${await pack(open)}`));
+  link.href = `./${location.hash}`;
+}
+say(texts.loading);
+compiled().then(() => {
+  if (!document.body.dataset.state) say('');
+}, (error) => toast(String(error)));
+void begin();
+
+if ('serviceWorker' in navigator && import.meta.env.PROD && !embedded) {
+  navigator.serviceWorker.register('./sw.js').catch(() => {});
+}
