@@ -77,8 +77,8 @@ pub mod syntax;
 mod system;
 
 pub use api::{
-    Claim, Control, Error, Labels, Model, Options, OutputFile, Progress, Record, Records, Run, Solve,
-    Special, Symbol, SymbolKind, VariableRecord, VariableRecords,
+    Claim, Control, Error, Labels, Model, Options, OutputFile, Progress, Record, Records, Run,
+    Solve, Special, Symbol, SymbolKind, VariableRecord, VariableRecords,
 };
 pub use diag::Severity;
 pub use host::{Host, HostError};

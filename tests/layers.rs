@@ -49,8 +49,8 @@ const ARROWS: &[(&str, &[&str])] = &[
     (
         "api",
         &[
-            "check", "claims", "data", "diag", "host", "model", "report", "run", "session", "solve",
-            "source", "system",
+            "check", "claims", "data", "diag", "host", "model", "report", "run", "session",
+            "solve", "source", "system",
         ],
     ),
     ("claims", &["check", "data", "run"]),

@@ -59,31 +59,33 @@ function entry(group, id) {
 
 const escaped = (t) => t.replace(/&/g, '&amp;').replace(/</g, '&lt;').replace(/"/g, '&quot;');
 
-function page(name, source, names) {
+/** Where a page of the project stands in the site: `docs/lab/nlp.md` in `docs/lab/nlp.html`. */
+const htmlOf = (path) => path.replace(/README\.md$/, 'index.md').replace(/\.md$/, '.html');
+
+function page(path, source, pages) {
   const markdown = new MarkdownIt({ html: false, linkify: false });
-  const title = /^#\s+(.*)/m.exec(source)?.[1] ?? name;
-  const files = {};
+  const title = /^#\s+(.*)/m.exec(source)?.[1] ?? path;
+  const up = '../'.repeat(path.split('/').length - 1);
   markdown.renderer.rules.fence = (tokens, at) => {
     const { info, content } = tokens[at];
     const [language, file] = info.trim().split(/\s+/);
     const code = `<pre tabindex="0"><code>${escaped(content)}</code></pre>`;
     if (language !== 'blk' || !file?.endsWith('.blk')) return code;
-    files[file] = content;
     return `<div class="example" data-file="${escaped(file)}">${code}</div>`;
   };
   const rewrite = (href) => {
     if (/^[a-z]+:/.test(href)) return href;
-    const [path, hash] = href.split('#');
-    const at = posix.normalize(posix.join('docs', path || `${name}.md`));
-    if (/^docs\/[\w-]+\.md$/.test(at) && names.has(basename(at, '.md'))) return `./${basename(at, '.md')}.html${hash ? `#${hash}` : ''}`;
-    if (at.startsWith('models/') && at.endsWith('.blk')) return `../index.html#model=${at.slice(7)}`;
-    if (at.startsWith('docs/') && at.endsWith('.svg')) return `../models/figures/${basename(at)}`;
+    const [file, hash] = href.split('#');
+    const at = file ? posix.normalize(posix.join(posix.dirname(path), file)) : path;
+    if (pages.has(at)) return `${up}${htmlOf(at)}${hash ? `#${hash}` : ''}`;
+    if (at.startsWith('models/') && at.endsWith('.blk')) return `${up}index.html#model=${at.slice(7)}`;
+    if (at.startsWith('docs/') && at.endsWith('.svg')) return `${up}models/figures/${basename(at)}`;
     return null;
   };
   markdown.core.ruler.push('links', (state) => {
     for (const block of state.tokens) {
       for (const t of [block, ...(block.children ?? [])]) {
-        for (const a of t.attrs ?? []) if (a[0] === 'href' || a[0] === 'src') a[1] = rewrite(a[1]) ?? '#';
+        for (const a of t.attrs ?? []) if (a[0] === 'href' || a[0] === 'src') a[1] = rewrite(a[1]) ?? up;
       }
       if (block.type === 'heading_open') {
         const words = state.tokens[state.tokens.indexOf(block) + 1].content;
@@ -96,8 +98,8 @@ function page(name, source, names) {
 <html lang="en"><head><meta charset="utf-8" /><meta name="viewport" content="width=device-width, initial-scale=1" />
 <meta http-equiv="Content-Security-Policy" content="default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; frame-src 'self'; base-uri 'none'; form-action 'none'" />
 <meta name="color-scheme" content="light dark" /><title>${escaped(title)} · bmod</title>
-<link rel="stylesheet" href="../pages.css" /><script src="../pages.js" defer></script></head>
-<body><nav><a href="../index.html"><b>bmod</b> playground</a> · <a href="./index.html">All pages</a></nav><main>
+<link rel="stylesheet" href="${up}pages.css" /><script src="${up}pages.js" defer></script></head>
+<body><nav><a href="${up}index.html"><b>bmod</b> playground</a> · <a href="${up}docs/index.html">All pages</a></nav><main>
 ${body}</main></body></html>
 `;
 }
@@ -111,11 +113,8 @@ function site() {
     if (e.drawn) out.set(`models/${e.picture}`, readFileSync(join(root, e.drawn)));
   }
   out.set('models/gallery.json', JSON.stringify(list.map(({ drawn, ...e }) => e)));
-  const pages = readdirSync(join(root, 'docs')).filter((f) => f.endsWith('.md')).map((f) => basename(f, '.md'));
-  const names = new Set(pages);
-  for (const name of pages) {
-    out.set(`docs/${name === 'README' ? 'index' : name}.html`, page(name, text(root, 'docs', `${name}.md`), names));
-  }
+  const pages = readdirSync(join(root, 'docs'), { recursive: true }).filter((f) => f.endsWith('.md')).map((f) => `docs/${f}`);
+  for (const path of pages) out.set(htmlOf(path), page(path, text(root, path), new Set(pages)));
   for (const f of readdirSync(join(root, 'docs/figures'))) {
     if (f.endsWith('.svg')) out.set(`models/figures/${f}`, readFileSync(join(root, 'docs/figures', f)));
   }

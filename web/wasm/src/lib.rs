@@ -109,7 +109,9 @@ thread_local! {
 fn carry_out(request: Request) -> String {
     match request {
         Request::Check(project) => match project.model() {
-            Ok(model) => written(&Checked { diagnostics: model.check().diagnostics() }),
+            Ok(model) => written(&Checked {
+                diagnostics: model.check().diagnostics(),
+            }),
             Err(why) => error(why),
         },
         Request::Run(project) => match project.model() {
@@ -173,7 +175,14 @@ fn answer(run: &Run) -> String {
         printed: run.printed(),
         files: files.filter_map(|f| Some((&*f.name, f.text()?))).collect(),
         symbols: run.symbols().filter_map(about).collect(),
-        claims: run.claims().iter().map(|c| Claim { what: &c.what, holds: c.holds }).collect(),
+        claims: run
+            .claims()
+            .iter()
+            .map(|c| Claim {
+                what: &c.what,
+                holds: c.holds,
+            })
+            .collect(),
         memory: memory(),
     })
 }
@@ -186,7 +195,13 @@ fn about(s: Symbol<'_>) -> Option<About<'_>> {
         SymbolKind::Equation => ("equation", s.variable_records().count()),
         _ => return None,
     };
-    Some(About { name: s.name(), kind, text: s.text(), domain: s.domain(), records })
+    Some(About {
+        name: s.name(),
+        kind,
+        text: s.text(),
+        domain: s.domain(),
+        records,
+    })
 }
 
 fn table(s: Symbol<'_>) -> Table<'_> {
@@ -195,11 +210,15 @@ fn table(s: Symbol<'_>) -> Table<'_> {
     let rows = match s.kind() {
         SymbolKind::Set => {
             head.push("text");
-            s.records().map(|r| [labels(r.labels), vec![r.text.into()]].concat()).collect()
+            s.records()
+                .map(|r| [labels(r.labels), vec![r.text.into()]].concat())
+                .collect()
         }
         SymbolKind::Parameter => {
             head.push("value");
-            s.records().map(|r| [labels(r.labels), vec![number(r.value)]].concat()).collect()
+            s.records()
+                .map(|r| [labels(r.labels), vec![number(r.value)]].concat())
+                .collect()
         }
         _ => {
             head.extend(["lower", "level", "upper", "marginal"]);
@@ -210,7 +229,11 @@ fn table(s: Symbol<'_>) -> Table<'_> {
             s.variable_records().map(row).collect()
         }
     };
-    Table { name: s.name(), head, rows }
+    Table {
+        name: s.name(),
+        head,
+        rows,
+    }
 }
 
 /// JSON has no infinities: they are written as in the report.
