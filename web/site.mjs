@@ -78,6 +78,7 @@ function page(path, source, pages) {
     const [file, hash] = href.split('#');
     const at = file ? posix.normalize(posix.join(posix.dirname(path), file)) : path;
     if (pages.has(at)) return `${up}${htmlOf(at)}${hash ? `#${hash}` : ''}`;
+    if (/^models\/\w+\/README.md$/.test(at)) return `${up}index.html#examples`;
     if (at.startsWith('models/') && at.endsWith('.blk')) return `${up}index.html#model=${at.slice(7)}`;
     if (at.startsWith('docs/') && at.endsWith('.svg')) return `${up}models/figures/${basename(at)}`;
     return null;

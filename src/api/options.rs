@@ -32,6 +32,7 @@ pub struct Options {
     pub(super) listener: Option<Listener>,
     pub(super) watcher: Option<Listener>,
     claims: Option<f64>,
+    list: Option<usize>,
     pub(super) clock: Option<Clock>,
 }
 
@@ -117,6 +118,14 @@ impl Options {
         self
     }
 
+    /// Writes the generated rows and columns, so many of each symbol, into [`super::Run::printed`], as `bmod list` does; what else
+    /// the model prints is left out.
+    #[must_use]
+    pub fn list(mut self, records: usize) -> Self {
+        self.list = Some(records);
+        self
+    }
+
     /// Tells the time, in seconds since 1970-01-01 UTC; it must not go back. The default is the system's clock,
     /// with the feature `system`; without it the time stands still and no time limit holds.
     #[must_use]
@@ -144,6 +153,11 @@ impl Options {
             certify: self.certify,
             why: self.explain,
             keep_solutions: self.keep_solutions,
+            quiet: self.list.is_some(),
+            list: self.list.map(|limit| run::ListOptions {
+                limit,
+                only: Vec::new(),
+            }),
             ..run::Options::default()
         };
         options.refused = options.set(&self.pairs).err();

@@ -42,6 +42,7 @@ const tabs = new Tabs(byId('tabs'), byId('panel'), {
   dual: view('dual'),
   kkt: view('kkt'),
   why: view('why'),
+  rows: view('rows'),
   json: { element: h('pre', { tabindex: 0 }), show: (e) => void (e.textContent = last ? JSON.stringify(last.report, null, 1) : texts.empty) },
 });
 
@@ -257,13 +258,15 @@ async function begin(): Promise<void> {
   }
   const tab = hash.get('tab');
   if (tab && tabs.has(tab)) tabs.show(tab);
+  if (hash.has('examples')) void examples();
   // A stranger's model is run because a person says so, or the page around it.
   if (!project || parameters.has('run')) await run();
 }
 
 byId('run').addEventListener('click', () => void run());
 byId('stop').addEventListener('click', stop);
-byId('examples').addEventListener('click', () => void showGallery(byId<HTMLDialogElement>('gallery'), (id) => void choose(id)));
+const examples = () => showGallery(byId<HTMLDialogElement>('gallery'), (id) => void choose(id));
+byId('examples').addEventListener('click', () => void examples());
 byId('tour').addEventListener('click', () => takeTour({ choose, tab: (t) => tabs.show(t), run }));
 byId('skip').addEventListener('click', (e) => {
   e.preventDefault();

@@ -8,7 +8,7 @@ import { Stopped } from './engine';
 import { messageView } from './answer';
 import type { Answer, Diagnostic, Project, Settings } from './protocol';
 
-export type Page = { html: string; remarks: string[]; model?: string; checked?: string; diagnostics: Diagnostic[] };
+export type Page = { html: string; text: string; remarks: string[]; model: string; diagnostics: Diagnostic[] };
 
 export class View {
   readonly element = h('div', { class: 'formulas' });
@@ -51,6 +51,7 @@ export class View {
   private async page(request: Project & Settings): Promise<Node[]> {
     const page = await this.engine.call<Page>({ do: 'view', view: this.kind, ...request });
     const nodes: Node[] = page.diagnostics.map((d) => messageView(d, () => {}));
+    if (page.text) nodes.push(h('pre', { tabindex: 0 }, page.text));
     nodes.push(copied(page.html), ...page.remarks.map((r) => h('p', { class: 'note' }, r)));
     if (page.model) nodes.push(h('details', {}, h('summary', {}, texts.asModel), h('pre', { tabindex: 0 }, page.model)));
     return nodes;
