@@ -3,6 +3,8 @@
 use bmod::model::option::{OptionTable, page};
 use bmod::run::Options;
 use bmod::solve::registry::OPTION_TABLES;
+use bmod::solve::strategy;
+use std::path::Path;
 
 const HEAD: &str = "# Options of solvers
 
@@ -18,15 +20,38 @@ fn the_page_is_that_of_the_tables() {
     let shown = |t: &&OptionTable| t.backend != "ipopt";
     let tables: Vec<&OptionTable> = OPTION_TABLES.iter().copied().filter(shown).collect();
     let now = format!("{HEAD}{}", page(&tables));
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/options.md");
+    compare("options.md", &now);
+}
+
+/// Compares a page of `docs/` with what the tables say, or writes it.
+fn compare(page: &str, now: &str) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("docs")
+        .join(page);
     if std::env::var_os("BMOD_WRITE").is_some() {
-        std::fs::write(path, &now).expect("docs can be written");
+        std::fs::write(&path, now).expect("docs can be written");
     }
     let there = std::fs::read_to_string(path).unwrap_or_default();
     assert!(
         there == now,
-        "docs/options.md is not what the tables say; to make it anew: \
+        "docs/{page} is not what the tables say; to make it anew: \
          BMOD_WRITE=1 cargo test --test all options::"
+    );
+}
+
+const STRATEGIES_HEAD: &str = "# Strategies
+
+The fallbacks, restarts and special treatments of the solvers. Each can be left out: `--option without=NAME[,NAME…]`, or
+`option without = NAME;` in a model (several names between quotes). `cargo bench --bench ablation` solves the corpora without each in turn
+and prints what is lost; what loses nothing is deleted. This page is made from the table in `src/solve/strategy.rs`.
+
+";
+
+#[test]
+fn the_page_of_strategies_is_that_of_the_table() {
+    compare(
+        "strategies.md",
+        &format!("{STRATEGIES_HEAD}{}", strategy::page()),
     );
 }
 
@@ -43,6 +68,11 @@ fn what_no_solver_takes_is_refused() {
         ("mpec_factor", "2", "a number between 0 and 1, not `2`"),
         ("major_iteration_limit", "few", "a whole number"),
         ("nosuchoption", "1", "bmod help options"),
+        (
+            "without",
+            "square_newton,elastic_from",
+            "not `elastic_from`; did you mean `elastic_form`?",
+        ),
         #[cfg(feature = "pounce")]
         ("tol", "small", "a number above 0, not `small`"),
         #[cfg(feature = "pounce")]
@@ -57,6 +87,7 @@ fn what_no_solver_takes_is_refused() {
         ("lemke_start", "automatic"),
         ("lp", "clarabel"),
         ("reslim", "10"),
+        ("without", "elastic_form, square_newton"),
     ] {
         assert_eq!(refused(name, value), None, "{name}={value}");
     }

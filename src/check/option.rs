@@ -244,8 +244,12 @@ impl Compiler {
             }
             Err(Refused::Unknown(_)) => self.unknown_option(item),
             Err(refused) => {
-                let (message, _) = refused.words(&name, &text);
-                self.fail(Diagnostic::error("E0329", span, message).label("not such a value"))
+                let (message, help) = refused.words(&name, &text);
+                let refusal = Diagnostic::error("E0329", span, message).label("not such a value");
+                self.fail(match help {
+                    Some(help) => refusal.help(help),
+                    None => refusal,
+                })
             }
         }
     }

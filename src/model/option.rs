@@ -21,6 +21,8 @@ pub enum Kind {
     Inside(f64, f64),
     /// One of these words, or a number from the first to the second.
     WordsOrReal(&'static [&'static str], f64, f64),
+    /// Some of these names, separated by commas.
+    Names(&'static [&'static str]),
     /// Any text.
     Text,
 }
@@ -94,6 +96,8 @@ pub enum Refused {
     Unknown(Option<String>),
     /// The value is not one that it takes; what it takes.
     Value(String),
+    /// A name in a list is not one of those that it takes; the nearest.
+    Name(String, Option<String>),
 }
 
 impl Refused {
@@ -107,6 +111,10 @@ impl Refused {
             Self::Value(takes) => (
                 format!("the option `{name}` takes {takes}, not `{value}`"),
                 None,
+            ),
+            Self::Name(unknown, near) => (
+                format!("the option `{name}` takes names from its list, not `{unknown}`"),
+                near.as_ref().map(|n| format!("did you mean `{n}`?")),
             ),
         }
     }
@@ -131,10 +139,20 @@ pub fn check(tables: &[&OptionTable], name: &str, value: &str) -> Result<Accepte
         let known = tables.iter().flat_map(|t| t.all()).map(|r| r.name);
         return Err(Refused::Unknown(nearest(name, known).map(str::to_string)));
     }
-    match rows.iter().find(|r| !r.kind.takes(value)) {
-        Some(r) => Err(Refused::Value(r.kind.words())),
+    match rows.iter().find(|r| !r.kind.takes(value)).map(|r| r.kind) {
+        Some(Kind::Names(names)) => {
+            let all = value.split(',').map(str::trim);
+            let unknown = all.into_iter().find(|n| !is_one_of(n, names)).unwrap_or("");
+            let near = nearest(unknown, names.iter().copied()).map(str::to_string);
+            Err(Refused::Name(unknown.to_string(), near))
+        }
+        Some(kind) => Err(Refused::Value(kind.words())),
         None => Ok(Accepted::Taken),
     }
+}
+
+fn is_one_of(word: &str, words: &[&str]) -> bool {
+    words.iter().any(|w| w.eq_ignore_ascii_case(word))
 }
 
 /// A switch's value; None if it is none.
@@ -149,7 +167,7 @@ pub fn switch(value: &str) -> Option<bool> {
 impl Kind {
     /// Whether a value is one of this kind.
     pub fn takes(&self, value: &str) -> bool {
-        let word = |words: &[&str]| words.iter().any(|w| w.eq_ignore_ascii_case(value));
+        let word = |words: &[&str]| is_one_of(value, words);
         let number = value.parse::<f64>().ok().filter(|v| !v.is_nan());
         let within = |low: f64, high: f64| number.is_some_and(|v| (low..=high).contains(&v));
         match *self {
@@ -161,6 +179,7 @@ impl Kind {
             Self::Real(low, high) => within(low, high),
             Self::Inside(low, high) => number.is_some_and(|v| low < v && v < high),
             Self::WordsOrReal(words, low, high) => word(words) || within(low, high),
+            Self::Names(names) => value.split(',').all(|v| is_one_of(v.trim(), names)),
             Self::Text => true,
         }
     }
@@ -198,6 +217,7 @@ impl Kind {
             Self::WordsOrReal(words, low, high) => {
                 format!("{} or a number{}", listed(words, ", "), range(low, high))
             }
+            Self::Names(_) => "names separated by commas".into(),
             Self::Text => "a text".into(),
         }
     }

@@ -112,7 +112,7 @@ impl Options {
                         (None, Refused::Unknown(_)) => {
                             format!("{message}; `bmod help options` lists them")
                         }
-                        (None, Refused::Value(_)) => message,
+                        (None, _) => message,
                     });
                 }
             }

@@ -21,6 +21,7 @@ mod noise;
 pub mod pairing;
 pub mod random;
 pub mod registry;
+pub mod strategy;
 pub mod structure;
 pub mod study;
 pub mod why;
@@ -30,6 +31,7 @@ pub use budget::{Budget, Limits, Monitor, Progress, Quiet, Stop};
 use crate::model::instance::Instance;
 use crate::model::option::{self, OptionTable};
 pub use crate::model::outcome::{Claim, ModelStatus, Outcome, SolverStatus};
+pub use strategy::Strategy;
 
 /// What a solve is asked for beside its limits.
 #[derive(Clone, Debug, Default)]

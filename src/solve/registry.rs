@@ -31,6 +31,7 @@ pub static OPTION_TABLES: &[&OptionTable] = &[
     &mcp::OPTIONS,
     &mpec::OPTIONS,
     &mip::OPTIONS,
+    &super::strategy::OPTIONS,
 ];
 
 /// The tables of what may run for a problem type, for its option file: names that it may have (`path` for

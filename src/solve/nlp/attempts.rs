@@ -12,7 +12,7 @@ use super::quadratic::Quadratic;
 use super::schedule::{DOUBTS, FINEST, NEAR, NEARER, ROUNDING};
 use super::trial::{Trial, polished};
 use crate::model::certificate_nlp::is_locally_infeasible;
-use crate::solve::SolveError;
+use crate::solve::{SolveError, Strategy};
 use std::sync::{Arc, Mutex};
 
 /// Residuals of a point that is taken without a run.
@@ -30,7 +30,7 @@ impl Driver<'_, '_> {
         if self.is_settled() {
             return Ok(true);
         }
-        if self.is_square() {
+        if self.is_square() && self.settings.runs(Strategy::SquareNewton) {
             self.attempt_newton();
             if self.is_settled_by("newton")? {
                 return Ok(true);
@@ -40,14 +40,19 @@ impl Driver<'_, '_> {
             return Ok(false);
         }
         let marginals = again.then(|| lock(&*self.problem).marginals_of(self.instance));
+        let runs = |s| self.settings.runs(s);
         let defined = if again { None } else { self.consistent() };
+        let defined = defined.filter(|_| runs(Strategy::ConsistentStart));
         let start = defined.unwrap_or_else(|| self.start.clone());
         self.sequential(start, marginals.as_deref());
         let settled = self.is_settled_by("slqp")?;
         if settled {
             self.growth = Growth::Ignored;
             self.search()?;
-        } else if self.infeasibility.is_some() && !self.is_impossible() {
+        } else if self.infeasibility.is_some()
+            && !self.is_impossible()
+            && self.settings.runs(Strategy::InfeasibilityDoubt)
+        {
             return self.doubt();
         }
         Ok(settled)
@@ -86,7 +91,7 @@ impl Driver<'_, '_> {
     /// perhaps after a Newton step on its active set. Whether there are such marginals.
     fn attempt_again(&mut self) -> bool {
         let lambda = lock(&*self.problem).marginals_of(self.instance);
-        if lambda.iter().all(|&l| l == 0.0) {
+        if lambda.iter().all(|&l| l == 0.0) || !self.settings.runs(Strategy::WarmStart) {
             return false;
         }
         let trial = self.judge(self.start.clone(), lambda, Ended::Solved);
@@ -157,7 +162,8 @@ impl Driver<'_, '_> {
 
     /// The elastic form from the person's start, once; then, without a verdict, the least violation.
     pub(super) fn attempt_elastic(&mut self) -> Result<(), SolveError> {
-        let weights: &[f64] = if self.elastic_tried { &[] } else { &[1e3, 1e6] };
+        let runs = !self.elastic_tried && self.settings.runs(Strategy::ElasticForm);
+        let weights: &[f64] = if runs { &[1e3, 1e6] } else { &[] };
         self.elastic_tried = true;
         let start = self.start.clone();
         for &rho in weights {
@@ -170,7 +176,7 @@ impl Driver<'_, '_> {
                 return Ok(());
             }
         }
-        if self.infeasibility.is_some() {
+        if self.infeasibility.is_some() || !self.settings.runs(Strategy::LeastViolation) {
             return Ok(());
         }
         self.minimise_violation()

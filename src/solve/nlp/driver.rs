@@ -33,7 +33,7 @@ use crate::model::instance::Instance;
 use crate::solve::budget::{self, Budget, Size, Stop};
 use crate::solve::factor_size::symmetric_size;
 use crate::solve::random::Random;
-use crate::solve::{Settings, SolveError, answer::Answer};
+use crate::solve::{Settings, SolveError, Strategy, answer::Answer};
 use std::cell::OnceCell;
 use std::sync::{Arc, Mutex};
 
@@ -76,6 +76,7 @@ pub fn solve(
         Convexity::Ignored => None,
         Convexity::Used | Convexity::Asked => Quadratic::new(&mut problem, budget),
     };
+    let quadratic = quadratic.filter(|_| settings.runs(Strategy::ConvexQuadratic));
     let mut driver = Driver::new(instance, problem, provider, settings, budget);
     driver.message = (convexity == Convexity::Asked && quadratic.is_none()).then(|| {
         let name = provider.name();
@@ -103,12 +104,12 @@ fn placed(nlp: &dyn Nlp, x: &[f64], by: f64, anywhere: bool, seed: u64) -> Vec<f
 }
 
 /// What to do about a point that is all but a solution.
-fn nearly(t: &Trial) -> Option<&'static [(&'static str, &'static str)]> {
+fn nearly(t: &Trial) -> Option<(Strategy, &'static [(&'static str, &'static str)])> {
     let solved = matches!(t.ended, Ended::Solved | Ended::Acceptable);
     match (t.is_nearly_optimal(), t.is_feasible() && solved) {
         _ if t.is_stationary() => None,
-        (true, _) if t.ended != Ended::Iterations => Some(SHARP),
-        (_, true) => Some(EXACT),
+        (true, _) if t.ended != Ended::Iterations => Some((Strategy::TighterTolerance, SHARP)),
+        (_, true) => Some((Strategy::ExactBounds, EXACT)),
         _ => None,
     }
 }
@@ -264,14 +265,17 @@ impl Driver<'_, '_> {
         }
         self.patience = PATIENCE;
         let kinks = kinks(self.instance);
-        if kinks.is_some() {
+        if kinks.is_some() && self.settings.runs(Strategy::KinkSmoothing) {
             self.round_kinks()?;
         }
-        for (from, options) in SCHEDULE.into_iter().take(self.attempts()) {
+        for (strategy, from, options) in SCHEDULE.into_iter().take(self.attempts()) {
             let proved =
                 self.infeasibility.is_some() && !self.best.as_ref().is_some_and(Trial::is_feasible);
             if self.is_settled() || proved || self.work() > self.enough {
                 break;
+            }
+            if !self.settings.runs(strategy) {
+                continue;
             }
             if !self.named
                 && from != From::Start
@@ -449,6 +453,9 @@ impl Driver<'_, '_> {
 
     /// Sequential programs from a point, judged and kept; with multipliers, from the active set that they name.
     pub(super) fn sequential(&mut self, x: Vec<f64>, multipliers: Option<&[f64]>) {
+        if !self.settings.runs(Strategy::SequentialQuadratic) {
+            return;
+        }
         let mut problem = lock(&*self.problem);
         problem.set_start(x);
         let own = self.settings.number("max_iter");
@@ -462,6 +469,7 @@ impl Driver<'_, '_> {
             multipliers,
             effort,
             width: 0.0,
+            strategies: self.settings.strategies(),
         };
         let run = slqp::solve(&mut *problem, request, self.budget);
         let failures = problem.failures();
@@ -486,7 +494,7 @@ impl Driver<'_, '_> {
         let ended = matches!(run.end, slqp::End::Solved | slqp::End::Stuck);
         let regular = self.kinks.is_some() || trial.lambda.is_empty();
         let irregular = ended && !regular && trial.is_feasible() && !trial.is_optimal();
-        let trial = match irregular {
+        let trial = match irregular && self.settings.runs(Strategy::WidenedRows) {
             true => self.without_multipliers(trial),
             false => trial,
         };
@@ -502,6 +510,7 @@ impl Driver<'_, '_> {
             multipliers: None,
             effort: slqp::Effort::FULL,
             width: WIDTH,
+            strategies: self.settings.strategies(),
         };
         let run = slqp::solve(&mut *problem, request, self.budget);
         drop(problem);
@@ -544,6 +553,7 @@ impl Driver<'_, '_> {
         if solution.ended == Ended::InvalidNumber
             && !self.is_stopped()
             && let Some(beside) = self.beside(&x)
+            && self.settings.runs(Strategy::PerturbedStart)
         {
             lock(&*self.problem).set_start(beside);
             solution = self.call(shared, extra)?;
@@ -555,9 +565,10 @@ impl Driver<'_, '_> {
             return Ok(None);
         }
         let mut trial = self.judge(solution.x, solution.lambda, solution.ended);
-        if let Some(options) = nearly(&trial)
+        if let Some((strategy, options)) = nearly(&trial)
             && !self.repeated
             && !self.is_stopped()
+            && self.settings.runs(strategy)
         {
             self.repeated = true;
             let shared: Shared = self.problem.clone();
@@ -696,6 +707,7 @@ impl Driver<'_, '_> {
         };
         let nearly = affords && best.residual() < 1e-2 && best.residual() > 1e-13;
         if nearly
+            && self.settings.runs(Strategy::ActiveSetPolish)
             && let Some(t) = polished(self.instance, &mut problem, kinks, &best, 1e-6)
             && t.residual() < best.residual()
         {
@@ -744,6 +756,9 @@ impl Driver<'_, '_> {
             let Some(x) = self.beyond_saddle(&best) else {
                 return Ok(());
             };
+            if !self.settings.runs(Strategy::SaddleEscape) {
+                return Ok(());
+            }
             let before = best.objective;
             if !self.named {
                 self.sequential(x.clone(), None);

@@ -16,7 +16,7 @@ use super::provider::{Ended, lock};
 use super::schedule::From;
 use super::trial::{CONSIDERABLE, FAR, Trial};
 use crate::model::instance::Instance;
-use crate::solve::SolveError;
+use crate::solve::{SolveError, Strategy};
 
 /// Half the widths R of the boxes.
 const BOXES: [f64; 2] = [1e5, 1e8];
@@ -45,7 +45,12 @@ impl Driver<'_, '_> {
         let astray = trial.ended == Ended::Diverging || trial.receding || far;
         // a second time only for points that the rows allow
         let tried = times == TIMES || times > 0 && !trial.is_feasible();
-        if trial.is_optimal() || !astray || tried || self.is_stopped() {
+        if trial.is_optimal()
+            || !astray
+            || tried
+            || self.is_stopped()
+            || !self.settings.runs(Strategy::UnboundedBoxes)
+        {
             return Ok(trial);
         }
         let beyond = is_far(BOXES[1]);

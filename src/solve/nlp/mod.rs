@@ -31,7 +31,7 @@ mod verdict;
 
 use super::answer::{Answer, linear};
 use super::backend::{Backend, Supports, Task, Terms};
-use super::{Budget, Settings, SolveError, lp};
+use super::{Budget, Settings, SolveError, Strategy, lp};
 use crate::model::instance::Instance;
 use crate::model::option::OptionTable;
 use epigraph::Epigraph;
@@ -77,7 +77,9 @@ pub fn answer(
         let message = "there is no solver for nonlinear models in this build";
         return Err(SolveError::new(message));
     };
-    if let Some(epigraph) = Epigraph::new(instance) {
+    if let Some(epigraph) = Epigraph::new(instance)
+        && settings.runs(Strategy::ConvexEpigraph)
+    {
         let smooth = &epigraph.instance;
         let answer = match smooth.is_linear() {
             true => linear(&lp::Clarabel, smooth, settings, budget),

@@ -1,5 +1,7 @@
 //! Options and starts: what is tried first, and what when that does not lead to a certified point.
 
+use crate::solve::Strategy;
+
 /// Options of every attempt; the person's own come after them.
 pub(super) const BASE: [(&str, &str); 8] = [
     ("tol", "1e-9"),
@@ -66,12 +68,12 @@ pub(super) const SHARP: &[(&str, &str)] = &[("tol", "1e-11"), ("compl_inf_tol", 
 pub(super) const EXACT: &[(&str, &str)] = &[("bound_relax_factor", "0")];
 
 /// What to try when neither sequential programs nor a plain run has led to a certified point.
-pub(super) const SCHEDULE: [(From, &[(&str, &str)]); 5] = [
-    (From::Best, NEAR),
-    (From::Consistent, &[]),
-    (From::Start, NEAR),
-    (From::Moved(0.1), NEAR),
-    (From::Start, CENTRAL),
+pub(super) const SCHEDULE: [(Strategy, From, &[(&str, &str)]); 5] = [
+    (Strategy::RestartFromBest, From::Best, NEAR),
+    (Strategy::RestartConsistent, From::Consistent, &[]),
+    (Strategy::RestartNear, From::Start, NEAR),
+    (Strategy::RestartMoved, From::Moved(0.1), NEAR),
+    (Strategy::RestartCentral, From::Start, CENTRAL),
 ];
 
 /// From where sequential programs doubt a proof that nothing near the start is feasible.

@@ -9,7 +9,7 @@ use super::trial::Trial;
 use crate::autodiff::{Degree, Evaluator};
 use crate::model::certificate_nlp::{is_locally_infeasible, violations};
 use crate::model::instance::{Instance, Relation};
-use crate::solve::{Claim, ModelStatus, Outcome, SolverStatus, Stop, answer::Answer};
+use crate::solve::{Claim, ModelStatus, Outcome, SolverStatus, Stop, Strategy, answer::Answer};
 
 impl Driver<'_, '_> {
     /// Whether it is certain that there is no feasible point; asked where none was found.
@@ -17,6 +17,7 @@ impl Driver<'_, '_> {
         let lacks_point = !self.best.as_ref().is_some_and(Trial::is_feasible);
         self.impossible = lacks_point
             && !self.is_stopped()
+            && self.settings.runs(Strategy::IntervalProof)
             && relaxation::is_infeasible(self.instance, self.budget);
         self.impossible
     }

@@ -18,6 +18,7 @@ mod point;
 
 use super::problem::{Entry, Nlp};
 use crate::solve::Budget;
+use crate::solve::strategy::{Strategies, Strategy};
 use equality::{Equality, Working};
 use linear::{Aim, Linear, Step};
 use point::{Frame, Point, Values};
@@ -79,6 +80,8 @@ pub struct Request<'a> {
     pub effort: Effort,
     /// Equations are met by so much, in units of their largest entry: 0, but where they have no multipliers.
     pub width: f64,
+    /// What of it runs.
+    pub strategies: Strategies,
 }
 
 /// Where it ended.
@@ -129,6 +132,7 @@ pub fn solve(nlp: &mut dyn Nlp, request: Request<'_>, budget: &Budget) -> Option
             budget,
             lowered: 0,
             shift: 1,
+            strategies: request.strategies,
         };
         let working = lambda.and_then(|l| method.named_by(&l));
         let before = run.as_ref().map_or(0, |r| r.steps);
@@ -143,7 +147,8 @@ pub fn solve(nlp: &mut dyn Nlp, request: Request<'_>, budget: &Budget) -> Option
             steps: before + steps,
             end,
         });
-        if !(violated && end == End::Diverging) {
+        let strategies = request.strategies;
+        if !(violated && end == End::Diverging && strategies.run(Strategy::HeavierPenalty)) {
             break;
         }
     }
@@ -167,6 +172,7 @@ struct Method<'a, 'm> {
     lowered: u32,
     /// Which shift of the Hessian was enough.
     shift: usize,
+    strategies: Strategies,
     budget: &'a Budget<'m>,
 }
 
@@ -288,7 +294,7 @@ impl Method<'_, '_> {
 
     /// Whether anything lessens the violations from here, with the multipliers that say no.
     fn prove(&mut self) -> End {
-        if self.frame.forgive(&self.at.values.g) {
+        if self.forgive() {
             return End::Stuck;
         }
         let aim = Aim {
@@ -303,6 +309,11 @@ impl Method<'_, '_> {
             }
             _ => End::Stuck,
         }
+    }
+
+    /// Whether the violated rows differ by rounding only from rows that hold, which they then become.
+    fn forgive(&mut self) -> bool {
+        self.strategies.run(Strategy::RoundedData) && self.frame.forgive(&self.at.values.g)
     }
 
     /// The working set that multipliers name.
@@ -415,7 +426,7 @@ impl Method<'_, '_> {
                             radius = (10.0 * radius).min(1.0);
                             continue;
                         }
-                        if self.frame.forgive(&self.at.values.g) {
+                        if self.forgive() {
                             now = 0.0;
                             continue;
                         }
@@ -520,6 +531,7 @@ impl Method<'_, '_> {
         // what the curvature of the held rows added on the way is taken off
         if gain < TAKEN
             && let (Some(v), Some(q)) = (&there, &quadratic)
+            && self.strategies.run(Strategy::SecondOrderCorrection)
         {
             let along = self.at.along(&d);
             let held = |i: usize| v.g[i] - self.at.values.g[i] - along[i];
@@ -577,7 +589,10 @@ impl Method<'_, '_> {
         }
         self.at = point;
         self.lambda = lambda;
-        Ok((full && self.signs_are_right(&working)).then_some(working))
+        let stays = full
+            && self.signs_are_right(&working)
+            && self.strategies.run(Strategy::ActiveSetNewton);
+        Ok(stays.then_some(working))
     }
 
     /// The weight of violations in φ: somewhat above the multipliers. Where it was far above them, it becomes less, for a

@@ -1,0 +1,287 @@
+//! Strategies: the fallbacks, restarts and special treatments of the solvers, one row each.
+//!
+//! Each can be left out by name, `--option without=NAME[,NAME…]` or `option without = NAME;`, so that what it is worth can be measured:
+//! `cargo bench --bench ablation` solves the corpora without each in turn. What loses nothing there is deleted. To add one: a row below, and a
+//! question at the place where it begins, after everything else that decides whether it applies:
+//!
+//! ```ignore
+//! if is_stuck && settings.runs(Strategy::ElasticForm) { … }
+//! ```
+
+use super::Settings;
+use crate::model::option::{Kind, OptionTable, row};
+use std::fmt::Write;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// What is known about a strategy.
+#[derive(Clone, Copy, Debug)]
+pub struct StrategyRow {
+    /// The strategy.
+    pub strategy: Strategy,
+    /// Its name, as in `without=NAME`.
+    pub name: &'static str,
+    /// The solver that it belongs to: `lp`, `mcp`, `nlp`, `mpec` or `mip`.
+    pub area: &'static str,
+    /// When it applies, and what it does then.
+    pub when: &'static str,
+    /// What it costs at most.
+    pub cost: &'static str,
+    /// Where it comes from.
+    pub source: &'static str,
+}
+
+macro_rules! strategies {
+    ($($area:literal: { $($strategy:ident $name:literal, $when:literal, $cost:literal, $source:literal;)* })*) => {
+        /// A strategy that can be left out.
+        #[derive(Clone, Copy, PartialEq, Eq, Debug)]
+        pub enum Strategy {
+            $($(#[doc = $when] $strategy,)*)*
+        }
+
+        /// All strategies.
+        pub const STRATEGIES: &[StrategyRow] = &[$($(StrategyRow {
+            strategy: Strategy::$strategy,
+            name: $name,
+            area: $area,
+            when: $when,
+            cost: $cost,
+            source: $source,
+        },)*)*];
+
+        const NAMES: &[&str] = &[$($($name,)*)*];
+    };
+}
+
+// name, when it applies and what it does, what it costs at most, source
+strategies! {
+    "lp": {
+    }
+    "mcp": {
+    }
+    "nlp": {
+        ConvexEpigraph "convex_epigraph",
+            "kinks on the side where they are convex are replaced by a column and a row for each argument",
+            "one solve of the larger program",
+            "Boyd & Vandenberghe 2004, 4.1.3";
+        ConvexQuadratic "convex_quadratic",
+            "linear rows and a positive semidefinite Hessian of the objective: Clarabel solves it",
+            "a Cholesky factorisation and one conic solve",
+            "Goulart & Chen 2024";
+        WarmStart "warm_start",
+            "an earlier solve left marginals: the active set that they name is the first working set",
+            "an evaluation and a factorisation",
+            "Gill, Murray & Saunders 2005";
+        SquareNewton "square_newton",
+            "at least as many equations as variables: Newton's method with Levenberg and Marquardt's damping",
+            "50 steps",
+            "Nocedal & Wright 2006, chapter 10";
+        ConsistentStart "consistent_start",
+            "variables without a start level that an equation defines are computed",
+            "50 evaluations of the rows",
+            "common in models with intermediate variables";
+        SequentialQuadratic "sequential_quadratic",
+            "up to 10 000 variables and constraints: sequential linear and quadratic programming goes first",
+            "100 steps",
+            "Byrd, Gould, Nocedal & Waltz 2004";
+        HeavierPenalty "heavier_penalty",
+            "the sequential method diverges at an infeasible point: again from the start with a larger penalty",
+            "100 steps",
+            "Byrd, Nocedal & Waltz 2008";
+        SecondOrderCorrection "second_order_correction",
+            "a step is refused: the curvature of the held rows is taken off",
+            "a solve with the factors and an evaluation",
+            "Fletcher 1982";
+        ActiveSetNewton "active_set_newton",
+            "multipliers have the right signs: Newton's method on the working set without a linear program",
+            "a factorisation a step",
+            "Fletcher & Sainz de la Maza 1989";
+        RoundedData "rounded_data",
+            "rows contradict each other by less than 5e-7 of their size: they are moved to where they agree best",
+            "nothing",
+            "programs built from the rounded answers of others";
+        InfeasibilityDoubt "infeasibility_doubt",
+            "linear programs prove that nothing nearby is feasible: again from six other starts",
+            "600 steps",
+            "multistart";
+        WidenedRows "widened_rows",
+            "rows without multipliers at the solution: the same rows 1e-8 wider",
+            "100 steps",
+            "Fritz John points: Mangasarian & Fromovitz 1967";
+        SaddleEscape "saddle_escape",
+            "negative curvature on the tangent space of the active set: a step along it, and on from there",
+            "three solves",
+            "Moré & Sorensen 1979";
+        UnboundedBoxes "unbounded_boxes",
+            "a run diverges: the program in two boxes tells whether it is unbounded",
+            "four solves",
+            "bmod";
+        KinkSmoothing "kink_smoothing",
+            "kinks, and no certified point: they are smoothed with a shrinking parameter",
+            "four runs of the interior point",
+            "Chen & Mangasarian 1996";
+        RestartFromBest "restart_from_best",
+            "no certified point: again from the best one, near its bounds",
+            "a run of each method",
+            "ablation";
+        RestartConsistent "restart_consistent",
+            "no certified point: again from the start with defined variables computed",
+            "a run of each method",
+            "ablation";
+        RestartNear "restart_near",
+            "no certified point: the interior point stays near the start",
+            "a run of the interior point",
+            "ablation";
+        RestartMoved "restart_moved",
+            "no certified point: again from the start moved by a tenth",
+            "a run of each method",
+            "multistart";
+        RestartCentral "restart_central",
+            "no certified point: the interior point begins far from the bounds",
+            "a run of the interior point",
+            "ablation";
+        ElasticForm "elastic_form",
+            "no feasible point and no proof that there is none: violations are penalised",
+            "two runs of the interior point",
+            "Gill, Murray & Saunders 2005";
+        LeastViolation "least_violation",
+            "the elastic form has no verdict: violations alone are minimised",
+            "two runs of the interior point",
+            "Gill, Murray & Saunders 2005";
+        TighterTolerance "tighter_tolerance",
+            "the interior point ends at a point that is all but stationary: again with a smaller last barrier",
+            "a run of the interior point",
+            "Wächter & Biegler 2006";
+        ExactBounds "exact_bounds",
+            "the interior point ends at a point that is stationary for relaxed bounds only: again with the bounds as they are",
+            "a run of the interior point",
+            "Wächter & Biegler 2006";
+        PerturbedStart "perturbed_start",
+            "the start has no derivatives: a point near it that has some",
+            "three evaluations and a run",
+            "bmod";
+        ActiveSetPolish "active_set_polish",
+            "residuals above 1e-13: Newton steps on the active set of the point",
+            "a few factorisations",
+            "Nocedal & Wright 2006, chapter 18";
+        IntervalProof "interval_proof",
+            "no feasible point: a linear program over interval bounds of the nonlinear terms may prove that there is none",
+            "one linear program",
+            "Neumaier 2004";
+    }
+    "mpec": {
+    }
+    "mip": {
+    }
+}
+
+/// The option that leaves strategies out.
+pub const OPTIONS: OptionTable = OptionTable {
+    backend: "strategies",
+    title: "every solver",
+    rows: &[row(
+        "without",
+        Kind::Names(NAMES),
+        "",
+        "strategies that are left out, to measure what they are worth (listed in `docs/strategies.md`)",
+    )],
+    more: None,
+    ignored: &[],
+};
+
+/// Which of them came into question since [`take_asked`].
+static ASKED: [AtomicBool; NAMES.len()] = [const { AtomicBool::new(false) }; NAMES.len()];
+
+/// The strategies that came into question since the last call, in any thread: those without which a solve may go another way.
+pub fn take_asked() -> Vec<Strategy> {
+    let asked = |r: &&StrategyRow| ASKED[r.strategy as usize].swap(false, Ordering::Relaxed);
+    STRATEGIES
+        .iter()
+        .filter(asked)
+        .map(|r| r.strategy)
+        .collect()
+}
+
+/// Which strategies run, for code that sees no [`Settings`].
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub struct Strategies {
+    without: u128,
+}
+
+const _: () = assert!(NAMES.len() <= 128, "a bit for each strategy");
+
+impl Strategies {
+    /// Whether a strategy is not left out. To be asked last, where all else says that it applies.
+    pub fn run(self, strategy: Strategy) -> bool {
+        ASKED[strategy as usize].store(true, Ordering::Relaxed);
+        self.without & (1 << strategy as u32) == 0
+    }
+}
+
+impl Settings {
+    /// Which strategies run.
+    pub fn strategies(&self) -> Strategies {
+        let mut out = Strategies::default();
+        for name in self.option("without").iter().flat_map(|l| l.split(',')) {
+            if let Some(k) = NAMES
+                .iter()
+                .position(|n| n.eq_ignore_ascii_case(name.trim()))
+            {
+                out.without |= 1 << k;
+            }
+        }
+        out
+    }
+
+    /// Whether a strategy is not left out. To be asked last, where all else says that it applies.
+    pub fn runs(&self, strategy: Strategy) -> bool {
+        self.strategies().run(strategy)
+    }
+}
+
+/// The table as a page in Markdown.
+pub fn page() -> String {
+    let mut out = String::new();
+    let mut area = "";
+    for r in STRATEGIES {
+        if r.area != area {
+            area = r.area;
+            let gap = if out.is_empty() { "" } else { "\n" };
+            let _ = writeln!(
+                out,
+                "{gap}## {area}\n\n| name | when | costs at most | source |\n| --- | --- | --- | --- |"
+            );
+        }
+        let _ = writeln!(
+            out,
+            "| `{}` | {} | {} | {} |",
+            r.name, r.when, r.cost, r.source
+        );
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_left_out_does_not_run() {
+        let mut settings = Settings::default();
+        let first = STRATEGIES[0];
+        assert!(settings.runs(first.strategy));
+        settings
+            .options
+            .push(("without".into(), format!(" {} ", first.name)));
+        assert!(!settings.runs(first.strategy));
+        assert!(take_asked().contains(&first.strategy));
+        for (k, r) in STRATEGIES.iter().enumerate() {
+            assert_eq!(r.strategy as usize, k);
+            assert_eq!(
+                NAMES.iter().filter(|n| **n == r.name).count(),
+                1,
+                "{}",
+                r.name
+            );
+        }
+    }
+}
