@@ -62,6 +62,7 @@ pub mod cli;
 mod color;
 pub mod data;
 pub mod diag;
+pub mod editor;
 pub mod formulation;
 pub mod gdx;
 pub mod host;

@@ -55,11 +55,16 @@ const ARROWS: &[(&str, &[&str])] = &[
     ),
     ("claims", &["check", "data", "run"]),
     (
+        "editor",
+        &["check", "data", "diag", "host", "solve", "source", "syntax"],
+    ),
+    (
         "cli",
         &[
             "check",
             "claims",
             "diag",
+            "editor",
             "formulation",
             "gdx",
             "host",

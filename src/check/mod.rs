@@ -28,6 +28,8 @@ pub(crate) mod output;
 mod statement;
 mod table;
 
+pub(crate) use figure::kinds as figure_kinds;
+
 use crate::diag::{Diagnostic, Severity};
 use crate::host::Host;
 use crate::model::option::OptionTable;

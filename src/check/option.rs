@@ -11,7 +11,7 @@ use crate::source::Span;
 use crate::syntax::ast::{Ident, OptionForm, OptionItem, OptionValue};
 
 /// Options of the `option` statement that are numbers or switches, besides solver choices.
-const OPTIONS: &[&str] = &[
+pub(crate) const OPTIONS: &[&str] = &[
     "limrow",
     "limcol",
     "iterlim",

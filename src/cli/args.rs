@@ -69,6 +69,8 @@ pub enum Command {
     New(NewArgs),
     /// Runs models and compares what they claim in comments: `*= x.l('a') 4`.
     Test(TestArgs),
+    /// Lays texts out: indentation, blanks, capitals of keywords. What stands under one another still does; comments stay.
+    Fmt(FmtArgs),
     /// Prints a script that completes bmod's commands in a shell.
     Completions {
         /// The shell.
@@ -88,6 +90,17 @@ pub struct GdxArgs {
     /// As comma-separated values.
     #[arg(long)]
     pub csv: bool,
+}
+
+/// Arguments of `bmod fmt`.
+#[derive(Args, Debug, Clone)]
+pub struct FmtArgs {
+    /// The files, which are rewritten; - reads standard input and writes standard output.
+    #[arg(value_name = "FILE|-", value_hint = ValueHint::FilePath, required = true)]
+    pub files: Vec<PathBuf>,
+    /// Changes nothing; names the files that would change, and ends with status 1 if there are any.
+    #[arg(long)]
+    pub check: bool,
 }
 
 /// How diagnostics are written.

@@ -48,6 +48,7 @@ pub fn execute(cli: &Cli) -> u8 {
         Command::Watch(a) => super::watch::watch(a),
         Command::New(a) => super::new::new(a),
         Command::Test(a) => super::test::test(a),
+        Command::Fmt(a) => super::fmt::fmt(a),
         Command::Completions { shell } => {
             let _ = std::io::stdout().write_all(&completions(*shell));
             0

@@ -6,6 +6,7 @@ pub mod commands;
 pub mod derive;
 pub mod dual;
 pub mod explain;
+mod fmt;
 mod gdx;
 pub mod host;
 pub mod kkt;

@@ -21,7 +21,7 @@ mod neighbours;
 mod slips;
 mod split;
 pub mod table;
-mod words;
+pub(crate) mod words;
 
 use pest::Parser as _;
 

@@ -5,7 +5,7 @@ use crate::source::Span;
 
 /// The kinds of statements that the splitter tells apart.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Class {
+pub(crate) enum Class {
     Set,
     Parameter,
     Variable,
@@ -25,12 +25,12 @@ pub(super) enum Class {
 
 impl Class {
     /// Its data are numbers.
-    pub(super) fn has_values(self) -> bool {
+    pub(crate) fn has_values(self) -> bool {
         matches!(self, Class::Parameter | Class::Variable | Class::Equation)
     }
 
     /// Statements with names, texts and data.
-    pub(super) fn declares(self) -> bool {
+    pub(crate) fn declares(self) -> bool {
         !matches!(
             self,
             Class::Alias | Class::Directive | Class::Algebra | Class::Other
@@ -40,7 +40,7 @@ impl Class {
 
 /// A word that always begins a statement.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Word {
+pub(crate) enum Word {
     /// `set`, `parameter` … never inside a block.
     Declaration,
     /// `loop`, `if` …: a block follows.
@@ -57,23 +57,23 @@ pub(super) enum Word {
 
 impl Word {
     /// Words that do not end a statement at the outermost level.
-    pub(super) fn inside_blocks_only(self) -> bool {
+    pub(crate) fn inside_blocks_only(self) -> bool {
         matches!(self, Word::EndControl | Word::Inner | Word::Until)
     }
 }
 
 /// Blanks, line ends and the marks that old files end with.
-pub(super) fn is_blank(b: u8) -> bool {
+pub(crate) fn is_blank(b: u8) -> bool {
     matches!(b, b' ' | b'\t' | b'\r' | b'\n' | 0x0c | 0x0b | 0x1a | 0x1e)
 }
 
 /// The first byte of a name.
-pub(super) fn is_letter(b: u8) -> bool {
+pub(crate) fn is_letter(b: u8) -> bool {
     b.is_ascii_alphabetic() || b == b'_'
 }
 
 /// The end of the word that begins at `i`.
-pub(super) fn word_end(bytes: &[u8], i: usize) -> usize {
+pub(crate) fn word_end(bytes: &[u8], i: usize) -> usize {
     let mut end = i;
     while end < bytes.len() && (bytes[end].is_ascii_alphanumeric() || bytes[end] == b'_') {
         end += 1;
@@ -151,7 +151,7 @@ fn next_word(text: &str, end: usize) -> &str {
 }
 
 /// Whether the word at `at..end` always begins a statement, and which kind.
-pub(super) fn statement_word(text: &str, at: usize, end: usize) -> Option<Word> {
+pub(crate) fn statement_word(text: &str, at: usize, end: usize) -> Option<Word> {
     let mut buffer = [0; 20];
     let n = lower(&text[at..end], &mut buffer)?;
     let word = &buffer[..n];
@@ -172,7 +172,7 @@ pub(super) fn statement_word(text: &str, at: usize, end: usize) -> Option<Word> 
 
 /// Whether a line of a table that begins with this word is the next statement: a label may be spelled
 /// like a keyword, but then a number follows.
-pub(super) fn begins_statement_in_table(text: &str, at: usize, end: usize) -> bool {
+pub(crate) fn begins_statement_in_table(text: &str, at: usize, end: usize) -> bool {
     let Some(word) = statement_word(text, at, end) else {
         return false;
     };
@@ -186,7 +186,7 @@ pub(super) fn begins_statement_in_table(text: &str, at: usize, end: usize) -> bo
 }
 
 /// The class of the statement that begins at `at`, and the end of its keyword.
-pub(super) fn classify(text: &str, at: usize) -> (Class, usize) {
+pub(crate) fn classify(text: &str, at: usize) -> (Class, usize) {
     let (class, end) = first_class(text, at);
     // `set table`, `variable table`
     if matches!(class, Class::Set | Class::Parameter | Class::Variable) {
@@ -241,13 +241,13 @@ fn first_class(text: &str, at: usize) -> (Class, usize) {
 }
 
 /// `figure`, whose block stands in braces.
-pub(super) fn is_figure(word: &str) -> bool {
+pub(crate) fn is_figure(word: &str) -> bool {
     word.eq_ignore_ascii_case("figure")
 }
 
 /// Words with a meaning of their own in expressions, lists and declarations. (Those that begin statements never
 /// come as names.)
-pub(super) fn is_reserved(name: &str) -> bool {
+pub(crate) fn is_reserved(name: &str) -> bool {
     const WORDS: [&str; 14] = [
         "all", "card", "eps", "inf", "na", "no", "not", "ord", "prod", "smax", "smin", "sum",
         "system", "yes",
@@ -257,7 +257,7 @@ pub(super) fn is_reserved(name: &str) -> bool {
 }
 
 /// A word of the language stands where a name is declared.
-pub(super) fn reserved(word: &str, span: Span) -> Diagnostic {
+pub(crate) fn reserved(word: &str, span: Span) -> Diagnostic {
     Diagnostic::error(
         "E0205",
         span,

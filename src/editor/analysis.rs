@@ -1,0 +1,277 @@
+//! Compiling a model for an editor: the program, and what is wrong with it, file by file.
+
+use super::Editor;
+use super::navigate::Edit;
+use super::place::{LineIndex, Location, Range};
+use super::project::{Document, ProjectHost, has_slashes};
+use crate::check::{self, Program};
+use crate::diag::{self, Severity};
+use crate::solve::registry::OPTION_TABLES;
+use crate::source::{FileId, PreprocessOptions, SourceMap, Span};
+use serde::Serialize;
+
+/// What data in a text may take while it is being written: a slip of the pen must not fill the memory.
+const MAX_MEMORY: usize = 512 << 20;
+
+/// What is known about a main file.
+pub(super) struct Analysis {
+    /// The files that it consists of, in the order in which they were read; itself first.
+    pub files: Vec<String>,
+    /// What compiled, as far as it did.
+    pub program: Option<Program>,
+    /// The last program without errors, if that is another.
+    pub good: Option<Program>,
+    /// Files that diagnostics were given for.
+    told: Vec<String>,
+}
+
+/// What is wrong in a file.
+#[derive(Clone, PartialEq, Debug, Serialize)]
+pub struct FileDiagnostics {
+    /// The file.
+    pub file: String,
+    /// In the order of the text; empty if nothing is wrong any more.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// An error or a warning.
+#[derive(Clone, PartialEq, Debug, Serialize)]
+pub struct Diagnostic {
+    /// Where.
+    pub range: Range,
+    /// 1 an error, 2 a warning.
+    pub severity: u8,
+    /// `E0301`; `docs/errors.md` has them all.
+    pub code: &'static str,
+    /// The problem, what is at its place, and how to fix it.
+    pub message: String,
+    /// Other places that belong to it.
+    pub related: Vec<Related>,
+    /// Changes that mend it.
+    pub fixes: Vec<Fix>,
+}
+
+/// A second place of a diagnostic.
+#[derive(Clone, PartialEq, Debug, Serialize)]
+pub struct Related {
+    /// Where.
+    pub location: Location,
+    /// What is there.
+    pub message: String,
+}
+
+/// A change that mends what is wrong.
+#[derive(Clone, PartialEq, Debug, Serialize)]
+pub struct Fix {
+    /// What it does, for a menu.
+    pub title: String,
+    /// The changes.
+    pub edits: Vec<Edit>,
+}
+
+impl Analysis {
+    /// The programs that may know an answer, the newest first.
+    pub fn programs(&self) -> impl Iterator<Item = &Program> {
+        self.program.iter().chain(&self.good)
+    }
+
+    /// A place of the newest program as one in a file.
+    pub fn location(&self, map: &SourceMap, span: Span) -> Option<Location> {
+        let p = map.place(span)?;
+        let file = self.files.get(p.file.0 as usize)?.clone();
+        let text = &map.file(p.file).text;
+        let index = LineIndex::new(text);
+        Some(Location {
+            file,
+            range: index.range(text, p.lo as usize, p.hi as usize),
+        })
+    }
+}
+
+impl Editor {
+    /// Compiles the model that a file belongs to, and says what is wrong in each of its files: those where something is, the
+    /// file itself, and those where something was.
+    pub fn check(&mut self, file: &str) -> Vec<FileDiagnostics> {
+        let main = self.main_of(file);
+        let mut host = ProjectHost {
+            open: &self.open,
+            files: self.files.as_deref(),
+            known: Vec::new(),
+        };
+        let options = PreprocessOptions {
+            slash_comments: has_slashes(&main),
+            max_memory: Some(MAX_MEMORY),
+            ..PreprocessOptions::default()
+        };
+        let compiled = check::compile(&mut host, &main, options, OPTION_TABLES);
+        let known = host.known;
+        let before = self.analyses.remove(&main);
+        let (told_before, last, good) = match before {
+            Some(a) => (a.told, a.program, a.good),
+            None => (Vec::new(), None, None),
+        };
+        let (program, found, map) = match compiled {
+            Ok(mut p) => {
+                let found = std::mem::take(&mut p.diagnostics);
+                (Some(p), found, None)
+            }
+            Err(e) => (None, vec![e.0], Some(e.1)),
+        };
+        let wrong = found.iter().any(|d| d.severity != Severity::Warning);
+        let path_of = |name: &str| {
+            let known = known.iter().find(|k| k.0 == name);
+            known.map_or_else(|| name.to_owned(), |k| k.1.to_string_lossy().into_owned())
+        };
+        let empty = SourceMap::default();
+        let map = match (&program, &map) {
+            (Some(p), _) => &p.map,
+            (None, Some(m)) => m,
+            _ => &empty,
+        };
+        let files: Vec<String> = map.files().iter().map(|f| path_of(&f.name)).collect();
+        for (path, f) in files.iter().zip(map.files()) {
+            let same = self.included.get(path).is_some_and(|d| d.text == f.text);
+            if !self.open.contains_key(path) && !same {
+                self.included
+                    .insert(path.clone(), Document::new(path, f.text.clone()));
+            }
+        }
+        let mut analysis = Analysis {
+            files,
+            program: None,
+            good: None,
+            told: Vec::new(),
+        };
+        let mut out: Vec<FileDiagnostics> = Vec::new();
+        let mut all: Vec<String> = vec![main.clone(), file.to_owned()];
+        for d in &found {
+            let (file, d) = analysis.diagnostic(d, map, &main);
+            all.push(file.clone());
+            match out.iter_mut().find(|f| f.file == file) {
+                Some(f) => f.diagnostics.push(d),
+                None => out.push(FileDiagnostics {
+                    file,
+                    diagnostics: vec![d],
+                }),
+            }
+        }
+        analysis.told = out.iter().map(|f| f.file.clone()).collect();
+        all.extend(told_before);
+        for file in all {
+            if !out.iter().any(|f| f.file == file) {
+                out.push(FileDiagnostics {
+                    file,
+                    diagnostics: Vec::new(),
+                });
+            }
+        }
+        // The last program without errors stays until there is another.
+        analysis.good = match wrong {
+            true => good.or(last),
+            false => None,
+        };
+        analysis.program = program;
+        self.analyses.insert(main, analysis);
+        out
+    }
+}
+
+impl Analysis {
+    /// A diagnostic as an editor shows it, and the file it is in.
+    fn diagnostic(
+        &self,
+        d: &diag::Diagnostic,
+        map: &SourceMap,
+        main: &str,
+    ) -> (String, Diagnostic) {
+        let location = self.location(map, d.span).unwrap_or_else(|| Location {
+            file: main.to_owned(),
+            range: Range::default(),
+        });
+        let mut message = d.message.clone();
+        if !d.label.is_empty() {
+            message += &format!(": {}", d.label);
+        }
+        if let Some(help) = &d.help {
+            message += &format!("\n{help}");
+        }
+        let related = d.others.iter().filter_map(|o| {
+            Some(Related {
+                location: self.location(map, o.span)?,
+                message: o.text.clone(),
+            })
+        });
+        let out = Diagnostic {
+            range: location.range,
+            severity: if d.severity == Severity::Warning {
+                2
+            } else {
+                1
+            },
+            code: d.code,
+            message,
+            related: related.collect(),
+            fixes: self.fix(d, map).into_iter().collect(),
+        };
+        (location.file, out)
+    }
+
+    /// What the help of a message says, as a change of the text.
+    fn fix(&self, d: &diag::Diagnostic, map: &SourceMap) -> Option<Fix> {
+        let place = map.place(d.span)?;
+        let text = &map.file(place.file).text;
+        let (lo, hi) = (place.lo as usize, place.hi as usize);
+        let (lo, hi, new) = if d.code == "E0201" {
+            (hi, hi, ";".to_owned())
+        } else {
+            let help = d.help.as_deref()?;
+            let rest = help
+                .strip_prefix("did you mean `")
+                .or_else(|| help.strip_prefix("write `=").map(|_| &help[7..]))?;
+            let new = &rest[..rest.find('`')?];
+            replacement(text, lo, hi, new)?
+        };
+        let file = self.files.get(file_number(place.file))?.clone();
+        let index = LineIndex::new(text);
+        let title = match lo == hi {
+            true => format!("Insert `{new}`"),
+            false => format!("Replace `{}` by `{new}`", &text[lo..hi]),
+        };
+        Some(Fix {
+            title,
+            edits: vec![Edit {
+                file,
+                range: index.range(text, lo, hi),
+                new_text: new,
+            }],
+        })
+    }
+}
+
+fn file_number(file: FileId) -> usize {
+    file.0 as usize
+}
+
+/// The piece that a suggestion stands for, and what stands there instead: the place may hold quotes, or a word among others.
+fn replacement(text: &str, lo: usize, hi: usize, new: &str) -> Option<(usize, usize, String)> {
+    let old = text.get(lo..hi)?;
+    let is_word = |s: &str| !s.is_empty() && !s.contains(char::is_whitespace);
+    let quoted = |s: &str| s.len() > 1 && s.starts_with(['\'', '"']) && s.ends_with(['\'', '"']);
+    if let Some(name) = new.strip_prefix('$') {
+        // The word behind the `$` of a line.
+        let from = lo + old.find('$')? + 1;
+        let len = text[from..hi]
+            .find(|c: char| !c.is_ascii_alphanumeric())
+            .unwrap_or(hi - from);
+        return Some((from, from + len, name.to_owned()));
+    }
+    if let Some(name) = new.strip_prefix('.') {
+        let from = old.rfind('.').map_or(lo, |n| lo + n + 1);
+        return is_word(&text[from..hi]).then(|| (from, hi, name.to_owned()));
+    }
+    match (quoted(old), quoted(new)) {
+        (true, false) => Some((lo + 1, hi - 1, new.to_owned())),
+        _ if quoted(old) || is_word(old) => Some((lo, hi, new.to_owned())),
+        _ => None,
+    }
+}

@@ -1,0 +1,268 @@
+//! The lines of a text: which are comments, directives, or lines that nobody reads, and the text with all of that blanked
+//! out, byte for byte, so that what is left can be read as statements.
+//!
+//! This looks at one file as it stands. It knows the directives that change the marks of comments and those that take
+//! lines out; it follows no condition and reads no other file.
+
+use crate::source::quoted_end;
+
+/// What a line is.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum LineKind {
+    /// Statements, or blank.
+    Code,
+    /// Statements whose columns or blanks count: `$onDelim`, `$minCol`. A formatter leaves them.
+    Fixed,
+    /// A comment.
+    Comment,
+    /// A `$` directive, or the lines that continue one.
+    Directive,
+    /// Not read as statements: `$onText`, `$onEcho`, embedded code, what follows `$exit`.
+    Raw,
+}
+
+/// A piece of a text, in bytes.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Piece {
+    /// First byte.
+    pub lo: usize,
+    /// Behind the last.
+    pub hi: usize,
+}
+
+/// A text taken apart into lines.
+#[derive(Debug)]
+pub struct Lines {
+    /// The text with blanks in the place of what is no statement.
+    pub code: String,
+    /// First byte of each line, and the length of the text at the end.
+    pub starts: Vec<usize>,
+    /// What each line is.
+    pub kinds: Vec<LineKind>,
+    /// Comments behind or inside code.
+    pub comments: Vec<Piece>,
+}
+
+/// Marks of comments.
+struct Marks {
+    comment: u8,
+    dollar: u8,
+    eol: Vec<u8>,
+    eol_on: bool,
+    inline: (Vec<u8>, Vec<u8>),
+    inline_on: bool,
+    slashes: bool,
+    fixed: bool,
+}
+
+/// The directive that a line begins with, in lower case, and what stands behind it.
+pub fn directive(line: &str, dollar: u8) -> Option<(String, &str)> {
+    let bytes = line.as_bytes();
+    let first = bytes.iter().position(|b| !matches!(b, b' ' | b'\t'))?;
+    let rest = match bytes[first] == dollar && bytes.get(first + 1) == Some(&dollar) {
+        true => &line[first + 2..],
+        false if bytes[0] == dollar => &line[1..],
+        false => return None,
+    };
+    let rest = rest.trim_start_matches([' ', '\t']);
+    let end = rest
+        .find(|c: char| !c.is_ascii_alphanumeric() && c != '_' && c != '.')
+        .unwrap_or(rest.len());
+    Some((rest[..end].to_ascii_lowercase(), &rest[end..]))
+}
+
+/// The directive that ends the lines which this one takes out.
+fn taken_out_up_to(word: &str) -> Option<&'static str> {
+    Some(match word {
+        "ontext" => "offtext",
+        "onput" | "onputs" | "onputv" => "offput",
+        _ if word.starts_with("onecho") => "offecho",
+        _ if word.starts_with("onembeddedcode") => "offembeddedcode",
+        _ => return None,
+    })
+}
+
+impl Lines {
+    /// Takes a text apart; `slashes`: `//` begins a comment, as in a `.blk`.
+    pub fn of(text: &str, slashes: bool) -> Self {
+        let mut lines = Self {
+            code: String::new(),
+            starts: Vec::new(),
+            kinds: Vec::new(),
+            comments: Vec::new(),
+        };
+        let mut marks = Marks {
+            comment: b'*',
+            dollar: b'$',
+            eol: b"!!".to_vec(),
+            eol_on: false,
+            inline: (b"/*".to_vec(), b"*/".to_vec()),
+            inline_on: false,
+            slashes,
+            fixed: false,
+        };
+        let mut code = text.as_bytes().to_vec();
+        let mut raw_up_to: Option<&'static str> = None;
+        let mut continued = false;
+        let mut in_comment = false;
+        let mut lo = 0;
+        for line in text.split_inclusive('\n') {
+            let hi = lo + line.len();
+            let body = line.trim_end_matches(['\n', '\r']);
+            let kind = if let Some(end) = raw_up_to {
+                match directive(body, marks.dollar) {
+                    Some((word, _)) if word == end => {
+                        raw_up_to = None;
+                        LineKind::Directive
+                    }
+                    _ if end == EMBEDDED && body.to_ascii_lowercase().contains(EMBEDDED) => {
+                        raw_up_to = None;
+                        LineKind::Raw
+                    }
+                    _ => LineKind::Raw,
+                }
+            } else if continued {
+                continued = body.trim_end().ends_with('\\');
+                LineKind::Directive
+            } else if in_comment {
+                lines.comments_of(&mut code, lo, body, &marks, &mut in_comment);
+                LineKind::Fixed
+            } else if body.as_bytes().first() == Some(&marks.comment) {
+                LineKind::Comment
+            } else if let Some((word, rest)) = directive(body, marks.dollar) {
+                marks.obey(&word, rest);
+                raw_up_to = taken_out_up_to(&word);
+                if matches!(word.as_str(), "exit" | "stop" | "terminate") {
+                    raw_up_to = Some("");
+                }
+                continued = word == "macro" && body.trim_end().ends_with('\\');
+                LineKind::Directive
+            } else {
+                lines.comments_of(&mut code, lo, body, &marks, &mut in_comment);
+                let first = body.trim_start();
+                if first.len() >= 12
+                    && first.is_char_boundary(12)
+                    && first[..12].eq_ignore_ascii_case("embeddedcode")
+                {
+                    raw_up_to = Some(EMBEDDED);
+                    LineKind::Raw
+                } else if marks.fixed || in_comment {
+                    LineKind::Fixed
+                } else {
+                    LineKind::Code
+                }
+            };
+            if !matches!(kind, LineKind::Code | LineKind::Fixed) {
+                blank(&mut code, lo, hi);
+            }
+            lines.starts.push(lo);
+            lines.kinds.push(kind);
+            lo = hi;
+        }
+        lines.starts.push(lo);
+        // Only whole characters were blanked out.
+        lines.code = String::from_utf8(code).unwrap_or_else(|_| text.to_owned());
+        lines
+    }
+
+    /// The line that a byte stands in, from 0.
+    pub fn line_of(&self, at: usize) -> usize {
+        let n = self.starts.partition_point(|s| *s <= at);
+        n.saturating_sub(1).min(self.kinds.len().saturating_sub(1))
+    }
+
+    /// The bytes of a line without its end.
+    pub fn range(&self, line: usize, text: &str) -> Piece {
+        let lo = self.starts.get(line).copied().unwrap_or(text.len());
+        let hi = self.starts.get(line + 1).copied().unwrap_or(text.len());
+        let body = text.get(lo..hi).unwrap_or("");
+        Piece {
+            lo,
+            hi: lo + body.trim_end_matches(['\n', '\r']).len(),
+        }
+    }
+
+    /// Blanks out the comments of a line of code.
+    fn comments_of(
+        &mut self,
+        code: &mut [u8],
+        lo: usize,
+        body: &str,
+        marks: &Marks,
+        in_comment: &mut bool,
+    ) {
+        let bytes = body.as_bytes();
+        let mut i = 0;
+        while i < bytes.len() {
+            let from = i;
+            if !*in_comment {
+                let rest = &bytes[i..];
+                let end_of_line = marks.eol_on && rest.starts_with(&marks.eol)
+                    || marks.slashes && rest.starts_with(b"//");
+                if end_of_line {
+                    i = bytes.len();
+                } else if marks.inline_on && rest.starts_with(&marks.inline.0) {
+                    i += marks.inline.0.len();
+                    *in_comment = true;
+                } else {
+                    i = quoted_end(bytes, i).unwrap_or(i + 1);
+                    continue;
+                }
+            }
+            if *in_comment {
+                match memchr::memmem::find(&bytes[i..], &marks.inline.1) {
+                    Some(n) => {
+                        i += n + marks.inline.1.len();
+                        *in_comment = false;
+                    }
+                    None => i = bytes.len(),
+                }
+            }
+            blank(code, lo + from, lo + i);
+            self.comments.push(Piece {
+                lo: lo + from,
+                hi: lo + i,
+            });
+        }
+    }
+}
+
+/// Puts blanks in the place of a piece, line ends aside.
+fn blank(code: &mut [u8], lo: usize, hi: usize) {
+    code[lo..hi]
+        .iter_mut()
+        .filter(|b| **b != b'\n')
+        .for_each(|b| *b = b' ');
+}
+
+const EMBEDDED: &str = "endembeddedcode";
+
+impl Marks {
+    fn obey(&mut self, word: &str, rest: &str) {
+        let mut words = rest.split_whitespace();
+        let mut mark = || words.next().map(|w| w.as_bytes().to_vec());
+        match word {
+            "oneolcom" => self.eol_on = true,
+            "offeolcom" => self.eol_on = false,
+            "oninline" => self.inline_on = true,
+            "offinline" => self.inline_on = false,
+            "ondelim" | "mincol" | "maxcol" => self.fixed = true,
+            "offdelim" => self.fixed = false,
+            "eolcom" => {
+                if let Some(m) = mark() {
+                    self.eol = m;
+                    self.eol_on = true;
+                }
+            }
+            "inlinecom" => {
+                if let (Some(a), Some(b)) = (mark(), mark()) {
+                    self.inline = (a, b);
+                    self.inline_on = true;
+                }
+            }
+            "comment" => self.comment = mark().map_or(self.comment, |m| m[0]),
+            "dollar" => self.dollar = mark().map_or(self.dollar, |m| m[0]),
+            _ => {}
+        }
+    }
+}
