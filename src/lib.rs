@@ -39,6 +39,8 @@
 //! * [`Run`]: [`Run::solves`] (statuses, objective, residuals, times), [`Run::level`] and its kin, [`Run::symbols`]
 //!   with their [records](Record), [`Run::figures`] (SVG), [`Run::displays`], [`Run::diagnostics`] with their
 //!   [places](Place).
+//! * [`Model::show`], [`Model::dual`], [`Model::kkt`]: the model, its dual and its optimality conditions as [`Formulas`]: to
+//!   be read, as trees ([`Algebra`]), and as models that run.
 //! * [`Error`]: what a program that asks for a symbol or a label may get wrong. A mistake in a model is a
 //!   [`Diagnostic`], never a panic.
 //!
@@ -78,10 +80,14 @@ pub mod syntax;
 mod system;
 
 pub use api::{
-    Claim, Control, Error, Labels, Model, Options, OutputFile, Progress, Record, Records, Run,
-    Solve, Special, Symbol, SymbolKind, VariableRecord, VariableRecords,
+    Choice, Claim, Control, Error, Formulas, Labels, Model, Options, OutputFile, Progress, Record,
+    Records, Run, Solve, Special, Symbol, SymbolKind, VariableRecord, VariableRecords,
 };
 pub use diag::Severity;
+pub use formulation::algebra::{
+    Algebra, AlgebraEquation, AlgebraTerm, AlgebraVariable, Expression, Index, Over,
+};
+pub use formulation::check::Comparison;
 pub use host::{Host, HostError};
 pub use model::outcome::{ModelStatus, SolverStatus};
 pub use report::diagnostic::{Diagnostic, Place, Related};

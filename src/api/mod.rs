@@ -2,6 +2,7 @@
 //! ([`Run`]).
 
 mod error;
+mod formulas;
 mod host;
 mod labels;
 mod options;
@@ -9,6 +10,7 @@ mod run;
 mod symbols;
 
 pub use error::Error;
+pub use formulas::{Choice, Formulas};
 pub use labels::Labels;
 pub use options::{Control, Options, Progress};
 pub use run::{Claim, OutputFile, Run, Solve};
@@ -258,22 +260,9 @@ impl Model {
         self.carry_out(options, false)
     }
 
-    #[cfg(feature = "system")]
     fn carry_out(&self, options: &Options, check_only: bool) -> Run {
-        const STACK: usize = 256 << 20;
-        let run = || self.carry_out_here(options, check_only);
-        std::thread::scope(|scope| {
-            let builder = std::thread::Builder::new().name("bmod".into());
-            match builder.stack_size(STACK).spawn_scoped(scope, run) {
-                Ok(thread) => thread.join().unwrap_or_else(|_| Run::broken(&self.name)),
-                Err(_) => run(),
-            }
-        })
-    }
-
-    #[cfg(not(feature = "system"))]
-    fn carry_out(&self, options: &Options, check_only: bool) -> Run {
-        self.carry_out_here(options, check_only)
+        let run = on_large_stack(|| self.carry_out_here(options, check_only));
+        run.unwrap_or_else(|| Run::broken(&self.name))
     }
 
     fn carry_out_here(&self, options: &Options, check_only: bool) -> Run {
@@ -289,12 +278,7 @@ impl Model {
     }
 
     fn carry_out_on(&self, host: &mut dyn Host, options: &Options, check_only: bool) -> Run {
-        let preprocess = PreprocessOptions {
-            defines: self.defines.clone(),
-            slash_comments: self.slash_comments,
-            max_memory: options.memory_limit(),
-            inputs: self.inputs.clone(),
-        };
+        let preprocess = self.preprocess(options);
         if check_only {
             return match check::compile(host, &self.name, preprocess, OPTION_TABLES) {
                 Ok(program) => Run::checked(&self.name, program),
@@ -340,4 +324,29 @@ impl Model {
         };
         all.iter().map(claim).collect()
     }
+
+    fn preprocess(&self, options: &Options) -> PreprocessOptions {
+        PreprocessOptions {
+            defines: self.defines.clone(),
+            slash_comments: self.slash_comments,
+            max_memory: options.memory_limit(),
+            inputs: self.inputs.clone(),
+        }
+    }
+}
+
+/// Carries something out on a thread with a large stack, where there are threads; `None` after a panic, which is a bug of
+/// bmod.
+fn on_large_stack<T: Send>(f: impl FnOnce() -> T + Send + Copy) -> Option<T> {
+    #[cfg(feature = "system")]
+    return std::thread::scope(|scope| {
+        const STACK: usize = 256 << 20;
+        let builder = std::thread::Builder::new().name("bmod".into());
+        match builder.stack_size(STACK).spawn_scoped(scope, f) {
+            Ok(thread) => thread.join().ok(),
+            Err(_) => Some(f()),
+        }
+    });
+    #[cfg(not(feature = "system"))]
+    Some(f())
 }

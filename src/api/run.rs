@@ -172,6 +172,16 @@ pub(super) struct Ended {
     pub claims: Vec<Claim>,
 }
 
+/// What is said after a panic: a bug of bmod.
+pub(super) fn broken() -> diag::Diagnostic {
+    diag::Diagnostic::execution(
+        "E0499",
+        crate::source::Span::default(),
+        "something went wrong inside bmod; this is a bug in bmod, not in the model",
+    )
+    .help("please report it with the model that caused it")
+}
+
 impl Run {
     fn new(name: &str, status: RunStatus, found: &[diag::Diagnostic], map: &SourceMap) -> Self {
         let diagnostics = Diagnostic::all(found, map);
@@ -209,21 +219,10 @@ impl Run {
         Self::new(name, RunStatus::CompilationError, &[found], &map)
     }
 
-    /// After a panic: a bug of bmod.
-    #[cfg(feature = "system")]
+    /// After a panic.
     pub(super) fn broken(name: &str) -> Self {
-        let found = diag::Diagnostic::execution(
-            "E0499",
-            crate::source::Span::default(),
-            "something went wrong inside bmod; this is a bug in bmod, not in the model",
-        )
-        .help("please report it with the model that caused it");
-        Self::new(
-            name,
-            RunStatus::ExecutionError,
-            &[found],
-            &SourceMap::default(),
-        )
+        let none = SourceMap::default();
+        Self::new(name, RunStatus::ExecutionError, &[broken()], &none)
     }
 
     pub(super) fn finished(name: &str, finished: Finished, ended: Ended) -> Self {

@@ -9,6 +9,7 @@ use super::args::{
 };
 use super::host::{Output, SystemHost, watch_ctrl_c, write_whole};
 use super::watchdog::{Watch, Watchdog};
+use crate::formulation::derived::Kind;
 use crate::report::diagnostic::{Diagnostic, json_lines};
 use crate::report::diagnostics::{self, Look};
 use crate::report::json::{Report, RunStatus};
@@ -37,8 +38,8 @@ pub fn execute(cli: &Cli) -> u8 {
         }
         Command::Bench(a) => super::bench::bench(a),
         Command::Show(a) => super::show::show(a),
-        Command::Dual(a) => super::dual::dual(a),
-        Command::Kkt(a) => super::kkt::kkt(a),
+        Command::Dual(a) => super::derive::derive(a, Kind::Dual),
+        Command::Kkt(a) => super::derive::derive(a, Kind::Kkt),
         Command::Range(a) => super::range::range(a),
         Command::Explain(a) => super::explain::run(a),
         Command::Report(a) => super::report::report(a),

@@ -4,30 +4,16 @@ use super::args::{ChosenArgs, DeriveArgs, EXECUTION, FormulaFormat, ModelArgs, S
 use super::commands::{carry_out_silently, name, options};
 use super::host::write_whole;
 use crate::diag::Diagnostic;
-use crate::formulation::check::Comparison;
 use crate::formulation::derive::Primal;
-use crate::formulation::page::{Format, Page, write};
-use crate::formulation::{Formulation, show, study, text};
+use crate::formulation::derived::{Derived, Kind};
+use crate::formulation::page::{Format, write};
+use crate::formulation::study;
 use crate::run::{Machine, Options, Studied, StudyChoice};
 use std::io::{IsTerminal, Write};
 use std::path::Path;
 
 /// Characters of a line, where the terminal does not say.
 const WIDTH: usize = 100;
-
-/// What a derivation came to.
-pub struct Derived {
-    /// The page that is shown.
-    pub page: Page,
-    /// Its title.
-    pub title: String,
-    /// What is written as a model.
-    pub formulation: Formulation,
-    /// The comparison, if it was asked for.
-    pub check: Option<Result<Comparison, String>>,
-    /// What it was compared with, in words.
-    pub compared: &'static str,
-}
 
 /// How formulas are written.
 pub fn format(f: FormulaFormat) -> Format {
@@ -66,17 +52,13 @@ pub fn studied(model: &ModelArgs, solve: &SolveArgs, chosen: &ChosenArgs, f: &mu
         ..base
     };
     let mut status = 0;
-    let finished = carry_out_silently(model, options, &mut |m| {
-        let result = match study::primal(m) {
-            Some((primal, studied)) => f(m, primal, studied),
-            None => Err(Box::new(no_solve(m, chosen))),
-        };
-        match result {
-            Ok(s) => status = s,
-            Err(d) => {
-                m.say(*d);
-                status = EXECUTION;
-            }
+    let finished = carry_out_silently(model, options, &mut |m| match study::chosen(m)
+        .and_then(|(primal, studied)| f(m, primal, studied))
+    {
+        Ok(s) => status = s,
+        Err(d) => {
+            m.say(*d);
+            status = EXECUTION;
         }
     });
     match finished {
@@ -85,79 +67,43 @@ pub fn studied(model: &ModelArgs, solve: &SolveArgs, chosen: &ChosenArgs, f: &mu
     }
 }
 
-/// Why there is no solve to look at.
-fn no_solve(m: &Machine, chosen: &ChosenArgs) -> Diagnostic {
-    let seen = m.solves_seen();
-    let message = match (&chosen.name, chosen.number) {
-        (Some(name), _) if m.symbols.find(name).is_none() => show::unknown(&m.symbols, name),
-        (_, Some(k)) if k > seen => format!("there is no solve {k}: the run has {seen}"),
-        (Some(name), _) => format!("the model `{name}` is not solved, or could not be generated"),
-        _ if seen == 0 => "nothing is solved".to_string(),
-        _ => "the model could not be generated".to_string(),
-    };
-    Diagnostic::execution("E0430", m.options.at.get(), message)
-        .label("the run ends here")
-        .help("a derivation needs a solve: it says what is minimised and which data hold")
+/// Carries out `bmod dual` and `bmod kkt`; the exit status.
+pub fn derive(a: &DeriveArgs, kind: Kind) -> u8 {
+    studied(&a.model, &a.solve, &a.chosen, &mut |m, primal, studied| {
+        let d = kind.derive(m, &primal, &studied, a.check, a.as_model.is_some())?;
+        Ok(finish(a, m, &d, &primal))
+    })
 }
 
 /// Shows a derivation, writes its model, and says what the comparison found; the exit status.
-pub fn finish(a: &DeriveArgs, m: &Machine, d: &Derived, primal: &Primal) -> u8 {
+fn finish(a: &DeriveArgs, m: &Machine, d: &Derived, primal: &Primal) -> u8 {
     let to_stdout = a.as_model.as_deref() == Some(Path::new("-"));
-    let mut status = 0;
+    let mut status = if d.failed() { EXECUTION } else { 0 };
     if a.as_model.is_none() {
         tell(&write(&d.page, format(a.format), &d.title));
     }
-    let f = &d.formulation;
     let say = |t: String| match to_stdout || a.format != FormulaFormat::Text {
         true => eprintln!("{t}"),
         false => tell(&format!("{t}\n")),
     };
-    if !f.by_instance.is_empty() {
-        say(format!(
-            "\nDerived by instance, not in symbols: {}.",
-            f.by_instance.join("; ")
-        ));
+    d.remarks().into_iter().for_each(|r| say(format!("\n{r}")));
+    let Some(path) = &a.as_model else {
+        return status;
+    };
+    let text = d.model(m, primal, &name(&a.model), a.include);
+    if to_stdout {
+        tell(&text);
+        return status;
     }
-    match &d.check {
-        None => {}
-        Some(Ok(c)) if c.passed() => say(format!(
-            "\nChecked: {}: {} entries and {} numbers are equal (largest relative difference {:.0e}).",
-            d.compared, c.entries, c.numbers, c.largest
+    match write_whole(path, text.as_bytes()) {
+        Ok(()) => say(format!(
+            "{} is written: the model {}",
+            path.display(),
+            d.formulation.name
         )),
-        Some(Ok(c)) => {
-            say(format!(
-                "\nThe check failed: {} differences.\n  {}",
-                c.count,
-                c.differences.join("\n  ")
-            ));
+        Err(e) => {
+            eprintln!("bmod: {} could not be written: {e}", path.display());
             status = EXECUTION;
-        }
-        Some(Err(e)) => {
-            say(format!(
-                "\nThe check failed: the derived model could not be generated: {e}"
-            ));
-            status = EXECUTION;
-        }
-    }
-    if let Some(path) = &a.as_model {
-        let file = name(&a.model);
-        let include = a.include.then_some(file.as_str());
-        let head = head(&d.title, &file, primal);
-        let text = text::model(&m.symbols, &m.store, f, include, &head, true);
-        if to_stdout {
-            tell(&text);
-        } else {
-            match write_whole(path, text.as_bytes()) {
-                Ok(()) => say(format!(
-                    "{} is written: the model {}",
-                    path.display(),
-                    f.name
-                )),
-                Err(e) => {
-                    eprintln!("bmod: {} could not be written: {e}", path.display());
-                    status = EXECUTION;
-                }
-            }
         }
     }
     status
@@ -166,12 +112,4 @@ pub fn finish(a: &DeriveArgs, m: &Machine, d: &Derived, primal: &Primal) -> u8 {
 /// Writes to standard output; a reader that has gone away is no error.
 pub fn tell(text: &str) {
     let _ = std::io::stdout().write_all(text.as_bytes());
-}
-
-/// The comment with which a derived model begins.
-pub fn head(title: &str, file: &str, primal: &Primal) -> String {
-    format!(
-        "$title {title}\n* Derived by bmod from the model {} of {file}.\n\n",
-        primal.name
-    )
 }

@@ -118,15 +118,7 @@ fn sections(m: &Machine, primal: &Primal, studied: &Studied) -> String {
         objective: primal.objective,
         using: Some(primal.using.clone()),
     };
-    let owner = |t| m.table_owner(t);
-    page.extend(show::page(
-        &m.symbols,
-        &m.store,
-        &owner,
-        &m.equations,
-        &[],
-        &chosen,
-    ));
+    page.extend(show::page(m, &[], &chosen).0);
     page.extend(data(m, primal));
     page.extend(solution(m, primal));
     if let Some(r) = &ranges {

@@ -10,15 +10,14 @@ use crate::run::{Machine, Options};
 pub fn show(a: &ShowArgs) -> u8 {
     compiled(&a.model, &mut |program, host| {
         let (m, code) = Machine::new(program, host, Options::default());
-        let chosen = match show::choose(&m.symbols, &code, a.name.as_deref()) {
+        let chosen = match show::choose(&m, &code, a.name.as_deref()) {
             Ok(c) => c,
             Err(why) => {
                 eprintln!("bmod: {}: {why}", name(&a.model));
                 return EXECUTION;
             }
         };
-        let owner = |t| m.table_owner(t);
-        let page = show::page(&m.symbols, &m.store, &owner, &m.equations, &code, &chosen);
+        let (page, _) = show::page(&m, &code, &chosen);
         let title = m.symbols.get(chosen.model).name.to_string();
         tell(&page::write(&page, format(a.format), &title));
         0

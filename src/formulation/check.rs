@@ -40,6 +40,13 @@ impl Comparison {
         self.count == 0
     }
 
+    /// There is nothing to compare, and why.
+    pub fn impossible(why: &str) -> Self {
+        let mut c = Self::default();
+        c.differ(format!("the derived model could not be generated: {why}"));
+        c
+    }
+
     /// Notes a difference.
     pub fn differ(&mut self, what: String) {
         self.count += 1;

@@ -99,17 +99,8 @@ impl<'a> Derivation<'a> {
             out: Formulation {
                 name,
                 using: using.into(),
-                objective: None,
-                objective_name: String::new(),
-                own: Vec::new(),
-                multipliers: Vec::new(),
-                rows: Vec::new(),
-                data: Vec::new(),
-                start: Vec::new(),
                 indices,
-                flipped: false,
-                by_instance: Vec::new(),
-                notes: Vec::new(),
+                ..Formulation::default()
             },
             eliminated: None,
             binders: primal.equations.iter().map(|e| e.binder.clone()).collect(),

@@ -2,11 +2,14 @@
 //!
 //! [`lower`] makes formulas of the checked tree, [`gradient`] takes them apart into terms (derivatives in symbols),
 //! [`invert`] sees a term from its column, [`dual`] and [`kkt`] put these together, [`text`] writes the result as a model,
-//! [`math`] as formulas (text, LaTeX, MathML), [`check`] compares matrices. All of it is data: trees of [`tree`].
+//! [`math`] as formulas (text, LaTeX, MathML), [`check`] compares matrices. All of it is data: trees of [`tree`], and of
+//! [`algebra`] for other programs. [`derived`] is what the commands and the library ask for.
 
+pub mod algebra;
 pub mod check;
 pub mod data;
 pub mod derive;
+pub mod derived;
 pub mod dual;
 pub mod explain;
 pub mod gradient;
@@ -117,7 +120,7 @@ pub struct Row {
 }
 
 /// A model as formulas.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Formulation {
     /// Its name.
     pub name: String,

@@ -51,6 +51,11 @@ impl<'a> Names<'a> {
         found.map_or("?", |(_, n)| n)
     }
 
+    /// The set that an index runs over.
+    pub fn set(&self, k: IndexId) -> SymbolId {
+        self.indices.set[k]
+    }
+
     fn choose(&mut self, k: IndexId) -> String {
         let set = self.indices.set[k];
         let root = self.symbols.root(set);

@@ -5,7 +5,7 @@ use super::render::{escaped, latex, mathml, plain, text, wrapped};
 use super::tree::*;
 use super::{Formulation, Origin, Sign};
 use crate::check::node::SymbolId;
-use crate::check::symbols::{Store, SymbolKind, Symbols};
+use crate::check::symbols::{SymbolKind, Symbols};
 use std::fmt::Write;
 
 pub use super::math::Setter;
@@ -32,6 +32,18 @@ pub struct Formula {
     pub runs: Option<Math>,
     /// Words beside it.
     pub words: String,
+}
+
+impl Formula {
+    /// A formula alone.
+    pub fn of(math: Math) -> Self {
+        Self {
+            name: String::new(),
+            math,
+            runs: None,
+            words: String::new(),
+        }
+    }
 }
 
 /// A part of a page.
@@ -65,9 +77,7 @@ pub fn formulas(s: &mut Setter, symbols: &Symbols, f: &Formulation) -> Page {
         let math = s.expr(e);
         out.push(Block::Formulas(vec![Formula {
             name: word.into(),
-            math,
-            runs: None,
-            words: String::new(),
+            ..Formula::of(math)
         }]));
         if !f.rows.is_empty() {
             out.push(Block::Words("subject to".into()));
@@ -117,10 +127,8 @@ pub fn formulas(s: &mut Setter, symbols: &Symbols, f: &Formulation) -> Page {
                 Origin::Fixed(v) => format!("multiplier of the fixed values of {}", named(v)),
             };
             Formula {
-                name: String::new(),
-                math: Math::Row(row),
-                runs: None,
                 words,
+                ..Formula::of(Math::Row(row))
             }
         })
         .collect();
@@ -132,8 +140,7 @@ pub fn formulas(s: &mut Setter, symbols: &Symbols, f: &Formulation) -> Page {
 }
 
 /// The user's symbols in a formulation with their explanatory texts: sets, data, variables.
-pub fn legend(symbols: &Symbols, store: &Store, f: &Formulation) -> Page {
-    let _ = store;
+pub fn legend(symbols: &Symbols, f: &Formulation) -> Page {
     let mut used: Vec<SymbolId> = f.own.clone();
     let mut see = |e: &Expr| {
         e.walk(&mut |e| match e {

@@ -6,11 +6,10 @@ use super::math::Math;
 use super::page::{Block, Formula, Page, Setter, formulas, legend};
 use super::tree::*;
 use super::{Formulation, Row};
-use crate::check::node::{
-    Code, CodeKind, EquationDef, ModelRow, Node, NodeKind, SolveCode, SymbolId, TableId, Target,
-};
-use crate::check::symbols::{Store, SymbolKind, Symbols, attribute};
+use crate::check::node::{Code, CodeKind, ModelRow, Node, NodeKind, SolveCode, SymbolId, Target};
+use crate::check::symbols::{SymbolKind, Symbols, attribute};
 use crate::diag::nearest;
+use crate::run::Machine;
 use crate::syntax::ast::{ModelItem, VariableKind};
 
 /// What a model consists of, with its objective if some solve says one.
@@ -26,7 +25,8 @@ pub struct Chosen {
 }
 
 /// The model of this name, or the one that is solved last; `Err` says why there is none.
-pub fn choose(symbols: &Symbols, code: &[Code], name: Option<&str>) -> Result<Chosen, String> {
+pub fn choose(m: &Machine, code: &[Code], name: Option<&str>) -> Result<Chosen, String> {
+    let symbols = &m.symbols;
     let mut solves = Vec::new();
     solves_of(code, &mut solves);
     if let Some(name) = name {
@@ -64,7 +64,7 @@ pub fn choose(symbols: &Symbols, code: &[Code], name: Option<&str>) -> Result<Ch
                 .collect();
             match models.as_slice() {
                 [] => Err("the text has no model".into()),
-                [one] => choose(symbols, code, Some(one)),
+                [one] => choose(m, code, Some(one)),
                 many => Err(format!(
                     "no model is solved; say which with `--model`: {}",
                     many.join(", ")
@@ -154,17 +154,14 @@ fn collect(symbols: &Symbols, items: &[ModelItem], rows: &mut Vec<ModelRow>, dep
 }
 
 /// The model as formulas.
-pub fn formulation(
-    symbols: &Symbols,
-    owner: &dyn Fn(TableId) -> Option<SymbolId>,
-    equations: &[EquationDef],
-    chosen: &Chosen,
-) -> Formulation {
-    let mut lowering = Lowering::new(symbols, owner);
+pub fn formulation(m: &Machine, chosen: &Chosen) -> Formulation {
+    let symbols = &m.symbols;
+    let owner = |t| m.table_owner(t);
+    let mut lowering = Lowering::new(symbols, &owner);
     let lowered: Vec<Equation> = chosen
         .rows
         .iter()
-        .map(|r| lowering.equation(&equations[r.definition]))
+        .map(|r| lowering.equation(&m.equations[r.definition]))
         .collect();
     let mut own: Vec<SymbolId> = Vec::new();
     let mut see = |e: &Expr| {
@@ -203,16 +200,10 @@ pub fn formulation(
         name: symbols.get(chosen.model).name.to_string(),
         using: chosen.using.clone().unwrap_or_default(),
         objective,
-        objective_name: String::new(),
         own,
-        multipliers: Vec::new(),
         rows,
-        data: Vec::new(),
-        start: Vec::new(),
         indices: lowering.indices,
-        flipped: false,
-        by_instance: Vec::new(),
-        notes: Vec::new(),
+        ..Formulation::default()
     }
 }
 
@@ -229,15 +220,12 @@ struct Assigned {
 
 /// The assignments to bounds of these variables that hold at the end; those that cannot be told without running are the
 /// attribute itself.
-fn assigned_bounds(
-    symbols: &Symbols,
-    owner: &dyn Fn(TableId) -> Option<SymbolId>,
-    code: &[Code],
-    f: &mut Formulation,
-) -> Vec<Assigned> {
+fn assigned_bounds(m: &Machine, code: &[Code], f: &mut Formulation) -> Vec<Assigned> {
+    let symbols = &m.symbols;
+    let owner = |t| m.table_owner(t);
     let mut out: Vec<Assigned> = Vec::new();
     let own = f.own.clone();
-    let mut lowering = Lowering::new(symbols, owner);
+    let mut lowering = Lowering::new(symbols, &owner);
     lowering.indices = std::mem::take(&mut f.indices);
     let mut each = |c: &Code, top: bool| {
         let CodeKind::Assign {
@@ -327,19 +315,13 @@ fn walk(code: &[Code], top: bool, f: &mut dyn FnMut(&Code, bool)) {
 }
 
 /// The page: legend, objective, rows, bounds.
-pub fn page(
-    symbols: &Symbols,
-    store: &Store,
-    owner: &dyn Fn(TableId) -> Option<SymbolId>,
-    equations: &[EquationDef],
-    code: &[Code],
-    chosen: &Chosen,
-) -> Page {
-    let mut f = formulation(symbols, owner, equations, chosen);
-    let bounds = assigned_bounds(symbols, owner, code, &mut f);
-    let mut out = legend(symbols, store, &f);
+pub fn page(m: &Machine, code: &[Code], chosen: &Chosen) -> (Page, Formulation) {
+    let symbols = &m.symbols;
+    let mut f = formulation(m, chosen);
+    let bounds = assigned_bounds(m, code, &mut f);
+    let mut out = legend(symbols, &f);
     out.push(Block::Heading(heading(&f)));
-    let mut s = Setter::new(symbols, store, &f);
+    let mut s = Setter::new(symbols, &m.store, &f);
     out.extend(formulas(&mut s, symbols, &f));
     let mut lines = Vec::new();
     for &v in &f.own {
@@ -361,10 +343,8 @@ pub fn page(
                 true => base,
                 false => Math::Indexed(Box::new(base), names),
             };
-            lines.push(line(
-                vec![base, Math::Operator(sign), Math::Number("0".into())],
-                None,
-            ));
+            let row = vec![base, Math::Operator(sign), Math::Number("0".into())];
+            lines.push(Formula::of(Math::Row(row)));
         }
         for b in &mine {
             // What fixes says both.
@@ -382,23 +362,17 @@ pub fn page(
             let right = s.expr(&b.value);
             let runs = (b.binder != Binder::default()).then(|| s.domain(&b.binder));
             s.names.leave(before);
-            lines.push(line(vec![left, Math::Operator(relation), right], runs));
+            lines.push(Formula {
+                runs,
+                ..Formula::of(Math::Row(vec![left, Math::Operator(relation), right]))
+            });
         }
     }
     if !lines.is_empty() {
         out.push(Block::Words("with".into()));
         out.push(Block::Formulas(lines));
     }
-    out
-}
-
-fn line(row: Vec<Math>, runs: Option<Math>) -> Formula {
-    Formula {
-        name: String::new(),
-        math: Math::Row(row),
-        runs,
-        words: String::new(),
-    }
+    (out, f)
 }
 
 fn heading(f: &Formulation) -> String {

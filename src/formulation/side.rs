@@ -2,7 +2,7 @@
 
 use super::derive::{Derivation, Primal};
 use super::math::{Math, name, symbol_name};
-use super::page::{Block, Page, Setter, formulas};
+use super::page::{Block, Formula, Page, Setter, formulas};
 use super::tree::*;
 use super::{Formulation, Origin, Row, Sign};
 use crate::check::node::SymbolId;
@@ -44,10 +44,8 @@ pub fn own(d: &Derivation) -> Formulation {
         objective,
         own: d.variables(),
         rows: rows.collect(),
-        multipliers: Vec::new(),
-        data: Vec::new(),
-        start: Vec::new(),
-        ..d.out.clone()
+        indices: d.out.indices.clone(),
+        ..Formulation::default()
     }
 }
 
@@ -59,15 +57,7 @@ pub fn page(symbols: &Symbols, store: &Store, primal: &Formulation, dual: &Formu
     let signs: Vec<Math> = primal.own.iter().map(|v| sign(symbols, dual, *v)).collect();
     out.push(Block::Words("with".into()));
     out.push(Block::Formulas(
-        signs
-            .iter()
-            .map(|m| super::page::Formula {
-                name: String::new(),
-                math: m.clone(),
-                runs: None,
-                words: String::new(),
-            })
-            .collect(),
+        signs.iter().cloned().map(Formula::of).collect(),
     ));
     out.push(Block::Heading(format!("Dual: {}", dual.name)));
     let mut t = Setter::new(symbols, store, dual);

@@ -3,12 +3,36 @@
 use super::derive::{Primal, Values};
 use super::lower::{Equation, Lowering};
 use super::tree::{Expr, Indices, Part, Variable, guarded};
+use crate::diag::Diagnostic;
 use crate::model::instance::Instance;
 use crate::model::origin::Blocks;
 use crate::model::problem_type::ProblemType;
 use crate::run::{Machine, Studied};
 use crate::solve::answer::{Answer, answer};
 use crate::solve::{Budget, Quiet, Settings};
+
+/// The model of the solve that a run was asked to look at.
+///
+/// # Errors
+/// Why there is none.
+pub fn chosen(m: &mut Machine) -> Result<(Primal, Studied), Box<Diagnostic>> {
+    if let Some(found) = primal(m) {
+        return Ok(found);
+    }
+    let seen = m.solves_seen();
+    let choice = m.options.study.clone().unwrap_or_default();
+    let message = match (&choice.model, choice.number) {
+        (Some(name), _) if m.symbols.find(name).is_none() => super::show::unknown(&m.symbols, name),
+        (_, Some(k)) if k > seen => format!("there is no solve {k}: the run has {seen}"),
+        (Some(name), _) => format!("the model `{name}` is not solved, or could not be generated"),
+        _ if seen == 0 => "nothing is solved".to_string(),
+        _ => "the model could not be generated".to_string(),
+    };
+    let d = Diagnostic::execution("E0430", m.options.at.get(), message)
+        .label("the run ends here")
+        .help("a derivation needs a solve: it says what is minimised and which data hold");
+    Err(Box::new(d))
+}
 
 /// The model of the solve that a run was asked to look at; None where there was none.
 pub fn primal(m: &mut Machine) -> Option<(Primal, Studied)> {

@@ -23,6 +23,15 @@ pub struct Writer<'a> {
     pub alone: bool,
 }
 
+/// Names that no new index may have, in lower case.
+pub fn taken(symbols: &Symbols, f: &Formulation) -> FxHashSet<String> {
+    let own = symbols.iter().map(|(_, s)| s.name.to_lowercase());
+    let new = f.data.iter().map(|d| d.name.to_lowercase());
+    let rows = f.rows.iter().map(|r| r.name.to_lowercase());
+    let multipliers = f.multipliers.iter().map(|m| m.name.to_lowercase());
+    own.chain(new).chain(rows).chain(multipliers).collect()
+}
+
 /// How tightly an operator binds.
 mod level {
     pub const OR: u8 = 1;
@@ -57,16 +66,11 @@ pub fn attribute_word(offset: u32) -> &'static str {
 impl<'a> Writer<'a> {
     /// A writer for the expressions of a formulation.
     pub fn new(symbols: &'a Symbols, store: &'a Store, f: &'a Formulation, alone: bool) -> Self {
-        let own = symbols.iter().map(|(_, s)| s.name.to_lowercase());
-        let new = f.data.iter().map(|d| d.name.to_lowercase());
-        let rows = f.rows.iter().map(|r| r.name.to_lowercase());
-        let multipliers = f.multipliers.iter().map(|m| m.name.to_lowercase());
-        let taken: FxHashSet<String> = own.chain(new).chain(rows).chain(multipliers).collect();
         Self {
             symbols,
             store,
             f,
-            names: Names::new(symbols, &f.indices, taken),
+            names: Names::new(symbols, &f.indices, taken(symbols, f)),
             alone,
         }
     }
@@ -210,23 +214,18 @@ impl<'a> Writer<'a> {
                 (out, PRODUCT)
             }
             Expr::Binary(op, a, b) => {
-                let (word, mine) = match op {
-                    BinaryOp::Power => ("**", POWER),
-                    BinaryOp::And => (" and ", AND),
-                    BinaryOp::Or => (" or ", OR),
-                    BinaryOp::Xor => (" xor ", OR),
-                    BinaryOp::Implies => (" imp ", 0),
-                    BinaryOp::Equivalent => (" eqv ", 0),
-                    BinaryOp::Eq => (" = ", RELATION),
-                    BinaryOp::Ne => (" <> ", RELATION),
-                    BinaryOp::Lt => (" < ", RELATION),
-                    BinaryOp::Le => (" <= ", RELATION),
-                    BinaryOp::Gt => (" > ", RELATION),
-                    BinaryOp::Ge => (" >= ", RELATION),
-                    _ => (" + ", SUM),
+                let mine = match op {
+                    BinaryOp::Power => POWER,
+                    BinaryOp::And => AND,
+                    BinaryOp::Or | BinaryOp::Xor => OR,
+                    BinaryOp::Implies | BinaryOp::Equivalent => 0,
+                    _ => RELATION,
                 };
                 let (a, b) = (self.at(a, mine + 1), self.at(b, mine + 1));
-                (format!("{a}{word}{b}"), mine)
+                match binary_word(*op) {
+                    "**" => (format!("{a}**{b}"), mine),
+                    word => (format!("{a} {word} {b}"), mine),
+                }
             }
             Expr::Call(f, args) => {
                 let args: Vec<String> = args.iter().map(|a| self.expr(a)).collect();
@@ -234,11 +233,7 @@ impl<'a> Writer<'a> {
             }
             Expr::DataCall(f, args) => {
                 let args: Vec<String> = args.iter().map(|a| self.expr(a)).collect();
-                let word = match f {
-                    DataFunction::Fact => "fact",
-                    DataFunction::Mapval => "mapval",
-                    _ => "pi",
-                };
+                let word = data_function_word(*f);
                 match args.is_empty() {
                     true => (word.to_string(), ATOM),
                     false => (format!("{word}({})", args.join(",")), ATOM),
@@ -249,14 +244,7 @@ impl<'a> Writer<'a> {
                 (format!("{a}$({c})"), DOLLAR)
             }
             Expr::Aggregate(op, d, e) => {
-                let word = match op {
-                    AggregateOp::Sum => "sum",
-                    AggregateOp::Prod => "prod",
-                    AggregateOp::Smin => "smin",
-                    AggregateOp::Smax => "smax",
-                    AggregateOp::Sand => "sand",
-                    AggregateOp::Sor => "sor",
-                };
+                let word = aggregate_word(*op);
                 let before = self.names.enter(&d.indices);
                 let domain = self.domain(d);
                 let body = self.expr(e);
@@ -317,12 +305,7 @@ impl<'a> Writer<'a> {
         let condition = condition.map(|c| format!("${}", self.condition(&c)));
         let (left, right) = (self.expr(&r.left), self.expr(&r.right));
         self.names.leave(before);
-        let relation = match r.relation {
-            Relation::Equal => "=e=",
-            Relation::Greater => "=g=",
-            Relation::Less => "=l=",
-            Relation::Free => "=n=",
-        };
+        let relation = relation_word(r.relation);
         let condition = condition.unwrap_or_default();
         format!(
             "{}{key}{condition}..\n   {left} {relation} {right};\n",
@@ -331,7 +314,58 @@ impl<'a> Writer<'a> {
     }
 }
 
-fn label_word(a: LabelAttribute) -> &'static str {
+/// `+`, `and`, `=` …
+pub fn binary_word(op: BinaryOp) -> &'static str {
+    match op {
+        BinaryOp::Power => "**",
+        BinaryOp::And => "and",
+        BinaryOp::Or => "or",
+        BinaryOp::Xor => "xor",
+        BinaryOp::Implies => "imp",
+        BinaryOp::Equivalent => "eqv",
+        BinaryOp::Eq => "=",
+        BinaryOp::Ne => "<>",
+        BinaryOp::Lt => "<",
+        BinaryOp::Le => "<=",
+        BinaryOp::Gt => ">",
+        BinaryOp::Ge => ">=",
+        _ => "+",
+    }
+}
+
+/// `sum`, `prod` …
+pub fn aggregate_word(op: AggregateOp) -> &'static str {
+    match op {
+        AggregateOp::Sum => "sum",
+        AggregateOp::Prod => "prod",
+        AggregateOp::Smin => "smin",
+        AggregateOp::Smax => "smax",
+        AggregateOp::Sand => "sand",
+        AggregateOp::Sor => "sor",
+    }
+}
+
+/// `fact`, `mapval`, `pi`
+pub fn data_function_word(f: DataFunction) -> &'static str {
+    match f {
+        DataFunction::Fact => "fact",
+        DataFunction::Mapval => "mapval",
+        _ => "pi",
+    }
+}
+
+/// `=e=` …
+pub fn relation_word(r: Relation) -> &'static str {
+    match r {
+        Relation::Equal => "=e=",
+        Relation::Greater => "=g=",
+        Relation::Less => "=l=",
+        Relation::Free => "=n=",
+    }
+}
+
+/// `val`, `pos` …
+pub fn label_word(a: LabelAttribute) -> &'static str {
     use LabelAttribute as A;
     match a {
         A::Val => "val",

@@ -1,0 +1,255 @@
+//! Models as formulas: as they are written, their duals, their optimality conditions.
+
+use super::host::RunHost;
+use super::{Error, Model, Options, on_large_stack};
+use crate::check;
+use crate::diag;
+use crate::formulation::algebra::{Algebra, algebra};
+use crate::formulation::check::Comparison;
+use crate::formulation::derived::Kind;
+use crate::formulation::page::{Format, Page, body, write};
+use crate::formulation::{show, study};
+use crate::report::diagnostic::Diagnostic;
+use crate::report::diagnostics::{self, Look};
+use crate::run::{self, Machine, StudyChoice};
+use crate::session;
+use crate::solve::registry::OPTION_TABLES;
+use crate::source::SourceMap;
+
+/// Which model of a text is meant, and what is made of it besides formulas. The default is the model that is solved last.
+///
+/// ```
+/// let choice = bmod::Choice::default().model("transport").check(true);
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Choice {
+    model: Option<String>,
+    solve: Option<usize>,
+    check: bool,
+}
+
+impl Choice {
+    /// The model of this name.
+    #[must_use]
+    pub fn model(mut self, name: impl Into<String>) -> Self {
+        self.model = Some(name.into());
+        self
+    }
+
+    /// The solve with this number, counted from 1.
+    #[must_use]
+    pub fn solve(mut self, number: usize) -> Self {
+        self.solve = Some(number);
+        self
+    }
+
+    /// Generates what is derived and compares it with the model it comes from ([`Formulas::check`]).
+    #[must_use]
+    pub fn check(mut self, on: bool) -> Self {
+        self.check = on;
+        self
+    }
+}
+
+/// A model as formulas, to be read ([`Formulas::text`], [`Formulas::latex`], [`Formulas::html`]) and as trees
+/// ([`Formulas::algebra`]).
+///
+/// ```
+/// use bmod::{Choice, Model, Options};
+///
+/// let model = Model::from_text(
+///     "diet.blk",
+///     "Set f 'foods' / bread, milk /;
+///      Parameters cost(f) / bread 2, milk 3 /, protein(f) / bread 4, milk 8 /;
+///      Positive variable x(f);  Variable z;
+///      Equations total, enough;
+///      total..   z =e= sum(f, cost(f)*x(f));
+///      enough..  sum(f, protein(f)*x(f)) =g= 40;
+///      Model diet / all /;
+///      solve diet using lp minimizing z;",
+/// );
+/// let shown = model.show(&Choice::default())?;
+/// assert!(shown.text(80).contains("∑{f} protein(f)·x(f) ≥ 40"));
+///
+/// let dual = model.dual(&Choice::default().check(true), &Options::default())?;
+/// assert!(dual.check().is_some_and(|c| c.passed()));
+/// assert!(dual.text(80).contains("dual_x  protein(f)·y_enough ≤ cost(f)"));
+///
+/// // It is a model as well: its levels are the marginals of the first.
+/// let run = Model::from_text("dual.blk", dual.as_model()).run(&Options::default());
+/// assert_eq!(run.level("y_enough", [])?, 0.375);
+/// # Ok::<(), bmod::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Formulas {
+    title: String,
+    page: Page,
+    algebra: Algebra,
+    model: String,
+    remarks: Vec<String>,
+    check: Option<Comparison>,
+}
+
+impl Formulas {
+    /// Its title.
+    pub fn title(&self) -> &str {
+        &self.title
+    }
+
+    /// For a terminal of so many characters, in Unicode.
+    pub fn text(&self, width: usize) -> String {
+        self.write(Format::Text(width))
+    }
+
+    /// A document in LaTeX, which needs `amsmath`.
+    pub fn latex(&self) -> String {
+        self.write(Format::Latex)
+    }
+
+    /// A page in HTML with MathML, which needs nothing else.
+    pub fn html(&self) -> String {
+        self.write(Format::Html)
+    }
+
+    /// The same as a part of a page: no head, no style.
+    pub fn html_body(&self) -> String {
+        body(&self.page)
+    }
+
+    fn write(&self, format: Format) -> String {
+        write(&self.page, format, &self.title)
+    }
+
+    /// Its equations and variables as trees; `serde` makes JSON of them.
+    pub fn algebra(&self) -> &Algebra {
+        &self.algebra
+    }
+
+    /// The derived model as a text that stands alone: the sets and data it needs have their values at the solve. Empty
+    /// for a model that is only shown.
+    pub fn as_model(&self) -> &str {
+        &self.model
+    }
+
+    /// What the comparison found, if [`Choice::check`] asked for it.
+    pub fn check(&self) -> Option<&Comparison> {
+        self.check.as_ref()
+    }
+
+    /// Sentences to be read beside it: what could not be derived in symbols, what the comparison found.
+    pub fn remarks(&self) -> &[String] {
+        &self.remarks
+    }
+}
+
+impl Model {
+    /// A model as formulas. Nothing is run.
+    ///
+    /// # Errors
+    /// [`Error::Model`] if the text does not compile or has no such model.
+    pub fn show(&self, choice: &Choice) -> Result<Formulas, Error> {
+        on_large_stack(|| self.show_here(choice)).unwrap_or_else(broken)
+    }
+
+    /// The dual of a linear model, with its indices; the levels are the marginals of the model. The model is run: data and
+    /// answer are those of the solve that is meant.
+    ///
+    /// # Errors
+    /// [`Error::Model`] if the run fails, if there is no such solve, or if its model has no dual.
+    pub fn dual(&self, choice: &Choice, options: &Options) -> Result<Formulas, Error> {
+        self.derive(Kind::Dual, choice, options)
+    }
+
+    /// The optimality conditions (Karush, Kuhn, Tucker) of a smooth model, with its indices; as a model, a complementarity
+    /// problem that begins at the answer of the solve. The model is run.
+    ///
+    /// # Errors
+    /// [`Error::Model`] if the run fails, if there is no such solve, or if its model is not smooth.
+    pub fn kkt(&self, choice: &Choice, options: &Options) -> Result<Formulas, Error> {
+        self.derive(Kind::Kkt, choice, options)
+    }
+
+    fn derive(&self, kind: Kind, choice: &Choice, options: &Options) -> Result<Formulas, Error> {
+        on_large_stack(|| self.derive_here(kind, choice, options)).unwrap_or_else(broken)
+    }
+
+    fn show_here(&self, choice: &Choice) -> Result<Formulas, Error> {
+        let options = Options::default();
+        let mut host = RunHost::new(self, &options);
+        let preprocess = self.preprocess(&options);
+        let program = check::compile(&mut host, &self.name, preprocess, OPTION_TABLES)
+            .map_err(|e| refused(&[e.0], &e.1))?;
+        if program.has_errors() {
+            return Err(refused(&program.diagnostics, &program.map));
+        }
+        let (m, code) = Machine::new(program, &mut host, run::Options::default());
+        let chosen = show::choose(&m, &code, choice.model.as_deref()).map_err(|why| {
+            let d = diag::Diagnostic::execution("E0430", crate::source::Span::default(), why);
+            refused(&[d], &m.map)
+        })?;
+        let (page, f) = show::page(&m, &code, &chosen);
+        Ok(Formulas {
+            title: f.name.clone(),
+            page,
+            algebra: algebra(&m.symbols, &m.store, &f),
+            model: String::new(),
+            remarks: Vec::new(),
+            check: None,
+        })
+    }
+
+    fn derive_here(
+        &self,
+        kind: Kind,
+        choice: &Choice,
+        options: &Options,
+    ) -> Result<Formulas, Error> {
+        let mut host = RunHost::new(self, options);
+        let machine_options = run::Options {
+            quiet: true,
+            study: Some(StudyChoice {
+                model: choice.model.clone(),
+                number: choice.solve,
+                generate_only: false,
+            }),
+            ..options.for_machine()
+        };
+        let mut formulas = None;
+        let finished = session::run(
+            &mut host,
+            &self.name,
+            self.preprocess(options),
+            machine_options,
+            false,
+            &mut |m| {
+                let derived = study::chosen(m).and_then(|(primal, studied)| {
+                    let d = kind.derive(m, &primal, &studied, choice.check, true)?;
+                    Ok(Formulas {
+                        model: d.model(m, &primal, &self.name, false),
+                        remarks: d.remarks(),
+                        algebra: algebra(&m.symbols, &m.store, &d.formulation),
+                        title: d.title,
+                        page: d.page,
+                        check: d.check,
+                    })
+                });
+                match derived {
+                    Ok(f) => formulas = Some(f),
+                    Err(d) => m.say(*d),
+                }
+            },
+        );
+        formulas.ok_or_else(|| refused(&finished.diagnostics, &finished.map))
+    }
+}
+
+fn broken() -> Result<Formulas, Error> {
+    Err(refused(&[super::run::broken()], &SourceMap::default()))
+}
+
+fn refused(found: &[diag::Diagnostic], map: &SourceMap) -> Error {
+    Error::Model {
+        diagnostics: Diagnostic::all(found, map),
+        messages: diagnostics::render(found, map, Look::plain()),
+    }
+}

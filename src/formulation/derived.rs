@@ -1,0 +1,296 @@
+//! The dual and the optimality conditions of a solve: the page, the model, the comparison; or a refusal with its place.
+
+use super::check::{self, Comparison};
+use super::derive::{Derivation, Primal};
+use super::math::{Math, name};
+use super::page::{Block, Formula, Page, Setter, formulas};
+use super::tree::{Expr, Variable, sum, sum_over, times};
+use super::{Formulation, dual, kkt, side, text};
+use crate::check::functions::{is_nonsmooth, name_of};
+use crate::check::node::{AggregateOp, EquationDef, Node, NodeKind, SymbolId};
+use crate::check::visit::Visitor;
+use crate::diag::Diagnostic;
+use crate::run::{Machine, Studied};
+use crate::source::Span;
+
+/// What is derived from a model.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Kind {
+    /// The dual of a linear program.
+    Dual,
+    /// The optimality conditions of a smooth program.
+    Kkt,
+}
+
+/// What a derivation came to.
+pub struct Derived {
+    /// Its title.
+    pub title: String,
+    /// The page that is shown.
+    pub page: Page,
+    /// What is written as a model; its multipliers are GAMS's marginals.
+    pub formulation: Formulation,
+    /// What the comparison found.
+    pub check: Option<Comparison>,
+    /// What is compared, in words.
+    compared: &'static str,
+}
+
+impl Kind {
+    /// Derives; `check` compares, `write`: the formulation is to be written as a model.
+    ///
+    /// # Errors
+    /// A refusal with its place.
+    pub fn derive(
+        self,
+        m: &Machine,
+        primal: &Primal,
+        studied: &Studied,
+        check: bool,
+        write: bool,
+    ) -> Result<Derived, Box<Diagnostic>> {
+        match self {
+            Kind::Dual => linear_dual(m, primal, studied, check),
+            Kind::Kkt => conditions(m, primal, studied, check, write),
+        }
+    }
+}
+
+impl Derived {
+    /// What is to be said beside the page: what was derived by instance, and what the comparison found.
+    pub fn remarks(&self) -> Vec<String> {
+        let mut out = Vec::new();
+        if !self.formulation.by_instance.is_empty() {
+            out.push(format!(
+                "Derived by instance, not in symbols: {}.",
+                self.formulation.by_instance.join("; ")
+            ));
+        }
+        out.extend(self.check.as_ref().map(|c| match c.passed() {
+            true => format!(
+                "Checked: {}: {} entries and {} numbers are equal (largest relative difference {:.0e}).",
+                self.compared, c.entries, c.numbers, c.largest
+            ),
+            false => {
+                let s = if c.count == 1 { "" } else { "s" };
+                let all = c.differences.join("\n  ");
+                format!("The check failed: {} difference{s}.\n  {all}", c.count)
+            }
+        }));
+        out
+    }
+
+    /// Whether a comparison found something.
+    pub fn failed(&self) -> bool {
+        self.check.as_ref().is_some_and(|c| !c.passed())
+    }
+
+    /// The model as a text that solves itself; `include` is a file of the user's text in place of the data. `file`: where
+    /// it comes from.
+    pub fn model(&self, m: &Machine, primal: &Primal, file: &str, include: bool) -> String {
+        let head = format!(
+            "$title {}\n* Derived by bmod from the model {} of {file}.\n\n",
+            self.title, primal.name
+        );
+        let include = include.then_some(file);
+        let f = &self.formulation;
+        text::model(&m.symbols, &m.store, f, include, &head, true)
+    }
+}
+
+fn linear_dual(
+    m: &Machine,
+    primal: &Primal,
+    studied: &Studied,
+    check: bool,
+) -> Result<Derived, Box<Diagnostic>> {
+    refuse_dual(m, primal, studied)?;
+    let failed = |why: String| {
+        let message = format!("the dual cannot be derived: {why}");
+        Diagnostic::execution("E0431", studied.span, message).label("of this solve")
+    };
+    let (symbols, store) = (&m.symbols, &m.store);
+    let shown = dual::dual(symbols, store, primal, true).map_err(failed)?;
+    let formulation = dual::dual(symbols, store, primal, false).map_err(failed)?;
+    let d =
+        Derivation::new(symbols, store, primal, String::new(), "lp").map_err(|e| failed(e.1))?;
+    let mut page = side::page(symbols, store, &side::own(&d), &shown);
+    page.extend(side::slackness(symbols, store, primal, shown.flipped));
+    Ok(Derived {
+        title: format!("The dual of {}", primal.name),
+        page,
+        formulation,
+        check: check.then(|| match check::checked_dual(symbols, store, primal) {
+            Ok((_, c)) => c,
+            Err(why) => Comparison::impossible(&why),
+        }),
+        compared: "the dual's matrix and the transposed matrix of the primal, right-hand sides and bounds included",
+    })
+}
+
+/// Whether a model has a dual of this kind at all.
+fn refuse_dual(m: &Machine, primal: &Primal, studied: &Studied) -> Result<(), Box<Diagnostic>> {
+    let instance = &primal.generated.instance;
+    let no = |message: String| {
+        Diagnostic::execution("E0431", studied.span, message).label("of this solve")
+    };
+    if primal.objective.is_none() {
+        let message = format!(
+            "the model `{}` has no objective, and so no dual",
+            primal.name
+        );
+        let help = "a dual belongs to a linear program, solved `using lp`";
+        return Err(no(message).help(help).into());
+    }
+    let relaxed = primal.using.starts_with('r');
+    if let Some(j) = instance.columns.first_undecided().filter(|_| !relaxed) {
+        let b = primal.generated.origin.columns.of(j as u32);
+        let name = m.record_name(b.symbol, b.key(j as u32));
+        let declared = m.symbols.get(b.symbol).declared;
+        let message =
+            format!("a model with discrete variables has no linear dual, and {name} is discrete");
+        return Err(no(message)
+            .other(declared, "declared here")
+            .help("the relaxation has one: `solve … using rmip`")
+            .into());
+    }
+    if !instance.is_linear() {
+        let row = instance
+            .nonlinear_rows()
+            .iter()
+            .position(|n| *n)
+            .unwrap_or(0);
+        let e = primal.generated.origin.rows.of(row as u32).symbol;
+        let span = definition(m, e).map_or(studied.span, |d| d.span);
+        let name = &m.symbols.get(e).name;
+        return Err(Diagnostic::execution(
+            "E0431",
+            span,
+            format!("the dual of a linear program is asked for, and `{name}` is not linear"),
+        )
+        .label("this equation")
+        .other(studied.span, "at this solve")
+        .help("`bmod kkt` derives the optimality conditions of a nonlinear program")
+        .into());
+    }
+    Ok(())
+}
+
+fn definition<'a>(m: &'a Machine, e: SymbolId) -> Option<&'a EquationDef> {
+    m.equations.iter().find(|d| d.symbol == e)
+}
+
+fn conditions(
+    m: &Machine,
+    primal: &Primal,
+    studied: &Studied,
+    check: bool,
+    write: bool,
+) -> Result<Derived, Box<Diagnostic>> {
+    let (symbols, store) = (&m.symbols, &m.store);
+    let f =
+        kkt::kkt(symbols, store, primal, false).map_err(|r| refuse_kkt(m, primal, studied, r))?;
+    let mut page = vec![Block::Heading(format!("Lagrangian of {}", primal.name))];
+    if let Some(l) = lagrangian(m, primal) {
+        let mut own = Setter::new(symbols, store, &l.1);
+        let math = Math::Row(vec![
+            Math::Name(name("L")),
+            Math::Operator("="),
+            own.expr(&l.0),
+        ]);
+        page.push(Block::Formulas(vec![Formula::of(math)]));
+    }
+    page.push(Block::Heading(
+        "Optimality conditions (Karush, Kuhn, Tucker)".into(),
+    ));
+    page.extend(formulas(&mut Setter::new(symbols, store, &f), symbols, &f));
+    // What is written is what was generated.
+    let (formulation, check) = match check || write {
+        false => (f, None),
+        true => match check::checked_kkt(symbols, store, primal) {
+            Ok((written, c)) => (written, check.then_some(c)),
+            Err(why) => (f, check.then(|| Comparison::impossible(&why))),
+        },
+    };
+    Ok(Derived {
+        title: format!("The optimality conditions of {}", primal.name),
+        page,
+        formulation,
+        check,
+        compared: "stationarity and rows against the automatic derivatives, at points drawn at random",
+    })
+}
+
+/// The Lagrangian, and the formulation whose names it uses.
+fn lagrangian(m: &Machine, primal: &Primal) -> Option<(Expr, Formulation)> {
+    let mut d = Derivation::new(&m.symbols, &m.store, primal, String::new(), "nlp").ok()?;
+    d.multipliers_of_rows(false);
+    let function = match (&d.eliminated, primal.objective) {
+        (Some(o), _) => o.function.clone(),
+        (None, Some((_, z))) => Expr::Variable(Variable::Own(z), Vec::new()),
+        _ => return None,
+    };
+    let mut terms = vec![(false, function)];
+    for (k, e) in primal.equations.iter().enumerate() {
+        let Some(y) = d.multiplier_of(k) else {
+            continue;
+        };
+        let g = sum(vec![(false, e.left.clone()), (true, e.right.clone())]);
+        terms.push((true, sum_over(e.binder.clone(), times(y, g))));
+    }
+    Some((sum(terms), d.out))
+}
+
+/// Why there are no conditions, with the place.
+fn refuse_kkt(
+    m: &Machine,
+    primal: &Primal,
+    studied: &Studied,
+    (equation, why): kkt::Refusal,
+) -> Diagnostic {
+    let Some(k) = equation else {
+        return Diagnostic::execution(
+            "E0432",
+            studied.span,
+            format!("the optimality conditions cannot be derived: {why}"),
+        )
+        .label("of this solve")
+        .help("they belong to a model with an objective, solved `using nlp`, `qcp` or `lp`");
+    };
+    let symbol = primal.equations[k].symbol;
+    let def = definition(m, symbol);
+    let place = def.and_then(kink).or(def.map(|d| d.span));
+    let name = &m.symbols.get(symbol).name;
+    Diagnostic::execution(
+        "E0432",
+        place.unwrap_or(studied.span),
+        format!("the optimality conditions cannot be derived: in `{name}`, {why}"),
+    )
+    .label("here")
+    .other(studied.span, "at this solve")
+    .help("reformulate it with additional variables and inequalities")
+}
+
+/// The first place in an equation that is not smooth.
+fn kink(e: &EquationDef) -> Option<Span> {
+    struct Kinks(Option<Span>);
+    impl<'a> Visitor<'a> for Kinks {
+        fn node(&mut self, n: &'a Node) {
+            let kink = match &n.kind {
+                NodeKind::Call(f, _) => {
+                    is_nonsmooth(*f) || matches!(name_of(*f), "gamma" | "loggamma")
+                }
+                NodeKind::Aggregate(op, ..) => matches!(op, AggregateOp::Smin | AggregateOp::Smax),
+                _ => false,
+            };
+            if self.0.is_none() && n.has_var && kink {
+                self.0 = Some(n.span);
+            }
+            n.walk(self);
+        }
+    }
+    let mut kinks = Kinks(None);
+    kinks.node(&e.left);
+    kinks.node(&e.right);
+    kinks.0
+}
