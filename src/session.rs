@@ -52,6 +52,7 @@ pub fn run(
     }
     let (mut machine, code) = Machine::new(program, host, options);
     machine.run(&code);
+    machine.code = code;
     inspect(&mut machine);
     let end = match () {
         () if machine.aborted() => RunStatus::Aborted,

@@ -6,12 +6,13 @@ use crate::check;
 use crate::diag;
 use crate::formulation::algebra::{Algebra, algebra};
 use crate::formulation::check::Comparison;
+use crate::formulation::derive::Primal;
 use crate::formulation::derived::Kind;
 use crate::formulation::page::{Format, Page, body, write};
-use crate::formulation::{show, study};
+use crate::formulation::{Formulation, show, study};
 use crate::report::diagnostic::Diagnostic;
 use crate::report::diagnostics::{self, Look};
-use crate::run::{self, Machine, StudyChoice};
+use crate::run::{self, Machine, Studied, StudyChoice};
 use crate::session;
 use crate::solve::registry::OPTION_TABLES;
 use crate::source::SourceMap;
@@ -26,6 +27,7 @@ pub struct Choice {
     model: Option<String>,
     solve: Option<usize>,
     check: bool,
+    numbers: bool,
 }
 
 impl Choice {
@@ -40,6 +42,14 @@ impl Choice {
     #[must_use]
     pub fn solve(mut self, number: usize) -> Self {
         self.solve = Some(number);
+        self
+    }
+
+    /// Writes one row of each equation with its numbers beside the formula, and the coefficients of a small model. For
+    /// [`Model::show`], which then runs the model.
+    #[must_use]
+    pub fn numbers(mut self, on: bool) -> Self {
+        self.numbers = on;
         self
     }
 
@@ -91,6 +101,17 @@ pub struct Formulas {
 }
 
 impl Formulas {
+    fn shown(m: &Machine, page: Page, f: &Formulation) -> Self {
+        Self {
+            title: f.name.clone(),
+            page,
+            algebra: algebra(&m.symbols, &m.store, f),
+            model: String::new(),
+            remarks: Vec::new(),
+            check: None,
+        }
+    }
+
     /// Its title.
     pub fn title(&self) -> &str {
         &self.title
@@ -143,12 +164,24 @@ impl Formulas {
 }
 
 impl Model {
-    /// A model as formulas. Nothing is run.
+    /// A model as formulas. Nothing is run, unless [`Choice::numbers`] asks for it.
     ///
     /// # Errors
     /// [`Error::Model`] if the text does not compile or has no such model.
     pub fn show(&self, choice: &Choice) -> Result<Formulas, Error> {
-        on_large_stack(|| self.show_here(choice)).unwrap_or_else(broken)
+        let shown = on_large_stack(|| match choice.numbers {
+            false => self.show_here(choice),
+            true => self.study(choice, &Options::default(), &mut |m, primal, studied| {
+                let (page, f) = show::page(
+                    m,
+                    &m.code,
+                    &show::Chosen::of(studied),
+                    Some(&primal.generated),
+                );
+                Ok(Formulas::shown(m, page, &f))
+            }),
+        });
+        shown.unwrap_or_else(broken)
     }
 
     /// The dual of a linear model, with its indices; the levels are the marginals of the model. The model is run: data and
@@ -170,7 +203,19 @@ impl Model {
     }
 
     fn derive(&self, kind: Kind, choice: &Choice, options: &Options) -> Result<Formulas, Error> {
-        on_large_stack(|| self.derive_here(kind, choice, options)).unwrap_or_else(broken)
+        let derived = on_large_stack(|| {
+            self.study(choice, options, &mut |m, primal, studied| {
+                let d = kind.derive(m, primal, studied, choice.check, true)?;
+                Ok(Formulas {
+                    model: d.model(m, primal, &self.name, false),
+                    remarks: d.remarks(),
+                    check: d.check,
+                    title: d.title,
+                    ..Formulas::shown(m, d.page, &d.formulation)
+                })
+            })
+        });
+        derived.unwrap_or_else(broken)
     }
 
     fn show_here(&self, choice: &Choice) -> Result<Formulas, Error> {
@@ -187,57 +232,43 @@ impl Model {
             let d = diag::Diagnostic::execution("E0430", crate::source::Span::default(), why);
             refused(&[d], &m.map)
         })?;
-        let (page, f) = show::page(&m, &code, &chosen);
-        Ok(Formulas {
-            title: f.name.clone(),
-            page,
-            algebra: algebra(&m.symbols, &m.store, &f),
-            model: String::new(),
-            remarks: Vec::new(),
-            check: None,
-        })
+        let (page, f) = show::page(&m, &code, &chosen, None);
+        Ok(Formulas::shown(&m, page, &f))
     }
 
-    fn derive_here(
+    /// Runs the model and makes formulas of the solve that is meant.
+    fn study(
         &self,
-        kind: Kind,
         choice: &Choice,
         options: &Options,
+        f: &mut dyn FnMut(&Machine, &Primal, &Studied) -> Result<Formulas, Box<diag::Diagnostic>>,
     ) -> Result<Formulas, Error> {
         let mut host = RunHost::new(self, options);
+        let study = StudyChoice {
+            model: choice.model.clone(),
+            number: choice.solve,
+            generate_only: false,
+        };
         let machine_options = run::Options {
             quiet: true,
-            study: Some(StudyChoice {
-                model: choice.model.clone(),
-                number: choice.solve,
-                generate_only: false,
-            }),
+            study: Some(study),
             ..options.for_machine()
         };
+        let preprocess = self.preprocess(options);
         let mut formulas = None;
+        let mut look = |m: &mut Machine| match study::chosen(m)
+            .and_then(|(primal, studied)| f(m, &primal, &studied))
+        {
+            Ok(f) => formulas = Some(f),
+            Err(d) => m.say(*d),
+        };
         let finished = session::run(
             &mut host,
             &self.name,
-            self.preprocess(options),
+            preprocess,
             machine_options,
             false,
-            &mut |m| {
-                let derived = study::chosen(m).and_then(|(primal, studied)| {
-                    let d = kind.derive(m, &primal, &studied, choice.check, true)?;
-                    Ok(Formulas {
-                        model: d.model(m, &primal, &self.name, false),
-                        remarks: d.remarks(),
-                        algebra: algebra(&m.symbols, &m.store, &d.formulation),
-                        title: d.title,
-                        page: d.page,
-                        check: d.check,
-                    })
-                });
-                match derived {
-                    Ok(f) => formulas = Some(f),
-                    Err(d) => m.say(*d),
-                }
-            },
+            &mut look,
         );
         formulas.ok_or_else(|| refused(&finished.diagnostics, &finished.map))
     }

@@ -222,6 +222,12 @@ pub struct ShowArgs {
     /// How formulas are written.
     #[arg(long, value_enum, default_value_t)]
     pub format: FormulaFormat,
+    /// Runs the model and writes one row of each equation with its numbers, and the coefficients of a small model.
+    #[arg(long)]
+    pub numbers: bool,
+    /// How the model is solved.
+    #[command(flatten)]
+    pub solve: SolveArgs,
 }
 
 /// Which model of a text is meant.

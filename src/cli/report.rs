@@ -112,13 +112,8 @@ fn sections(m: &Machine, primal: &Primal, studied: &Studied) -> String {
         ranges: ranges.as_ref(),
     });
     page.extend(words.into_iter().map(Block::Words));
-    let chosen = show::Chosen {
-        model: studied.code.model,
-        rows: studied.code.equations.clone(),
-        objective: primal.objective,
-        using: Some(primal.using.clone()),
-    };
-    page.extend(show::page(m, &[], &chosen).0);
+    let chosen = show::Chosen::of(studied);
+    page.extend(show::page(m, &m.code, &chosen, None).0);
     page.extend(data(m, primal));
     page.extend(solution(m, primal));
     if let Some(r) = &ranges {

@@ -1,13 +1,25 @@
-//! `bmod show`: a model as formulas. Nothing is run.
+//! `bmod show`: a model as formulas. Nothing is run, unless its numbers are asked for.
 
-use super::args::{EXECUTION, ShowArgs};
+use super::args::{ChosenArgs, EXECUTION, ShowArgs};
 use super::commands::{compiled, name};
-use super::derive::{format, tell};
+use super::derive::{format, studied, tell};
 use crate::formulation::{page, show};
 use crate::run::{Machine, Options};
 
 /// Carries out `bmod show`; its exit status.
 pub fn show(a: &ShowArgs) -> u8 {
+    if a.numbers {
+        let chosen = ChosenArgs {
+            name: a.name.clone(),
+            number: None,
+        };
+        return studied(&a.model, &a.solve, &chosen, &mut |m, primal, studied| {
+            let chosen = show::Chosen::of(&studied);
+            let (page, f) = show::page(m, &m.code, &chosen, Some(&primal.generated));
+            tell(&page::write(&page, format(a.format), &f.name));
+            Ok(0)
+        });
+    }
     compiled(&a.model, &mut |program, host| {
         let (m, code) = Machine::new(program, host, Options::default());
         let chosen = match show::choose(&m, &code, a.name.as_deref()) {
@@ -17,9 +29,8 @@ pub fn show(a: &ShowArgs) -> u8 {
                 return EXECUTION;
             }
         };
-        let (page, _) = show::page(&m, &code, &chosen);
-        let title = m.symbols.get(chosen.model).name.to_string();
-        tell(&page::write(&page, format(a.format), &title));
+        let (page, f) = show::page(&m, &code, &chosen, None);
+        tell(&page::write(&page, format(a.format), &f.name));
         0
     })
 }

@@ -107,6 +107,16 @@ pub fn greek(name: &str) -> Option<&'static str> {
     GREEK.iter().find(|g| g.0 == name).map(|g| g.1)
 }
 
+/// A relation as it is set.
+pub fn relation_sign(r: Relation) -> &'static str {
+    match r {
+        Relation::Equal => "=",
+        Relation::Greater => "≥",
+        Relation::Less => "≤",
+        Relation::Free => "⋚",
+    }
+}
+
 /// The LaTeX command of a Greek letter.
 pub fn command(letter: &str) -> Option<&'static str> {
     GREEK.iter().find(|g| g.1 == letter).map(|g| g.0)
@@ -494,12 +504,7 @@ impl<'a> Setter<'a> {
     pub fn row(&mut self, r: &Row) -> (Math, Option<Math>) {
         let before = self.names.enter(&r.binder.indices);
         let (left, right) = (self.expr(&r.left), self.expr(&r.right));
-        let relation = Math::Operator(match r.relation {
-            Relation::Equal => "=",
-            Relation::Greater => "≥",
-            Relation::Less => "≤",
-            Relation::Free => "⋚",
-        });
+        let relation = Math::Operator(relation_sign(r.relation));
         let mut formula = vec![left, relation, right];
         if let (Some(v), None) = (r.pair, &self.f.objective) {
             formula.push(Math::Operator("⟂"));

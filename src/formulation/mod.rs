@@ -18,6 +18,7 @@ pub mod kkt;
 pub mod lower;
 pub mod math;
 pub mod names;
+pub mod numbers;
 pub mod page;
 pub mod range;
 pub mod render;

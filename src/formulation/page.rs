@@ -32,6 +32,8 @@ pub struct Formula {
     pub runs: Option<Math>,
     /// Words beside it.
     pub words: String,
+    /// One of its rows written out: name and formula.
+    pub example: Option<(String, Math)>,
 }
 
 impl Formula {
@@ -42,6 +44,7 @@ impl Formula {
             math,
             runs: None,
             words: String::new(),
+            example: None,
         }
     }
 }
@@ -87,9 +90,9 @@ pub fn formulas(s: &mut Setter, symbols: &Symbols, f: &Formulation) -> Page {
         let (math, runs) = s.row(r);
         Formula {
             name: r.name.clone(),
-            math,
             runs,
             words: explained(&r.text).1.to_string(),
+            ..Formula::of(math)
         }
     });
     let rows: Vec<Formula> = rows.collect();
@@ -295,6 +298,11 @@ fn formulas_text(out: &mut String, list: &[Formula], width: usize) {
             line.push_str(&format!("   {}", f.words));
         }
         let _ = writeln!(out, "{line}");
+        if let Some((name, math)) = &f.example {
+            let head = format!("{}{name}: ", " ".repeat(indent));
+            let at = head.chars().count();
+            let _ = writeln!(out, "{head}{}", wrapped(math, width, at.min(indent + 4)));
+        }
     }
 }
 
@@ -370,9 +378,12 @@ fn as_latex(page: &Page, title: &str) -> String {
                     let end = if n + 1 < list.len() { " \\\\" } else { "" };
                     let _ = writeln!(
                         out,
-                        "\\text{{{}}} \\quad & {}{words}{end}",
+                        "\\text{{{}}} \\quad & {}{words}{}{end}",
                         escaped(&f.name),
-                        latex(&f.math)
+                        latex(&f.math),
+                        f.example.as_ref().map_or(String::new(), |(name, math)| {
+                            format!(" \\\\\n&\\text{{{}: }} {}", escaped(name), latex(math))
+                        })
                     );
                 }
                 out.push_str("\\end{align*}\n");
@@ -454,7 +465,7 @@ h1{font-size:1.6em}h2{font-size:1.15em;margin:1.6em 0 .4em;border-bottom:1px sol
 table{border-collapse:collapse;margin:.5em 0}td,th{padding:.15em 1em .15em 0;text-align:left;vertical-align:baseline}\
 th{font-weight:600;border-bottom:1px solid #999}td.n,th.n{text-align:right;font-variant-numeric:tabular-nums}\
 td.name{color:#666;font-size:.9em}td.runs{color:#444;padding-left:2em}math{font-size:1.08em}mtext{font-family:system-ui,sans-serif;font-size:.92em}\
-.f td{padding:.35em .6em .35em 0}@media print{body{font-size:11pt;max-width:none;margin:0}h2{break-after:avoid}tr{break-inside:avoid}}\
+.example td{color:#555;font-size:.9em}.f td{padding:.35em .6em .35em 0}@media print{body{font-size:11pt;max-width:none;margin:0}h2{break-after:avoid}tr{break-inside:avoid}}\
 @page{size:A4;margin:18mm}";
 
 fn as_html(page: &Page, title: &str) -> String {
@@ -497,6 +508,14 @@ pub fn body(page: &Page) -> String {
                         plain(&f.name),
                         display(&f.math),
                     );
+                    if let Some((name, m)) = &f.example {
+                        let _ = writeln!(
+                            out,
+                            "<tr class=\"example\"><td></td><td colspan=\"2\">{}: {}</td></tr>",
+                            plain(name),
+                            math(m)
+                        );
+                    }
                 }
                 out.push_str("</table>\n");
             }

@@ -9,7 +9,7 @@ use super::{Formulation, Row};
 use crate::check::node::{Code, CodeKind, ModelRow, Node, NodeKind, SolveCode, SymbolId, Target};
 use crate::check::symbols::{SymbolKind, Symbols, attribute};
 use crate::diag::nearest;
-use crate::run::Machine;
+use crate::run::{Generated, Machine, Studied};
 use crate::syntax::ast::{ModelItem, VariableKind};
 
 /// What a model consists of, with its objective if some solve says one.
@@ -22,6 +22,18 @@ pub struct Chosen {
     pub objective: Option<(Sense, SymbolId)>,
     /// Problem type, if it is solved.
     pub using: Option<String>,
+}
+
+impl Chosen {
+    /// The model of a solve.
+    pub fn of(s: &Studied) -> Self {
+        Self {
+            model: s.code.model,
+            rows: s.code.equations.clone(),
+            objective: s.code.objective,
+            using: Some(s.code.using.to_string()),
+        }
+    }
 }
 
 /// The model of this name, or the one that is solved last; `Err` says why there is none.
@@ -314,8 +326,13 @@ fn walk(code: &[Code], top: bool, f: &mut dyn FnMut(&Code, bool)) {
     }
 }
 
-/// The page: legend, objective, rows, bounds.
-pub fn page(m: &Machine, code: &[Code], chosen: &Chosen) -> (Page, Formulation) {
+/// The page: legend, objective, rows, bounds; with an instance its numbers.
+pub fn page(
+    m: &Machine,
+    code: &[Code],
+    chosen: &Chosen,
+    numbers: Option<&Generated>,
+) -> (Page, Formulation) {
     let symbols = &m.symbols;
     let mut f = formulation(m, chosen);
     let bounds = assigned_bounds(m, code, &mut f);
@@ -371,6 +388,9 @@ pub fn page(m: &Machine, code: &[Code], chosen: &Chosen) -> (Page, Formulation) 
     if !lines.is_empty() {
         out.push(Block::Words("with".into()));
         out.push(Block::Formulas(lines));
+    }
+    if let Some(g) = numbers {
+        super::numbers::add(&mut out, m, g);
     }
     (out, f)
 }

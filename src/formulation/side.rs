@@ -1,13 +1,12 @@
 //! A model and its dual side by side, and complementary slackness in numbers.
 
 use super::derive::{Derivation, Primal};
-use super::math::{Math, name, symbol_name};
+use super::math::{Math, name, relation_sign, symbol_name};
 use super::page::{Block, Formula, Page, Setter, formulas};
 use super::tree::*;
 use super::{Formulation, Origin, Row, Sign};
 use crate::check::node::SymbolId;
 use crate::check::symbols::{Store, Symbols};
-use crate::model::instance::Relation as RowRelation;
 
 /// More lines of numbers than this are not shown.
 const MAX_LINES: usize = 40;
@@ -75,7 +74,7 @@ pub fn page(symbols: &Symbols, store: &Store, primal: &Formulation, dual: &Formu
         let left = indexed(symbols, Math::Name(name(&symbols.get(e).name)), &m.domain);
         let left = Math::Row(vec![
             left,
-            Math::Operator(word(relation)),
+            Math::Operator(relation_sign(relation)),
             Math::Words("…".into()),
         ]);
         let right = indexed(symbols, t.variable(Variable::Multiplier(n)), &m.domain);
@@ -90,7 +89,7 @@ pub fn page(symbols: &Symbols, store: &Store, primal: &Formulation, dual: &Formu
             let right = indexed(symbols, Math::Name(name(&r.name)), &r.domain);
             let right = Math::Row(vec![
                 right,
-                Math::Operator(word(r.relation)),
+                Math::Operator(relation_sign(r.relation)),
                 Math::Words("…".into()),
             ]);
             pairs.push((left.clone(), right));
@@ -106,15 +105,6 @@ fn indexed(symbols: &Symbols, base: Math, domain: &[SymbolId]) -> Math {
     }
     let sets = domain.iter().map(|s| Math::Name(symbol_name(symbols, *s)));
     Math::Indexed(Box::new(base), sets.collect())
-}
-
-fn word(r: Relation) -> &'static str {
-    match r {
-        Relation::Equal => "=",
-        Relation::Greater => "≥",
-        Relation::Less => "≤",
-        Relation::Free => "⋚",
-    }
 }
 
 fn signed(m: Math, sign: Sign) -> Math {
@@ -188,11 +178,10 @@ pub fn slackness(symbols: &Symbols, store: &Store, primal: &Primal, flipped: boo
     for b in &g.origin.rows.list {
         for i in b.start..b.start + b.len {
             let k = i as usize;
-            let sign = match p.rows.relation[k] {
-                RowRelation::Greater => "≥",
-                RowRelation::Less => "≤",
-                _ => continue,
-            };
+            if !matches!(p.rows.relation[k], Relation::Greater | Relation::Less) {
+                continue;
+            }
+            let sign = relation_sign(p.rows.relation[k]);
             let flip = if flipped { -1.0 } else { 1.0 };
             let (left, right) = (a.activity[k], p.rows.rhs[k]);
             let y = flip * a.row_marginal[k];
@@ -262,7 +251,7 @@ pub fn costs(p: &crate::model::instance::Instance) -> (bool, Vec<f64>) {
     };
     let mut rows = (0..p.row_count()).filter(|&i| p.matrix.row(i).any(|(j, v)| j == z && v != 0.0));
     match (rows.next(), rows.next()) {
-        (Some(i), None) if p.rows.relation[i] == RowRelation::Equal => {
+        (Some(i), None) if p.rows.relation[i] == Relation::Equal => {
             let a = p.matrix.row(i).find(|t| t.0 == z).map_or(1.0, |t| t.1);
             p.matrix.row(i).for_each(|(j, v)| cost[j] = -v / a);
             (true, cost)

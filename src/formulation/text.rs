@@ -21,6 +21,8 @@ pub struct Writer<'a> {
     pub names: Names<'a>,
     /// Whether attributes of the user's variables are parameters of the model (it stands alone).
     pub alone: bool,
+    /// Tuple sets that sums around run over: these cannot be run over a second time.
+    driving: Vec<String>,
 }
 
 /// Names that no new index may have, in lower case.
@@ -72,11 +74,21 @@ impl<'a> Writer<'a> {
             f,
             names: Names::new(symbols, &f.indices, taken(symbols, f)),
             alone,
+            driving: Vec::new(),
         }
     }
 
     fn name(&self, s: SymbolId) -> &'a str {
         &self.symbols.get(s).name
+    }
+
+    /// The set of a membership.
+    fn set_name(&self, e: &Expr) -> &str {
+        match e {
+            Expr::Member(s, _) => self.name(*s),
+            Expr::NewMember(n, _) => &self.f.data[*n].name,
+            _ => "",
+        }
     }
 
     fn variable(&self, v: Variable) -> String {
@@ -245,10 +257,11 @@ impl<'a> Writer<'a> {
             }
             Expr::Aggregate(op, d, e) => {
                 let word = aggregate_word(*op);
-                let before = self.names.enter(&d.indices);
+                let before = (self.names.enter(&d.indices), self.driving.len());
                 let domain = self.domain(d);
                 let body = self.expr(e);
-                self.names.leave(before);
+                self.names.leave(before.0);
+                self.driving.truncate(before.1);
                 (format!("{word}({domain}, {body})"), ATOM)
             }
             Expr::Opaque(why) => (format!("[{why}]"), ATOM),
@@ -261,11 +274,16 @@ impl<'a> Writer<'a> {
             Expr::Member(_, k) | Expr::NewMember(_, k) => {
                 let plain = |p: &Part| matches!(p, Part::Index(_));
                 let has = |i: &IndexId| k.contains(&Part::Index(*i));
-                k.len() > 1 && k.iter().all(plain) && d.indices.iter().all(has)
+                let free = !self.driving.iter().any(|d| d == self.set_name(c));
+                free && k.len() > 1 && k.iter().all(plain) && d.indices.iter().all(has)
             }
             _ => false,
         };
         let tuple = d.conditions.iter().position(covers);
+        if let Some(t) = tuple {
+            let name = self.set_name(&d.conditions[t]).to_string();
+            self.driving.push(name);
+        }
         let head = match tuple {
             Some(t) => self.expr(&d.conditions[t]),
             None => {

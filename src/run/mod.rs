@@ -73,6 +73,8 @@ pub struct Machine<'h> {
     pub equations: Rc<Vec<EquationDef>>,
     /// Where everything stands.
     pub map: SourceMap,
+    /// The statements, when the run is over.
+    pub code: Vec<Code>,
     /// Options in force.
     pub options: Options,
     /// State of each model.
@@ -137,6 +139,7 @@ impl<'h> Machine<'h> {
             store: program.store,
             equations: Rc::new(program.equations),
             map: program.map,
+            code: Vec::new(),
             options,
             passed_over: FxHashSet::default(),
             models: FxHashMap::default(),

@@ -1,0 +1,20 @@
+$title Relaxation with sparse three-index variables, compound sets and universe symbols
+set r 'rooms' / r1*r4 /, c 'courses' / c1*c6 /, h 'hours' / 9, 10, 11, 14 /;
+set ok(r,c,h), big(c) / c1, c4 /, pair(c,c);
+alias (c,cc), (*,any);
+pair(c,cc) = ord(c) < ord(cc) and mod(ord(c) + ord(cc),3) = 0;
+ok(r,c,h) = (ord(r) >= 2 or not big(c)) and not (sameas(h,'14') and ord(c) = 5);
+parameter pref(c,h), weight(any) / c1 3, r2 1, '14' -2 /;
+pref(c,h) = (h.val - 8)*(7 - ord(c))/10;
+binary variable x(r,c,h);
+positive variable idle(r,h);
+variable z;
+equations once(c), room(r,h), conflict(c,cc,h), count(h), total;
+once(c)..      sum(ok(r,c,h), x(ok)) =e= 1;
+room(r,h)..    sum(c$ok(r,c,h), x(r,c,h)) + idle(r,h) =l= 1;
+conflict(pair(c,cc),h).. sum(r, x(r,c,h)$ok(r,c,h) + x(r,cc,h)$ok(r,cc,h)) =l= 1;
+count(h)..     sum(ok(r,c,h), x(r,c,h)) =g= 1;
+total..        z =e= sum(ok(r,c,h), (pref(c,h) + weight(r) + weight(h) + weight(c))*x(ok)) + 0.1*sum((r,h), idle(r,h));
+model rel / all /;
+solve rel using rmip maximizing z;
+display x.l;

@@ -1,0 +1,24 @@
+$title Trays of a column: equilibrium by exponentials, several index conditions, relations of every kind
+set i 'trays' / 1*8 /, c / benz, tol /, inner(i), feed(i) / 4 /, reb(i), con(i);
+alias (c,cc);
+reb(i) = ord(i) = 1; con(i) = ord(i) = card(i); inner(i) = not (reb(i) or con(i));
+parameter ant(c,*), zf(c) / benz .55, tol .45 /;
+ant('benz','a') = 15.9008; ant('benz','b') = 2788.51; ant('benz','c') = -52.36;
+ant('tol','a') = 16.0137; ant('tol','b') = 3096.52; ant('tol','c') = -53.67;
+scalar f / 10 /, p / 760 /, r / 2 /;
+positive variables x(i,c), y(i,c), l(i), v(i), d, b; variables temp(i), purity;
+equations mass(i,c), massr(c), massc(c), eq(i,c), sx(i), sy(i), ov(i), refl, prd, obj;
+mass(inner(i),c)..  l(i+1)*x(i+1,c) + v(i-1)*y(i-1,c) + (f*zf(c))$feed(i) =e= l(i)*x(i,c) + v(i)*y(i,c);
+massr(c)..          sum(reb(i), l(i+1)*x(i+1,c) - v(i)*y(i,c)) =e= b*sum(reb, x(reb,c));
+massc(c)..          sum(con(i), v(i-1)*y(i-1,c) - (l(i) + d)*x(i,c)) =e= 0;
+eq(i,c)$(not con(i))..  y(i,c) =e= x(i,c)*exp(ant(c,'a') - ant(c,'b')/(temp(i) + ant(c,'c')))/p;
+sx(i)..             sum(c, x(i,c)) =e= 1;
+sy(i)$(not con(i))..  sum(c, y(i,c)) =e= 1;
+ov(i)$(inner(i))..    l(i) =e= l(i+1) + f$feed(i);
+refl..              sum(con, l(con)) =e= r*d;
+prd..               d =e= 5;
+obj..               purity =e= sum(con, x(con,'benz'))*100 - 0.01*sqr(d - 5);
+x.lo(i,c) = 1e-3; x.up(i,c) = 1; y.up(i,c) = 1; x.l(i,c) = .5; y.l(i,c) = .5; l.l(i) = 10; v.l(i) = 15; v.lo(i) = 1; v.up(i) = 40; l.up(i) = 60;
+temp.lo(i) = 340; temp.up(i) = 400; temp.l(i) = 370; d.l = 5; b.l = 5;
+model col / all /;
+solve col using nlp maximizing purity;

@@ -1,0 +1,20 @@
+$title Optimal growth: utility of consumption, capital by a lead, terminal condition, bounds by exponents
+sets t / 1990*2000 /, tfirst(t), tlast(t);
+tfirst(t) = yes$(ord(t) = 1); tlast(t) = yes$(ord(t) = card(t));
+scalars bet / .95 /, b / .25 /, g / .03 /, ac / .15 /, k0 / 3 /, i0 / .07 /, c0 / .95 /, a;
+parameters beta(t), al(t), n(t);
+a = (c0 + i0)/k0**b;
+beta(t) = bet**ord(t); beta(tlast) = beta(tlast)/(1 - bet);
+n(t) = (1 + g)**(ord(t) - 1); al(t) = a*n(t)**(1 - b);
+variables k(t), c(t), i(t), utility;
+equations cc(t), kk(t), tc(t), util;
+util..            utility =e= sum(t, beta(t)*log(c(t)));
+cc(t)..           al(t)*k(t)**b =e= c(t) + i(t);
+kk(t+1)..         k(t+1) =e= k(t) + i(t);
+tc(tlast)..       g*k(tlast) =l= i(tlast);
+k.lo(t) = k0; c.lo(t) = c0; i.lo(t) = i0; k.fx(tfirst) = k0;
+i.up(t) = i0*((1 + ac)**(ord(t) - 1));
+k.l(t) = k0; c.l(t) = c0; i.l(t) = i0;
+model ramsey / all /;
+solve ramsey maximizing utility using nlp;
+display c.l, kk.m;

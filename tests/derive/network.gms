@@ -1,0 +1,21 @@
+$title Flows of several goods through a network of tuples, with losses
+Sets n 'nodes' / a*g /, k 'goods' / coal, ore /, arc(n,n) 'arcs' / a.(b,c), b.(c,d,e), c.(e,f), d.g, e.(f,g), f.g /, port(n);
+Alias (n,i,j), (n,nn);
+port(i) = not sum(arc(i,j), 1);
+Parameters cap(n,n), cost(k,n,n), loss(n,n), supply(k,n) / coal.a 20, ore.a 12, ore.b 4 /, worth(k,n);
+cap(arc(i,j)) = 8 + 2*ord(i) + mod(ord(j), 3);
+cost(k,arc(i,j)) = (1 + ord(k))*abs(ord(j) - ord(i));
+loss(arc) = 0.02;
+loss('c',nn)$(arc('c',nn)) = 0.05;
+worth(k,port) = 15 - 3*ord(k);
+Positive Variables f(k,i,j) 'flow', out(k,n);
+Variable z;
+Equations node(k,n), bundle(i,j), profit, mix(n);
+node(k,n)..          supply(k,n) + sum(arc(i,n), (1 - loss(arc))*f(k,arc)) =g= sum(arc(n,j), f(k,n,j)) + out(k,n)$port(n);
+bundle(arc(i,j))..   sum(k, f(k,arc)) =l= cap(i,j);
+mix(n)$(ord(n) > 2 and not port(n))..  sum((k,i)$arc(i,n), (1$sameas(k,'ore') - 0.4)*f(k,i,n)) =l= 0.5;
+profit..             z =e= sum((k,port), worth(k,port)*out(k,port)) - sum((k,arc(i,j)), cost(k,i,j)*f(k,i,j));
+Model net / node, bundle, profit, mix /;
+f.up(k,i,j)$(ord(k) = 1 and arc(i,j)) = 6;
+solve net maximizing z using lp;
+display f.l, node.m;

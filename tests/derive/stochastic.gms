@@ -1,0 +1,22 @@
+$title A tree of scenarios: sets of nodes by tuples, probabilities computed in loops, deterministic equivalent
+sets n 'nodes' / n1*n7 /, root(n) / n1 /, anc(n,n) 'child and parent' / (n2,n3).n1, (n4,n5).n2, (n6,n7).n3 /, leaf(n), a 'assets' / bond, stock, cash /;
+alias (n,child,parent);
+leaf(n) = yes; leaf(parent)$sum(child$anc(child,parent), 1) = no;
+parameter pr(n), up(n), ret(a,n);
+pr(root) = 1;
+loop(anc(child,parent), pr(child) = pr(parent)*(0.4 + 0.2$(mod(ord(child),2))) );
+up(n) = 1$(mod(ord(n),2) = 0);
+ret('bond',n) = 1.04; ret('stock',n) = 1.15$up(n) + 0.94$(not up(n)); ret('cash',n) = 1.01;
+scalar goal / 115 /, tc / 0.01 /, w0 / 100 /;
+positive variables h(a,n), buy(a,n), sell(a,n), over(n), under(n);
+variable u;
+equations first, hold(a,n,n), cash(n), target(n), util;
+first..                    sum((a,root), h(a,root)) =e= w0;
+hold(a,child,parent)$anc(child,parent)..  h(a,child) =e= ret(a,child)*h(a,parent) + buy(a,child) - sell(a,child);
+cash(n)$(not root(n) and not leaf(n))..    sum(a, (1 + tc)*buy(a,n)) =e= sum(a, (1 - tc)*sell(a,n));
+target(leaf)..             sum(a, h(a,leaf)) =e= goal + over(leaf) - under(leaf);
+util..                     u =e= sum(leaf, pr(leaf)*(over(leaf) - 4*under(leaf)));
+buy.fx(a,root) = 0; sell.fx(a,root) = 0;  buy.fx(a,leaf) = 0; sell.fx(a,leaf) = 0;
+model tree / all /;
+solve tree maximizing u using lp;
+display h.l, target.m, pr;

@@ -1,0 +1,20 @@
+$title Lags in subsets, variables over supersets, sets of sets, singletons, equations over mapped sets
+set y 'years' / 1990*2010 /, t(y) 'planning' / 1995, 2000, 2005, 2010 /, past(y), r 'regions' / eu, us, as /, c 'countries' / de, fr, ca, jp, cn /, rc(r,c) / eu.(de,fr), us.ca, as.(jp,cn) /;
+singleton set base(t) / 1995 /, cheap(c);
+alias (t,tp), (y,yy);
+past(y) = y.val < 1995;
+parameter need(c,y), life / 11 /, old(c,y), cost(c);
+need(c,t) = 5 + ord(c)*(t.val - 1990)/5; old(c,past) = 0.4*ord(c); cost(c) = 3 + mod(5*ord(c),4);
+scalar least; least = smin(c, cost(c)); cheap(c) = cost(c) = least and not sum(r, rc(r,c)$(ord(r) > 2));
+positive variables k(c,y), inv(c,y), trade(c,c,t), tot(r,t); variable npv;
+alias (c,cp);
+equations bal(c,y), stock(c,y), reg(r,t), ramp(c,t), lim(t), obj, first;
+bal(c,t)..     k(c,t) + sum(cp$(not sameas(c,cp)), 0.95*trade(cp,c,t) - trade(c,cp,t)) =g= need(c,t);
+stock(c,t)..   k(c,t) =e= sum(yy$(yy.val <= t.val and t.val - yy.val < life and t(yy)), inv(c,yy)) + sum(past$(t.val - past.val < life), old(c,past));
+reg(r,t)..     tot(r,t) =e= sum(rc(r,c), k(c,t));
+ramp(c,t+1)$(ord(t) > 1)..   inv(c,t+1) =l= 1.8*inv(c,t) + 10;
+lim(t)$(not base(t))..  tot('eu',t) =l= 0.9*sum(r, tot(r,t-1)) + 30;
+first..        sum(c, inv(c,base)) =l= 60;
+obj..          npv =e= sum((c,t), (inv(c,t)*cost(c) + 0.1*inv(cheap,t)$(ord(c) = 1))*1.05**(1995 - t.val)) + .2*sum((c,cp,t), trade(c,cp,t));
+model invest / all /;
+solve invest using lp minimizing npv;

@@ -1,0 +1,20 @@
+$title Staff over a week that repeats: circular lags, offsets as data, labels
+set d / mon, tue, wed, thu, fri, sat, sun /, s 'shifts' / early, late /, w(d) 'weekend' / sat, sun /;
+alias (d,dd);
+parameter need(d,s), len / 5 /, back(d) 'days between' ;
+need(d,s) = 6 + 2*ord(s) - ord(d)$(ord(s) = 1);
+need(w,s) = need(w,s) + 3;
+back(d) = 1 + mod(ord(d),2);
+set works(d,dd) 'who starts on d works on dd';
+works(d,dd) = mod(ord(dd) - ord(d) + card(d), card(d)) < len;
+positive variables start(d,s), swap(d,s), extra(d,s);
+variable cost;
+equations cover(d,s), rest(d), even(d), def, sunday;
+cover(dd,s)..  sum(d$works(d,dd), start(d,s)) + extra(dd,s) + swap(dd,s) - swap(dd--1,s++1) =g= need(dd,s);
+rest(d)..      extra(d,'early') + extra(d++1,'late') =l= 4;
+even(d)..      start(d,'early') - start(d++2,'early') =l= 3 + extra(d--back(d),'early');
+sunday..       sum(w, extra(w,'late')) =l= 0.5*sum((w,s), start(w,s));
+def..          cost =e= sum((d,s), (10 + 1.5$w(d))*5*start(d,s) + 14*extra(d,s) + swap(d,s));
+model week / all /;
+solve week using lp minimizing cost;
+display start.l, cover.m;
