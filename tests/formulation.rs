@@ -1,79 +1,105 @@
 //! Duals and optimality conditions derived from texts: compared entry by entry with the models they come from.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
-use crate::common::{Memory, blk, files, shared};
+use crate::common::{Memory, files, shared};
 use bmod::cli::host::{Output, SystemHost};
-use bmod::formulation::check::{self, Comparison};
-use bmod::formulation::{Formulation, study};
+use bmod::formulation::check::{self, Comparison, Record};
+use bmod::formulation::convex::{Shape, shape};
+use bmod::formulation::derive::Primal;
+use bmod::formulation::{Formulation, dual, study, text};
 use bmod::host::Host;
+use bmod::model::instance::Relation;
 use bmod::run::{Machine, Options, StudyChoice};
 use bmod::session;
 use bmod::solve::random::Random;
 use bmod::source::PreprocessOptions;
+use bmod::{Choice, Model, ModelStatus};
 
-/// What became of the last solve of a text.
+/// What became of a solve of a text.
 enum Derived {
     /// There is none, or it is of a kind that has neither.
     Nothing,
-    /// The formulation and the comparison.
-    Dual(Box<Formulation>, Comparison),
-    Kkt(Box<Formulation>, Comparison),
+    /// The formulation and the comparison, and as a model.
+    Dual(Box<Formulation>, Comparison, String),
+    Kkt(Box<Formulation>, Comparison, String),
     /// A refusal, or a derived model that could not be generated.
     Refused(String),
 }
 
-fn options(generate_only: bool) -> Options {
-    Options {
+/// Runs a text and looks at a solve of it.
+fn look<T>(
+    host: &mut dyn Host,
+    file: &str,
+    choice: StudyChoice,
+    f: &mut dyn FnMut(&Machine, Primal) -> T,
+) -> Option<T> {
+    let preprocess = PreprocessOptions {
+        slash_comments: file.ends_with(".blk"),
+        ..PreprocessOptions::default()
+    };
+    let options = Options {
         quiet: true,
         collect: false,
         time_limit: 60.0,
-        study: Some(StudyChoice {
-            generate_only,
-            ..StudyChoice::default()
-        }),
+        study: Some(choice),
         ..Options::default()
-    }
-}
-
-fn derive(
-    host: &mut dyn Host,
-    file: &str,
-    preprocess: PreprocessOptions,
-    generate_only: bool,
-) -> Derived {
-    let mut out = Derived::Nothing;
-    let options = options(generate_only);
+    };
+    let mut out = None;
     session::run(host, file, preprocess, options, false, &mut |m| {
-        out = derived(m)
+        out = study::primal(m).map(|(primal, _)| f(m, primal));
     });
     out
 }
 
-fn derived(m: &mut Machine) -> Derived {
-    let Some((primal, _)) = study::primal(m) else {
-        return Derived::Nothing;
-    };
+fn generated(model: Option<&str>) -> StudyChoice {
+    StudyChoice {
+        model: model.map(String::from),
+        generate_only: true,
+        ..StudyChoice::default()
+    }
+}
+
+fn derived(m: &Machine, primal: &Primal) -> Derived {
     if primal.objective.is_none() || primal.using.ends_with("mpec") || primal.using.contains("mi") {
         return Derived::Nothing;
     }
-    let result = match primal.generated.instance.is_linear() {
-        true => check::checked_dual(&m.symbols, &m.store, &primal)
-            .map(|(f, c)| Derived::Dual(Box::new(f), c)),
-        false => check::checked_kkt(&m.symbols, &m.store, &primal)
-            .map(|(f, c)| Derived::Kkt(Box::new(f), c)),
+    let (symbols, store) = (&m.symbols, &m.store);
+    let written = |f: &Formulation| text::model(symbols, store, f, None, "", true);
+    let result = match shape(&primal.generated.instance) {
+        Shape::Linear | Shape::ConvexQuadratic(_) => check::checked_dual(symbols, store, primal)
+            .map(|(f, c)| Derived::Dual(Box::new(f.clone()), c, written(&f))),
+        _ => check::checked_kkt(symbols, store, primal)
+            .map(|(f, c)| Derived::Kkt(Box::new(f.clone()), c, written(&f))),
     };
     result.unwrap_or_else(Derived::Refused)
 }
 
+fn derive_text(text: &str) -> Derived {
+    let mut host = Memory::text(text);
+    let found = look(&mut host, "m.blk", generated(None), &mut |m, p| {
+        derived(m, &p)
+    });
+    found.unwrap_or(Derived::Nothing)
+}
+
 fn derive_file(file: &Path, allowed: &[PathBuf]) -> Derived {
     let mut host = SystemHost::new(file, Path::new("."), allowed, Output::Quiet);
-    let preprocess = PreprocessOptions {
-        slash_comments: file.extension().is_some_and(|e| e == "blk"),
-        ..PreprocessOptions::default()
-    };
-    derive(&mut host, &file.to_string_lossy(), preprocess, false)
+    let name = file.to_string_lossy();
+    let found = look(&mut host, &name, StudyChoice::default(), &mut |m, p| {
+        derived(m, &p)
+    });
+    found.unwrap_or(Derived::Nothing)
+}
+
+/// The last solve of a text: status, objective, largest violation.
+fn solved(text: &str, options: &bmod::Options) -> Option<bmod::Solve> {
+    let run = bmod::Model::from_text("derived.blk", text).run(options);
+    assert!(run.succeeded(), "{}\n{text}", run.messages());
+    run.solves().last().cloned()
 }
 
 /// Derives from all files; the lines that say what went wrong, and how many were derived.
@@ -85,21 +111,23 @@ fn derive_all(list: &[PathBuf], allowed: &[PathBuf], in_symbols: bool) -> (usize
             .unwrap_or_default()
             .to_string_lossy()
             .into_owned();
-        match derive_file(file, allowed) {
-            Derived::Nothing => {}
-            Derived::Refused(why) => wrong.push(format!("{name}: {why}")),
-            Derived::Dual(f, c) | Derived::Kkt(f, c) => {
-                count += 1;
-                if !c.passed() {
-                    wrong.push(format!(
-                        "{name}: {} differences: {:?}",
-                        c.count, c.differences
-                    ));
-                }
-                if in_symbols && !f.by_instance.is_empty() {
-                    wrong.push(format!("{name}: by instance: {:?}", f.by_instance));
-                }
+        let (f, c) = match derive_file(file, allowed) {
+            Derived::Nothing => continue,
+            Derived::Refused(why) => {
+                wrong.push(format!("{name}: {why}"));
+                continue;
             }
+            Derived::Dual(f, c, _) | Derived::Kkt(f, c, _) => (f, c),
+        };
+        count += 1;
+        if !c.passed() {
+            wrong.push(format!(
+                "{name}: {} differences: {:?}",
+                c.count, c.differences
+            ));
+        }
+        if in_symbols && !f.by_instance.is_empty() {
+            wrong.push(format!("{name}: by instance: {:?}", f.by_instance));
         }
     }
     (count, wrong)
@@ -113,6 +141,212 @@ fn the_models_to_read_are_derived_in_symbols() {
     let (count, wrong) = derive_all(&list, &[models], true);
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     assert!(count >= 11, "{count}");
+}
+
+/// Models of the kinds that public collections hold: derived in symbols, right, and the derived model that is written
+/// solves: the dual to the same objective, the conditions without an iteration from the answer.
+#[test]
+fn models_of_many_kinds_are_derived_and_run() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/derive");
+    let list = files(&folder, &["gms"]);
+    let mut wrong = Vec::new();
+    for file in &list {
+        let name = file.file_name().unwrap_or_default().to_string_lossy();
+        let mut host = SystemHost::new(file, Path::new("."), &[], Output::Quiet);
+        let path = file.to_string_lossy();
+        let found = look(&mut host, &path, StudyChoice::default(), &mut |m, p| {
+            let objective = p
+                .objective
+                .map(|(_, z)| p.generated.origin.columns.symbol(z));
+            let z = objective.flatten().map(|b| b.start as usize);
+            let value = z.and_then(|z| Some(p.answer.as_ref()?.level[z]));
+            (derived(m, &p), value)
+        });
+        let Some((derived, value)) = found else {
+            wrong.push(format!("{name}: nothing is solved"));
+            continue;
+        };
+        let (f, c, kkt, text) = match &derived {
+            Derived::Dual(f, c, text) => (f, c, false, text),
+            Derived::Kkt(f, c, text) => (f, c, true, text),
+            Derived::Refused(why) => {
+                wrong.push(format!("{name}: {why}"));
+                continue;
+            }
+            Derived::Nothing => {
+                wrong.push(format!("{name}: neither"));
+                continue;
+            }
+        };
+        if !c.passed() {
+            wrong.push(format!("{name}: {:?}", c.differences));
+        }
+        let on_purpose = name == "random.gms";
+        if f.by_instance.is_empty() == on_purpose {
+            wrong.push(format!("{name}: by instance: {:?}", f.by_instance));
+        }
+        let mut options = bmod::Options::default();
+        if kkt {
+            options = options.option("iterlim", 0);
+        }
+        let Some(s) = solved(text, &options) else {
+            wrong.push(format!("{name}: the derived model does not solve"));
+            continue;
+        };
+        let good = matches!(
+            s.model_status,
+            ModelStatus::Optimal | ModelStatus::LocallyOptimal | ModelStatus::Solved
+        );
+        let same = match (s.objective, value) {
+            (Some(a), Some(b)) if !kkt => (a - b).abs() <= 1e-6 * (1.0 + b.abs()),
+            _ => kkt,
+        };
+        if !good || !same {
+            wrong.push(format!(
+                "{name}: {:?} {:?} {value:?} {:?}",
+                s.model_status, s.objective, s.residuals
+            ));
+        }
+    }
+    assert!(list.len() >= 40, "{}", list.len());
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Every formula that can be written is accepted by LaTeX with amsmath alone.
+#[test]
+fn latex_is_compiled() {
+    if Command::new("pdflatex").arg("--version").output().is_err() {
+        println!("SKIPPED: pdflatex is not there (apt-get install texlive-latex-base)");
+        return;
+    }
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let derive = |f: &str| root.join("tests/derive").join(f);
+    let list = [
+        root.join("models/wall.blk"),
+        root.join("models/teaching/diet.blk"),
+        root.join("models/teaching/walras.blk"),
+        derive("circuit.gms"),
+        derive("tanks.gms"),
+        derive("attributes.gms"),
+        derive("collision.gms"),
+    ];
+    let folder = tempfile::tempdir().expect("a folder");
+    let tex = folder.path().join("m.tex");
+    let compile = |latex: String, what: &str| {
+        std::fs::write(&tex, latex).expect("written");
+        let run = Command::new("pdflatex")
+            .args(["-halt-on-error", "-interaction=nonstopmode", "m.tex"])
+            .current_dir(folder.path())
+            .output()
+            .expect("it runs");
+        let log = String::from_utf8_lossy(&run.stdout);
+        assert!(run.status.success(), "{what}: {log}");
+    };
+    for file in list {
+        let what = file.to_string_lossy();
+        let mut model = Model::from_file(&file).expect("it is there");
+        model.allow_read(root.join("models"));
+        let choice = Choice::default();
+        let options = bmod::Options::default();
+        let shown = model.show(&choice.clone().numbers(true)).expect("formulas");
+        compile(shown.latex(), &what);
+        let made = [model.dual(&choice, &options), model.kkt(&choice, &options)];
+        for f in made.into_iter().flatten() {
+            compile(f.latex(), &what);
+        }
+    }
+}
+
+/// What cannot be derived is refused with its place and a reason.
+#[test]
+fn refusals_have_place_and_reason() {
+    let head = "set i / a, b /; variable x(i), z; binary variable u(i); scalar n / 1 /;
+equation obj, e(i); e(i).. x(i) =g= ord(i);
+";
+    let cases = [
+        (
+            "integers",
+            "obj.. z =e= sum(i, x(i) + u(i)); model m / all /; solve m using mip minimizing z;",
+        ),
+        (
+            "nonlinear",
+            "obj.. z =e= sum(i, exp(x(i))); model m / all /; solve m using nlp minimizing z;",
+        ),
+        (
+            "not convex",
+            "obj.. z =e= -sum(i, sqr(x(i))); x.up(i) = 5; model m / all /; solve m using qcp minimizing z;",
+        ),
+        (
+            "kink",
+            "obj.. z =e= sum(i, exp(x(i))*abs(x(i) - 2)); model m / all /; solve m using dnlp minimizing z;",
+        ),
+        (
+            "no objective",
+            "obj.. z =e= sum(i, x(i)); model m / obj.z, e.x /; z.l = 3; solve m using mcp;",
+        ),
+        (
+            "condition over a variable",
+            "obj.. z =e= sum(i$(x(i) > 0), x(i)); model m / all /; solve m using nlp minimizing z;",
+        ),
+        (
+            "unknown model",
+            "obj.. z =e= sum(i, x(i)); model static / all /; solve static using lp minimizing z;",
+        ),
+        (
+            "nothing is solved",
+            "obj.. z =e= sum(i, x(i)); model m / all /;",
+        ),
+        (
+            "no such solve",
+            "obj.. z =e= sum(i, x(i)); model m / all /; solve m using lp minimizing z;",
+        ),
+    ];
+    let mut out = String::new();
+    for (name, tail) in cases {
+        let model = Model::from_text("m.blk", format!("{head}{tail}"));
+        let choice = match name {
+            "unknown model" => Choice::default().model("statik"),
+            "no such solve" => Choice::default().solve(4),
+            _ => Choice::default(),
+        };
+        let options = bmod::Options::default();
+        let made = [
+            ("dual", model.dual(&choice, &options)),
+            ("kkt", model.kkt(&choice, &options)),
+        ];
+        for (what, f) in made {
+            let said = match f {
+                Ok(f) => f.title().to_string(),
+                Err(e) => e.to_string(),
+            };
+            let _ = writeln!(out, "=== {name}: {what}\n{said}\n");
+        }
+    }
+    insta::assert_snapshot!("refusals_of_derivations", out);
+}
+
+/// A model that includes the text it comes from instead of its data runs, too.
+#[test]
+fn a_derived_model_may_include_the_text() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/teaching/diet.blk");
+    let mut host = SystemHost::new(&file, Path::new("."), &[], Output::Quiet);
+    let name = file.to_string_lossy();
+    let model = look(&mut host, &name, StudyChoice::default(), &mut |m, p| {
+        let f = dual::dual(&m.symbols, &m.store, &p, false).expect("a dual");
+        text::model(&m.symbols, &m.store, &f, Some("diet.blk"), "", true)
+    });
+    let mut derived = Model::from_text("dual.blk", model.expect("it is solved"));
+    derived.file("diet.blk", std::fs::read(&file).expect("the text"));
+    let run = derived.run(&bmod::Options::default());
+    assert!(run.succeeded(), "{}", run.messages());
+    let [primal, dual] = run.solves() else {
+        panic!("two solves")
+    };
+    let (a, b) = (
+        primal.objective.unwrap_or(0.0),
+        dual.objective.unwrap_or(1.0),
+    );
+    assert!((a - b).abs() < 1e-9, "{a} {b}");
 }
 
 #[test]
@@ -360,27 +594,33 @@ fn cases() -> u64 {
     wanted.unwrap_or(150)
 }
 
+/// The derivation of a model drawn at random; None where it has none on purpose.
+fn drawn(seed: u64, smooth: bool) -> Option<(String, Derived)> {
+    let text = model(seed, smooth);
+    let derived = derive_text(&text);
+    match &derived {
+        // Rows that contradict themselves are drawn, too.
+        Derived::Nothing => None,
+        // A free column with a cost that stands in no row: the dual says 0 = cost.
+        Derived::Refused(why) if why.contains("has no variables and cannot hold") => None,
+        Derived::Refused(why) => panic!("seed {seed}: {why}\n{text}"),
+        Derived::Dual(f, c, _) | Derived::Kkt(f, c, _) => {
+            assert!(c.passed(), "seed {seed}: {:?}\n{text}", c.differences);
+            let symbols = f.by_instance.is_empty();
+            assert!(symbols, "seed {seed}: {:?}\n{text}", f.by_instance);
+            Some((text, derived))
+        }
+    }
+}
+
 #[test]
 fn duals_of_models_drawn_at_random_are_transposed_matrices() {
     let mut count = 0;
     for seed in 0..cases() {
-        let text = model(seed, false);
-        match derive(&mut Memory::text(&text), "m.blk", blk(), true) {
-            // Rows that contradict themselves are drawn, too.
-            Derived::Nothing => {}
-            Derived::Dual(f, c) => {
-                assert!(c.passed(), "seed {seed}: {:?}\n{text}", c.differences);
-                assert!(
-                    f.by_instance.is_empty(),
-                    "seed {seed}: {:?}\n{text}",
-                    f.by_instance
-                );
-                count += 1;
-            }
-            Derived::Kkt(..) => panic!("seed {seed}: not linear\n{text}"),
-            // A free column with a cost that stands in no row: the dual says 0 = cost.
-            Derived::Refused(why) if why.contains("has no variables and cannot hold") => {}
-            Derived::Refused(why) => panic!("seed {seed}: {why}\n{text}"),
+        if let Some((text, derived)) = drawn(seed, false) {
+            let linear = matches!(derived, Derived::Dual(..));
+            assert!(linear, "seed {seed}: not linear\n{text}");
+            count += 1;
         }
     }
     assert!(count * 3 > cases(), "{count}");
@@ -388,32 +628,74 @@ fn duals_of_models_drawn_at_random_are_transposed_matrices() {
 
 #[test]
 fn conditions_of_models_drawn_at_random_are_those_of_automatic_derivatives() {
+    let count = (0..cases()).filter_map(|seed| drawn(seed, true)).count() as u64;
+    assert!(count * 3 > cases(), "{count}");
+}
+
+/// The dual of the dual is the primal again: same rows and columns by name, same matrix, same sides and bounds. A bound of
+/// the primal other than 0 is a column of its dual, and so a row of the dual of that: only rows and columns without such
+/// bounds are compared by bounds.
+#[test]
+fn the_dual_of_the_dual_is_the_primal() {
     let mut count = 0;
     for seed in 0..cases() {
-        let text = model(seed, true);
-        match derive(&mut Memory::text(&text), "m.blk", blk(), true) {
-            Derived::Nothing => {}
-            Derived::Dual(f, c) | Derived::Kkt(f, c) => {
-                assert!(c.passed(), "seed {seed}: {:?}\n{text}", c.differences);
-                assert!(
-                    f.by_instance.is_empty(),
-                    "seed {seed}: {:?}\n{text}",
-                    f.by_instance
-                );
-                count += 1;
+        let Some((text, Derived::Dual(_, _, dual))) = drawn(seed, false) else {
+            continue;
+        };
+        let first = matrix(&text, &str::to_string);
+        let Derived::Dual(_, c, twice) = derive_text(&dual) else {
+            panic!("seed {seed}: the dual has no dual\n{dual}");
+        };
+        assert!(c.passed(), "seed {seed}: {:?}\n{dual}", c.differences);
+        // y_dual_x is x again, dual_y_e is e again.
+        let again = matrix(&twice, &|n| {
+            let known = n.strip_prefix("y_dual_").or(n.strip_prefix("dual_y_"));
+            known.map_or(n.to_string(), |k| {
+                k.trim_end_matches("_1").trim_end_matches("_2").to_string()
+            })
+        });
+        let mut missing = Vec::new();
+        for (key, v) in &first {
+            match again.get(key) {
+                Some(w) if (v - w).abs() <= 1e-10 * v.abs().max(1.0) => {}
+                w => missing.push((key, v, w)),
             }
-            Derived::Refused(why) => panic!("seed {seed}: {why}\n{text}"),
         }
+        assert!(
+            missing.is_empty(),
+            "seed {seed}: {missing:?}\n{text}\n{dual}\n{twice}"
+        );
+        count += 1;
     }
     assert!(count * 3 > cases(), "{count}");
+}
+
+type Entries = BTreeMap<(Record, Record), f64>;
+
+/// The matrix that a text generates, by names, its objective's row and column left out.
+fn matrix(text: &str, rename: &dyn Fn(&str) -> String) -> Entries {
+    let i = check::generate(text).expect("it was generated before");
+    let p = &i.generated.instance;
+    let z = p.objective.map(|o| o.column as usize);
+    let named = |r: &Record| (rename(&r.0), r.1.clone());
+    let mut out = Entries::new();
+    for r in (0..p.row_count()).filter(|&r| p.rows.relation[r] != Relation::Free) {
+        if p.matrix.row(r).any(|(j, _)| Some(j) == z) {
+            continue;
+        }
+        for (j, v) in p.matrix.row(r).filter(|t| t.1 != 0.0) {
+            out.insert((named(&i.rows[r]), named(&i.columns[j])), v);
+        }
+    }
+    out
 }
 
 /// All entries of a matrix by the names of their rows and columns, right-hand sides among them.
 fn entries(
     i: &check::Instance,
     rename: &dyn Fn(&str) -> String,
-) -> std::collections::BTreeMap<(String, Vec<String>, String, Vec<String>), f64> {
-    let mut out = std::collections::BTreeMap::new();
+) -> BTreeMap<(String, Vec<String>, String, Vec<String>), f64> {
+    let mut out = BTreeMap::new();
     let g = &i.generated.instance;
     for r in 0..g.row_count() {
         let (row, row_key) = &i.rows[r];
@@ -445,56 +727,40 @@ fn the_kinematic_theorem_written_by_hand_is_the_dual_of_the_static_one() {
     let mut found = Vec::new();
     for model in ["static", "kinematic"] {
         let mut host = SystemHost::new(&file, Path::new("."), &[], Output::Quiet);
-        let mut options = options(true);
-        options.study = Some(StudyChoice {
-            model: Some(model.into()),
-            generate_only: true,
-            ..StudyChoice::default()
-        });
-        session::run(
+        let name = file.to_string_lossy();
+        let all = look(
             &mut host,
-            &file.to_string_lossy(),
-            blk(),
-            options,
-            false,
-            &mut |m| {
-                let (primal, _) = study::primal(m).expect("it is solved");
-                found.push(match model {
-                    "static" => {
-                        let dual =
-                            bmod::formulation::dual::dual(&m.symbols, &m.store, &primal, true)
-                                .expect("a dual");
-                        assert!(dual.by_instance.is_empty());
-                        let text = bmod::formulation::text::model(
-                            &m.symbols, &m.store, &dual, None, "", true,
-                        );
-                        entries(&check::generate(&text).expect("generated"), &|n| {
-                            let names = [
-                                ("dual_alpha", "norm"),
-                                ("dual_x", "normal"),
-                                ("dual_objective_row", "work"),
-                                ("dual_objective", "rate"),
-                            ];
-                            let known = names.iter().find(|k| k.0 == n);
-                            known.map_or(n.to_string(), |k| k.1.to_string())
-                        })
-                    }
-                    _ => {
-                        let records = |b| check::records(&m.symbols, &m.store, b);
-                        let o = &primal.generated.origin;
-                        let (rows, columns) = (records(&o.rows), records(&o.columns));
-                        entries(
-                            &check::Instance {
-                                generated: primal.generated,
-                                rows,
-                                columns,
-                            },
-                            &str::to_string,
-                        )
-                    }
-                });
+            &name,
+            generated(Some(model)),
+            &mut |m, primal| {
+                if model == "kinematic" {
+                    let records = |b| check::records(&m.symbols, &m.store, b);
+                    let o = &primal.generated.origin;
+                    let (rows, columns) = (records(&o.rows), records(&o.columns));
+                    let generated = primal.generated;
+                    let i = check::Instance {
+                        generated,
+                        rows,
+                        columns,
+                    };
+                    return entries(&i, &str::to_string);
+                }
+                let dual = dual::dual(&m.symbols, &m.store, &primal, true).expect("a dual");
+                assert!(dual.by_instance.is_empty());
+                let text = text::model(&m.symbols, &m.store, &dual, None, "", true);
+                entries(&check::generate(&text).expect("generated"), &|n| {
+                    let names = [
+                        ("dual_alpha", "norm"),
+                        ("dual_x", "normal"),
+                        ("dual_objective_row", "work"),
+                        ("dual_objective", "rate"),
+                    ];
+                    let known = names.iter().find(|k| k.0 == n);
+                    known.map_or(n.to_string(), |k| k.1.to_string())
+                })
             },
         );
+        found.push(all.expect("it is solved"));
     }
     let (derived, by_hand) = (&found[0], &found[1]);
     let known: Vec<_> = by_hand

@@ -86,7 +86,8 @@ pub struct AlgebraVariable {
     pub domain: Vec<String>,
     /// `free`, `positive` or `negative`.
     pub sign: &'static str,
-    /// For multipliers: `rows`, `lower bounds`, `upper bounds`, `fixed values`, and the equation or variable.
+    /// For multipliers: `rows`, `lower bounds`, `upper bounds`, `fixed values`, and the equation or variable. `gradient`: the
+    /// variable at which the dual of a quadratic program takes the gradient.
     pub multiplier_of: Option<(&'static str, String)>,
 }
 
@@ -240,6 +241,7 @@ pub fn algebra(symbols: &Symbols, store: &Store, f: &Formulation) -> Algebra {
             Origin::Lower(s) => ("lower bounds", n.name(s)),
             Origin::Upper(s) => ("upper bounds", n.name(s)),
             Origin::Fixed(s) => ("fixed values", n.name(s)),
+            Origin::Point(s) => ("gradient", n.name(s)),
         }),
     });
     let variables = own.chain(multipliers).collect();

@@ -1,8 +1,10 @@
 //! The proof that a derivation is right: the derived model is generated, and its matrix compared entry by entry with that
 //! of the primal.
 
+use super::convex::{Objective, at_origin};
 use super::derive::Primal;
 use super::{Formulation, Origin, Sign};
+use crate::autodiff::Evaluator;
 use crate::check::node::SymbolId;
 use crate::check::symbols::{Store, Symbols};
 use crate::data::universe::Label;
@@ -207,17 +209,18 @@ pub fn dual(
     // What the objective's variable and its row are.
     let z = p.objective.map(|o| o.column as usize);
     let gone = eliminated(primal, f, z);
-    let mut cost = vec![0.0; p.column_count()];
-    let mut constant = 0.0;
-    match (gone, z) {
-        (Some(i), Some(z)) => {
-            let a = p.matrix.row(i).find(|(j, _)| *j == z).map_or(1.0, |a| a.1);
-            p.matrix.row(i).for_each(|(j, v)| cost[j] = -v / a);
-            constant = p.rows.rhs[i] / a;
+    let f0 = match (gone, z) {
+        (Some(i), Some(z)) => at_origin(p, &mut Evaluator::new(p), i, z).unwrap_or_default(),
+        (_, z) => {
+            let mut gradient = vec![0.0; p.column_count()];
+            z.into_iter().for_each(|z| gradient[z] = 1.0);
+            Objective {
+                gradient,
+                ..Objective::default()
+            }
         }
-        (None, Some(z)) => cost[z] = 1.0,
-        _ => {}
-    }
+    };
+    let (cost, constant) = (&f0.gradient, f0.constant);
     // Where the multipliers of the rows and bounds are in the dual.
     let columns = d.columns_by_name();
     let dual = &d.generated.instance;
@@ -231,18 +234,15 @@ pub fn dual(
         .copied();
     let objective_row = (f.objective_name.to_lowercase() + "_row", Vec::new());
     let rows = d.rows_by_name();
-    let mut dual_cost = vec![0.0; dual.column_count()];
-    let mut dual_constant = 0.0;
-    if let Some(&i) = rows.get(&objective_row) {
-        let z = objective_column;
-        let a = dual
-            .matrix
-            .row(i)
-            .find(|(j, _)| Some(*j) == z)
-            .map_or(1.0, |a| a.1);
-        dual.matrix.row(i).for_each(|(j, v)| dual_cost[j] = -v / a);
-        dual_constant = dual.rows.rhs[i] / a;
-    }
+    let d0 = match (rows.get(&objective_row), objective_column) {
+        (Some(&i), Some(z)) => at_origin(dual, &mut Evaluator::new(dual), i, z),
+        _ => None,
+    };
+    let Some(d0) = d0 else {
+        c.differ("the dual has no objective".into());
+        return c;
+    };
+    let (dual_cost, dual_constant) = (&d0.gradient, d0.constant);
     c.number(constant, dual_constant, &|| {
         "the constant of the objective".into()
     });
@@ -306,6 +306,37 @@ pub fn dual(
                 transposed[j].push((y, v * flip));
             }
         }
+    }
+    // The gradient of a quadratic objective stands on the right side, at the point of the dual.
+    let point = |j: usize| {
+        let symbol = g.origin.columns.of(j as u32).symbol;
+        let name = named(&|o| o == Origin::Point(symbol))?;
+        columns.get(&(name, p_columns[j].1.clone())).copied()
+    };
+    let mut slopes: FxHashMap<(usize, usize), f64> = FxHashMap::default();
+    for &(j, k, v) in &f0.hessian {
+        match (point(j), point(k)) {
+            (Some(a), Some(b)) => {
+                transposed[j].push((b, -v));
+                slopes.insert((a, b), -v);
+            }
+            _ => c.differ(format!(
+                "the point of {:?} is not in the dual",
+                p_columns[k]
+            )),
+        }
+    }
+    for &(a, b, v) in &d0.hessian {
+        let want = slopes.remove(&(a, b)).unwrap_or(0.0);
+        c.number(want, v, &|| {
+            format!(
+                "{:?} and {:?} in the dual objective",
+                d.columns[a], d.columns[b]
+            )
+        });
+    }
+    if !slopes.is_empty() {
+        c.differ("the dual objective lacks quadratic terms".into());
     }
     let blocks: FxHashMap<String, SymbolId> = f
         .rows
@@ -481,19 +512,19 @@ struct Places<'a> {
     primal: &'a crate::model::instance::Instance,
     derived: &'a crate::model::instance::Instance,
     sign: f64,
-    objective: Objective,
+    objective: Aim,
     /// By column of the model: its column and its row.
     columns: Vec<Option<(usize, Option<usize>)>>,
     /// By row of the model: its multiplier and its row.
     rows: Vec<Option<(usize, usize)>>,
     names: Vec<Record>,
     missing: Option<String>,
-    of_primal: crate::autodiff::Evaluator,
-    of_derived: crate::autodiff::Evaluator,
+    of_primal: Evaluator,
+    of_derived: Evaluator,
 }
 
 /// What the objective is: a row whose variable was eliminated, or a column.
-enum Objective {
+enum Aim {
     Row(usize, usize),
     Column(usize),
 }
@@ -572,13 +603,13 @@ impl<'a> Places<'a> {
             primal: p,
             derived: &d.generated.instance,
             sign: if minimum { 1.0 } else { -1.0 },
-            objective: gone.map_or(Objective::Column(z), |i| Objective::Row(i, z)),
+            objective: gone.map_or(Aim::Column(z), |i| Aim::Row(i, z)),
             columns,
             rows,
             names: column_names,
             missing,
-            of_primal: crate::autodiff::Evaluator::new(p),
-            of_derived: crate::autodiff::Evaluator::new(&d.generated.instance),
+            of_primal: Evaluator::new(p),
+            of_derived: Evaluator::new(&d.generated.instance),
         }
     }
 
@@ -635,8 +666,8 @@ impl<'a> Places<'a> {
             scale[j] += v.abs();
         };
         match self.objective {
-            Objective::Column(z) => add(z, 1.0),
-            Objective::Row(i, z) => {
+            Aim::Column(z) => add(z, 1.0),
+            Aim::Row(i, z) => {
                 let r = start[i]..start[i + 1];
                 let a = r
                     .clone()

@@ -25,6 +25,8 @@ pub struct Primal {
     pub equations: Vec<Equation>,
     /// The indices of its formulas.
     pub indices: Indices,
+    /// Equations that could not be written in symbols and stand as their rows, and why.
+    pub by_instance: Vec<String>,
     /// How many tuples each equation runs over; more than it has rows where some of these are empty.
     pub tuples: Vec<usize>,
     /// Its instance with the data of the solve.
@@ -100,6 +102,7 @@ impl<'a> Derivation<'a> {
                 name,
                 using: using.into(),
                 indices,
+                by_instance: primal.by_instance.clone(),
                 ..Formulation::default()
             },
             eliminated: None,
@@ -175,7 +178,7 @@ impl<'a> Derivation<'a> {
                 .iter()
                 .filter(|o| o.variable != t.variable)
                 .any(|o| o.factors.iter().any(|(_, f)| mentions(f, z)));
-            if a.has_variable() || a.opaque().is_some() || by_others {
+            if a.has_variable() || by_others {
                 return None;
             }
             found = Some((k, a));
@@ -429,47 +432,16 @@ impl<'a> Derivation<'a> {
             &references,
         );
         let target: Vec<IndexId> = sets.iter().map(|s| self.out.indices.add(*s)).collect();
-        let mut rows = Vec::new();
-        let mut done: Vec<usize> = Vec::new();
-        for (k, t) in &terms {
-            if done.contains(k) {
-                continue;
-            }
-            let e = &self.primal.equations[*k];
-            if let Some(why) = opaque(e, t) {
-                done.push(*k);
-                rows.push(self.by_instance(*k, v, &target, why)?);
-                continue;
-            }
+        let turned = |t: &Term, binder: &Binder, y: Option<&Expr>| {
+            invert(self.symbols, &self.out.indices, t, binder, y, &target)
+        };
+        let rows = terms.iter().map(|(k, t)| {
             let y = self.multiplier_of(*k);
-            let i = invert(
-                self.symbols,
-                &self.out.indices,
-                t,
-                &self.binders[*k],
-                y.as_ref(),
-                &target,
-            );
-            rows.push(i);
-        }
-        let mut cost = Vec::new();
-        let nothing = Binder::default();
-        for t in &cost_terms {
-            if let Some(e) = &self.eliminated
-                && let Some(why) = opaque(&self.primal.equations[e.equation], t)
-            {
-                cost = vec![self.by_instance(e.equation, v, &target, why)?];
-                break;
-            }
-            cost.push(invert(
-                self.symbols,
-                &self.out.indices,
-                t,
-                &nothing,
-                None,
-                &target,
-            ));
-        }
+            turned(t, &self.binders[*k], y.as_ref())
+        });
+        let mut rows: Vec<Inverted> = rows.collect();
+        let cost = cost_terms.iter();
+        let mut cost: Vec<Inverted> = cost.map(|t| turned(t, &Binder::default(), None)).collect();
         if self.eliminated.is_none() && self.primal.objective.is_some_and(|o| o.1 == v) {
             cost.push(Inverted {
                 conditions: Vec::new(),
@@ -493,87 +465,6 @@ impl<'a> Derivation<'a> {
             conditions: common,
             rows: add(rows),
             cost: add(cost),
-        })
-    }
-
-    /// The coefficients of a variable in an equation as data, where they cannot be written in symbols.
-    fn by_instance(
-        &mut self,
-        equation: usize,
-        v: SymbolId,
-        target: &[IndexId],
-        why: &str,
-    ) -> Result<Inverted, String> {
-        let e = &self.primal.equations[equation];
-        let (en, vn) = (
-            self.symbols.get(e.symbol).name.to_string(),
-            self.symbols.get(v).name.to_string(),
-        );
-        let g = &self.primal.generated;
-        let (Some(rows), Some(columns)) =
-            (g.origin.rows.symbol(e.symbol), g.origin.columns.symbol(v))
-        else {
-            return Ok(Inverted {
-                conditions: vec![],
-                body: Expr::Number(0.0),
-            });
-        };
-        let nonlinear = g.instance.nonlinear_rows();
-        let mut records = Vec::new();
-        let inside = |j: usize| (columns.start..columns.start + columns.len).contains(&(j as u32));
-        // The objective's function is what is left when its variable is solved for.
-        let divisor = |i: usize| match self.is_eliminated(equation) {
-            true => {
-                let z = self.primal.objective.map(|o| o.1);
-                let z = z
-                    .and_then(|z| g.origin.columns.symbol(z))
-                    .map(|b| b.start as usize);
-                let a = g.instance.matrix.row(i).find(|(j, _)| Some(*j) == z);
-                -a.map_or(1.0, |a| a.1)
-            }
-            false => 1.0,
-        };
-        for i in rows.start..rows.start + rows.len {
-            if nonlinear[i as usize] {
-                return Err(format!("`{en}` is nonlinear, and it depends on {why}"));
-            }
-            for (j, a) in g
-                .instance
-                .matrix
-                .row(i as usize)
-                .filter(|(j, _)| inside(*j))
-            {
-                let key = [rows.key(i), columns.key(j as u32)].concat();
-                records.push((key, a / divisor(i as usize)));
-            }
-        }
-        self.out.by_instance.push(format!("{vn} in {en}: {why}"));
-        let mut domain = domain_of(self.symbols, e.symbol);
-        let row: Vec<IndexId> = domain.iter().map(|s| self.out.indices.add(*s)).collect();
-        domain.extend(domain_of(self.symbols, v));
-        let name = self.fresh(&format!("a_{en}_{vn}"));
-        let data = self.out.data.len();
-        self.out.data.push(NewData {
-            name,
-            text: format!("coefficients of {vn} in {en}"),
-            domain,
-            is_set: false,
-            records,
-        });
-        let parts =
-            |list: &[IndexId]| -> Vec<Part> { list.iter().map(|k| Part::Index(*k)).collect() };
-        let a = Expr::Data(Source::New(data), [parts(&row), parts(target)].concat());
-        let y = match self.multipliers[equation] {
-            Some(m) => self.multiplier(m, parts(&row)),
-            None => Expr::Number(1.0),
-        };
-        let binder = Binder {
-            indices: row,
-            conditions: Vec::new(),
-        };
-        Ok(Inverted {
-            conditions: Vec::new(),
-            body: sum_over(binder, times(a, y)),
         })
     }
 
@@ -604,44 +495,11 @@ impl<'a> Derivation<'a> {
         Some(Expr::NewMember(self.out.data.len() - 1, key))
     }
 
-    /// The constants of an equation on its right side, under what it runs over.
-    pub fn right_side(&mut self, equation: usize) -> (Binder, Vec<Part>, Expr) {
+    /// The constants of an equation on its right side.
+    pub fn right_side(&self, equation: usize) -> Expr {
         let e = &self.primal.equations[equation];
         let (left, right) = (e.left.without_variables(), e.right.without_variables());
-        let b = sum(vec![(false, right), (true, left)]);
-        let dark = |c: &Expr| c.opaque();
-        let why = dark(&b).or_else(|| e.binder.conditions.iter().find_map(dark));
-        let Some(why) = why else {
-            return (self.binders[equation].clone(), e.key.clone(), b);
-        };
-        let en = self.symbols.get(e.symbol).name.to_string();
-        let g = &self.primal.generated;
-        let mut records = Vec::new();
-        if let Some(rows) = g.origin.rows.symbol(e.symbol) {
-            for i in rows.start..rows.start + rows.len {
-                records.push((rows.key(i).to_vec(), g.instance.rows.rhs[i as usize]));
-            }
-        }
-        self.out
-            .by_instance
-            .push(format!("right side of {en}: {why}"));
-        let domain = domain_of(self.symbols, e.symbol);
-        let row: Vec<IndexId> = domain.iter().map(|s| self.out.indices.add(*s)).collect();
-        let name = self.fresh(&format!("b_{en}"));
-        self.out.data.push(NewData {
-            name,
-            text: format!("right side of {en}"),
-            domain,
-            is_set: false,
-            records,
-        });
-        let key: Vec<Part> = row.iter().map(|k| Part::Index(*k)).collect();
-        let b = Expr::Data(Source::New(self.out.data.len() - 1), key.clone());
-        let binder = Binder {
-            indices: row,
-            conditions: Vec::new(),
-        };
-        (binder, key, b)
+        sum(vec![(false, right), (true, left)])
     }
 }
 
@@ -688,17 +546,6 @@ fn common(rows: &mut [Inverted], cost: &mut [Inverted]) -> Vec<Expr> {
         i.conditions.retain(|c| !common.contains(c));
     }
     common
-}
-
-fn opaque(e: &Equation, t: &Term) -> Option<&'static str> {
-    let row = e.binder.conditions.iter().chain(&t.binder.conditions);
-    let all = row.chain(t.factors.iter().map(|(_, f)| f));
-    let in_key = |k: &[Part]| Expr::Member(UNIVERSE, k.to_vec()).opaque();
-    let mut found = all.filter_map(Expr::opaque);
-    found
-        .next()
-        .or_else(|| in_key(&t.key))
-        .or_else(|| in_key(&e.key))
 }
 
 fn mentions(e: &Expr, v: SymbolId) -> bool {

@@ -1,6 +1,7 @@
 //! The dual and the optimality conditions of a solve: the page, the model, the comparison; or a refusal with its place.
 
 use super::check::{self, Comparison};
+use super::convex::{Shape, shape};
 use super::derive::{Derivation, Primal};
 use super::math::{Math, name};
 use super::page::{Block, Formula, Page, Setter, formulas};
@@ -154,26 +155,35 @@ fn refuse_dual(m: &Machine, primal: &Primal, studied: &Studied) -> Result<(), Bo
             .help("the relaxation has one: `solve … using rmip`")
             .into());
     }
-    if !instance.is_linear() {
-        let row = instance
-            .nonlinear_rows()
-            .iter()
-            .position(|n| *n)
-            .unwrap_or(0);
-        let e = primal.generated.origin.rows.of(row as u32).symbol;
-        let span = definition(m, e).map_or(studied.span, |d| d.span);
-        let name = &m.symbols.get(e).name;
-        return Err(Diagnostic::execution(
-            "E0431",
-            span,
-            format!("the dual of a linear program is asked for, and `{name}` is not linear"),
-        )
-        .label("this equation")
-        .other(studied.span, "at this solve")
-        .help("`bmod kkt` derives the optimality conditions of a nonlinear program")
-        .into());
+    let (row, why) = match shape(instance) {
+        Shape::Linear | Shape::ConvexQuadratic(_) => return Ok(()),
+        Shape::Quadratic => (
+            None,
+            "its objective is quadratic and not convex".to_string(),
+        ),
+        Shape::Nonlinear(row) => {
+            let e = primal.generated.origin.rows.of(row as u32).symbol;
+            let name = &m.symbols.get(e).name;
+            let why =
+                format!("`{name}` is neither linear nor the objective of a quadratic program");
+            (definition(m, e), why)
+        }
+    };
+    let message =
+        format!("the dual of a linear or convex quadratic program is asked for, and {why}");
+    let span = row.map_or(studied.span, |d| d.span);
+    let refusal = Diagnostic::execution("E0431", span, message)
+        .label(if row.is_some() {
+            "this equation"
+        } else {
+            "of this solve"
+        })
+        .help("`bmod kkt` derives the optimality conditions of a nonlinear program");
+    Err(match row {
+        Some(_) => refusal.other(studied.span, "at this solve"),
+        None => refusal,
     }
-    Ok(())
+    .into())
 }
 
 fn definition<'a>(m: &'a Machine, e: SymbolId) -> Option<&'a EquationDef> {

@@ -1,4 +1,5 @@
-//! The dual of a linear program, with indices and with GAMS's signs: its levels are the primal's marginals.
+//! The dual of a linear program, with indices and with GAMS's signs: its levels are the primal's marginals. Of a convex
+//! quadratic program with linear rows Dorn's dual: a further variable stands for the point at which the gradient is taken.
 
 use super::derive::{Derivation, Primal, domain_of};
 use super::tree::*;
@@ -7,7 +8,7 @@ use crate::check::node::SymbolId;
 use crate::check::symbols::{Store, Symbols, attribute};
 use crate::data::universe::Label;
 
-/// Derives the dual of a linear model. `as_in_text`: multipliers have the signs of the variables that the text pairs with
+/// Derives the dual of a linear model, or of a convex quadratic one with linear rows. `as_in_text`: multipliers have the signs of the variables that the text pairs with
 /// their rows. `Err` says why there is none.
 pub fn dual(
     symbols: &Symbols,
@@ -19,7 +20,9 @@ pub fn dual(
         return Err("the model has no objective: nothing is minimised or maximised".into());
     };
     let name = format!("dual_{}", primal.name);
-    let mut d = Derivation::new(symbols, store, primal, name.clone(), "lp")
+    let is_linear = primal.generated.instance.is_linear();
+    let using = if is_linear { "lp" } else { "qcp" };
+    let mut d = Derivation::new(symbols, store, primal, name.clone(), using)
         .map_err(|(k, why)| format!("`{}`: {why}", symbols.get(primal.equations[k].symbol).name))?;
     d.out.name = d.fresh(&name);
     d.multipliers_of_rows(as_in_text);
@@ -28,16 +31,16 @@ pub fn dual(
         let Some(number) = d.multiplier_number(k) else {
             continue;
         };
-        let (binder, key, b) = d.right_side(k);
-        let y = d.multiplier(number, key);
-        objective.push((false, sum_over(binder, times(b, y))));
+        let b = d.right_side(k);
+        let y = d.multiplier(number, primal.equations[k].key.clone());
+        objective.push((false, sum_over(d.binders[k].clone(), times(b, y))));
     }
     for v in d.variables() {
         let mut bounds = column(&mut d, v)?;
         objective.append(&mut bounds);
     }
     if let Some(o) = &d.eliminated {
-        objective.push((false, o.function.without_variables()));
+        objective.push((false, less_slope(&o.function)?));
     }
     let other = match sense {
         Sense::Minimize => Sense::Maximize,
@@ -45,7 +48,122 @@ pub fn dual(
     };
     d.out.objective = Some((other, sum(objective)));
     d.out.objective_name = d.fresh("dual_objective");
+    if !is_linear {
+        points(&mut d);
+    }
     Ok(d.out)
+}
+
+/// `f − ∇f·x` of a quadratic function: its constants, less its quadratic terms.
+fn less_slope(f: &Expr) -> Result<Expr, String> {
+    if !f.has_variable() {
+        return Ok(f.clone());
+    }
+    let unknown =
+        || Err("its objective is not written as a sum of products and squares".to_string());
+    // A product of two linear forms: their constants, less what is left of them.
+    let pair = |a: &Expr, b: &Expr, make: &dyn Fn(Expr, Expr) -> Expr| {
+        let (a0, b0) = (a.without_variables(), b.without_variables());
+        let (a1, b1) = (homogeneous(a), homogeneous(b));
+        sum(vec![(false, make(a0, b0)), (true, make(a1, b1))])
+    };
+    let square = |a: &Expr| {
+        let sqr = |a: Expr, _: Expr| match a {
+            Expr::Number(x) => Expr::Number(x * x),
+            a => Expr::Call(Function::Sqr, vec![a]),
+        };
+        Ok(pair(a, a, &sqr))
+    };
+    match f {
+        Expr::Variable(..) => Ok(Expr::Number(0.0)),
+        Expr::Negate(a) => Ok(negate(less_slope(a)?)),
+        Expr::Sum(t) => {
+            let each = t.iter().map(|(m, e)| Ok((*m, less_slope(e)?)));
+            Ok(sum(each.collect::<Result<_, String>>()?))
+        }
+        Expr::Dollar(a, c) => Ok(guarded(less_slope(a)?, vec![(**c).clone()])),
+        Expr::Aggregate(AggregateOp::Sum, d, a) => Ok(sum_over((**d).clone(), less_slope(a)?)),
+        Expr::Product(t) => {
+            let (with, mut factors): (Vec<_>, Vec<_>) =
+                t.iter().cloned().partition(|(_, e)| e.has_variable());
+            let rest = match with.as_slice() {
+                [(false, a)] => less_slope(a)?,
+                [(false, a), (false, b)] => pair(a, b, &times),
+                _ => return unknown(),
+            };
+            factors.push((false, rest));
+            Ok(product(factors))
+        }
+        Expr::Call(Function::Sqr, args) => square(&args[0]),
+        Expr::Call(Function::Power, args) if args[1] == Expr::Number(2.0) => square(&args[0]),
+        Expr::Binary(BinaryOp::Power, a, n) if **n == Expr::Number(2.0) => square(a),
+        _ => unknown(),
+    }
+}
+
+/// A linear form without its constants.
+fn homogeneous(e: &Expr) -> Expr {
+    if !e.has_variable() {
+        return Expr::Number(0.0);
+    }
+    match e {
+        Expr::Negate(a) => negate(homogeneous(a)),
+        Expr::Sum(t) => sum(t.iter().map(|(m, e)| (*m, homogeneous(e))).collect()),
+        Expr::Dollar(a, c) => guarded(homogeneous(a), vec![(**c).clone()]),
+        Expr::Aggregate(AggregateOp::Sum, d, a) => sum_over((**d).clone(), homogeneous(a)),
+        Expr::Product(t) => {
+            let one = |(d, e): &(bool, Expr)| match e.has_variable() {
+                true => (*d, homogeneous(e)),
+                false => (*d, e.clone()),
+            };
+            product(t.iter().map(one).collect())
+        }
+        e => e.clone(),
+    }
+}
+
+/// The user's variables that are left stand for the point at which the gradient is taken: they get names of their own.
+fn points(d: &mut Derivation) {
+    let mut found: Vec<SymbolId> = Vec::new();
+    let mut rows = std::mem::take(&mut d.out.rows);
+    let objective = d.out.objective.take();
+    let mut all: Vec<&Expr> = rows.iter().flat_map(|r| [&r.left, &r.right]).collect();
+    all.extend(objective.as_ref().map(|o| &o.1));
+    for e in all {
+        e.walk(&mut |e| {
+            if let Expr::Variable(Variable::Own(v), _) = e
+                && !found.contains(v)
+            {
+                found.push(*v);
+            }
+        });
+    }
+    let first = d.out.multipliers.len();
+    for &v in &found {
+        let name = d.fresh(&format!("at_{}", d.symbols.get(v).name));
+        d.out.multipliers.push(Multiplier {
+            name,
+            domain: domain_of(d.symbols, v),
+            sign: Sign::Free,
+            origin: Origin::Point(v),
+        });
+    }
+    let replaced = |e: &Expr| {
+        let node = |e| match e {
+            Expr::Variable(Variable::Own(v), key) => {
+                let place = found.iter().position(|f| *f == v).unwrap_or_default();
+                Some(Expr::Variable(Variable::Multiplier(first + place), key))
+            }
+            e => Some(e),
+        };
+        e.map(&mut { node }, &mut |p| Some(p.clone()))
+            .unwrap_or_else(|| e.clone())
+    };
+    for r in &mut rows {
+        (r.left, r.right) = (replaced(&r.left), replaced(&r.right));
+    }
+    d.out.objective = objective.map(|(sense, e)| (sense, replaced(&e)));
+    d.out.rows = rows;
 }
 
 /// The columns of a variable that have the same sign.

@@ -1,5 +1,6 @@
 //! A model and its answer in words.
 
+use super::convex::{Shape, shape};
 use super::derive::Primal;
 use super::math::explained;
 use super::range::Ranges;
@@ -107,15 +108,25 @@ impl Explained<'_> {
         let p = self.primal;
         let i = &p.generated.instance;
         let (rows, columns) = (i.row_count(), i.column_count());
-        let kind = match (i.is_linear(), i.objective.is_some()) {
-            (true, true) => {
-                "It is linear, and so convex: an optimum that is found is an optimum over all points"
+        let maximum = i.sign() < 0.0;
+        let curved = if maximum { "concave" } else { "convex" };
+        let semi = if maximum { "negative" } else { "positive" };
+        let kind = match (i.objective.is_some(), shape(i)) {
+            (false, _) => {
+                "It is a complementarity problem or a system of equations and has no objective".into()
             }
-            (false, true) => {
-                "It is not linear; unless it is convex, an optimum that is found may be a local one"
+            (_, Shape::Linear) => {
+                "It is linear, and so convex: an optimum that is found is an optimum over all points".into()
             }
-            (_, false) => {
-                "It is a complementarity problem or a system of equations and has no objective"
+            (_, Shape::ConvexQuadratic(_)) => format!(
+                "Its rows are linear, and its quadratic objective is {curved} (the Hessian is {semi} semidefinite): an \
+                 optimum that is found is an optimum over all points"
+            ),
+            (_, Shape::Quadratic) => format!(
+                "Its objective is quadratic and not {curved}: an optimum that is found may be a local one"
+            ),
+            (_, Shape::Nonlinear(_)) => {
+                "It is not linear; unless it is convex, an optimum that is found may be a local one".into()
             }
         };
         format!(

@@ -7,6 +7,7 @@
 
 pub mod algebra;
 pub mod check;
+pub mod convex;
 pub mod data;
 pub mod derive;
 pub mod derived;
@@ -54,6 +55,8 @@ pub enum Origin {
     Upper(SymbolId),
     /// From the columns of a variable that are fixed.
     Fixed(SymbolId),
+    /// It is no multiplier but the point at which the dual of a quadratic program takes the gradient.
+    Point(SymbolId),
 }
 
 /// A variable that the derivation introduces.
@@ -118,6 +121,23 @@ pub struct Row {
     pub right: Expr,
     /// The variable it is paired with: in the dual the column it comes from, in complementarity problems its partner.
     pub pair: Option<Variable>,
+}
+
+impl Row {
+    /// A row that says `0 = 0`.
+    pub fn new(name: String) -> Self {
+        Self {
+            name,
+            text: String::new(),
+            domain: Vec::new(),
+            key: Vec::new(),
+            binder: Binder::default(),
+            left: Expr::Number(0.0),
+            relation: Relation::Equal,
+            right: Expr::Number(0.0),
+            pair: None,
+        }
+    }
 }
 
 /// A model as formulas.

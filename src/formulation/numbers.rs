@@ -26,7 +26,13 @@ pub fn add(page: &mut Page, m: &Machine, g: &Generated) {
                 continue;
             };
             let i = rows.start;
-            let math = s.row(&written_out(g, i as usize)).0;
+            let row = Row {
+                relation: g.instance.rows.relation[i as usize],
+                left: left_side(g, i as usize, &rounded),
+                right: rounded(g.instance.rows.rhs[i as usize]),
+                ..Row::new(f.name.clone())
+            };
+            let math = s.row(&row).0;
             f.example = Some((record(&m.store, &f.name, rows.key(i)), math));
         }
     }
@@ -45,36 +51,26 @@ fn column(g: &Generated, j: usize) -> Expr {
     Expr::Variable(Variable::Own(b.symbol), key)
 }
 
-/// A row with its numbers.
-fn written_out(g: &Generated, i: usize) -> Row {
+/// The left side of a row with its labels; `number` writes a number.
+pub fn left_side(g: &Generated, i: usize, number: &dyn Fn(f64) -> Expr) -> Expr {
     let p = &g.instance;
     let mut terms = Vec::new();
     for (j, a) in p.matrix.row(i).filter(|t| t.1 != 0.0) {
-        terms.push((false, times(rounded(a), column(g, j))));
+        terms.push((false, times(number(a), column(g, j))));
     }
     for k in &p.nonlinear {
         for t in (0..k.row.len()).filter(|&t| k.row[t] as usize == i) {
-            terms.push((false, times(rounded(k.coef[t]), term(g, k, t))));
+            terms.push((false, times(number(k.coef[t]), term(g, k, t, number))));
         }
     }
-    Row {
-        left: sum(terms),
-        relation: p.rows.relation[i],
-        right: rounded(p.rows.rhs[i]),
-        name: String::new(),
-        text: String::new(),
-        domain: Vec::new(),
-        key: Vec::new(),
-        binder: Binder::default(),
-        pair: None,
-    }
+    sum(terms)
 }
 
 /// A nonlinear term as a formula.
-fn term(g: &Generated, k: &KernelTerms, t: usize) -> Expr {
+fn term(g: &Generated, k: &KernelTerms, t: usize, number: &dyn Fn(f64) -> Expr) -> Expr {
     let (v, c) = (k.kernel.variables as usize, k.kernel.constants as usize);
     let variable = |n: u32| column(g, k.columns[t * v + n as usize] as usize);
-    let constant = |n: u32| rounded(k.constants[t * c + n as usize]);
+    let constant = |n: u32| number(k.constants[t * c + n as usize]);
     let mut stack: Vec<Expr> = Vec::new();
     for op in &k.kernel.ops {
         let mut args = stack.split_off(stack.len().saturating_sub(op.arguments()));

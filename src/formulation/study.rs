@@ -1,13 +1,15 @@
 //! From a run to a primal with formulas and numbers.
 
-use super::derive::{Primal, Values};
+use super::derive::{Primal, Values, domain_of};
 use super::lower::{Equation, Lowering};
-use super::tree::{Expr, Indices, Part, Variable, guarded};
+use super::numbers::left_side;
+use super::tree::{Binder, Expr, IndexId, Indices, Part, Variable, guarded, sum};
+use crate::check::symbols::{Symbols, UNIVERSE};
 use crate::diag::Diagnostic;
 use crate::model::instance::Instance;
 use crate::model::origin::Blocks;
 use crate::model::problem_type::ProblemType;
-use crate::run::{Machine, Studied};
+use crate::run::{Generated, Machine, Studied};
 use crate::solve::answer::{Answer, answer};
 use crate::solve::{Budget, Quiet, Settings};
 
@@ -46,7 +48,7 @@ pub fn primal(m: &mut Machine) -> Option<(Primal, Studied)> {
         .iter()
         .map(|r| lowering.equation(&m.equations[r.definition]))
         .collect();
-    let indices: Indices = lowering.indices;
+    let mut indices: Indices = lowering.indices;
     for &(v, set) in &studied.code.limits {
         // The model has the variable in this set only.
         let limited = |e| match e {
@@ -74,7 +76,16 @@ pub fn primal(m: &mut Machine) -> Option<(Primal, Studied)> {
         }
     }
     let tuples = studied.code.equations.iter();
-    let tuples = tuples.map(|r| m.tuple_count(r.definition)).collect();
+    let mut tuples: Vec<usize> = tuples.map(|r| m.tuple_count(r.definition)).collect();
+    let mut by_instance = Vec::new();
+    for (e, tuples) in equations.iter_mut().zip(&mut tuples) {
+        if let Some(why) = dark(e) {
+            by_instance.push(format!("{}: {why}", m.symbols.get(e.symbol).name));
+            *e = by_rows(&m.symbols, &generated, e, &mut indices);
+            // Not all tuples are rows.
+            *tuples = usize::MAX;
+        }
+    }
     let answer = studied.answer.as_ref().map(|(origin, a)| {
         let columns = |v: &[f64]| moved(&origin.columns, v, &generated.origin.columns);
         let rows = |v: &[f64]| moved(&origin.rows, v, &generated.origin.rows);
@@ -92,10 +103,47 @@ pub fn primal(m: &mut Machine) -> Option<(Primal, Studied)> {
         equations,
         tuples,
         indices,
+        by_instance,
         generated,
         answer,
     };
     Some((primal, studied))
+}
+
+/// Why an equation cannot be written in symbols, if it cannot.
+fn dark(e: &Equation) -> Option<&'static str> {
+    let key = Expr::Member(UNIVERSE, e.key.clone());
+    let all = e.binder.conditions.iter().chain([&e.left, &e.right, &key]);
+    all.filter_map(Expr::opaque).next()
+}
+
+/// An equation by its rows as they were generated, each under the condition that its labels are meant.
+fn by_rows(symbols: &Symbols, g: &Generated, e: &Equation, indices: &mut Indices) -> Equation {
+    let domain = domain_of(symbols, e.symbol);
+    let running: Vec<IndexId> = domain.iter().map(|s| indices.add(*s)).collect();
+    let key: Vec<Part> = running.iter().map(|k| Part::Index(*k)).collect();
+    let (mut left, mut right) = (Vec::new(), Vec::new());
+    if let Some(b) = g.origin.rows.symbol(e.symbol) {
+        for i in b.start..b.start + b.len {
+            let labels = b.key(i).iter().map(|l| Part::Label(*l));
+            let same = key.iter().cloned().zip(labels);
+            let here: Vec<Expr> = same.map(|(k, l)| Expr::SameAs(k, l)).collect();
+            let side = left_side(g, i as usize, &Expr::Number);
+            left.push((false, guarded(side, here.clone())));
+            let rhs = Expr::Number(g.instance.rows.rhs[i as usize]);
+            right.push((false, guarded(rhs, here)));
+        }
+    }
+    Equation {
+        binder: Binder {
+            indices: running,
+            conditions: Vec::new(),
+        },
+        key,
+        left: sum(left),
+        right: sum(right),
+        ..e.clone()
+    }
 }
 
 /// Values by the rows or columns of another instance of the model; 0 where there was none.

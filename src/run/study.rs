@@ -1,5 +1,6 @@
 //! A solve that is looked at when the run is over: its code, the data as they were, the answer.
 
+use super::random::Random;
 use super::{Frame, GenerateOptions, Generated, Machine};
 use crate::check::node::SolveCode;
 use crate::data::table::Table;
@@ -28,6 +29,8 @@ pub struct Studied {
     pub number: usize,
     /// All data before it.
     tables: Vec<Table>,
+    /// Random numbers before it.
+    random: Random,
     /// What the instance was made of, and the answer.
     pub answer: Option<(Origin, Answer)>,
 }
@@ -49,6 +52,7 @@ impl Machine<'_> {
                 span,
                 number: self.solves_seen,
                 tables: self.store.tables.clone(),
+                random: self.random.borrow().clone(),
                 answer: None,
             }));
         }
@@ -89,6 +93,7 @@ impl Machine<'_> {
     pub fn take_study(&mut self) -> Option<(Studied, Option<Generated>)> {
         let mut s = *self.studied.take()?;
         std::mem::swap(&mut self.store.tables, &mut s.tables);
+        self.random.replace(s.random.clone());
         self.store.refresh_universe();
         self.store.tables.iter_mut().for_each(Table::tidy);
         let options = GenerateOptions {

@@ -114,7 +114,8 @@ pub(super) fn by_rows(m: usize, entries: &[Entry]) -> Sparse {
     out
 }
 
-fn is_semidefinite(n: usize, lower: &[Entry]) -> bool {
+/// Whether a symmetric matrix, given by the entries of its lower triangle, is positive semidefinite.
+pub fn is_semidefinite(n: usize, lower: &[Entry]) -> bool {
     let top = lower.iter().fold(0.0f64, |t, e| t.max(e.2.abs()));
     if !top.is_finite() {
         return false;
