@@ -723,7 +723,7 @@ pub fn checked_kkt(
     primal: &Primal,
 ) -> Result<(Formulation, Comparison), String> {
     let derived = |keep| -> Result<(Formulation, Instance), String> {
-        let f = super::kkt::kkt(symbols, store, primal, keep).map_err(|(_, why)| why)?;
+        let f = super::kkt::kkt(symbols, store, primal, keep, false).map_err(|(_, why)| why)?;
         let text = super::text::model(symbols, store, &f, None, "", true);
         generate(&text).map(|d| (f, d))
     };

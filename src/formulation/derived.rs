@@ -198,8 +198,8 @@ fn conditions(
     write: bool,
 ) -> Result<Derived, Box<Diagnostic>> {
     let (symbols, store) = (&m.symbols, &m.store);
-    let f =
-        kkt::kkt(symbols, store, primal, false).map_err(|r| refuse_kkt(m, primal, studied, r))?;
+    let f = kkt::kkt(symbols, store, primal, false, true)
+        .map_err(|r| refuse_kkt(m, primal, studied, r))?;
     let mut page = vec![Block::Heading(format!("Lagrangian of {}", primal.name))];
     if let Some(l) = lagrangian(m, primal) {
         let mut own = Setter::new(symbols, store, &l.1);
@@ -214,6 +214,7 @@ fn conditions(
         "Optimality conditions (Karush, Kuhn, Tucker)".into(),
     ));
     page.extend(formulas(&mut Setter::new(symbols, store, &f), symbols, &f));
+    page.extend(f.notes.iter().cloned().map(Block::Words));
     // What is written is what was generated.
     let (formulation, check) = match check || write {
         false => (f, None),
@@ -234,7 +235,7 @@ fn conditions(
 /// The Lagrangian, and the formulation whose names it uses.
 fn lagrangian(m: &Machine, primal: &Primal) -> Option<(Expr, Formulation)> {
     let mut d = Derivation::new(&m.symbols, &m.store, primal, String::new(), "nlp").ok()?;
-    d.multipliers_of_rows(false);
+    d.multipliers_of_rows(true);
     let function = match (&d.eliminated, primal.objective) {
         (Some(o), _) => o.function.clone(),
         (None, Some((_, z))) => Expr::Variable(Variable::Own(z), Vec::new()),

@@ -17,12 +17,14 @@ use crate::syntax::ast::VariableKind;
 pub type Refusal = (Option<usize>, String);
 
 /// Derives the optimality conditions of a model. `keep`: each row holds its partner, with a coefficient eps, so that rows
-/// whose terms cancel are not empty.
+/// whose terms cancel are not empty. `as_in_text`: multipliers have the signs of the variables that the text pairs with
+/// their rows.
 pub fn kkt(
     symbols: &Symbols,
     store: &Store,
     primal: &Primal,
     keep: bool,
+    as_in_text: bool,
 ) -> Result<Formulation, Refusal> {
     if primal.objective.is_none() {
         let why = "the model has no objective: nothing is minimised or maximised";
@@ -32,7 +34,7 @@ pub fn kkt(
     let mut d = Derivation::new(symbols, store, primal, name.clone(), "mcp")
         .map_err(|(k, why)| (Some(k), why))?;
     d.out.name = d.fresh(&name);
-    d.multipliers_of_rows(false);
+    d.multipliers_of_rows(as_in_text);
     for v in d.variables() {
         d.out.own.push(v);
         stationarity(&mut d, v, keep).map_err(|why| (None, why))?;
@@ -194,8 +196,8 @@ fn feasibility(d: &mut Derivation, k: usize, keep: bool) {
             .conditions
             .push(Expr::NewMember(d.out.data.len() - 1, e.key.clone()));
     }
-    // Of a maximum the function of the row is what is left over.
-    let (left, right, relation) = match d.is_minimum() {
+    // Of a maximum the function of the row is what is left over, unless the multiplier has the opposite sign.
+    let (left, right, relation) = match d.is_minimum() != d.out.flipped {
         true => (e.left.clone(), e.right.clone(), e.relation),
         false => (
             e.right.clone(),
