@@ -35,7 +35,10 @@ fn wall(n: usize) -> ([f64; 3], usize) {
         ..Options::default()
     };
     let preprocess = PreprocessOptions {
-        defines: vec![("courses".into(), n.to_string()), ("blocks".into(), n.to_string())],
+        defines: vec![
+            ("courses".into(), n.to_string()),
+            ("blocks".into(), n.to_string()),
+        ],
         slash_comments: true,
         ..PreprocessOptions::default()
     };

@@ -64,7 +64,8 @@ fn generated(model: Option<&str>) -> StudyChoice {
 }
 
 fn derived(m: &Machine, primal: &Primal) -> Derived {
-    if primal.objective.is_none() || primal.using.ends_with("mpec") || primal.using.contains("mi") {
+    let discrete = matches!(&*primal.using, "mip" | "miqcp" | "minlp");
+    if primal.objective.is_none() || primal.using.ends_with("mpec") || discrete {
         return Derived::Nothing;
     }
     let (symbols, store) = (&m.symbols, &m.store);

@@ -143,18 +143,7 @@ fn refuse_dual(m: &Machine, primal: &Primal, studied: &Studied) -> Result<(), Bo
         let help = "a dual belongs to a linear program, solved `using lp`";
         return Err(no(message).help(help).into());
     }
-    let relaxed = primal.using.starts_with('r');
-    if let Some(j) = instance.columns.first_undecided().filter(|_| !relaxed) {
-        let b = primal.generated.origin.columns.of(j as u32);
-        let name = m.record_name(b.symbol, b.key(j as u32));
-        let declared = m.symbols.get(b.symbol).declared;
-        let message =
-            format!("a model with discrete variables has no linear dual, and {name} is discrete");
-        return Err(no(message)
-            .other(declared, "declared here")
-            .help("the relaxation has one: `solve … using rmip`")
-            .into());
-    }
+    refuse_discrete(m, primal, no)?;
     let (row, why) = match shape(instance) {
         Shape::Linear | Shape::ConvexQuadratic(_) => return Ok(()),
         Shape::Quadratic => (
@@ -186,6 +175,29 @@ fn refuse_dual(m: &Machine, primal: &Primal, studied: &Studied) -> Result<(), Bo
     .into())
 }
 
+/// A model with discrete variables has neither a linear dual nor optimality conditions; its relaxation has.
+fn refuse_discrete(
+    m: &Machine,
+    primal: &Primal,
+    no: impl Fn(String) -> Diagnostic,
+) -> Result<(), Box<Diagnostic>> {
+    let relaxed = primal.using.starts_with('r');
+    let columns = &primal.generated.instance.columns;
+    let Some(j) = columns.first_undecided().filter(|_| !relaxed) else {
+        return Ok(());
+    };
+    let b = primal.generated.origin.columns.of(j as u32);
+    let name = m.record_name(b.symbol, b.key(j as u32));
+    let declared = m.symbols.get(b.symbol).declared;
+    let message = format!(
+        "a model with discrete variables has no dual and no optimality conditions of this kind, and {name} is discrete"
+    );
+    Err(no(message)
+        .other(declared, "declared here")
+        .help("its relaxation has them: `solve … using rmip`")
+        .into())
+}
+
 fn definition<'a>(m: &'a Machine, e: SymbolId) -> Option<&'a EquationDef> {
     m.equations.iter().find(|d| d.symbol == e)
 }
@@ -198,6 +210,9 @@ fn conditions(
     write: bool,
 ) -> Result<Derived, Box<Diagnostic>> {
     let (symbols, store) = (&m.symbols, &m.store);
+    refuse_discrete(m, primal, |message| {
+        Diagnostic::execution("E0432", studied.span, message).label("of this solve")
+    })?;
     let f = kkt::kkt(symbols, store, primal, false, true)
         .map_err(|r| refuse_kkt(m, primal, studied, r))?;
     let mut page = vec![Block::Heading(format!("Lagrangian of {}", primal.name))];

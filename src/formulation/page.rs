@@ -1,7 +1,7 @@
 //! A formulation as a page: headings, formulas, legends and tables, as text, LaTeX or HTML.
 
 use super::math::{Math, explained, listed, name, symbol_name};
-use super::render::{escaped, latex, mathml, plain, text, wrapped};
+use super::render::{escaped, latex, latex_lines, mathml, mathml_lines, plain, text, wrapped};
 use super::tree::*;
 use super::{Formulation, Origin, Sign};
 use crate::check::node::SymbolId;
@@ -349,7 +349,8 @@ pub fn filled(t: &str, width: usize) -> String {
 
 fn as_latex(page: &Page, title: &str) -> String {
     let mut out = String::from(
-        "\\documentclass{article}\n\\usepackage[utf8]{inputenc}\n\\usepackage{amsmath}\n\\begin{document}\n",
+        "\\documentclass{article}\n\\usepackage[utf8]{inputenc}\n\\usepackage{amsmath}\n\\allowdisplaybreaks\n\
+         \\addtolength{\\textwidth}{3cm}\\addtolength{\\oddsidemargin}{-1.5cm}\n\\begin{document}\n",
     );
     let _ = writeln!(out, "\\section*{{{}}}", escaped(title));
     for b in page {
@@ -381,9 +382,13 @@ fn as_latex(page: &Page, title: &str) -> String {
                         out,
                         "\\text{{{}}} \\quad & {}{words}{}{end}",
                         escaped(&f.name),
-                        latex(&f.math),
+                        latex_lines(&f.math),
                         f.example.as_ref().map_or(String::new(), |(name, math)| {
-                            format!(" \\\\\n&\\text{{{}: }} {}", escaped(name), latex(math))
+                            format!(
+                                " \\\\\n&\\text{{{}: }} {}",
+                                escaped(name),
+                                latex_lines(math)
+                            )
                         })
                     );
                 }
@@ -465,7 +470,7 @@ pub const STYLE: &str = "body{font:16px/1.5 system-ui,sans-serif;max-width:60em;
 h1{font-size:1.6em}h2{font-size:1.15em;margin:1.6em 0 .4em;border-bottom:1px solid #ccc}\
 table{border-collapse:collapse;margin:.5em 0}td,th{padding:.15em 1em .15em 0;text-align:left;vertical-align:baseline}\
 th{font-weight:600;border-bottom:1px solid #999}td.n,th.n{text-align:right;font-variant-numeric:tabular-nums}\
-td.name{color:#666;font-size:.9em}td.runs{color:#444;padding-left:2em}math{font-size:1.08em}mtext{font-family:system-ui,sans-serif;font-size:.92em}\
+td.name{color:#666;font-size:.9em}td.runs{color:#444;padding-left:2em}math{font-size:1.08em;font-family:'STIX Two Math','Cambria Math','Latin Modern Math','DejaVu Math TeX Gyre',math}mtext{font-family:system-ui,sans-serif;font-size:.92em}\
 .example td{color:#555;font-size:.9em}.f td{padding:.35em .6em .35em 0}@media print{body{font-size:11pt;max-width:none;margin:0}h2{break-after:avoid}tr{break-inside:avoid}}\
 @page{size:A4;margin:18mm}";
 
@@ -482,7 +487,6 @@ fn as_html(page: &Page, title: &str) -> String {
 /// The blocks of a page as HTML.
 pub fn body(page: &Page) -> String {
     let math = |m: &Math| format!("<math>{}</math>", mathml(m));
-    let display = |m: &Math| format!("<math displaystyle=\"true\">{}</math>", mathml(m));
     let mut out = String::new();
     for b in page {
         match b {
@@ -507,14 +511,14 @@ pub fn body(page: &Page) -> String {
                         "<tr title=\"{}\"><td class=\"name\">{}</td><td>{}</td><td class=\"runs\">{runs}{words}</td></tr>",
                         plain(&f.words).replace('"', "&quot;"),
                         plain(&f.name),
-                        display(&f.math),
+                        mathml_lines(&f.math),
                     );
                     if let Some((name, m)) = &f.example {
                         let _ = writeln!(
                             out,
                             "<tr class=\"example\"><td></td><td colspan=\"2\">{}: {}</td></tr>",
                             plain(name),
-                            math(m)
+                            mathml_lines(m)
                         );
                     }
                 }

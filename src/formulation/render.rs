@@ -83,25 +83,51 @@ fn superscript(t: &str) -> Option<String> {
     t.chars().map(one).collect()
 }
 
-/// Text in lines of at most `width` characters: broken before `+`, `−` and relations of the outermost row. Lines behind
-/// the first begin with `indent` blanks.
+/// The pieces between which a line may break: before `+`, `−` and relations of the outermost rows; each begins with its
+/// operator.
+pub fn pieces(m: &Math) -> Vec<Math> {
+    fn split(m: &Math, out: &mut Vec<Vec<Math>>) {
+        let Math::Row(list) = m else {
+            out.extend((out.is_empty()).then(Vec::new));
+            out.iter_mut()
+                .last()
+                .into_iter()
+                .for_each(|p| p.push(m.clone()));
+            return;
+        };
+        for m in list {
+            let begins = match out.last().map(Vec::as_slice) {
+                None | Some([] | [Math::Operator(_)]) => true,
+                Some(_) => false,
+            };
+            match m {
+                Math::Operator(o) if !matches!(*o, ":" | ",") => out.push(vec![m.clone()]),
+                Math::Row(_) if begins => split(m, out),
+                m => match out.last_mut() {
+                    Some(piece) => piece.push(m.clone()),
+                    None => out.push(vec![m.clone()]),
+                },
+            }
+        }
+    }
+    let mut out = Vec::new();
+    split(m, &mut out);
+    out.into_iter().map(Math::Row).collect()
+}
+
+/// Text in lines of at most `width` characters. Lines behind the first begin with `indent` blanks.
 pub fn wrapped(m: &Math, width: usize, indent: usize) -> String {
-    let mut pieces: Vec<String> = Vec::new();
-    flatten(m, &mut pieces);
     let mut out = String::new();
     let mut column = indent;
-    for p in pieces {
+    for p in pieces(m) {
+        let p = text(&p);
         let length = p.chars().count();
         if column + length > width && column > indent {
-            while out.ends_with(' ') {
-                out.pop();
-            }
+            out.truncate(out.trim_end().len());
             out.push('\n');
             out.push_str(&" ".repeat(indent));
-            column = indent;
-            let p = p.trim_start();
-            out.push_str(p);
-            column += p.chars().count();
+            out.push_str(p.trim_start());
+            column = indent + p.trim_start().chars().count();
             continue;
         }
         out.push_str(&p);
@@ -110,38 +136,38 @@ pub fn wrapped(m: &Math, width: usize, indent: usize) -> String {
     out
 }
 
-/// Pieces between which a line may break; each begins with its operator.
-fn flatten(m: &Math, out: &mut Vec<String>) {
-    let Math::Row(list) = m else {
-        out.push(text(m));
-        return;
-    };
-    let mut piece = String::new();
-    for (n, m) in list.iter().enumerate() {
-        match m {
-            Math::Operator(o) if !matches!(*o, ":" | ",") => {
-                out.push(std::mem::take(&mut piece));
-                piece = format!(" {o} ");
-            }
-            Math::Row(_) if piece.trim().chars().count() <= 1 => {
-                let mut inner = Vec::new();
-                flatten(m, &mut inner);
-                if let Some(first) = inner.first_mut() {
-                    *first = format!("{piece}{first}");
-                }
-                piece = inner.pop().unwrap_or_default();
-                out.append(&mut inner);
-            }
-            m => {
-                if n > 0 && is_factor(&list[n - 1]) && is_factor(m) {
-                    piece.push('·');
-                }
-                piece.push_str(&text(m));
-            }
+/// Characters of a line of LaTeX, as the formula would take them as text.
+const LINE: usize = 84;
+
+/// LaTeX in lines, for an `align`.
+pub fn latex_lines(m: &Math) -> String {
+    let mut out = String::new();
+    let mut column = 0;
+    for p in pieces(m) {
+        let length = text(&p).chars().count();
+        if column > 0 && column + length > LINE {
+            out.push_str(" \\\\\n & \\qquad {}");
+            column = 0;
         }
+        column += length;
+        out.push_str(&latex(&p));
     }
-    out.push(piece);
-    out.retain(|p| !p.is_empty());
+    out
+}
+
+/// MathML in pieces between which a line may break.
+pub fn mathml_lines(m: &Math) -> String {
+    let mut out = String::new();
+    for p in pieces(m) {
+        // An operator that begins a piece stands between two terms all the same.
+        let piece = mathml(&p).replacen("<mo>", "<mo form=\"infix\">", usize::from(begins(&p)));
+        out.push_str(&format!("<math displaystyle=\"true\">{piece}</math> "));
+    }
+    out
+}
+
+fn begins(piece: &Math) -> bool {
+    matches!(piece, Math::Row(list) if matches!(list.first(), Some(Math::Operator(_))))
 }
 
 /// LaTeX for a formula, with amsmath.
@@ -274,7 +300,7 @@ fn latex_operator(o: &str) -> &str {
         "⟂" => "\\perp",
         "⊕" => "\\oplus",
         "⊖" => "\\ominus",
-        "⋚" => "\\lessgtr",
+        "⋚" => "\\mathrel{\\substack{<\\\\[-.4ex]>}}",
         "…" => "\\ldots",
         o => o,
     }

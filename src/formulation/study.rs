@@ -12,6 +12,7 @@ use crate::model::problem_type::ProblemType;
 use crate::run::{Generated, Machine, Studied};
 use crate::solve::answer::{Answer, answer};
 use crate::solve::{Budget, Quiet, Settings};
+use crate::source::Span;
 
 /// The model of the solve that a run was asked to look at.
 ///
@@ -30,8 +31,14 @@ pub fn chosen(m: &mut Machine) -> Result<(Primal, Studied), Box<Diagnostic>> {
         _ if seen == 0 => "nothing is solved".to_string(),
         _ => "the model could not be generated".to_string(),
     };
-    let d = Diagnostic::execution("E0430", m.options.at.get(), message)
-        .label("the run ends here")
+    let end = m.options.at.get();
+    let label = if end == Span::default() {
+        ""
+    } else {
+        "the run ends here"
+    };
+    let d = Diagnostic::execution("E0430", end, message)
+        .label(label)
         .help("a derivation needs a solve: it says what is minimised and which data hold");
     Err(Box::new(d))
 }
@@ -82,8 +89,10 @@ pub fn primal(m: &mut Machine) -> Option<(Primal, Studied)> {
         if let Some(why) = dark(e) {
             by_instance.push(format!("{}: {why}", m.symbols.get(e.symbol).name));
             *e = by_rows(&m.symbols, &generated, e, &mut indices);
-            // Not all tuples are rows.
-            *tuples = usize::MAX;
+            if !e.key.is_empty() {
+                // Not all tuples are rows.
+                *tuples = usize::MAX;
+            }
         }
     }
     let answer = studied.answer.as_ref().map(|(origin, a)| {
