@@ -6,10 +6,12 @@
 use std::collections::HashMap;
 use std::time::Instant;
 
-use bmod::model::certificate;
 use bmod::model::instance::{Columns, Instance, Objective, Relation, Rows, Sense, SparseRows};
+use bmod::model::problem_type::ProblemType;
+use bmod::solve::answer::{Answer, answer_with};
+use bmod::solve::backend::Task;
 use bmod::solve::lp::Clarabel;
-use bmod::solve::{Budget, Limits, Monitor, Outcome, Settings, Solver};
+use bmod::solve::{Budget, Limits, Monitor, Settings};
 
 struct Log(Instant);
 
@@ -123,9 +125,8 @@ fn read_mps(text: &str) -> Instance {
 }
 
 /// Model status and largest residuals.
-fn status(instance: &Instance, o: &Outcome) -> String {
-    let r = certificate::linear(instance, o);
-    let status = certificate::linear_status(instance, o, &r);
+fn status(a: &Answer) -> String {
+    let (r, status) = (&a.residuals, a.status);
     let size = |v: Option<f64>| v.unwrap_or(f64::NAN);
     format!(
         "{}, primal {:.0e}, dual {:.0e}, gap {:.0e}",
@@ -151,18 +152,19 @@ fn main() {
         let start = Instant::now();
         let mut monitor = Log(start);
         let budget = Budget::new(&mut monitor, Limits::default(), log);
-        let outcome = Clarabel.solve(&instance, &settings, &budget);
+        let task = Task::new(ProblemType::Lp, &instance);
+        let answer = answer_with(&[&Clarabel], &task, &settings, &budget);
         let seconds = start.elapsed().as_secs_f64();
-        match outcome {
-            Ok(o) => println!(
+        match answer {
+            Ok(a) => println!(
                 "{file}: {} x {}, {:?}, {} {} iterations, {seconds:.3} s, objective {:.13} {}",
                 instance.row_count(),
                 instance.column_count(),
-                o.claim,
-                o.solver,
-                o.iterations,
-                o.level[instance.column_count() - 1],
-                status(&instance, &o),
+                a.outcome.claim,
+                a.outcome.solver,
+                a.outcome.iterations,
+                a.outcome.level[instance.column_count() - 1],
+                status(&a),
             ),
             Err(e) => println!("{file}: {}", e.message),
         }

@@ -11,8 +11,8 @@ use bmod::model::instance::{
 use bmod::model::option::{Kind, OptionTable, row};
 use bmod::model::outcome::{Claim, Outcome, SolverStatus};
 use bmod::model::problem_type::ProblemType;
-use bmod::solve::answer::{Answer, answer_with};
-use bmod::solve::backend::{Backend, Supports, Task, Terms};
+use bmod::solve::answer::answer_with;
+use bmod::solve::backend::{Backend, Reply, Supports, Task, Terms};
 use bmod::solve::budget::{Budget, Quiet, Stop};
 use bmod::solve::registry::BACKENDS;
 use bmod::solve::{Settings, SolveError};
@@ -44,13 +44,10 @@ impl Backend for Compass {
 
     fn supports(&self) -> Supports {
         Supports {
-            types: &[ProblemType::Nlp, ProblemType::Dnlp],
-            terms: Terms::Kinks,
             linear: false,
-            pairs: false,
-            integers: false,
             largest: 50,
             only_by_name: true,
+            ..Supports::new(&[ProblemType::Nlp, ProblemType::Dnlp], Terms::Kinks)
         }
     }
 
@@ -63,7 +60,7 @@ impl Backend for Compass {
         task: &Task,
         settings: &Settings,
         budget: &Budget,
-    ) -> Result<Answer, SolveError> {
+    ) -> Result<Reply, SolveError> {
         let instance = task.instance;
         let Some(objective) = instance.objective.filter(|_| instance.row_count() == 1) else {
             return Err(SolveError::new(
@@ -107,7 +104,10 @@ impl Backend for Compass {
             level: x,
             row_marginal: vec![1.0 / search.coefficient],
             column_marginal: vec![0.0; instance.column_count()],
-            claim: Claim::Unfinished,
+            claim: match stopped {
+                Some(_) => Claim::Unfinished,
+                None => Claim::LocallySolved,
+            },
             status: stopped.unwrap_or(SolverStatus::NormalCompletion),
             iterations: steps,
             solver: "compass",
@@ -115,7 +115,7 @@ impl Backend for Compass {
             message: None,
             basis: None,
         };
-        Ok(Answer::certified(instance, outcome))
+        Ok(outcome.into())
     }
 }
 
@@ -188,11 +188,7 @@ fn main() {
     backends.extend(BACKENDS);
     let instance = valley();
     for choice in ["compass", "pounce"] {
-        let task = Task {
-            using: ProblemType::Nlp,
-            choice: Some(choice),
-            instance: &instance,
-        };
+        let task = Task::new(ProblemType::Nlp, &instance).by(Some(choice));
         let mut quiet = Quiet::default();
         let budget = Budget::unlimited(&mut quiet);
         match answer_with(&backends, &task, &Settings::default(), &budget) {

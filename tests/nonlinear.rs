@@ -3,8 +3,9 @@
 
 use ModelStatus::*;
 use bmod::model::instance::*;
-use bmod::solve::answer::Answer;
-use bmod::solve::nlp::{answer, providers};
+use bmod::model::problem_type::ProblemType;
+use bmod::solve::answer::{Answer, answer};
+use bmod::solve::nlp::providers;
 use bmod::solve::{
     Budget, Limits, ModelStatus, Monitor, Quiet, Settings, SolveError, SolverStatus,
 };
@@ -100,6 +101,7 @@ impl Model {
 
 fn run(solver: &str, instance: &Instance) -> Result<Answer, SolveError> {
     answer(
+        ProblemType::Nlp,
         Some(solver),
         instance,
         &Settings::default(),
@@ -516,7 +518,14 @@ fn options_and_limits() {
         };
         let mut quiet = Quiet::default();
         let budget = Budget::new(&mut quiet, limits, false);
-        let a = answer(Some(p.name()), &hs71().0, &settings, &budget).unwrap();
+        let a = answer(
+            ProblemType::Nlp,
+            Some(p.name()),
+            &hs71().0,
+            &settings,
+            &budget,
+        )
+        .unwrap();
         assert_eq!(a.outcome.status, SolverStatus::IterationInterrupt);
         assert!(!matches!(a.status, LocallyOptimal | Optimal));
         settings.options = vec![
@@ -524,6 +533,7 @@ fn options_and_limits() {
             ("tol".into(), "1e-7".into()),
         ];
         let a = answer(
+            ProblemType::Nlp,
             Some(p.name()),
             &hs71().0,
             &settings,
@@ -548,6 +558,7 @@ fn warm_start() {
         let mut m = hs71().0;
         let cold = options(&[("nlp_search", "no")]);
         let first = answer(
+            ProblemType::Nlp,
             Some(p.name()),
             &m,
             &cold,
@@ -565,6 +576,7 @@ fn warm_start() {
             ("warm_start_bound_frac", "1e-8"),
         ]);
         let second = answer(
+            ProblemType::Nlp,
             Some(p.name()),
             &m,
             &warm,
@@ -586,7 +598,14 @@ fn limit_of_time() {
         };
         let mut quiet = Quiet::default();
         let budget = Budget::new(&mut quiet, limits, false);
-        let a = answer(Some(p.name()), &hs71().0, &Settings::default(), &budget).unwrap();
+        let a = answer(
+            ProblemType::Nlp,
+            Some(p.name()),
+            &hs71().0,
+            &Settings::default(),
+            &budget,
+        )
+        .unwrap();
         assert_eq!(a.outcome.status, SolverStatus::ResourceInterrupt);
         assert!(!matches!(a.status, LocallyOptimal | Optimal));
     }
@@ -631,7 +650,14 @@ fn interruption_and_log() {
     for p in providers() {
         let mut monitor = Impatient(0, vec![]);
         let budget = Budget::new(&mut monitor, Limits::default(), true);
-        let a = answer(Some(p.name()), &m.0, &Settings::default(), &budget).unwrap();
+        let a = answer(
+            ProblemType::Nlp,
+            Some(p.name()),
+            &m.0,
+            &Settings::default(),
+            &budget,
+        )
+        .unwrap();
         assert_eq!(
             a.outcome.status,
             SolverStatus::UserInterrupt,

@@ -39,6 +39,9 @@ impl Relation {
     }
 }
 
+/// Bounds from here on are infinite.
+pub const INFINITE: f64 = 1e30;
+
 /// Direction of a solve.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Sense {
@@ -372,6 +375,56 @@ impl Instance {
             out[i as usize] = true;
         }
         out
+    }
+
+    /// Appends a row of linear terms; terms in one column are added up. Its number.
+    pub fn add_row(
+        &mut self,
+        terms: impl IntoIterator<Item = (usize, f64)>,
+        relation: Relation,
+        rhs: f64,
+    ) -> usize {
+        let mut terms: Vec<(usize, f64)> = terms.into_iter().collect();
+        terms.sort_by_key(|t| t.0);
+        if self.matrix.start.is_empty() {
+            self.matrix.start.push(0);
+        }
+        for same in terms.chunk_by(|a, b| a.0 == b.0) {
+            let sum: f64 = same.iter().map(|t| t.1).sum();
+            if sum != 0.0 {
+                self.matrix.column.push(same[0].0 as u32);
+                self.matrix.value.push(sum);
+            }
+        }
+        self.matrix.start.push(self.matrix.column.len());
+        self.rows.relation.push(relation);
+        self.rows.rhs.push(rhs);
+        self.rows.marginal.push(0.0);
+        self.rows.scale.push(1.0);
+        self.rows.rhs.len() - 1
+    }
+
+    /// The row in which the objective column stands, and its coefficient there, if it stands in no other and in no
+    /// nonlinear term: where that row is an equation and the column is free, the column need not be solved for.
+    pub fn objective_row(&self) -> Option<(usize, f64)> {
+        let z = self.objective?.column;
+        if self.nonlinear.iter().any(|t| t.columns.contains(&z)) {
+            return None;
+        }
+        let matrix = &self.matrix;
+        let mut places = (0..self.row_count()).filter_map(|i| {
+            let entries = matrix.start[i]..matrix.start[i + 1];
+            let k = matrix.column[entries.clone()].binary_search(&z).ok()?;
+            Some((i, matrix.value[entries.start + k]))
+        });
+        let first = places.next().filter(|(_, a)| *a != 0.0)?;
+        places.next().is_none().then_some(first)
+    }
+
+    /// Whether nothing bounds a column.
+    pub fn is_free(&self, column: usize) -> bool {
+        let (lower, upper) = (self.columns.lower[column], self.columns.upper[column]);
+        lower <= -INFINITE && upper >= INFINITE
     }
 
     /// What the objective is multiplied by to make the problem a minimum; 1 without an objective.

@@ -1,6 +1,4 @@
 //! The sparse model IR.
-pub mod certificate;
-pub mod certificate_nlp;
 pub mod instance;
 pub mod option;
 pub mod origin;

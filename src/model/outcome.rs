@@ -122,10 +122,17 @@ impl SolverStatus {
 /// What a solver claims, besides the point.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Claim {
-    /// Solved to tolerance.
+    /// Solved to tolerance: a global optimum, or a solution of the system.
     Solved,
+    /// A local optimum, to tolerance.
+    LocallySolved,
+    /// The same where the rows have no multipliers, so that the conditions of first order say nothing.
+    WithoutMultipliers,
     /// Proved (to tolerance) infeasible, with a certificate in `Outcome::ray` where there is one.
     Infeasible,
+    /// No point nearby satisfies the rows, with multipliers in `Outcome::ray` where they prove it; of a system: no method
+    /// solved it.
+    LocallyInfeasible,
     /// Proved (to tolerance) unbounded, with a direction in `Outcome::ray` where there is one.
     Unbounded,
     /// Stopped early or stuck: the point is the best there is.

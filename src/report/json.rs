@@ -9,8 +9,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::diagnostic::Diagnostic;
 use crate::data::value;
-use crate::model::certificate::Residuals;
 use crate::model::outcome::{ModelStatus, SolverStatus};
+use crate::solve::certificate::Residuals;
 
 /// Number of the report's format.
 pub const FORMAT: u32 = 1;

@@ -7,8 +7,8 @@ use std::fmt::Write;
 
 use super::names::Names;
 use super::summary::digits;
-use crate::model::certificate::row_violation;
 use crate::model::instance::{Function, Instance, Kernel, KernelTerms, Op, Relation};
+use crate::solve::certificate::row_violation;
 
 /// What to list.
 #[derive(Clone, Debug)]

@@ -435,7 +435,7 @@ impl Machine<'_> {
             Some(o) => a.outcome.level[o.column as usize],
             None => r.pairs.unwrap_or(0.0),
         };
-        let infeasible = !r.is_feasible(crate::model::certificate::TOLERANCE);
+        let infeasible = !r.is_feasible(crate::solve::certificate::TOLERANCE);
         let count = if infeasible {
             r.infeasible_count as f64
         } else {

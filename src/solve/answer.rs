@@ -1,24 +1,18 @@
-//! Which solver for which problem, and what its answer is worth.
+//! One way for every instance: choose a backend, bridge, solve, restore, certify, and say the status; each once.
 //!
-//! The status that is reported follows from the residuals recomputed on the unscaled instance, not
-//! from the solver's word.
+//! The status that is reported follows from the residuals recomputed on the unscaled instance, and is never better than
+//! what the backend claims.
 
-use std::cell::OnceCell;
-
-use super::backend::{Backend, Task, choose};
+use super::backend::{Backend, Reply, Task, choose};
+use super::bridge::{self, Bridge, elastic::Elastic};
 use super::budget::Size;
+use super::certificate::{self, Residuals, TOLERANCE, nonlinear};
 use super::lp::certify::{Proof, Unproved};
-use super::lp::least;
 use super::mpec::Stationarity;
 use super::mpec::pairs::Program;
-use super::nlp::relaxation::is_infeasible;
 use super::registry::BACKENDS;
-use super::{
-    Budget, Claim, ModelStatus, Outcome, Settings, SolveError, Solver, complementarity, lp, noise,
-};
+use super::{Budget, Claim, ModelStatus, Outcome, Settings, SolveError, lp, mip, noise};
 use crate::autodiff::Evaluator;
-use crate::model::certificate::{self, Linearised, Residuals, TOLERANCE};
-use crate::model::certificate_nlp::{kkt_residual, linearise};
 use crate::model::instance::{Instance, Relation};
 use crate::model::problem_type::ProblemType;
 
@@ -38,57 +32,7 @@ pub struct Answer {
     /// A proved interval for the optimal value.
     pub bounds: Option<[f64; 2]>,
     /// For a program with discrete columns: bound and nodes.
-    pub search: Option<super::mip::Report>,
-}
-
-impl Answer {
-    /// An outcome with its residuals on the instance, and the status that follows from them and from its rays: all that a
-    /// backend without knowledge of its own needs. A stationary point of a nonlinear program is called locally optimal.
-    pub fn certified(instance: &Instance, outcome: Outcome) -> Self {
-        if instance.is_linear() && instance.objective.is_some() {
-            let at = certificate::linearise(instance, &outcome);
-            let residuals = certificate::residuals(instance, &outcome, &at);
-            let status = certificate::linear_status(instance, &outcome, &residuals);
-            return Self::new(outcome, residuals, status, at.activity);
-        }
-        let mut evaluator = Evaluator::new(instance);
-        let (level, marginal) = (&outcome.level, &outcome.row_marginal);
-        match kkt_residual(instance, &mut evaluator, level, marginal) {
-            Ok((residuals, at)) => {
-                let status = match residuals.is_feasible(TOLERANCE) {
-                    true if residuals.dual_relative <= TOLERANCE => ModelStatus::LocallyOptimal,
-                    true => ModelStatus::Feasible,
-                    false => ModelStatus::IntermediateInfeasible,
-                };
-                Self::new(outcome, residuals, status, at.activity)
-            }
-            Err(_) => {
-                let activity = activity(instance, level);
-                let sizes = vec![1.0; activity.len()];
-                let residuals = certificate::primal(instance, level, &activity, &sizes);
-                let status = ModelStatus::IntermediateInfeasible;
-                Self::new(outcome, residuals, status, activity)
-            }
-        }
-    }
-
-    /// Without anything that is particular to a problem type.
-    pub fn new(
-        outcome: Outcome,
-        residuals: Residuals,
-        status: ModelStatus,
-        activity: Vec<f64>,
-    ) -> Self {
-        Self {
-            outcome,
-            residuals,
-            status,
-            activity,
-            stationarity: None,
-            bounds: None,
-            search: None,
-        }
-    }
+    pub search: Option<mip::Report>,
 }
 
 impl Answer {
@@ -103,7 +47,7 @@ impl Answer {
     }
 }
 
-/// Solves an instance of a problem type with the backend chosen for it, if any.
+/// Solves an instance of a problem type with the backend chosen for it, if any; what people see.
 pub fn answer(
     using: ProblemType,
     choice: Option<&str>,
@@ -111,11 +55,7 @@ pub fn answer(
     settings: &Settings,
     budget: &Budget,
 ) -> Result<Answer, SolveError> {
-    let task = Task {
-        using,
-        choice,
-        instance,
-    };
+    let task = Task::new(using, instance).by(choice);
     answer_with(BACKENDS, &task, settings, budget)
 }
 
@@ -126,25 +66,228 @@ pub fn answer_with(
     settings: &Settings,
     budget: &Budget,
 ) -> Result<Answer, SolveError> {
-    let Some(backend) = choose(backends, task) else {
-        let using = task.using;
-        let message = match task.has_integers() {
-            true => format!(
-                "there is no solver for `{using}` with discrete variables; `using {}` solves the relaxation",
-                using.relaxation()
-            ),
-            false => format!("there is no solver for this `{using}` in this build"),
-        };
-        return Err(SolveError::new(message));
-    };
-    affords_hessian(task, budget)?;
-    let mut found = backend.solve(task, settings, budget)?;
+    let mut found = solve(backends, task, settings, budget)?;
+    if found.status == ModelStatus::Infeasible && is_linear_program(task) {
+        found = least_violation(backends, task, found, settings, budget);
+    }
     noise::quiet(&mut found.outcome.column_marginal);
     if task.using != ProblemType::Mcp {
         // there they are levels
         noise::quiet(&mut found.outcome.row_marginal);
     }
     Ok(found)
+}
+
+/// A program that a backend solves on its way, by any backend.
+pub(super) fn subproblem(
+    task: &Task,
+    settings: &Settings,
+    budget: &Budget,
+) -> Result<Answer, SolveError> {
+    solve(BACKENDS, task, settings, budget)
+}
+
+fn solve(
+    backends: &[&dyn Backend],
+    task: &Task,
+    settings: &Settings,
+    budget: &Budget,
+) -> Result<Answer, SolveError> {
+    affords_hessian(task, budget)?;
+    for build in bridge::BEFORE {
+        if let Some(bridge) = build(backends, task, settings)
+            && let Some(answer) = across(backends, &*bridge, task, settings, budget)
+        {
+            return Ok(answer);
+        }
+    }
+    let backend = choose(backends, task).ok_or_else(|| missing(task))?;
+    let reply = backend.solve(task, settings, budget)?;
+    Ok(certified(task, reply, None))
+}
+
+/// Solves the instance of a bridge, and comes back.
+fn across(
+    backends: &[&dyn Backend],
+    bridge: &dyn Bridge,
+    task: &Task,
+    settings: &Settings,
+    budget: &Budget,
+) -> Option<Answer> {
+    let there = Task {
+        using: bridge.using(),
+        instance: bridge.instance(),
+        basis: None,
+        ..*task
+    };
+    let answer = solve(backends, &there, settings, budget).ok()?;
+    let reply = bridge.restore(task.instance, &answer)?;
+    let own = bridge.has_own_multipliers().then_some(answer.residuals);
+    Some(certified(task, reply, own))
+}
+
+fn missing(task: &Task) -> SolveError {
+    let using = task.using;
+    SolveError::new(match task.has_integers() {
+        true => format!(
+            "there is no solver for `{using}` with discrete variables; `using {}` solves the relaxation",
+            using.relaxation()
+        ),
+        false => format!("there is no solver for this `{using}` in this build"),
+    })
+}
+
+/// A reply with its residuals on the instance and the status that follows. `dual`: the residuals of the instance to which
+/// the multipliers belong, if that is another one.
+fn certified(task: &Task, reply: Reply, dual: Option<Residuals>) -> Answer {
+    let Reply {
+        outcome,
+        stationarity,
+        bounds,
+        search,
+    } = reply;
+    let (mut residuals, activity) = measured(task, &outcome, search.as_ref());
+    if let Some(dual) = dual {
+        let instance = task.instance;
+        residuals.dual = dual.dual;
+        residuals.dual_relative = dual.dual_relative;
+        residuals.complementarity = dual.complementarity;
+        residuals.complementarity_sum = dual.complementarity_sum;
+        residuals.worst_dual_row = dual.worst_dual_row.filter(|&i| i < instance.row_count());
+        residuals.worst_dual_column = dual
+            .worst_dual_column
+            .filter(|&j| j < instance.column_count());
+    }
+    let status = match &search {
+        Some(search) => status_of_search(search, &outcome, &residuals),
+        None => status(task, &outcome, &residuals, &activity),
+    };
+    Answer {
+        outcome,
+        residuals,
+        status,
+        activity,
+        stationarity,
+        bounds,
+        search,
+    }
+}
+
+fn is_linear_program(task: &Task) -> bool {
+    let instance = task.instance;
+    let continuous = !task.has_integers() && !task.has_pairs();
+    instance.is_linear() && instance.objective.is_some() && continuous
+}
+
+/// Residuals of an outcome, and the levels of the rows.
+fn measured(task: &Task, outcome: &Outcome, search: Option<&mip::Report>) -> (Residuals, Vec<f64>) {
+    let instance = task.instance;
+    let level = &outcome.level;
+    match (task.using, search) {
+        (_, Some(search)) if !search.solution => (Residuals::default(), activity(instance, level)),
+        (_, Some(_)) => program(&mip::fixed(instance, level), outcome),
+        (ProblemType::Mcp, _) => {
+            let (_, at) = point(instance, outcome);
+            let residuals = certificate::complementarity(instance, level, &at);
+            (residuals, at.activity)
+        }
+        _ if task.has_pairs() => branch(instance, outcome),
+        _ => program(instance, outcome),
+    }
+}
+
+/// Residuals of a program in continuous columns without pairs.
+fn program(instance: &Instance, outcome: &Outcome) -> (Residuals, Vec<f64>) {
+    let (residuals, at) = match instance.is_linear() && instance.objective.is_some() {
+        true => {
+            let at = certificate::linearise(instance, outcome);
+            (certificate::residuals(instance, outcome, &at), at)
+        }
+        false => point(instance, outcome),
+    };
+    (residuals, at.activity)
+}
+
+fn point(instance: &Instance, outcome: &Outcome) -> (Residuals, certificate::Linearised) {
+    let mut smoothed = nonlinear::beside_kinks(instance);
+    let (level, marginal) = (&outcome.level, &outcome.row_marginal);
+    nonlinear::measure(
+        instance,
+        &mut Evaluator::new(instance),
+        &mut smoothed,
+        level,
+        marginal,
+    )
+}
+
+/// Residuals of a program with pairs: primal ones without the products, complementarity of the pairs, and dual ones in the
+/// branch to which the marginals belong.
+fn branch(instance: &Instance, outcome: &Outcome) -> (Residuals, Vec<f64>) {
+    let Ok(pairs) = Program::new(instance) else {
+        return program(instance, outcome);
+    };
+    let judged = pairs.judge(&outcome.level);
+    let mut residuals = judged.residuals;
+    if outcome.row_marginal.iter().any(|m| *m != 0.0) {
+        let pieces = pairs.pieces_with(&outcome.level, &judged.activity, &outcome.row_marginal);
+        let (of_branch, _) = program(&pairs.branch(&pieces, &outcome.level), outcome);
+        residuals.dual = of_branch.dual;
+        residuals.dual_relative = of_branch.dual_relative;
+    }
+    (residuals, judged.activity)
+}
+
+/// What is known of a point: what is claimed, as far as the residuals confirm it.
+fn status(task: &Task, outcome: &Outcome, residuals: &Residuals, activity: &[f64]) -> ModelStatus {
+    use ModelStatus as S;
+    let (instance, claim) = (task.instance, outcome.claim);
+    if task.using == ProblemType::Mcp {
+        return certificate::complementarity_status(residuals, claim);
+    }
+    if is_linear_program(task) {
+        return certificate::linear_status(instance, outcome, residuals);
+    }
+    let pairs = task.has_pairs();
+    let (level, marginal) = (&outcome.level, &outcome.row_marginal);
+    let feasible = residuals.is_feasible(TOLERANCE)
+        && (!pairs || residuals.natural_relative <= TOLERANCE)
+        && !nonlinear::is_feasible_only_by_scaling(instance, level, marginal, activity);
+    // what is proved of a program with pairs is a search for a way down, not its multipliers
+    let stationary = feasible && (pairs || residuals.dual_relative <= TOLERANCE);
+    let system = instance.objective.is_none() && task.using == ProblemType::Cns;
+    match claim {
+        _ if system && feasible => S::Solved,
+        Claim::Solved if stationary => S::Optimal,
+        Claim::LocallySolved if stationary => S::LocallyOptimal,
+        Claim::WithoutMultipliers if feasible => S::LocallyOptimal,
+        Claim::Unbounded => S::Unbounded,
+        _ if feasible => S::Feasible,
+        Claim::Infeasible => S::Infeasible,
+        Claim::LocallyInfeasible if system || pairs || is_locally_infeasible(instance, outcome) => {
+            S::LocallyInfeasible
+        }
+        _ => S::IntermediateInfeasible,
+    }
+}
+
+fn is_locally_infeasible(instance: &Instance, outcome: &Outcome) -> bool {
+    let (mut evaluator, ray) = (Evaluator::new(instance), &outcome.ray);
+    ray.len() == instance.row_count()
+        && nonlinear::is_locally_infeasible(instance, &mut evaluator, &outcome.level, ray, 1e-4)
+}
+
+/// The same of a search over discrete columns.
+fn status_of_search(search: &mip::Report, outcome: &Outcome, residuals: &Residuals) -> ModelStatus {
+    use ModelStatus as S;
+    match (search.solution, outcome.claim) {
+        (true, _) if !residuals.is_feasible(TOLERANCE) => S::IntermediateNonInteger,
+        (true, Claim::Unbounded) => S::Unbounded,
+        (true, Claim::Solved) => S::Optimal,
+        (true, _) => S::IntegerSolution,
+        (false, Claim::Infeasible) => S::IntegerInfeasible,
+        (false, Claim::Unbounded) => S::UnboundedNoSolution,
+        _ => S::NoSolution,
+    }
 }
 
 /// To compile the program of a second derivative takes a microsecond or two, several times in a solve.
@@ -195,50 +338,62 @@ pub fn certify(instance: &Instance, answer: &Answer, budget: &Budget) -> Result<
     })
 }
 
-pub(super) fn linear(
-    solver: &dyn Solver,
-    instance: &Instance,
+/// An infeasible linear program at its least violation; where that is within the tolerance, as after data that were
+/// rounded, the optimum with the rows moved by it.
+fn least_violation(
+    backends: &[&dyn Backend],
+    task: &Task,
+    found: Answer,
     settings: &Settings,
     budget: &Budget,
-) -> Result<Answer, SolveError> {
-    let outcome = solver.solve(instance, settings, budget)?;
-    Ok(Answer::certified(instance, outcome))
-}
-
-/// The same for what people see: an infeasible program at its least violation; where that is within the tolerance, as after
-/// data that were rounded, the optimum with the rows moved by it.
-pub(super) fn linear_shown(
-    solver: &dyn Solver,
-    instance: &Instance,
-    settings: &Settings,
-    budget: &Budget,
-) -> Result<Answer, SolveError> {
-    let mut found = linear(solver, instance, settings, budget)?;
-    if found.status == ModelStatus::Infeasible {
-        least::report_least_violation(instance, budget, &mut found.outcome);
-        let at = certificate::linearise(instance, &found.outcome);
-        found.residuals = certificate::residuals(instance, &found.outcome, &at);
-        found.activity = at.activity;
-        if found.residuals.is_feasible(TOLERANCE)
-            && let Some(near) = moved(solver, instance, &found, settings, budget)
-        {
-            return Ok(near);
+) -> Answer {
+    let instance = task.instance;
+    let elastic = Elastic::new(instance);
+    let any = task.by(None);
+    let Some(near) = across(backends, &elastic, &any, &Settings::default(), budget) else {
+        return found;
+    };
+    if near.residuals.is_feasible(TOLERANCE) {
+        let moved = moved(instance, &near.activity);
+        let task = Task {
+            instance: &moved,
+            ..*task
+        };
+        if let Ok(mut there) = solve(backends, &task, settings, budget) {
+            there.outcome.iterations += found.outcome.iterations + near.outcome.iterations;
+            let (residuals, activity) = program(instance, &there.outcome);
+            if residuals.is_optimal(TOLERANCE) {
+                let most = residuals.primal.unwrap_or(0.0);
+                there.outcome.message = Some(format!(
+                    "the rows contradict each other by a rounding error: they hold to {most:.0e}"
+                ));
+                return Answer {
+                    residuals,
+                    activity,
+                    status: ModelStatus::Optimal,
+                    ..there
+                };
+            }
         }
     }
-    Ok(found)
+    Answer {
+        outcome: Outcome {
+            iterations: found.outcome.iterations + near.outcome.iterations,
+            level: near.outcome.level,
+            row_marginal: near.outcome.row_marginal,
+            column_marginal: near.outcome.column_marginal,
+            ..found.outcome
+        },
+        residuals: near.residuals,
+        activity: near.activity,
+        ..found
+    }
 }
 
-/// The optimum of the program whose violated rows are moved to where a point has them, if it is one of the program itself to
-/// the tolerance.
-fn moved(
-    solver: &dyn Solver,
-    instance: &Instance,
-    found: &Answer,
-    settings: &Settings,
-    budget: &Budget,
-) -> Option<Answer> {
+/// The program with its rows moved to where these levels satisfy them.
+fn moved(instance: &Instance, activity: &[f64]) -> Instance {
     let mut near = instance.clone();
-    for (i, &a) in found.activity.iter().enumerate() {
+    for (i, &a) in activity.iter().enumerate() {
         let rhs = &mut near.rows.rhs[i];
         *rhs = match instance.rows.relation[i] {
             Relation::Equal => a,
@@ -247,19 +402,7 @@ fn moved(
             Relation::Free => *rhs,
         };
     }
-    let mut outcome = solver.solve(&near, settings, budget).ok()?;
-    let at = certificate::linearise(instance, &outcome);
-    let residuals = certificate::residuals(instance, &outcome, &at);
-    if !residuals.is_optimal(TOLERANCE) {
-        return None;
-    }
-    let most = residuals.primal.unwrap_or(0.0);
-    outcome.message = Some(format!(
-        "the rows contradict each other by a rounding error: they hold to {most:.0e}"
-    ));
-    outcome.iterations += found.outcome.iterations;
-    let status = ModelStatus::Optimal;
-    Some(Answer::new(outcome, residuals, status, at.activity))
+    near
 }
 
 /// Levels of the rows; not a number where a function has no value.
@@ -269,76 +412,4 @@ fn activity(instance: &Instance, x: &[f64]) -> Vec<f64> {
         out.fill(f64::NAN);
     }
     out
-}
-
-/// Levels of the rows at a point, and what is violated there.
-pub(super) fn primal(instance: &Instance, x: &[f64]) -> (Vec<f64>, Residuals) {
-    let activity = activity(instance, x);
-    let size: Vec<f64> = activity.iter().map(|a| a.abs().max(1.0)).collect();
-    let residuals = certificate::primal(instance, x, &activity, &size);
-    (activity, residuals)
-}
-
-pub(super) fn complementary(
-    instance: &Instance,
-    settings: &Settings,
-    budget: &Budget,
-) -> Result<Answer, SolveError> {
-    let known = OnceCell::new();
-    let hopeless =
-        |budget: &Budget| *known.get_or_init(|| is_impossible(instance, budget).unwrap_or(false));
-    let outcome = complementarity::solve(instance, false, settings, budget, &hopeless)?;
-    let at = linearised(instance, &outcome);
-    let residuals = certificate::complementarity(instance, &outcome.level, &at);
-    let status = match certificate::complementarity_status(&residuals, outcome.claim) {
-        ModelStatus::LocallyInfeasible if hopeless(budget) => ModelStatus::Infeasible,
-        status => status,
-    };
-    Ok(Answer::new(outcome, residuals, status, at.activity))
-}
-
-/// The instance at an outcome's point; without derivatives where they have no value.
-fn linearised(instance: &Instance, outcome: &Outcome) -> Linearised {
-    let (x, marginal) = (&outcome.level, &outcome.row_marginal);
-    linearise(instance, &mut Evaluator::new(instance), x, marginal).unwrap_or_else(|_| Linearised {
-        activity: activity(instance, x),
-        row_size: vec![1.0; instance.row_count()],
-        ..Linearised::default()
-    })
-}
-
-/// Whether the linear rows and the bounds alone, what the pairs imply without their products, have no solution.
-/// That is what GAMS's solvers call infeasible; a nonlinear row that cannot hold is locally infeasible there.
-fn is_impossible(instance: &Instance, budget: &Budget) -> Result<bool, SolveError> {
-    let mut rows = Program::new(instance)?.envelope;
-    for (relation, nonlinear) in rows.rows.relation.iter_mut().zip(instance.nonlinear_rows()) {
-        if nonlinear {
-            *relation = Relation::Free;
-        }
-    }
-    Ok(is_infeasible(&rows, budget))
-}
-
-pub(super) fn square(
-    instance: &Instance,
-    settings: &Settings,
-    budget: &Budget,
-) -> Result<Answer, SolveError> {
-    let outcome = complementarity::solve(instance, true, settings, budget, &|_| false)?;
-    let at = linearised(instance, &outcome);
-    let residuals = certificate::primal(instance, &outcome.level, &at.activity, &at.row_size);
-    let status = if residuals.is_feasible(TOLERANCE) {
-        ModelStatus::Solved
-    } else if certificate::is_beyond_bounds(instance)
-        || outcome.claim != Claim::Unfinished && is_impossible(instance, budget)?
-    {
-        ModelStatus::Infeasible
-    } else if outcome.claim != Claim::Unfinished {
-        // Either the rows hold and the point they determine is beyond a bound, or no method from any start
-        // found a point where they hold.
-        ModelStatus::LocallyInfeasible
-    } else {
-        ModelStatus::IntermediateInfeasible
-    };
-    Ok(Answer::new(outcome, residuals, status, at.activity))
 }

@@ -1,13 +1,15 @@
 //! The contract between the pipeline and the solvers: what a backend says of itself, and what it is asked for.
 //!
 //! A backend is a folder with a type that implements [`Backend`], and a line in [`super::registry`]. It sees an
-//! [`Instance`] of numbers, asks the [`Budget`] in every loop, and returns the best point that it has seen. What that point is
-//! worth is measured on the instance as it was given ([`crate::model::certificate`]), whatever the backend says.
+//! [`Instance`] of numbers, asks the [`Budget`] in every loop, and returns the best point that it has seen, with a claim. What
+//! that point is worth is measured on the instance as it was given ([`super::answer`]), whatever the backend claims.
 
-use super::answer::Answer;
+use super::mip::Report;
+use super::mpec::Stationarity;
 use super::{Budget, Settings, SolveError};
 use crate::model::instance::Instance;
 use crate::model::option::OptionTable;
+use crate::model::outcome::{Basis, Outcome};
 use crate::model::problem_type::{Discrete, ProblemType};
 
 /// The hardest terms that a backend takes; each kind includes those before it.
@@ -49,9 +51,26 @@ pub struct Task<'a> {
     pub choice: Option<&'a str>,
     /// The numbers.
     pub instance: &'a Instance,
+    /// For linear programs: a basis that may be optimal, one status per column, then one per row.
+    pub basis: Option<&'a Basis>,
 }
 
-impl Task<'_> {
+impl<'a> Task<'a> {
+    /// An instance for the backend that this type prefers.
+    pub fn new(using: ProblemType, instance: &'a Instance) -> Self {
+        Self {
+            using,
+            choice: None,
+            instance,
+            basis: None,
+        }
+    }
+
+    /// The same for the solver of this name.
+    pub fn by(self, choice: Option<&'a str>) -> Self {
+        Self { choice, ..self }
+    }
+
     /// Whether a column is left to take a discrete value.
     pub fn has_integers(&self) -> bool {
         self.using.discrete() == Discrete::Decided
@@ -66,6 +85,19 @@ impl Task<'_> {
 }
 
 impl Supports {
+    /// Programs of these types in continuous columns, without pairs and of any size, with terms up to these.
+    pub const fn new(types: &'static [ProblemType], terms: Terms) -> Self {
+        Self {
+            types,
+            terms,
+            linear: true,
+            pairs: false,
+            integers: false,
+            largest: usize::MAX,
+            only_by_name: false,
+        }
+    }
+
     /// Whether it takes a task.
     pub fn takes(&self, task: &Task) -> bool {
         let instance = task.instance;
@@ -77,6 +109,30 @@ impl Supports {
             && (self.pairs || !task.has_pairs())
             && (self.integers || !task.has_integers())
             && instance.row_count() + instance.column_count() <= self.largest
+    }
+}
+
+/// What a backend replies: an outcome, and what only it can know.
+#[derive(Clone, Debug)]
+pub struct Reply {
+    /// The point and what is claimed of it.
+    pub outcome: Outcome,
+    /// For programs with pairs: whether a direction leads downhill.
+    pub stationarity: Option<Stationarity>,
+    /// A proved interval for the optimal value.
+    pub bounds: Option<[f64; 2]>,
+    /// For programs with discrete columns: bound and nodes.
+    pub search: Option<Report>,
+}
+
+impl From<Outcome> for Reply {
+    fn from(outcome: Outcome) -> Self {
+        Self {
+            outcome,
+            stationarity: None,
+            bounds: None,
+            search: None,
+        }
     }
 }
 
@@ -95,12 +151,8 @@ pub trait Backend: Sync {
     /// Its options.
     fn options(&self) -> &'static OptionTable;
     /// Solves a task that it takes. Err: the instance cannot be solved as it is, with the row or column to blame.
-    fn solve(
-        &self,
-        task: &Task,
-        settings: &Settings,
-        budget: &Budget,
-    ) -> Result<Answer, SolveError>;
+    fn solve(&self, task: &Task, settings: &Settings, budget: &Budget)
+    -> Result<Reply, SolveError>;
 }
 
 /// Whether a backend has this name.

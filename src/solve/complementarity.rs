@@ -2,16 +2,19 @@
 //!
 //! What happens at a solution is decided by the bounds: F is left minus right whatever the relation.
 
-use super::answer::{self, Answer};
-use super::backend::{Backend, Supports, Task, Terms};
+use super::backend::{Backend, Reply, Supports, Task, Terms};
+use super::certificate::{self, TOLERANCE, nonlinear::linearise};
 use super::mcp;
+use super::mpec::pairs::Program;
+use super::nlp::relaxation::is_infeasible;
 use super::pairing::{match_rows, refuse};
 use super::{Budget, Claim, Outcome, Settings, SolveError, SolverStatus};
 use crate::autodiff::Evaluator;
-use crate::model::instance::Instance;
+use crate::model::instance::{Instance, Relation};
 use crate::model::option::OptionTable;
 use crate::model::problem_type::ProblemType;
 use crate::solve::noise;
+use std::cell::OnceCell;
 
 /// Rows and columns put side by side.
 struct Square<'a> {
@@ -173,7 +176,8 @@ impl mcp::Problem for Square<'_> {
     }
 }
 
-/// The complementarity solver as a backend; by name also for linear programs, whose optimality conditions it solves.
+/// The complementarity solver as a backend; by name also for linear programs, whose optimality conditions it solves
+/// ([`super::bridge::kkt`]).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Bmcp;
 
@@ -192,13 +196,8 @@ impl Backend for Bmcp {
 
     fn supports(&self) -> Supports {
         Supports {
-            types: &[ProblemType::Mcp, ProblemType::Cns],
-            terms: Terms::Kinks,
-            linear: true,
             pairs: true,
-            integers: false,
-            largest: usize::MAX,
-            only_by_name: false,
+            ..Supports::new(&[ProblemType::Mcp, ProblemType::Cns], Terms::Kinks)
         }
     }
 
@@ -211,30 +210,70 @@ impl Backend for Bmcp {
         task: &Task,
         settings: &Settings,
         budget: &Budget,
-    ) -> Result<Answer, SolveError> {
-        match task.using {
-            ProblemType::Cns => answer::square(task.instance, settings, budget),
-            _ => answer::complementary(task.instance, settings, budget),
+    ) -> Result<Reply, SolveError> {
+        let instance = task.instance;
+        let known = OnceCell::new();
+        let infeasible = |budget: &Budget| {
+            *known.get_or_init(|| is_proved_infeasible(instance, budget).unwrap_or(false))
+        };
+        let square = task.using == ProblemType::Cns;
+        let never = |_: &Budget| false;
+        let proved: Infeasible = if square { &never } else { &infeasible };
+        let mut outcome = solve(instance, square, settings, budget, proved)?;
+        if square && !is_solved(instance, &outcome.level) {
+            // Either the rows hold and the point they determine is beyond a bound, or no method from any start
+            // found a point where they hold.
+            outcome.claim = match outcome.claim {
+                _ if certificate::is_beyond_bounds(instance) => Claim::Infeasible,
+                Claim::Unfinished => Claim::Unfinished,
+                _ => Claim::LocallyInfeasible,
+            };
+        }
+        if outcome.claim == Claim::LocallyInfeasible && infeasible(budget) {
+            outcome.claim = Claim::Infeasible;
+        }
+        Ok(outcome.into())
+    }
+}
+
+/// Whether rows and bounds hold.
+fn is_solved(instance: &Instance, level: &[f64]) -> bool {
+    let none = vec![0.0; instance.row_count()];
+    let at = linearise(instance, &mut Evaluator::new(instance), level, &none);
+    at.is_ok_and(|at| {
+        let residuals = certificate::primal(instance, level, &at.activity, &at.row_size);
+        residuals.is_feasible(TOLERANCE)
+    })
+}
+
+/// Whether the linear rows and the bounds alone, what the pairs imply without their products, have no solution.
+/// That is what GAMS's solvers call infeasible; a nonlinear row that cannot hold is locally infeasible there.
+fn is_proved_infeasible(instance: &Instance, budget: &Budget) -> Result<bool, SolveError> {
+    let mut rows = Program::new(instance)?.envelope;
+    for (relation, nonlinear) in rows.rows.relation.iter_mut().zip(instance.nonlinear_rows()) {
+        if nonlinear {
+            *relation = Relation::Free;
         }
     }
+    Ok(is_infeasible(&rows, budget))
 }
 
 /// What the complementarity solver asks.
 struct Help<'a, 'm> {
     budget: &'a Budget<'m>,
     names: Names<'a>,
-    hopeless: Hopeless<'a>,
+    infeasible: Infeasible<'a>,
 }
 
 /// Whether it can be proved, at the price of a linear program, that there is no solution.
-type Hopeless<'a> = &'a dyn Fn(&Budget) -> bool;
+type Infeasible<'a> = &'a dyn Fn(&Budget) -> bool;
 
 /// What index k of a complementarity problem is called.
 type Names<'a> = &'a dyn Fn(usize) -> String;
 
 impl mcp::Help for Help<'_, '_> {
     fn proves_infeasible(&mut self) -> bool {
-        (self.hopeless)(self.budget)
+        (self.infeasible)(self.budget)
     }
 
     fn name(&self, i: usize) -> String {
@@ -243,12 +282,12 @@ impl mcp::Help for Help<'_, '_> {
 }
 
 /// Runs the complementarity solver: its outcome, and how it ended in GAMS's terms.
-pub(super) fn run(
+fn run(
     problem: &mut dyn mcp::Problem,
     names: Names,
     settings: &Settings,
     budget: &Budget,
-    hopeless: Hopeless,
+    infeasible: Infeasible,
 ) -> Result<(mcp::Outcome, SolverStatus), SolveError> {
     let mut limits = mcp::Settings::with(&settings.options);
     let left = usize::try_from(budget.iterations_left()).unwrap_or(usize::MAX);
@@ -256,7 +295,7 @@ pub(super) fn run(
     let mut help = Help {
         budget,
         names,
-        hopeless,
+        infeasible,
     };
     let seconds = limits.time_limit;
     let out = budget.within(seconds, u64::MAX, |budget| {
@@ -276,14 +315,14 @@ pub(super) fn run(
     Ok((out, status))
 }
 
-/// Solves an mcp (or, with `square`, a cns), of which `hopeless` is asked when the main method fails. The outcome's marginals are those of GAMS: of a row the
+/// Solves an mcp (or, with `square`, a cns), of which `infeasible` is asked when the main method fails. The outcome's marginals are those of GAMS: of a row the
 /// level of its column, of a column F.
-pub fn solve(
+fn solve(
     instance: &Instance,
     square: bool,
     settings: &Settings,
     budget: &Budget,
-    hopeless: Hopeless,
+    infeasible: Infeasible,
 ) -> Result<Outcome, SolveError> {
     let mut problem = Square::new(instance, square)?;
     let row_of = problem.row_of.clone();
@@ -291,7 +330,7 @@ pub fn solve(
         Some(r) => format!("{}.{}", budget.row_name(r as usize), budget.column_name(j)),
         None => budget.column_name(j),
     };
-    let (mut out, status) = run(&mut problem, &names, settings, budget, hopeless)?;
+    let (mut out, status) = run(&mut problem, &names, settings, budget, infeasible)?;
     let (lower, upper) = (&instance.columns.lower, &instance.columns.upper);
     noise::snap(&mut out.x, lower, upper);
     if square && out.status != mcp::Status::Solved {
@@ -320,7 +359,7 @@ pub fn solve(
     let (claim, status) = match out.status {
         mcp::Status::Solved => (Claim::Solved, status),
         // That all methods from all starts failed is what GAMS calls locally infeasible.
-        mcp::Status::NoSolution => (Claim::Infeasible, SolverStatus::NormalCompletion),
+        mcp::Status::NoSolution => (Claim::LocallyInfeasible, SolverStatus::NormalCompletion),
         _ => (Claim::Unfinished, status),
     };
     Ok(Outcome {

@@ -2,11 +2,13 @@
 //! them: primal, infeasible and unbounded variants, degenerate and badly scaled ones, every kind
 //! of bound, no rows, no columns.
 
-use super::{Budget, Claim, ModelStatus, Outcome, Settings, SolveError, Solver};
-use crate::model::certificate;
+use super::backend::{Backend, Task};
+use super::{Budget, Claim, ModelStatus, Outcome, Settings, SolveError};
 use crate::model::instance::{
     ColumnKind, Columns, Instance, Objective, Relation, Rows, Sense, SparseRows,
 };
+use crate::model::problem_type::ProblemType;
+use crate::solve::certificate;
 use Relation::{Equal, Free, Greater, Less};
 
 const INF: f64 = f64::INFINITY;
@@ -73,15 +75,12 @@ pub fn push_row(instance: &mut Instance, coefficients: &[f64], relation: Relatio
     instance.matrix.start.push(instance.matrix.column.len());
 }
 
+/// A backend with its settings.
+type Solve<'a> = &'a dyn Fn(&Instance) -> Result<Outcome, SolveError>;
+
 /// Solves, and checks that the certificate confirms the claim.
-fn run(solver: &dyn Solver, instance: &Instance) -> Outcome {
-    let o = solver
-        .solve(
-            instance,
-            &Settings::default(),
-            &Budget::unlimited(&mut Quiet::default()),
-        )
-        .expect("a valid instance");
+fn run(solver: Solve, instance: &Instance) -> Outcome {
+    let o = solver(instance).expect("a valid instance");
     let residuals = certificate::linear(instance, &o);
     let status = certificate::linear_status(instance, &o, &residuals);
     let confirmed = match o.claim {
@@ -91,7 +90,7 @@ fn run(solver: &dyn Solver, instance: &Instance) -> Outcome {
             status,
             ModelStatus::Unbounded | ModelStatus::UnboundedNoSolution
         ),
-        Claim::Unfinished => false,
+        _ => false,
     };
     assert!(confirmed, "{status:?} {residuals:?}\n{o:?}");
     o
@@ -110,30 +109,13 @@ fn optimum(o: &Outcome, value: f64, tolerance: f64) {
 }
 
 /// Runs all of it. `tolerance`: relative, on levels and marginals.
-pub fn suite(solver: &dyn Solver, tolerance: f64) {
-    suite_with(solver, &Settings::default(), tolerance);
-}
-
-/// A solver with settings of its own.
-struct With<'a>(&'a dyn Solver, &'a Settings);
-
-impl Solver for With<'_> {
-    fn name(&self) -> &'static str {
-        self.0.name()
-    }
-    fn solve(
-        &self,
-        instance: &Instance,
-        _: &Settings,
-        budget: &Budget,
-    ) -> Result<Outcome, SolveError> {
-        self.0.solve(instance, self.1, budget)
-    }
-}
-
-/// Runs all of it with these settings.
-pub fn suite_with(solver: &dyn Solver, settings: &Settings, tolerance: f64) {
-    let solver: &dyn Solver = &With(solver, settings);
+pub fn suite(backend: &dyn Backend, settings: &Settings, tolerance: f64) {
+    let solver: Solve = &|instance| {
+        let mut quiet = Quiet::default();
+        let task = Task::new(ProblemType::Lp, instance);
+        let reply = backend.solve(&task, settings, &Budget::unlimited(&mut quiet))?;
+        Ok(reply.outcome)
+    };
     textbook(solver, tolerance);
     signs(solver, tolerance);
     shapes(solver, tolerance);
@@ -143,7 +125,7 @@ pub fn suite_with(solver: &dyn Solver, settings: &Settings, tolerance: f64) {
     refused(solver);
 }
 
-fn textbook(solver: &dyn Solver, tol: f64) {
+fn textbook(solver: Solve, tol: f64) {
     // Dantzig's transport problem, rounded: 2 plants, 3 markets.
     let cost = [0.225, 0.153, 0.162, 0.225, 0.162, 0.126];
     let rows = [
@@ -181,7 +163,7 @@ fn textbook(solver: &dyn Solver, tol: f64) {
 }
 
 /// Signs of marginals as GAMS gives them, for min and max alike.
-fn signs(solver: &dyn Solver, tol: f64) {
+fn signs(solver: Solve, tol: f64) {
     let xy = vec![1., 1.];
     let rows = [(xy.clone(), Greater, 10.)];
     let instance = linear(Sense::Minimize, &[1., 2.], &[(0., 5.), (0., INF)], &rows);
@@ -213,7 +195,7 @@ fn signs(solver: &dyn Solver, tol: f64) {
     near(o.column_marginal[1], 2.0, tol);
 }
 
-fn shapes(solver: &dyn Solver, tol: f64) {
+fn shapes(solver: Solve, tol: f64) {
     // Fixed column, free column, range by two rows, =n= row, empty rows that hold.
     let rows = [
         (vec![1., 1., 1.], Greater, -2.),
@@ -285,7 +267,7 @@ fn shapes(solver: &dyn Solver, tol: f64) {
     }
 }
 
-fn degenerate(solver: &dyn Solver, tol: f64) {
+fn degenerate(solver: Solve, tol: f64) {
     // Beale's example, on which textbook simplex cycles.
     let rows = [
         (vec![0.25, -60., -0.04, 9.], Less, 0.),
@@ -356,7 +338,7 @@ fn proves_infeasible(instance: &Instance, y: &[f64]) -> bool {
     most < needed
 }
 
-fn infeasible(solver: &dyn Solver) {
+fn infeasible(solver: Solve) {
     let cases = [
         linear(
             Sense::Minimize,
@@ -403,7 +385,7 @@ fn infeasible(solver: &dyn Solver) {
     }
 }
 
-fn unbounded(solver: &dyn Solver) {
+fn unbounded(solver: Solve) {
     let cases = [
         linear(
             Sense::Maximize,
@@ -452,16 +434,8 @@ fn unbounded(solver: &dyn Solver) {
     }
 }
 
-fn refused(solver: &dyn Solver) {
-    let refuse = |instance: &Instance| -> SolveError {
-        solver
-            .solve(
-                instance,
-                &Settings::default(),
-                &Budget::unlimited(&mut Quiet::default()),
-            )
-            .expect_err("an invalid instance")
-    };
+fn refused(solver: Solve) {
+    let refuse = |instance: &Instance| solver(instance).expect_err("an invalid instance");
     let mut crossed = linear(Sense::Minimize, &[1., 1.], &[(0., 1.), (3., 2.)], &[]);
     assert_eq!(refuse(&crossed).column, Some(1));
     crossed.columns.upper[1] = f64::NAN;

@@ -1,17 +1,18 @@
 //! Solvers. They see an [`Instance`] of indices and numbers, never names.
 //!
-//! A solver's word is not believed: [`crate::model::certificate`] recomputes the residuals of the
+//! A solver's word is not believed: [`crate::solve::certificate`] recomputes the residuals of the
 //! point on the unscaled instance, and that decides the reported status.
 
 pub mod answer;
 pub mod backend;
+pub mod bridge;
 pub mod budget;
+pub mod certificate;
 pub mod complementarity;
 #[cfg(test)]
 pub mod conformance;
 pub(crate) mod factor_size;
 pub mod interval;
-pub mod kkt;
 pub mod lp;
 pub mod mcp;
 pub mod mip;
@@ -28,7 +29,6 @@ pub mod why;
 
 pub use budget::{Budget, Limits, Monitor, Progress, Quiet, Stop};
 
-use crate::model::instance::Instance;
 use crate::model::option::{self, OptionTable};
 pub use crate::model::outcome::{Claim, ModelStatus, Outcome, SolverStatus};
 pub use strategy::Strategy;
@@ -87,17 +87,4 @@ impl SolveError {
             column: None,
         }
     }
-}
-
-/// A solver for some problem types.
-pub trait Solver {
-    /// Lower-case name, as in `option lp = name`.
-    fn name(&self) -> &'static str;
-    /// Solves. Err only for an instance that it cannot take.
-    fn solve(
-        &self,
-        instance: &Instance,
-        settings: &Settings,
-        budget: &Budget,
-    ) -> Result<Outcome, SolveError>;
 }

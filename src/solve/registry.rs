@@ -15,7 +15,6 @@ pub static BACKENDS: &[&dyn Backend] = &[
     #[cfg(feature = "pounce")]
     &nlp::Nonlinear(&nlp::pounce::Pounce),
     &super::complementarity::Bmcp,
-    &super::kkt::Kkt,
     &mpec::Bmpec,
     &mip::Bmip,
 ];

@@ -14,7 +14,7 @@
 //! Marginals come back with GAMS's signs, for min and max alike: the derivative of the objective
 //! with respect to the right-hand side (rows) or to the bound (columns).
 
-use crate::model::instance::{Instance, Relation};
+use crate::model::instance::{INFINITE, Instance, Relation};
 use crate::solve::{Outcome, SolveError};
 
 /// A sparse matrix in compressed form; "lines" are columns or rows.
@@ -121,7 +121,7 @@ impl Problem {
     }
 
     /// Whether y proves the problem infeasible, clearly: more strictly than
-    /// [`crate::model::certificate`] asks.
+    /// [`crate::solve::certificate`] asks.
     pub fn proves_infeasible(&self, y: &[f64]) -> bool {
         proves_infeasible(
             &self.columns,
@@ -202,9 +202,6 @@ pub struct Form {
     instance_rows: usize,
     instance_columns: usize,
 }
-
-/// Bounds from here on are infinite.
-const BIG: f64 = 1e30;
 
 fn fail(message: String, row: Option<usize>, column: Option<usize>) -> SolveError {
     SolveError {
@@ -288,9 +285,9 @@ impl Form {
     fn made(instance: &Instance, definition: Option<Definition>) -> Self {
         let (m, n) = (instance.row_count(), instance.column_count());
         let infinite = |b: f64| {
-            if b >= BIG {
+            if b >= INFINITE {
                 f64::INFINITY
-            } else if b <= -BIG {
+            } else if b <= -INFINITE {
                 f64::NEG_INFINITY
             } else {
                 b
@@ -415,26 +412,9 @@ impl Form {
 /// The one equation in which a free objective variable stands, if that is all it does.
 fn definition(instance: &Instance) -> Option<Definition> {
     let column = instance.objective?.column as usize;
-    let bounded = instance.columns.lower[column] > -BIG || instance.columns.upper[column] < BIG;
-    if bounded {
-        return None;
-    }
-    let matrix = &instance.matrix;
-    let mut places = (0..instance.row_count()).filter_map(|i| {
-        let r = matrix.start[i]..matrix.start[i + 1];
-        let k = matrix.column[r.clone()]
-            .binary_search(&(column as u32))
-            .ok()?;
-        Some((i, matrix.value[r.start + k]))
-    });
-    let (row, coefficient) = places.next()?;
-    if places.next().is_some()
-        || instance.rows.relation[row] != Relation::Equal
-        || coefficient == 0.0
-    {
-        return None;
-    }
-    Some(Definition {
+    let (row, coefficient) = instance.objective_row()?;
+    let defines = instance.is_free(column) && instance.rows.relation[row] == Relation::Equal;
+    defines.then_some(Definition {
         row,
         column,
         coefficient,

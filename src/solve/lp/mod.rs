@@ -7,15 +7,13 @@ pub mod certify;
 pub mod crossover;
 pub mod form;
 pub mod interior;
-pub mod least;
 mod options;
 pub mod scale;
 pub mod simplex;
 
-use super::answer::{Answer, linear_shown};
-use super::backend::{Backend, Supports, Task, Terms};
+use super::backend::{Backend, Reply, Supports, Task, Terms};
 use super::noise;
-use super::{Budget, Claim, Outcome, Settings, SolveError, Solver, SolverStatus, Stop};
+use super::{Budget, Claim, Outcome, Settings, SolveError, SolverStatus, Stop};
 use crate::model::instance::Instance;
 use crate::model::option::OptionTable;
 use crate::model::problem_type::ProblemType;
@@ -69,15 +67,6 @@ impl Ended {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Clarabel;
 
-/// The simplex method from a basis that may be optimal: states of the instance's columns and rows. Where it
-/// leads nowhere, as [`Clarabel`].
-pub struct Restart {
-    /// A state for each column.
-    pub columns: Basis,
-    /// A state for each row.
-    pub rows: Basis,
-}
-
 /// How many digits are wanted, `option lp_accuracy`.
 #[derive(Clone, Copy, PartialEq, Debug)]
 enum Accuracy {
@@ -111,56 +100,8 @@ enum Method<'a> {
     Interior,
     Crossover,
     Simplex,
-    Restart(&'a Restart),
+    Restart(&'a Basis),
 }
-
-impl Solver for Clarabel {
-    fn name(&self) -> &'static str {
-        "clarabel"
-    }
-
-    fn solve(
-        &self,
-        instance: &Instance,
-        settings: &Settings,
-        budget: &Budget,
-    ) -> Result<Outcome, SolveError> {
-        let method = match settings.option("method").as_deref() {
-            Some("interior") => Method::Interior,
-            Some("crossover") => Method::Crossover,
-            Some("simplex") => Method::Simplex,
-            _ => Method::Auto,
-        };
-        solve(instance, settings, budget, method)
-    }
-}
-
-/// The problem types whose linear instances are linear programs.
-const TYPES: &[ProblemType] = &[
-    ProblemType::Lp,
-    ProblemType::Rmip,
-    ProblemType::Mip,
-    ProblemType::Nlp,
-    ProblemType::Dnlp,
-    ProblemType::Rminlp,
-    ProblemType::Minlp,
-    ProblemType::Qcp,
-    ProblemType::Rmiqcp,
-    ProblemType::Miqcp,
-    ProblemType::Mpec,
-    ProblemType::Rmpec,
-];
-
-/// What both linear backends take.
-pub(super) const SUPPORTS: Supports = Supports {
-    types: TYPES,
-    terms: Terms::Linear,
-    linear: true,
-    pairs: false,
-    integers: false,
-    largest: usize::MAX,
-    only_by_name: false,
-};
 
 impl Backend for Clarabel {
     fn name(&self) -> &'static str {
@@ -184,29 +125,21 @@ impl Backend for Clarabel {
         task: &Task,
         settings: &Settings,
         budget: &Budget,
-    ) -> Result<Answer, SolveError> {
-        linear_shown(self, task.instance, settings, budget)
+    ) -> Result<Reply, SolveError> {
+        let method = match (settings.option("method").as_deref(), task.basis) {
+            (_, Some(basis)) => Method::Restart(basis),
+            (Some("interior"), _) => Method::Interior,
+            (Some("crossover"), _) => Method::Crossover,
+            (Some("simplex"), _) => Method::Simplex,
+            _ => Method::Auto,
+        };
+        Ok(solve(task.instance, settings, budget, method)?.into())
     }
 }
 
 /// The simplex method alone, `option lp = simplex`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SimplexAlone;
-
-impl Solver for SimplexAlone {
-    fn name(&self) -> &'static str {
-        "simplex"
-    }
-
-    fn solve(
-        &self,
-        instance: &Instance,
-        settings: &Settings,
-        budget: &Budget,
-    ) -> Result<Outcome, SolveError> {
-        solve(instance, settings, budget, Method::Simplex)
-    }
-}
 
 impl Backend for SimplexAlone {
     fn name(&self) -> &'static str {
@@ -233,25 +166,28 @@ impl Backend for SimplexAlone {
         task: &Task,
         settings: &Settings,
         budget: &Budget,
-    ) -> Result<Answer, SolveError> {
-        linear_shown(self, task.instance, settings, budget)
+    ) -> Result<Reply, SolveError> {
+        Ok(solve(task.instance, settings, budget, Method::Simplex)?.into())
     }
 }
 
-impl Solver for Restart {
-    fn name(&self) -> &'static str {
-        "simplex"
-    }
+/// The problem types whose linear instances are linear programs, and whose smooth ones are nonlinear programs.
+pub(super) const TYPES: &[ProblemType] = &[
+    ProblemType::Lp,
+    ProblemType::Rmip,
+    ProblemType::Mip,
+    ProblemType::Nlp,
+    ProblemType::Dnlp,
+    ProblemType::Rminlp,
+    ProblemType::Minlp,
+    ProblemType::Qcp,
+    ProblemType::Rmiqcp,
+    ProblemType::Miqcp,
+    ProblemType::Mpec,
+    ProblemType::Rmpec,
+];
 
-    fn solve(
-        &self,
-        instance: &Instance,
-        settings: &Settings,
-        budget: &Budget,
-    ) -> Result<Outcome, SolveError> {
-        solve(instance, settings, budget, Method::Restart(self))
-    }
-}
+const SUPPORTS: Supports = Supports::new(TYPES, Terms::Linear);
 
 /// What a way gave, in the units of the scaled problem.
 struct Gave {
@@ -301,8 +237,9 @@ fn solve(
         (Method::Simplex, _) => simplex_only(&scaled, accuracy, budget),
         (Method::Auto, _) => auto(&scaled, accuracy, budget),
         (Method::Restart(from), _) => {
-            let columns = form.columns.iter().map(|&j| from.columns[j as usize]);
-            let rows = form.rows.iter().map(|&i| from.rows[i as usize]);
+            let (columns, rows) = from.split_at(instance.column_count());
+            let columns = form.columns.iter().map(|&j| columns[j as usize]);
+            let rows = form.rows.iter().map(|&i| rows[i as usize]);
             let basis = columns.chain(rows).collect();
             restarted(&scaled, &basis, accuracy, budget)
         }
@@ -603,7 +540,7 @@ mod tests {
     fn conforms(method: &str, tolerance: f64) {
         let mut settings = Settings::default();
         settings.options.push(("method".into(), method.into()));
-        conformance::suite_with(&Clarabel, &settings, tolerance);
+        conformance::suite(&Clarabel, &settings, tolerance);
     }
 
     #[test]
@@ -623,6 +560,6 @@ mod tests {
 
     #[test]
     fn default_conforms() {
-        conformance::suite(&Clarabel, 1e-12);
+        conformance::suite(&Clarabel, &Settings::default(), 1e-12);
     }
 }

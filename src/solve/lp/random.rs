@@ -3,12 +3,15 @@
 
 use proptest::prelude::*;
 
-use super::{Clarabel, certify};
-use crate::model::certificate;
+use super::certify;
 use crate::model::instance::{Instance, Relation, Sense};
+use crate::model::problem_type::ProblemType;
 use crate::solve::Budget;
+use crate::solve::answer::subproblem;
+use crate::solve::backend::Task;
+use crate::solve::certificate;
 use crate::solve::conformance::{Quiet, Row, linear};
-use crate::solve::{Claim, ModelStatus, Outcome, Settings, Solver};
+use crate::solve::{Claim, ModelStatus, Outcome, Settings};
 
 /// What a random program is made of.
 #[derive(Clone, Debug)]
@@ -67,15 +70,11 @@ impl Parts {
 fn run(method: &str, instance: &Instance) -> (ModelStatus, Outcome) {
     let mut settings = Settings::default();
     settings.options.push(("method".into(), method.into()));
-    let o = Clarabel
-        .solve(
-            instance,
-            &settings,
-            &Budget::unlimited(&mut Quiet::default()),
-        )
-        .expect("a valid instance");
-    let residuals = certificate::linear(instance, &o);
-    (certificate::linear_status(instance, &o, &residuals), o)
+    let mut quiet = Quiet::default();
+    let budget = Budget::unlimited(&mut quiet);
+    let a = subproblem(&Task::new(ProblemType::Lp, instance), &settings, &budget);
+    let a = a.expect("a valid instance");
+    (a.status, a.outcome)
 }
 
 fn value(o: &Outcome) -> f64 {

@@ -22,12 +22,11 @@ pub mod tree;
 
 pub use tree::{Aim, Record};
 
-use super::answer::{Answer, linear as solve_linear};
-use super::backend::{Backend, Supports, Task, Terms};
+use super::answer::subproblem;
+use super::backend::{Backend, Reply, Supports, Task, Terms};
 use super::lp::form::Form;
 use super::lp::{self, Ended};
-use super::{Budget, Claim, ModelStatus, Outcome, Settings, SolveError, SolverStatus, nlp};
-use crate::model::certificate::Residuals;
+use super::{Budget, Claim, Outcome, Settings, SolveError, SolverStatus};
 use crate::model::instance::{ColumnKind, Instance};
 use crate::model::option::OptionTable;
 use crate::model::problem_type::ProblemType;
@@ -43,6 +42,8 @@ pub const NAME: &str = "bmip";
 /// What a search found out besides a point.
 #[derive(Clone, Debug)]
 pub struct Report {
+    /// Whether the point is a solution; without one levels and marginals are as before.
+    pub solution: bool,
     /// No solution is better than this.
     pub bound: f64,
     /// Nodes solved.
@@ -60,6 +61,9 @@ pub const OPTIONS: OptionTable = OptionTable {
     ignored: &[],
 };
 
+/// The types in which columns may be discrete.
+const TYPES: &[ProblemType] = &[ProblemType::Mip, ProblemType::Miqcp, ProblemType::Minlp];
+
 /// Branch and bound as a backend.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Bmip;
@@ -75,13 +79,8 @@ impl Backend for Bmip {
 
     fn supports(&self) -> Supports {
         Supports {
-            types: &[ProblemType::Mip, ProblemType::Miqcp, ProblemType::Minlp],
-            terms: Terms::Kinks,
-            linear: true,
-            pairs: false,
             integers: true,
-            largest: usize::MAX,
-            only_by_name: false,
+            ..Supports::new(TYPES, Terms::Kinks)
         }
     }
 
@@ -94,18 +93,18 @@ impl Backend for Bmip {
         task: &Task,
         settings: &Settings,
         budget: &Budget,
-    ) -> Result<Answer, SolveError> {
-        answer(task.choice, task.instance, settings, budget)
+    ) -> Result<Reply, SolveError> {
+        search(task.choice, task.instance, settings, budget)
     }
 }
 
 /// Solves an instance with discrete columns.
-pub fn answer(
+fn search(
     choice: Option<&str>,
     instance: &Instance,
     settings: &Settings,
     budget: &Budget,
-) -> Result<Answer, SolveError> {
+) -> Result<Reply, SolveError> {
     let mut control = Control::new(budget);
     let mut aim = settings.search;
     aim.cutoff = aim.cutoff.map(|c| instance.sign() * c);
@@ -115,8 +114,8 @@ pub fn answer(
     };
     let iterations = control.iterations;
     budget.spend(iterations);
-    let (mut answer, complete) = match &found.x {
-        Some(x) => (solution(choice, instance, x, settings, budget)?, true),
+    let (mut outcome, complete) = match &found.x {
+        Some(x) => (solution(choice, instance, x, settings, budget), true),
         None => (nothing(instance), false),
     };
     let bound = if found.x.is_some() && found.exact {
@@ -128,18 +127,13 @@ pub fn answer(
         End::Complete => !found.incomplete,
         _ => found.value - bound <= 1e-9 * found.value.abs().max(1e-9),
     };
-    use ModelStatus as S;
-    answer.status = match (complete, &found.end) {
-        (true, _) if !answer.residuals.is_feasible(1e-6) => S::IntermediateNonInteger,
-        (true, End::Unbounded) => S::Unbounded,
-        (true, _) if proved && found.exact => S::Optimal,
-        (true, _) => S::IntegerSolution,
-        (false, End::Complete) if !found.incomplete => S::IntegerInfeasible,
-        (false, End::Unbounded) => S::UnboundedNoSolution,
-        _ => S::NoSolution,
+    outcome.claim = match (complete, &found.end) {
+        (_, End::Unbounded) => Claim::Unbounded,
+        (true, _) if proved && found.exact => Claim::Solved,
+        (false, End::Complete) if !found.incomplete => Claim::Infeasible,
+        _ => Claim::Unfinished,
     };
-    let infeasible = answer.status == S::IntegerInfeasible;
-    let outcome = &mut answer.outcome;
+    let infeasible = outcome.claim == Claim::Infeasible;
     outcome.iterations = iterations;
     outcome.solver = NAME;
     outcome.basis = None;
@@ -166,16 +160,20 @@ pub fn answer(
         End::Stopped(Ended::Interrupted) => SolverStatus::UserInterrupt,
         _ => SolverStatus::TerminatedBySolver,
     };
-    let shown = match (answer.status, instance.objective) {
-        (S::Optimal, Some(o)) => answer.outcome.level[o.column as usize],
+    let shown = match (outcome.claim, instance.objective) {
+        (Claim::Solved, Some(o)) => outcome.level[o.column as usize],
         _ => instance.sign() * bound,
     };
-    answer.search = Some(Report {
+    let report = Report {
+        solution: complete,
         bound: shown,
         nodes: found.nodes,
         records: found.records,
-    });
-    Ok(answer)
+    };
+    Ok(Reply {
+        search: Some(report),
+        ..outcome.into()
+    })
 }
 
 /// The search of a linear program: presolve, cuts, tree.
@@ -236,7 +234,11 @@ fn nonlinear_search(
     // What keeps the solver from starting is said before anything else.
     control.budget.aside(|budget| {
         budget.within(f64::INFINITY, 1, |budget| {
-            nlp::answer(choice, &first, settings, budget).map(|_| ())
+            subproblem(
+                &Task::new(ProblemType::Rminlp, &first).by(choice),
+                settings,
+                budget,
+            )
         })
     })?;
     relaxation.convex = true;
@@ -306,37 +308,29 @@ fn solution(
     x: &[f64],
     settings: &Settings,
     budget: &Budget,
-) -> Result<Answer, SolveError> {
+) -> Outcome {
     let fixed = fixed(instance, x);
-    let answer = budget.after_all(GRACE, |budget| match instance.is_linear() {
-        true => solve_linear(&lp::Clarabel, &fixed, settings, budget),
-        false => nlp::answer(choice, &fixed, settings, budget),
-    });
+    let task = Task::new(ProblemType::Rminlp, &fixed).by(choice);
+    let answer = budget.after_all(GRACE, |budget| subproblem(&task, settings, budget));
     if let Ok(a) = answer
-        && matches!(a.status, ModelStatus::Optimal | ModelStatus::LocallyOptimal)
+        && a.status.is_solution()
     {
-        return Ok(a);
+        return a.outcome;
     }
     // The point of the search, without marginals.
-    let mut outcome = nothing(instance).outcome;
+    let mut outcome = nothing(instance);
     outcome.level = x.to_vec();
     outcome.row_marginal.fill(0.0);
     outcome.column_marginal.fill(0.0);
-    let (activity, residuals) = super::answer::primal(instance, &outcome.level);
-    Ok(Answer::new(
-        outcome,
-        residuals,
-        ModelStatus::IntegerSolution,
-        activity,
-    ))
+    outcome
 }
 
 /// Seconds for the marginals of a solution when the time is used up.
 const GRACE: f64 = 1.5;
 
 /// Without a solution levels and marginals stay as they were.
-fn nothing(instance: &Instance) -> Answer {
-    let outcome = Outcome {
+fn nothing(instance: &Instance) -> Outcome {
+    Outcome {
         level: instance.columns.level.clone(),
         row_marginal: instance.rows.marginal.clone(),
         column_marginal: instance.columns.marginal.clone(),
@@ -347,12 +341,5 @@ fn nothing(instance: &Instance) -> Answer {
         ray: Vec::new(),
         message: None,
         basis: None,
-    };
-    let (activity, _) = super::answer::primal(instance, &outcome.level);
-    Answer::new(
-        outcome,
-        Residuals::default(),
-        ModelStatus::NoSolution,
-        activity,
-    )
+    }
 }

@@ -6,9 +6,11 @@
 use super::model::Change;
 use super::relaxation::{Control, Relaxation, Solved};
 use crate::model::instance::{ColumnKind, Instance};
-use crate::solve::answer::Answer;
+use crate::model::problem_type::ProblemType;
+use crate::solve::answer::{Answer, subproblem};
+use crate::solve::backend::Task;
 use crate::solve::lp::Ended;
-use crate::solve::{ModelStatus, Settings, SolverStatus, nlp};
+use crate::solve::{ModelStatus, Settings, SolverStatus};
 use std::rc::Rc;
 
 /// The instance under a node's bounds.
@@ -53,10 +55,10 @@ impl Nonlinear {
         for (j, x) in columns.level.iter_mut().enumerate() {
             *x = from[j].max(columns.lower[j]).min(columns.upper[j]);
         }
-        let choice = self.choice.as_deref();
+        let task = Task::new(ProblemType::Rminlp, &self.instance).by(self.choice.as_deref());
         let answer = control
             .budget
-            .aside(|budget| nlp::answer(choice, &self.instance, &self.settings, budget));
+            .aside(|budget| subproblem(&task, &self.settings, budget));
         let answer = answer.ok()?;
         control.iterations += answer.outcome.iterations;
         Some(answer)

@@ -6,7 +6,7 @@
 //! its bound or F = 0 to rounding, so complementarity is exact, whatever the accuracy of what
 //! led there. What differs is how the branch is found:
 //!
-//! * [`relaxation`]: nonlinear programs in which the products are bounded by μ → 0, or penalised;
+//! * [`super::bridge::products`]: nonlinear programs in which the products are bounded by μ → 0, or penalised;
 //! * [`pieces`]: where everything is linear and the pairs couple two otherwise separate systems,
 //!   linear programs on supports.
 //!
@@ -20,7 +20,6 @@
 pub(in crate::solve) mod bound;
 pub mod pairs;
 pub mod pieces;
-pub mod relaxation;
 pub mod settings;
 pub mod split;
 pub mod stationarity;
@@ -28,17 +27,17 @@ mod supports;
 mod swaps;
 mod tree;
 
-use super::answer::Answer;
-use super::backend::{Backend, Supports, Task, Terms};
-use super::lp::{Clarabel, Ended, Restart};
-use super::{
-    Budget, Claim, ModelStatus, Outcome, Settings, SolveError, Solver, SolverStatus, Stop,
-};
+use super::answer::{Answer, answer_with, subproblem};
+use super::backend::{Backend, Reply, Supports, Task, Terms};
+use super::bridge::products::{Kind, Relaxed};
+use super::lp::Ended;
+use super::registry::BACKENDS;
+use super::{Budget, Claim, ModelStatus, Outcome, Settings, SolveError, SolverStatus, Stop};
 use crate::model::instance::Instance;
 use crate::model::option::OptionTable;
+use crate::model::outcome::Basis;
 use crate::model::problem_type::ProblemType;
 use pairs::{Judged, Piece, Program};
-use relaxation::{Kind, Relaxed};
 pub use settings::OPTIONS;
 use settings::{Method, Options};
 use stationarity::Verdict;
@@ -81,13 +80,8 @@ impl Backend for Bmpec {
 
     fn supports(&self) -> Supports {
         Supports {
-            types: &[ProblemType::Mpec, ProblemType::Rmpec],
-            terms: Terms::Smooth,
-            linear: true,
             pairs: true,
-            integers: false,
-            largest: usize::MAX,
-            only_by_name: false,
+            ..Supports::new(&[ProblemType::Mpec, ProblemType::Rmpec], Terms::Smooth)
         }
     }
 
@@ -100,36 +94,25 @@ impl Backend for Bmpec {
         task: &Task,
         settings: &Settings,
         budget: &Budget,
-    ) -> Result<Answer, SolveError> {
-        answer(task.choice, task.instance, settings, budget)
+    ) -> Result<Reply, SolveError> {
+        let program = Program::new(task.instance)?;
+        super::lp::form::validate(&program.envelope)?;
+        let mut search = Search {
+            program: &program,
+            options: Options::new(settings),
+            choice: task.choice,
+            settings,
+            budget,
+            enough: u64::MAX,
+            best: None,
+            reserve: None,
+            fallback: None,
+            empty: false,
+            seen: HashSet::new(),
+            notes: Vec::new(),
+        };
+        search.run()
     }
-}
-
-/// Solves, and says what the answer is worth.
-pub fn answer(
-    choice: Option<&str>,
-    instance: &Instance,
-    settings: &Settings,
-    budget: &Budget,
-) -> Result<Answer, SolveError> {
-    let options = Options::new(settings);
-    let program = Program::new(instance)?;
-    super::lp::form::validate(&program.envelope)?;
-    let mut search = Search {
-        program: &program,
-        options,
-        choice,
-        settings,
-        budget,
-        enough: u64::MAX,
-        best: None,
-        reserve: None,
-        fallback: None,
-        empty: false,
-        seen: HashSet::new(),
-        notes: Vec::new(),
-    };
-    search.run()
 }
 
 /// Until there is a feasible point: in iterations times rows and columns, and iterations in any case.
@@ -140,7 +123,9 @@ const FIRST_ITERATIONS: u64 = 3_000;
 #[derive(Clone)]
 struct Found {
     pieces: Vec<Piece>,
-    answer: Answer,
+    outcome: Outcome,
+    /// Of the branch.
+    status: ModelStatus,
     judged: Judged,
     /// Minimised.
     objective: f64,
@@ -168,7 +153,7 @@ struct Search<'a, 'm> {
 }
 
 impl Search<'_, '_> {
-    fn run(&mut self) -> Result<Answer, SolveError> {
+    fn run(&mut self) -> Result<Reply, SolveError> {
         let start: Vec<f64> = {
             let c = &self.program.instance.columns;
             let finite = |x: f64| if x.is_finite() { x } else { 0.0 };
@@ -255,27 +240,15 @@ impl Search<'_, '_> {
         let most = most.min(self.left());
         self.budget.silently(|budget| {
             budget.within(f64::INFINITY, most, |budget| {
-                super::nlp::answer(self.choice, instance, &settings, budget)
+                let task = Task::new(ProblemType::Nlp, instance).by(self.choice);
+                subproblem(&task, &settings, budget)
             })
         })
     }
 
     /// Solves a branch and keeps what it gives. None if it was solved before or is not feasible.
     fn branch(&mut self, pieces: Vec<Piece>, start: &[f64]) -> Result<Option<Found>, SolveError> {
-        self.branch_within(pieces, start, u64::MAX)
-    }
-
-    /// The same for a linear program whose optimal basis may be known.
-    fn branch_from(
-        &mut self,
-        basis: Option<Restart>,
-        pieces: Vec<Piece>,
-        start: &[f64],
-    ) -> Result<Option<Found>, SolveError> {
-        match &basis {
-            Some(basis) => self.branch_by(basis, pieces, start, u64::MAX),
-            None => self.branch(pieces, start),
-        }
+        self.branch_from(None, pieces, start, u64::MAX)
     }
 
     /// The same, in so many iterations.
@@ -285,13 +258,13 @@ impl Search<'_, '_> {
         start: &[f64],
         most: u64,
     ) -> Result<Option<Found>, SolveError> {
-        self.branch_by(&Clarabel, pieces, start, most)
+        self.branch_from(None, pieces, start, most)
     }
 
-    /// The same, by a solver of its own if it is linear.
-    fn branch_by(
+    /// The same for a linear program whose optimal basis may be known.
+    fn branch_from(
         &mut self,
-        solver: &dyn Solver,
+        basis: Option<&Basis>,
         pieces: Vec<Piece>,
         start: &[f64],
         most: u64,
@@ -303,7 +276,8 @@ impl Search<'_, '_> {
         let answer = match instance.is_linear() {
             true => self.budget.silently(|budget| {
                 budget.within(f64::INFINITY, most, |budget| {
-                    super::answer::linear(solver, &instance, self.settings, budget)
+                    let task = Task::new(ProblemType::Lp, &instance);
+                    subproblem(&Task { basis, ..task }, self.settings, budget)
                 })
             }),
             false => self.program(&instance, &[], most),
@@ -328,7 +302,8 @@ impl Search<'_, '_> {
         ));
         let found = Found {
             pieces,
-            answer,
+            outcome: answer.outcome,
+            status: answer.status,
             judged,
             objective,
             verdict: None,
@@ -351,7 +326,7 @@ impl Search<'_, '_> {
             Some(old) => {
                 let margin = 1e-9 * old.objective.abs().max(1.0);
                 let optimal = |f: &Found| f.verdict == Some(Stationarity::Proved);
-                let unbounded = |f: &Found| f.answer.status == ModelStatus::Unbounded;
+                let unbounded = |f: &Found| f.status == ModelStatus::Unbounded;
                 !unbounded(old) && (unbounded(found) || found.objective < old.objective - margin)
                     || (found.objective <= old.objective + margin
                         && optimal(found)
@@ -366,10 +341,10 @@ impl Search<'_, '_> {
     /// From a feasible point downhill through the branches, until no direction leads on.
     fn descend(&mut self, mut found: Found) -> Result<Found, SolveError> {
         for _ in 0..1000 {
-            if self.is_over() || found.answer.status == ModelStatus::Unbounded {
+            if self.is_over() || found.status == ModelStatus::Unbounded {
                 break;
             }
-            match self.check(&found.answer.outcome.level) {
+            match self.check(&found.outcome.level) {
                 Verdict::Proved => {
                     found.verdict = Some(Stationarity::Proved);
                     break;
@@ -386,7 +361,7 @@ impl Search<'_, '_> {
                     let what = self.describe(&direction);
                     self.log(&format!("not stationary: slope {slope:.3e} along {what}"));
                     found.verdict = Some(Stationarity::Refuted);
-                    let level = found.answer.outcome.level.clone();
+                    let level = found.outcome.level.clone();
                     let margin = 1e-10 * found.objective.abs().max(1.0);
                     match self.branch(pieces, &level)? {
                         Some(next) if next.objective < found.objective - margin => found = next,
@@ -437,10 +412,10 @@ impl Search<'_, '_> {
             message: None,
             basis: None,
         };
-        let (residuals, activity) = (judged.residuals.clone(), judged.activity.clone());
         Found {
             pieces,
-            answer: Answer::new(outcome, residuals, ModelStatus::Feasible, activity),
+            outcome,
+            status: ModelStatus::Feasible,
             objective: self.program.objective(level),
             judged,
             verdict: None,
@@ -455,9 +430,9 @@ impl Search<'_, '_> {
         instance.columns.level.copy_from_slice(start);
         let settings = self.sub_settings(options);
         let out = self.budget.silently(|budget| {
-            super::complementarity::solve(&instance, false, &settings, budget, &|_| false)
+            subproblem(&Task::new(ProblemType::Mcp, &instance), &settings, budget)
         });
-        let out = out.ok()?;
+        let out = out.ok()?.outcome;
         let judged = self.program.judge(&out.level);
         let value = self.program.sign() * self.program.objective(&out.level);
         self.log(&format!(
@@ -499,7 +474,7 @@ impl Search<'_, '_> {
             self.notes
                 .push("the start is not feasible: its branch was solved".into());
             if let Some(f) = self.branch(pieces, start)? {
-                let verdict = self.check(&f.answer.outcome.level);
+                let verdict = self.check(&f.outcome.level);
                 self.conclude(f, verdict);
             }
             return Ok(());
@@ -595,8 +570,8 @@ impl Search<'_, '_> {
         self.budget.log(line);
     }
 
-    /// Turns what was found into an answer.
-    fn finish(&mut self) -> Result<Answer, SolveError> {
+    /// What was found, and what is claimed of it.
+    fn finish(&mut self) -> Result<Reply, SolveError> {
         if let Some(found) = self.fallback.take()
             && (self.best.is_none() || self.budget.stopped().is_some())
         {
@@ -614,38 +589,45 @@ impl Search<'_, '_> {
         let Some(found) = self.best.take() else {
             return self.infeasible();
         };
-        let mut residuals = found.judged.residuals;
-        residuals.dual = found.answer.residuals.dual;
-        residuals.dual_relative = found.answer.residuals.dual_relative;
-        let status = match (found.answer.status, found.verdict) {
-            (ModelStatus::Unbounded, _) => ModelStatus::Unbounded,
-            _ if low.is_some_and(|l| bound::is_closed(l, found.objective)) => ModelStatus::Optimal,
-            (_, Some(Stationarity::Proved)) => ModelStatus::LocallyOptimal,
-            _ => ModelStatus::Feasible,
+        let claim = match (found.status, found.verdict) {
+            (ModelStatus::Unbounded, _) => Claim::Unbounded,
+            _ if low.is_some_and(|l| bound::is_closed(l, found.objective)) => Claim::Solved,
+            (_, Some(Stationarity::Proved)) => Claim::LocallySolved,
+            _ => Claim::Unfinished,
         };
-        let mut outcome = found.answer.outcome;
-        outcome.iterations = self.budget.iterations();
-        outcome.solver = "bmpec";
-        outcome.status = match (status, self.budget.stopped().map(Stop::status)) {
-            (ModelStatus::Feasible, Some(s)) => s,
+        let status = match (claim, self.budget.stopped().map(Stop::status)) {
+            (Claim::Unfinished, Some(s)) => s,
             (_, Some(SolverStatus::UserInterrupt)) => SolverStatus::UserInterrupt,
             _ => SolverStatus::NormalCompletion,
         };
-        outcome.message = (!self.notes.is_empty()).then(|| self.notes.join("; "));
-        let mut answer = Answer::new(outcome, residuals, status, found.judged.activity);
-        answer.stationarity = found.verdict;
         let low = low.map(|l| l.min(found.objective));
-        answer.bounds = low.map(|low| match self.program.sign() > 0.0 {
+        let bounds = low.map(|low| match self.program.sign() > 0.0 {
             true => [low, found.objective],
             false => [-found.objective, -low],
         });
-        Ok(answer)
+        Ok(Reply {
+            stationarity: found.verdict,
+            bounds,
+            ..self.reply(found.outcome, claim, status)
+        })
+    }
+
+    fn reply(&self, outcome: Outcome, claim: Claim, status: SolverStatus) -> Reply {
+        let outcome = Outcome {
+            claim,
+            status,
+            iterations: self.budget.iterations(),
+            solver: "bmpec",
+            message: (!self.notes.is_empty()).then(|| self.notes.join("; ")),
+            ..outcome
+        };
+        outcome.into()
     }
 
     /// A lower bound of the (minimised) objective, if one is wanted and there is one; and the better point
     /// that the search for it may come by.
     fn lower_bound(&mut self) -> Result<Option<f64>, SolveError> {
-        let bounded = |f: &&Found| f.answer.status != ModelStatus::Unbounded;
+        let bounded = |f: &&Found| f.status != ModelStatus::Unbounded;
         let Some(found) = self.best.as_ref().filter(bounded).cloned() else {
             return Ok(None);
         };
@@ -653,7 +635,7 @@ impl Search<'_, '_> {
             return Ok(None);
         }
         let (program, bound) = (self.program, self.options.bound);
-        let level = &found.answer.outcome.level;
+        let level = &found.outcome.level;
         let proof = bound::lower(program, level, bound, self.budget);
         self.notes.extend(proof.note);
         if let Some(level) = proof.better {
@@ -672,43 +654,38 @@ impl Search<'_, '_> {
     }
 
     /// No feasible point was found: is there none?
-    fn infeasible(&mut self) -> Result<Answer, SolveError> {
+    fn infeasible(&mut self) -> Result<Reply, SolveError> {
         self.allow(FIRST_WORK.max(FIRST_ITERATIONS * self.size()));
         let stopped = self.budget.stop();
         let envelope = &self.program.envelope;
-        let mut a = match envelope.is_linear() {
-            true => super::answer::linear_shown(&Clarabel, envelope, self.settings, self.budget)?,
+        let a = match envelope.is_linear() {
+            true => {
+                let task = Task::new(ProblemType::Lp, envelope);
+                answer_with(BACKENDS, &task, self.settings, self.budget)?
+            }
             false => self.program(envelope, &[("nlp_attempts", "all")], u64::MAX)?,
         };
-        let proved = matches!(
-            a.status,
-            ModelStatus::Infeasible | ModelStatus::LocallyInfeasible
-        );
-        if !proved {
-            if let Some(r) = self.reserve.take() {
-                a = r.answer;
+        let mut outcome = a.outcome;
+        let claim = match a.status {
+            ModelStatus::Infeasible => Claim::Infeasible,
+            ModelStatus::LocallyInfeasible => Claim::LocallyInfeasible,
+            _ => {
+                if let Some(r) = self.reserve.take() {
+                    outcome = r.outcome;
+                }
+                let note = match self.empty {
+                    true => "no point satisfies all pairs, proved by branch and bound",
+                    false => "no point that satisfies all pairs was found",
+                };
+                self.notes.push(note.into());
+                match stopped {
+                    _ if self.empty => Claim::Infeasible,
+                    Some(_) => Claim::Unfinished,
+                    None => Claim::LocallyInfeasible,
+                }
             }
-            a.status = match stopped {
-                _ if self.empty => ModelStatus::Infeasible,
-                Some(_) => ModelStatus::IntermediateInfeasible,
-                None => ModelStatus::LocallyInfeasible,
-            };
-            let note = match self.empty {
-                true => "no point satisfies all pairs, proved by branch and bound",
-                false => "no point that satisfies all pairs was found",
-            };
-            self.notes.push(note.into());
-        }
-        let judged = self.program.judge(&a.outcome.level);
-        a.outcome.solver = "bmpec";
-        a.outcome.iterations = self.budget.iterations();
-        a.outcome.status = stopped.map_or(SolverStatus::NormalCompletion, Stop::status);
-        a.outcome.message = (!self.notes.is_empty()).then(|| self.notes.join("; "));
-        Ok(Answer::new(
-            a.outcome,
-            judged.residuals,
-            a.status,
-            judged.activity,
-        ))
+        };
+        let status = stopped.map_or(SolverStatus::NormalCompletion, Stop::status);
+        Ok(self.reply(outcome, claim, status))
     }
 }

@@ -13,10 +13,10 @@
 //! where there is no lower one) gives the *envelope*, the relaxation that contains all branches.
 
 use crate::autodiff::Evaluator;
-use crate::model::certificate::{self, Residuals, TOLERANCE};
-use crate::model::instance::{Instance, KernelTerms, Relation};
+use crate::model::instance::{Instance, Relation};
 use crate::model::sum::Sum;
 use crate::solve::SolveError;
+use crate::solve::certificate::{self, Residuals, TOLERANCE};
 use crate::solve::pairing::refuse_relation;
 
 /// A row and a column with a choice.
@@ -232,25 +232,14 @@ impl<'a> Program<'a> {
 
     /// The point with the objective variable as its defining equation says, if it has one.
     pub fn complete(&self, mut level: Vec<f64>) -> Vec<f64> {
-        let Some(z) = self.instance.objective.map(|o| o.column as usize) else {
-            return level;
-        };
-        let in_row = |i: &usize| self.instance.matrix.row(*i).any(|(j, _)| j == z);
-        let rows: Vec<usize> = (0..self.instance.row_count()).filter(in_row).collect();
-        let nonlinear = |t: &KernelTerms| t.columns.contains(&(z as u32));
-        let [row] = rows[..] else { return level };
-        let defined = self.instance.rows.relation[row] == Relation::Equal
-            && !self.instance.nonlinear.iter().any(nonlinear);
-        if let Some((_, a)) = self.instance.matrix.row(row).find(|e| e.0 == z)
-            && defined
-        {
-            let rest = self.instance.rows.rhs[row] - self.activity(&level)[row];
-            let x = level[z] + rest / a;
+        let instance = self.instance;
+        let equation = |row: &usize| instance.rows.relation[*row] == Relation::Equal;
+        let row = instance.objective_row().filter(|(row, _)| equation(row));
+        if let (Some(objective), Some((row, a))) = (instance.objective, row) {
+            let z = objective.column as usize;
+            let x = level[z] + (instance.rows.rhs[row] - self.activity(&level)[row]) / a;
             if x.is_finite() {
-                level[z] = x.clamp(
-                    self.instance.columns.lower[z],
-                    self.instance.columns.upper[z],
-                );
+                level[z] = x.clamp(instance.columns.lower[z], instance.columns.upper[z]);
             }
         }
         level
@@ -261,6 +250,26 @@ impl<'a> Program<'a> {
         let activity = self.activity(level);
         let near = |p: &Pair| p.nearest(level[p.column], self.force(p, &activity));
         self.pairs.iter().map(near).collect()
+    }
+
+    /// The piece of every pair to which the marginals of a point belong: where it is on several, that which allows the sign
+    /// of the row's marginal.
+    pub fn pieces_with(&self, level: &[f64], activity: &[f64], marginal: &[f64]) -> Vec<Piece> {
+        let of = |p: &Pair| {
+            let (x, f) = (level[p.column], self.force(p, activity));
+            let near = p.nearest(x, f);
+            let price = self.sign() * marginal[p.row];
+            let wrong = match near {
+                Piece::Lower => price < 0.0,
+                Piece::Inside => false,
+                Piece::Upper => price > 0.0,
+            };
+            match wrong && p.distance(Piece::Inside, x, f) <= TOLERANCE {
+                true => Piece::Inside,
+                false => near,
+            }
+        };
+        self.pairs.iter().map(of).collect()
     }
 
     /// The ordinary program in which every pair is on its piece, starting from a point.

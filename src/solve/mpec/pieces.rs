@@ -17,8 +17,8 @@
 
 use super::pairs::{Piece, Program};
 use super::split::{Point, Retry, Side, Split, shifts};
-use crate::solve::lp::simplex::{Simplex, State};
-use crate::solve::lp::{Ended, Restart};
+use crate::solve::lp::Ended;
+use crate::solve::lp::simplex::{Basis, Simplex, State};
 use crate::solve::random::Random;
 use std::collections::HashSet;
 
@@ -111,7 +111,7 @@ impl Pieces {
     }
 
     /// An optimal basis of a branch.
-    pub fn basis(&mut self, pieces: &[Piece], stop: Stop) -> Option<Restart> {
+    pub fn basis(&mut self, pieces: &[Piece], stop: Stop) -> Option<Basis> {
         let Split { a, b, bounds } = &mut self.split;
         for (side, weight) in [(&mut *a, 1.0), (&mut *b, 0.0)] {
             for (k, &piece) in pieces.iter().enumerate() {
@@ -120,17 +120,14 @@ impl Pieces {
             side.price(weight, &[]);
             side.solve(&self.rhs, stop)?;
         }
-        let total = |[a, b]: [usize; 2]| vec![State::Free; a + b];
-        let mut out = Restart {
-            columns: total([a.columns.len(), b.columns.len()]),
-            rows: total([a.rows.len(), b.rows.len()]),
-        };
+        let n = a.columns.len() + b.columns.len();
+        let mut out = vec![State::Free; n + a.rows.len() + b.rows.len()];
         for side in [a, b] {
             let (columns, rows) = side.basis();
             let at = side.columns.iter().zip(columns);
-            at.for_each(|(&j, state)| out.columns[j] = state);
+            at.for_each(|(&j, state)| out[j] = state);
             let at = side.rows.iter().zip(rows);
-            at.for_each(|(&i, state)| out.rows[i] = state);
+            at.for_each(|(&i, state)| out[n + i] = state);
         }
         Some(out)
     }

@@ -160,13 +160,14 @@ impl Search<'_, '_> {
                 break;
             }
             let basis = pieces.basis(&on, &mut watch(self.budget, u64::MAX));
-            let Some(mut found): Option<Found> = self.branch_from(basis, on.clone(), &level)?
+            let Some(mut found): Option<Found> =
+                self.branch_from(basis.as_ref(), on.clone(), &level, u64::MAX)?
             else {
                 break;
             };
-            level.clone_from(&found.answer.outcome.level);
+            level.clone_from(&found.outcome.level);
             let there = pieces.pieces_at(&level);
-            let settled = there == on && found.answer.status == ModelStatus::Optimal;
+            let settled = there == on && found.status == ModelStatus::Optimal;
             found.verdict = Some(match settled {
                 true => Stationarity::Proved,
                 false => Stationarity::NotProved,

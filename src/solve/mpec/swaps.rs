@@ -9,8 +9,8 @@
 //! is treated likewise. All limits are counts of work, so a run can be repeated.
 
 use super::pairs::Piece;
-use super::relaxation::Kind;
 use super::{Found, ModelStatus, Search, SolveError};
+use crate::solve::bridge::products::Kind;
 use crate::solve::random::Random;
 
 /// Swaps, and random starts, each in iterations times rows and columns.
@@ -36,7 +36,7 @@ impl Search<'_, '_> {
     fn swaps(&mut self) -> Result<bool, SolveError> {
         self.allow(WORK);
         'again: while let Some(best) = self.best.clone() {
-            if best.answer.status == ModelStatus::Unbounded {
+            if best.status == ModelStatus::Unbounded {
                 break;
             }
             for (k, piece) in self.order(&best) {
@@ -45,7 +45,7 @@ impl Search<'_, '_> {
                 }
                 let mut pieces = best.pieces.clone();
                 pieces[k] = piece;
-                let level = &best.answer.outcome.level;
+                let level = &best.outcome.level;
                 if let Some(found) = self.branch_within(pieces, level, SHORT)?
                     && found.objective < best.objective - 1e-9 * best.objective.abs().max(1.0)
                 {
@@ -61,7 +61,7 @@ impl Search<'_, '_> {
     /// Pieces that pairs are not on, by what the objective gains to first order if the piece they are on
     /// does not bind.
     fn order(&self, at: &Found) -> Vec<(usize, Piece)> {
-        let outcome = &at.answer.outcome;
+        let outcome = &at.outcome;
         let gain = |k: usize| {
             let p = &self.program.pairs[k];
             match at.pieces[k] {

@@ -11,7 +11,7 @@ use super::provider::lock;
 use super::quadratic::Quadratic;
 use super::schedule::{DOUBTS, FINEST, NEAR, NEARER, ROUNDING};
 use super::trial::{Trial, polished};
-use crate::model::certificate_nlp::is_locally_infeasible;
+use crate::solve::certificate::nonlinear::is_locally_infeasible;
 use crate::solve::{SolveError, Strategy};
 use std::sync::{Arc, Mutex};
 

@@ -31,9 +31,10 @@ use super::trial::{Trial, active_set, clean, polished, residuals_at, tidy, witho
 use crate::autodiff::{ErrorKind, EvalFailure, Evaluator, kinks};
 use crate::model::instance::Instance;
 use crate::solve::budget::{self, Budget, Size, Stop};
+use crate::solve::certificate::nonlinear::beside_kinks;
 use crate::solve::factor_size::symmetric_size;
 use crate::solve::random::Random;
-use crate::solve::{Settings, SolveError, Strategy, answer::Answer};
+use crate::solve::{Outcome, Settings, SolveError, Strategy};
 use std::cell::OnceCell;
 use std::sync::{Arc, Mutex};
 
@@ -54,7 +55,7 @@ pub fn solve(
     convexity: Convexity,
     settings: &Settings,
     budget: &Budget,
-) -> Result<Answer, SolveError> {
+) -> Result<Outcome, SolveError> {
     let columns = &instance.columns;
     for j in 0..instance.column_count() {
         let (l, u) = (columns.lower[j], columns.upper[j]);
@@ -192,7 +193,7 @@ impl<'a, 'm> Driver<'a, 'm> {
         budget: &'a Budget<'m>,
     ) -> Self {
         Self {
-            kinks: kinks(instance).map(|_| Evaluator::smoothed(instance, FINEST)),
+            kinks: beside_kinks(instance),
             infeasibility: None,
             instance,
             provider,
@@ -220,7 +221,7 @@ impl<'a, 'm> Driver<'a, 'm> {
 }
 
 impl Driver<'_, '_> {
-    fn run(&mut self, quadratic: Option<Quadratic>) -> Result<Answer, SolveError> {
+    fn run(&mut self, quadratic: Option<Quadratic>) -> Result<Outcome, SolveError> {
         let (n, m) = lock(&*self.problem).size();
         if n == 0 || m == 0 && self.is_constant() {
             let x = self.start.clone();

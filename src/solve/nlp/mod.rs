@@ -10,7 +10,6 @@ pub mod consistent;
 pub mod curvature;
 pub mod driver;
 pub mod elastic;
-mod epigraph;
 mod growth;
 #[cfg(feature = "ipopt")]
 pub mod ipopt;
@@ -29,12 +28,9 @@ mod symmetric;
 mod trial;
 mod verdict;
 
-use super::answer::{Answer, linear};
-use super::backend::{Backend, Supports, Task, Terms};
-use super::{Budget, Settings, SolveError, Strategy, lp};
-use crate::model::instance::Instance;
+use super::backend::{Backend, Reply, Supports, Task, Terms, is_called};
+use super::{Budget, Settings, SolveError, lp};
 use crate::model::option::OptionTable;
-use epigraph::Epigraph;
 #[cfg(feature = "ipopt")]
 pub use options::IPOPT_OPTIONS;
 #[cfg(feature = "pounce")]
@@ -53,43 +49,6 @@ pub fn providers() -> &'static [&'static dyn Provider] {
         #[cfg(feature = "pounce")]
         &pounce::Pounce,
     ]
-}
-
-/// Solves with the solver of that name, or the default one, and certifies the answer.
-///
-/// Errors: no such solver in this build; crossed bounds; a start point without function values; an
-/// option that the solver does not take.
-pub fn answer(
-    choice: Option<&str>,
-    instance: &Instance,
-    settings: &Settings,
-    budget: &Budget,
-) -> Result<Answer, SolveError> {
-    let all = providers();
-    let named = choice.and_then(|c| all.iter().find(|p| p.name().eq_ignore_ascii_case(c)));
-    let convexity = match choice {
-        Some("clarabel") => Convexity::Asked,
-        _ if named.is_some() => Convexity::Ignored,
-        // a name that no solver of ours bears is some other solver of the same model type in GAMS
-        _ => Convexity::Used,
-    };
-    let Some(&provider) = named.or(all.first()) else {
-        let message = "there is no solver for nonlinear models in this build";
-        return Err(SolveError::new(message));
-    };
-    if let Some(epigraph) = Epigraph::new(instance)
-        && settings.runs(Strategy::ConvexEpigraph)
-    {
-        let smooth = &epigraph.instance;
-        let answer = match smooth.is_linear() {
-            true => linear(&lp::Clarabel, smooth, settings, budget),
-            false => driver::solve(smooth, provider, convexity, settings, budget),
-        };
-        if let Some(answer) = answer.ok().and_then(|a| epigraph.restore(instance, a)) {
-            return Ok(answer);
-        }
-    }
-    driver::solve(instance, provider, convexity, settings, budget)
 }
 
 /// What is made of a convex quadratic program.
@@ -118,9 +77,8 @@ impl Backend for Nonlinear {
 
     fn supports(&self) -> Supports {
         Supports {
-            terms: Terms::Kinks,
             linear: false,
-            ..lp::SUPPORTS
+            ..Supports::new(lp::TYPES, Terms::Kinks)
         }
     }
 
@@ -133,7 +91,14 @@ impl Backend for Nonlinear {
         task: &Task,
         settings: &Settings,
         budget: &Budget,
-    ) -> Result<Answer, SolveError> {
-        answer(task.choice, task.instance, settings, budget)
+    ) -> Result<Reply, SolveError> {
+        let convexity = match task.choice {
+            Some("clarabel") => Convexity::Asked,
+            Some(name) if is_called(self, name) => Convexity::Ignored,
+            // a name that no solver of ours bears is some other solver of the same model type in GAMS
+            _ => Convexity::Used,
+        };
+        let outcome = driver::solve(task.instance, self.0, convexity, settings, budget)?;
+        Ok(outcome.into())
     }
 }

@@ -160,7 +160,7 @@ impl Problem {
         let evaluator = Evaluator::smoothed(instance, delta);
         let (m, n) = (instance.row_count(), instance.column_count());
         let columns = &instance.columns;
-        let form = objective_form(instance, &evaluator);
+        let form = objective_form(instance);
         let sign = instance.sign();
         let (defining_row, eliminated) = match form {
             ObjectiveForm::Row { row, column, .. } => (row, column),
@@ -534,7 +534,7 @@ impl Nlp for Problem {
 }
 
 /// Finds out whether the objective column can be eliminated.
-fn objective_form(instance: &Instance, evaluator: &Evaluator) -> ObjectiveForm {
+fn objective_form(instance: &Instance) -> ObjectiveForm {
     let Some(objective) = instance.objective else {
         return ObjectiveForm::Nothing;
     };
@@ -544,44 +544,21 @@ fn objective_form(instance: &Instance, evaluator: &Evaluator) -> ObjectiveForm {
     if columns.lower[z] == columns.upper[z] {
         return ObjectiveForm::Constant;
     }
-    if columns.lower[z] != f64::NEG_INFINITY || columns.upper[z] != f64::INFINITY {
-        return variable;
-    }
-    let (start, column) = evaluator.jacobian_pattern();
-    let mut found = None;
-    for i in 0..instance.row_count() {
-        if column[start[i]..start[i + 1]]
-            .binary_search(&(z as u32))
-            .is_ok()
-        {
-            if found.is_some() {
-                return variable;
-            }
-            found = Some(i);
-        }
-    }
-    let Some(row) = found else {
-        return variable;
-    };
-    // z must not be in a nonlinear term
-    let nonlinear = instance
-        .nonlinear
-        .iter()
-        .any(|t| t.columns.contains(&(z as u32)));
-    let coefficient = instance.matrix.row(row).find(|&(j, _)| j == z);
     // z ≥ f(x) holds as an equation where z is minimised
-    let pushes = |c: f64| match instance.rows.relation[row] {
+    let pushes = |row: usize, c: f64| match instance.rows.relation[row] {
         Relation::Equal => true,
         Relation::Greater => instance.sign() * c > 0.0,
         Relation::Less => instance.sign() * c < 0.0,
         Relation::Free => false,
     };
-    match coefficient {
-        Some((_, c)) if !nonlinear && pushes(c) => ObjectiveForm::Row {
-            row,
-            column: z,
-            coefficient: c,
-        },
+    match instance.objective_row() {
+        Some((row, coefficient)) if instance.is_free(z) && pushes(row, coefficient) => {
+            ObjectiveForm::Row {
+                row,
+                column: z,
+                coefficient,
+            }
+        }
         _ => variable,
     }
 }

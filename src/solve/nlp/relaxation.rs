@@ -5,11 +5,13 @@
 //! of the nonlinear terms of a row becomes a column of its own, between the numbers that interval arithmetic over the
 //! bounds of the variables gives; if this linear program is infeasible (by multipliers that are checked), so is the program.
 
-use crate::model::certificate::proves_infeasible;
 use crate::model::instance::{Function, Instance, KernelTerms, Op, Relation, SparseRows};
+use crate::model::problem_type::ProblemType;
+use crate::solve::answer::subproblem;
+use crate::solve::backend::Task;
+use crate::solve::certificate::proves_infeasible;
 use crate::solve::interval::Interval;
-use crate::solve::lp::Clarabel;
-use crate::solve::{Budget, Claim, Settings, Solver};
+use crate::solve::{Budget, Claim, Settings};
 
 /// What a function value may be off by, relative to its size.
 const ROUNDING: f64 = 1e-14;
@@ -17,11 +19,11 @@ const ROUNDING: f64 = 1e-14;
 /// Whether the linear relaxation is infeasible.
 pub fn is_infeasible(instance: &Instance, budget: &Budget) -> bool {
     let relaxed = relax(instance);
-    let settings = Settings::default();
-    match budget.aside(|budget| Clarabel.solve(&relaxed, &settings, budget)) {
-        Ok(o) => o.claim == Claim::Infeasible && proves_infeasible(&relaxed, &o.ray),
-        Err(_) => false,
-    }
+    let task = Task::new(ProblemType::Lp, &relaxed);
+    let answer = budget.aside(|budget| subproblem(&task, &Settings::default(), budget));
+    answer.is_ok_and(|a| {
+        a.outcome.claim == Claim::Infeasible && proves_infeasible(&relaxed, &a.outcome.ray)
+    })
 }
 
 /// The relaxation, without an objective.

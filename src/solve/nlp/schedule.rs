@@ -16,7 +16,7 @@ pub(super) const BASE: [(&str, &str); 8] = [
 
 /// Kinks are rounded by less and less; the last value also serves to judge points at a kink.
 pub(super) const ROUNDING: [f64; 4] = [1e-1, 1e-3, 1e-5, FINEST];
-pub(super) const FINEST: f64 = 1e-7;
+pub(super) use crate::solve::certificate::nonlinear::KINK_WIDTH as FINEST;
 
 /// Where an attempt starts.
 #[derive(Clone, Copy, PartialEq, Debug)]

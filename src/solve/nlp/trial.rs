@@ -4,15 +4,11 @@ use super::polish::{Active, polish};
 use super::problem::{Nlp, Problem};
 use super::provider::Ended;
 use crate::autodiff::{Degree, Evaluator};
-use crate::model::certificate::{Linearised, Residuals, TOLERANCE, primal, row_violation};
-use crate::model::certificate_nlp::{kkt_residual, linearise, residuals};
 use crate::model::instance::{Instance, Relation};
+pub(super) use crate::solve::certificate::nonlinear::{CONSIDERABLE, FAR};
+use crate::solve::certificate::nonlinear::{is_feasible_only_by_scaling, measure};
+use crate::solve::certificate::{Linearised, Residuals, TOLERANCE, row_violation};
 use crate::solve::noise::{LEVELS, snap};
-
-/// Numbers from here on are large for a model that has a solution.
-pub(super) const FAR: f64 = 1e7;
-/// A change of the objective that matters, relative to its size.
-pub(super) const CONSIDERABLE: f64 = 0.01;
 
 /// A point that was judged.
 #[derive(Clone)]
@@ -104,23 +100,9 @@ pub(super) fn residuals_at(
     let objective = instance
         .objective
         .map_or(0.0, |o| o.sense.sign() * level[o.column as usize]);
-    let (mut residuals, mut at) =
-        match kkt_residual(instance, problem.evaluator(), &level, &row_marginal) {
-            Ok(both) => both,
-            Err(_) => failed(instance, problem, &level),
-        };
-    if let Some(evaluator) = kinks {
-        beside_kinks(
-            instance,
-            evaluator,
-            &level,
-            &row_marginal,
-            &mut residuals,
-            &mut at,
-        );
-    }
+    let (residuals, at) = measure(instance, problem.evaluator(), kinks, &level, &row_marginal);
     let receding = is_receding(instance, &level, &at.reduced, objective);
-    let hollow = is_hollow(instance, &level, &row_marginal, &at, objective);
+    let hollow = is_feasible_only_by_scaling(instance, &level, &row_marginal, &at.activity);
     Trial {
         x,
         lambda,
@@ -159,68 +141,6 @@ fn is_receding(instance: &Instance, level: &[f64], reduced: &[f64], objective: f
 fn violation(instance: &Instance, at: &Linearised, i: usize) -> f64 {
     let rows = &instance.rows;
     row_violation(rows.relation[i], at.activity[i], rows.rhs[i])
-}
-
-/// Whether a variable is beyond [`FAR`], and violations within the tolerance are worth a considerable part of the objective:
-/// x y ≥ 10 and x + y ≤ 1 hold where x = −1e-9 stands for x ≥ 0, and y for −1e10.
-fn is_hollow(
-    instance: &Instance,
-    level: &[f64],
-    row_marginal: &[f64],
-    at: &Linearised,
-    objective: f64,
-) -> bool {
-    let worth = |i: usize| row_marginal[i].abs() * violation(instance, at, i);
-    level.iter().any(|x| x.abs() >= FAR)
-        && (0..row_marginal.len()).map(worth).sum::<f64>() > CONSIDERABLE * objective.abs().max(1.0)
-}
-
-/// At a kink the derivative is any number between the one-sided ones: takes the one that the rounded
-/// functions have there, if it makes the point stationary. Values stay exact.
-fn beside_kinks(
-    instance: &Instance,
-    evaluator: &mut Evaluator,
-    level: &[f64],
-    row_marginal: &[f64],
-    found: &mut Residuals,
-    at: &mut Linearised,
-) {
-    let Ok(mut rounded) = linearise(instance, evaluator, level, row_marginal) else {
-        return;
-    };
-    rounded.activity.clone_from(&at.activity);
-    let better = residuals(instance, level, row_marginal, &rounded);
-    if better.dual_relative < found.dual_relative {
-        *found = better;
-        *at = rounded;
-    }
-}
-
-/// Residuals of a point without values or derivatives.
-fn failed(instance: &Instance, problem: &mut Problem, level: &[f64]) -> (Residuals, Linearised) {
-    let (m, n) = (instance.row_count(), instance.column_count());
-    let mut activity = vec![0.0; m];
-    let known = problem.evaluator().rows(level, &mut activity).is_ok();
-    if !known {
-        activity.fill(f64::NAN);
-    }
-    let row_size = activity
-        .iter()
-        .map(|a| a.abs().max(1.0))
-        .collect::<Vec<_>>();
-    let mut residuals = primal(instance, level, &activity, &row_size);
-    residuals.dual = None;
-    residuals.dual_relative = f64::INFINITY;
-    if !known {
-        residuals.primal_relative = f64::INFINITY;
-    }
-    let at = Linearised {
-        activity,
-        reduced: vec![0.0; n],
-        row_size,
-        column_size: vec![1.0; n],
-    };
-    (residuals, at)
 }
 
 /// An interior point stops short of the bounds by a hair. Puts such variables on their bounds, also on those that

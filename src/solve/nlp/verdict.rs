@@ -7,9 +7,9 @@ use super::provider::{Ended, lock};
 use super::relaxation;
 use super::trial::Trial;
 use crate::autodiff::{Degree, Evaluator};
-use crate::model::certificate_nlp::{is_locally_infeasible, violations};
 use crate::model::instance::{Instance, Relation};
-use crate::solve::{Claim, ModelStatus, Outcome, SolverStatus, Stop, Strategy, answer::Answer};
+use crate::solve::certificate::nonlinear::{is_locally_infeasible, violations};
+use crate::solve::{Claim, Outcome, SolverStatus, Stop, Strategy};
 
 impl Driver<'_, '_> {
     /// Whether it is certain that there is no feasible point; asked where none was found.
@@ -22,8 +22,8 @@ impl Driver<'_, '_> {
         self.impossible
     }
 
-    /// Turns the best trial into an answer.
-    pub(super) fn finish(&mut self) -> Answer {
+    /// The best trial, and what is claimed of it.
+    pub(super) fn finish(&mut self) -> Outcome {
         let lacks_optimum = !self.best.as_ref().is_some_and(Trial::is_optimal);
         if self.best.is_none() || lacks_optimum && self.is_stopped() {
             // what was stopped may have left a feasible point for worse ones
@@ -42,35 +42,36 @@ impl Driver<'_, '_> {
             is_locally_infeasible(self.instance, problem.evaluator(), &t.level, y, 1e-4)
         };
         let mut best = best;
-        let status = if best.is_optimal() && self.at_saddle {
-            ModelStatus::Feasible
+        let mut ray = Vec::new();
+        let claim = if best.is_optimal() && self.at_saddle {
+            Claim::Unfinished
+        } else if best.irregular {
+            Claim::WithoutMultipliers
         } else if best.is_optimal() {
             match self.convex {
-                Some(Convexity::Asked) => ModelStatus::Optimal,
-                _ if affine => ModelStatus::Optimal,
-                _ => ModelStatus::LocallyOptimal,
+                Some(Convexity::Asked) => Claim::Solved,
+                _ if affine => Claim::Solved,
+                _ => Claim::LocallySolved,
             }
         } else if unbounded {
-            ModelStatus::Unbounded
+            Claim::Unbounded
         } else if best.is_feasible() {
-            ModelStatus::Feasible
+            Claim::Unfinished
         } else if self.impossible {
-            ModelStatus::Infeasible
-        } else if let Some((t, y)) = self.infeasibility.take()
-            && proved(&t, &y)
-        {
-            best = t;
-            ModelStatus::LocallyInfeasible
-        } else if proved(&best, &violations(self.instance, &best.at.activity)) {
-            ModelStatus::LocallyInfeasible
+            Claim::Infeasible
         } else {
-            ModelStatus::IntermediateInfeasible
-        };
-        let claim = match status {
-            ModelStatus::Optimal | ModelStatus::LocallyOptimal => Claim::Solved,
-            ModelStatus::Unbounded => Claim::Unbounded,
-            ModelStatus::Infeasible | ModelStatus::LocallyInfeasible => Claim::Infeasible,
-            _ => Claim::Unfinished,
+            let violations = violations(self.instance, &best.at.activity);
+            let all = self.infeasibility.take().into_iter();
+            match all
+                .chain([(best.clone(), violations)])
+                .find(|(t, y)| proved(t, y))
+            {
+                Some((t, y)) => {
+                    (best, ray) = (t, y);
+                    Claim::LocallyInfeasible
+                }
+                None => Claim::Unfinished,
+            }
         };
         let solver_status = match (claim, self.budget.stopped().map(Stop::status)) {
             (Claim::Unfinished, Some(s)) => s,
@@ -86,42 +87,37 @@ impl Driver<'_, '_> {
             },
             _ => SolverStatus::NormalCompletion,
         };
-        let message = match (status, &problem.last_failure) {
-            (ModelStatus::Feasible, _) if best.is_optimal() => Some(
+        let message = match (claim, &problem.last_failure) {
+            (Claim::Unfinished, _) if best.is_optimal() => Some(
                 "a saddle: the objective gets better beyond it, and what follows it there diverges"
                     .into(),
             ),
-            (ModelStatus::Feasible | ModelStatus::IntermediateInfeasible, Some(f)) => {
+            (Claim::Unfinished, Some(f)) => {
                 let row = self.budget.row_name(f.row as usize);
                 Some(format!("the last evaluation that failed: {f} in {row}"))
             }
-            (ModelStatus::LocallyOptimal, _) if best.irregular => Some(
+            (Claim::WithoutMultipliers, _) => Some(
                 "rows have no multipliers at the solution (a square that is to be 0, say): the value is that of the same \
                  rows a hundred-millionth wider"
                     .into(),
             ),
-            (ModelStatus::LocallyOptimal, _) if self.convex.is_some() => {
+            (Claim::LocallySolved, _) if self.convex.is_some() => {
                 Some("convex: a local optimum is a global one".into())
             }
             _ => self.message.take(),
         };
-        Answer::new(
-            Outcome {
-                column_marginal: best.at.reduced.clone(),
-                level: best.level,
-                row_marginal: best.row_marginal,
-                claim,
-                status: solver_status,
-                iterations: self.iterations,
-                solver: self.solver,
-                ray: Vec::new(),
-                message,
-                basis: None,
-            },
-            best.residuals,
-            status,
-            best.at.activity,
-        )
+        Outcome {
+            column_marginal: best.at.reduced,
+            level: best.level,
+            row_marginal: best.row_marginal,
+            claim,
+            status: solver_status,
+            iterations: self.iterations,
+            solver: self.solver,
+            ray,
+            message,
+            basis: None,
+        }
     }
 }
 

@@ -230,9 +230,11 @@ fn test(p: &Problem, set: &BTreeSet<Member>, budget: &Budget) -> Tested {
 mod tests {
     use super::*;
     use crate::model::instance::{Relation, Sense};
+    use crate::model::problem_type::ProblemType;
+    use crate::solve::answer::subproblem;
+    use crate::solve::backend::Task;
     use crate::solve::conformance::{Quiet, linear};
-    use crate::solve::lp::Clarabel;
-    use crate::solve::{Claim, Settings, Solver};
+    use crate::solve::{Claim, Settings};
 
     /// Whether the members alone can be satisfied, asked of the whole solver.
     fn satisfiable(instance: &Instance, members: &[Member]) -> bool {
@@ -253,8 +255,12 @@ mod tests {
         }
         let mut quiet = Quiet::default();
         let budget = Budget::unlimited(&mut quiet);
-        let o = Clarabel.solve(&i, &Settings::default(), &budget);
-        o.expect("a linear instance").claim != Claim::Infeasible
+        let a = subproblem(
+            &Task::new(ProblemType::Lp, &i),
+            &Settings::default(),
+            &budget,
+        );
+        a.expect("a linear instance").outcome.claim != Claim::Infeasible
     }
 
     #[test]

@@ -3,9 +3,9 @@
 
 use super::{FEW, Finding};
 use crate::autodiff::Evaluator;
-use crate::model::certificate;
 use crate::model::instance::Instance;
 use crate::solve::answer::Answer;
+use crate::solve::certificate;
 
 /// Coefficients further apart than this are worth a word.
 const WIDE: f64 = 1e8;

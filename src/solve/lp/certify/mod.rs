@@ -402,17 +402,18 @@ fn lack(poly: &Polyhedron, x: &Enclosed, system: &System) -> Vec<f64> {
 mod tests {
     use super::*;
     use crate::model::instance::{Relation, Sense};
+    use crate::model::problem_type::ProblemType;
     use crate::solve::Settings;
-    use crate::solve::Solver;
+    use crate::solve::backend::{Backend, Task};
     use crate::solve::conformance;
     use crate::solve::lp::Clarabel;
 
     fn proof(instance: &Instance) -> Proof {
         let settings = Settings::default();
         let (mut quiet, mut again) = (Quiet::default(), Quiet::default());
-        let outcome = Clarabel
-            .solve(instance, &settings, &Budget::unlimited(&mut quiet))
-            .expect("a linear instance");
+        let task = Task::new(ProblemType::Lp, instance);
+        let reply = Clarabel.solve(&task, &settings, &Budget::unlimited(&mut quiet));
+        let outcome = reply.expect("a linear instance").outcome;
         certify(instance, &outcome, &Budget::unlimited(&mut again)).expect("a linear instance")
     }
 

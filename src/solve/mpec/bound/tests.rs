@@ -4,9 +4,10 @@ use super::super::pairs::{Piece, Program};
 use super::super::split::whole;
 use super::products::{Limits, Products};
 use crate::model::instance::{INF, Instance, Relation, Sense};
-use crate::solve::answer::{Answer, linear};
+use crate::model::problem_type::ProblemType;
+use crate::solve::answer::{Answer, subproblem};
+use crate::solve::backend::Task;
 use crate::solve::conformance::{self, Quiet, Row};
-use crate::solve::lp::Clarabel;
 use crate::solve::{Budget, ModelStatus, Settings};
 
 /// Small whole numbers from a fixed seed.
@@ -41,13 +42,10 @@ fn by_enumeration(instance: &Instance) -> Option<f64> {
     let mut least: Option<f64> = None;
     for p in pieces {
         let branch = program.branch(&p, &start);
-        let a = linear(
-            &Clarabel,
-            &branch,
-            &Settings::default(),
-            &Budget::unlimited(&mut Quiet::default()),
-        )
-        .expect("linear");
+        let mut quiet = Quiet::default();
+        let budget = Budget::unlimited(&mut quiet);
+        let task = Task::new(ProblemType::Lp, &branch);
+        let a = subproblem(&task, &Settings::default(), &budget).expect("linear");
         let value = match a.status {
             ModelStatus::Optimal => program.objective(&a.outcome.level),
             ModelStatus::Unbounded => f64::NEG_INFINITY,
@@ -64,7 +62,7 @@ fn solve(instance: &Instance) -> Answer {
     settings.options.push(("mpec_bound".into(), "quick".into()));
     let mut quiet = Quiet::default();
     let budget = Budget::unlimited(&mut quiet);
-    super::super::answer(None, instance, &settings, &budget).expect("an answer")
+    subproblem(&Task::new(ProblemType::Mpec, instance), &settings, &budget).expect("an answer")
 }
 
 /// Whether the gap was closed; None where there is no finite minimum.

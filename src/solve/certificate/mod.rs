@@ -23,9 +23,11 @@
 //! other units has the same status, and noise around 0 is not mistaken for a violation. The
 //! tolerance is [`TOLERANCE`].
 
-use super::instance::{Instance, Relation, Sense};
-use super::outcome::{Claim, ModelStatus, Outcome};
-use super::sum::Sum;
+pub mod nonlinear;
+
+use crate::model::instance::{Instance, Relation, Sense};
+use crate::model::outcome::{Claim, ModelStatus, Outcome};
+use crate::model::sum::Sum;
 
 /// Relative tolerance for primal and dual residuals and the gap.
 pub const TOLERANCE: f64 = 1e-6;
@@ -486,12 +488,13 @@ pub fn linear_status(instance: &Instance, outcome: &Outcome, r: &Residuals) -> M
     }
 }
 
-/// Model status of a complementarity model: solved, given up after all methods from all starts (as GAMS calls
-/// it, locally infeasible), or stopped before.
+/// Model status of a complementarity model: solved, proved infeasible, given up after all methods from all starts (as GAMS
+/// calls it, locally infeasible), or stopped before.
 pub fn complementarity_status(r: &Residuals, claim: Claim) -> ModelStatus {
     match claim {
         _ if r.natural_relative <= TOLERANCE => ModelStatus::Optimal,
-        Claim::Infeasible => ModelStatus::LocallyInfeasible,
+        Claim::Infeasible => ModelStatus::Infeasible,
+        Claim::LocallyInfeasible => ModelStatus::LocallyInfeasible,
         _ => ModelStatus::IntermediateInfeasible,
     }
 }
@@ -615,7 +618,7 @@ mod tests {
         let mut instance = example(1.0);
         instance.objective = instance
             .objective
-            .map(|o| super::super::instance::Objective {
+            .map(|o| crate::model::instance::Objective {
                 sense: Sense::Maximize,
                 ..o
             });
@@ -665,7 +668,8 @@ mod tests {
         assert_eq!(r.worst_row, Some(1));
         for (claim, status) in [
             (Claim::Solved, ModelStatus::IntermediateInfeasible),
-            (Claim::Infeasible, ModelStatus::LocallyInfeasible),
+            (Claim::Infeasible, ModelStatus::Infeasible),
+            (Claim::LocallyInfeasible, ModelStatus::LocallyInfeasible),
         ] {
             assert_eq!(complementarity_status(&r, claim), status);
         }

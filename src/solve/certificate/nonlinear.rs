@@ -10,16 +10,23 @@
 //! * **dual** residual: the largest of these, in the model's units;
 //! * **complementarity**: the largest |multiplier · distance|;
 //! * **dual relative**: a reduced cost relative to max(1, max_i |m_i ∂a_i/∂x_j|), with |m_i| at least η
-//!   (see [`super::certificate`]) in rows that bind, a distance relative
+//!   (see [`super`]) in rows that bind, a distance relative
 //!   to max(1, |x_j|), a multiplier by the reduced costs it makes, a slack relative to its row's size.
 //!
-//! The primal residuals are those of [`super::certificate`], with |∂a_i/∂x_j · x_j| as the size of an
+//! The primal residuals are those of [`super`], with |∂a_i/∂x_j · x_j| as the size of an
 //! entry.
 
-use super::certificate::{Linearised, Residuals, primal, units};
-use super::instance::{Instance, Relation};
-use super::sum::Sum;
-use crate::autodiff::{EvalFailure, Evaluator};
+use super::{Linearised, Residuals, primal, row_violation, units};
+use crate::autodiff::{EvalFailure, Evaluator, kinks};
+use crate::model::instance::{Instance, Relation};
+use crate::model::sum::Sum;
+
+/// Width of the smoothing by which derivatives at a kink are judged; a shrinking sequence ends there.
+pub const KINK_WIDTH: f64 = 1e-7;
+/// Levels from here on are large for a model that has a solution.
+pub const FAR: f64 = 1e7;
+/// A change of the objective that matters, relative to its size.
+pub const CONSIDERABLE: f64 = 0.01;
 
 /// A row binds where its slack is at most this, relative to its size.
 const BINDING: f64 = 1e-6;
@@ -169,17 +176,80 @@ pub fn residuals(
     out
 }
 
-/// KKT residuals at a point with marginals of the rows; the activities of the rows.
+/// For instances with kinks: derivatives beside them, for [`measure`].
+pub fn beside_kinks(instance: &Instance) -> Option<Evaluator> {
+    kinks(instance).map(|_| Evaluator::smoothed(instance, KINK_WIDTH))
+}
+
+/// Residuals at a point with marginals of the rows, and the instance there; infinite residuals where a function has no value
+/// or no derivative.
 ///
-/// Errors: a function that has no value or no derivative there.
-pub fn kkt_residual(
+/// At a kink the derivative is any number between the one-sided ones: that of the smoothed functions is taken if it makes the
+/// point more nearly stationary. Values stay exact.
+pub fn measure(
     instance: &Instance,
     evaluator: &mut Evaluator,
-    x: &[f64],
+    smoothed: &mut Option<Evaluator>,
+    level: &[f64],
     row_marginal: &[f64],
-) -> Result<(Residuals, Linearised), EvalFailure> {
-    let at = linearise(instance, evaluator, x, row_marginal)?;
-    Ok((residuals(instance, x, row_marginal, &at), at))
+) -> (Residuals, Linearised) {
+    let Ok(mut at) = linearise(instance, evaluator, level, row_marginal) else {
+        return without_derivatives(instance, evaluator, level);
+    };
+    let mut found = residuals(instance, level, row_marginal, &at);
+    if let Some(evaluator) = smoothed
+        && let Ok(mut beside) = linearise(instance, evaluator, level, row_marginal)
+    {
+        beside.activity.clone_from(&at.activity);
+        let better = residuals(instance, level, row_marginal, &beside);
+        if better.dual_relative < found.dual_relative {
+            (found, at) = (better, beside);
+        }
+    }
+    (found, at)
+}
+
+/// Residuals of a point without derivatives, or without values.
+fn without_derivatives(
+    instance: &Instance,
+    evaluator: &mut Evaluator,
+    level: &[f64],
+) -> (Residuals, Linearised) {
+    let mut activity = vec![0.0; instance.row_count()];
+    let known = evaluator.rows(level, &mut activity).is_ok();
+    if !known {
+        activity.fill(f64::NAN);
+    }
+    let row_size: Vec<f64> = activity.iter().map(|a| a.abs().max(1.0)).collect();
+    let mut residuals = primal(instance, level, &activity, &row_size);
+    residuals.dual_relative = f64::INFINITY;
+    if !known {
+        residuals.primal_relative = f64::INFINITY;
+    }
+    let at = Linearised {
+        activity,
+        reduced: vec![0.0; level.len()],
+        row_size,
+        column_size: vec![1.0; level.len()],
+    };
+    (residuals, at)
+}
+
+/// Whether the point is feasible by the scale of its numbers only: a variable is beyond [`FAR`], and violations within the
+/// tolerance are worth a considerable part of the objective. x y ≥ 10 and x + y ≤ 1 hold where x = −1e-9 stands for x ≥ 0, and y
+/// for −1e10.
+pub fn is_feasible_only_by_scaling(
+    instance: &Instance,
+    level: &[f64],
+    row_marginal: &[f64],
+    activity: &[f64],
+) -> bool {
+    let rows = &instance.rows;
+    let violation = |i: usize| row_violation(rows.relation[i], activity[i], rows.rhs[i]);
+    let worth = |i: usize| row_marginal[i].abs() * violation(i);
+    let objective = instance.objective.map_or(0.0, |o| level[o.column as usize]);
+    level.iter().any(|x| x.abs() >= FAR)
+        && (0..row_marginal.len()).map(worth).sum::<f64>() > CONSIDERABLE * objective.abs().max(1.0)
 }
 
 /// Whether multipliers y of the rows prove that the rows, linearised at x, have no solution within

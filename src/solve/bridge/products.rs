@@ -10,10 +10,8 @@
 //! All of them satisfy usual constraint qualifications where the program with the products equal to
 //! 0 does not, and their solutions tend to stationary points as μ → 0.
 
-use super::pairs::Program;
-use crate::model::instance::{
-    Instance, Kernel, KernelTerms, Objective, Op, Relation, Sense, SparseRows,
-};
+use crate::model::instance::{Instance, Kernel, KernelTerms, Objective, Op, Relation, Sense};
+use crate::solve::mpec::pairs::Program;
 
 /// What takes the place of the products.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,25 +96,22 @@ impl Relaxed {
                 sense: Sense::Minimize,
             });
         }
-        let mut matrix = SparseRows {
-            start: vec![0],
-            ..SparseRows::default()
+        let (matrix, rows) = (
+            std::mem::take(&mut out.matrix),
+            std::mem::take(&mut out.rows),
+        );
+        for (i, extra) in extra.into_iter().enumerate() {
+            out.add_row(matrix.row(i).chain(extra), rows.relation[i], rows.rhs[i]);
+        }
+        out.rows.marginal[..first].copy_from_slice(&rows.marginal);
+        out.rows.scale[..first].copy_from_slice(&rows.scale);
+        let relation = match kind {
+            Kind::Penalty => Relation::Equal,
+            _ => Relation::Less,
         };
-        for (i, extra) in extra.iter().enumerate() {
-            let entries = out.matrix.row(i).chain(extra.iter().copied());
-            push_row(&mut matrix, entries);
-        }
         for _ in 0..count {
-            push_row(&mut matrix, last.iter().copied());
-            out.rows.relation.push(match kind {
-                Kind::Penalty => Relation::Equal,
-                _ => Relation::Less,
-            });
-            out.rows.rhs.push(0.0);
-            out.rows.marginal.push(0.0);
-            out.rows.scale.push(1.0);
+            out.add_row(last.iter().copied(), relation, 0.0);
         }
-        out.matrix = matrix;
         if !terms.row.is_empty() {
             out.nonlinear.push(terms);
         }
@@ -151,12 +146,4 @@ impl Relaxed {
             }
         }
     }
-}
-
-fn push_row(matrix: &mut SparseRows, entries: impl Iterator<Item = (usize, f64)>) {
-    for (j, a) in entries {
-        matrix.column.push(j as u32);
-        matrix.value.push(a);
-    }
-    matrix.start.push(matrix.column.len());
 }

@@ -16,14 +16,16 @@
 mod direction;
 mod parts;
 
+use super::Bridge;
 use crate::autodiff::Evaluator;
-use crate::model::certificate::{Residuals, TOLERANCE, primal};
-use crate::model::certificate_nlp::linearise;
 use crate::model::instance::{
     Columns, Function, Instance, Kernel, KernelTerms, Relation, Rows, SparseRows,
 };
+use crate::model::problem_type::ProblemType;
 use crate::solve::answer::Answer;
-use crate::solve::{ModelStatus, Outcome};
+use crate::solve::backend::{Backend, Reply, Task};
+use crate::solve::certificate::{TOLERANCE, nonlinear::linearise, primal};
+use crate::solve::{Claim, ModelStatus, Outcome, Settings, Strategy};
 use direction::Directions;
 use parts::{Expression, Parts, has_kink};
 use rustc_hash::FxHashMap;
@@ -39,7 +41,7 @@ const NESTED: usize = 4;
 /// A program without kinks in place of one with some.
 pub(super) struct Epigraph {
     /// The program without kinks.
-    pub(super) instance: Instance,
+    instance: Instance,
     /// By equation: the column that makes it hold.
     makes_up: BTreeMap<usize, usize>,
 }
@@ -61,7 +63,7 @@ fn expressions(instance: &Instance) -> impl Iterator<Item = (usize, f64, Express
 
 impl Epigraph {
     /// None where there is nothing to replace, or something that does not stand convexly.
-    pub(super) fn new(instance: &Instance) -> Option<Self> {
+    fn new(instance: &Instance) -> Option<Self> {
         instance.objective?;
         let columns = &instance.columns;
         let varies = |&j: &u32| columns.lower[j as usize] != columns.upper[j as usize];
@@ -101,17 +103,42 @@ impl Epigraph {
         })
     }
 
-    /// What an answer to the program without kinks says about the program itself; None: nothing.
-    pub(super) fn restore(&self, instance: &Instance, answer: Answer) -> Option<Answer> {
+    /// For nonlinear programs in continuous columns.
+    pub(super) fn bridge(
+        _: &[&dyn Backend],
+        task: &Task,
+        settings: &Settings,
+    ) -> Option<Box<dyn Bridge>> {
+        let other = task.instance.is_linear() || task.has_pairs() || task.has_integers();
+        if other || !settings.runs(Strategy::ConvexEpigraph) {
+            return None;
+        }
+        Some(Box::new(Self::new(task.instance)?))
+    }
+}
+
+impl Bridge for Epigraph {
+    fn instance(&self) -> &Instance {
+        &self.instance
+    }
+
+    fn using(&self) -> ProblemType {
+        ProblemType::Nlp
+    }
+
+    /// The multipliers say with which weights the pieces that meet at a kink count: only there are they to be judged.
+    fn has_own_multipliers(&self) -> bool {
+        true
+    }
+
+    fn restore(&self, instance: &Instance, answer: &Answer) -> Option<Reply> {
         let (n, m) = (instance.column_count(), instance.row_count());
         let proved = match answer.status {
             ModelStatus::Optimal | ModelStatus::LocallyOptimal => true,
             ModelStatus::Infeasible => false,
             _ => return None,
         };
-        let Answer {
-            outcome, residuals, ..
-        } = answer;
+        let outcome = answer.outcome.clone();
         let objective = instance.objective?.column as usize;
         let value = outcome.level[objective];
         let mut level = outcome.level;
@@ -142,17 +169,6 @@ impl Epigraph {
         }
         let mut column_marginal = outcome.column_marginal;
         column_marginal.truncate(n);
-        let residuals = Residuals {
-            primal: own.primal,
-            primal_sum: own.primal_sum,
-            primal_relative: own.primal_relative,
-            worst_row: own.worst_row,
-            worst_column: own.worst_column,
-            infeasible_count: own.infeasible_count,
-            worst_dual_row: residuals.worst_dual_row.filter(|&i| i < m),
-            worst_dual_column: residuals.worst_dual_column.filter(|&j| j < n),
-            ..residuals
-        };
         let message = match self.instance.is_linear() && proved {
             true => Some("convex: a local optimum is a global one".into()),
             false => outcome.message,
@@ -161,16 +177,17 @@ impl Epigraph {
             level,
             row_marginal,
             column_marginal,
+            claim: if proved {
+                Claim::LocallySolved
+            } else {
+                Claim::Infeasible
+            },
             ray: Vec::new(),
             basis: None,
             message,
             ..outcome
         };
-        let status = match answer.status {
-            ModelStatus::Optimal => ModelStatus::LocallyOptimal,
-            other => other,
-        };
-        Some(Answer::new(outcome, residuals, status, activity))
+        Some(outcome.into())
     }
 }
 

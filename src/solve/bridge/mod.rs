@@ -1,0 +1,40 @@
+//! Reformulations: an instance in place of another, and the way back. Each stands here once, whoever uses it.
+//!
+//! * [`elastic`]: rows that may be violated at a price;
+//! * [`epigraph`]: max, min and abs where they stand convexly, as columns and rows;
+//! * [`kkt`]: the optimality conditions of a linear program as a complementarity problem;
+//! * [`products`]: pairs as nonlinear rows, for programs with equilibrium constraints.
+
+pub mod elastic;
+pub mod epigraph;
+pub mod kkt;
+pub mod products;
+
+use super::Settings;
+use super::answer::Answer;
+use super::backend::{Backend, Reply, Task};
+use crate::model::instance::Instance;
+use crate::model::problem_type::ProblemType;
+
+/// An instance in place of another.
+pub(super) trait Bridge {
+    /// The instance to solve; the columns and rows of the original come first.
+    fn instance(&self) -> &Instance;
+
+    /// Its problem type.
+    fn using(&self) -> ProblemType;
+
+    /// What an answer to it says about the original. None: nothing.
+    fn restore(&self, original: &Instance, answer: &Answer) -> Option<Reply>;
+
+    /// Whether the reduced costs and multipliers are to be judged in the instance, not in the original.
+    fn has_own_multipliers(&self) -> bool {
+        false
+    }
+}
+
+/// Makes a bridge where it applies.
+type Build = fn(&[&dyn Backend], &Task, &Settings) -> Option<Box<dyn Bridge>>;
+
+/// What is tried before a task is given to a backend as it is.
+pub(super) const BEFORE: [Build; 2] = [kkt::Kkt::new, epigraph::Epigraph::bridge];
