@@ -4,18 +4,12 @@
 //!
 //! To have it in bmod, this file would be a folder in `src/solve/`, and a line in `src/solve/registry.rs`.
 
-use bmod::autodiff::Evaluator;
-use bmod::model::instance::{
-    Instance, Kernel, KernelTerms, Objective, Op, Relation, Rows, Sense, SparseRows,
+use bmod::SolverStatus;
+use bmod::solver::{
+    BACKENDS, Backend, Budget, Claim, Evaluator, Expression, Instance, Kind, OptionTable, Outcome,
+    ProblemType, Quiet, Relation, Reply, Sense, Settings, SolveError, Stop, Supports, Task, Terms,
+    answer_with, row,
 };
-use bmod::model::option::{Kind, OptionTable, row};
-use bmod::model::outcome::{Claim, Outcome, SolverStatus};
-use bmod::model::problem_type::ProblemType;
-use bmod::solve::answer::answer_with;
-use bmod::solve::backend::{Backend, Reply, Supports, Task, Terms};
-use bmod::solve::budget::{Budget, Quiet, Stop};
-use bmod::solve::registry::BACKENDS;
-use bmod::solve::{Settings, SolveError};
 
 const OPTIONS: OptionTable = OptionTable {
     backend: "compass",
@@ -101,19 +95,14 @@ impl Backend for Compass {
         }
         let stopped = budget.stopped().map(Stop::status);
         let outcome = Outcome {
-            level: x,
             row_marginal: vec![1.0 / search.coefficient],
-            column_marginal: vec![0.0; instance.column_count()],
             claim: match stopped {
                 Some(_) => Claim::Unfinished,
                 None => Claim::LocallySolved,
             },
             status: stopped.unwrap_or(SolverStatus::NormalCompletion),
             iterations: steps,
-            solver: "compass",
-            ray: Vec::new(),
-            message: None,
-            basis: None,
+            ..Outcome::unfinished("compass", x, 1)
         };
         Ok(outcome.into())
     }
@@ -142,44 +131,14 @@ impl Search<'_> {
 
 /// min z, z = (x − 1)² + 10 (y − x²)², from (−1, 1).
 fn valley() -> Instance {
-    use Op::{Add, Const, Multiply, PowerInt, Subtract, Var};
     let mut instance = Instance::default();
-    for start in [0.0, -1.0, 1.0] {
-        let j = instance.columns.push(f64::NEG_INFINITY, f64::INFINITY);
-        instance.columns.level[j] = start;
-    }
-    instance.rows = Rows {
-        relation: vec![Relation::Equal],
-        rhs: vec![0.0],
-        marginal: vec![0.0],
-        scale: vec![1.0],
-    };
-    instance.matrix = SparseRows {
-        start: vec![0, 1],
-        column: vec![0],
-        value: vec![1.0],
-    };
-    let first = [Var(0), Const(0), Subtract, PowerInt(2)];
-    let second = [Var(1), Var(0), PowerInt(2), Subtract, PowerInt(2)];
-    let ops = first
-        .into_iter()
-        .chain(second)
-        .chain([Const(1), Multiply, Add]);
-    instance.nonlinear.push(KernelTerms {
-        kernel: Kernel {
-            ops: ops.collect(),
-            variables: 2,
-            constants: 2,
-        },
-        row: vec![0],
-        coef: vec![-1.0],
-        columns: vec![1, 2],
-        constants: vec![1.0, 10.0],
-    });
-    instance.objective = Some(Objective {
-        column: 0,
-        sense: Sense::Minimize,
-    });
+    let free = (f64::NEG_INFINITY, f64::INFINITY);
+    let [z, x, y] = [0.0, -1.0, 1.0].map(|start| instance.add_column(free.0, free.1, start));
+    let row = instance.add_row([(z, 1.0)], Relation::Equal, 0.0);
+    let (x, y) = (Expression::column(x), Expression::column(y));
+    let value = (x.clone() - 1.0).powi(2) + 10.0 * (y - x.powi(2)).powi(2);
+    instance.add_term(row, -1.0, value);
+    instance.set_objective(z, Sense::Minimize);
     instance
 }
 

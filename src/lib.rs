@@ -41,6 +41,7 @@
 //!   [places](Place).
 //! * [`Model::show`], [`Model::dual`], [`Model::kkt`]: the model, its dual and its optimality conditions as [`Formulas`]: to
 //!   be read, as trees ([`Algebra`]), and as models that run.
+//! * [`solver`]: the numbers below a model, as instances that are built in Rust, and backends of one's own.
 //! * [`Error`]: what a program that asks for a symbol or a label may get wrong. A mistake in a model is a
 //!   [`Diagnostic`], never a panic.
 //!
@@ -79,6 +80,7 @@ pub mod syntax;
 #[cfg(feature = "system")]
 mod system;
 
+pub use api::solver;
 pub use api::{
     Choice, Claim, Control, Error, Formulas, Labels, Model, Options, OutputFile, Progress, Record,
     Records, Run, Solve, Special, Symbol, SymbolKind, VariableRecord, VariableRecords,
@@ -89,6 +91,8 @@ pub use formulation::algebra::{
 };
 pub use formulation::check::Comparison;
 pub use host::{Host, HostError};
+pub use model::instance::Sense;
 pub use model::outcome::{ModelStatus, SolverStatus};
+pub use model::problem_type::ProblemType;
 pub use report::diagnostic::{Diagnostic, Place, Related};
 pub use report::json::{Display, Number, Residual, RunStatus, Seconds};

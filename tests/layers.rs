@@ -46,9 +46,11 @@ const ARROWS: &[(&str, &[&str])] = &[
             "solve", "source", "syntax",
         ],
     ),
+    ("claims", &["check", "data", "run"]),
     (
         "api",
         &[
+            "autodiff",
             "check",
             "claims",
             "data",
@@ -64,7 +66,6 @@ const ARROWS: &[(&str, &[&str])] = &[
             "system",
         ],
     ),
-    ("claims", &["check", "data", "run"]),
     (
         "editor",
         &["check", "data", "diag", "host", "solve", "source", "syntax"],

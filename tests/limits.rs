@@ -178,6 +178,10 @@ fn slow() -> Vec<(&'static str, String)> {
         ),
         ("a long display", "Scalar n / 0 /;  while(1, display n;  n = n + 1);".into()),
         (
+            "long displays",
+            format!("{}Scalar n / 0 /;  while(1, display a;  n = n + 1);", square(300)),
+        ),
+        (
             "figures without end",
             format!(
                 "{}Figure g {{ points(i,j)  x = ord(i), y = a(i,j); }};\nScalar n / 0 /;  while(1, draw g;  n = n + 1);",
@@ -218,7 +222,7 @@ fn time_limits_hold() {
 #[test]
 fn memory_limits_hold() {
     if resident(std::process::id()).is_none() {
-        println!("SKIPPED: this system does not tell how much memory is used");
+        crate::common::skipped("this system does not tell how much memory is used");
         return;
     }
     const LIMIT: f64 = 100.0;

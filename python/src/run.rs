@@ -242,8 +242,8 @@ impl Run {
 fn solve<'py>(py: Python<'py>, s: &Solve) -> PyResult<Bound<'py, PyDict>> {
     let d = PyDict::new(py);
     d.set_item("model", &s.model)?;
-    d.set_item("using", &s.using)?;
-    d.set_item("sense", s.sense)?;
+    d.set_item("using", s.using.name())?;
+    d.set_item("sense", s.sense.map(|sense| sense.name()))?;
     d.set_item("solver", &s.solver)?;
     d.set_item("model_status", s.model_status as u8)?;
     d.set_item("solver_status", s.solver_status as u8)?;

@@ -7,6 +7,7 @@ mod host;
 mod labels;
 mod options;
 mod run;
+pub mod solver;
 mod symbols;
 
 pub use error::Error;

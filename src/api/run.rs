@@ -4,6 +4,8 @@ use super::symbols::{Data, Symbol};
 use super::{Error, Labels};
 use crate::check::Program;
 use crate::diag;
+use crate::model::instance::Sense;
+use crate::model::problem_type::ProblemType;
 use crate::report::diagnostic::{Diagnostic, Severity};
 use crate::report::diagnostics::{self, Look};
 use crate::report::json::{Display, Report, Residual, RunStatus, Seconds, SolveReport};
@@ -96,10 +98,10 @@ impl OutputFile {
 pub struct Solve {
     /// The model.
     pub model: String,
-    /// The problem type: `lp`, `mcp` …
-    pub using: String,
-    /// `min`, `max`, or none for a model without objective.
-    pub sense: Option<&'static str>,
+    /// The problem type.
+    pub using: ProblemType,
+    /// The direction, none for a model without objective.
+    pub sense: Option<Sense>,
     /// The solver that ran.
     pub solver: String,
     /// What the point proves.
@@ -140,7 +142,7 @@ impl Solve {
     fn new(s: &SolveReport) -> Self {
         Self {
             model: s.model.clone(),
-            using: s.using.clone(),
+            using: s.using,
             sense: s.sense,
             solver: s.solver.clone(),
             model_status: s.model_status.status,

@@ -293,7 +293,7 @@ fn write_to(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
 
 /// Writes the report of a run as JSON; the exit status that follows from that.
 pub(super) fn write_report(finished: Finished, file: &str, path: &Path) -> u8 {
-    let report = Report {
+    let mut report = Report {
         status: finished.end,
         diagnostics: Diagnostic::all(&finished.diagnostics, &finished.map),
         solves: finished.report.solves,
@@ -301,6 +301,10 @@ pub(super) fn write_report(finished: Finished, file: &str, path: &Path) -> u8 {
         files: finished.report.files,
         ..Report::new(file)
     };
+    if let Some(k) = report.diagnostics.iter().position(|d| d.code == "E0490") {
+        let left_out = report.shorten();
+        report.diagnostics[k].message.push_str(&left_out);
+    }
     write_json(&report, path)
 }
 

@@ -112,7 +112,8 @@ impl Watch {
 
     /// Writes what is known and ends the process.
     fn end(&self, code: &'static str, message: &str) -> ! {
-        let known = std::mem::take(&mut *self.report.get());
+        let mut known = std::mem::take(&mut *self.report.get());
+        let left_out = known.shorten();
         let solving = known.solving.map(|s| SolveReport {
             model_status: ModelStatus::NoSolution.into(),
             solver_status: SolverStatus::ResourceInterrupt.into(),
@@ -130,7 +131,7 @@ impl Watch {
             place: None,
             label: String::new(),
             related: Vec::new(),
-            help: Some("what was solved before is in the report".into()),
+            help: Some(format!("what was solved before is in the report{left_out}")),
         };
         eprintln!("{code}\n\n  x {}", diagnostic.message);
         if let Some(solve) = &solving {

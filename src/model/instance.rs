@@ -51,7 +51,22 @@ pub enum Sense {
     Maximize,
 }
 
+/// As its name.
+impl serde::Serialize for Sense {
+    fn serialize<S: serde::Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        to.serialize_str(self.name())
+    }
+}
+
 impl Sense {
+    /// `min` or `max`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Minimize => "min",
+            Self::Maximize => "max",
+        }
+    }
+
     /// What the objective is multiplied by to make the problem a minimum.
     pub fn sign(self) -> f64 {
         match self {
@@ -375,33 +390,6 @@ impl Instance {
             out[i as usize] = true;
         }
         out
-    }
-
-    /// Appends a row of linear terms; terms in one column are added up. Its number.
-    pub fn add_row(
-        &mut self,
-        terms: impl IntoIterator<Item = (usize, f64)>,
-        relation: Relation,
-        rhs: f64,
-    ) -> usize {
-        let mut terms: Vec<(usize, f64)> = terms.into_iter().collect();
-        terms.sort_by_key(|t| t.0);
-        if self.matrix.start.is_empty() {
-            self.matrix.start.push(0);
-        }
-        for same in terms.chunk_by(|a, b| a.0 == b.0) {
-            let sum: f64 = same.iter().map(|t| t.1).sum();
-            if sum != 0.0 {
-                self.matrix.column.push(same[0].0 as u32);
-                self.matrix.value.push(sum);
-            }
-        }
-        self.matrix.start.push(self.matrix.column.len());
-        self.rows.relation.push(relation);
-        self.rows.rhs.push(rhs);
-        self.rows.marginal.push(0.0);
-        self.rows.scale.push(1.0);
-        self.rows.rhs.len() - 1
     }
 
     /// The row in which the objective column stands, and its coefficient there, if it stands in no other and in no

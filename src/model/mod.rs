@@ -1,4 +1,5 @@
 //! The sparse model IR.
+pub mod builder;
 pub mod instance;
 pub mod option;
 pub mod origin;

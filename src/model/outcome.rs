@@ -164,6 +164,24 @@ pub struct Outcome {
     pub basis: Option<Basis>,
 }
 
+impl Outcome {
+    /// A point without marginals, of which nothing is claimed.
+    pub fn unfinished(solver: &'static str, level: Vec<f64>, rows: usize) -> Self {
+        Self {
+            row_marginal: vec![0.0; rows],
+            column_marginal: vec![0.0; level.len()],
+            level,
+            claim: Claim::Unfinished,
+            status: SolverStatus::NormalCompletion,
+            iterations: 0,
+            solver,
+            ray: Vec::new(),
+            message: None,
+            basis: None,
+        }
+    }
+}
+
 /// Where a variable of a linear program is at a vertex.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum BasisStatus {

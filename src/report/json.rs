@@ -9,7 +9,9 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::diagnostic::Diagnostic;
 use crate::data::value;
+use crate::model::instance::Sense;
 use crate::model::outcome::{ModelStatus, SolverStatus};
+use crate::model::problem_type::ProblemType;
 use crate::solve::certificate::Residuals;
 
 /// Number of the report's format.
@@ -165,9 +167,9 @@ pub struct SolveReport {
     /// The model.
     pub model: String,
     /// `lp`, `mcp` …
-    pub using: String,
+    pub using: ProblemType,
     /// `min`, `max`, or null for a model without objective.
-    pub sense: Option<&'static str>,
+    pub sense: Option<Sense>,
     /// The objective variable, null for a model without one. Not in the JSON.
     #[serde(skip)]
     pub objective_name: Option<String>,
@@ -285,6 +287,9 @@ pub enum Display {
     },
 }
 
+/// Records of displays in the report of a run that a limit ended: as many as are written in a quarter of a second.
+const MAX_RECORDS_AFTER_LIMIT: usize = 100_000;
+
 impl Report {
     /// An empty report.
     pub fn new(file: &str) -> Self {
@@ -293,6 +298,26 @@ impl Report {
             format: FORMAT,
             file: file.into(),
             ..Self::default()
+        }
+    }
+
+    /// Leaves out the displays that take too long to write after a limit; in words how many, or nothing.
+    pub fn shorten(&mut self) -> String {
+        let mut records = 0;
+        let fits = self.displays.iter().take_while(|d| {
+            records += match d {
+                Display::Indexed { records, .. } => 1 + records.len(),
+                Display::Text { .. } | Display::Scalar { .. } => 1,
+            };
+            records <= MAX_RECORDS_AFTER_LIMIT
+        });
+        let rest = self.displays.split_off(fits.count());
+        let left_out = rest.len();
+        // to free millions of labels takes as long as to write them, and the process ends soon
+        std::mem::forget(rest);
+        match left_out {
+            0 => String::new(),
+            n => format!("; its last {n} displays are left out"),
         }
     }
 
@@ -314,8 +339,8 @@ mod tests {
         let mut report = Report::new("wall.blk");
         report.solves.push(SolveReport {
             model: "static".into(),
-            using: "lp".into(),
-            sense: Some("max"),
+            using: ProblemType::Lp,
+            sense: Some(Sense::Maximize),
             objective_name: Some("alpha".into()),
             solver: "clarabel".into(),
             model_status: ModelStatus::Optimal.into(),

@@ -24,10 +24,10 @@ pub fn solve(s: &SolveReport, color: bool) -> String {
     let mut what = format!("{}{}{reset} using {}", paint(BOLD), s.model, s.using);
     match (s.sense, &s.objective_name) {
         (Some(sense), Some(name)) => {
-            let _ = write!(what, " {sense}imizing {name}");
+            let _ = write!(what, " {}imizing {name}", sense.name());
         }
         (Some(sense), None) => {
-            let _ = write!(what, " {sense}imizing");
+            let _ = write!(what, " {}imizing", sense.name());
         }
         _ => {}
     }
@@ -186,13 +186,15 @@ fn time(seconds: f64) -> String {
 mod tests {
     use super::super::json::{Residual, Seconds};
     use super::*;
+    use crate::model::instance::Sense;
     use crate::model::outcome::{ModelStatus, SolverStatus};
+    use crate::model::problem_type::ProblemType;
 
     fn report() -> SolveReport {
         SolveReport {
             model: "static".into(),
-            using: "lp".into(),
-            sense: Some("max"),
+            using: ProblemType::Lp,
+            sense: Some(Sense::Maximize),
             objective_name: Some("alpha".into()),
             solver: "clarabel".into(),
             model_status: ModelStatus::Optimal.into(),

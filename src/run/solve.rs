@@ -500,19 +500,12 @@ impl Machine<'_> {
     }
 
     fn report_solve(&mut self, s: &SolveCode, g: &Generated, a: &Answer, seconds: json::Seconds) {
-        use crate::syntax::ast::Sense;
         let r = &a.residuals;
         let objective = g.instance.objective;
         let solve = json::SolveReport {
             model: self.symbols.get(s.model).name.to_string(),
-            using: s.using.to_string(),
-            sense: s.objective.map(|(sense, _)| {
-                if sense == Sense::Minimize {
-                    "min"
-                } else {
-                    "max"
-                }
-            }),
+            using: s.using,
+            sense: s.objective.map(|(sense, _)| sense),
             objective_name: s
                 .objective
                 .map(|(_, z)| self.symbols.get(z).name.to_string()),
@@ -591,7 +584,7 @@ impl Machine<'_> {
     fn not_solved(&self, s: &SolveCode, g: &Generated) -> json::SolveReport {
         json::SolveReport {
             model: self.symbols.get(s.model).name.to_string(),
-            using: s.using.to_string(),
+            using: s.using,
             sense: None,
             objective_name: None,
             solver: String::new(),

@@ -25,11 +25,17 @@ pub fn shared(part: &str) -> Option<PathBuf> {
     if found.exists() {
         return Some(found);
     }
-    println!(
-        "SKIPPED: {} is not there (set BMOD_SHARED)",
+    skipped(&format!(
+        "{} is not there (set BMOD_SHARED)",
         found.display()
-    );
+    ));
     None
+}
+
+/// Says that something was not tested, also where the output of tests that pass is not shown.
+pub fn skipped(what: &str) {
+    use std::io::Write;
+    let _ = writeln!(std::io::stderr(), "SKIPPED: {what}");
 }
 
 /// Rows of a table of reference answers.

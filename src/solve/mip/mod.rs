@@ -318,11 +318,7 @@ fn solution(
         return a.outcome;
     }
     // The point of the search, without marginals.
-    let mut outcome = nothing(instance);
-    outcome.level = x.to_vec();
-    outcome.row_marginal.fill(0.0);
-    outcome.column_marginal.fill(0.0);
-    outcome
+    Outcome::unfinished(NAME, x.to_vec(), instance.row_count())
 }
 
 /// Seconds for the marginals of a solution when the time is used up.
@@ -330,16 +326,10 @@ const GRACE: f64 = 1.5;
 
 /// Without a solution levels and marginals stay as they were.
 fn nothing(instance: &Instance) -> Outcome {
+    let level = instance.columns.level.clone();
     Outcome {
-        level: instance.columns.level.clone(),
         row_marginal: instance.rows.marginal.clone(),
         column_marginal: instance.columns.marginal.clone(),
-        claim: Claim::Unfinished,
-        status: SolverStatus::NormalCompletion,
-        iterations: 0,
-        solver: NAME,
-        ray: Vec::new(),
-        message: None,
-        basis: None,
+        ..Outcome::unfinished(NAME, level, instance.row_count())
     }
 }

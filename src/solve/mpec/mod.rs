@@ -400,18 +400,8 @@ impl Search<'_, '_> {
 
     /// A feasible point that no program has led to.
     fn as_found(&self, level: &[f64], pieces: Vec<Piece>, judged: Judged) -> Found {
-        let outcome = Outcome {
-            level: level.to_vec(),
-            row_marginal: vec![0.0; self.program.instance.row_count()],
-            column_marginal: vec![0.0; level.len()],
-            claim: Claim::Unfinished,
-            status: SolverStatus::NormalCompletion,
-            iterations: 0,
-            solver: "bmpec",
-            ray: Vec::new(),
-            message: None,
-            basis: None,
-        };
+        let rows = self.program.instance.row_count();
+        let outcome = Outcome::unfinished("bmpec", level.to_vec(), rows);
         Found {
             pieces,
             outcome,
