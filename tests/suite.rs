@@ -318,7 +318,7 @@ fn the_models_have_their_known_answers() {
     let slow = |p: &PathBuf| claims(&std::fs::read_to_string(p).expect("readable")).slow;
     if std::env::var("SUITE").is_err() {
         for p in all.iter().filter(|p| slow(p)) {
-            common::skipped(&format!("{}, slow: SUITE=name runs it", p.display()));
+            crate::common::skipped(&format!("{}, slow: SUITE=name runs it", p.display()));
         }
         all.retain(|p| !slow(p));
     }
