@@ -56,7 +56,7 @@ fn run(case: &Case, without: Option<&str>, limit: f64) -> Ended {
         let code = s.model_status.code;
         let solved = matches!(code, 1 | 2 | 8 | 16) && s.solver_status.code == 1;
         let sign = match (case.sign, s.sense) {
-            (0.0, Some("max")) => -1.0,
+            (0.0, Some(bmod::Sense::Maximize)) => -1.0,
             (0.0, _) => 1.0,
             (sign, _) => sign,
         };
