@@ -6,8 +6,8 @@
 
 use bmod::SolverStatus;
 use bmod::solver::{
-    BACKENDS, Backend, Budget, Claim, Evaluator, Expression, Instance, Kind, OptionTable, Outcome,
-    ProblemType, Quiet, Relation, Reply, Sense, Settings, SolveError, Stop, Supports, Task, Terms,
+    BACKENDS, Backend, Budget, Claim, Evaluator, Instance, Kind, OptionTable, Outcome, ProblemType,
+    Quiet, Relation, Reply, Sense, Settings, SolveError, Stop, Supports, Task, Term, Terms,
     answer_with, row,
 };
 
@@ -135,7 +135,7 @@ fn valley() -> Instance {
     let free = (f64::NEG_INFINITY, f64::INFINITY);
     let [z, x, y] = [0.0, -1.0, 1.0].map(|start| instance.add_column(free.0, free.1, start));
     let row = instance.add_row([(z, 1.0)], Relation::Equal, 0.0);
-    let (x, y) = (Expression::column(x), Expression::column(y));
+    let (x, y) = (Term::column(x), Term::column(y));
     let value = (x.clone() - 1.0).powi(2) + 10.0 * (y - x.powi(2)).powi(2);
     instance.add_term(row, -1.0, value);
     instance.set_objective(z, Sense::Minimize);

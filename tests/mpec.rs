@@ -49,7 +49,11 @@ fn corpus_is_feasible_and_as_good_as_the_reference() {
         if !small(s.residual.primal) || !small(s.residual.complementarity) {
             infeasible.push(format!("{}: {:?}", &row[0], s.residual));
         }
-        let sign = if s.sense == Some(bmod::Sense::Maximize) { -1.0 } else { 1.0 };
+        let sign = if s.sense == Some(bmod::Sense::Maximize) {
+            -1.0
+        } else {
+            1.0
+        };
         if sign * (objective(s) - want) > 1e-4 * want.abs().max(1.0) || s.model_status.code != 2 {
             let status = s.model_status.name;
             worse.push(format!(

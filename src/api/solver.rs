@@ -6,7 +6,7 @@
 //!
 //! ```
 //! use bmod::ModelStatus;
-//! use bmod::solver::{Budget, Expression, Instance, ProblemType, Quiet, Relation, Sense, Settings, answer};
+//! use bmod::solver::{Budget, Term, Instance, ProblemType, Quiet, Relation, Sense, Settings, answer};
 //!
 //! // min z, z = exp(x) − 2x
 //! let free = (f64::NEG_INFINITY, f64::INFINITY);
@@ -14,7 +14,7 @@
 //! let z = instance.add_column(free.0, free.1, 0.0);
 //! let x = instance.add_column(free.0, free.1, 0.0);
 //! let row = instance.add_row([(z, 1.0), (x, 2.0)], Relation::Equal, 0.0);
-//! let exp = Expression::call(bmod::solver::Function::Exp, [Expression::column(x)]);
+//! let exp = Term::call(bmod::solver::Function::Exp, [Term::column(x)]);
 //! instance.add_term(row, -1.0, exp);
 //! instance.set_objective(z, Sense::Minimize);
 //!
@@ -28,7 +28,7 @@
 //! `examples/toy_backend.rs` is a backend from outside.
 
 pub use crate::autodiff::{EvalFailure, Evaluator};
-pub use crate::model::builder::Expression;
+pub use crate::model::builder::Term;
 pub use crate::model::instance::{ColumnKind, Function, Instance, Relation, Sense};
 pub use crate::model::option::{Kind, OptionTable, row};
 pub use crate::model::outcome::{Claim, Outcome};

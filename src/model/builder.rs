@@ -6,19 +6,19 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// A nonlinear expression in the columns of an [`Instance`].
 ///
 /// ```
-/// use bmod::solver::Expression;
+/// use bmod::solver::Term;
 ///
-/// let (x, y) = (Expression::column(0), Expression::column(1));
+/// let (x, y) = (Term::column(0), Term::column(1));
 /// let rosenbrock = (1.0 - x.clone()).powi(2) + 100.0 * (y - x.powi(2)).powi(2);
 /// ```
 #[derive(Clone, Debug, Default)]
-pub struct Expression {
+pub struct Term {
     ops: Vec<Op>,
     columns: Vec<u32>,
     constants: Vec<f64>,
 }
 
-impl Expression {
+impl Term {
     /// The level of a column.
     pub fn column(column: usize) -> Self {
         Self {
@@ -44,7 +44,7 @@ impl Expression {
     }
 
     /// A function of expressions, as many as it has arguments.
-    pub fn call(function: Function, arguments: impl IntoIterator<Item = Expression>) -> Self {
+    pub fn call(function: Function, arguments: impl IntoIterator<Item = Term>) -> Self {
         let (mut out, mut count) = (Self::default(), 0);
         for argument in arguments {
             out = out.followed_by(argument);
@@ -74,7 +74,7 @@ impl Expression {
     }
 }
 
-impl From<f64> for Expression {
+impl From<f64> for Term {
     fn from(value: f64) -> Self {
         Self::constant(value)
     }
@@ -82,17 +82,17 @@ impl From<f64> for Expression {
 
 macro_rules! operators {
     ($($name:ident $method:ident $op:expr),*) => {$(
-        impl<T: Into<Expression>> $name<T> for Expression {
-            type Output = Expression;
-            fn $method(self, other: T) -> Expression {
+        impl<T: Into<Term>> $name<T> for Term {
+            type Output = Term;
+            fn $method(self, other: T) -> Term {
                 self.then(other, $op)
             }
         }
 
-        impl $name<Expression> for f64 {
-            type Output = Expression;
-            fn $method(self, other: Expression) -> Expression {
-                Expression::constant(self).then(other, $op)
+        impl $name<Term> for f64 {
+            type Output = Term;
+            fn $method(self, other: Term) -> Term {
+                Term::constant(self).then(other, $op)
             }
         }
     )*};
@@ -100,10 +100,10 @@ macro_rules! operators {
 
 operators!(Add add Op::Add, Sub sub Op::Subtract, Mul mul Op::Multiply, Div div Op::Divide);
 
-impl Neg for Expression {
-    type Output = Expression;
+impl Neg for Term {
+    type Output = Term;
 
-    fn neg(mut self) -> Expression {
+    fn neg(mut self) -> Term {
         self.ops.push(Op::Negate);
         self
     }
@@ -113,7 +113,7 @@ impl Neg for Expression {
 /// are added.
 ///
 /// ```
-/// use bmod::solver::{Expression, Instance, Relation, Sense};
+/// use bmod::solver::{Term, Instance, Relation, Sense};
 ///
 /// // min z, z = (x − 1)² + y, x + y ≥ 2, y ≥ 0
 /// let mut instance = Instance::default();
@@ -121,7 +121,7 @@ impl Neg for Expression {
 /// let x = instance.add_column(f64::NEG_INFINITY, f64::INFINITY, 1.0);
 /// let y = instance.add_column(0.0, f64::INFINITY, 1.0);
 /// let objective = instance.add_row([(z, 1.0), (y, -1.0)], Relation::Equal, 0.0);
-/// instance.add_term(objective, -1.0, (Expression::column(x) - 1.0).powi(2));
+/// instance.add_term(objective, -1.0, (Term::column(x) - 1.0).powi(2));
 /// instance.add_row([(x, 1.0), (y, 1.0)], Relation::Greater, 2.0);
 /// instance.set_objective(z, Sense::Minimize);
 /// assert_eq!((instance.row_count(), instance.column_count()), (2, 3));
@@ -162,7 +162,7 @@ impl Instance {
     }
 
     /// Adds a coefficient times an expression to the left side of a row.
-    pub fn add_term(&mut self, row: usize, coefficient: f64, term: Expression) {
+    pub fn add_term(&mut self, row: usize, coefficient: f64, term: Term) {
         let kernel = Kernel {
             ops: term.ops,
             variables: term.columns.len() as u32,
