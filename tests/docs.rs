@@ -87,6 +87,20 @@ fn run(page: &str, folder: &Path) -> String {
     out
 }
 
+/// The pictures that the commands of a page have drawn.
+fn pictures_of(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).expect("a folder");
+    let names = entries.map(|e| {
+        e.expect("an entry")
+            .file_name()
+            .to_string_lossy()
+            .into_owned()
+    });
+    let mut names: Vec<String> = names.filter(|n| n.ends_with(".svg")).collect();
+    names.sort();
+    names
+}
+
 #[test]
 fn commands_of_the_pages_print_what_stands_there() {
     let update = std::env::var_os("UPDATE_DOCS").is_some();
@@ -106,6 +120,19 @@ fn commands_of_the_pages_print_what_stands_there() {
         )
         .expect("a link");
         let now = run(&page, folder.path());
+        for drawn in pictures_of(folder.path()) {
+            let kept = Path::new(env!("CARGO_MANIFEST_DIR"))
+                .join("docs/figures")
+                .join(&drawn);
+            let bytes = std::fs::read(folder.path().join(&drawn)).expect("a picture");
+            let is_shown = page.contains(&format!("(figures/{drawn})"));
+            if is_shown && std::fs::read(&kept).ok().as_ref() != Some(&bytes) {
+                if update {
+                    std::fs::write(&kept, &bytes).expect("written");
+                }
+                wrong.push(format!("{}: docs/figures/{drawn} differs", path.display()));
+            }
+        }
         if now != page {
             if update {
                 std::fs::write(&path, &now).expect("written");

@@ -9,59 +9,25 @@ use crate::syntax::ast::{ExprKind, Figure, FigureElement};
 use std::rc::Rc;
 
 /// Kinds of elements, their arguments, those that must be there, and whether bare values may stand.
+#[rustfmt::skip]
 const KINDS: &[(&str, &[&str], &[&str], bool)] = &[
-    (
-        "polygon",
-        &[
-            "x", "y", "fill", "stroke", "width", "opacity", "dash", "label",
-        ],
-        &["x", "y"],
-        false,
-    ),
-    (
-        "polyline",
-        &["x", "y", "stroke", "width", "opacity", "dash", "label"],
-        &["x", "y"],
-        false,
-    ),
-    (
-        "points",
-        &[
-            "x", "y", "fill", "stroke", "width", "size", "opacity", "label",
-        ],
-        &["x", "y"],
-        false,
-    ),
-    (
-        "arrow",
-        &[
-            "x", "y", "dx", "dy", "stroke", "width", "opacity", "dash", "label",
-        ],
-        &["x", "y", "dx", "dy"],
-        false,
-    ),
-    (
-        "text",
-        &["x", "y", "label", "fill", "size", "align", "opacity"],
-        &["x", "y", "label"],
-        true,
-    ),
-    (
-        "line",
-        &["x", "y", "stroke", "width", "opacity", "dash", "label"],
-        &["y"],
-        false,
-    ),
-    (
-        "bar",
-        &["x", "y", "fill", "stroke", "width", "opacity", "label"],
-        &["y"],
-        false,
-    ),
+    ("polygon", &["x", "y", "fill", "stroke", "width", "opacity", "dash", "label", "panel"], &["x", "y"], false),
+    ("polyline", &["x", "y", "stroke", "width", "opacity", "dash", "label", "panel"], &["x", "y"], false),
+    ("points", &["x", "y", "fill", "stroke", "width", "size", "opacity", "label", "panel"], &["x", "y"], false),
+    ("arrow", &["x", "y", "dx", "dy", "stroke", "width", "opacity", "dash", "label", "panel"], &["x", "y", "dx", "dy"], false),
+    ("text", &["x", "y", "label", "fill", "size", "align", "opacity", "panel"], &["x", "y", "label"], true),
+    ("line", &["x", "y", "stroke", "width", "opacity", "dash", "label", "panel"], &["y"], false),
+    ("bar", &["x", "y", "fill", "stroke", "width", "opacity", "label", "panel"], &["y"], false),
+    ("errorbar", &["x", "low", "high", "stroke", "width", "opacity", "label", "panel"], &["low", "high"], false),
+    ("heat", &["value", "label", "opacity", "panel"], &["value"], true),
+    ("contour", &["x", "y", "z", "levels", "stroke", "width", "opacity", "dash", "panel"], &["x", "y", "z"], false),
+    ("gantt", &["from", "to", "fill", "stroke", "width", "opacity", "label", "panel"], &["from", "to"], true),
+    ("node", &["x", "y", "fill", "stroke", "width", "size", "opacity", "label", "panel"], &[], true),
+    ("arc", &["stroke", "width", "opacity", "dash", "label", "panel"], &[], true),
     ("title", &[], &[], true),
     ("axes", &["x", "y"], &[], true),
-    ("xaxis", &["label"], &[], true),
-    ("yaxis", &["label"], &[], true),
+    ("xaxis", &["label", "min", "max"], &[], true),
+    ("yaxis", &["label", "min", "max"], &[], true),
     ("legend", &["label"], &[], true),
     ("size", &["width", "height"], &[], true),
 ];
@@ -79,7 +45,8 @@ pub fn kinds() -> impl Iterator<Item = &'static str> {
     KINDS.iter().map(|k| k.0)
 }
 
-fn is_text(n: &Node) -> bool {
+/// Whether the value of an argument is a text.
+pub(crate) fn is_text(n: &Node) -> bool {
     matches!(
         n.kind,
         NodeKind::Text(_)
@@ -210,8 +177,11 @@ impl Compiler {
             }
             if matches!(
                 name,
-                "x" | "y" | "dx" | "dy" | "width" | "height" | "opacity" | "size"
+                "x" | "y" | "dx" | "dy" | "width" | "height" | "opacity" | "size" | "low" | "high"
+                    | "from" | "to" | "z" | "value" | "levels" | "min" | "max"
             ) && is_text(value)
+                // A chart stands against labels as well.
+                && !(name == "x" && matches!(kind, "line" | "bar" | "errorbar"))
             {
                 return self.fail(
                     Diagnostic::error(
@@ -251,7 +221,23 @@ impl Compiler {
             }
         }
         let slots = code.domain.as_ref().map_or(0, |d| d.slots.len());
-        if matches!(kind, "polygon" | "polyline" | "line" | "bar") && slots == 0 {
+        if matches!(kind, "heat" | "contour" | "arc" | "gantt") && slots < 2 {
+            let example = match kind {
+                "arc" => "`arc(i,j)`: from node i to node j",
+                "gantt" => "`gantt(machine,job)`: a row for each machine",
+                _ => "of two indices, the first runs along x, the last along y",
+            };
+            return self.fail(
+                Diagnostic::error("E0373", e.kind.span, format!("`{kind}` needs two indices"))
+                    .label(format!("{slots} here"))
+                    .help(format!("write {example}")),
+            );
+        }
+        if matches!(
+            kind,
+            "polygon" | "polyline" | "line" | "bar" | "errorbar" | "node"
+        ) && slots == 0
+        {
             return self.fail(
                 Diagnostic::error("E0373", e.kind.span, format!("`{kind}` needs an index that runs over its points"))
                     .label("no index here")

@@ -18,7 +18,7 @@ mod declare;
 mod effects;
 pub(crate) mod expansion;
 mod expr;
-mod figure;
+pub(crate) mod figure;
 mod follow;
 mod index;
 mod input;

@@ -57,6 +57,16 @@ pub fn extent(scene: &Scene) -> [Option<[f64; 2]>; 2] {
                 point([a[0] + d[0], a[1] + d[1]]);
             }
             Shape::Text(p, ..) => point(*p),
+            Shape::Arc(a, b, _) => {
+                point(*a);
+                point(*b);
+            }
+            Shape::Whiskers(ps) => {
+                for &[x, low, high] in ps {
+                    point([x, low]);
+                    point([x, high]);
+                }
+            }
             Shape::Bars(ps) => {
                 for &p in ps {
                     point(p);
@@ -70,6 +80,23 @@ pub fn extent(scene: &Scene) -> [Option<[f64; 2]>; 2] {
     if !scene.categories.is_empty() {
         see(0, 0.5, false);
         see(0, scene.categories.len() as f64 + 0.5, false);
+    }
+    if !scene.y_categories.is_empty() {
+        see(1, -0.5, false);
+        see(1, -(scene.y_categories.len() as f64) - 0.5, false);
+    }
+    for (axis, limits) in [scene.x_limits, scene.y_limits].iter().enumerate() {
+        for (end, limit) in limits.iter().enumerate() {
+            if let (Some(v), Some(r)) = (limit, &mut range[axis]) {
+                r[end] = *v;
+            }
+        }
+        if let Some(r) = &mut range[axis]
+            && r[0] >= r[1]
+            && limits.iter().any(Option::is_some)
+        {
+            *r = [r[0].min(r[1]), r[0].max(r[1]) + 1.0];
+        }
     }
     range
 }

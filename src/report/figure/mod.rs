@@ -46,6 +46,12 @@ pub struct Scene {
     /// Labels of the horizontal axis: label k stands at x = k + 1 (a chart against a set). Empty:
     /// the axis has numbers.
     pub categories: Vec<String>,
+    /// Labels of the vertical axis from the top: label k stands at y = −(k + 1). Empty: the axis has numbers.
+    pub y_categories: Vec<String>,
+    /// Ends of the horizontal axis; None: from the data.
+    pub x_limits: [Option<f64>; 2],
+    /// Ends of the vertical axis; None: from the data.
+    pub y_limits: [Option<f64>; 2],
     /// Horizontal axis with logarithmic scale.
     pub x_log: bool,
     /// Vertical axis with logarithmic scale.
@@ -67,6 +73,8 @@ pub struct Element {
     pub style: Style,
     /// Its name in the legend; elements with the same name share one entry.
     pub name: Option<String>,
+    /// Its panel, where a figure is a grid of small ones; None: in every panel.
+    pub panel: Option<String>,
 }
 
 /// Shapes, in the scene's coordinates.
@@ -87,6 +95,10 @@ pub enum Shape {
     /// A bar chart's series: position (see [`Scene::categories`]) and height of each bar. Series
     /// stand side by side.
     Bars(Vec<[f64; 2]>),
+    /// Error bars: x, low and high end of each.
+    Whiskers(Vec<[f64; 3]>),
+    /// An arrow between two nodes of a network, that ends so many pixels before either.
+    Arc([f64; 2], [f64; 2], f64),
 }
 
 /// Which part of a text stands at its point.
@@ -125,6 +137,7 @@ impl Element {
             shape,
             style: Style::default(),
             name: None,
+            panel: None,
         }
     }
 

@@ -7,7 +7,7 @@ use std::fmt::Write;
 use super::layout::{Axis, extent, rounded, text_width, visible};
 use super::{Anchor, Element, Scene, Shape, Style};
 use crate::color::{self, Paint};
-use frame::{legend_names, legend_rows, rotated, tick_texts};
+use frame::{legend_names, legend_rows, rotated, tick_texts, y_ticks};
 
 /// Ink of axes, texts and lines that have no colour of their own.
 const INK: &str = "#2b3440";
@@ -16,6 +16,8 @@ const QUIET: &str = "#5b6673";
 /// Lines of the grid.
 const GRID: &str = "#e3e7ec";
 const FONT: &str = "Inter, 'Helvetica Neue', Helvetica, Arial, 'DejaVu Sans', sans-serif";
+/// Pixels around a plot with given limits in which what stands on its edge is still drawn.
+const EDGE: f64 = 5.0;
 /// Margin around everything, in pixels.
 const MARGIN: f64 = 18.0;
 
@@ -76,36 +78,146 @@ struct Drawing<'a> {
     group: Option<String>,
 }
 
+/// What the panels of a figure have in common.
+struct Common<'a> {
+    extent: [[f64; 2]; 2],
+    colors: Option<[f64; 2]>,
+    names: Vec<&'a str>,
+}
+
+impl<'a> Common<'a> {
+    fn of(scene: &'a Scene) -> Self {
+        Self {
+            extent: extent(scene).map(|r| r.unwrap_or([0.0, 1.0])),
+            colors: scale_range(scene),
+            names: legend_names(scene),
+        }
+    }
+}
+
 /// The scene as an SVG text.
 pub fn svg(scene: &Scene) -> String {
-    let chart = |e: &Element| matches!(e.shape, Shape::Line(_) | Shape::Bars(_));
+    let mut panels: Vec<&str> = Vec::new();
+    for name in scene.elements.iter().filter_map(|e| e.panel.as_deref()) {
+        if !panels.contains(&name) {
+            panels.push(name);
+        }
+    }
+    if panels.is_empty() {
+        return plot(scene, Common::of(scene), true);
+    }
+    small_multiples(scene, &panels)
+}
+
+/// A grid of panels with the same axes, one legend above.
+fn small_multiples(scene: &Scene, panels: &[&str]) -> String {
+    let width = picture_width(scene, 960.0);
+    let columns = match panels.len() {
+        n @ 1..=3 => n,
+        4 => 2,
+        _ => 3,
+    };
+    let common = Common::of(scene);
+    let legend = legend_rows(&common.names, width - 2.0 * MARGIN);
+    let legend_top = headings_height(scene);
+    let mut top = legend_top + legend_height(&legend);
+    let each = (width / columns as f64).floor();
+    let mut body = String::new();
+    for names in panels.chunks(columns) {
+        let mut tallest = 0.0f64;
+        for (column, name) in names.iter().enumerate() {
+            let there = |e: &&Element| e.panel.as_deref().is_none_or(|p| p == *name);
+            let panel = Scene {
+                title: None,
+                subtitle: Some((*name).to_string()),
+                width: Some(each),
+                height: scene.height,
+                elements: scene.elements.iter().filter(there).cloned().collect(),
+                ..scene.clone()
+            };
+            let text = plot(&panel, Common::of(scene), false);
+            tallest = tallest.max(height_of(&text));
+            let at = format!("<svg x=\"{}\" y=\"{}\" ", Px(column as f64 * each), Px(top));
+            body.push_str(&text.replacen("<svg ", &at, 1));
+        }
+        top += tallest;
+    }
+    let [x_range, y_range] = common.extent;
+    let axis = |range| Axis {
+        range,
+        pixels: [0.0, 1.0],
+        log: false,
+    };
+    let mut d = Drawing {
+        scene,
+        out: String::new(),
+        x: axis(x_range),
+        y: axis(y_range),
+        colors: common.colors,
+        names: common.names,
+        group: None,
+    };
+    d.head(width, top);
+    d.legend(&legend, legend_top);
+    d.out.push_str(&body);
+    d.out.push_str("</svg>\n");
+    d.out
+}
+
+/// The height that a picture states in its first line.
+fn height_of(svg: &str) -> f64 {
+    let text = svg
+        .split("height=\"")
+        .nth(1)
+        .and_then(|t| t.split('"').next());
+    text.and_then(|t| t.parse().ok()).unwrap_or(0.0)
+}
+
+fn picture_width(scene: &Scene, usual: f64) -> f64 {
+    let width = scene.width.filter(|w| w.is_finite()).unwrap_or(usual);
+    width.clamp(80.0, 10_000.0)
+}
+
+/// Pixels above the legend.
+fn headings_height(scene: &Scene) -> f64 {
+    let title = if scene.title.is_some() { 26.0 } else { 0.0 };
+    let subtitle = if scene.subtitle.is_some() { 18.0 } else { 0.0 };
+    MARGIN + title + subtitle
+}
+
+fn legend_height(rows: &[Vec<(usize, f64)>]) -> f64 {
+    match rows.len() {
+        0 => 0.0,
+        n => 20.0 * n as f64 + 8.0,
+    }
+}
+
+/// One plot with what surrounds it; the legend only if asked for.
+fn plot(scene: &Scene, common: Common<'_>, with_legend: bool) -> String {
+    let chart = |e: &Element| {
+        matches!(
+            e.shape,
+            Shape::Line(_) | Shape::Bars(_) | Shape::Whiskers(_)
+        )
+    };
     let has_chart = scene.elements.iter().any(chart);
     let axes = scene.axes.unwrap_or(has_chart);
     let equal = scene.equal.unwrap_or(!has_chart) && !scene.x_log && !scene.y_log;
-    let [x_range, y_range] = extent(scene);
-    let (x_range, y_range) = (x_range.unwrap_or([0.0, 1.0]), y_range.unwrap_or([0.0, 1.0]));
-    let colors = scale_range(scene);
-    let names = legend_names(scene);
+    let [x_range, y_range] = common.extent;
+    let Common { colors, names, .. } = common;
 
     // What surrounds the plot.
-    let width = scene
-        .width
-        .filter(|w| w.is_finite())
-        .unwrap_or(720.0)
-        .clamp(80.0, 10_000.0);
-    let mut top = MARGIN;
-    if scene.title.is_some() {
-        top += 26.0;
-    }
-    if scene.subtitle.is_some() {
-        top += 18.0;
-    }
-    let legend = legend_rows(&names, width - 2.0 * MARGIN);
-    let legend_top = top;
-    if !legend.is_empty() {
-        top += 20.0 * legend.len() as f64 + 8.0;
-    }
-    let mut y_range = pad(y_range, scene.y_log, axes, equal);
+    let width = picture_width(scene, 720.0);
+    let legend = match with_legend {
+        true => legend_rows(&names, width - 2.0 * MARGIN),
+        false => Vec::new(),
+    };
+    let legend_top = headings_height(scene);
+    let top = legend_top + legend_height(&legend);
+    let mut y_range = match scene.y_categories.is_empty() {
+        true => pad(y_range, scene.y_log, axes, equal),
+        false => y_range,
+    };
     let mut x_range = match scene.categories.is_empty() {
         true => pad(
             x_range,
@@ -119,7 +231,18 @@ pub fn svg(scene: &Scene) -> String {
         // Bars stand on the axis.
         y_range = [y_range[0].min(0.0), y_range[1].max(0.0)];
     }
-    let y_labels = tick_texts(y_range, scene.y_log, 6.0);
+    for (range, limits) in [
+        (&mut x_range, scene.x_limits),
+        (&mut y_range, scene.y_limits),
+    ] {
+        // What the author said about an axis is not rounded.
+        let [low, high] = limits;
+        let asked = [low.unwrap_or(range[0]), high.unwrap_or(range[1])];
+        if asked[0] < asked[1] {
+            *range = asked;
+        }
+    }
+    let y_labels = y_ticks(scene, y_range);
     let left_labels = y_labels.iter().map(|(_, t)| text_width(t, 11.5));
     let mut left = MARGIN;
     let mut bottom = MARGIN;
@@ -156,6 +279,9 @@ pub fn svg(scene: &Scene) -> String {
             let ratio = (y_range[1] - y_range[0]) / (x_range[1] - x_range[0]);
             (plot_width * ratio).clamp(60.0, plot_width.max(560.0))
         }
+        None if !scene.y_categories.is_empty() => {
+            (26.0 * scene.y_categories.len() as f64).clamp(90.0, 900.0)
+        }
         None => (plot_width * 0.6).clamp(60.0, 420.0),
     };
     if equal {
@@ -186,10 +312,28 @@ pub fn svg(scene: &Scene) -> String {
     if axes {
         d.axes(rotate);
     }
+    let is_cut = scene
+        .x_limits
+        .iter()
+        .chain(&scene.y_limits)
+        .any(Option::is_some);
+    if is_cut {
+        let _ = writeln!(
+            d.out,
+            "  <clipPath id=\"plot\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n  <g clip-path=\"url(#plot)\">",
+            Px(left - EDGE),
+            Px(top - EDGE),
+            Px(plot_width + 2.0 * EDGE),
+            Px(plot_height + 2.0 * EDGE)
+        );
+    }
     for k in 0..scene.elements.len() {
         d.element(k);
     }
     d.close_group();
+    if is_cut {
+        d.out.push_str("  </g>\n");
+    }
     d.legend(&legend, legend_top);
     d.color_legend(width - right + 14.0);
     d.out.push_str("</svg>\n");
@@ -360,6 +504,42 @@ impl Drawing<'_> {
             Shape::Arrow(from, by) => self.arrow(*from, *by, &e.style),
             Shape::Text(at, text, anchor) => self.text(*at, text, *anchor, &e.style),
             Shape::Bars(ps) => self.bars(k, ps),
+            Shape::Whiskers(ps) => self.whiskers(ps, &e.style),
+            Shape::Arc(from, to, gap) => self.arc(*from, *to, *gap, &e.style),
+        }
+    }
+
+    /// Error bars: a line with caps.
+    fn whiskers(&mut self, ps: &[[f64; 3]], style: &Style) {
+        let attributes = self.attributes(style, "none", INK, 1.3, "miter");
+        for &[x, low, high] in ps {
+            let (Some((x, y0)), Some((_, y1))) = (self.point([x, low]), self.point([x, high]))
+            else {
+                continue;
+            };
+            self.enter(attributes.clone());
+            let (left, right, x) = (Px(x - 4.0), Px(x + 4.0), Px(x));
+            let (y0, y1) = (Px(y0), Px(y1));
+            let _ = writeln!(
+                self.out,
+                "    <path d=\"M{left},{y0} H{right} M{x},{y0} V{y1} M{left},{y1} H{right}\"/>"
+            );
+        }
+    }
+
+    /// An arrow from node to node, which leaves out so many pixels at both ends.
+    fn arc(&mut self, from: [f64; 2], to: [f64; 2], gap: f64, style: &Style) {
+        let (Some((x0, y0)), Some((x1, y1))) = (self.point(from), self.point(to)) else {
+            return;
+        };
+        let length = (x1 - x0).hypot(y1 - y0);
+        if length > 2.0 * gap {
+            let (ux, uy) = ((x1 - x0) / length, (y1 - y0) / length);
+            self.arrow_in_pixels(
+                [x0 + gap * ux, y0 + gap * uy],
+                [x1 - gap * ux, y1 - gap * uy],
+                style,
+            );
         }
     }
 
@@ -418,6 +598,10 @@ impl Drawing<'_> {
         let (Some((x0, y0)), Some((x1, y1))) = (self.point(from), self.point(to)) else {
             return;
         };
+        self.arrow_in_pixels([x0, y0], [x1, y1], style);
+    }
+
+    fn arrow_in_pixels(&mut self, [x0, y0]: [f64; 2], [x1, y1]: [f64; 2], style: &Style) {
         let length = (x1 - x0).hypot(y1 - y0);
         if length < 0.05 {
             return;

@@ -18,6 +18,19 @@ pub(super) fn tick_texts(range: [f64; 2], log: bool, wanted: f64) -> Vec<(f64, S
     ticks.into_iter().zip(labels).collect()
 }
 
+/// Ticks of the vertical axis with their labels.
+pub(super) fn y_ticks(scene: &Scene, range: [f64; 2]) -> Vec<(f64, String)> {
+    if scene.y_categories.is_empty() {
+        return tick_texts(range, scene.y_log, 6.0);
+    }
+    // Some of them where there are very many.
+    let every = scene.y_categories.len().div_ceil(60);
+    let numbered = scene.y_categories.iter().enumerate().step_by(every);
+    numbered
+        .map(|(k, c)| (-(k as f64) - 1.0, c.clone()))
+        .collect()
+}
+
 /// Whether the labels of the categories are too wide to stand side by side.
 pub(super) fn rotated(scene: &Scene, plot_width: f64) -> bool {
     let room = plot_width / scene.categories.len().max(1) as f64;
@@ -94,11 +107,12 @@ impl Drawing<'_> {
         let [left, right] = self.x.pixels;
         let [bottom, top] = self.y.pixels;
         let (mut grid, mut labels) = (String::new(), String::new());
-        for (v, text) in tick_texts(self.y.range, self.scene.y_log, 6.0) {
+        for (v, text) in y_ticks(self.scene, self.y.range) {
             let y = self.y.at(v);
             if y < top - 0.5 || y > bottom + 0.5 {
                 continue;
             }
+            let text = escape(&text);
             let _ = writeln!(
                 grid,
                 "    <line x1=\"{}\" y1=\"{y}\" x2=\"{}\" y2=\"{y}\"/>",
@@ -156,7 +170,7 @@ impl Drawing<'_> {
             self.out,
             "  <g stroke=\"{GRID}\" stroke-width=\"1\">\n{grid}  </g>\n  <g font-size=\"11.5\" fill=\"{QUIET}\">\n{labels}  </g>\n"
         );
-        let base = match self.scene.y_log {
+        let base = match self.scene.y_log || !self.scene.y_categories.is_empty() {
             false => self.y.at(0.0f64.clamp(self.y.range[0], self.y.range[1])),
             true => bottom,
         };

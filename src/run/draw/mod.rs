@@ -4,6 +4,8 @@
 //! Of several controlled indices the last one runs along a polygon, a line or a series; there is one of
 //! those for each combination of the others.
 
+mod chart;
+
 use super::scan::Scans;
 use super::{Frame, Machine};
 use crate::check::node::{FigureCode, FigureElementCode, Node, SymbolId};
@@ -17,7 +19,6 @@ use crate::report::figure::{Anchor, Element, Paint, Scene, Shape, Style, png, sv
 use crate::report::format::{self, Value};
 use crate::report::textfile::Item;
 use crate::source::Span;
-use rustc_hash::FxHashMap;
 use std::rc::Rc;
 
 /// Pixels of a PNG per pixel of the SVG.
@@ -109,7 +110,8 @@ impl Machine<'_> {
         };
         let mut legend = true;
         let all: Vec<Turns<'_>> = code.elements.iter().map(|e| self.turns(e, frame)).collect();
-        let categories = self.categories(&all, &mut scene);
+        let categories = self.categories(&all, &mut scene, frame);
+        let nodes = self.nodes(&all, frame);
         for turns in all.iter().filter(|t| t.count > 0) {
             let e = turns.element;
             match &*e.kind {
@@ -129,7 +131,10 @@ impl Machine<'_> {
                         }
                     }
                 }
-                "line" | "bar" => self.chart(turns, &categories, &mut scene, frame)?,
+                "line" | "bar" | "errorbar" => self.chart(turns, &categories, &mut scene, frame)?,
+                "heat" | "gantt" => self.cells(turns, &categories, &mut scene, frame)?,
+                "contour" => self.contour(turns, &mut scene, frame)?,
+                "node" | "arc" => self.network(turns, &nodes, &mut scene, frame)?,
                 "polygon" | "polyline" => self.paths(turns, &mut scene, frame)?,
                 _ => self.marks(turns, &mut scene, frame)?,
             }
@@ -328,6 +333,28 @@ impl Machine<'_> {
         }
     }
 
+    /// The text of an element: `label`, a format for the bare values if there are any.
+    fn text_beside(&self, t: &Turns<'_>, frame: &mut Frame) -> Result<Option<String>, Failed> {
+        let bare = t.element.arguments.iter().filter(|a| a.0.is_none());
+        let nodes: Vec<&Node> = t
+            .argument("label")
+            .into_iter()
+            .chain(bare.map(|a| &a.1))
+            .collect();
+        match nodes.is_empty() {
+            true => Ok(None),
+            false => self.text(&nodes, t.element.span, frame).map(Some),
+        }
+    }
+
+    /// The panel of small multiples that an element belongs to.
+    fn panel(&self, t: &Turns<'_>, frame: &mut Frame) -> Result<Option<String>, Failed> {
+        match t.argument("panel") {
+            Some(n) => Ok(Some(self.text(&[n], n.span, frame)?)),
+            None => Ok(None),
+        }
+    }
+
     /// Polygons and polylines.
     fn paths(&self, t: &Turns<'_>, scene: &mut Scene, frame: &mut Frame) -> Result<(), Failed> {
         for range in t.runs() {
@@ -344,7 +371,13 @@ impl Machine<'_> {
             } else {
                 Shape::Polyline(points)
             };
-            scene.elements.push(Element { shape, style, name });
+            let panel = self.panel(t, frame)?;
+            scene.elements.push(Element {
+                shape,
+                style,
+                name,
+                panel,
+            });
             if !self.keep_going() {
                 return Err(Failed);
             }
@@ -362,6 +395,7 @@ impl Machine<'_> {
                 continue;
             };
             let style = self.style(t, frame)?;
+            let panel = self.panel(t, frame)?;
             match kind {
                 "points" => {
                     let name = self.legend_name(t, frame)?;
@@ -371,11 +405,13 @@ impl Machine<'_> {
                             shape: Shape::Points(list),
                             style: s,
                             name: n,
-                        }) if *s == style && *n == name => list.push(at),
+                            panel: p,
+                        }) if *s == style && *n == name && *p == panel => list.push(at),
                         _ => scene.elements.push(Element {
                             shape: Shape::Points(vec![at]),
                             style,
                             name,
+                            panel,
                         }),
                     }
                 }
@@ -388,18 +424,11 @@ impl Machine<'_> {
                         shape: Shape::Arrow(at, by),
                         style,
                         name,
+                        panel,
                     });
                 }
                 _ => {
-                    let mut nodes: Vec<&Node> = t.argument("label").into_iter().collect();
-                    nodes.extend(
-                        t.element
-                            .arguments
-                            .iter()
-                            .filter(|a| a.0.is_none())
-                            .map(|a| &a.1),
-                    );
-                    let text = self.text(&nodes, t.element.span, frame)?;
+                    let text = self.text_beside(t, frame)?.unwrap_or_default();
                     let anchor = match t.argument("align") {
                         None => Anchor::default(),
                         Some(n) => match self.text(&[n], n.span, frame)?.to_lowercase().as_str() {
@@ -423,76 +452,10 @@ impl Machine<'_> {
                         shape: Shape::Text(at, text, anchor),
                         style,
                         name: None,
+                        panel,
                     });
                 }
             }
-            if !self.keep_going() {
-                return Err(Failed);
-            }
-        }
-        Ok(())
-    }
-
-    /// The labels that charts stand against, all charts of the figure together: the axis, and the place of
-    /// each.
-    fn categories(&self, all: &[Turns<'_>], scene: &mut Scene) -> FxHashMap<Label, f64> {
-        let charts = all
-            .iter()
-            .filter(|t| is_chart(t) && t.argument("x").is_none());
-        let mut labels: Vec<Label> = charts
-            .flat_map(|t| (0..t.count).map(|k| t.key(k)[t.width - 1]))
-            .collect();
-        labels.sort_unstable();
-        labels.dedup();
-        scene.categories = labels
-            .iter()
-            .map(|&l| self.store.universe.name(l).to_string())
-            .collect();
-        labels
-            .iter()
-            .enumerate()
-            .map(|(k, &l)| (l, k as f64 + 1.0))
-            .collect()
-    }
-
-    /// Series of lines or bars, against `x` or against the last index.
-    fn chart(
-        &self,
-        t: &Turns<'_>,
-        categories: &FxHashMap<Label, f64>,
-        scene: &mut Scene,
-        frame: &mut Frame,
-    ) -> Result<(), Failed> {
-        let by_set = t.argument("x").is_none();
-        for range in t.runs() {
-            self.enter(t, range.start, frame);
-            let style = self.style(t, frame)?;
-            let leading = &t.key(range.start)[..t.width - 1];
-            let name = match self.legend_name(t, frame)? {
-                Some(n) => Some(n),
-                None if leading.is_empty() => None,
-                None => Some(self.turn_name(leading)),
-            };
-            let mut points = Vec::with_capacity(range.len());
-            for k in range {
-                self.enter(t, k, frame);
-                let Some(mut p) = self.point(t, k, ["x", "y"], frame) else {
-                    continue;
-                };
-                if by_set {
-                    p[0] = categories
-                        .get(&t.key(k)[t.width - 1])
-                        .copied()
-                        .unwrap_or(0.0);
-                }
-                points.push(p);
-            }
-            let shape = if &*t.element.kind == "bar" {
-                Shape::Bars(points)
-            } else {
-                Shape::Line(points)
-            };
-            scene.elements.push(Element { shape, style, name });
             if !self.keep_going() {
                 return Err(Failed);
             }
@@ -526,6 +489,15 @@ impl Machine<'_> {
                 }
                 continue;
             }
+            if let Some(end @ ("min" | "max")) = name.as_deref() {
+                let v = self.number_of(n, frame);
+                let limits = match &*e.kind {
+                    "xaxis" => &mut scene.x_limits,
+                    _ => &mut scene.y_limits,
+                };
+                limits[usize::from(end == "max")] = v.is_finite().then_some(v);
+                continue;
+            }
             let text = self.text(&[n], e.span, frame)?;
             let word = text.to_lowercase();
             match (&*e.kind, name.as_deref()) {
@@ -557,10 +529,6 @@ impl Machine<'_> {
         }
         Ok(())
     }
-}
-
-fn is_chart(t: &Turns<'_>) -> bool {
-    matches!(&*t.element.kind, "line" | "bar")
 }
 
 impl Turns<'_> {
