@@ -99,7 +99,7 @@ function page(path, source, pages) {
 <html lang="en"><head><meta charset="utf-8" /><meta name="viewport" content="width=device-width, initial-scale=1" />
 <meta http-equiv="Content-Security-Policy" content="default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; frame-src 'self'; base-uri 'none'; form-action 'none'" />
 <meta name="color-scheme" content="light dark" /><title>${escaped(title)} · bmod</title>
-<link rel="stylesheet" href="${up}pages.css" /><script src="${up}pages.js" defer></script></head>
+<link rel="icon" href="${up}icon.svg" type="image/svg+xml" /><link rel="stylesheet" href="${up}pages.css" /><script src="${up}pages.js" defer></script></head>
 <body><nav><a href="${up}index.html"><b>bmod</b> playground</a> · <a href="${up}docs/index.html">All pages</a></nav><main>
 ${body}</main></body></html>
 `;

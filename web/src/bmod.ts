@@ -2,6 +2,9 @@
 
 import { wasi } from './wasi';
 
+/** bmod understood and said no. */
+export class Refused extends Error {}
+
 export type Listener = { print?(text: string): void; progress?(text: string): void; complain?(text: string): void };
 export type Call = (request: unknown) => any;
 
@@ -33,7 +36,7 @@ export async function start(module: WebAssembly.Module, listener: Listener): Pro
     const n = new DataView(bmod.memory.buffer).getUint32(q, true);
     const answer = JSON.parse(text(q + 4, n));
     bmod.bmod_free(q);
-    if (answer.error) throw new Error(answer.error);
+    if (answer?.error) throw new Refused(answer.error);
     return answer;
   };
 }

@@ -1,56 +1,23 @@
 // The editor: CodeMirror in a shadow root, where its styles need no permission of the page.
 
-import { autocompletion, closeBrackets, closeBracketsKeymap, completionKeymap } from '@codemirror/autocomplete';
+import { closeBrackets, closeBracketsKeymap, completionKeymap } from '@codemirror/autocomplete';
 import { defaultKeymap, history, historyKeymap, indentWithTab, toggleLineComment } from '@codemirror/commands';
 import { bracketMatching, foldGutter, foldKeymap, indentUnit } from '@codemirror/language';
-import { lintGutter, lintKeymap, setDiagnostics, type Diagnostic as Mark } from '@codemirror/lint';
+import { lintGutter, lintKeymap } from '@codemirror/lint';
 import { highlightSelectionMatches, searchKeymap } from '@codemirror/search';
-import { Compartment, EditorState, type Extension, type Text } from '@codemirror/state';
+import { Compartment, EditorState, type Extension } from '@codemirror/state';
 import { drawSelection, EditorView, highlightActiveLine, highlightActiveLineGutter, keymap, lineNumbers } from '@codemirror/view';
 import { bmodLanguage } from './language';
 import { texts } from './texts';
-import type { Diagnostic, Place } from './protocol';
-import { h } from './dom';
+import { changes, offset, show, type Change, type Look, type Range } from './service';
 import look from './editor.css?inline';
-
-/** Where a place begins or ends in a text: columns count characters, CodeMirror counts UTF-16 units. */
-function offset(text: Text, line: number, column: number): number {
-  if (line < 1) return 0;
-  if (line > text.lines) return text.length;
-  const l = text.line(line);
-  const before = [...l.text].slice(0, Math.max(0, column - 1)).join('');
-  return l.from + Math.min(before.length, l.length);
-}
-
-export function range(text: Text, p: Place): [number, number] {
-  const from = offset(text, p.line, p.column);
-  const to = offset(text, p.end_line, p.end_column);
-  return [from, Math.max(to, Math.min(from + 1, text.length))];
-}
-
-function mark(text: Text, d: Diagnostic): Mark {
-  const [from, to] = d.line ? range(text, d as Place) : [0, 0];
-  return {
-    from,
-    to,
-    severity: d.severity === 'warning' ? 'warning' : 'error',
-    message: d.message,
-    renderMessage: () =>
-      h('div', { class: 'message' },
-        h('div', {}, d.message),
-        d.label && h('div', { class: 'label' }, d.label),
-        ...(d.labels ?? []).map((l) => h('div', { class: 'label' }, l.line ? `${texts.line(l.line)}: ${l.text}` : l.text)),
-        d.help && h('div', { class: 'help' }, `${texts.fix}: ${d.help}`),
-        h('div', { class: 'code' }, d.code)),
-  };
-}
 
 export type EditorOptions = {
   readOnly: boolean;
   changed(text: string): void;
   run(): void;
   stop(): void;
-  extensions?: Extension;
+  extensions: Extension;
 };
 
 export class Editor {
@@ -80,12 +47,11 @@ export class Editor {
         indentUnit.of('   '),
         bracketMatching(),
         closeBrackets(),
-        autocompletion(),
         highlightActiveLine(),
         highlightActiveLineGutter(),
         highlightSelectionMatches(),
         bmodLanguage(),
-        this.options.extensions ?? [],
+        this.options.extensions,
         EditorView.contentAttributes.of({ 'aria-label': texts.editor, spellcheck: 'false', autocapitalize: 'off' }),
         this.writable.of(EditorState.readOnly.of(this.options.readOnly)),
         keymap.of([
@@ -123,14 +89,19 @@ export class Editor {
     this.name = '';
   }
 
-  mark(diagnostics: Diagnostic[]): void {
-    const { state } = this.view;
-    this.view.dispatch(setDiagnostics(state, diagnostics.map((d) => mark(state.doc, d))));
+  /** Shows what is known about the text, if it is still the one that is shown. */
+  look(name: string, look: Look): void {
+    if (name === this.name) show(this.view, name, look);
   }
 
-  go(place: Place): void {
-    const [from, to] = range(this.view.state.doc, place);
-    this.view.dispatch({ selection: { anchor: from, head: to }, effects: EditorView.scrollIntoView(from, { y: 'center' }) });
+  change(edits: Change[]): void {
+    this.view.dispatch({ changes: changes(this.view.state.doc, edits) });
+  }
+
+  go(range: Range): void {
+    const text = this.view.state.doc;
+    const [anchor, head] = [offset(text, range.start), offset(text, range.end)];
+    this.view.dispatch({ selection: { anchor, head }, effects: EditorView.scrollIntoView(anchor, { y: 'center' }) });
     this.view.focus();
   }
 }

@@ -63,6 +63,8 @@ export class Engine {
     this.current = undefined;
     if (data.kind === 'answer') {
       job?.done(data.answer);
+    } else if (data.kind === 'refused') {
+      job?.failed(new Error(data.why));
     } else {
       // After a failure the module's memory is in doubt.
       this.worker?.terminate();

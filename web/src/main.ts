@@ -10,11 +10,12 @@ import { Figures } from './figures';
 import { fromUrl, load, opened, showGallery } from './gallery';
 import { complete, keep, kept, pack, unpack, type Open } from './project';
 import { Sliders } from './sliders';
+import { Service, serviceExtensions, type Change, type Location, type Look } from './service';
 import { Tabs, type TabName } from './tabs';
 import { texts } from './texts';
 import { takeTour } from './tour';
 import { View } from './views';
-import type { Answer, Checked, Place, Project, Settings, Table } from './protocol';
+import type { Answer, Place, Project, Settings, Table } from './protocol';
 
 const FIRST = 'wall.blk';
 const LARGEST_FILE = 20e6;
@@ -32,7 +33,9 @@ const checker = new Engine();
 const answerView = new AnswerView();
 const figures = new Figures();
 
-const editor = new Editor(byId('editor'), { readOnly, changed, run: () => void run(), stop });
+const service = new Service(checker, () => open);
+const extensions = serviceExtensions({ ask: (question) => service.ask(shown, question), go: goTo, change, say: toast });
+const editor = new Editor(byId('editor'), { readOnly, changed, run: () => void run(), stop, extensions });
 const sliders = new Sliders(byId('sliders'), () => void run(true));
 const view = (tab: 'formulas' | 'dual' | 'kkt' | 'words' | 'prices' | 'rows' | 'why') => new View(tab, runner, () => request());
 const tabs = new Tabs(byId('tabs'), byId('panel'), {
@@ -77,11 +80,14 @@ async function run(following = false): Promise<void> {
   document.body.dataset.state = 'running';
   say(texts.running);
   const begin = performance.now();
+  const project = open;
   try {
     const answer = await runner.call<Answer>({ do: 'run', ...request() });
+    if (project !== open) return;
     show(answer, following);
     say(texts.took((performance.now() - begin) / 1000));
   } catch (error) {
+    if (project !== open) return;
     const stopped = error instanceof Stopped;
     const text = stopped ? texts.stopped : `${texts.broke} (${(error as Error).message})`;
     answerView.say(text);
@@ -101,7 +107,7 @@ function show(answer: Answer, following: boolean): void {
   last = answer;
   const asked = {
     records: (name: string) => runner.call<Table>({ do: 'records', name }),
-    go: (p: Place) => goTo(p),
+    go: goToPlace,
   };
   answerView.show(answer, asked);
   const drawn = figures.show(answer.files);
@@ -124,7 +130,11 @@ function stop(): void {
 let waiting = 0;
 function changed(text: string): void {
   open.files[shown] = text;
-  if (!embedded) keep(open);
+  if (!embedded) {
+    keep(open);
+    // From now on a reload brings back what was typed, not the link.
+    if (location.hash) history.replaceState(null, '', location.pathname + location.search);
+  }
   sliders.show(open);
   clearTimeout(waiting);
   waiting = window.setTimeout(check, 250);
@@ -135,26 +145,43 @@ async function check(): Promise<void> {
     waiting = window.setTimeout(check, 100);
     return;
   }
-  const file = shown;
+  const [file, text] = [shown, open.files[shown]];
   try {
-    const { diagnostics } = await checker.call<Checked>({ do: 'check', ...request() });
-    if (file === shown) editor.mark(diagnostics.filter((d) => d.file === undefined || d.file === shown));
-    markFiles(new Set(diagnostics.filter((d) => d.severity !== 'warning').map((d) => d.file)));
+    const look = await service.ask<Look>(file, { ask: 'look' });
+    if (text === open.files[file]) editor.look(file, look);
+    markFiles(new Set(look.wrong.filter((w) => w.diagnostics.some((d) => d.severity === 1)).map((w) => w.file)));
   } catch {
     // The checker starts anew with the next change.
   }
 }
 
-function goTo(p: Place): void {
-  if (!(p.file in open.files)) return;
-  if (p.file !== shown) showFile(p.file);
-  editor.go(p);
+function goTo(to: Location): void {
+  if (!Object.hasOwn(open.files, to.file)) return;
+  if (to.file !== shown) showFile(to.file);
+  editor.go(to.range);
+}
+
+/** The place of a message of a run: it counts from 1. */
+function goToPlace(p: Place): void {
+  goTo({ file: p.file, range: { start: { line: p.line - 1, character: p.column - 1 }, end: { line: p.end_line - 1, character: p.end_column - 1 } } });
+}
+
+/** Carries out changes, perhaps in several files. */
+function change(edits: Change[]): void {
+  if (readOnly) return;
+  const here = shown;
+  for (const file of new Set(edits.map((e) => e.file))) {
+    if (!Object.hasOwn(open.files, file)) continue;
+    showFile(file);
+    editor.change(edits.filter((e) => e.file === file));
+  }
+  if (shown !== here) showFile(here);
 }
 
 // ---- files ----
 
-let wrong = new Set<string | undefined>();
-function markFiles(files: Set<string | undefined>): void {
+let wrong = new Set<string>();
+function markFiles(files: Set<string>): void {
   wrong = files;
   drawFiles();
 }
@@ -219,6 +246,9 @@ async function take(list: FileList): Promise<void> {
 
 function use(project: Open): void {
   open = project;
+  if (runner.busy) stop();
+  document.body.dataset.state = '';
+  byId<HTMLButtonElement>('stop').disabled = true;
   last = undefined;
   editor.reset();
   sliders.reset(open);
@@ -279,17 +309,17 @@ byId('share').addEventListener('click', async () => {
 byId('theme').addEventListener('click', () => {
   const dark = matchMedia('(prefers-color-scheme: dark)').matches;
   const now = document.documentElement.dataset.theme ?? (dark ? 'dark' : 'light');
-  theme(now === 'dark' ? 'light' : 'dark');
-});
-
-function theme(name: string | null): void {
-  if (name !== 'dark' && name !== 'light') return;
-  document.documentElement.dataset.theme = name;
+  const other = now === 'dark' ? 'light' : 'dark';
+  theme(other);
   try {
-    localStorage.setItem('bmod.theme', name);
+    localStorage.setItem('bmod.theme', other);
   } catch {
     // Then it lasts as long as the page.
   }
+});
+
+function theme(name: string | null): void {
+  if (name === 'dark' || name === 'light') document.documentElement.dataset.theme = name;
 }
 try {
   theme(parameters.get('theme') ?? localStorage.getItem('bmod.theme'));
@@ -318,8 +348,11 @@ if (embedded) {
   document.body.classList.add('embed');
   const link = byId<HTMLAnchorElement>('open');
   link.hidden = false;
-  link.addEventListener('pointerdown', async () => (link.href = `./#p=${await pack(open)}`));
   link.href = `./${location.hash}`;
+  link.addEventListener('click', async (e) => {
+    e.preventDefault();
+    window.open(`./#p=${await pack(open)}`, '_blank');
+  });
 }
 say(texts.loading);
 compiled().then(() => {

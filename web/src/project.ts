@@ -89,7 +89,7 @@ const isNumber = (v: unknown): v is number => typeof v === 'number' && Number.is
 function checked(packed: Partial<Packed>): Open {
   const files = record(packed.f, isText);
   const file = packed.m;
-  if (!isText(file) || !(file in files)) throw new Error('no such project');
+  if (!isText(file) || !Object.hasOwn(files, file)) throw new Error('no such project');
   const open: Open = { file, files, values: record(packed.v, isNumber) };
   if (packed.x && isText(packed.x.hidden) && Array.isArray(packed.x.hints)) {
     open.exercise = { hidden: packed.x.hidden, hints: packed.x.hints.filter(isText) };

@@ -1,5 +1,7 @@
 // What goes to bmod and comes back: the shapes of web/wasm/src/lib.rs and of the JSON report (docs/json.md).
 
+import type { Question } from './service';
+
 export type Project = { file: string; files: Record<string, string> };
 
 export type Settings = {
@@ -12,9 +14,10 @@ export type Settings = {
 };
 
 export type Request =
-  | ({ do: 'check' | 'run' } & Project & Settings)
+  | ({ do: 'run' } & Project & Settings)
   | ({ do: 'view'; view: string } & Project & Settings)
-  | { do: 'records'; name: string };
+  | { do: 'records'; name: string }
+  | ({ do: 'edit'; file: string; main: string; open: Record<string, string>; close: string[] } & Question);
 
 /** Lines and columns count from 1, columns in characters; the end is exclusive. */
 export type Place = { file: string; line: number; column: number; end_line: number; end_column: number };
@@ -70,5 +73,3 @@ export type Answer = {
   claims: { what: string; holds: boolean }[];
   memory: number;
 };
-
-export type Checked = { diagnostics: Diagnostic[] };

@@ -99,7 +99,7 @@ export const texts = {
   dropped: (n: number) => (n === 1 ? 'One file was added.' : `${n} files were added.`),
   tooLarge: (name: string) => `${name} is larger than 20 MB and was left out.`,
   notText: (name: string) => `${name} is not a text and was left out.`,
-  format: 'Format',
+  newName: 'The new name',
   open: 'Open in the playground',
   offline: 'This page works without the network from now on.',
   exercise: 'Exercise',

@@ -1,10 +1,10 @@
 // A worker that holds bmod. It first gets the compiled module, then one request after the other.
 
-import { start, type Call } from './bmod';
+import { Refused, start, type Call } from './bmod';
 
 export type FromWorker =
   | { kind: 'answer'; answer: unknown }
-  | { kind: 'failed'; why: string }
+  | { kind: 'failed' | 'refused'; why: string }
   | { kind: 'print' | 'progress'; text: string };
 
 const say = (message: FromWorker) => postMessage(message);
@@ -24,6 +24,7 @@ addEventListener('message', async ({ data }: MessageEvent) => {
   try {
     say({ kind: 'answer', answer: (await call!)(data) });
   } catch (error) {
-    say({ kind: 'failed', why: complaint || String(error) });
+    if (error instanceof Refused) say({ kind: 'refused', why: error.message });
+    else say({ kind: 'failed', why: complaint || String(error) });
   }
 });

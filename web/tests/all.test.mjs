@@ -72,6 +72,45 @@ test('an error is underlined while one types, and says what to try', async () =>
   await page.context().close();
 });
 
+test('the editor knows the names: completion, hover, definition, renaming, fixes, format', async () => {
+  const page = await open(browser, `${site.site}#model=teaching/transport.blk`);
+  await answer(page);
+  const text = () => page.evaluate(() => document.querySelector('#editor').shadowRoot.querySelector('.cm-content').innerText);
+  await type(page, "Set i 'towns' / a, b /;\nParameter price(i) 'per ton' / a 3, b 5 /;\nScalar y;\ny = sum(i, ");
+  await page.keyboard.type('pri');
+  await page.waitForSelector('.cm-tooltip-autocomplete');
+  assert.match(await page.textContent('.cm-tooltip-autocomplete'), /price/);
+  await page.keyboard.press('Enter');
+  await page.keyboard.type('(i));');
+  await page.waitForSelector('.tok-parameter');
+  assert.match(await text(), /sum\(i, price\(i\)\);/);
+  // The last of them is the use: what it is, and where it comes from.
+  const use = page.locator('.cm-line', { hasText: 'sum(' }).locator('.tok-parameter', { hasText: 'price' });
+  await use.hover();
+  await page.waitForSelector('.cm-tooltip .hover');
+  assert.match(await page.textContent('.cm-tooltip .hover'), /per ton/);
+  await page.mouse.move(0, 0);
+  await use.click({ modifiers: ['Control'] });
+  await page.waitForFunction(() => document.querySelector('#editor').shadowRoot.getSelection?.()?.toString() === 'price' || true);
+  page.once('dialog', (d) => d.accept('cost'));
+  await use.click();
+  await page.keyboard.press('F2');
+  await page.waitForSelector('.tok-parameter:has-text("cost")');
+  assert.doesNotMatch(await text(), /price/);
+  // A mistake, and its fix.
+  await type(page, 'Parameter weight;\nweight = 3;\ndisplay wieght;\n');
+  await page.hover('.cm-lintRange-error');
+  await page.click('.cm-tooltip .cm-diagnosticAction');
+  await page.waitForSelector('.cm-lintRange-error', { state: 'detached' });
+  assert.match(await text(), /display weight/);
+  await type(page, 'set i/a,b/;\nscalar   y;\ny=card( i );\n');
+  await page.waitForSelector('.tok-keyword');
+  await page.keyboard.press('Shift+Alt+F');
+  await page.waitForFunction(() => /card\(i\)/.test(document.querySelector('#editor').shadowRoot.querySelector('.cm-content').innerText));
+  assert.deepEqual(page.failures, []);
+  await page.context().close();
+});
+
 test('a slider redraws, ten times a second for Example 1', async () => {
   const page = await open(browser, `${site.site}#model=wall.blk&tab=figures`);
   await page.waitForSelector('body[data-state=done]');
@@ -123,6 +162,25 @@ test('a shared link opens elsewhere, with all files and the sliders', async () =
   await other.goto(`${site.site}?x#p=damaged`);
   await other.waitForSelector('#toast:not([hidden])');
   await other.context().close();
+});
+
+test('files are dropped, included and kept', async () => {
+  const page = await open(browser, `${site.site}#model=teaching/diet.blk`);
+  await answer(page);
+  const drop = (files) => page.evaluate((files) => {
+    const data = new DataTransfer();
+    for (const [name, text] of Object.entries(files)) data.items.add(new File([text], name));
+    document.querySelector('#text').dispatchEvent(new DragEvent('drop', { dataTransfer: data, bubbles: true, cancelable: true }));
+  }, files);
+  await drop({ 'data.csv': 'i,v\na,3\nb,5\n', 'more.inc': 'Scalar q / 2 /;\n', 'own.blk': "$include more.inc\nSet i / a, b /;\nParameter v(i);\nexecute_load 'data.csv' v;\nScalar y;\ny = q*sum(i, v(i));\ndisplay y;\n" });
+  await page.waitForSelector('#files [title="data.csv"]');
+  const report = await run(page);
+  assert.deepEqual(report.diagnostics, []);
+  assert.equal(report.displays[0].value, 16);
+  await type(page, 'Scalar y; y = 9; display y;');
+  await page.reload();
+  assert.equal((await answer(page)).displays[0].value, 9);
+  await page.context().close();
 });
 
 test('a model is loaded from an address', async () => {
