@@ -83,7 +83,7 @@ mod system;
 pub use api::solver;
 pub use api::{
     Choice, Claim, Control, Error, Formulas, Labels, Model, Options, OutputFile, Progress, Record,
-    Records, Run, Solve, Special, Symbol, SymbolKind, VariableRecord, VariableRecords,
+    Records, Run, Sheet, Solve, Special, Symbol, SymbolKind, VariableRecord, VariableRecords,
 };
 pub use diag::Severity;
 pub use formulation::algebra::{

@@ -1,4 +1,4 @@
-//! Models as formulas: as they are written, their duals, their optimality conditions.
+//! Models as formulas: as they are written, their duals, their optimality conditions; ranges and answers in words.
 
 use super::host::RunHost;
 use super::{Error, Model, Options, on_large_stack};
@@ -8,8 +8,8 @@ use crate::formulation::algebra::{Algebra, algebra};
 use crate::formulation::check::Comparison;
 use crate::formulation::derive::Primal;
 use crate::formulation::derived::Kind;
-use crate::formulation::page::{Format, Page, body, write};
-use crate::formulation::{Formulation, show, study};
+use crate::formulation::page::{Block, Format, Page, body, write};
+use crate::formulation::{Formulation, explain, range, show, study};
 use crate::report::diagnostic::Diagnostic;
 use crate::report::diagnostics::{self, Look};
 use crate::run::{self, Machine, Studied, StudyChoice};
@@ -163,6 +163,22 @@ impl Formulas {
     }
 }
 
+/// Tables and sentences: [`Model::ranges`], [`Model::explain`].
+#[derive(Clone, Debug)]
+pub struct Sheet(Page);
+
+impl Sheet {
+    /// For a terminal of so many characters, in Unicode.
+    pub fn text(&self, width: usize) -> String {
+        write(&self.0, Format::Text(width), "")
+    }
+
+    /// A part of a page in HTML.
+    pub fn html_body(&self) -> String {
+        body(&self.0)
+    }
+}
+
 impl Model {
     /// A model as formulas. Nothing is run, unless [`Choice::numbers`] asks for it.
     ///
@@ -236,13 +252,58 @@ impl Model {
         Ok(Formulas::shown(&m, page, &f))
     }
 
-    /// Runs the model and makes formulas of the solve that is meant.
-    fn study(
+    /// The ranges of a linear program: in which intervals of the right-hand sides the prices hold, in which intervals of the
+    /// objective's coefficients the solution stays optimal. The model is run.
+    ///
+    /// # Errors
+    /// [`Error::Model`] if the run fails, if there is no such solve, if it is not linear or has no optimal answer.
+    pub fn ranges(&self, choice: &Choice, options: &Options) -> Result<Sheet, Error> {
+        self.sheet(choice, options, |m, primal, studied| {
+            let found = range::of(m, primal, studied, &[])?;
+            Ok(range::page(m, primal, &found))
+        })
+    }
+
+    /// What a model decides, what its answer is and what binds, in words. The model is run.
+    ///
+    /// ```
+    /// # use bmod::{Choice, Model, Options};
+    /// let text = "Positive variable x; Variable z; Equation e; e.. z =e= 3*x; x.up = 4; Model m / e /;
+    ///             solve m using lp maximizing z;";
+    /// let words = Model::from_text("m.blk", text).explain(&Choice::default(), &Options::default())?;
+    /// assert!(words.text(80).contains("12"), "{}", words.text(80));
+    /// # Ok::<(), bmod::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Model`] if the run fails or there is no such solve.
+    pub fn explain(&self, choice: &Choice, options: &Options) -> Result<Sheet, Error> {
+        self.sheet(choice, options, |m, primal, studied| {
+            let words = explain::of(m, primal, studied).0;
+            Ok(words.into_iter().map(Block::Words).collect())
+        })
+    }
+
+    fn sheet(
         &self,
         choice: &Choice,
         options: &Options,
-        f: &mut dyn FnMut(&Machine, &Primal, &Studied) -> Result<Formulas, Box<diag::Diagnostic>>,
-    ) -> Result<Formulas, Error> {
+        make: impl Fn(&Machine, &Primal, &Studied) -> Result<Page, Box<diag::Diagnostic>>
+        + Copy
+        + Send
+        + Sync,
+    ) -> Result<Sheet, Error> {
+        let page = on_large_stack(|| self.study(choice, options, &mut |m, p, s| make(m, p, s)));
+        Ok(Sheet(page.unwrap_or_else(broken)?))
+    }
+
+    /// Runs the model and looks at the solve that is meant.
+    fn study<T>(
+        &self,
+        choice: &Choice,
+        options: &Options,
+        f: &mut dyn FnMut(&Machine, &Primal, &Studied) -> Result<T, Box<diag::Diagnostic>>,
+    ) -> Result<T, Error> {
         let mut host = RunHost::new(self, options);
         let study = StudyChoice {
             model: choice.model.clone(),
@@ -274,7 +335,7 @@ impl Model {
     }
 }
 
-fn broken() -> Result<Formulas, Error> {
+fn broken<T>() -> Result<T, Error> {
     Err(refused(&[super::run::broken()], &SourceMap::default()))
 }
 

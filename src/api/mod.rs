@@ -11,7 +11,7 @@ pub mod solver;
 mod symbols;
 
 pub use error::Error;
-pub use formulas::{Choice, Formulas};
+pub use formulas::{Choice, Formulas, Sheet};
 pub use labels::Labels;
 pub use options::{Control, Options, Progress};
 pub use run::{Claim, OutputFile, Run, Solve};

@@ -2,13 +2,9 @@
 
 use super::args::ExplainArgs;
 use super::derive::{studied, tell};
-use super::range;
-use crate::formulation::explain::{Explained, explain};
+use crate::formulation::explain::of;
 use crate::formulation::page::filled;
 use crate::solve::ModelStatus;
-
-/// Rows and columns up to which ranges are found for the explanation.
-const MAX_RANGES: usize = 200;
 
 /// Carries out `bmod explain`; its exit status.
 pub fn run(a: &ExplainArgs) -> u8 {
@@ -22,18 +18,7 @@ pub fn run(a: &ExplainArgs) -> u8 {
             status,
             ModelStatus::Optimal | ModelStatus::LocallyOptimal | ModelStatus::Solved
         );
-        let i = &primal.generated.instance;
-        let small = i.row_count() + i.column_count() <= MAX_RANGES;
-        let ranges = (small && i.is_linear() && status == ModelStatus::Optimal)
-            .then(|| range::of(m, &primal, &[]));
-        let ranges = ranges.flatten();
-        let paragraphs = explain(&Explained {
-            symbols: &m.symbols,
-            store: &m.store,
-            primal: &primal,
-            status,
-            ranges: ranges.as_ref(),
-        });
+        let (paragraphs, _) = of(m, &primal, &studied);
         for p in paragraphs {
             tell(&format!("{}\n", filled(&p, 100)));
         }

@@ -3,25 +3,20 @@
 use super::args::{EXECUTION, ReportArgs};
 use super::commands::{Task, carry_out, name, options};
 use super::host::{Output, write_whole};
-use super::range;
 use crate::check::symbols::SymbolKind;
 use crate::formulation::derive::Primal;
-use crate::formulation::explain::{Explained, explain};
 use crate::formulation::page::{Block, Page, STYLE, body};
 use crate::formulation::render::plain;
 use crate::formulation::side::short;
-use crate::formulation::{show, study};
+use crate::formulation::{explain, range, show, study};
 use crate::model::origin::Blocks;
 use crate::report::json::SolveReport;
 use crate::run::{Machine, Options, Studied, StudyChoice};
-use crate::solve::ModelStatus;
 use std::fmt::Write;
 use std::path::Path;
 
 /// Records of a table that are shown.
 const MAX_RECORDS: usize = 400;
-/// Rows and columns up to which ranges are found.
-const MAX_RANGES: usize = 200;
 
 /// Sorts a table by the column whose head is clicked.
 const SCRIPT: &str = "document.querySelectorAll('table.sortable th').forEach((th,c)=>th.addEventListener('click',()=>{\
@@ -91,26 +86,8 @@ pub fn report(a: &ReportArgs) -> u8 {
 }
 
 fn sections(m: &Machine, primal: &Primal, studied: &Studied) -> String {
-    let status = studied
-        .answer
-        .as_ref()
-        .map_or(ModelStatus::NoSolution, |a| a.1.status);
-    let i = &primal.generated.instance;
-    let small = i.row_count() + i.column_count() <= MAX_RANGES;
-    let wanted = small && i.is_linear() && i.objective.is_some() && status == ModelStatus::Optimal;
-    let ranges = if wanted {
-        range::of(m, primal, &[])
-    } else {
-        None
-    };
+    let (words, ranges) = explain::of(m, primal, studied);
     let mut page: Page = vec![Block::Heading("In words".into())];
-    let words = explain(&Explained {
-        symbols: &m.symbols,
-        store: &m.store,
-        primal,
-        status,
-        ranges: ranges.as_ref(),
-    });
     page.extend(words.into_iter().map(Block::Words));
     let chosen = show::Chosen::of(studied);
     page.extend(show::page(m, &m.code, &chosen, None).0);

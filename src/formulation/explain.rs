@@ -3,13 +3,14 @@
 use super::convex::{Shape, shape};
 use super::derive::Primal;
 use super::math::explained;
-use super::range::Ranges;
+use super::range::{self, Ranges};
 use super::side::{costs, short};
 use super::text::record;
 use crate::check::node::SymbolId;
 use crate::check::symbols::{Store, Symbols};
 use crate::model::instance::{Relation, Sense};
 use crate::model::origin::Blocks;
+use crate::run::{Machine, Studied};
 use crate::solve::ModelStatus;
 
 /// More records than this are not named.
@@ -27,6 +28,28 @@ pub struct Explained<'a> {
     pub status: ModelStatus,
     /// Ranges of a linear program.
     pub ranges: Option<&'a Ranges>,
+}
+
+/// Rows and columns up to which ranges are found for an explanation.
+const MAX_RANGES: usize = 200;
+
+/// A solve in words, and its ranges if it is a small linear program.
+pub fn of(m: &Machine, primal: &Primal, studied: &Studied) -> (Vec<String>, Option<Ranges>) {
+    let answer = studied.answer.as_ref();
+    let i = &primal.generated.instance;
+    let small = i.row_count() + i.column_count() <= MAX_RANGES;
+    let ranges = match small {
+        true => range::of(m, primal, studied, &[]).ok(),
+        false => None,
+    };
+    let words = explain(&Explained {
+        symbols: &m.symbols,
+        store: &m.store,
+        primal,
+        status: answer.map_or(ModelStatus::NoSolution, |a| a.1.status),
+        ranges: ranges.as_ref(),
+    });
+    (words, ranges)
 }
 
 /// Paragraphs: what is decided, what the answer is, what binds and what it is worth, what is unused.

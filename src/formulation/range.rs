@@ -5,8 +5,18 @@
 //! largest and the smallest multiplier of the optimal dual face; a price holds as far as the value of the program grows with
 //! it, which one more linear program says.
 
+use super::derive::Primal;
+use super::page::{Block, Page};
+use super::side::short;
+use super::text::record;
+use crate::diag::Diagnostic;
 use crate::model::instance::{Instance, Objective, Relation, Sense};
+use crate::model::origin::Blocks;
+use crate::run::{Machine, Studied};
 use crate::solve::ModelStatus;
+
+/// Seconds that the linear programs of the ranges may take.
+const SECONDS: f64 = 60.0;
 
 /// A row's right-hand side.
 #[derive(Clone, Debug)]
@@ -296,4 +306,104 @@ impl<'a> Reduced<'a> {
             interval,
         }
     }
+}
+
+/// The ranges of a solved linear program; of these records or symbols only, if any are named.
+///
+/// # Errors
+/// If the model is not linear, or has no optimal answer.
+pub fn of(
+    m: &Machine,
+    primal: &Primal,
+    studied: &Studied,
+    names: &[String],
+) -> Result<Ranges, Box<Diagnostic>> {
+    let no = |message: &str| {
+        Diagnostic::execution("E0433", studied.span, message).label("of this solve")
+    };
+    if primal.objective.is_none() || !primal.generated.instance.is_linear() {
+        return Err(no("ranges belong to a linear program").into());
+    }
+    let solved = studied.answer.as_ref().map(|(_, a)| a.status);
+    let answer = primal.answer.as_ref();
+    let Some(answer) = answer.filter(|_| solved == Some(ModelStatus::Optimal)) else {
+        let refusal = no("ranges belong to an optimal answer, and there is none");
+        return Err(refusal
+            .help("`bmod why` says what is infeasible or unbounded")
+            .into());
+    };
+    let g = &primal.generated;
+    let wanted = |blocks: &Blocks, i: usize| {
+        if names.is_empty() {
+            return true;
+        }
+        let b = blocks.of(i as u32);
+        let symbol = &m.symbols.get(b.symbol).name;
+        let whole = record(&m.store, symbol, b.key(i as u32));
+        let plain = |t: &str| t.to_lowercase().replace(['\'', '"', ' '], "");
+        names
+            .iter()
+            .any(|n| n.eq_ignore_ascii_case(symbol) || plain(n) == plain(&whole))
+    };
+    let begin = m.elapsed();
+    Ok(ranges(
+        &g.instance,
+        &answer.level,
+        &answer.activity,
+        &|i| wanted(&g.origin.rows, i),
+        &|j| wanted(&g.origin.columns, j),
+        &|| m.elapsed() - begin < SECONDS,
+    ))
+}
+
+/// The name of a row or column.
+pub fn named(m: &Machine, blocks: &Blocks, i: usize) -> String {
+    let b = blocks.of(i as u32);
+    record(&m.store, &m.symbols.get(b.symbol).name, b.key(i as u32))
+}
+
+/// Both tables.
+pub fn page(m: &Machine, primal: &Primal, r: &Ranges) -> Page {
+    let o = &primal.generated.origin;
+    let mut out = Vec::new();
+    let words = |list: &[&str]| list.iter().map(|t| (*t).to_string()).collect::<Vec<_>>();
+    if !r.rows.is_empty() {
+        out.push(Block::Heading(
+            "Right-hand sides: what one unit is worth, and from where to where".into(),
+        ));
+        let rows = r.rows.iter().map(|r| {
+            let numbers = [
+                r.value,
+                r.price[0],
+                r.price[1],
+                r.interval[0],
+                r.interval[1],
+            ];
+            let mut row = vec![named(m, &o.rows, r.row)];
+            row.extend(numbers.map(short));
+            row
+        });
+        let head = words(&["row", "value", "price below", "price above", "from", "to"]);
+        out.push(Block::Table(head, rows.collect()));
+        let two = |r: &&RowRange| r.price[0] != r.price[1];
+        if r.rows.iter().any(|r| two(&r)) {
+            out.push(Block::Words(
+                "Where the two prices differ the vertex is degenerate: one unit less is not worth what one unit more is."
+                    .into(),
+            ));
+        }
+    }
+    if !r.costs.is_empty() {
+        out.push(Block::Heading(
+            "Objective coefficients: from where to where the solution stays optimal".into(),
+        ));
+        let rows = r.costs.iter().map(|c| {
+            let mut row = vec![named(m, &o.columns, c.column)];
+            row.extend([c.level, c.value, c.interval[0], c.interval[1]].map(short));
+            row
+        });
+        let head = words(&["column", "level", "coefficient", "from", "to"]);
+        out.push(Block::Table(head, rows.collect()));
+    }
+    out
 }

@@ -44,6 +44,8 @@ const tabs = new Tabs(byId('tabs'), byId('panel'), {
   formulas: view('formulas'),
   dual: view('dual'),
   kkt: view('kkt'),
+  words: view('words'),
+  prices: view('prices'),
   why: view('why'),
   rows: view('rows'),
   json: { element: h('pre', { tabindex: 0 }), show: (e) => void (e.textContent = last ? JSON.stringify(last.report, null, 1) : texts.empty) },

@@ -3,7 +3,9 @@
 //! The module is a WASI reactor; of WASI it needs the clock, random numbers and standard error. What a run prints and how far
 //! it is comes while it runs, through `bmod.print` and `bmod.progress`. A page that stops a run ends its worker.
 
-use bmod::{Diagnostic, Model, Options, Run, Symbol, SymbolKind};
+mod edit;
+
+use bmod::{Choice, Diagnostic, Model, Options, Run, Symbol, SymbolKind};
 use serde::{Deserialize, Serialize};
 use serde_json::value::{RawValue, Value};
 use std::cell::RefCell;
@@ -17,15 +19,23 @@ unsafe extern "C" {
 
 /// Relative tolerance for claims in comments: that of `bmod test`.
 const TOLERANCE: f64 = 1e-6;
+/// Rows and columns of each symbol that a listing shows.
+const LISTED: usize = 20;
 
 /// What the page asks for.
 #[derive(Deserialize)]
 #[serde(tag = "do", rename_all = "lowercase")]
 enum Request {
-    /// What is wrong with a text.
-    Check(Project),
+    /// A question of the editor.
+    Edit(edit::Edit),
     /// A run.
     Run(Project),
+    /// Another view of a model: `formulas`, `dual`, `kkt`, `rows`.
+    View {
+        view: String,
+        #[serde(flatten)]
+        project: Project,
+    },
     /// The records of a symbol of the last run.
     Records { name: String },
 }
@@ -55,12 +65,6 @@ struct Project {
     defines: Vec<(String, String)>,
 }
 
-/// What a check finds.
-#[derive(Serialize)]
-struct Checked<'a> {
-    diagnostics: &'a [Diagnostic],
-}
-
 /// What a run gives.
 #[derive(Serialize)]
 struct Answer<'a> {
@@ -88,6 +92,19 @@ struct About<'a> {
     records: usize,
 }
 
+/// A view: a part of a page in HTML, or a text.
+#[derive(Default, Serialize)]
+struct Page {
+    html: String,
+    text: String,
+    /// Sentences beside it.
+    remarks: Vec<String>,
+    /// The same as a model that runs.
+    model: String,
+    /// Why there is none.
+    diagnostics: Vec<Diagnostic>,
+}
+
 #[derive(Serialize)]
 struct Claim<'a> {
     what: &'a str,
@@ -108,12 +125,7 @@ thread_local! {
 
 fn carry_out(request: Request) -> String {
     match request {
-        Request::Check(project) => match project.model() {
-            Ok(model) => written(&Checked {
-                diagnostics: model.check().diagnostics(),
-            }),
-            Err(why) => error(why),
-        },
+        Request::Edit(question) => edit::answer(question),
         Request::Run(project) => match project.model() {
             Ok(model) => {
                 let run = model.run(&project.run_options());
@@ -121,6 +133,10 @@ fn carry_out(request: Request) -> String {
                 LAST.set(Some(run));
                 answer
             }
+            Err(why) => error(why),
+        },
+        Request::View { view, project } => match project.model() {
+            Ok(model) => view_of(&view, &model, &project.run_options()),
             Err(why) => error(why),
         },
         Request::Records { name } => LAST.with_borrow(|run| {
@@ -164,6 +180,55 @@ impl Project {
             options = options.option(name, value);
         }
         options
+    }
+}
+
+fn view_of(view: &str, model: &Model, options: &Options) -> String {
+    let choice = Choice::default().check(true);
+    let formulas = match view {
+        "formulas" => model.show(&Choice::default()),
+        "dual" => model.dual(&choice, options),
+        "kkt" => model.kkt(&choice, options),
+        "words" => return sheet(model.explain(&choice, options)),
+        "prices" => return sheet(model.ranges(&choice, options)),
+        "rows" => {
+            let run = model.run(&options.clone().list(LISTED));
+            return written(&Page {
+                text: run.printed().into(),
+                diagnostics: run.diagnostics().to_vec(),
+                ..Page::default()
+            });
+        }
+        _ => return error("there is no such view"),
+    };
+    match formulas {
+        Ok(f) => written(&Page {
+            html: f.html_body(),
+            remarks: f.remarks().to_vec(),
+            model: f.as_model().into(),
+            ..Page::default()
+        }),
+        Err(e) => refused(e),
+    }
+}
+
+fn sheet(sheet: Result<bmod::Sheet, bmod::Error>) -> String {
+    match sheet {
+        Ok(s) => written(&Page {
+            html: s.html_body(),
+            ..Page::default()
+        }),
+        Err(e) => refused(e),
+    }
+}
+
+fn refused(e: bmod::Error) -> String {
+    match e {
+        bmod::Error::Model { diagnostics, .. } => written(&Page {
+            diagnostics,
+            ..Page::default()
+        }),
+        e => error(&e.to_string()),
     }
 }
 
