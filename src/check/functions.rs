@@ -243,6 +243,10 @@ pub fn record_attribute(name: &str) -> Option<RecordAttribute> {
         "slackup" => D(Derived::SlackUp),
         "infeas" => D(Derived::Infeas),
         "range" => D(Derived::Range),
+        "rangelo" => D(Derived::RangeLo),
+        "rangeup" => D(Derived::RangeUp),
+        "pricelo" => D(Derived::PriceLo),
+        "priceup" => D(Derived::PriceUp),
         _ => return None,
     })
 }

@@ -143,7 +143,7 @@ pub enum NodeKind {
 }
 
 /// Attributes that are computed.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 #[allow(missing_docs)]
 pub enum Derived {
     Slack,
@@ -151,6 +151,12 @@ pub enum Derived {
     SlackUp,
     Infeas,
     Range,
+    /// With `option ranging`: from where to where a right-hand side or a cost may go.
+    RangeLo,
+    RangeUp,
+    /// What one unit of a right-hand side less or more is worth.
+    PriceLo,
+    PriceUp,
 }
 
 /// Properties of a label within a set.

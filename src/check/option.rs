@@ -74,6 +74,7 @@ pub(crate) const OPTIONS: &[&str] = &[
     "gdxuels",
     "shuffle",
     "certify",
+    "ranging",
     "gams_power",
     "checkerrorlevel",
     "dmpusersym",

@@ -247,6 +247,10 @@ pub(super) fn display_attribute(name: &str) -> Option<&'static str> {
         "slackup" => "SlackUp",
         "infeas" => "Infeas",
         "range" => "Range",
+        "rangelo" => "RangeLo",
+        "rangeup" => "RangeUp",
+        "pricelo" => "PriceLo",
+        "priceup" => "PriceUp",
         _ => return None,
     })
 }

@@ -6,12 +6,8 @@ use super::numbers::left_side;
 use super::tree::{Binder, Expr, IndexId, Indices, Part, Variable, guarded, sum};
 use crate::check::symbols::{Symbols, UNIVERSE};
 use crate::diag::Diagnostic;
-use crate::model::instance::Instance;
 use crate::model::origin::Blocks;
-use crate::model::problem_type::ProblemType;
 use crate::run::{Generated, Machine, Studied};
-use crate::solve::answer::{Answer, answer};
-use crate::solve::{Budget, Quiet, Settings};
 use crate::source::Span;
 
 /// The model of the solve that a run was asked to look at.
@@ -167,11 +163,4 @@ fn moved(from: &Blocks, values: &[f64], to: &Blocks) -> Vec<f64> {
         }
     }
     out
-}
-
-/// Solves a linear instance.
-pub fn solve_linear(p: &Instance) -> Option<Answer> {
-    let mut quiet = Quiet::default();
-    let budget = Budget::unlimited(&mut quiet);
-    answer(ProblemType::Lp, None, p, &Settings::default(), &budget).ok()
 }

@@ -598,6 +598,13 @@ impl Machine<'_> {
     }
 
     fn derived(&self, d: Derived, s: SymbolId, key: &Key, frame: &mut Frame) -> f64 {
+        if let Derived::RangeLo | Derived::RangeUp | Derived::PriceLo | Derived::PriceUp = d {
+            let mut k = [0; 20];
+            return match self.ranges.get(&(s, d)) {
+                Some(t) if self.key(key, frame, &mut k) => t.get(&k[..key.parts.len()]),
+                _ => NA,
+            };
+        }
         let symbol = self.symbols.get(s);
         let t = symbol.table;
         let (l, lo, up) = (
@@ -627,6 +634,7 @@ pub(super) fn derived_value(d: Derived, is_equation: bool, l: f64, lo: f64, up: 
         Derived::SlackUp => above,
         Derived::Slack => below.min(above),
         Derived::Infeas => (lo - l).max(l - up).max(0.0),
+        Derived::RangeLo | Derived::RangeUp | Derived::PriceLo | Derived::PriceUp => NA,
         Derived::Range => {
             if is_equation && lo == up {
                 0.0

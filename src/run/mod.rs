@@ -36,6 +36,7 @@ pub use study::{Studied, StudyChoice};
 use crate::check::Program;
 use crate::check::node::*;
 use crate::check::symbols::{Store, SymbolKind, Symbols};
+use crate::data::table::Table;
 use crate::data::universe::Label;
 use crate::diag::{Diagnostic, Severity};
 use crate::host::Host;
@@ -81,6 +82,8 @@ pub struct Machine<'h> {
     pub models: FxHashMap<SymbolId, ModelState>,
     /// `option p:d:r:c`
     pub formats: FxHashMap<SymbolId, Vec<i64>>,
+    /// Ranges of linear programs, where `option ranging` asks for them.
+    ranges: FxHashMap<(SymbolId, Derived), Table>,
     /// Solves that are kept for `--solution`.
     kept: Vec<solve::KeptSolve>,
     /// The solve that is looked at when the run is over, and how many there were.
@@ -144,6 +147,7 @@ impl<'h> Machine<'h> {
             passed_over: FxHashSet::default(),
             models: FxHashMap::default(),
             formats: FxHashMap::default(),
+            ranges: FxHashMap::default(),
             kept: Vec::new(),
             studied: None,
             solves_seen: 0,

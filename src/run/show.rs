@@ -249,8 +249,15 @@ impl Machine<'_> {
             "SlackLo" => Derived::SlackLo,
             "SlackUp" => Derived::SlackUp,
             "Infeas" => Derived::Infeas,
+            "RangeLo" => Derived::RangeLo,
+            "RangeUp" => Derived::RangeUp,
+            "PriceLo" => Derived::PriceLo,
+            "PriceUp" => Derived::PriceUp,
             _ => Derived::Range,
         };
+        if let Some(t) = self.ranges.get(&(s, which)) {
+            return Some(Cow::Borrowed(t));
+        }
         let is_equation = matches!(symbol.kind, SymbolKind::Equation(_));
         let [l, lo, up] =
             [attribute::L, attribute::LO, attribute::UP].map(|o| self.store.table(table + o));

@@ -5,6 +5,8 @@ use super::options::ListOptions;
 use super::{Flow, Frame, Machine, ModelState};
 use crate::check::node::*;
 use crate::check::symbols::attribute;
+use crate::data::table::Table;
+use crate::data::universe::Label;
 use crate::data::value::{EPS, NA};
 use crate::diag::Diagnostic;
 use crate::model::instance::{ColumnKind, Instance, Relation};
@@ -17,7 +19,7 @@ use crate::report::{json, levels, listing, solution, summary};
 use crate::solve::answer::{Answer, answer, certify};
 use crate::solve::mip::{self, Aim};
 use crate::solve::why;
-use crate::solve::{Budget, Limits, Monitor, Progress, Settings};
+use crate::solve::{Budget, Limits, Monitor, Progress, Settings, range};
 use crate::source::Span;
 
 /// A solver's line to the run.
@@ -187,6 +189,7 @@ impl Machine<'_> {
                 };
                 self.store_outside(s, &generated);
                 self.store(&generated, &a);
+                self.ranged(s, &generated, &a);
                 self.remember(s, &generated, &a, seconds);
                 let savepoint = self.model_option(s.model, "savepoint", 0.0);
                 self.save_point(s.model, savepoint, &generated.origin, span);
@@ -284,6 +287,51 @@ impl Machine<'_> {
             priorities: number("prioropt", 0.0) != 0.0,
             record: self.options.collect,
         }
+    }
+
+    /// The ranges of an optimal linear program, where `option ranging` asks for them, as attributes of its symbols.
+    fn ranged(&mut self, s: &SolveCode, g: &Generated, a: &Answer) {
+        self.ranges.clear();
+        let linear = g.instance.is_linear() && g.instance.objective.is_some();
+        let wanted = self.options.number("ranging") == Some(1.0);
+        if !wanted || !linear || s.using.has_pairs() || a.status != ModelStatus::Optimal {
+            return;
+        }
+        let end = self.elapsed() + self.limits(s.model).seconds;
+        let (p, all) = (&g.instance, |_| true);
+        let in_time = || self.elapsed() < end && !self.host().interrupted();
+        let r = range::ranges(p, &a.outcome.level, &a.activity, &all, &all, &in_time);
+        let mut found: Vec<(SymbolId, Derived, &[Label], f64)> = Vec::new();
+        for r in &r.rows {
+            let b = g.origin.rows.of(r.row as u32);
+            let key = b.key(r.row as u32);
+            let four = [r.interval[0], r.interval[1], r.price[0], r.price[1]];
+            let names = [
+                Derived::RangeLo,
+                Derived::RangeUp,
+                Derived::PriceLo,
+                Derived::PriceUp,
+            ];
+            found.extend(
+                names
+                    .into_iter()
+                    .zip(four)
+                    .map(|(d, v)| (b.symbol, d, key, v)),
+            );
+        }
+        for c in &r.costs {
+            let b = g.origin.columns.of(c.column as u32);
+            let key = b.key(c.column as u32);
+            let names = [Derived::RangeLo, Derived::RangeUp];
+            let two = names.into_iter().zip(c.interval);
+            found.extend(two.map(|(d, v)| (b.symbol, d, key, v)));
+        }
+        for (symbol, d, key, v) in found {
+            let empty = || Table::new(key.len(), NA);
+            let table = self.ranges.entry((symbol, d)).or_insert_with(empty);
+            table.set(key, v);
+        }
+        self.ranges.values_mut().for_each(Table::tidy);
     }
 
     /// A proved interval for the objective of a linear program, where `certify` asks for one. Why

@@ -21,6 +21,7 @@ pub mod nlp;
 mod noise;
 pub mod pairing;
 pub mod random;
+pub mod range;
 pub mod registry;
 pub mod strategy;
 pub mod structure;
