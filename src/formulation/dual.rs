@@ -70,6 +70,7 @@ fn less_slope(f: &Expr) -> Result<Expr, String> {
     let square = |a: &Expr| {
         let sqr = |a: Expr, _: Expr| match a {
             Expr::Number(x) => Expr::Number(x * x),
+            Expr::Negate(a) => Expr::Call(Function::Sqr, vec![*a]),
             a => Expr::Call(Function::Sqr, vec![a]),
         };
         Ok(pair(a, a, &sqr))

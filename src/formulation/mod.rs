@@ -45,7 +45,7 @@ pub enum Sign {
 }
 
 /// Where a multiplier comes from.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Origin {
     /// From the rows of an equation.
     Row(SymbolId),

@@ -102,26 +102,7 @@ pub fn formulas(s: &mut Setter, symbols: &Symbols, f: &Formulation) -> Page {
         .iter()
         .enumerate()
         .map(|(n, m)| {
-            let base = s.variable(Variable::Multiplier(n));
-            let sets = m
-                .domain
-                .iter()
-                .map(|d| Math::Name(symbol_name(symbols, *d)));
-            let sets: Vec<Math> = sets.collect();
-            let indexed = match sets.is_empty() {
-                true => base,
-                false => Math::Indexed(Box::new(base), sets),
-            };
-            let (relation, right) = match m.sign {
-                Sign::Free => ("", Math::Words(" free".into())),
-                Sign::Positive => ("≥", Math::Number("0".into())),
-                Sign::Negative => ("≤", Math::Number("0".into())),
-            };
-            let mut row = vec![indexed];
-            if !relation.is_empty() {
-                row.push(Math::Operator(relation));
-            }
-            row.push(right);
+            let base = over_domain(symbols, s.variable(Variable::Multiplier(n)), &m.domain);
             let named = |s: SymbolId| symbols.get(s).name.to_string();
             let words = match m.origin {
                 Origin::Row(e) => format!("multiplier of {}", named(e)),
@@ -132,7 +113,7 @@ pub fn formulas(s: &mut Setter, symbols: &Symbols, f: &Formulation) -> Page {
             };
             Formula {
                 words,
-                ..Formula::of(Math::Row(row))
+                ..Formula::of(signed(base, m.sign))
             }
         })
         .collect();
@@ -141,6 +122,27 @@ pub fn formulas(s: &mut Setter, symbols: &Symbols, f: &Formulation) -> Page {
         out.push(Block::Formulas(signs));
     }
     out
+}
+
+/// A symbol with the sets that it runs over as indices.
+pub fn over_domain(symbols: &Symbols, base: Math, domain: &[SymbolId]) -> Math {
+    if domain.is_empty() {
+        return base;
+    }
+    let sets = domain.iter().map(|s| Math::Name(symbol_name(symbols, *s)));
+    Math::Indexed(Box::new(base), sets.collect())
+}
+
+/// With the sign that it has.
+pub fn signed(m: Math, sign: Sign) -> Math {
+    let zero = |sign| vec![Math::Operator(sign), Math::Number("0".into())];
+    let mut row = vec![m];
+    row.extend(match sign {
+        Sign::Free => vec![Math::Words(" free".into())],
+        Sign::Positive => zero("≥"),
+        Sign::Negative => zero("≤"),
+    });
+    Math::Row(row)
 }
 
 /// The user's symbols in a formulation with their explanatory texts: sets, data, variables.

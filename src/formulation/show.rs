@@ -3,9 +3,9 @@
 use super::derive::{domain_of, kind};
 use super::lower::{Equation, Lowering};
 use super::math::Math;
-use super::page::{Block, Formula, Page, Setter, formulas, legend};
+use super::page::{Block, Formula, Page, Setter, formulas, legend, over_domain, signed};
 use super::tree::*;
-use super::{Formulation, Row};
+use super::{Formulation, Row, Sign};
 use crate::check::node::{Code, CodeKind, ModelRow, Node, NodeKind, SolveCode, SymbolId, Target};
 use crate::check::symbols::{SymbolKind, Symbols, attribute};
 use crate::diag::nearest;
@@ -345,23 +345,14 @@ pub fn page(
         let mine: Vec<&Assigned> = bounds.iter().filter(|b| b.variable == v).collect();
         let covered = |o: u32| mine.iter().any(|b| b.offset == o && b.covers);
         let sign = match kind(symbols, v) {
-            VariableKind::Positive if !covered(attribute::LO) => Some("≥"),
-            VariableKind::Negative if !covered(attribute::UP) => Some("≤"),
+            VariableKind::Positive if !covered(attribute::LO) => Some(Sign::Positive),
+            VariableKind::Negative if !covered(attribute::UP) => Some(Sign::Negative),
             _ => None,
         };
         if let Some(sign) = sign {
             let base = s.variable(Variable::Own(v));
-            let names = symbols.domain_names(symbols.get(v));
-            let names: Vec<Math> = names
-                .iter()
-                .map(|n| Math::Name(super::math::name(n)))
-                .collect();
-            let base = match names.is_empty() {
-                true => base,
-                false => Math::Indexed(Box::new(base), names),
-            };
-            let row = vec![base, Math::Operator(sign), Math::Number("0".into())];
-            lines.push(Formula::of(Math::Row(row)));
+            let base = over_domain(symbols, base, &domain_of(symbols, v));
+            lines.push(Formula::of(signed(base, sign)));
         }
         for b in &mine {
             // What fixes says both.

@@ -1,8 +1,9 @@
 //! A model and its dual side by side, and complementary slackness in numbers.
 
+use super::convex::{Shape, shape};
 use super::derive::{Derivation, Primal};
 use super::math::{Math, name, relation_sign, symbol_name};
-use super::page::{Block, Formula, Page, Setter, formulas};
+use super::page::{Block, Formula, Page, Setter, formulas, over_domain, signed};
 use super::tree::*;
 use super::{Formulation, Origin, Row, Sign};
 use crate::check::node::SymbolId;
@@ -71,13 +72,13 @@ pub fn page(symbols: &Symbols, store: &Store, primal: &Formulation, dual: &Formu
             .iter()
             .find(|r| r.name == *symbols.get(e).name)
             .map_or(Relation::Equal, |r| r.relation);
-        let left = indexed(symbols, Math::Name(name(&symbols.get(e).name)), &m.domain);
+        let left = over_domain(symbols, Math::Name(name(&symbols.get(e).name)), &m.domain);
         let left = Math::Row(vec![
             left,
             Math::Operator(relation_sign(relation)),
             Math::Words("…".into()),
         ]);
-        let right = indexed(symbols, t.variable(Variable::Multiplier(n)), &m.domain);
+        let right = over_domain(symbols, t.variable(Variable::Multiplier(n)), &m.domain);
         pairs.push((left, signed(right, m.sign)));
     }
     for (v, left) in primal.own.iter().zip(signs) {
@@ -86,7 +87,7 @@ pub fn page(symbols: &Symbols, store: &Store, primal: &Formulation, dual: &Formu
             .iter()
             .filter(|r| r.pair == Some(Variable::Own(*v)))
         {
-            let right = indexed(symbols, Math::Name(name(&r.name)), &r.domain);
+            let right = over_domain(symbols, Math::Name(name(&r.name)), &r.domain);
             let right = Math::Row(vec![
                 right,
                 Math::Operator(relation_sign(r.relation)),
@@ -97,22 +98,6 @@ pub fn page(symbols: &Symbols, store: &Store, primal: &Formulation, dual: &Formu
     }
     out.push(Block::Pairs(["primal".into(), "dual".into()], pairs));
     out
-}
-
-fn indexed(symbols: &Symbols, base: Math, domain: &[SymbolId]) -> Math {
-    if domain.is_empty() {
-        return base;
-    }
-    let sets = domain.iter().map(|s| Math::Name(symbol_name(symbols, *s)));
-    Math::Indexed(Box::new(base), sets.collect())
-}
-
-fn signed(m: Math, sign: Sign) -> Math {
-    match sign {
-        Sign::Free => Math::Row(vec![m, Math::Words(" free".into())]),
-        Sign::Positive => Math::Row(vec![m, Math::Operator("≥"), Math::Number("0".into())]),
-        Sign::Negative => Math::Row(vec![m, Math::Operator("≤"), Math::Number("0".into())]),
-    }
 }
 
 /// A variable with the sign that its rows in the dual give it.
@@ -133,7 +118,7 @@ fn sign(symbols: &Symbols, dual: &Formulation, v: SymbolId) -> Math {
     };
     let base = Math::Name(symbol_name(symbols, v));
     signed(
-        indexed(symbols, base, &super::derive::domain_of(symbols, v)),
+        over_domain(symbols, base, &super::derive::domain_of(symbols, v)),
         sign,
     )
 }
@@ -196,7 +181,13 @@ pub fn slackness(symbols: &Symbols, store: &Store, primal: &Primal, flipped: boo
         }
     }
     // A column's reduced cost is what its row in the dual leaves.
-    let (gone, cost) = costs(p);
+    let (gone, mut cost) = costs(p);
+    if let Shape::ConvexQuadratic(f) = shape(p) {
+        cost.clone_from(&f.gradient);
+        f.hessian
+            .iter()
+            .for_each(|&(i, j, v)| cost[i] += v * a.level[j]);
+    }
     let maximum = p.sign() < 0.0;
     for b in &g.origin.columns.list {
         for j in b.start..b.start + b.len {

@@ -306,6 +306,7 @@ pub fn guarded(a: Expr, conditions: Vec<Expr>) -> Expr {
     match (a, conjunction(conditions)) {
         (Expr::Number(0.0), _) => Expr::Number(0.0),
         (a, None) => a,
+        (Expr::Negate(a), Some(c)) => negate(Expr::Dollar(a, Box::new(c))),
         (a, Some(c)) => Expr::Dollar(Box::new(a), Box::new(c)),
     }
 }

@@ -1,0 +1,234 @@
+//! The proof that a derivation is right: the derived model is generated, and its matrix compared entry by entry with that
+//! of the primal.
+
+mod slopes;
+mod transposed;
+
+use super::derive::Primal;
+use super::tree::Variable;
+use super::{Formulation, dual, kkt, text};
+use crate::check::symbols::{Store, Symbols};
+use crate::data::universe::Label;
+use crate::host::{Host, HostError};
+use crate::model::origin::Blocks;
+use crate::run::{Generated, Options, StudyChoice};
+use crate::session;
+use crate::source::PreprocessOptions;
+use rustc_hash::FxHashMap;
+use std::path::{Path, PathBuf};
+
+/// How far two numbers may be apart, relative to the larger.
+pub const TOLERANCE: f64 = 1e-10;
+
+/// What a comparison found.
+#[derive(Clone, Debug, Default)]
+pub struct Comparison {
+    /// Entries that were compared.
+    pub entries: usize,
+    /// Right sides, costs and bounds that were compared.
+    pub numbers: usize,
+    /// What differs, in words; the first few.
+    pub differences: Vec<String>,
+    /// How much differs.
+    pub count: usize,
+    /// The largest relative difference.
+    pub largest: f64,
+}
+
+impl Comparison {
+    /// Whether all is equal.
+    pub fn passed(&self) -> bool {
+        self.count == 0
+    }
+
+    /// There is nothing to compare, and why.
+    pub fn impossible(why: &str) -> Self {
+        let mut c = Self::default();
+        c.differ(format!("the derived model could not be generated: {why}"));
+        c
+    }
+
+    /// Notes a difference.
+    pub fn differ(&mut self, what: String) {
+        self.count += 1;
+        if self.differences.len() < 5 {
+            self.differences.push(what);
+        }
+    }
+
+    /// Compares two numbers.
+    pub fn number(&mut self, a: f64, b: f64, what: &dyn Fn() -> String) {
+        self.numbers += 1;
+        if a == b {
+            return;
+        }
+        let off = (a - b).abs() / a.abs().max(b.abs()).max(1.0);
+        self.largest = self.largest.max(off);
+        if off > TOLERANCE || off.is_nan() {
+            self.differ(format!("{}: {a} and {b}", what()));
+        }
+    }
+}
+
+/// A text that is the only file there is.
+struct Text<'a> {
+    text: &'a str,
+}
+
+impl Host for Text<'_> {
+    fn read(&mut self, path: &str, _: Option<&Path>) -> Result<(PathBuf, String), HostError> {
+        match path {
+            "derived.blk" => Ok((path.into(), self.text.to_string())),
+            _ => Err(HostError::NotFound),
+        }
+    }
+    fn exists(&mut self, _: &str, _: Option<&Path>) -> bool {
+        false
+    }
+    fn write(&mut self, path: &str, _: &[u8]) -> Result<PathBuf, HostError> {
+        Err(HostError::Outside(path.into()))
+    }
+    fn print(&mut self, _: &str) {}
+    fn elapsed(&self) -> f64 {
+        0.0
+    }
+    fn now(&self) -> f64 {
+        0.0
+    }
+    fn interrupted(&self) -> bool {
+        false
+    }
+}
+
+/// A record's name and labels as words, in lower case.
+pub type Record = (String, Vec<String>);
+
+/// The instance of a derived model with the names of its rows and columns as words.
+pub struct Instance {
+    /// The instance.
+    pub generated: Generated,
+    /// Names of rows.
+    pub rows: Vec<Record>,
+    /// Names of columns.
+    pub columns: Vec<Record>,
+}
+
+impl Instance {
+    /// Numbers of columns by name.
+    pub fn columns_by_name(&self) -> FxHashMap<&Record, usize> {
+        self.columns
+            .iter()
+            .enumerate()
+            .map(|(j, r)| (r, j))
+            .collect()
+    }
+
+    /// Numbers of rows by name.
+    pub fn rows_by_name(&self) -> FxHashMap<&Record, usize> {
+        self.rows.iter().enumerate().map(|(i, r)| (r, i)).collect()
+    }
+}
+
+/// Names of all rows or columns as words.
+pub fn records(symbols: &Symbols, store: &Store, blocks: &Blocks) -> Vec<Record> {
+    let mut out = Vec::new();
+    for b in &blocks.list {
+        let name = symbols.get(b.symbol).name.to_lowercase();
+        out.extend((b.start..b.start + b.len).map(|i| (name.clone(), words(store, b.key(i)))));
+    }
+    out
+}
+
+fn words(store: &Store, key: &[Label]) -> Vec<String> {
+    key.iter()
+        .map(|l| store.universe.name(*l).to_lowercase())
+        .collect()
+}
+
+/// Generates the last model that a text solves; the first complaint where it cannot be.
+pub fn generate(text: &str) -> Result<Instance, String> {
+    let mut host = Text { text };
+    let options = Options {
+        quiet: true,
+        collect: false,
+        study: Some(StudyChoice {
+            generate_only: true,
+            ..StudyChoice::default()
+        }),
+        ..Options::default()
+    };
+    let preprocess = PreprocessOptions {
+        slash_comments: true,
+        ..PreprocessOptions::default()
+    };
+    let mut found = None;
+    let finished = session::run(
+        &mut host,
+        "derived.blk",
+        preprocess,
+        options,
+        false,
+        &mut |m| {
+            if let Some((_, Some(g))) = m.take_study() {
+                found = Some(Instance {
+                    rows: records(&m.symbols, &m.store, &g.origin.rows),
+                    columns: records(&m.symbols, &m.store, &g.origin.columns),
+                    generated: g,
+                });
+            }
+        },
+    );
+    found.ok_or_else(|| {
+        let first = finished.diagnostics.iter().find(|d| d.code != "W");
+        let place = |d: &crate::diag::Diagnostic| {
+            let line = finished.map.line(d.span);
+            let text = text.lines().nth(line.saturating_sub(1)).unwrap_or_default();
+            format!("{} (line {line}: {})", d.message, text.trim())
+        };
+        first.map_or_else(|| "nothing is solved".to_string(), place)
+    })
+}
+
+/// The row that defined the objective, where the derivation eliminated it.
+fn eliminated(primal: &Primal, f: &Formulation, z: Option<usize>) -> Option<usize> {
+    let z = z?;
+    let symbol = primal.generated.origin.columns.of(z as u32).symbol;
+    let stays = f.rows.iter().any(|r| r.pair == Some(Variable::Own(symbol)));
+    if stays {
+        return None;
+    }
+    let p = &primal.generated.instance;
+    (0..p.row_count()).find(|&i| p.matrix.row(i).any(|(j, v)| j == z && v != 0.0))
+}
+
+/// The dual of a model as it is written, and the comparison of its matrix with the model's. `Err` says why there is none.
+pub fn checked_dual(
+    symbols: &Symbols,
+    store: &Store,
+    primal: &Primal,
+) -> Result<(Formulation, Comparison), String> {
+    let f = dual::dual(symbols, store, primal, false)?;
+    let d = generate(&text::model(symbols, store, &f, None, "", true))?;
+    let c = transposed::dual(symbols, store, primal, &f, &d);
+    Ok((f, c))
+}
+
+/// The optimality conditions of a model as they are written, and the comparison of their rows with automatic derivatives at
+/// points drawn at random. `Err` says why there are none.
+pub fn checked_kkt(
+    symbols: &Symbols,
+    store: &Store,
+    primal: &Primal,
+) -> Result<(Formulation, Comparison), String> {
+    let derived = |keep| -> Result<(Formulation, Instance), String> {
+        let f = kkt::kkt(symbols, store, primal, keep, false).map_err(|(_, why)| why)?;
+        let text = text::model(symbols, store, &f, None, "", true);
+        generate(&text).map(|d| (f, d))
+    };
+    let (f, d) = derived(false).or_else(|why| derived(true).map_err(|_| why))?;
+    let c = slopes::kkt(symbols, store, primal, &f, &d, POINTS);
+    Ok((f, c))
+}
+
+/// Points at which optimality conditions are compared.
+pub const POINTS: usize = 3;
