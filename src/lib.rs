@@ -82,7 +82,7 @@ mod system;
 
 pub use api::solver;
 pub use api::{
-    Choice, Claim, Control, Error, Formulas, Labels, Model, Options, OutputFile, Progress, Record,
+    Choice, Claim, Columns, Control, Error, Formulas, Labels, Model, Options, OutputFile, Progress, Record,
     Records, Run, Sheet, Solve, Special, Symbol, SymbolKind, VariableRecord, VariableRecords,
 };
 pub use diag::Severity;

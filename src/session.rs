@@ -1,6 +1,6 @@
 //! A whole run: compile, run, report. What the command line, tests and benches call.
 
-use crate::check;
+use crate::check::{self, Program};
 use crate::diag::{Diagnostic, Severity};
 use crate::host::Host;
 use crate::report::json::{Report, RunStatus};
@@ -29,26 +29,39 @@ pub fn run(
     check_only: bool,
     inspect: &mut dyn FnMut(&mut Machine),
 ) -> Finished {
-    let failed = |end, diagnostics, map| Finished {
+    match check::compile(host, path, preprocess, OPTION_TABLES) {
+        Ok(mut p) if check_only && !p.has_errors() => {
+            ended(RunStatus::Ok, std::mem::take(&mut p.diagnostics), p.map)
+        }
+        Ok(p) => execute(p, host, options, inspect),
+        Err(e) => ended(RunStatus::CompilationError, vec![e.0], e.1),
+    }
+}
+
+/// Without solves and displays.
+fn ended(end: RunStatus, diagnostics: Vec<Diagnostic>, map: SourceMap) -> Finished {
+    Finished {
         end,
         report: Report::default(),
         diagnostics,
         map,
-    };
-    let mut program = match check::compile(host, path, preprocess, OPTION_TABLES) {
-        Ok(p) => p,
-        Err(e) => return failed(RunStatus::CompilationError, vec![e.0], e.1),
-    };
+    }
+}
+
+/// Runs a program, unless it has errors. `inspect` sees the machine when the run is over.
+pub fn execute(
+    mut program: Program,
+    host: &mut dyn Host,
+    options: Options,
+    inspect: &mut dyn FnMut(&mut Machine),
+) -> Finished {
     let mut diagnostics = std::mem::take(&mut program.diagnostics);
     if diagnostics.iter().any(|d| d.severity == Severity::Error) {
-        return failed(RunStatus::CompilationError, diagnostics, program.map);
-    }
-    if check_only {
-        return failed(RunStatus::Ok, diagnostics, program.map);
+        return ended(RunStatus::CompilationError, diagnostics, program.map);
     }
     if let Some(message) = &options.refused {
         diagnostics.push(Diagnostic::error("E0329", Span::default(), message));
-        return failed(RunStatus::CompilationError, diagnostics, program.map);
+        return ended(RunStatus::CompilationError, diagnostics, program.map);
     }
     let (mut machine, code) = Machine::new(program, host, options);
     machine.run(&code);

@@ -36,7 +36,10 @@ def _keys(name: str, columns: List[Any]) -> List[Key]:
 
     out = []
     for column in columns:
-        codes, labels = pd.factorize(pd.Index(column), use_na_sentinel=True)
+        if isinstance(column, tuple):
+            codes, labels = column
+        else:
+            codes, labels = pd.factorize(pd.Index(column), use_na_sentinel=True)
         if len(codes) and codes.min() < 0:
             raise DataError(f"`{name}`: record {int(codes.argmin()) + 1} has no label")
         try:
@@ -76,7 +79,27 @@ def _frame(name: str, data: Any, dimension: Optional[int]) -> Tuple[List[Any], A
 
 
 def _levels(index: Any) -> List[Any]:
-    return [index.get_level_values(k) for k in range(index.nlevels)]
+    """The labels of each position; of an index of several levels the codes that it has, and their labels."""
+    import pandas as pd
+
+    if not isinstance(index, pd.MultiIndex):
+        return [index]
+    index = index.remove_unused_levels()
+    return list(zip((np_codes(c) for c in index.codes), index.levels))
+
+
+def np_codes(codes: Any) -> Any:
+    """Codes as NumPy has them."""
+    import numpy as np
+
+    return np.asarray(codes)
+
+
+def looks_like_values(data: Any) -> bool:
+    """Whether data look like a parameter's, for a text that does not compile."""
+    if isinstance(data, Mapping):
+        return all(not isinstance(v, str) for v in data.values())
+    return not isinstance(data, (list, tuple, set))
 
 
 def parameter(

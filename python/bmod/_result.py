@@ -5,7 +5,7 @@ from __future__ import annotations
 import enum
 import html
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Dict, List, Optional, Tuple
+from typing import TYPE_CHECKING, Any, Dict, Iterator, List, Optional, Tuple, Union
 
 from . import _bmod, _data
 from ._errors import Diagnostic, UnknownSymbolError
@@ -141,6 +141,12 @@ class Figure:
         return f"<bmod.Figure {self.name!r}>"
 
 
+def head_of(s: Solve) -> str:
+    """A solve in a line: `transport using lp: optimal, z = 153.675`."""
+    objective = "" if s.objective is None else f", {s.objective_variable} = {s.objective:.10g}"
+    return f"{s.model} using {s.using}: {s.status.name.lower().replace('_', ' ')}{objective}"
+
+
 def value_of(v: Any) -> str:
     """An option's value as text."""
     if isinstance(v, bool):
@@ -174,9 +180,10 @@ class Result:
     indices, a Series of these for one without; a Series (a number) for a parameter; an index for a set.
     """
 
-    def __init__(self, run: _bmod.Run, interrupted: bool):
+    def __init__(self, run: Union[_bmod.Run, "_Saved"], interrupted: bool):
         self._run = run
         self._solves: Optional[List[Solve]] = None
+        self._symbols: Optional[Dict[str, Symbol]] = None
         #: Whether Ctrl-C stopped it.
         self.interrupted = interrupted
 
@@ -255,16 +262,21 @@ class Result:
     @property
     def symbols(self) -> Dict[str, Symbol]:
         """What the model declares, in order."""
-        return {s[0]: Symbol(*s) for s in self._run.symbols()}
+        return {s.name: s for s in self._by_name.values()}
+
+    @property
+    def _by_name(self) -> Dict[str, Symbol]:
+        if self._symbols is None:
+            self._symbols = {s[0].lower(): Symbol(*s) for s in self._run.symbols()}
+        return self._symbols
 
     def symbol(self, name: str) -> Symbol:
         """A symbol, by its name in any case."""
-        for s in self._run.symbols():
-            if s[0].lower() == name.lower():
-                return Symbol(*s)
+        if isinstance(name, str) and name.lower() in self._by_name:
+            return self._by_name[name.lower()]
         import difflib
 
-        near = difflib.get_close_matches(name, [s[0] for s in self._run.symbols()], 1)
+        near = difflib.get_close_matches(str(name), list(self.symbols), 1)
         hint = f"; did you mean `{near[0]}`?" if near else ""
         raise UnknownSymbolError(f"the model has no symbol `{name}`{hint}")
 
@@ -273,8 +285,11 @@ class Result:
         import pandas as pd
 
         symbol = self.symbol(name)
+        if symbol.kind not in ("set", "parameter", "variable", "equation"):
+            raise UnknownSymbolError(f"`{name}` is a {symbol.kind}; it has no values")
         keys, columns, texts = self._run.records(symbol.name)
-        values = {n: np.frombuffer(b, dtype=np.float64).copy() for n, b in columns}
+        # Views of the columns, without a copy.
+        values = {n: np.frombuffer(b, dtype=np.float64) for n, b in columns}
         if not keys:
             if symbol.kind == "parameter":
                 return float(values["value"][0])
@@ -286,6 +301,30 @@ class Result:
             return pd.Series(values["value"], index=index, name=symbol.name, copy=False)
         return pd.DataFrame(values, index=index, copy=False)
 
+    def full(self, name: str) -> Any:
+        """The same with a record for every combination of members of the symbol's sets: levels, marginals and values that are
+        not stored are 0.
+
+        ``result[name]`` has only what is stored: a level of 0 with a marginal of 0 and the usual bounds is not.
+        """
+        import pandas as pd
+
+        symbol, data = self.symbol(name), self[name]
+        if not symbol.domain or symbol.kind == "set":
+            return data
+        if "*" in symbol.domain:
+            raise ValueError(f"`{name}` is indexed by any labels; there is no end of combinations")
+        sets = [self[s] for s in symbol.domain]
+        index = pd.MultiIndex.from_product(sets, names=data.index.names) if len(sets) > 1 else sets[0]
+        filled = data.reindex(index.rename(data.index.names))
+        if symbol.kind == "parameter":
+            return filled.fillna(0.0)
+        defaults = dict(zip(("level", "marginal", "lower", "upper"), self._run.defaults(symbol.name)))
+        missing = filled.isna().all(axis=1)
+        for column, value in defaults.items():
+            filled.loc[missing, column] = value
+        return filled
+
     def texts(self, name: str) -> "pd.Series[str]":
         """The explanatory texts of a set's members."""
         import pandas as pd
@@ -293,12 +332,18 @@ class Result:
         _, _, texts = self._run.records(self.symbol(name).name)
         return pd.Series(texts, index=self[name], name=name, dtype=object)
 
-    def __contains__(self, name: str) -> bool:
-        return any(s[0].lower() == name.lower() for s in self._run.symbols())
+    def __contains__(self, name: object) -> bool:
+        return isinstance(name, str) and name.lower() in self._by_name
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.symbols)
 
     def why(self) -> str:
         """Why each solve ended as it did; needs ``run(explain=True)``."""
         return "\n\n".join("\n".join(s.explanation) for s in self.solves if s.explanation)
+
+    def __reduce__(self) -> Any:
+        return Result, (_Saved(self._run), self.interrupted)
 
     def to_json(self) -> str:
         """The report of ``bmod run --json``."""
@@ -307,9 +352,7 @@ class Result:
     def __repr__(self) -> str:
         if not self.solves:
             return f"<bmod.Result {self._run.status}, no solves>"
-        s = self._last
-        objective = "" if s.objective is None else f", {s.objective_variable} = {s.objective:.10g}"
-        return f"<bmod.Result {s.model} using {s.using}: {s.status.name.lower()}{objective}>"
+        return f"<bmod.Result {head_of(self._last)}>"
 
     def _repr_html_(self) -> str:
         head = "<tr><th>model</th><th>status</th><th>objective</th><th>rows × columns</th><th>solver</th><th>seconds</th></tr>"
@@ -323,3 +366,29 @@ class Result:
         table = f"<table>{head}{rows}</table>" if rows else ""
         figures = "".join(f"<div>{f._repr_svg_()}</div>" for f in self.figures.values())
         return messages + table + figures
+
+
+class _Saved:
+    """A run that came from another process: all that it has."""
+
+    def __init__(self, run: Any):
+        self.status, self.stopped = run.status, run.stopped
+        self.messages, self.printed = run.messages, run.printed
+        names = [s[0] for s in run.symbols() if s[1] in ("set", "parameter", "variable", "equation")]
+        self._methods: Dict[str, Any] = {
+            m: getattr(run, m)() for m in ("symbols", "files", "figures", "solves", "diagnostics", "to_json")
+        }
+        self._records = {n: run.records(n) for n in names}
+        kinds = {s[0]: s[1] for s in run.symbols()}
+        self._defaults = {n: run.defaults(n) for n in names if kinds[n] in ("variable", "equation")}
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_") or name not in self._methods:
+            raise AttributeError(name)
+        return lambda: self._methods[name]
+
+    def records(self, name: str) -> Any:
+        return self._records[name]
+
+    def defaults(self, name: str) -> Any:
+        return self._defaults[name]

@@ -39,14 +39,17 @@ impl Model {
 impl Model {
     #[staticmethod]
     fn from_text(name: String, text: String) -> Self {
+        let mut model = bmod::Model::from_text(name, text);
+        model.keep(true);
         Self {
-            model: Arc::new(bmod::Model::from_text(name, text)),
+            model: Arc::new(model),
         }
     }
 
     #[staticmethod]
     fn from_file(path: PathBuf) -> PyResult<Self> {
-        let model = bmod::Model::from_file(path).map_err(raise)?;
+        let mut model = bmod::Model::from_file(path).map_err(raise)?;
+        model.keep(true);
         Ok(Self {
             model: Arc::new(model),
         })
@@ -87,20 +90,25 @@ impl Model {
         values: &Bound<'_, PyBytes>,
     ) -> PyResult<()> {
         let values = data::floats(values.as_bytes());
-        let keys = data::keys(&name, &labels, &codes, values.len())?;
-        if let Some(r) = values.iter().position(|v| v.is_nan()) {
-            return Err(PyValueError::new_err(format!(
-                "`{name}`: the value of {} is not a number (NaN)",
-                data::shown(&keys[r])
-            )));
-        }
+        let not_a_number = |shown: String| {
+            PyValueError::new_err(format!(
+                "`{name}`: the value of {shown} is not a number (NaN)"
+            ))
+        };
+        let nan = values.iter().position(|v| v.is_nan());
         if labels.is_empty() {
+            if nan.is_some() {
+                return Err(not_a_number(data::shown(&[])));
+            }
             let value = values.first().copied().unwrap_or(0.0);
             self.change().set_scalar(name, value);
-        } else {
-            let records = keys.into_iter().zip(values);
-            self.change().set_parameter(name, records);
+            return Ok(());
         }
+        let keys = data::keys(&name, labels, &codes, values.len())?;
+        if let Some(r) = nan {
+            return Err(not_a_number(data::shown(&keys.key(r))));
+        }
+        self.change().set_values(name, keys, values);
         Ok(())
     }
 
@@ -113,13 +121,9 @@ impl Model {
         texts: Option<Vec<String>>,
     ) -> PyResult<()> {
         let count = codes.first().map_or(0, |c| c.as_bytes().len() / 4);
-        let keys = data::keys(&name, &labels, &codes, count)?;
-        match texts {
-            Some(t) => self
-                .change()
-                .set_members_with_texts(name, keys.into_iter().zip(t)),
-            None => self.change().set_members(name, keys),
-        };
+        let keys = data::keys(&name, labels, &codes, count)?;
+        let texts = texts.unwrap_or_default();
+        self.change().set_elements(name, keys, texts);
         Ok(())
     }
 

@@ -1,11 +1,10 @@
 //! A run: carried out beside Python, and what came of it.
 
-use super::data::Column;
-use super::raise;
-use bmod::{Control, Diagnostic, Options, Place, Severity, Solve, SymbolKind};
+use super::{data, raise};
+use bmod::{Control, Diagnostic, Options, Place, Severity, Solve};
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict, PyList};
+use pyo3::types::{PyByteArray, PyBytes, PyDict, PyList};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
@@ -113,8 +112,8 @@ impl Run {
 
 /// Labels and codes of each position, names and numbers of each column, texts of a set's members.
 type Records<'py> = (
-    Vec<(Vec<String>, Bound<'py, PyBytes>)>,
-    Vec<(&'static str, Bound<'py, PyBytes>)>,
+    Vec<(Vec<String>, Bound<'py, PyByteArray>)>,
+    Vec<(&'static str, Bound<'py, PyByteArray>)>,
     Option<Vec<String>>,
 );
 
@@ -171,58 +170,31 @@ impl Run {
     /// The records of a symbol as columns.
     fn records<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Records<'py>> {
         let symbol = self.run.symbol(name).map_err(raise)?;
-        let mut keys: Vec<Column<'_>> = symbol.domain().iter().map(|_| Column::default()).collect();
-        match symbol.kind() {
-            SymbolKind::Variable | SymbolKind::Equation => {
-                let mut columns = [const { Vec::new() }; 4];
-                let mut add = |values: [f64; 4]| {
-                    for (column, v) in columns.iter_mut().zip(values) {
-                        column.extend(v.to_ne_bytes());
-                    }
-                };
-                for r in symbol.variable_records() {
-                    keys.iter_mut().zip(&r.labels).for_each(|(c, l)| c.push(l));
-                    add([r.level, r.marginal, r.lower, r.upper]);
-                }
-                if keys.is_empty() && symbol.variable_records().next().is_none() {
-                    let at = |v: Result<f64, bmod::Error>| v.map_err(raise);
-                    add([
-                        at(symbol.level([]))?,
-                        at(symbol.marginal([]))?,
-                        at(symbol.lower([]))?,
-                        at(symbol.upper([]))?,
-                    ]);
-                }
-                let names = ["level", "marginal", "lower", "upper"];
-                let columns = names.into_iter().zip(columns);
-                let columns = columns.map(|(n, c)| (n, PyBytes::new(py, &c))).collect();
-                let keys = keys.into_iter().map(|c| c.finish(py)).collect();
-                Ok((keys, columns, None))
-            }
-            SymbolKind::Set | SymbolKind::Parameter => {
-                let is_set = symbol.kind() == SymbolKind::Set;
-                let (mut values, mut texts) = (Vec::new(), Vec::new());
-                for r in symbol.records() {
-                    keys.iter_mut().zip(&r.labels).for_each(|(c, l)| c.push(l));
-                    match is_set {
-                        true => texts.push(r.text.to_string()),
-                        false => values.extend(r.value.to_ne_bytes()),
-                    }
-                }
-                if keys.is_empty() && values.is_empty() {
-                    values.extend(symbol.value([]).map_err(raise)?.to_ne_bytes());
-                }
-                let columns = match is_set {
-                    true => Vec::new(),
-                    false => vec![("value", PyBytes::new(py, &values))],
-                };
-                let keys = keys.into_iter().map(|c| c.finish(py)).collect();
-                Ok((keys, columns, is_set.then_some(texts)))
-            }
-            kind => Err(pyo3::exceptions::PyValueError::new_err(format!(
+        let columns = symbol.columns();
+        if columns.values.is_empty() && columns.texts.is_none() {
+            let kind = symbol.kind();
+            return Err(pyo3::exceptions::PyValueError::new_err(format!(
                 "`{name}` is a {kind}; it has no records"
-            ))),
+            )));
         }
+        let position = |p: usize| {
+            let codes = data::code_bytes(py, columns.keys.codes(p))?;
+            Ok((columns.keys.labels(p).to_vec(), codes))
+        };
+        let keys = (0..columns.keys.dimension()).map(position);
+        let values = columns.values.iter();
+        let values = values.map(|(n, v)| Ok((*n, data::float_bytes(py, v)?)));
+        Ok((
+            keys.collect::<PyResult<_>>()?,
+            values.collect::<PyResult<_>>()?,
+            columns.texts,
+        ))
+    }
+
+    /// Level, marginal, lower and upper bound of what is not stored of a variable or an equation.
+    fn defaults(&self, name: &str) -> PyResult<[f64; 4]> {
+        let symbol = self.run.symbol(name).map_err(raise)?;
+        symbol.defaults().map_err(raise)
     }
 
     fn solves<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {

@@ -2,6 +2,7 @@
 
 use super::{Model, Options, OutputFile, Run};
 use crate::host::{Host, HostError, day_number};
+use std::cell::Cell;
 use std::path::{Component, Path, PathBuf};
 
 pub(super) struct RunHost<'a> {
@@ -10,6 +11,23 @@ pub(super) struct RunHost<'a> {
     written: Vec<OutputFile>,
     printed: String,
     start: f64,
+    /// What was asked of the disk; none once something was asked that may be different every time.
+    questions: Cell<Option<Vec<Question>>>,
+}
+
+/// What a text asked of the disk while it was compiled, and a digest of the answer.
+pub(super) struct Question {
+    what: What,
+    path: String,
+    from: Option<PathBuf>,
+    answer: u64,
+}
+
+#[derive(Clone, Copy)]
+enum What {
+    File,
+    IsFile,
+    IsFolder,
 }
 
 /// `a/../b/./c` as `b/c`: names of files in memory.
@@ -35,6 +53,7 @@ impl<'a> RunHost<'a> {
             written: Vec::new(),
             printed: String::new(),
             start: 0.0,
+            questions: Cell::new(Some(Vec::new())),
         };
         host.start = host.clock();
         host
@@ -44,6 +63,52 @@ impl<'a> RunHost<'a> {
     pub(super) fn finish(self, mut run: Run) -> Run {
         run.take_output(self.written, self.printed);
         run
+    }
+
+    /// What was asked of the disk so far; `None` if something was asked that may be different every time.
+    pub(super) fn questions(&self) -> Option<Vec<Question>> {
+        self.questions.take()
+    }
+
+    /// Whether a question has the same answer now.
+    pub(super) fn answers_again(&self, q: &Question) -> bool {
+        self.answer(q.what, &q.path, q.from.as_deref()) == q.answer
+    }
+
+    /// A digest of what the disk says.
+    #[cfg(feature = "system")]
+    fn answer(&self, what: What, path: &str, from: Option<&Path>) -> u64 {
+        use std::hash::{BuildHasher, BuildHasherDefault};
+        let Some(files) = &self.model.files else {
+            return 0;
+        };
+        match what {
+            What::File => {
+                let hasher = BuildHasherDefault::<rustc_hash::FxHasher>::default();
+                let read = files.read_bytes(path, from);
+                read.map_or(0, |found| hasher.hash_one(found))
+            }
+            What::IsFile => u64::from(files.exists(path, from)),
+            What::IsFolder => u64::from(files.folder_exists(path, from)),
+        }
+    }
+
+    #[cfg(not(feature = "system"))]
+    fn answer(&self, _: What, _: &str, _: Option<&Path>) -> u64 {
+        0
+    }
+
+    fn asked(&self, what: What, path: &str, from: Option<&Path>) {
+        let asked = self.questions.take().map(|mut list| {
+            list.push(Question {
+                what,
+                path: path.into(),
+                from: from.map(Path::to_path_buf),
+                answer: self.answer(what, path, from),
+            });
+            list
+        });
+        self.questions.set(asked);
     }
 
     fn clock(&self) -> f64 {
@@ -66,7 +131,9 @@ impl<'a> RunHost<'a> {
             .flatten()
             .filter_map(|n| contents.get(&n).map(|t| (PathBuf::from(n), t.clone())));
         found.next().or_else(|| {
-            let text = self.model.resolver.as_ref()?(path)?;
+            let resolver = self.model.resolver.as_ref()?;
+            self.questions.set(None);
+            let text = resolver(path)?;
             Some((path.into(), text.into_bytes()))
         })
     }
@@ -81,6 +148,7 @@ impl Host for RunHost<'_> {
         }
         #[cfg(feature = "system")]
         if let Some(files) = &self.model.files {
+            self.asked(What::File, path, from);
             return files.read(path, from);
         }
         Err(HostError::NotFound)
@@ -93,6 +161,7 @@ impl Host for RunHost<'_> {
     ) -> Result<(PathBuf, Vec<u8>), HostError> {
         #[cfg(feature = "system")]
         if let (None, Some(files)) = (self.in_memory(path, from), &self.model.files) {
+            self.asked(What::File, path, from);
             return files.read_bytes(path, from);
         }
         self.in_memory(path, from).ok_or(HostError::NotFound)
@@ -100,16 +169,18 @@ impl Host for RunHost<'_> {
 
     fn exists(&mut self, path: &str, from: Option<&Path>) -> bool {
         #[cfg(feature = "system")]
-        if let Some(files) = &self.model.files
-            && files.exists(path, from)
-        {
-            return true;
+        if let Some(files) = &self.model.files {
+            self.asked(What::IsFile, path, from);
+            if files.exists(path, from) {
+                return true;
+            }
         }
         self.in_memory(path, from).is_some()
     }
 
     #[cfg(feature = "system")]
     fn folder_exists(&mut self, path: &str, from: Option<&Path>) -> bool {
+        self.asked(What::IsFolder, path, from);
         let files = self.model.files.as_ref();
         files.is_some_and(|f| f.folder_exists(path, from))
     }
@@ -145,6 +216,7 @@ impl Host for RunHost<'_> {
     }
 
     fn now(&self) -> f64 {
+        self.questions.set(None);
         day_number(self.clock())
     }
 

@@ -4,30 +4,38 @@
 mod error;
 mod formulas;
 mod host;
+mod kept;
 mod labels;
 mod options;
 mod run;
 pub mod solver;
 mod symbols;
 
+pub use crate::data::input::Keys;
 pub use error::Error;
 pub use formulas::{Choice, Formulas, Sheet};
 pub use labels::Labels;
 pub use options::{Control, Options, Progress};
 pub use run::{Claim, OutputFile, Run, Solve};
-pub use symbols::{Record, Records, Special, Symbol, SymbolKind, VariableRecord, VariableRecords};
+pub use symbols::{
+    Columns, Record, Records, Special, Symbol, SymbolKind, VariableRecord, VariableRecords,
+};
 
 use crate::check;
 use crate::claims;
 use crate::data::input::{Input, InputData};
 use crate::host::Host;
-use crate::run::Machine;
-use crate::session;
+use crate::run::{Bases, Machine, Options as Settings};
+use crate::session::{self, Finished};
 use crate::solve::registry::OPTION_TABLES;
 use crate::source::PreprocessOptions;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Sees the machine when a run is over.
+type Inspect<'a> = &'a mut dyn FnMut(&mut Machine);
 
 /// Finds the text of a file that a model includes or loads, by the name it uses.
 type Resolver = Arc<dyn Fn(&str) -> Option<String> + Send + Sync>;
@@ -70,8 +78,17 @@ pub struct Model {
     #[cfg(feature = "system")]
     files: Option<crate::system::Files>,
     defines: Vec<(String, String)>,
-    inputs: Vec<Input>,
+    inputs: Vec<Arc<Input>>,
     slash_comments: bool,
+    /// Another number after each change of the text, of what it may read, or of what stands for `%name%` in it.
+    version: u64,
+    kept: Option<Arc<kept::Kept>>,
+}
+
+/// A number that no model has.
+fn new_version() -> u64 {
+    static NEXT: AtomicU64 = AtomicU64::new(0);
+    NEXT.fetch_add(1, Ordering::Relaxed)
 }
 
 impl fmt::Debug for Model {
@@ -99,6 +116,8 @@ impl Model {
             defines: Vec::new(),
             inputs: Vec::new(),
             slash_comments: !gams,
+            version: new_version(),
+            kept: None,
         }
     }
 
@@ -126,7 +145,7 @@ impl Model {
     #[cfg(feature = "system")]
     pub fn sandbox(&mut self) -> &mut Self {
         self.files = self.files.take().map(|f| f.sandbox(true));
-        self
+        self.changed()
     }
 
     /// Lets the model read files from this folder too.
@@ -136,14 +155,14 @@ impl Model {
         let files = self.files.take();
         let files = files.unwrap_or_else(|| crate::system::Files::new(model, &[]).sandbox(true));
         self.files = Some(files.and_allow(folder.as_ref()));
-        self
+        self.changed()
     }
 
     /// Adds a file that the model may include (`$include`) or load data from (`.csv`, `.json`, `.gdx`): a text, or
     /// bytes.
     pub fn file(&mut self, name: impl Into<String>, content: impl Into<Vec<u8>>) -> &mut Self {
         self.contents.insert(name.into(), content.into());
-        self
+        self.changed()
     }
 
     /// Finds the files that were not added: gets the name as the model writes it.
@@ -161,7 +180,7 @@ impl Model {
         resolver: impl Fn(&str) -> Option<String> + Send + Sync + 'static,
     ) -> &mut Self {
         self.resolver = Some(Arc::new(resolver));
-        self
+        self.changed()
     }
 
     /// Defines a text that stands for `%name%` in the model, as `bmod run -D name=value` does.
@@ -169,12 +188,32 @@ impl Model {
         let (name, value) = (name.into(), value.to_string());
         self.defines.retain(|d| !d.0.eq_ignore_ascii_case(&name));
         self.defines.push((name, value));
+        self.changed()
+    }
+
+    fn changed(&mut self) -> &mut Self {
+        self.version = new_version();
+        self
+    }
+
+    /// Keeps the compiled text and the bases of the last solves from run to run: after other numbers were given, a run costs
+    /// no compilation, and its linear programs start where the last run ended. Off at first, for it takes the room
+    /// of a second copy of the data. A clone shares what is kept.
+    ///
+    /// Each run still starts from the text. Where the solution of a linear program is not unique, another one may be
+    /// found than without (`option bratio = 1` starts anew). A model with a [`resolver`](Self::resolver) is compiled each time.
+    pub fn keep(&mut self, on: bool) -> &mut Self {
+        self.kept = on.then(Arc::default);
         self
     }
 
     fn give(&mut self, name: String, data: InputData) -> &mut Self {
-        self.forget(&name);
-        self.inputs.push(Input { name, data });
+        let input = Arc::new(Input { name, data });
+        let named = |i: &Arc<Input>| i.name.eq_ignore_ascii_case(&input.name);
+        match self.inputs.iter().position(named) {
+            Some(at) => self.inputs[at] = input,
+            None => self.inputs.push(input),
+        }
         self
     }
 
@@ -184,7 +223,10 @@ impl Model {
     /// Whether the model declares such a symbol is checked when it runs; a mistake is a diagnostic of the run. This
     /// holds for [`Model::set_parameter`] and [`Model::set_members`] too.
     pub fn set_scalar(&mut self, name: impl Into<String>, value: f64) -> &mut Self {
-        self.give(name.into(), InputData::Values(vec![(Vec::new(), value)]))
+        self.give(
+            name.into(),
+            InputData::Values(Keys::from_records([Vec::new()]), vec![value]),
+        )
     }
 
     /// Gives a parameter its records, in place of those in its data statement; what is not given is 0. The labels
@@ -212,7 +254,23 @@ impl Model {
         records: impl IntoIterator<Item = (K, f64)>,
     ) -> &mut Self {
         let records = records.into_iter().map(|(k, v)| (k.labels(), v));
-        self.give(name.into(), InputData::Values(records.collect()))
+        let (keys, values): (Vec<_>, Vec<_>) = records.unzip();
+        self.set_values(name, Keys::from_records(keys), values)
+    }
+
+    /// The same for many records: labels and values in columns of the same length.
+    ///
+    /// # Panics
+    /// If there are not as many values as keys.
+    pub fn set_values(
+        &mut self,
+        name: impl Into<String>,
+        keys: Keys,
+        values: Vec<f64>,
+    ) -> &mut Self {
+        let odd = keys.unlike(keys.dimension()).is_some();
+        assert!(odd || keys.len() == values.len(), "a value for each key");
+        self.give(name.into(), InputData::Values(keys, values))
     }
 
     /// Gives a set its members, in place of those in its data statement.
@@ -221,8 +279,8 @@ impl Model {
         name: impl Into<String>,
         members: impl IntoIterator<Item = K>,
     ) -> &mut Self {
-        let members = members.into_iter().map(|k| (k.labels(), String::new()));
-        self.give(name.into(), InputData::Members(members.collect()))
+        let keys = Keys::from_records(members.into_iter().map(|k| k.labels()));
+        self.set_elements(name, keys, Vec::new())
     }
 
     /// The same with an explanatory text for each member.
@@ -232,7 +290,18 @@ impl Model {
         members: impl IntoIterator<Item = (K, String)>,
     ) -> &mut Self {
         let members = members.into_iter().map(|(k, t)| (k.labels(), t));
-        self.give(name.into(), InputData::Members(members.collect()))
+        let (keys, texts): (Vec<_>, Vec<_>) = members.unzip();
+        self.set_elements(name, Keys::from_records(keys), texts)
+    }
+
+    /// The same for many members: labels in columns, and texts, none or as many.
+    pub fn set_elements(
+        &mut self,
+        name: impl Into<String>,
+        keys: Keys,
+        texts: Vec<String>,
+    ) -> &mut Self {
+        self.give(name.into(), InputData::Members(keys, texts))
     }
 
     /// Takes back the data given for a symbol.
@@ -268,7 +337,21 @@ impl Model {
 
     fn carry_out_here(&self, options: &Options, check_only: bool) -> Run {
         let mut host = host::RunHost::new(self, options);
-        let run = self.carry_out_on(&mut host, options, check_only);
+        let run = match &self.kept {
+            None => self.carry_out_on(&mut host, options, check_only),
+            Some(kept) => match kept.program(self, &mut host, self.preprocess(options)) {
+                Ok((program, _)) if check_only => Run::checked(&self.name, program),
+                Ok((program, bases)) => {
+                    let execute = |machine: Settings, inspect: Inspect| {
+                        session::execute(program, &mut host, machine, inspect)
+                    };
+                    let (run, bases) = self.ended(options, bases, execute);
+                    kept.ended_at(self, bases);
+                    run
+                }
+                Err(e) => Run::unreadable(&self.name, e.0, e.1),
+            },
+        };
         host.finish(run)
     }
 
@@ -286,27 +369,48 @@ impl Model {
                 Err(e) => Run::unreadable(&self.name, e.0, e.1),
             };
         }
+        let execute = |machine: Settings, inspect: Inspect| {
+            session::run(host, &self.name, preprocess, machine, false, inspect)
+        };
+        self.ended(options, Bases::default(), execute).0
+    }
+
+    fn preprocess(&self, options: &Options) -> PreprocessOptions {
+        PreprocessOptions {
+            defines: self.defines.clone(),
+            slash_comments: self.slash_comments,
+            max_memory: options.memory_limit(),
+            inputs: self.inputs.clone(),
+        }
+    }
+
+    /// Carries out a run from these bases: what came of it, and the bases that it has left.
+    fn ended(
+        &self,
+        options: &Options,
+        bases: Bases,
+        execute: impl FnOnce(Settings, Inspect) -> Finished,
+    ) -> (Run, Bases) {
         let mut ended = run::Ended::default();
-        let finished = session::run(
-            host,
-            &self.name,
-            preprocess,
-            options.for_machine(),
-            false,
-            &mut |machine| {
-                if options.keeps_solutions() {
-                    ended.solution = Some(machine.solutions(&self.name));
-                }
-                if let Some(tolerance) = options.claim_tolerance() {
-                    ended.claims = self.claims(machine, tolerance);
-                }
-                ended.stopped = machine.stopped() || options.control.is_cancelled();
-                let symbols = std::mem::take(&mut machine.symbols);
-                let store = std::mem::take(&mut machine.store);
-                ended.data = symbols::Data::new(&symbols, store);
-            },
-        );
-        Run::finished(&self.name, finished, ended)
+        let mut left = Bases::default();
+        let settings = Settings {
+            bases,
+            ..options.for_machine()
+        };
+        let finished = execute(settings, &mut |machine| {
+            if options.keeps_solutions() {
+                ended.solution = Some(machine.solutions(&self.name));
+            }
+            if let Some(tolerance) = options.claim_tolerance() {
+                ended.claims = self.claims(machine, tolerance);
+            }
+            ended.stopped = machine.stopped() || options.control.is_cancelled();
+            left = std::mem::take(&mut machine.options.bases);
+            let symbols = std::mem::take(&mut machine.symbols);
+            let store = std::mem::take(&mut machine.store);
+            ended.data = symbols::Data::new(&symbols, store);
+        });
+        (Run::finished(&self.name, finished, ended), left)
     }
 
     /// What the model's own text claims, compared with what the run left.

@@ -2,6 +2,8 @@
 
 use super::{Error, Labels};
 use crate::check::symbols::{self as checked, Store, Symbols, attribute};
+use crate::data::input::Keys;
+use crate::data::sort::sort_tuples;
 use crate::data::universe::{Label, Universe};
 use crate::data::value;
 use crate::diag::nearest;
@@ -207,6 +209,25 @@ impl Data {
         }
     }
 
+    /// Tuples of labels by position; at each, labels in their order.
+    fn keys(&self, tuples: &[Label], dim: usize) -> Keys {
+        let mut labels = Vec::with_capacity(dim);
+        let mut codes = Vec::with_capacity(dim);
+        for p in 0..dim {
+            let column = || tuples.iter().skip(p).step_by(dim);
+            let mut place = vec![u32::MAX; self.universe.len()];
+            column().for_each(|&l| place[l as usize] = 0);
+            let mut list = Vec::new();
+            for (l, place) in place.iter_mut().enumerate().filter(|(_, p)| **p == 0) {
+                *place = list.len() as u32;
+                list.push(self.universe.name(l as Label).to_string());
+            }
+            codes.push(column().map(|&l| place[l as usize]).collect());
+            labels.push(list);
+        }
+        Keys::new(labels, codes).unwrap_or_default()
+    }
+
     fn names(&self, key: &[Label]) -> Vec<&str> {
         key.iter().map(|&l| self.universe.name(l)).collect()
     }
@@ -342,6 +363,19 @@ impl<'a> Symbol<'a> {
         self.attribute(UPPER, "upper bound", labels)
     }
 
+    /// Level, marginal, lower and upper bound of a record of a variable or an equation that is not stored.
+    ///
+    /// # Errors
+    /// If it is another kind of symbol.
+    pub fn defaults(&self) -> Result<[f64; 4], Error> {
+        let has = [SymbolKind::Variable, SymbolKind::Equation];
+        let mut out = [0.0; 4];
+        for (n, v) in out.iter_mut().enumerate() {
+            *v = value::number(self.column(n, &has, "level")?.default);
+        }
+        Ok(out)
+    }
+
     /// The records of a set or a parameter in label order; of other symbols there are none.
     pub fn records(&self) -> Records<'a> {
         let has = matches!(self.entry.kind, SymbolKind::Set | SymbolKind::Parameter);
@@ -354,6 +388,60 @@ impl<'a> Symbol<'a> {
             } else {
                 0
             },
+        }
+    }
+
+    /// All records as columns; a symbol without indices has one. Other symbols than sets, parameters, variables and equations
+    /// have none.
+    pub fn columns(&self) -> Columns {
+        let dim = self.dimension();
+        let root = self.root();
+        let flat = |columns: &[Column]| -> Vec<Label> {
+            let mut merged = columns[0].keys.clone();
+            for c in &columns[1..] {
+                if c.keys != merged {
+                    merged.extend(&c.keys);
+                }
+            }
+            sort_tuples(merged, dim, true)
+        };
+        let read = |c: &Column, keys: &[Label]| -> Vec<f64> {
+            let numbers = |values: &[f64]| values.iter().map(|&v| value::number(v)).collect();
+            if c.keys.len() == keys.len() {
+                return numbers(&c.values);
+            }
+            let mut r = 0;
+            let next = keys.chunks_exact(dim).map(|key| {
+                let here = c.keys.get(r * dim..(r + 1) * dim) == Some(key);
+                r += usize::from(here);
+                if here { c.values[r - 1] } else { c.default }
+            });
+            numbers(&next.collect::<Vec<f64>>())
+        };
+        let names: &[&str] = match self.entry.kind {
+            SymbolKind::Variable | SymbolKind::Equation => &["level", "marginal", "lower", "upper"],
+            SymbolKind::Parameter => &["value"],
+            SymbolKind::Set => &[""],
+            _ => return Columns::default(),
+        };
+        if dim == 0 {
+            let one = |(&n, c): (_, &Column)| (n, vec![value::number(c.get(&[]))]);
+            return Columns {
+                values: names.iter().zip(&root.columns).map(one).collect(),
+                ..Columns::default()
+            };
+        }
+        let keys = flat(&root.columns);
+        let columns = names.iter().zip(&root.columns);
+        let is_set = self.entry.kind == SymbolKind::Set;
+        let text = |key: &[Label]| root.texts.get(key).map_or(String::new(), |t| t.to_string());
+        Columns {
+            keys: self.data.keys(&keys, dim),
+            values: match is_set {
+                true => Vec::new(),
+                false => columns.map(|(&n, c)| (n, read(c, &keys))).collect(),
+            },
+            texts: is_set.then(|| keys.chunks_exact(dim).map(text).collect()),
         }
     }
 
@@ -370,6 +458,19 @@ impl<'a> Symbol<'a> {
             next: [0; 4],
         }
     }
+}
+
+/// All records of a symbol, in label order, as columns ([`Symbol::columns`]).
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Columns {
+    /// Their labels.
+    pub keys: Keys,
+    /// `value` of a parameter; `level`, `marginal`, `lower`, `upper` of a variable or an equation; none of a set. `eps` is 0; `na`,
+    /// `undf` and acronyms are NaN.
+    pub values: Vec<(&'static str, Vec<f64>)>,
+    /// Texts of the members of a set.
+    pub texts: Option<Vec<String>>,
 }
 
 /// A record of a set or a parameter.

@@ -9,7 +9,7 @@ use crate::syntax::ast::{
     DomainName, FileDecl, Ident, ModelDecl, ModelItem, ParameterDecl, SetDecl, SymbolDecl,
     VariableKind,
 };
-use std::rc::Rc;
+use std::sync::Arc;
 
 impl Compiler {
     fn positions(&mut self, domain: &[DomainName]) -> Result<Vec<DomainPosition>, Failed> {
@@ -458,7 +458,7 @@ impl Compiler {
                     // Known all the same, so that its solve is not a second error.
                     let _ = self.declare_plain(
                         &m.name,
-                        SymbolKind::Model(Rc::new(ModelInfo::default())),
+                        SymbolKind::Model(Arc::new(ModelInfo::default())),
                         m.text.as_deref(),
                     );
                     continue;
@@ -482,7 +482,7 @@ impl Compiler {
             };
             let _ = self.declare_plain(
                 &m.name,
-                SymbolKind::Model(Rc::new(ModelInfo { items })),
+                SymbolKind::Model(Arc::new(ModelInfo { items })),
                 m.text.as_deref(),
             );
         }

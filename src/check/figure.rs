@@ -6,7 +6,7 @@ use super::{Compiler, Failed};
 use crate::color::Paint;
 use crate::diag::{Diagnostic, nearest};
 use crate::syntax::ast::{ExprKind, Figure, FigureElement};
-use std::rc::Rc;
+use std::sync::Arc;
 
 /// Kinds of elements, their arguments, those that must be there, and whether bare values may stand.
 #[rustfmt::skip]
@@ -69,7 +69,7 @@ impl Compiler {
             }
         }
         self.texts_allowed = false;
-        let kind = SymbolKind::Figure(Rc::new(FigureCode {
+        let kind = SymbolKind::Figure(Arc::new(FigureCode {
             title: f.title.clone(),
             elements,
         }));

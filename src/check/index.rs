@@ -6,7 +6,7 @@ use super::{Compiler, Failed};
 use crate::diag::{Diagnostic, nearest};
 use crate::source::Span;
 use crate::syntax::ast::{Expr, ExprKind, Ident, Sign};
-use std::rc::Rc;
+use std::sync::Arc;
 
 impl Compiler {
     /// Whether set `a` may stand at a position of symbol `of`; a tuple set at as many as it has.
@@ -537,7 +537,7 @@ impl Compiler {
             }
             _ => unreachable!("lags are sums or circular"),
         };
-        Ok(Part::Lag(Rc::new(Lag {
+        Ok(Part::Lag(Arc::new(Lag {
             base,
             set,
             offset,

@@ -3,25 +3,26 @@
 
 use super::node::SymbolId;
 use super::symbols::{DomainPosition, SymbolKind, UNIVERSE};
-use super::{Compiler, Failed};
-use crate::data::input::{Input, InputData};
+use super::{Compiler, Failed, Program};
+use crate::data::input::{Input, InputData, Keys};
 use crate::data::table::Table;
 use crate::data::universe::Label;
 use crate::diag::{Diagnostic, nearest};
 use crate::source::Span;
 use rustc_hash::{FxHashMap, FxHashSet};
+use std::sync::Arc;
 
 /// Data from outside while the text is read.
 #[derive(Debug, Default)]
 pub(super) struct Inputs {
     /// What no declaration has taken yet, in the order given.
-    waiting: Vec<Input>,
+    waiting: Vec<Arc<Input>>,
     /// Symbols that took theirs.
     taken: FxHashSet<SymbolId>,
 }
 
 impl Inputs {
-    pub(super) fn new(waiting: Vec<Input>) -> Self {
+    pub(super) fn new(waiting: Vec<Arc<Input>>) -> Self {
         Self {
             waiting,
             taken: FxHashSet::default(),
@@ -42,7 +43,7 @@ impl Compiler {
             return true;
         }
         let name = &self.symbols.get(s).name;
-        let named = |i: &Input| i.name.eq_ignore_ascii_case(name);
+        let named = |i: &Arc<Input>| i.name.eq_ignore_ascii_case(name);
         let Some(at) = self.inputs.waiting.iter().position(named) else {
             return false;
         };
@@ -55,9 +56,13 @@ impl Compiler {
         let symbol = self.symbols.get_mut(s);
         symbol.has_data = true;
         let open = std::mem::take(&mut symbol.open);
-        if let (true, Some(key)) = (open, input.data.first()) {
-            self.set_dimension(s, key.len());
+        let keys = input.data.keys();
+        if open && !keys.is_empty() {
+            self.set_dimension(s, keys.dimension());
         }
+        // Which members the set has is known only here then.
+        self.asked_for_data
+            .set(self.asked_for_data.get() || defines.contains(&true));
         let _ = self.fill_from_input(s, &input, defines, span);
         true
     }
@@ -71,8 +76,8 @@ impl Compiler {
     ) -> Result<(), Failed> {
         let symbol = self.symbols.get(s).clone();
         let wrong_kind = match (&symbol.kind, &input.data) {
-            (SymbolKind::Set { .. }, InputData::Values(_)) => Some("numbers"),
-            (SymbolKind::Parameter { .. }, InputData::Members(_)) => Some("members"),
+            (SymbolKind::Set { .. }, InputData::Values(..)) => Some("numbers"),
+            (SymbolKind::Parameter { .. }, InputData::Members(..)) => Some("members"),
             _ => None,
         };
         if let Some(what) = wrong_kind {
@@ -88,39 +93,25 @@ impl Compiler {
             );
         }
         let dim = symbol.dim();
-        let mut keys: Vec<Label> = Vec::new();
-        for (n, key) in input.data.keys().enumerate() {
-            if key.len() != dim {
-                return self.fail(
-                    Diagnostic::error(
-                        "E0377",
-                        span,
-                        format!(
-                            "`{}` has {dim} index position{}; {} given for it has {}",
-                            symbol.name,
-                            if dim == 1 { "" } else { "s" },
-                            record(&symbol.name, key, n),
-                            key.len()
-                        ),
-                    )
-                    .label("declared here"),
-                );
-            }
-            for (p, text) in key.iter().enumerate() {
-                let label = self.store.universe.intern(text);
-                if let Some(DomainPosition::Set(d)) = symbol.domain.get(p) {
-                    let d = self.symbols.root(*d);
-                    self.check_member(&symbol.name, key, p, d, label, defines, span)?;
-                }
-                keys.push(label);
-            }
+        let given = input.data.keys();
+        if let Some((n, key)) = given.unlike(dim) {
+            return self.fail(
+                Diagnostic::error(
+                    "E0377",
+                    span,
+                    format!(
+                        "`{}` has {dim} index position{}; {} given for it has {}",
+                        symbol.name,
+                        if dim == 1 { "" } else { "s" },
+                        record(&symbol.name, &key, n),
+                        key.len()
+                    ),
+                )
+                .label("declared here"),
+            );
         }
-        let values = match &input.data {
-            InputData::Members(list) => vec![1.0; list.len()],
-            InputData::Values(list) => list.iter().map(|r| r.1).collect(),
-        };
         if let SymbolKind::Set { singleton: true } = symbol.kind
-            && values.len() > 1
+            && given.len() > 1
         {
             return self.fail(
                 Diagnostic::error(
@@ -129,28 +120,48 @@ impl Compiler {
                     format!(
                         "`{}` is a singleton; {} members were given",
                         symbol.name,
-                        values.len()
+                        given.len()
                     ),
                 )
                 .label("declared here"),
             );
         }
-        let table = self.store.table_mut(symbol.table);
-        *table = Table::new(dim, table.default_value());
-        if dim == 0 {
-            table.set(&[], values.last().copied().unwrap_or(0.0));
-            return Ok(());
+        // Labels are looked up when a record first has them: the universe keeps the order of the records.
+        let unknown = |p: usize| vec![None; given.labels(p).len()];
+        let mut known: Vec<Vec<Option<Label>>> = (0..dim).map(unknown).collect();
+        let mut keys: Vec<Label> = Vec::with_capacity(given.len() * dim);
+        for r in 0..given.len() {
+            for (p, known) in known.iter_mut().enumerate() {
+                let code = given.codes(p)[r] as usize;
+                let label = match known[code] {
+                    Some(label) => label,
+                    None => {
+                        let label = self.store.universe.intern(&given.labels(p)[code]);
+                        if let Some(DomainPosition::Set(d)) = symbol.domain.get(p) {
+                            let d = self.symbols.root(*d);
+                            self.check_member(
+                                &symbol.name,
+                                given,
+                                [r, p],
+                                d,
+                                label,
+                                defines,
+                                span,
+                            )?;
+                        }
+                        known[code] = Some(label);
+                        label
+                    }
+                };
+                keys.push(label);
+            }
         }
-        for (key, &v) in keys.chunks_exact(dim).zip(&values) {
-            table.set(key, v);
-        }
-        table.tidy();
-        if let InputData::Members(list) = &input.data {
-            let labels = keys.chunks_exact(dim);
-            let texts = labels.zip(list).filter(|(_, r)| !r.1.is_empty());
-            let texts: FxHashMap<_, _> = texts
-                .map(|(k, r)| (k.into(), r.1.as_str().into()))
-                .collect();
+        fill(self.store.table_mut(symbol.table), &keys, &input.data);
+        if let InputData::Members(_, texts) = &input.data {
+            let labels = keys.chunks_exact(dim.max(1));
+            let texts = labels.zip(texts).filter(|(_, t)| !t.is_empty());
+            let texts: FxHashMap<_, _> =
+                texts.map(|(k, t)| (k.into(), t.as_str().into())).collect();
             self.store.texts.insert(symbol.table, texts);
             let ordered = dim > 1 || keys.is_sorted();
             self.symbols.get_mut(s).unordered = !ordered;
@@ -164,8 +175,8 @@ impl Compiler {
     fn check_member(
         &mut self,
         name: &str,
-        key: &[String],
-        position: usize,
+        keys: &Keys,
+        [r, position]: [usize; 2],
         set: SymbolId,
         label: Label,
         defines: &[bool],
@@ -185,16 +196,17 @@ impl Compiler {
             self.symbols.get_mut(set).has_data = true;
             return Ok(());
         }
+        let key = keys.key(r);
         let members = table.all_keys().iter().take(10_000);
         let members = members.map(|&l| self.store.universe.name(l));
-        let near = nearest(&key[position], members).map(str::to_string);
+        let near = nearest(key[position], members).map(str::to_string);
         let (set_name, declared) = (domain.name.clone(), domain.declared);
         let d = Diagnostic::error(
             "E0377",
             span,
             format!(
                 "{} was given from outside, but `{}` is not a member of `{set_name}`",
-                record(name, key, 0),
+                record(name, &key, r),
                 key[position]
             ),
         )
@@ -241,10 +253,103 @@ impl Compiler {
 }
 
 /// `d('a','b')` as a message names it.
-fn record(name: &str, key: &[String], number: usize) -> String {
+fn record(name: &str, key: &[impl AsRef<str>], number: usize) -> String {
     if key.is_empty() {
         return format!("record {}", number + 1);
     }
-    let labels: Vec<String> = key.iter().map(|l| format!("'{l}'")).collect();
+    let labels: Vec<String> = key.iter().map(|l| format!("'{}'", l.as_ref())).collect();
     format!("`{name}({})`", labels.join(","))
+}
+
+/// Puts records into an empty table.
+fn fill(table: &mut Table, keys: &[Label], data: &InputData) {
+    let dim = table.dim();
+    *table = Table::new(dim, table.default_value());
+    let value = |r: usize| match data {
+        InputData::Values(_, values) => values[r],
+        InputData::Members(..) => 1.0,
+    };
+    let count = data.keys().len();
+    if dim == 0 {
+        // A scalar: one record without labels.
+        if let InputData::Values(_, values) = data {
+            table.set(&[], values.last().copied().unwrap_or(0.0));
+        }
+        return;
+    }
+    let keys = keys.chunks_exact(dim);
+    if keys.clone().is_sorted_by(|a, b| a < b) {
+        let values = (0..count).map(value).collect();
+        *table = Table::from_sorted(
+            dim,
+            table.default_value(),
+            keys.flatten().copied().collect(),
+            values,
+        );
+        return;
+    }
+    // Of equal keys the last one stays.
+    keys.enumerate()
+        .for_each(|(r, key)| table.append(key, value(r)));
+    table.tidy();
+}
+
+impl Program {
+    /// Puts other numbers in place of those that were given from outside when the text was compiled. False where the text must be
+    /// compiled again: a set changes, or the text asked for data, or a label is new.
+    pub fn replace_numbers(&mut self, before: &[Arc<Input>], now: &[Arc<Input>]) -> bool {
+        let alike = |(a, b): (&Arc<Input>, &Arc<Input>)| a.name.eq_ignore_ascii_case(&b.name);
+        if before.len() != now.len() || !before.iter().zip(now).all(alike) {
+            return false;
+        }
+        let changed = before.iter().zip(now).filter(|(a, b)| !Arc::ptr_eq(a, b));
+        changed.fold(true, |all, (a, b)| all && self.replace(&a.data, b))
+    }
+
+    fn replace(&mut self, before: &InputData, now: &Input) -> bool {
+        let (InputData::Values(..), Some(s), false) =
+            (&now.data, self.symbols.find(&now.name), self.asked_for_data)
+        else {
+            return false;
+        };
+        let symbol = self.symbols.get(s);
+        let given = now.data.keys();
+        if !matches!(symbol.kind, SymbolKind::Parameter { .. })
+            || given.unlike(symbol.dim()).is_some()
+        {
+            return false;
+        }
+        // Where any label may stand, new ones would come after those of the text.
+        let any = |p: &DomainPosition| !matches!(p, DomainPosition::Set(d) if *d != UNIVERSE);
+        if symbol.domain.iter().any(any) && given != before.keys() {
+            return false;
+        }
+        let mut columns = Vec::with_capacity(symbol.dim());
+        for (p, domain) in symbol.domain.iter().enumerate() {
+            let set = match domain {
+                DomainPosition::Set(d) if *d != UNIVERSE => {
+                    let set = self.symbols.get(self.symbols.root(*d));
+                    Some(self.store.table(set.table))
+                }
+                _ => None,
+            };
+            let labels = given.labels(p).iter().map(|text| {
+                let label = self.store.universe.get(text)?;
+                set.is_none_or(|t| t.find(&[label]).is_some())
+                    .then_some(label)
+            });
+            let Some(labels) = labels.collect::<Option<Vec<Label>>>() else {
+                return false;
+            };
+            columns.push(labels);
+        }
+        let key = |r: usize| {
+            let label = move |(p, labels): (usize, &Vec<Label>)| labels[given.codes(p)[r] as usize];
+            columns.iter().enumerate().map(label)
+        };
+        let keys: Vec<Label> = (0..given.len()).flat_map(key).collect();
+        let table = symbol.table;
+        fill(self.store.table_mut(table), &keys, &now.data);
+        true
+    }
 }

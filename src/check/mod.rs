@@ -37,6 +37,8 @@ use crate::source::{Ending, Known, PreprocessOptions, SourceMap, Span, Switches,
 use crate::syntax::Parser;
 use crate::syntax::ast::StmtKind;
 use node::{Code, DataFunction, EquationDef, Part, Slot, SymbolId};
+use std::cell::Cell;
+use std::sync::Arc;
 use symbols::{DomainPosition, Store, Symbol, SymbolKind, Symbols, UNIVERSE};
 
 /// An error was reported; there is nothing more to say.
@@ -46,17 +48,17 @@ pub(crate) struct Failed;
 /// More errors than this are not reported.
 const MAX_ERRORS: usize = 30;
 
-/// A checked program, ready to run.
-#[derive(Debug)]
+/// A checked program, ready to run. A clone shares the code and has its own data.
+#[derive(Clone, Debug)]
 pub struct Program {
     /// All names.
     pub symbols: Symbols,
     /// Data as the data statements left it.
     pub store: Store,
     /// Definitions of equations.
-    pub equations: Vec<EquationDef>,
+    pub equations: Arc<Vec<EquationDef>>,
     /// Statements.
-    pub code: Vec<Code>,
+    pub code: Arc<Vec<Code>>,
     /// Whether the text itself shows numbers: a `display`, `put`, `draw` or `execute_unload`.
     pub shows_numbers: bool,
     /// Number of slots the frame needs.
@@ -65,6 +67,8 @@ pub struct Program {
     pub map: SourceMap,
     /// Errors and warnings, in the order of the text.
     pub diagnostics: Vec<Diagnostic>,
+    /// The text asked for data while it was read (`$eval card(i)`): with other data it may be another program.
+    pub asked_for_data: bool,
 }
 
 impl Program {
@@ -109,6 +113,8 @@ pub(crate) struct Compiler {
     taken: usize,
     /// Data from outside the text.
     inputs: input::Inputs,
+    /// [`Program::asked_for_data`]
+    asked_for_data: Cell<bool>,
     /// What solvers take.
     solver_options: &'static [&'static OptionTable],
     modes: Switches,
@@ -181,12 +187,13 @@ pub fn compile(
     Ok(Program {
         symbols: c.symbols,
         store: c.store,
-        equations: c.equations,
-        code,
+        equations: Arc::new(c.equations),
+        code: Arc::new(code),
         shows_numbers: c.shows_numbers,
         slots: c.slots,
         map: parser.into_map(),
         diagnostics: c.diagnostics,
+        asked_for_data: c.asked_for_data.get(),
     })
 }
 
@@ -232,6 +239,7 @@ impl Compiler {
             max_memory: None,
             taken: 0,
             inputs: input::Inputs::default(),
+            asked_for_data: Cell::new(false),
             solver_options: &[],
             modes: Switches::default(),
             lost: follow::Lost::default(),
@@ -332,6 +340,7 @@ impl Known for Compiler {
     }
 
     fn set_text(&self, name: &str, what: &str) -> Option<String> {
+        self.asked_for_data.set(true);
         let s = self
             .symbols
             .get(self.symbols.root(self.symbols.find(name)?));
@@ -402,6 +411,7 @@ impl Known for Compiler {
     }
 
     fn card(&self, name: &str) -> Option<usize> {
+        self.asked_for_data.set(true);
         let s = self.symbols.get(self.symbols.find(name)?);
         match s.kind {
             SymbolKind::Set { .. } | SymbolKind::Alias(_) | SymbolKind::Parameter { .. } => {
@@ -412,6 +422,7 @@ impl Known for Compiler {
     }
 
     fn scalar_value(&self, name: &str) -> Option<f64> {
+        self.asked_for_data.set(true);
         let s = self.symbols.get(self.symbols.find(name)?);
         match s.kind {
             SymbolKind::Parameter { .. } if s.dim() == 0 => {

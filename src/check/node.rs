@@ -9,8 +9,7 @@ use crate::model::problem_type::ProblemType;
 use crate::source::Span;
 pub use crate::syntax::ast::{AggregateOp, BinaryOp, Relation, Sense};
 use std::any::Any;
-use std::cell::RefCell;
-use std::rc::Rc;
+use std::sync::{Arc, Mutex, OnceLock};
 
 /// Number of a symbol.
 pub type SymbolId = u32;
@@ -27,7 +26,7 @@ pub enum Part {
     /// A label of the text.
     Label(Label),
     /// The label `offset` places after another in a set.
-    Lag(Rc<Lag>),
+    Lag(Arc<Lag>),
     /// The one element of a singleton set, at a position of it.
     Singleton(TableId, u8),
 }
@@ -240,7 +239,7 @@ pub struct Domain {
     /// Conjuncts of the condition.
     pub conditions: Vec<Node>,
     /// How to enumerate: what the run makes of it at first use, and only the run knows.
-    pub plan: RefCell<Option<Rc<dyn Any>>>,
+    pub plan: Mutex<Option<Arc<dyn Any + Send + Sync>>>,
 }
 
 /// The definition of an equation.
@@ -293,7 +292,7 @@ pub struct Code {
     /// Where it is.
     pub span: Span,
     /// Tables that it may scan, found when first run: they must be tidy before.
-    pub scans: std::cell::OnceCell<Box<[TableId]>>,
+    pub scans: OnceLock<Box<[TableId]>>,
 }
 
 impl Code {
@@ -302,7 +301,7 @@ impl Code {
         Self {
             kind,
             span,
-            scans: std::cell::OnceCell::new(),
+            scans: OnceLock::new(),
         }
     }
 }

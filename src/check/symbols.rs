@@ -6,7 +6,7 @@ use crate::data::universe::{Label, Universe};
 use crate::source::Span;
 use crate::syntax::ast::VariableKind;
 use rustc_hash::FxHashMap;
-use std::rc::Rc;
+use std::sync::Arc;
 
 /// Order of a variable's or equation's attribute tables behind `Symbol::table`.
 pub mod attribute {
@@ -59,13 +59,13 @@ pub enum SymbolKind {
     /// An equation; its definition's index once there is one.
     Equation(Option<usize>),
     /// A model.
-    Model(Rc<ModelInfo>),
+    Model(Arc<ModelInfo>),
     /// A file for `put`: name outside.
     File(Box<str>),
     /// An acronym: its number.
     Acronym(u32),
     /// A figure.
-    Figure(Rc<FigureCode>),
+    Figure(Arc<FigureCode>),
 }
 
 /// What a model contains, unresolved until a solve (so that `/all/` means all that is known then).
@@ -157,7 +157,7 @@ impl Symbol {
 pub const UNIVERSE: SymbolId = 0;
 
 /// All data of a run.
-#[derive(Default, Debug)]
+#[derive(Clone, Default, Debug)]
 pub struct Store {
     /// Labels.
     pub universe: Universe,
@@ -218,7 +218,7 @@ impl Store {
 }
 
 /// All names.
-#[derive(Default, Debug)]
+#[derive(Clone, Default, Debug)]
 pub struct Symbols {
     list: Vec<Symbol>,
     index: FxHashMap<String, SymbolId>,

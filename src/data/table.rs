@@ -15,7 +15,7 @@ use super::value::is_eps;
 use hashbrown::HashTable;
 use std::cell::{Cell, OnceCell, RefCell};
 use std::hash::Hasher;
-use std::rc::Rc;
+use std::sync::Arc;
 
 /// Records of `dim` labels with a value each.
 #[derive(Clone, Debug)]
@@ -29,7 +29,7 @@ pub struct Table {
     /// Removed records that still take a place (their value is the default).
     dead: usize,
     index: OnceCell<KeyIndex>,
-    orders: RefCell<Vec<(u32, Rc<Order>)>>,
+    orders: RefCell<Vec<(u32, Arc<Order>)>>,
     distinct: OnceCell<Vec<u32>>,
     special: Special,
     /// The record that a scan has come to: it is mostly the one that is asked for.
@@ -480,12 +480,12 @@ impl Table {
     }
 
     /// Records grouped by the positions in `mask` (bit p for position p; not empty, not all). Tidy tables.
-    pub fn order(&self, mask: u32) -> Rc<Order> {
+    pub fn order(&self, mask: u32) -> Arc<Order> {
         debug_assert!(self.is_tidy());
         if let Some((_, o)) = self.orders.borrow().iter().find(|(m, _)| *m == mask) {
             return o.clone();
         }
-        let order = Rc::new(self.build_order(mask));
+        let order = Arc::new(self.build_order(mask));
         self.orders.borrow_mut().push((mask, order.clone()));
         order
     }

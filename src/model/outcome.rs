@@ -160,7 +160,7 @@ pub struct Outcome {
     pub ray: Vec<f64>,
     /// One line for the user where there is more to say.
     pub message: Option<String>,
-    /// For linear programs solved to a vertex: the basis, a state per column and row of the scaled problem.
+    /// For linear programs solved to a vertex: the basis.
     pub basis: Option<Basis>,
 }
 

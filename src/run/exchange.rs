@@ -84,7 +84,7 @@ impl Machine<'_> {
     }
 
     fn unload(&mut self, file: &str, items: &[Wanted], span: Span) {
-        let equations = std::rc::Rc::clone(&self.equations);
+        let equations = std::sync::Arc::clone(&self.equations);
         let done = unload(
             &self.symbols,
             &mut self.store,

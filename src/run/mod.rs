@@ -30,7 +30,7 @@ mod support;
 
 pub use eval::Frame;
 pub use generate::{GenerateOptions, Generated};
-pub use options::{ListOptions, ModelState, Options};
+pub use options::{Bases, ListOptions, ModelState, Options};
 pub use study::{Studied, StudyChoice};
 
 use crate::check::Program;
@@ -45,8 +45,7 @@ use crate::source::{SourceMap, Span};
 use random::Random;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::cell::{Cell, RefCell};
-use std::rc::Rc;
-use std::sync::MutexGuard;
+use std::sync::{Arc, MutexGuard};
 
 /// More execution errors than this are counted but not kept.
 const MAX_KEPT_ERRORS: usize = 30;
@@ -71,7 +70,7 @@ pub struct Machine<'h> {
     /// All data.
     pub store: Store,
     /// Definitions of equations.
-    pub equations: Rc<Vec<EquationDef>>,
+    pub equations: Arc<Vec<EquationDef>>,
     /// Where everything stands.
     pub map: SourceMap,
     /// The statements, when the run is over.
@@ -119,7 +118,11 @@ pub struct Machine<'h> {
 
 impl<'h> Machine<'h> {
     /// A machine for a program that compiled.
-    pub fn new(program: Program, host: &'h mut dyn Host, options: Options) -> (Self, Vec<Code>) {
+    pub fn new(
+        program: Program,
+        host: &'h mut dyn Host,
+        options: Options,
+    ) -> (Self, Arc<Vec<Code>>) {
         let mut table_symbols = vec![0; program.store.tables.len()];
         for (id, s) in program.symbols.iter() {
             if matches!(s.kind, SymbolKind::Alias(_)) {
@@ -140,7 +143,7 @@ impl<'h> Machine<'h> {
         let machine = Self {
             symbols: program.symbols,
             store: program.store,
-            equations: Rc::new(program.equations),
+            equations: program.equations,
             map: program.map,
             code: Vec::new(),
             options,

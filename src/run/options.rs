@@ -3,12 +3,14 @@
 use crate::check::node::{OptionCode, SymbolId};
 use crate::check::option::is_statement_option;
 use crate::model::option::{Accepted, Refused, check, switch};
+use crate::model::outcome::Basis;
 use crate::report::json::SharedReport;
 use crate::report::textfile::TextFile;
 use crate::solve::registry::OPTION_TABLES;
 use crate::source::{Span, named_constant};
 use rustc_hash::FxHashMap;
 use std::cell::Cell;
+use std::sync::Arc;
 
 /// Options of a run: from the command line, and from `option` statements.
 #[derive(Clone, Debug)]
@@ -49,7 +51,12 @@ pub struct Options {
     pub report: SharedReport,
     /// The statement that runs just now.
     pub at: Cell<Span>,
+    /// Where earlier solves of each model ended; the next one starts there.
+    pub bases: Bases,
 }
+
+/// By model: the basis of its last solve as a linear program.
+pub type Bases = FxHashMap<SymbolId, Arc<Basis>>;
 
 /// What `bmod list` prints.
 #[derive(Clone, Debug)]
@@ -81,6 +88,7 @@ impl Default for Options {
             study: None,
             report: SharedReport::default(),
             at: Cell::default(),
+            bases: Bases::default(),
         }
     }
 }

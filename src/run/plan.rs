@@ -16,7 +16,7 @@ use crate::check::symbols::DomainPosition;
 use crate::check::visit::Visitor;
 use crate::data::sort::sort_tuples;
 use crate::data::universe::Label;
-use std::rc::Rc;
+use std::sync::{Arc, PoisonError};
 
 /// How to enumerate a domain.
 #[derive(Debug)]
@@ -142,15 +142,16 @@ fn cost(branches: &[Branch]) -> f64 {
 
 impl Machine<'_> {
     /// The plan of a domain.
-    pub(super) fn plan(&self, d: &Domain, wanted: Wanted) -> Rc<Plan> {
-        let known = d.plan.borrow().clone();
-        if let Some(Ok(p)) = known.map(Rc::downcast::<Plan>)
+    pub(super) fn plan(&self, d: &Domain, wanted: Wanted) -> Arc<Plan> {
+        let known = || d.plan.lock().unwrap_or_else(PoisonError::into_inner);
+        let last = known().clone();
+        if let Some(Ok(p)) = last.map(Arc::downcast::<Plan>)
             && p.premises.iter().all(|p| self.holds_still(p))
         {
             return p;
         }
-        let p = Rc::new(self.make_plan(d, wanted));
-        *d.plan.borrow_mut() = Some(p.clone());
+        let p = Arc::new(self.make_plan(d, wanted));
+        *known() = Some(p.clone());
         p
     }
 

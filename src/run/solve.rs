@@ -11,16 +11,19 @@ use crate::data::value::{EPS, NA};
 use crate::diag::Diagnostic;
 use crate::model::instance::{ColumnKind, Instance, Relation};
 use crate::model::origin::{Blocks, Origin};
-use crate::model::outcome::{ModelStatus, SolverStatus};
+use crate::model::outcome::{Basis, ModelStatus, SolverStatus};
 use crate::model::problem_type::ProblemType;
 use crate::report::names::Names;
 use crate::report::why::{Explanation, explain};
 use crate::report::{json, levels, listing, solution, summary};
-use crate::solve::answer::{Answer, answer, certify};
+use crate::solve::answer::{Answer, answer_with, certify};
+use crate::solve::backend::Task;
 use crate::solve::mip::{self, Aim};
+use crate::solve::registry::BACKENDS;
 use crate::solve::why;
 use crate::solve::{Budget, Limits, Monitor, Progress, Settings, range};
 use crate::source::Span;
+use std::sync::Arc;
 
 /// A solver's line to the run.
 struct RunMonitor<'a, 'h> {
@@ -176,10 +179,19 @@ impl Machine<'_> {
         };
         let budget = Budget::new(&mut monitor, self.limits(s.model), self.options.log);
         let instance = &generated.instance;
-        let result = answer(s.using, choice.as_deref(), instance, &settings, &budget);
+        let start = self.start(s.model, instance, &settings);
+        let task = Task {
+            basis: start.as_deref(),
+            ..Task::new(s.using, instance).by(choice.as_deref())
+        };
+        let result = answer_with(BACKENDS, &task, &settings, &budget);
         match result {
             Ok(mut a) => {
                 self.certified(s, &generated, &mut a);
+                if let Some(basis) = &a.outcome.basis {
+                    let basis = Arc::new(basis.clone());
+                    self.options.bases.insert(s.model, basis);
+                }
                 self.study_answer(&generated, &a);
                 let end = self.elapsed();
                 let seconds = json::Seconds {
@@ -264,6 +276,14 @@ impl Machine<'_> {
             evaluation_failures: count("domlim", 0.0) as u64,
             memory: self.options.max_memory,
         }
+    }
+
+    /// The basis that the last solve of a model has left, if it fits; `bratio = 1` and a `method` ask for none.
+    fn start(&self, model: SymbolId, g: &Instance, settings: &Settings) -> Option<Arc<Basis>> {
+        let basis = self.options.bases.get(&model)?;
+        let fits = basis.len() == g.column_count() + g.row_count();
+        let wanted = self.model_option(model, "bratio", 0.25) < 1.0;
+        (fits && wanted && settings.option("method").is_none()).then(|| Arc::clone(basis))
     }
 
     /// What a search over discrete columns is to reach.

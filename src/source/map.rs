@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 pub struct FileId(pub u32);
 
 /// One file as it was read.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct SourceFile {
     /// Path as the person wrote it.
     pub name: String,
@@ -42,7 +42,7 @@ struct Segment {
 }
 
 /// All files of a run, and where each piece of the expanded text came from.
-#[derive(Default, Debug)]
+#[derive(Clone, Default, Debug)]
 pub struct SourceMap {
     files: Vec<SourceFile>,
     expanded: String,

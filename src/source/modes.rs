@@ -1,7 +1,7 @@
 //! Switches that directives set.
 
 use super::Span;
-use std::rc::Rc;
+use std::sync::Arc;
 
 /// Switches set by `$on…`/`$off…` directives.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
@@ -30,7 +30,7 @@ pub struct Modes {
 
 /// The switches over the text of a statement: directives may stand inside it.
 #[derive(Clone, Debug)]
-pub struct Switches(Rc<[(u32, Modes)]>);
+pub struct Switches(Arc<[(u32, Modes)]>);
 
 impl Switches {
     /// From where in the expanded text which switches are in force; the first holds from the start.

@@ -24,6 +24,7 @@ use super::{FileId, Modes, Outcome, SourceMap, Span, Switches, refuse};
 use crate::data::input::Input;
 use crate::diag::Diagnostic;
 use crate::host::{Host, HostError};
+use std::sync::Arc;
 
 /// Files included by files.
 const DEEPEST_INCLUDE: usize = 40;
@@ -46,7 +47,7 @@ pub struct PreprocessOptions {
     /// What the data in the text may take, in bytes.
     pub max_memory: Option<usize>,
     /// Data from outside the text.
-    pub inputs: Vec<Input>,
+    pub inputs: Vec<Arc<Input>>,
 }
 
 /// What a directive may ask about the symbols known so far.

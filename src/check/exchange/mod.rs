@@ -475,6 +475,7 @@ impl Compiler {
         let Some((file, span, items)) = self.output.take().filter(|o| !o.2.is_empty()) else {
             return Ok(());
         };
+        self.asked_for_data.set(true);
         let files = unload(
             &self.symbols,
             &mut self.store,

@@ -19,7 +19,7 @@ use crate::report::figure::{Anchor, Element, Paint, Scene, Shape, Style, png, sv
 use crate::report::format::{self, Value};
 use crate::report::textfile::Item;
 use crate::source::Span;
-use std::rc::Rc;
+use std::sync::Arc;
 
 /// Pixels of a PNG per pixel of the SVG.
 const PNG_SCALE: f64 = 2.0;
@@ -51,7 +51,7 @@ impl Machine<'_> {
         let SymbolKind::Figure(code) = &symbol.kind else {
             return;
         };
-        let code = Rc::clone(code);
+        let code = Arc::clone(code);
         let file = file.map_or_else(|| format!("{}.svg", symbol.name), str::to_string);
         let lower = file.to_lowercase();
         if !lower.ends_with(".svg") && !lower.ends_with(".png") {

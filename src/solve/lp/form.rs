@@ -15,6 +15,7 @@
 //! with respect to the right-hand side (rows) or to the bound (columns).
 
 use crate::model::instance::{INFINITE, Instance, Relation};
+use crate::model::outcome::{Basis, BasisStatus};
 use crate::solve::{Outcome, SolveError};
 
 /// A sparse matrix in compressed form; "lines" are columns or rows.
@@ -280,6 +281,31 @@ impl Form {
         validate(instance)?;
         let power = |d: &Definition| d.coefficient.to_bits().trailing_zeros() >= 52;
         Ok(Self::made(instance, definition(instance).filter(power)))
+    }
+
+    /// The part of a basis of the instance that belongs to the problem.
+    pub fn basis(&self, of_instance: &[BasisStatus]) -> Basis {
+        let columns = self.columns.iter().map(|&j| j as usize);
+        let rows = self
+            .rows
+            .iter()
+            .map(|&i| self.instance_columns + i as usize);
+        columns.chain(rows).map(|k| of_instance[k]).collect()
+    }
+
+    /// A basis of the problem as one of the instance; what the problem does not have is basic.
+    pub fn instance_basis(&self, basis: &[BasisStatus]) -> Basis {
+        let mut out = vec![BasisStatus::Basic; self.instance_columns + self.instance_rows];
+        let columns = self.columns.iter().map(|&j| j as usize);
+        let rows = self
+            .rows
+            .iter()
+            .map(|&i| self.instance_columns + i as usize);
+        columns
+            .chain(rows)
+            .zip(basis)
+            .for_each(|(k, &status)| out[k] = status);
+        out
     }
 
     fn made(instance: &Instance, definition: Option<Definition>) -> Self {

@@ -236,13 +236,7 @@ fn solve(
         (Method::Crossover, _) => finished(&scaled, accuracy, budget),
         (Method::Simplex, _) => simplex_only(&scaled, accuracy, budget),
         (Method::Auto, _) => auto(&scaled, accuracy, budget),
-        (Method::Restart(from), _) => {
-            let (columns, rows) = from.split_at(instance.column_count());
-            let columns = form.columns.iter().map(|&j| columns[j as usize]);
-            let rows = form.rows.iter().map(|&i| rows[i as usize]);
-            let basis = columns.chain(rows).collect();
-            restarted(&scaled, &basis, accuracy, budget)
-        }
+        (Method::Restart(from), _) => restarted(&scaled, &form.basis(from), accuracy, budget),
     };
     budget.spend(answer.iterations);
     let (claim, status) = match answer.ended {
@@ -284,7 +278,7 @@ fn solve(
         solver: answer.solver,
         ray,
         message,
-        basis: answer.basis,
+        basis: answer.basis.map(|b| form.instance_basis(&b)),
     })
 }
 

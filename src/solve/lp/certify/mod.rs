@@ -138,9 +138,10 @@ pub(super) fn certify_by(
             (upper, lower) = (value.upper, value.lower);
         }
         let near = scaling.carry(form.near(outcome));
-        let basis = outcome.basis.as_deref();
-        let basis = basis.filter(|b| b.len() == p.n() + p.m());
-        let [x, y] = vertex(&p, near, basis, budget);
+        let length = instance.column_count() + instance.row_count();
+        let basis = outcome.basis.as_deref().filter(|b| b.len() == length);
+        let basis = basis.map(|b| form.basis(b));
+        let [x, y] = vertex(&p, near, basis.as_deref(), budget);
         if upper.is_err() {
             upper = side(&p, &Polyhedron::primal(&p), x, budget, true);
         }
