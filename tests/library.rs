@@ -230,3 +230,136 @@ fn a_folder_of_files() {
     assert!(run.figures().any(|(name, _)| name == "wall.svg"));
     assert!(control.progress().message.contains("kinematic"));
 }
+
+/// Texts of data that make a difference while the text is read.
+const ASKING: &str =
+    "Set i / a /;  Scalar n / 2 /;\n$eval m card(i)\n$eval k n\nScalar y, z;  y = %m%;  z = %k%;";
+
+#[test]
+fn what_is_kept_changes_no_answer() {
+    let mut kept = Model::from_text("shop.blk", SHOP);
+    kept.keep(true);
+    let mut fresh = Model::from_text("shop.blk", SHOP);
+    for k in 0..6 {
+        let mut give = |m: &mut Model| match k {
+            1 => drop(m.set_scalar("room", 7.0)),
+            2 => drop(m.set_parameter("price", [("b", 1.0), ("a", 4.0)])),
+            3 => drop(m.set_parameter("price", [("a", 2.0)])),
+            4 => drop(m.set_members("i", ["a", "b", "c"])),
+            5 => drop(m.set_parameter("price", [("c", 9.0)])),
+            _ => {}
+        };
+        give(&mut kept);
+        give(&mut fresh);
+        let (a, b) = (run(&kept), run(&fresh));
+        assert_eq!(a.messages(), b.messages());
+        assert_eq!(a.solves()[0].objective, b.solves()[0].objective, "{k}");
+        for name in ["i", "price", "seen"] {
+            let columns = |r: &bmod::Run| r.symbol(name).expect("declared").columns();
+            assert_eq!(columns(&a), columns(&b), "{k}: {name}");
+        }
+        assert_eq!(a.files(), b.files());
+    }
+    // A label that is not there is found out, and the next run is right again.
+    kept.set_parameter("price", [("d", 1.0)]);
+    assert!(run(&kept).messages().contains("`d` is not a member of `i`"));
+    kept.set_parameter("price", [("c", 9.0)]);
+    assert_eq!(
+        run(&kept).solves()[0].objective,
+        run(&fresh).solves()[0].objective
+    );
+}
+
+#[test]
+fn a_text_that_asks_for_data_is_compiled_again() {
+    let mut model = Model::from_text("m.blk", ASKING);
+    model.keep(true);
+    let values = |m: &Model| {
+        let r = run(m);
+        (r.value("y", []).expect("y"), r.value("z", []).expect("z"))
+    };
+    assert_eq!(values(&model), (1.0, 2.0));
+    model.set_scalar("n", 5.0);
+    assert_eq!(values(&model), (1.0, 5.0));
+    model.set_scalar("n", 6.0);
+    model.set_members("i", ["x", "y"]);
+    assert_eq!(values(&model), (2.0, 6.0));
+
+    // So is one whose files change.
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("m.blk");
+    let write =
+        |name: &str, text: &str| std::fs::write(folder.path().join(name), text).expect("written");
+    write(
+        "m.blk",
+        "$include n.inc\n$if exist more.inc $include more.inc\nScalar y;  y = n;",
+    );
+    write("n.inc", "Scalar n / 1 /;");
+    let mut model = Model::from_file(&path).expect("there");
+    model.keep(true);
+    let y = |m: &Model| run(m).value("y", []).expect("y");
+    assert_eq!((y(&model), y(&model)), (1.0, 1.0));
+    let digest = model.digest(&Options::default(), &[]);
+    write("n.inc", "Scalar n / 2 /;");
+    assert_eq!(y(&model), 2.0);
+    assert_ne!(model.digest(&Options::default(), &[]), digest);
+    write("more.inc", "n = 3;");
+    assert_eq!(y(&model), 3.0);
+}
+
+#[test]
+fn the_next_solve_starts_at_the_last_basis() {
+    // An assignment of 20 to 20 with costs that differ everywhere.
+    let text = "Set i / 1*20 /;  Alias(i, j);  Parameter c(i,j), need(j);
+        c(i,j) = 1 + mod(ord(i)*37 + ord(j)*ord(j)*11, 101)/10;  need(j) = 1;  Scalar shift / 0 /;
+        Positive variable x(i,j);  Variable z;  Equations cost, row(i), column(j);
+        cost..  z =e= sum((i,j), c(i,j)*x(i,j));
+        row(i)..  sum(j, x(i,j)) =l= 1.5 + shift;  column(j)..  sum(i, x(i,j)) =g= need(j);
+        Model m / all /;  %more% solve m using lp minimizing z;";
+    let mut model = Model::from_text("m.blk", text);
+    model.define("more", "").keep(true);
+    let first = run(&model);
+    let again = run(&model);
+    let iterations = |r: &bmod::Run| r.solves()[0].iterations;
+    assert!(iterations(&first) > 15 && iterations(&again) == 0);
+    assert_eq!(first.solves()[0].objective, again.solves()[0].objective);
+    model.set_scalar("shift", 0.01);
+    let moved = run(&model);
+    assert!(
+        iterations(&moved) < iterations(&first) / 2,
+        "{}",
+        iterations(&moved)
+    );
+    let mut fresh = model.clone();
+    fresh.keep(false);
+    let (a, b) = (
+        moved.solves()[0].objective,
+        run(&fresh).solves()[0].objective,
+    );
+    assert!((a.expect("solved") - b.expect("solved")).abs() < 1e-9);
+    // `bratio = 1` asks for no basis.
+    model.define("more", "option bratio = 1;");
+    assert!(iterations(&run(&model)) > 15 && iterations(&run(&model)) > 15);
+}
+
+#[test]
+fn columns_of_many_records() {
+    let labels = |n: usize| (0..n).map(|k| format!("l{k}")).collect::<Vec<_>>();
+    let codes = (0..40u32).map(|k| k * 7 % 40).collect::<Vec<_>>();
+    let keys = bmod::Keys::new(vec![labels(40)], vec![codes.clone()]).expect("as many");
+    assert_eq!(keys.duplicate(), None);
+    let mut model = Model::from_text(
+        "m.blk",
+        "Set i;  Parameter p(i<);  Scalar s;  s = sum(i, p(i));",
+    );
+    model.set_values("p", keys, codes.iter().map(|&c| f64::from(c)).collect());
+    let done = run(&model);
+    assert_eq!(done.value("s", []), Ok(780.0));
+    assert_eq!(done.value("p", "l7"), Ok(7.0));
+    let p = done.symbol("p").expect("declared").columns();
+    assert_eq!((p.keys.len(), p.values[0].0), (39, "value")); // 0 is not stored
+    assert_eq!(p.keys.key(0), ["l7"]);
+    let twice = bmod::Keys::new(vec![vec!["a".into(), "A ".into()]], vec![vec![0, 1]]);
+    assert_eq!(twice.and_then(|k| k.duplicate()), Some(1));
+    assert_eq!(bmod::Keys::new(vec![vec!["a".into()]], vec![vec![1]]), None);
+}

@@ -53,6 +53,8 @@ def _keys(name: str, columns: List[Any]) -> List[Key]:
 def _numbers(name: str, values: Any) -> "np.ndarray[Any, Any]":
     import numpy as np
 
+    if hasattr(values, "array") and hasattr(values.dtype, "na_value") and values.dtype.kind in "biuf":
+        values = values.to_numpy(dtype="float64", na_value=np.nan)  # pandas' own numbers, with NA
     array = np.asarray(values)
     if array.dtype.kind not in "biuf":
         for k, v in enumerate(array.ravel() if isinstance(values, np.ndarray) else values):
@@ -64,18 +66,45 @@ def _numbers(name: str, values: Any) -> "np.ndarray[Any, Any]":
         raise DataError(f"`{name}`: {e}") from None
 
 
-def _frame(name: str, data: Any, dimension: Optional[int]) -> Tuple[List[Any], Any]:
+def _frame(name: str, data: Any, domain: Optional[List[str]]) -> Tuple[List[Any], Any]:
     """A DataFrame: an index and one column, a table of two or more dimensions, or columns of labels and `value`."""
     import pandas as pd
 
     columns = list(data.columns)
+    if not data.columns.is_unique:
+        raise DataError(f"`{name}`: two columns have the same name")
     if columns and columns[-1] == "value" and isinstance(data.index, pd.RangeIndex):
-        return [data[c] for c in columns[:-1]], data["value"]
-    if len(columns) == 1 and dimension in (None, data.index.nlevels):
-        return _levels(data.index), data[columns[0]]
+        return _ordered([data[c] for c in columns[:-1]], columns[:-1], domain), data["value"]
+    if len(columns) == 1 and (domain is None or data.index.nlevels == len(domain)):
+        return _ordered(_levels(data.index), data.index.names, domain), data[columns[0]]
     # A table: its columns are the last positions. Empty cells are no records.
-    stacked = data.stack(list(range(data.columns.nlevels))).dropna()
-    return _levels(stacked.index), stacked
+    rows, wide = _levels(data.index), _levels(data.columns)
+    values = _numbers(name, data.to_numpy()).ravel()
+    full = values == values
+    at_row = pd.RangeIndex(len(data)).repeat(len(columns))[full]
+    at_column = _tile(len(columns), len(data))[full]
+    keys = [_take(level, at_row) for level in rows] + [_take(level, at_column) for level in wide]
+    return _ordered(keys, [*data.index.names, *data.columns.names], domain), values[full]
+
+
+def _tile(count: int, times: int) -> Any:
+    import numpy as np
+
+    return np.tile(np.arange(count), times)
+
+
+def _take(level: Any, at: Any) -> Any:
+    """Records of a position: of a column of labels, or of codes with their labels."""
+    return (level[0][at], level[1]) if isinstance(level, tuple) else level.take(at)
+
+
+def _ordered(columns: List[Any], names: Iterable[Any], domain: Optional[List[str]]) -> List[Any]:
+    """Positions in the order of the symbol's index sets, where the data name all of them; else as they are."""
+    named = [str(n).lower() for n in names]
+    wanted = [s.lower() for s in domain or ()]
+    if len(set(wanted)) == len(wanted) and sorted(named) == sorted(wanted):
+        return [columns[named.index(s)] for s in wanted]
+    return columns
 
 
 def _levels(index: Any) -> List[Any]:
@@ -114,15 +143,13 @@ def parameter(
 
     dimension = None if domain is None else len(domain)
     if hasattr(data, "to_series") and hasattr(data, "dims"):
-        data = data.to_series()  # xarray
-        if not isinstance(data, pd.Series):
-            data = pd.Series(data)
+        data = data.to_series() if data.dims else data.item()  # xarray
     if isinstance(data, numbers.Real) or (np.ndim(data) == 0 and isinstance(data, np.ndarray)):
         columns, values = [], [data if isinstance(data, numbers.Real) else data.item()]
     elif isinstance(data, pd.Series):
-        columns, values = _levels(data.index), data
+        columns, values = _ordered(_levels(data.index), data.index.names, domain), data
     elif isinstance(data, pd.DataFrame):
-        columns, values = _frame(name, data, dimension)
+        columns, values = _frame(name, data, domain)
     elif isinstance(data, Mapping):
         keys = [k if isinstance(k, tuple) else (k,) for k in data]
         wide = {len(k) for k in keys}

@@ -68,7 +68,7 @@ def register(shell: Any) -> None:
         with warnings.catch_warnings():
             # They are shown with their places.
             warnings.simplefilter("ignore")
-            result: Result = model.run(time_limit=a.time_limit, check=False)
+            result: Result = model.run(time_limit=a.time_limit, check=False, progress=not a.quiet)
         if result.diagnostics:
             display(HTML(marked(result.diagnostics, cell, "cell.blk")))
         if result.printed and not a.quiet:

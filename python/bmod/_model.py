@@ -295,6 +295,16 @@ class Model:
     #: The same: a model solves what its `solve` statements say.
     solve = run
 
+    def digest(self, outputs: Iterable[str] = (), **keywords: Any) -> str:
+        """A text that is the same for the same run: texts, data, defines, options, version of bmod, and `outputs`.
+
+        :param keywords: of :meth:`run`: those that a result may depend on.
+        """
+        given = [(k, value_of(v)) for k, v in (keywords.get("options") or {}).items()]
+        limits = keywords.get("time_limit"), keywords.get("max_memory")
+        flags = bool(keywords.get("certify")), bool(keywords.get("explain"))
+        return self._model.digest(given, *limits, *flags, list(outputs))
+
     def show(self, model: Optional[str] = None) -> Formulas:
         """The model as formulas: sets, data, objective, equations. A notebook shows them; ``print`` writes them as text.
 

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import concurrent.futures as futures
-import hashlib
 import itertools
 import json
 import os
 import pathlib
 import tempfile
-from typing import TYPE_CHECKING, Any, Callable, Dict, Iterable, List, Mapping, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple, Union
 
 if TYPE_CHECKING:
     import pandas as pd
 
+    from ._model import Model
+
 Grid = Union[Mapping[str, Sequence[Any]], Iterable[Mapping[str, Any]]]
+#: A file, or a text.
+Source = Tuple[Optional[str], Optional[str]]
 
 #: Rows of a Parquet file of results, which are collected while they come.
 ROWS_PER_PART = 200
@@ -28,41 +31,50 @@ def points_of(grid: Grid) -> List[Dict[str, Any]]:
     return [dict(point) for point in grid]
 
 
-def key_of(text: str, point: Mapping[str, Any], how: Mapping[str, Any]) -> str:
-    """What a run depends on, as a short text: the model, the point, the options, the version."""
-    from . import __version__
+def model_at(source: Source, data: Mapping[str, Any], point: Mapping[str, Any]) -> "Model":
+    """The model at a point, which gives defines (``%name%``) and data of symbols by the same names."""
+    from . import Model
 
-    content = json.dumps([__version__, text, point, how], sort_keys=True, default=repr)
-    return hashlib.sha256(content.encode()).hexdigest()[:24]
+    path, text = source
+    define = {k: _plain(v) for k, v in point.items() if isinstance(v, (str, int, float, bool))}
+    model = Model.from_file(path, define=define) if path else Model.from_text(text or "", define=define)
+    symbols = {name.lower(): s for name, s in model.symbols.items()}
+    for name, value in {**data, **point}.items():
+        symbol = symbols.get(name.lower())
+        if symbol is not None and symbol.kind in ("set", "parameter"):
+            model[name] = value
+        elif name in data:
+            model[name] = value  # says that there is no such symbol
+    return model
+
+
+def _plain(value: Any) -> Any:
+    """A number as ``bmod sweep -D`` has it: 1.0 is `1`."""
+    return int(value) if isinstance(value, float) and value.is_integer() else value
 
 
 def run_one(
-    path: Optional[str],
-    text: Optional[str],
+    source: Source,
     data: Mapping[str, Any],
     point: Mapping[str, Any],
     outputs: Sequence[str],
     keywords: Mapping[str, Any],
 ) -> Dict[str, Any]:
-    """One run as a row. A point gives defines (``%name%``) and data of symbols by the same names."""
+    """One run as a row."""
     import warnings
 
-    from . import Error, Model
+    from . import Error
 
     row: Dict[str, Any] = {}
     try:
-        define = {k: v for k, v in point.items() if isinstance(v, (str, int, float, bool))}
-        model = Model.from_file(path, define=define) if path else Model.from_text(text or "", define=define)
-        declared = {s.lower(): s for s in model.symbols}
-        for name, value in {**data, **point}.items():
-            symbol = declared.get(name.lower())
-            if symbol is not None and model.symbols[symbol].kind in ("set", "parameter"):
-                model[name] = value
+        model = model_at(source, data, point)
+        row["key"] = model.digest(outputs, **keywords)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             result = model.run(check=False, **keywords)
         row["run"] = result._run.status
         row["messages"] = result.messages
+        row["stopped"] = result.stopped
         if result.solves:
             last = result.solves[-1]
             row.update(
@@ -73,21 +85,21 @@ def run_one(
                 primal=last.residuals.primal,
                 seconds=sum(s.seconds for s in result.solves),
             )
-        if result.ok:
-            for name in outputs:
-                value = result[name]
-                if hasattr(value, "level") and not hasattr(value, "columns"):
-                    row[name] = float(value.level)
-                elif isinstance(value, float):
-                    row[name] = value
-                else:
-                    column = value.level if hasattr(value, "columns") else value
-                    for label, v in column.items():
-                        labels = label if isinstance(label, tuple) else (label,)
-                        row[f"{name}[{','.join(map(str, labels))}]"] = float(v)
-        row["stopped"] = result.stopped
+        for name in outputs if result.ok else ():
+            value = result[name]
+            if isinstance(value, float):
+                row[name] = value
+            elif value.ndim == 1 and not result.symbol(name).domain:
+                row[name] = float(value.level)
+            else:
+                column = value.level if value.ndim == 2 else value
+                for label, v in column.items():
+                    labels = label if isinstance(label, tuple) else (label,)
+                    row[f"{name}[{','.join(map(str, labels))}]"] = float(v)
     except (Error, OSError, ValueError) as e:
         row.update(run="error", messages=str(e))
+        # Rows without a key are run again.
+        row.setdefault("key", None)
     return row
 
 
@@ -104,9 +116,16 @@ class _Store:
             self.folder.mkdir(parents=True, exist_ok=True)
             for file in sorted(self.folder.glob("part-*.parquet")):
                 self.rows += parquet.read_table(file).to_pylist()
+            # What `bmod sweep` has run.
+            for file in sorted(self.folder.glob("rows-*.jsonl")):
+                for line in file.read_text(encoding="utf-8").splitlines():
+                    try:
+                        self.rows.append(json.loads(line))
+                    except ValueError:
+                        pass  # half a line of a process that was killed
 
     def known(self) -> Dict[str, Dict[str, Any]]:
-        return {r["key"]: r for r in self.rows}
+        return {r["key"]: r for r in self.rows if r.get("key")}
 
     def add(self, row: Dict[str, Any]) -> None:
         self.rows.append(row)
@@ -138,9 +157,9 @@ def sweep(
     data: Optional[Mapping[str, Any]] = None,
     outputs: Sequence[str] = (),
     executor: Optional[futures.Executor] = None,
+    jobs: Optional[int] = None,
     out: Optional[Any] = None,
     progress: Optional[bool] = None,
-    key: Callable[..., str] = key_of,
     **keywords: Any,
 ) -> "pd.DataFrame":
     """Runs a model for every point of a grid; a table with a row per point, in the order of the grid.
@@ -149,56 +168,77 @@ def sweep(
     :param grid: a mapping from names to values (all combinations are run), or a list of mappings. A name is a define
         (``%name%``), or a set or parameter of the model, or both.
     :param data: data of symbols that are the same in all runs.
-    :param outputs: parameters and variables whose values become columns, ``x[a,b]`` for one with indices.
-    :param executor: any :class:`concurrent.futures.Executor`; none: a process per core of this machine. Those of
+    :param outputs: parameters and variables whose values (levels) become columns, ``x[a,b]`` for one with indices.
+    :param executor: any :class:`concurrent.futures.Executor`; none: `jobs` processes on this machine. Those of
         Dask (``client.get_executor()``), Ray and MPI (``mpi4py.futures``) take the runs to a cluster.
-    :param out: a folder for the rows as Parquet files, written while they come. Runs that are there are not repeated.
+    :param jobs: processes; by default one per core.
+    :param out: a folder for the rows as Parquet files, written while they come. Runs that are there, also those of the
+        command ``bmod sweep``, are not repeated.
     :param progress: whether tqdm shows a bar; by default if it is installed.
-    :param keywords: of :meth:`bmod.Model.run`: ``time_limit``, ``options`` …
+    :param keywords: of :meth:`bmod.Model.run`: ``time_limit``, ``options``, ``max_memory``, ``certify``, ``explain``.
 
-    A run that fails is a row with `run` and `messages`.
+    A run that fails is a row with `run` and `messages`. If a process on this machine dies, its run is tried twice more.
     """
     import pandas as pd
 
-    source = os.fspath(model)
-    is_text = "\n" in source
-    content = source if is_text else pathlib.Path(source).read_text(encoding="utf-8")
-    how = {"data": dict(data or {}), "outputs": list(outputs), "keywords": keywords}
+    text = os.fspath(model)
+    source: Source = (None, text) if "\n" in text else (text, None)
+    if source[0] is not None and not os.path.isfile(source[0]):
+        raise FileNotFoundError(f"there is no model {source[0]!r}")
+    fixed = (source, dict(data or {}))
     points = points_of(grid)
-    keys = [key(content, point, how) for point in points]
     store = _Store(out)
     known = store.known()
-    todo = {k: p for k, p in zip(keys, points) if k not in known}
-    own = futures.ProcessPoolExecutor() if executor is None and todo else None
-    runner = executor or own
-    bar = _bar(len(points), len(points) - len(todo), progress)
+    rows: Dict[int, Dict[str, Any]] = {}
+    if known:
+        for n, point in enumerate(points):
+            found = known.get(_key_at(fixed, point, outputs, keywords))
+            if found is not None:
+                rows[n] = found
+    bar = _bar(len(points), len(rows), progress)
+    tries = 3 if executor is None else 1
     try:
-        waiting = {
-            runner.submit(
-                run_one, None if is_text else source, content if is_text else None,
-                dict(data or {}), point, list(outputs), keywords,
-            ): k
-            for k, point in todo.items()
-        }
-        for done in futures.as_completed(waiting):
-            k = waiting[done]
+        for attempt in range(tries):
+            todo = [n for n in range(len(points)) if rows.get(n, _LOST)["run"] == "lost"]
+            if not todo:
+                break
+            own = futures.ProcessPoolExecutor(jobs) if executor is None else None
             try:
-                row = done.result()
-            except Exception as e:  # noqa: BLE001: a worker that died is a row, whatever the executor raises
-                row = {"run": "lost", "messages": f"{type(e).__name__}: {e}"}
-            row = {"key": k, **todo[k], **row}
-            if row["run"] == "lost":
-                known[k] = row  # to be run again next time
-            else:
-                store.add(row)
-            bar.update()
+                waiting = {
+                    (executor or own).submit(run_one, *fixed, points[n], list(outputs), keywords): n  # type: ignore[union-attr]
+                    for n in todo
+                }
+                for done in futures.as_completed(waiting):
+                    n = waiting[done]
+                    try:
+                        row = done.result()
+                    except Exception as e:  # noqa: BLE001: a worker that died is a row, whatever the executor raises
+                        row = {"key": None, "run": "lost", "messages": f"{type(e).__name__}: {e}"}
+                    rows[n] = {**points[n], **row}
+                    if row["key"]:
+                        store.add(rows[n])
+                    if row["run"] != "lost" or attempt + 1 == tries:
+                        bar.update()
+            finally:
+                store.flush()
+                if own is not None:
+                    own.shutdown(cancel_futures=True)
     finally:
-        store.flush()
         bar.close()
-        if own is not None:
-            own.shutdown(cancel_futures=True)
-    known.update(store.known())
-    return pd.DataFrame([known[k] for k in keys]).drop(columns="key")
+    return pd.DataFrame([{**points[n], **rows[n]} for n in range(len(points))]).drop(columns="key", errors="ignore")
+
+
+#: A point that was not run.
+_LOST = {"run": "lost"}
+
+
+def _key_at(fixed: Any, point: Mapping[str, Any], outputs: Sequence[str], keywords: Mapping[str, Any]) -> Optional[str]:
+    from . import Error
+
+    try:
+        return model_at(*fixed, point).digest(outputs, **keywords)
+    except (Error, OSError, ValueError):
+        return None
 
 
 class _NoBar:

@@ -4,6 +4,7 @@
 //! The interpreter is released while a model runs. The calling thread waits, and looks for signals meanwhile.
 
 mod data;
+mod formulas;
 mod run;
 
 use bmod::Error;
@@ -59,6 +60,11 @@ impl Model {
         Self {
             model: Arc::clone(&self.model),
         }
+    }
+
+    /// Whether compiled text and bases are kept from run to run.
+    fn keep(&mut self, on: bool) {
+        self.change().keep(on);
     }
 
     fn name(&self) -> String {
@@ -146,19 +152,87 @@ impl Model {
         on_print: Option<Py<PyAny>>,
         on_progress: Option<Py<PyAny>>,
     ) -> PyResult<(run::Run, bool)> {
-        let mut all = bmod::Options::default().certify(certify).explain(explain);
-        for (name, value) in options {
-            all = all.option(name, value);
-        }
-        if let Some(seconds) = time_limit {
-            all = all.time_limit(seconds);
-        }
-        if let Some(bytes) = max_memory {
-            all = all.max_memory(bytes);
-        }
+        let all = all_options(options, time_limit, max_memory, certify, explain);
         let model = Arc::clone(&self.model);
         run::carry_out(py, &model, all, on_print, on_progress)
     }
+
+    /// A text that is the same for the same run.
+    #[allow(clippy::too_many_arguments)]
+    fn digest(
+        &self,
+        py: Python<'_>,
+        options: Vec<(String, String)>,
+        time_limit: Option<f64>,
+        max_memory: Option<usize>,
+        certify: bool,
+        explain: bool,
+        with: Vec<String>,
+    ) -> String {
+        let all = all_options(options, time_limit, max_memory, certify, explain);
+        let model = Arc::clone(&self.model);
+        let with: Vec<&str> = with.iter().map(String::as_str).collect();
+        py.detach(|| model.digest(&all, &with))
+    }
+
+    /// The model as formulas; where there are none, messages and diagnostics.
+    fn show<'py>(
+        &self,
+        py: Python<'py>,
+        model: Option<String>,
+        solve: Option<usize>,
+        check: bool,
+    ) -> PyResult<formulas::Made<'py>> {
+        let choice = formulas::choice(model, solve, check);
+        let of = Arc::clone(&self.model);
+        formulas::made(py, py.detach(|| of.show(&choice)))
+    }
+
+    /// Its dual.
+    fn dual<'py>(
+        &self,
+        py: Python<'py>,
+        model: Option<String>,
+        solve: Option<usize>,
+        check: bool,
+    ) -> PyResult<formulas::Made<'py>> {
+        let choice = formulas::choice(model, solve, check);
+        let of = Arc::clone(&self.model);
+        formulas::made(py, py.detach(|| of.dual(&choice, &Default::default())))
+    }
+
+    /// Its optimality conditions.
+    fn kkt<'py>(
+        &self,
+        py: Python<'py>,
+        model: Option<String>,
+        solve: Option<usize>,
+        check: bool,
+    ) -> PyResult<formulas::Made<'py>> {
+        let choice = formulas::choice(model, solve, check);
+        let of = Arc::clone(&self.model);
+        formulas::made(py, py.detach(|| of.kkt(&choice, &Default::default())))
+    }
+}
+
+fn all_options(
+    options: Vec<(String, String)>,
+    time_limit: Option<f64>,
+    max_memory: Option<usize>,
+    certify: bool,
+    explain: bool,
+) -> bmod::Options {
+    let mut all = bmod::Options::default().certify(certify).explain(explain);
+    for (name, value) in options {
+        all = all.option(name, value);
+    }
+    if let Some(seconds) = time_limit {
+        all = all.time_limit(seconds);
+    }
+    if let Some(bytes) = max_memory {
+        all = all.max_memory(bytes);
+    }
+    all
 }
 
 /// The command line: the arguments with the program's name first; the exit status.

@@ -240,7 +240,8 @@ fn solve<'py>(py: Python<'py>, s: &Solve) -> PyResult<Bound<'py, PyDict>> {
     Ok(d)
 }
 
-fn diagnostic<'py>(py: Python<'py>, d: &Diagnostic) -> PyResult<Bound<'py, PyDict>> {
+/// A diagnostic as a dict.
+pub fn diagnostic<'py>(py: Python<'py>, d: &Diagnostic) -> PyResult<Bound<'py, PyDict>> {
     let out = PyDict::new(py);
     out.set_item("code", d.code)?;
     let severity = match d.severity {

@@ -20,7 +20,7 @@ pub(super) struct Question {
     what: What,
     path: String,
     from: Option<PathBuf>,
-    answer: u64,
+    pub(super) answer: u64,
 }
 
 #[derive(Clone, Copy)]
@@ -68,6 +68,12 @@ impl<'a> RunHost<'a> {
     /// What was asked of the disk so far; `None` if something was asked that may be different every time.
     pub(super) fn questions(&self) -> Option<Vec<Question>> {
         self.questions.take()
+    }
+
+    /// The answers to them.
+    pub(super) fn answers(&self) -> Option<Vec<u64>> {
+        self.questions()
+            .map(|q| q.iter().map(|q| q.answer).collect())
     }
 
     /// Whether a question has the same answer now.

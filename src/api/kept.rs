@@ -60,6 +60,13 @@ impl Kept {
         Ok((program, bases))
     }
 
+    /// What the disk said while the model's text was compiled.
+    pub(super) fn answers(&self, model: &Model) -> Option<Vec<u64>> {
+        let kept = self.lock();
+        let c = kept.as_ref().filter(|c| c.version == model.version)?;
+        Some(c.questions.iter().map(|q| q.answer).collect())
+    }
+
     /// Notes where the solves of a run ended.
     pub(super) fn ended_at(&self, model: &Model, bases: Bases) {
         if let Some(c) = self.lock().as_mut().filter(|c| c.version == model.version) {

@@ -1,6 +1,7 @@
 //! The library's front: a model as a value ([`Model`]), what a run is asked for ([`Options`]), what came of it
 //! ([`Run`]).
 
+mod digest;
 mod error;
 mod formulas;
 mod host;

@@ -138,6 +138,20 @@ impl Options {
         self.claims
     }
 
+    /// What of them a result may depend on.
+    pub(super) fn describe(&self, add: &mut dyn FnMut(&str)) {
+        let mut pairs = self.pairs.clone();
+        pairs.sort();
+        for (name, value) in &pairs {
+            add(&name.to_lowercase());
+            add(value);
+        }
+        add(&format!(
+            "{:?} {:?} {} {}",
+            self.time_limit, self.max_memory, self.certify, self.explain
+        ));
+    }
+
     pub(super) fn memory_limit(&self) -> Option<usize> {
         self.max_memory
     }

@@ -63,6 +63,9 @@ pub enum Command {
     List(ListArgs),
     /// Shows what is in a GDX file, the data files of GAMS: all symbols, or the records of one.
     Gdx(GdxArgs),
+    /// Runs a model for every combination of values, on several cores or as a job array; what is there is not
+    /// repeated.
+    Sweep(SweepArgs),
     /// Runs a model again at each save of a file in its folder.
     Watch(WatchArgs),
     /// Writes a model to begin with.
@@ -371,6 +374,33 @@ pub struct ListArgs {
     pub limit: usize,
 }
 
+/// Arguments of `bmod sweep`: `-D NAME=FIRST:LAST:STEP` and `-D NAME=A,B` have several values; a name is a `%NAME%` of the
+/// text, or a scalar.
+#[derive(Args, Debug, Clone)]
+pub struct SweepArgs {
+    /// The model and what all commands share.
+    #[command(flatten)]
+    pub model: ModelArgs,
+    /// Folder of the results: rows-*.jsonl while they come, results.csv at the end.
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: PathBuf,
+    /// Runs at the same time.
+    #[arg(short, long, value_name = "N", default_value_t = cores(), value_parser = count)]
+    pub jobs: usize,
+    /// A parameter, variable or equation whose values (levels) become columns.
+    #[arg(long, short, value_name = "NAME")]
+    pub output: Vec<String>,
+    /// How each is solved; the time limit is that of one run.
+    #[command(flatten)]
+    pub solve: SolveArgs,
+    /// Runs only every N-th point, beginning with the K-th.
+    #[arg(long, value_name = "K/N", value_parser = part)]
+    pub part: Option<(usize, usize)>,
+    /// Runs nothing, but writes DIR/sweep.sh, a script for Slurm that does it as an array of so many jobs.
+    #[arg(long, value_name = "JOBS", value_parser = count)]
+    pub slurm: Option<usize>,
+}
+
 /// Arguments of `bmod watch`.
 #[derive(Args, Debug, Clone)]
 pub struct WatchArgs {
@@ -447,6 +477,26 @@ fn pair(text: &str) -> Result<(String, String), String> {
             Ok((name.trim().to_string(), value.to_string()))
         }
         _ => Err("write NAME=VALUE".into()),
+    }
+}
+
+fn cores() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+fn count(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(n @ 1..=100_000) => Ok(n),
+        _ => Err("write a number from 1 on".into()),
+    }
+}
+
+fn part(text: &str) -> Result<(usize, usize), String> {
+    let parts = text.split_once('/');
+    let parts = parts.and_then(|(k, n)| Some((k.parse().ok()?, n.parse().ok()?)));
+    match parts {
+        Some((k, n)) if 1 <= k && k <= n => Ok((k, n)),
+        _ => Err("write K/N, with K from 1 to N".into()),
     }
 }
 

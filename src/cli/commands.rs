@@ -46,6 +46,7 @@ pub fn execute(cli: &Cli) -> u8 {
         Command::Why(a) => super::why::why(a),
         Command::List(a) => list(a),
         Command::Gdx(a) => super::gdx::show(a),
+        Command::Sweep(a) => super::sweep::sweep(a),
         Command::Watch(a) => super::watch::watch(a),
         Command::New(a) => super::new::new(a),
         Command::Test(a) => super::test::test(a),

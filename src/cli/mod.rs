@@ -12,6 +12,7 @@ pub mod new;
 pub mod range;
 pub mod report;
 pub mod show;
+mod sweep;
 pub mod test;
 pub mod watch;
 mod watchdog;
