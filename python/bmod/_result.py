@@ -294,7 +294,8 @@ class Result:
             if symbol.kind == "parameter":
                 return float(values["value"][0])
             return pd.Series({n: float(v[0]) for n, v in values.items()}, name=symbol.name)
-        index = _data.index(keys, _names(symbol.domain))
+        names = [symbol.name] if symbol.kind == "set" and symbol.domain == ["*"] else _names(symbol.domain)
+        index = _data.index(keys, names)
         if texts is not None:
             return index
         if symbol.kind == "parameter":

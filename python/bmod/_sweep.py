@@ -8,6 +8,8 @@ import json
 import os
 import pathlib
 import tempfile
+import threading
+import time
 from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple, Union
 
 if TYPE_CHECKING:
@@ -19,8 +21,9 @@ Grid = Union[Mapping[str, Sequence[Any]], Iterable[Mapping[str, Any]]]
 #: A file, or a text.
 Source = Tuple[Optional[str], Optional[str]]
 
-#: Rows of a Parquet file of results, which are collected while they come.
+#: Rows of a Parquet file of results, which are collected while they come, and seconds for which they wait at most.
 ROWS_PER_PART = 200
+SECONDS_PER_PART = 2.0
 
 
 def points_of(grid: Grid) -> List[Dict[str, Any]]:
@@ -109,6 +112,7 @@ class _Store:
     def __init__(self, out: Optional[Any]):
         self.rows: List[Dict[str, Any]] = []
         self.pending: List[Dict[str, Any]] = []
+        self.flushed = time.monotonic()
         self.folder = None if out is None else pathlib.Path(out)
         if self.folder is not None:
             import pyarrow.parquet as parquet
@@ -130,10 +134,11 @@ class _Store:
     def add(self, row: Dict[str, Any]) -> None:
         self.rows.append(row)
         self.pending.append(row)
-        if len(self.pending) >= ROWS_PER_PART:
+        if len(self.pending) >= ROWS_PER_PART or time.monotonic() - self.flushed > SECONDS_PER_PART:
             self.flush()
 
     def flush(self) -> None:
+        self.flushed = time.monotonic()
         if self.folder is None or not self.pending:
             self.pending = []
             return
@@ -202,7 +207,7 @@ def sweep(
             todo = [n for n in range(len(points)) if rows.get(n, _LOST)["run"] == "lost"]
             if not todo:
                 break
-            own = futures.ProcessPoolExecutor(jobs) if executor is None else None
+            own = _processes(jobs) if executor is None else None
             try:
                 waiting = {
                     (executor or own).submit(run_one, *fixed, points[n], list(outputs), keywords): n  # type: ignore[union-attr]
@@ -226,6 +231,22 @@ def sweep(
     finally:
         bar.close()
     return pd.DataFrame([{**points[n], **rows[n]} for n in range(len(points))]).drop(columns="key", errors="ignore")
+
+
+def _processes(jobs: Optional[int]) -> futures.Executor:
+    return futures.ProcessPoolExecutor(jobs, initializer=_end_with, initargs=(os.getpid(),))
+
+
+def _end_with(parent: int) -> None:
+    """Ends this process when its parent is gone: a killed sweep leaves nothing behind."""
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(0.5)
+        os._exit(1)
+
+    if os.getppid() == parent:  # not with a server between them
+        threading.Thread(target=watch, daemon=True).start()
 
 
 #: A point that was not run.

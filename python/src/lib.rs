@@ -173,7 +173,6 @@ impl Model {
         let with: Vec<&str> = with.iter().map(String::as_str).collect();
         py.detach(|| model.digest(&all, &with))
     }
-
 }
 
 fn all_options(

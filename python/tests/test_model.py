@@ -1,6 +1,8 @@
 """Models, data in and out, statuses, figures."""
 
+import copy
 import math
+import pickle
 import subprocess
 import sys
 import threading
@@ -235,6 +237,81 @@ def test_models_are_values(transport):
     assert other.run().objective == pytest.approx(2 * 153.675)
     assert transport.run().objective == pytest.approx(153.675)
     assert str(transport.symbols["d"]) == "d(i,j)"
+
+
+def test_data_matched_by_index_names(transport):
+    """Where the data name all index sets, their order does not matter."""
+    table = pd.DataFrame([[1, 2, 3], [4, 5, 6.0]], index=["seattle", "san-diego"], columns=["new-york", "chicago", "topeka"])
+    transport["d"] = table
+    first = transport["d"]
+    long = table.rename_axis(index="i", columns="j").T.stack()
+    assert long.index.names == ["j", "i"]
+    for data in (long, long.to_frame("value"), long.rename("value").reset_index()):
+        transport["d"] = data
+        assert transport["d"].equals(first)
+    transport["d"] = table.rename_axis(index="i", columns="j").T
+    assert transport["d"].equals(first)
+
+
+def test_xarray(transport):
+    xarray = pytest.importorskip("xarray")
+    array = xarray.DataArray(
+        np.arange(6.0).reshape(3, 2) + 1,
+        dims=["j", "i"],
+        coords={"i": ["seattle", "san-diego"], "j": ["new-york", "chicago", "topeka"]},
+    )
+    transport["d"] = array
+    assert transport["d"]["seattle", "topeka"] == 5
+    transport["f"] = xarray.DataArray(45.0)
+    r = transport.run()
+    assert r["f"] == 45
+    assert float(r["x"].to_xarray().level.sum()) == pytest.approx(900)
+
+
+def test_pickled_copied_and_full(transport):
+    transport["b"] = [100, 100, 0]
+    for other in (pickle.loads(pickle.dumps(transport)), copy.deepcopy(transport), transport.copy()):
+        assert other.run().objective == transport.run().objective
+        assert other.digest() == transport.digest()
+        other["f"] = 9
+        assert other.digest() != transport.digest()
+    r = transport.run()
+    again = pickle.loads(pickle.dumps(r))
+    assert again["x"].equals(r["x"]) and again.status is r.status and again.to_json() == r.to_json()
+    assert list(again) == list(r) and "x" in again and "nothing" not in again
+    full = again.full("x")
+    assert len(full) == 6 and full.level.sum() == 200 and full.upper.eq(math.inf).all()
+    assert r.full("b")["topeka"] == 0 and r.full("z").level == r.objective
+
+
+def test_the_next_run_starts_at_the_last_basis(transport):
+    transport.run()
+    for k in range(5):
+        transport["b"] = [325, 300, 275 - k]
+        r = transport.run()
+        assert r.solves[0].iterations <= 1
+    fresh = bmod.Model.from_text(TRANSPORT, data={"b": [325, 300, 271]})
+    assert fresh.run().objective == pytest.approx(r.objective)
+    assert fresh.run().solves[0].iterations == 0 and r.solves[0].status is bmod.ModelStatus.OPTIMAL
+
+
+def test_update_and_logging(transport, caplog):
+    transport.update({"f": 45, "b": {"new-york": 100}})
+    with caplog.at_level("INFO", logger="bmod"):
+        r = transport.run(progress=True)
+    assert "transport using lp: optimal" in caplog.text
+    assert r.objective == pytest.approx(0.045 * 250)
+    assert list(transport)[:2] == ["i", "j"] and "X" in transport
+    with pytest.raises(bmod.DataError, match="`x` is a variable"):
+        transport["x"]
+    with pytest.raises(TypeError, match="from_file"):
+        bmod.Model.from_text(5)
+
+
+def test_import_is_light():
+    code = "import sys, bmod; print(sorted({'numpy', 'pandas', 'IPython', 'pyarrow', 'xarray'} & set(sys.modules)))"
+    out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert out.stdout.strip() == "[]", out.stderr
 
 
 def test_warnings():

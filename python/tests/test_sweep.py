@@ -1,7 +1,15 @@
 """Sweeps: rows, resuming, failures."""
 
 import concurrent.futures as futures
+import multiprocessing
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
 
+import pandas as pd
 import pytest
 
 import bmod
@@ -35,3 +43,112 @@ def test_rows_in_order_and_resumed(tmp_path):
 def test_processes():
     table = bmod.sweep(MODEL, {"price": [3.0, 4.0]}, executor=None, progress=False)
     assert list(table.objective) == [3, 4]
+
+
+#: Takes a while.
+SLOW = """
+scalar n / 0 /, steps / 60000 /, price / %price% /;
+while(n < steps, n = n + 1);
+positive variable x; variable cost; equations total, enough;
+total.. cost =e= price*x;  enough.. x =g= 1;
+model m / all /; solve m using lp minimizing cost;
+"""
+
+
+def same(a, b):
+    return a.drop(columns="seconds").equals(b.drop(columns="seconds"))
+
+
+def stored(folder):
+    import pyarrow.parquet as parquet
+
+    return [row["key"] for f in folder.glob("part-*.parquet") for row in parquet.read_table(f).to_pylist()]
+
+
+def test_a_killed_process_loses_nothing(tmp_path):
+    """One of the processes of a sweep dies on the way; its run, and those that waited, are run again."""
+    grid = {"price": [float(k) for k in range(1, 25)]}
+    killed = []
+
+    def kill():
+        while not killed:
+            for child in multiprocessing.active_children():
+                os.kill(child.pid, signal.SIGKILL)
+                killed.append(child.pid)
+                break
+            time.sleep(0.2)
+
+    threading.Timer(0.5, kill).start()
+    table = bmod.sweep(SLOW, grid, jobs=2, out=tmp_path / "r", progress=False)
+    assert killed and list(table.objective) == grid["price"]
+    assert len(stored(tmp_path / "r")) == len(set(stored(tmp_path / "r"))) == 24
+
+
+def test_killed_and_resumed(tmp_path):
+    grid = {"price": [float(k) for k in range(1, 25)]}
+    code = (
+        "import bmod, sys\nimport bmod._sweep\nbmod._sweep.ROWS_PER_PART = 3\n"
+        f"bmod.sweep({SLOW!r}, {grid!r}, jobs=2, out=sys.argv[1], progress=False)"
+    )
+    work = subprocess.Popen([sys.executable, "-c", code, str(tmp_path / "r")])
+    until = time.time() + 60
+    while time.time() < until and work.poll() is None and not list(tmp_path.glob("r/part-*.parquet")):
+        time.sleep(0.02)
+    work.kill()
+    work.wait()
+    before = stored(tmp_path / "r")
+    assert 0 < len(before)
+    resumed = bmod.sweep(SLOW, grid, jobs=2, out=tmp_path / "r", progress=False)
+    assert len(stored(tmp_path / "r")) == len(set(stored(tmp_path / "r"))) == 24
+    assert same(resumed, bmod.sweep(SLOW, grid, jobs=2, progress=False))
+
+
+def test_rows_of_the_command_are_known(tmp_path):
+    (tmp_path / "m.blk").write_text(MODEL)
+    command = [sys.executable, "-m", "bmod", "sweep", str(tmp_path / "m.blk"), "-D", "price=1:2:0.5", "-D", "need=1,2,4",
+               "-j", "2", "--output", "x", "--out", str(tmp_path / "r")]
+    first = subprocess.run(command, capture_output=True, text=True)
+    assert first.returncode == 0 and "9 of 9 runs: 3 aborted, 6 optimal" in first.stdout, first
+    rows = (tmp_path / "r" / "rows-1.jsonl").read_text()
+    assert len(rows.splitlines()) == 9
+    # Half a line that a killed process has left is cut off, and the run is repeated.
+    (tmp_path / "r" / "rows-1.jsonl").write_text(rows[:-40])
+    assert subprocess.run(command, capture_output=True, text=True).stdout == first.stdout
+    by_command = pd.read_csv(tmp_path / "r" / "results.csv")
+    assert list(by_command.price) == [1, 1, 1, 1.5, 1.5, 1.5, 2, 2, 2]
+    grid = {"price": [1.0, 1.5, 2.0], "need": [1, 2, 4]}
+    table = bmod.sweep(tmp_path / "m.blk", grid, outputs=["x"], out=tmp_path / "r", jobs=2, progress=False)
+    assert not list((tmp_path / "r").glob("part-*.parquet")), "nothing was run again"
+    assert table.objective.equals(by_command.objective)
+    script = subprocess.run([*command, "--slurm", "3"], capture_output=True, text=True)
+    assert script.returncode == 0, script
+    text = (tmp_path / "r" / "sweep.sh").read_text()
+    assert "#SBATCH --array=1-3" in text
+    for task in "123":
+        done = subprocess.run(["bash", "-c", "bmod() { %s -m bmod \"$@\"; }; . %s" % (sys.executable, tmp_path / "r" / "sweep.sh")],
+                              env={**os.environ, "SLURM_ARRAY_TASK_ID": task}, capture_output=True, text=True)
+        assert "3 of 3 runs" in done.stdout, done
+
+
+def test_dask_with_a_worker_killed(tmp_path):
+    """A cluster of two worker processes, one of them killed on the way: nothing lost, nothing twice."""
+    distributed = pytest.importorskip("distributed")
+    grid = {"price": [float(k) for k in range(1, 41)]}
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None) as cluster:
+        with distributed.Client(cluster) as client:
+            first = sorted(client.run(os.getpid).values())
+            assert len(first) == 2
+            killed = []
+
+            def kill():
+                os.kill(first[0], signal.SIGKILL)
+                killed.append(first[0])
+
+            timer = threading.Timer(0.4, kill)
+            timer.start()
+            with client.get_executor() as executor:
+                table = bmod.sweep(SLOW, grid, executor=executor, out=tmp_path / "r", progress=False)
+            timer.join()
+            assert killed and first[0] not in client.run(os.getpid).values()
+    assert list(table.run) == ["ok"] * 40 and list(table.objective) == grid["price"]
+    assert len(stored(tmp_path / "r")) == len(set(stored(tmp_path / "r"))) == 40

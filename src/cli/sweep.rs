@@ -75,11 +75,11 @@ fn values(text: &str) -> Result<Vec<String>, String> {
         // As many decimals as the text has: 0.3 + 2·0.05 is 0.4.
         let decimals = |t: &str| t.trim().split_once('.').map_or(0, |(_, d)| d.len());
         let digits = decimals(first).max(decimals(step));
-        let plain = !text.contains(['e', 'E']);
-        let value = |k: usize| match a + k as f64 * h {
-            v if plain => format!("{v:.digits$}"),
-            v => v.to_string(),
+        let exact = |v: f64| match text.contains(['e', 'E']) {
+            true => v,
+            false => format!("{v:.digits$}").parse().unwrap_or(v),
         };
+        let value = |k: usize| exact(a + k as f64 * h).to_string();
         return Ok((0..count as usize).map(value).collect());
     }
     Ok(text.split(',').map(|v| v.trim().to_string()).collect())
@@ -407,7 +407,7 @@ mod tests {
     fn ranges_and_lists() {
         assert_eq!(
             values("0.3:0.45:0.05").expect("a range"),
-            ["0.30", "0.35", "0.40", "0.45"]
+            ["0.3", "0.35", "0.4", "0.45"]
         );
         assert_eq!(values("3:1:-1").expect("a range"), ["3", "2", "1"]);
         assert_eq!(values("1, -1").expect("a list"), ["1", "-1"]);
