@@ -4,6 +4,7 @@
 //! The interpreter is released while a model runs. The calling thread waits, and looks for signals meanwhile.
 
 mod data;
+mod formulas;
 mod run;
 
 use bmod::Error;
@@ -172,6 +173,45 @@ impl Model {
         let model = Arc::clone(&self.model);
         let with: Vec<&str> = with.iter().map(String::as_str).collect();
         py.detach(|| model.digest(&all, &with))
+    }
+
+    /// The model as formulas; where there are none, messages and diagnostics.
+    fn show<'py>(
+        &self,
+        py: Python<'py>,
+        model: Option<String>,
+        solve: Option<usize>,
+        check: bool,
+    ) -> PyResult<formulas::Made<'py>> {
+        let choice = formulas::choice(model, solve, check);
+        let of = Arc::clone(&self.model);
+        formulas::made(py, py.detach(|| of.show(&choice)))
+    }
+
+    /// Its dual.
+    fn dual<'py>(
+        &self,
+        py: Python<'py>,
+        model: Option<String>,
+        solve: Option<usize>,
+        check: bool,
+    ) -> PyResult<formulas::Made<'py>> {
+        let choice = formulas::choice(model, solve, check);
+        let of = Arc::clone(&self.model);
+        formulas::made(py, py.detach(|| of.dual(&choice, &Default::default())))
+    }
+
+    /// Its optimality conditions.
+    fn kkt<'py>(
+        &self,
+        py: Python<'py>,
+        model: Option<String>,
+        solve: Option<usize>,
+        check: bool,
+    ) -> PyResult<formulas::Made<'py>> {
+        let choice = formulas::choice(model, solve, check);
+        let of = Arc::clone(&self.model);
+        formulas::made(py, py.detach(|| of.kkt(&choice, &Default::default())))
     }
 }
 

@@ -430,15 +430,6 @@ impl Model {
         };
         all.iter().map(claim).collect()
     }
-
-    fn preprocess(&self, options: &Options) -> PreprocessOptions {
-        PreprocessOptions {
-            defines: self.defines.clone(),
-            slash_comments: self.slash_comments,
-            max_memory: options.memory_limit(),
-            inputs: self.inputs.clone(),
-        }
-    }
 }
 
 /// Carries something out on a thread with a large stack, where there are threads; `None` after a panic, which is a bug of

@@ -74,7 +74,7 @@ pub struct Machine<'h> {
     /// Where everything stands.
     pub map: SourceMap,
     /// The statements, when the run is over.
-    pub code: Vec<Code>,
+    pub code: Arc<Vec<Code>>,
     /// Options in force.
     pub options: Options,
     /// State of each model.
@@ -145,7 +145,7 @@ impl<'h> Machine<'h> {
             store: program.store,
             equations: program.equations,
             map: program.map,
-            code: Vec::new(),
+            code: Arc::default(),
             options,
             passed_over: FxHashSet::default(),
             models: FxHashMap::default(),
