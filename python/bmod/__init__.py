@@ -31,6 +31,7 @@ from ._errors import (
     Place,
     UnknownSymbolError,
 )
+from ._formulas import Formulas
 from ._model import Model
 from ._result import Figure, ModelStatus, Residuals, Result, Solve, SolverStatus, Symbol
 
@@ -44,6 +45,7 @@ __all__ = [
     "Error",
     "ExecutionError",
     "Figure",
+    "Formulas",
     "InterruptedWarning",
     "Model",
     "ModelError",

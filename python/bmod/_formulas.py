@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Callable, Dict, List, Optional, Tuple
 
-from ._errors import Diagnostic, ModelError
+from ._errors import CompilationError, Diagnostic, ModelError
 
 
 class Formulas:
@@ -37,7 +37,10 @@ class Formulas:
     ) -> "Formulas":
         raw, message, diagnostics = made(model, solve, check)
         if raw is None:
-            raise ModelError(message, [Diagnostic._new(d) for d in diagnostics])
+            found = [Diagnostic._new(d) for d in diagnostics]
+            # Codes from E0400 on are those of runs.
+            compiled = all(d.code >= "E04" for d in found if d.severity == "error")
+            raise (ModelError if compiled else CompilationError)(message, found)
         return cls(raw)
 
     def model(self) -> Any:

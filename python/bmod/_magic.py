@@ -8,7 +8,7 @@ import shlex
 import warnings
 from typing import Any, List
 
-from ._errors import Diagnostic
+from ._errors import Diagnostic, Error
 from ._model import Model
 from ._result import Result
 
@@ -47,6 +47,16 @@ def marked(diagnostics: List[Diagnostic], text: str, name: str) -> str:
     return "<pre>" + "\n\n".join(out) + "</pre>" if out else ""
 
 
+class CellError(Error):
+    """What is wrong with a cell stands above it, underlined; the cells that follow are not run."""
+
+    def __init__(self, count: int):
+        super().__init__(f"{count or 'an'} error{'s' if count > 1 else ''} in this cell, shown above")
+
+    def _render_traceback_(self) -> List[str]:
+        return [f"bmod: {self}"]
+
+
 def register(shell: Any) -> None:
     """Adds the magic to a shell of IPython."""
     from IPython.core.error import UsageError
@@ -75,9 +85,13 @@ def register(shell: Any) -> None:
             print(result.printed, end="")
         for figure in result.figures.values():
             display(figure)
-        for name in a.outputs:
-            shell.user_ns[name] = result[name]
         if a.result:
             shell.user_ns[a.result] = result
+        if not result.ok and not result.interrupted:
+            raise CellError(sum(d.severity == "error" for d in result.diagnostics))
+        for name in a.outputs:
+            value = result[name]
+            is_single = result.symbol(name).kind in ("variable", "equation") and not result.symbol(name).domain
+            shell.user_ns[name] = float(value.level) if is_single else value
 
     shell.register_magic_function(bmod, "cell", "bmod")

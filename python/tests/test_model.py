@@ -308,6 +308,24 @@ def test_update_and_logging(transport, caplog):
         bmod.Model.from_text(5)
 
 
+def test_formulas(transport):
+    shown = transport.show()
+    assert "minimize  z" in str(shown) and "<math>" in shown._repr_html_() and r"\documentclass" in shown.latex
+    assert r"\documentclass" not in transport._repr_latex_()
+    dual = transport.dual(check=True)
+    assert dual.passed and dual.model().run().objective == pytest.approx(153.675)
+    kkt = transport.kkt()
+    assert kkt.title and kkt.model().run().status.is_solved
+    with pytest.raises(ValueError):
+        shown.model()
+    with pytest.raises(bmod.ModelError, match="no model"):
+        bmod.Model("scalar a / 1 /;").show()
+    with pytest.raises(bmod.CompilationError) as e:
+        bmod.Model("scalar a / 1 ").show()
+    assert e.value.errors[0].place.line == 1
+    assert "E0203" in bmod.Model("scalar a / 1 ")._repr_html_()
+
+
 def test_import_is_light():
     code = "import sys, bmod; print(sorted({'numpy', 'pandas', 'IPython', 'pyarrow', 'xarray'} & set(sys.modules)))"
     out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)

@@ -28,6 +28,7 @@ def test_magic(tmp_path):
         "%%bmod\nscalar s;\ns = nonsense;",
     ]
     notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(c) for c in cells])
+    notebook.cells[-1].metadata["tags"] = ["raises-exception"]
     done = execute(notebook, tmp_path).cells
 
     def shown(cell, kind):
@@ -36,3 +37,5 @@ def test_magic(tmp_path):
     assert "<svg" in shown(done[1], "image/svg+xml")
     assert "(7.0, np.float64(4.0))" in shown(done[2], "text/plain")
     assert "underline" in shown(done[3], "text/html")
+    error = [o for o in done[3].outputs if o.output_type == "error"]
+    assert error[0].traceback == ["bmod: 1 error in this cell, shown above"]
