@@ -82,9 +82,11 @@ mod system;
 
 pub use api::solver;
 pub use api::{
-    Choice, Claim, Columns, Control, Error, Formulas, Labels, Model, Options, OutputFile, Progress, Record,
-    Records, Run, Sheet, Solve, Special, Symbol, SymbolKind, VariableRecord, VariableRecords,
+    Choice, Claim, Columns, Control, Error, Formulas, Labels, Model, Options, OutputFile, Progress,
+    Record, Records, Run, Sheet, Solve, Special, Symbol, SymbolKind, VariableRecord,
+    VariableRecords,
 };
+pub use data::input::Keys;
 pub use diag::Severity;
 pub use formulation::algebra::{
     Algebra, AlgebraEquation, AlgebraTerm, AlgebraVariable, Expression, Index, Over,

@@ -12,7 +12,6 @@ mod run;
 pub mod solver;
 mod symbols;
 
-pub use crate::data::input::Keys;
 pub use error::Error;
 pub use formulas::{Choice, Formulas, Sheet};
 pub use labels::Labels;
@@ -24,7 +23,7 @@ pub use symbols::{
 
 use crate::check;
 use crate::claims;
-use crate::data::input::{Input, InputData};
+use crate::data::input::{Input, InputData, Keys};
 use crate::host::Host;
 use crate::run::{Bases, Machine, Options as Settings};
 use crate::session::{self, Finished};
