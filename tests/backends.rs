@@ -201,7 +201,6 @@ fn a_stop_loses_nothing() {
 }
 
 #[test]
-#[ignore = "points that a relaxation passes by chance are not kept"]
 fn a_stop_loses_nothing_of_an_mpec() {
     stopped_everywhere(&|using| using.has_pairs() && using.has_objective());
 }

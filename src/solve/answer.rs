@@ -117,6 +117,7 @@ fn across(
     let there = Task {
         using: bridge.using(),
         instance: bridge.instance(),
+        seen: None,
         basis: None,
         ..*task
     };

@@ -11,6 +11,7 @@ use crate::model::instance::Instance;
 use crate::model::option::OptionTable;
 use crate::model::outcome::{Basis, Outcome};
 use crate::model::problem_type::{Discrete, ProblemType};
+use std::sync::Arc;
 
 /// The hardest terms that a backend takes; each kind includes those before it.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
@@ -42,6 +43,9 @@ pub struct Supports {
     pub only_by_name: bool,
 }
 
+/// Who hears of points: their objective, and the levels of all columns but that of the objective.
+pub type Seen = Arc<dyn Fn(f64, &[f64]) + Send + Sync>;
+
 /// What is to be solved.
 #[derive(Clone, Copy)]
 pub struct Task<'a> {
@@ -51,6 +55,9 @@ pub struct Task<'a> {
     pub choice: Option<&'a str>,
     /// The numbers.
     pub instance: &'a Instance,
+    /// Hears of every point that satisfies the constraints of a nonlinear program, with its objective (minimised): for who solves
+    /// it in place of a program that asks for more.
+    pub seen: Option<&'a Seen>,
     /// For linear programs: a basis that may be optimal, one status per column, then one per row.
     pub basis: Option<&'a Basis>,
 }
@@ -62,6 +69,7 @@ impl<'a> Task<'a> {
             using,
             choice: None,
             instance,
+            seen: None,
             basis: None,
         }
     }

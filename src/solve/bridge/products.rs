@@ -11,7 +11,9 @@
 //! 0 does not, and their solutions tend to stationary points as μ → 0.
 
 use crate::model::instance::{Instance, Kernel, KernelTerms, Objective, Op, Relation, Sense};
+use crate::solve::backend::Seen;
 use crate::solve::mpec::pairs::Program;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// What takes the place of the products.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,7 +34,38 @@ pub struct Relaxed {
     /// The rows of the products.
     first: usize,
     columns: usize,
+    /// Hears of its points.
+    pub exact: Arc<Exact>,
 }
+
+/// The best point that satisfies the pairs of those at which a relaxed program was evaluated.
+pub struct Exact {
+    /// Column, its bound, and the slack between which there is a product.
+    products: Vec<(usize, f64, usize)>,
+    best: Mutex<Option<(f64, Vec<f64>)>>,
+}
+
+impl Exact {
+    fn see(&self, objective: f64, level: &[f64]) {
+        let holds = |&(j, bound, slack): &(usize, f64, usize)| {
+            (level[j] - bound).abs().min(level[slack].abs()) <= PAIR_TOLERANCE
+        };
+        let mut best = self.best.lock().unwrap_or_else(PoisonError::into_inner);
+        let better = best.as_ref().is_none_or(|b| objective < b.0);
+        if better && self.products.iter().all(holds) {
+            *best = Some((objective, level.to_vec()));
+        }
+    }
+
+    /// The point, once.
+    pub fn take(&self) -> Option<Vec<f64>> {
+        let mut best = self.best.lock().unwrap_or_else(PoisonError::into_inner);
+        best.take().map(|b| b.1)
+    }
+}
+
+/// Natural residual of a pair that counts as satisfied: well within what the certificate asks for.
+const PAIR_TOLERANCE: f64 = 1e-8;
 
 /// (c₀ + c₁·x)·s
 fn product() -> Kernel {
@@ -58,6 +91,7 @@ impl Relaxed {
         let n = out.column_count();
         let first = out.row_count();
         let mut extra: Vec<Vec<(usize, f64)>> = vec![Vec::new(); first];
+        let mut products = Vec::new();
         let mut terms = KernelTerms {
             kernel: product(),
             ..KernelTerms::default()
@@ -68,6 +102,7 @@ impl Relaxed {
             for (bound, sign) in sides.into_iter().filter(|s| s.0.is_finite()) {
                 let slack = out.columns.push(0.0, f64::INFINITY);
                 extra[p.row].push((slack, sign));
+                products.push((p.column, bound, slack));
                 let row = match kind {
                     Kind::Scholtes => first + terms.row.len(),
                     _ => first,
@@ -120,7 +155,17 @@ impl Relaxed {
             kind,
             first,
             columns: n,
+            exact: Arc::new(Exact {
+                products,
+                best: Mutex::new(None),
+            }),
         }
+    }
+
+    /// Who hears of the points of the program.
+    pub fn seen(&self) -> Seen {
+        let exact = Arc::clone(&self.exact);
+        Arc::new(move |objective, level| exact.see(objective, level))
     }
 
     /// Sets μ, and starts from a point of the program.

@@ -28,7 +28,7 @@ mod swaps;
 mod tree;
 
 use super::answer::{Answer, answer_with, subproblem};
-use super::backend::{Backend, Reply, Supports, Task, Terms};
+use super::backend::{Backend, Reply, Seen, Supports, Task, Terms};
 use super::bridge::products::{Kind, Relaxed};
 use super::lp::Ended;
 use super::registry::BACKENDS;
@@ -107,6 +107,7 @@ impl Backend for Bmpec {
             best: None,
             reserve: None,
             fallback: None,
+            passed: Vec::new(),
             empty: false,
             seen: HashSet::new(),
             notes: Vec::new(),
@@ -145,6 +146,8 @@ struct Search<'a, 'm> {
     reserve: Option<Found>,
     /// A point that satisfies everything, in case that nothing better is found: its branch was not solved.
     fallback: Option<Found>,
+    /// Points that relaxed programs passed and that satisfy everything, in case of a stop; without the objective's level.
+    passed: Vec<Vec<f64>>,
     /// No point satisfies all pairs, proved.
     empty: bool,
     /// Branches that were solved.
@@ -234,6 +237,7 @@ impl Search<'_, '_> {
         instance: &Instance,
         extra: &[(&str, &str)],
         most: u64,
+        seen: Option<&Seen>,
     ) -> Result<Answer, SolveError> {
         let short = [("nlp_search", "no"), ("nlp_attempts", "few")];
         let settings = self.sub_settings(&[&short, extra].concat());
@@ -241,7 +245,7 @@ impl Search<'_, '_> {
         self.budget.silently(|budget| {
             budget.within(f64::INFINITY, most, |budget| {
                 let task = Task::new(ProblemType::Nlp, instance).by(self.choice);
-                subproblem(&task, &settings, budget)
+                subproblem(&Task { seen, ..task }, &settings, budget)
             })
         })
     }
@@ -280,7 +284,7 @@ impl Search<'_, '_> {
                     subproblem(&Task { basis, ..task }, self.settings, budget)
                 })
             }),
-            false => self.program(&instance, &[], most),
+            false => self.program(&instance, &[], most, None),
         };
         let answer = match answer {
             Ok(a) => a,
@@ -501,7 +505,13 @@ impl Search<'_, '_> {
         loop {
             relaxed.tighten(self.program, mu, &x);
             let extra = [("bound_relax_factor", "0"), ("mu_strategy", "adaptive")];
-            let a = self.program(&relaxed.instance, &extra, u64::MAX)?;
+            let seen = relaxed.seen();
+            let a = self.program(&relaxed.instance, &extra, u64::MAX, Some(&seen));
+            self.passed.extend(relaxed.exact.take().map(|mut level| {
+                level.truncate(n);
+                level
+            }));
+            let a = a?;
             let y = &a.outcome.level[..n];
             let judged = self.program.judge(y);
             self.log(&format!(
@@ -562,6 +572,13 @@ impl Search<'_, '_> {
 
     /// What was found, and what is claimed of it.
     fn finish(&mut self) -> Result<Reply, SolveError> {
+        if self.budget.stopped().is_some() {
+            for level in std::mem::take(&mut self.passed) {
+                let level = self.program.complete(level);
+                let pieces = self.program.nearest(&level);
+                self.keep_point(&level, pieces);
+            }
+        }
         if let Some(found) = self.fallback.take()
             && (self.best.is_none() || self.budget.stopped().is_some())
         {
@@ -653,9 +670,14 @@ impl Search<'_, '_> {
                 let task = Task::new(ProblemType::Lp, envelope);
                 answer_with(BACKENDS, &task, self.settings, self.budget)?
             }
-            false => self.program(envelope, &[("nlp_attempts", "all")], u64::MAX)?,
+            false => self.program(envelope, &[("nlp_attempts", "all")], u64::MAX, None)?,
         };
         let mut outcome = a.outcome;
+        let status = stopped.map_or(SolverStatus::NormalCompletion, Stop::status);
+        if self.program.judge(&outcome.level).feasible {
+            // the pairs hold where the program without them was stopped
+            return Ok(self.reply(outcome, Claim::Unfinished, status));
+        }
         let claim = match a.status {
             ModelStatus::Infeasible => Claim::Infeasible,
             ModelStatus::LocallyInfeasible => Claim::LocallyInfeasible,
@@ -675,7 +697,6 @@ impl Search<'_, '_> {
                 }
             }
         };
-        let status = stopped.map_or(SolverStatus::NormalCompletion, Stop::status);
         Ok(self.reply(outcome, claim, status))
     }
 }

@@ -30,6 +30,7 @@ use super::slqp;
 use super::trial::{Trial, active_set, clean, polished, residuals_at, tidy, without_noise};
 use crate::autodiff::{ErrorKind, EvalFailure, Evaluator, kinks};
 use crate::model::instance::Instance;
+use crate::solve::backend::Task;
 use crate::solve::budget::{self, Budget, Size, Stop};
 use crate::solve::certificate::nonlinear::beside_kinks;
 use crate::solve::factor_size::symmetric_size;
@@ -50,12 +51,13 @@ const WIDTH: f64 = 1e-8;
 
 /// Solves an instance and certifies the answer.
 pub fn solve(
-    instance: &Instance,
+    task: &Task,
     provider: &dyn Provider,
     convexity: Convexity,
     settings: &Settings,
     budget: &Budget,
 ) -> Result<Outcome, SolveError> {
+    let instance = task.instance;
     let columns = &instance.columns;
     for j in 0..instance.column_count() {
         let (l, u) = (columns.lower[j], columns.upper[j]);
@@ -68,6 +70,7 @@ pub fn solve(
         }
     }
     let mut problem = Problem::new(instance);
+    problem.seen = task.seen.cloned();
     if settings.switch("warm_start_init_point") == Some(true) {
         problem.use_marginals(instance);
     }

@@ -98,7 +98,7 @@ impl Backend for Nonlinear {
             // a name that no solver of ours bears is some other solver of the same model type in GAMS
             _ => Convexity::Used,
         };
-        let outcome = driver::solve(task.instance, self.0, convexity, settings, budget)?;
+        let outcome = driver::solve(task, self.0, convexity, settings, budget)?;
         Ok(outcome.into())
     }
 }

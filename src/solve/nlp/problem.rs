@@ -12,6 +12,7 @@
 
 use crate::autodiff::{EvalFailure, Evaluator};
 use crate::model::instance::{Instance, Relation};
+use crate::solve::backend::Seen;
 
 /// What a provider needs of a nonlinear program.
 pub trait Nlp {
@@ -143,6 +144,8 @@ pub struct Problem {
     derivative_at: Option<Vec<f64>>,
     /// The best point that satisfies the constraints of those at which they were evaluated, with its objective.
     pub best_seen: Option<(f64, Vec<f64>)>,
+    /// Who hears of all of them.
+    pub seen: Option<Seen>,
     /// Evaluations that failed.
     pub failure_count: u64,
     /// The last of them.
@@ -282,6 +285,7 @@ impl Problem {
             activity_at: None,
             derivative_at: None,
             best_seen: None,
+            seen: None,
             failure_count: 0,
             last_failure: None,
             evaluator,
@@ -363,7 +367,8 @@ impl Problem {
                 row, coefficient, ..
             } => self.sign * (self.rhs[row] - self.activity[row]) / coefficient,
         };
-        if !f.is_finite() || self.best_seen.as_ref().is_some_and(|b| b.0 <= f) {
+        let better = self.best_seen.as_ref().is_none_or(|b| b.0 > f);
+        if !f.is_finite() || !better && self.seen.is_none() {
             return;
         }
         let within = |v: f64, l: f64, u: f64| {
@@ -378,7 +383,12 @@ impl Problem {
         if bounds.all(|(&v, (&l, &u))| within(v, l, u))
             && rows.all(|(&i, (&l, &u))| within(self.activity[i as usize], l, u))
         {
-            self.best_seen = Some((f, x.to_vec()));
+            if let Some(seen) = &self.seen {
+                seen(f, &self.full);
+            }
+            if better {
+                self.best_seen = Some((f, x.to_vec()));
+            }
         }
     }
 
