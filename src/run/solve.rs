@@ -21,7 +21,7 @@ use crate::solve::backend::Task;
 use crate::solve::mip::{self, Aim};
 use crate::solve::registry::BACKENDS;
 use crate::solve::why;
-use crate::solve::{Budget, Limits, Monitor, Progress, Settings, range};
+use crate::solve::{Budget, Limits, Monitor, Progress, Settings, SolveError, range};
 use crate::source::Span;
 use std::sync::Arc;
 
@@ -199,58 +199,69 @@ impl Machine<'_> {
                     solve: end - generated_at,
                     total: end - begin,
                 };
-                self.store_outside(s, &generated);
-                self.store(&generated, &a);
-                self.ranged(s, &generated, &a);
-                self.remember(s, &generated, &a, seconds);
-                let savepoint = self.model_option(s.model, "savepoint", 0.0);
-                self.save_point(s.model, savepoint, &generated.origin, span);
-                self.report_solve(s, &generated, &a, seconds);
-                if self.options.keep_solutions {
-                    self.keep_solution(s, generated, a);
-                }
-                if self.host().interrupted() {
-                    Flow::Stop
-                } else {
-                    Flow::Next
-                }
+                self.take_answer(s, generated, a, seconds, span)
             }
             Err(e) => {
-                let mut message = format!("the model `{name}` was not solved: {}", e.message);
-                if let Some(r) = e.row {
-                    message.push_str(&format!(
-                        " (row {})",
-                        self.origin_name(&generated.origin.rows, r)
-                    ));
-                }
-                if let Some(c) = e.column {
-                    message.push_str(&format!(
-                        " (column {})",
-                        self.origin_name(&generated.origin.columns, c)
-                    ));
-                }
-                // The equation is the better place, where one is to blame.
-                let blamed = e.row.and_then(|r| {
-                    let symbol = generated.origin.rows.of(r as u32).symbol;
-                    let of = |d: &&EquationDef| d.symbol == symbol;
-                    self.equations.iter().find(of).map(|d| d.span)
-                });
-                let mut d = Diagnostic::execution("E0422", blamed.unwrap_or(span), message);
-                if e.message.contains("at the start point") {
-                    let x = e
-                        .column
-                        .map(|c| self.origin_name(&generated.origin.columns, c));
-                    d = d.help(start_help(&e.message, x.as_deref().unwrap_or("x")));
-                }
-                self.note(match blamed {
-                    Some(_) => d.label("this row").other(span, "at this solve"),
-                    None => d.label("at this solve"),
-                });
-                let report = self.not_solved(s, &generated);
-                self.report().solves.push(report);
+                self.refused(s, &generated, &e, span);
                 Flow::Stop
             }
         }
+    }
+
+    /// Stores and reports what a solve gave.
+    fn take_answer(
+        &mut self,
+        s: &SolveCode,
+        generated: Generated,
+        a: Answer,
+        seconds: json::Seconds,
+        span: Span,
+    ) -> Flow {
+        self.store_outside(s, &generated);
+        self.store(&generated, &a);
+        self.ranged(s, &generated, &a);
+        self.remember(s, &generated, &a, seconds);
+        let savepoint = self.model_option(s.model, "savepoint", 0.0);
+        self.save_point(s.model, savepoint, &generated.origin, span);
+        self.report_solve(s, &generated, &a, seconds);
+        if self.options.keep_solutions {
+            self.keep_solution(s, generated, a);
+        }
+        if self.host().interrupted() {
+            Flow::Stop
+        } else {
+            Flow::Next
+        }
+    }
+
+    /// Says why a model cannot be solved as it is, at the equation that is to blame.
+    fn refused(&mut self, s: &SolveCode, generated: &Generated, e: &SolveError, span: Span) {
+        let origin = &generated.origin;
+        let name = &self.symbols.get(s.model).name;
+        let mut message = format!("the model `{name}` was not solved: {}", e.message);
+        if let Some(r) = e.row {
+            message.push_str(&format!(" (row {})", self.origin_name(&origin.rows, r)));
+        }
+        let column = e.column.map(|c| self.origin_name(&origin.columns, c));
+        if let Some(c) = &column {
+            message.push_str(&format!(" (column {c})"));
+        }
+        // The equation is the better place, where one is to blame.
+        let blamed = e.row.and_then(|r| {
+            let symbol = origin.rows.of(r as u32).symbol;
+            let of = |d: &&EquationDef| d.symbol == symbol;
+            self.equations.iter().find(of).map(|d| d.span)
+        });
+        let mut d = Diagnostic::execution("E0422", blamed.unwrap_or(span), message);
+        if e.message.contains("at the start point") {
+            d = d.help(start_help(&e.message, column.as_deref().unwrap_or("x")));
+        }
+        self.note(match blamed {
+            Some(_) => d.label("this row").other(span, "at this solve"),
+            None => d.label("at this solve"),
+        });
+        let report = self.not_solved(s, generated);
+        self.report().solves.push(report);
     }
 
     /// Passes over a solve after errors that `maxExecError` lets pass.

@@ -108,6 +108,63 @@ pub enum ObjectiveForm {
     },
 }
 
+/// Entries of a sparse matrix, and where each stands in what the evaluator gives.
+#[derive(Default)]
+struct Pattern {
+    row: Vec<u32>,
+    column: Vec<u32>,
+    from: Vec<u32>,
+}
+
+impl Pattern {
+    fn push(&mut self, row: u32, column: u32, from: usize) {
+        self.row.push(row);
+        self.column.push(column);
+        self.from.push(from as u32);
+    }
+}
+
+/// The rows that are constraints with the pattern of their Jacobian, and that of the objective's gradient. `variable`: number
+/// of each column, or `u32::MAX`.
+fn first_derivatives(
+    instance: &Instance,
+    evaluator: &Evaluator,
+    variable: &[u32],
+    defining_row: usize,
+) -> (Vec<u32>, Pattern, Pattern) {
+    let (start, column) = evaluator.jacobian_pattern();
+    let (mut rows, mut jacobian, mut gradient) =
+        (Vec::new(), Pattern::default(), Pattern::default());
+    for i in 0..instance.row_count() {
+        let entries = (start[i]..start[i + 1])
+            .map(|k| (variable[column[k] as usize], k))
+            .filter(|e| e.0 != u32::MAX);
+        if i == defining_row {
+            entries.for_each(|(v, k)| gradient.push(0, v, k));
+        } else if instance.rows.relation[i] != Relation::Free {
+            let (before, row) = (jacobian.row.len(), rows.len() as u32);
+            entries.for_each(|(v, k)| jacobian.push(row, v, k));
+            if jacobian.row.len() > before {
+                rows.push(i as u32);
+            }
+        }
+    }
+    (rows, jacobian, gradient)
+}
+
+/// The lower triangle of the pattern of second derivatives.
+fn second_derivatives(evaluator: &Evaluator, variable: &[u32]) -> Pattern {
+    let (rows, columns) = evaluator.hessian_pattern();
+    let mut out = Pattern::default();
+    for (k, (&i, &j)) in rows.iter().zip(columns).enumerate() {
+        let (p, q) = (variable[i as usize], variable[j as usize]);
+        if p != u32::MAX && q != u32::MAX {
+            out.push(p.max(q), p.min(q), k);
+        }
+    }
+    out
+}
+
 /// An instance in the form that solvers take.
 pub struct Problem {
     evaluator: Evaluator,
@@ -126,14 +183,10 @@ pub struct Problem {
     start: Vec<f64>,
     start_multipliers: Option<Vec<f64>>,
     start_reduced: Option<Vec<f64>>,
-    jacobian_row: Vec<u32>,
-    jacobian_column: Vec<u32>,
-    jacobian_from: Vec<u32>,
-    gradient_column: Vec<u32>,
-    gradient_from: Vec<u32>,
-    hessian_row: Vec<u32>,
-    hessian_column: Vec<u32>,
-    hessian_from: Vec<u32>,
+    jacobian: Pattern,
+    /// In row 0.
+    gradient: Pattern,
+    hessian: Pattern,
     /// The full point: fixed columns filled in, the eliminated objective column 0.
     full: Vec<f64>,
     activity: Vec<f64>,
@@ -181,57 +234,16 @@ impl Problem {
                 kept.push(j as u32);
             }
         }
-        let (start, column) = evaluator.jacobian_pattern();
-        let mut rows: Vec<u32> = Vec::new();
-        let (mut jr, mut jc, mut jf) = (Vec::new(), Vec::new(), Vec::new());
-        let (mut gc, mut gf) = (Vec::new(), Vec::new());
-        for i in 0..m {
-            let entries = (start[i]..start[i + 1])
-                .map(|k| (variable[column[k] as usize], k as u32))
-                .filter(|e| e.0 != u32::MAX);
-            if i == defining_row {
-                for (v, k) in entries {
-                    gc.push(v);
-                    gf.push(k);
-                }
-                continue;
-            }
-            let before = jr.len();
-            if instance.rows.relation[i] == Relation::Free {
-                continue;
-            }
-            for (v, k) in entries {
-                jr.push(rows.len() as u32);
-                jc.push(v);
-                jf.push(k);
-            }
-            if jr.len() > before {
-                rows.push(i as u32);
-            }
-        }
-        let (hr, hc) = evaluator.hessian_pattern();
-        let (mut sr, mut sc, mut sf) = (Vec::new(), Vec::new(), Vec::new());
-        for (k, (&i, &j)) in hr.iter().zip(hc).enumerate() {
-            let (p, q) = (variable[i as usize], variable[j as usize]);
-            if p != u32::MAX && q != u32::MAX {
-                sr.push(p.max(q));
-                sc.push(p.min(q));
-                sf.push(k as u32);
-            }
-        }
+        let (rows, jacobian, gradient) =
+            first_derivatives(instance, &evaluator, &variable, defining_row);
+        let hessian = second_derivatives(&evaluator, &variable);
         let pick = |v: &[f64]| -> Vec<f64> { kept.iter().map(|&j| v[j as usize]).collect() };
-        let (mut row_lower, mut row_upper) = (Vec::new(), Vec::new());
-        for &i in &rows {
-            let b = instance.rows.rhs[i as usize];
-            let (l, u) = match instance.rows.relation[i as usize] {
-                Relation::Equal => (b, b),
-                Relation::Greater => (b, f64::INFINITY),
-                Relation::Less => (f64::NEG_INFINITY, b),
-                Relation::Free => (f64::NEG_INFINITY, f64::INFINITY),
-            };
-            row_lower.push(l);
-            row_upper.push(u);
-        }
+        let sides = |&i: &u32| {
+            let i = i as usize;
+            let [l, u] = instance.rows.relation[i].bounds(instance.rows.rhs[i]);
+            (l, u)
+        };
+        let (row_lower, row_upper) = rows.iter().map(sides).unzip();
         let (lower, upper) = (pick(&columns.lower), pick(&columns.upper));
         let levels = pick(&columns.level);
         let form = match (form, instance.objective) {
@@ -254,8 +266,8 @@ impl Problem {
                 }
             })
             .collect();
-        let derivative = vec![0.0; column.len()];
-        let second = vec![0.0; hr.len()];
+        let derivative = vec![0.0; evaluator.jacobian_pattern().1.len()];
+        let second = vec![0.0; evaluator.hessian_pattern().0.len()];
         Self {
             form,
             sign,
@@ -269,14 +281,9 @@ impl Problem {
             start: start_point,
             start_multipliers: None,
             start_reduced: None,
-            jacobian_row: jr,
-            jacobian_column: jc,
-            jacobian_from: jf,
-            gradient_column: gc,
-            gradient_from: gf,
-            hessian_row: sr,
-            hessian_column: sc,
-            hessian_from: sf,
+            jacobian,
+            gradient,
+            hessian,
             full,
             activity: vec![0.0; m],
             derivative,
@@ -462,11 +469,11 @@ impl Nlp for Problem {
     }
 
     fn jacobian_pattern(&self) -> (&[u32], &[u32]) {
-        (&self.jacobian_row, &self.jacobian_column)
+        (&self.jacobian.row, &self.jacobian.column)
     }
 
     fn hessian_pattern(&self) -> (&[u32], &[u32]) {
-        (&self.hessian_row, &self.hessian_column)
+        (&self.hessian.row, &self.hessian.column)
     }
 
     fn objective(&mut self, x: &[f64]) -> Option<f64> {
@@ -489,7 +496,7 @@ impl Nlp for Problem {
             ObjectiveForm::Variable { variable } => out[variable] = self.sign,
             ObjectiveForm::Row { coefficient, .. } => {
                 self.need_derivative(x)?;
-                for (&j, &k) in self.gradient_column.iter().zip(&self.gradient_from) {
+                for (&j, &k) in self.gradient.column.iter().zip(&self.gradient.from) {
                     out[j as usize] -= self.sign * self.derivative[k as usize] / coefficient;
                 }
             }
@@ -507,7 +514,7 @@ impl Nlp for Problem {
 
     fn jacobian(&mut self, x: &[f64], out: &mut [f64]) -> Option<()> {
         self.need_derivative(x)?;
-        for (v, &k) in out.iter_mut().zip(&self.jacobian_from) {
+        for (v, &k) in out.iter_mut().zip(&self.jacobian.from) {
             *v = self.derivative[k as usize];
         }
         Some(())
@@ -532,7 +539,7 @@ impl Nlp for Problem {
             self.fail(e);
             return None;
         }
-        for (v, &k) in out.iter_mut().zip(&self.hessian_from) {
+        for (v, &k) in out.iter_mut().zip(&self.hessian.from) {
             *v = self.second[k as usize];
         }
         Some(())
