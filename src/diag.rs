@@ -28,7 +28,7 @@ pub struct Label {
     pub text: String,
 }
 
-/// One thing to tell the person.
+/// One thing to tell the user.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Diagnostic {
     /// A code of [`codes::CODES`], `E0101`.

@@ -110,7 +110,7 @@ impl Symbol {
         self.domain.len()
     }
 
-    /// `set`, `parameter` … as a person would say.
+    /// `set`, `parameter` … as a user would say.
     pub fn kind_name(&self) -> &'static str {
         match self.kind {
             SymbolKind::Set { .. } => "set",

@@ -189,7 +189,7 @@ pub(super) fn compiled(
     f(program, &mut host)
 }
 
-/// Writes diagnostics for the person, or for a program.
+/// Writes diagnostics for the user, or for a program.
 fn tell(finished: &Finished, format: MessageFormat) {
     if finished.diagnostics.is_empty() {
         return;

@@ -22,7 +22,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Runs `work`; a panic in it becomes an honest message on standard error and `status`.
 ///
-/// Nothing a person writes should lead here: it is a bug of bmod, and says so.
+/// Nothing a user writes should lead here: it is a bug of bmod, and says so.
 pub fn guarded(status: u8, work: impl FnOnce() -> u8) -> u8 {
     std::panic::set_hook(Box::new(|info| {
         // a solver that runs on a thread of its own is given up quietly, and another way is tried

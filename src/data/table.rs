@@ -4,7 +4,7 @@
 //! stored has the table's default value (0 for parameters, +∞ for upper bounds …).
 //!
 //! Invariants: memory is proportional to the records; a *tidy* table is sorted by label order and
-//! has no removed records; iteration is over tidy tables only, so what a person sees is always in
+//! has no removed records; iteration is over tidy tables only, so what a user sees is always in
 //! label order. An index by key and *orders* (records grouped by some positions) are built when first
 //! needed and dropped when records move.
 

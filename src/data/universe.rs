@@ -1,6 +1,6 @@
 //! The universe of labels, in the order of their first appearance.
 //!
-//! Label order is the order of everything a person sees: `ord`, lags, `display`, loops.
+//! Label order is the order of everything a user sees: `ord`, lags, `display`, loops.
 //! Labels are compared without regard to case; the first spelling is kept.
 
 use hashbrown::HashTable;

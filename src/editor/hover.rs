@@ -40,7 +40,7 @@ pub struct Signature {
 /// Records of data that are shown.
 const SHOWN: usize = 12;
 
-/// A number as a person writes it.
+/// A number as a user writes it.
 fn number(x: f64, p: &Program) -> String {
     if let Some(n) = value::as_acronym(x) {
         return p

@@ -312,7 +312,7 @@ impl<'h> Machine<'h> {
         true
     }
 
-    /// Whether the run was stopped by a limit or by the person.
+    /// Whether the run was stopped by a limit or by the user.
     pub fn stopped(&self) -> bool {
         self.stop.get()
     }
@@ -325,7 +325,7 @@ impl<'h> Machine<'h> {
         self.host.borrow().elapsed()
     }
 
-    /// Prints for the person.
+    /// Prints for the user.
     pub(crate) fn print(&self, text: &str) {
         self.host.borrow_mut().print(text);
     }

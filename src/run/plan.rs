@@ -6,7 +6,7 @@
 //! given what is bound, and tests the rest as soon as it can be tested.
 //!
 //! Invariant: a plan never changes *which* tuples count, only how they are found; the order of the
-//! indices in the text does not matter for speed. Where a person sees the order, tuples come in
+//! indices in the text does not matter for speed. Where a user sees the order, tuples come in
 //! label order ([`Branch::ordered`], or sorted after).
 
 use super::Machine;

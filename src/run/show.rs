@@ -1,4 +1,4 @@
-//! `display`: which records of which symbols, as text for the person and as records for the report.
+//! `display`: which records of which symbols, as text for the user and as records for the report.
 
 use super::Machine;
 use super::eval::derived_value;

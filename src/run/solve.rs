@@ -478,7 +478,7 @@ impl Machine<'_> {
             }
         }
         write(&g.origin.columns, attribute::M, &marginals);
-        // A row without relation has its constant inside its level; one that binds is at its right side, not a hair beside it.
+        // A row without relation has its constant inside its level; one that binds is at its right side, not perturbed by rounding.
         let levels: Vec<f64> = (0..rows.rhs.len())
             .map(|i| {
                 let (level, b) = (a.activity[i], rows.rhs[i]);

@@ -55,7 +55,7 @@ pub(super) enum Premise {
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Care {
     /// An ordinary number, always.
-    Quiet,
+    Total,
     /// An ordinary number, or a division by zero.
     MayFail,
 }
@@ -216,7 +216,7 @@ impl<'m, 'h> Analysis<'m, 'h> {
                     (None, Some(a)) => {
                         let care = self.care(c);
                         Some(Sparse {
-                            forced: a.forced || care != Some(Care::Quiet),
+                            forced: a.forced || care != Some(Care::Total),
                             ..a
                         })
                     }
@@ -315,8 +315,8 @@ impl<'m, 'h> Analysis<'m, 'h> {
                     .enumerate()
                     .filter(|(k, (d, _))| *k != i && !d);
                 let care = others.map(|(_, (_, g))| self.care(g)).min_by_key(careless);
-                match care.unwrap_or(Some(Care::Quiet)) {
-                    Some(Care::Quiet) => {}
+                match care.unwrap_or(Some(Care::Total)) {
+                    Some(Care::Total) => {}
                     Some(Care::MayFail) => s.forced = true,
                     None => continue,
                 }
@@ -397,20 +397,20 @@ impl<'m, 'h> Analysis<'m, 'h> {
     /// How an expression behaves where nobody wants its value; None: it may be infinite, `na` or `undf`.
     fn care(&mut self, n: &Node) -> Option<Care> {
         match &n.kind {
-            NodeKind::Const(x) => x.is_finite().then_some(Care::Quiet),
+            NodeKind::Const(x) => x.is_finite().then_some(Care::Total),
             NodeKind::Data(t, _) => {
                 let table = self.m.store.table(*t);
                 if table.has_special() || !table.default_value().is_finite() {
                     return None;
                 }
                 self.premise(Premise::Plain(*t));
-                Some(Care::Quiet)
+                Some(Care::Total)
             }
-            NodeKind::Ord(..) | NodeKind::Card(_) | NodeKind::SameAs(..) => Some(Care::Quiet),
+            NodeKind::Ord(..) | NodeKind::Card(_) | NodeKind::SameAs(..) => Some(Care::Total),
             NodeKind::Negate(a) | NodeKind::Not(a) => self.care(a),
             NodeKind::Sum(t) => self.cares(t.iter().map(|(_, x)| x)),
             NodeKind::Product(t) => {
-                let mut worst = Care::Quiet;
+                let mut worst = Care::Total;
                 for (divide, x) in t {
                     if *divide && !self.is_divisor(x) {
                         worst = Care::MayFail;
@@ -451,7 +451,7 @@ impl<'m, 'h> Analysis<'m, 'h> {
             NodeKind::Call(Function::Mod, a) if self.is_divisor(&a[1]) => self.care(&a[0]),
             NodeKind::LabelAttribute(which, ..) => Some(match which {
                 LabelAttribute::Val | LabelAttribute::TextVal => Care::MayFail,
-                _ => Care::Quiet,
+                _ => Care::Total,
             }),
             // GAMS passes over these where another factor is 0, but not over `log`, `sqrt`, `power` and others.
             NodeKind::Call(
@@ -475,12 +475,12 @@ impl<'m, 'h> Analysis<'m, 'h> {
 
     fn cares<'n>(&mut self, list: impl IntoIterator<Item = &'n Node>) -> Option<Care> {
         list.into_iter()
-            .try_fold(Care::Quiet, |worst, n| Some(worst.max(self.care(n)?)))
+            .try_fold(Care::Total, |worst, n| Some(worst.max(self.care(n)?)))
     }
 
     /// Whether evaluation never reports an error and never gives `undf`.
     pub fn is_quiet(&mut self, n: &Node) -> bool {
-        self.care(n) == Some(Care::Quiet)
+        self.care(n) == Some(Care::Total)
     }
 
     /// Whether dividing by it is always fine.
@@ -515,7 +515,7 @@ fn careless(c: &Option<Care>) -> u8 {
     match c {
         None => 0,
         Some(Care::MayFail) => 1,
-        Some(Care::Quiet) => 2,
+        Some(Care::Total) => 2,
     }
 }
 

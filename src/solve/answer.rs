@@ -70,10 +70,10 @@ pub fn answer_with(
     if found.status == ModelStatus::Infeasible && is_linear_program(task) {
         found = least_violation(backends, task, found, settings, budget);
     }
-    noise::quiet(&mut found.outcome.column_marginal);
+    noise::zero_below_roundoff(&mut found.outcome.column_marginal);
     if task.using != ProblemType::Mcp {
         // there they are levels
-        noise::quiet(&mut found.outcome.row_marginal);
+        noise::zero_below_roundoff(&mut found.outcome.row_marginal);
     }
     Ok(found)
 }

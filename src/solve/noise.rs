@@ -1,15 +1,15 @@
-//! Numbers that differ from what is meant by rounding only.
+//! Rounding errors in levels and marginals.
 
-/// Relative to the largest number beside it: by so much what was computed is wrong at least.
+/// Rounding error of levels, relative to the largest.
 pub const LEVELS: f64 = 1e-14;
-/// The same of multipliers, which a factorisation gave.
+/// The same of multipliers, which come from a factorisation.
 const MULTIPLIERS: f64 = 1e-13;
 
 fn largest(values: &[f64]) -> f64 {
     values.iter().fold(1.0, |s: f64, v| s.max(v.abs()))
 }
 
-/// Puts levels on their bounds that are there up to rounding.
+/// Puts levels on the bounds that they are at up to rounding.
 pub fn snap(x: &mut [f64], lower: &[f64], upper: &[f64]) {
     let rounding = LEVELS * largest(x);
     for (v, (&l, &u)) in x.iter_mut().zip(lower.iter().zip(upper)) {
@@ -21,8 +21,8 @@ pub fn snap(x: &mut [f64], lower: &[f64], upper: &[f64]) {
     }
 }
 
-/// Turns marginals into 0 that are nothing else beside the others.
-pub fn quiet(marginals: &mut [f64]) {
+/// Sets marginals to 0 that are below the rounding error of the largest.
+pub fn zero_below_roundoff(marginals: &mut [f64]) {
     let rounding = MULTIPLIERS * largest(marginals);
     for v in marginals.iter_mut().filter(|v| v.abs() <= rounding) {
         *v = 0.0;

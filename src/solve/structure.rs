@@ -10,7 +10,7 @@
 use crate::autodiff::Evaluator;
 use crate::model::instance::{Instance, Relation};
 
-/// Something to tell a person about the model.
+/// Something to tell a user about the model.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Finding {
     /// Pairs (row, column) of an equation (`=e=`) and a variable with a bound: where the variable is at

@@ -10,7 +10,7 @@ pub struct FileId(pub u32);
 /// One file as it was read.
 #[derive(Clone, Debug)]
 pub struct SourceFile {
-    /// Path as the person wrote it.
+    /// Path as the user wrote it.
     pub name: String,
     /// Whole text.
     pub text: String,

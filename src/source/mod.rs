@@ -2,7 +2,7 @@
 //!
 //! The preprocessor (`directives`) turns files into one *expanded text*; every later stage
 //! speaks of places in it as a [`Span`]. A [`SourceMap`] leads from there back to the file the
-//! person wrote, through `$include` and `%name%` substitution.
+//! user wrote, through `$include` and `%name%` substitution.
 //!
 //! Invariant: a span that leaves this crate in a diagnostic is in the *original* text.
 

@@ -26,7 +26,7 @@ struct Px(f64);
 
 impl std::fmt::Display for Px {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        // Widths and sizes come as the person gave them; a number that is none counts as 0.
+        // Widths and sizes come as the user gave them; a number that is none counts as 0.
         let v = if self.0.is_nan() { 0.0 } else { self.0 };
         let text = format!("{:.2}", v.clamp(-1e7, 1e7));
         let text = text.trim_end_matches('0').trim_end_matches('.');

@@ -204,7 +204,7 @@ impl Builder<'_, '_> {
             dim,
             keys: Vec::new(),
         };
-        // Tuples first (in label order), then rows: the order of rows is what a person sees.
+        // Tuples first (in label order), then rows: the order of rows is what a user sees.
         let d = e.domain.slots.len();
         let errors = self.m.execution_error_count();
         let tuples = if d == 0 {
