@@ -74,13 +74,13 @@ pub mod report;
 pub mod run;
 pub mod session;
 pub mod solve;
+pub mod solver;
 pub mod source;
 mod span;
 pub mod syntax;
 #[cfg(feature = "system")]
 mod system;
 
-pub use api::solver;
 pub use api::{
     Choice, Claim, Columns, Control, Error, Formulas, Labels, Model, Options, OutputFile, Progress,
     Record, Records, Run, Sheet, Solve, Special, Symbol, SymbolKind, VariableRecord,

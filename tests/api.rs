@@ -86,13 +86,19 @@ fn public_api() {
             (name.to_string_lossy().into_owned(), text)
         })
         .collect();
+    let below = std::fs::read_to_string(src.join("solver.rs")).expect("instances and backends");
     let mut names = exported(&root);
+    names.extend(exported(&below.replace("pub use crate::", "pub use ")));
+    names.dedup();
     assert!(names.len() > 20, "{names:?}");
     names.sort_by(|a, b| a.1.cmp(&b.1));
     let mut out = String::new();
     for (module, name) in names {
         let begins = |line: &str| {
-            ["struct", "enum", "trait"].iter().any(|kind| {
+            let kinds = [
+                "struct", "enum", "trait", "fn", "const fn", "static", "type",
+            ];
+            kinds.iter().any(|kind| {
                 let rest = line.strip_prefix(&format!("pub {kind} {name}"));
                 rest.is_some_and(|r| !r.starts_with(|c: char| c.is_alphanumeric() || c == '_'))
             })

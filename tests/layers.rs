@@ -24,6 +24,7 @@ const ARROWS: &[(&str, &[&str])] = &[
         ],
     ),
     ("solve", &["autodiff", "model"]),
+    ("solver", &["autodiff", "model", "solve"]),
     (
         "report",
         &["color", "data", "diag", "model", "solve", "source"],
@@ -50,7 +51,6 @@ const ARROWS: &[(&str, &[&str])] = &[
     (
         "api",
         &[
-            "autodiff",
             "check",
             "claims",
             "data",

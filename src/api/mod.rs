@@ -9,7 +9,6 @@ mod kept;
 mod labels;
 mod options;
 mod run;
-pub mod solver;
 mod symbols;
 
 pub use error::Error;
