@@ -202,7 +202,7 @@ impl Machine<'_> {
                 self.take_answer(s, generated, a, seconds, span)
             }
             Err(e) => {
-                self.refused(s, &generated, &e, span);
+                self.report_refusal(s, &generated, &e, span);
                 Flow::Stop
             }
         }
@@ -235,7 +235,7 @@ impl Machine<'_> {
     }
 
     /// Says why a model cannot be solved as it is, at the equation that is to blame.
-    fn refused(&mut self, s: &SolveCode, generated: &Generated, e: &SolveError, span: Span) {
+    fn report_refusal(&mut self, s: &SolveCode, generated: &Generated, e: &SolveError, span: Span) {
         let origin = &generated.origin;
         let name = &self.symbols.get(s.model).name;
         let mut message = format!("the model `{name}` was not solved: {}", e.message);
