@@ -214,11 +214,6 @@ fn entry(symbols: &Symbols, s: SymbolId) -> (Math, String, String) {
     (math, words, unit.unwrap_or_default().to_string())
 }
 
-/// With commas.
-pub fn tuple(names: &[String]) -> Math {
-    listed(names.iter().map(|n| Math::Name(name(n))).collect())
-}
-
 /// Writes a page.
 pub fn write(page: &Page, format: Format, title: &str) -> String {
     match format {

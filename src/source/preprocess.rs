@@ -543,10 +543,6 @@ impl<'h> Preprocessor<'h> {
         self.ending
     }
 
-    pub(crate) fn value_of(&self, name: &str) -> Option<&str> {
-        self.names.get(name)
-    }
-
     /// Goes on reading the present file at `pos`.
     pub(super) fn advance(&mut self, pos: usize) {
         if let Some(frame) = self.frames.last_mut() {

@@ -331,11 +331,6 @@ impl<'h> Parser<'h> {
         self.text.ending()
     }
 
-    /// What `%name%` stands for now (`put_utility` and the options of a run may ask).
-    pub fn value_of(&self, name: &str) -> Option<&str> {
-        self.text.value_of(name)
-    }
-
     /// A statement's text, as expanded.
     pub fn text(&self, span: Span) -> &str {
         self.text.map.text(span)
