@@ -146,7 +146,7 @@ struct Search<'a, 'm> {
     reserve: Option<Found>,
     /// A point that satisfies everything, in case that nothing better is found: its branch was not solved.
     fallback: Option<Found>,
-    /// Points that relaxed programs passed and that satisfy everything, in case of a stop; without the objective's level.
+    /// The start, and points of relaxed programs that satisfy the pairs, in case of a stop; without the objective's level.
     passed: Vec<Vec<f64>>,
     /// No point satisfies all pairs, proved.
     empty: bool,
@@ -163,6 +163,7 @@ impl Search<'_, '_> {
             let clip = |j: usize| finite(c.level[j]).max(c.lower[j]).min(c.upper[j]);
             (0..c.level.len()).map(clip).collect()
         };
+        self.passed.push(start.clone());
         let method = self.options.method;
         if matches!(method, Method::Auto | Method::Pieces) && self.supports(&start)? {
             return self.finish();
