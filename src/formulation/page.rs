@@ -1,6 +1,6 @@
 //! A formulation as a page: headings, formulas, legends and tables, as text, LaTeX or HTML.
 
-use super::math::{Math, explained, listed, name, symbol_name};
+use super::math::{Math, explained, name, symbol_name};
 use super::render::{escaped, latex, latex_lines, mathml, mathml_lines, plain, text, wrapped};
 use super::tree::*;
 use super::{Formulation, Origin, Sign};
