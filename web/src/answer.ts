@@ -12,8 +12,9 @@ function tone(code: number): string {
 
 function solveView(s: Solve): HTMLElement {
   const code = s.model_status.code;
-  const what = `${s.model} using ${s.using}${s.sense ? ` ${s.sense === 'max' ? 'maximizing' : 'minimizing'} ${s.objective_name ?? ''}` : ''}`;
-  const residuals = Object.entries(s.residual).filter(([, v]) => v !== null).map(([k, v]) => `${k} ${typeof v === 'number' ? v.toExponential(0) : v}`);
+  const sense = s.sense ? ` ${s.sense === 'max' ? 'maximizing' : 'minimizing'} ${s.objective_name ?? ''}` : '';
+  const what = `${s.model} using ${s.using}${sense}`;
+  const residuals = Object.entries(s.residual).filter(([, v]) => v !== null).map(([k, v]) => `${k} ${typeof v === 'number' && v !== 0 ? v.toExponential(0) : v}`);
   return h('section', { class: `solve ${tone(code)}` },
     h('h3', {}, what.trim()),
     h('p', { class: 'status' }, s.model_status.name, s.objective !== null && h('strong', {}, ` ${s.objective_name ?? 'objective'} = ${shownNumber(s.objective)}`)),

@@ -10,7 +10,7 @@ export type Call = (request: unknown) => any;
 
 type Exports = {
   memory: WebAssembly.Memory;
-  _initialize(): void;
+  _initialize?(): void;
   bmod_alloc(n: number): number;
   bmod_call(p: number, n: number): number;
   bmod_free(p: number): void;
@@ -27,7 +27,7 @@ export async function start(module: WebAssembly.Module, listener: Listener): Pro
     },
   });
   bmod = instance.exports as unknown as Exports;
-  bmod._initialize();
+  bmod._initialize?.();
   return (request) => {
     const bytes = new TextEncoder().encode(JSON.stringify(request));
     const p = bmod.bmod_alloc(bytes.length) >>> 0;

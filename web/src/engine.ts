@@ -8,10 +8,18 @@ let module: Promise<WebAssembly.Module> | undefined;
 
 /** Compiled once; every worker gets the same. */
 export function compiled(): Promise<WebAssembly.Module> {
-  return (module ??= WebAssembly.compileStreaming(fetch(wasm)).catch((error) => {
+  return (module ??= compile().catch((error) => {
     module = undefined;
     throw error;
   }));
+}
+
+async function compile(): Promise<WebAssembly.Module> {
+  const response = await fetch(wasm);
+  if (!response.ok) throw new Error(`${response.status} ${response.statusText}`);
+  // A file server that does not know the type is no reason to fail.
+  const known = response.headers.get('content-type') === 'application/wasm';
+  return known ? WebAssembly.compileStreaming(response) : WebAssembly.compile(await response.arrayBuffer());
 }
 
 export class Stopped extends Error {}

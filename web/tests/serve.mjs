@@ -21,7 +21,7 @@ export async function serve(extra = {}) {
       const inside = path.startsWith('/some/path/') ? normalize(path.slice('/some/path/'.length)) : '..';
       const body = extra[path] ?? (inside.startsWith('..') ? undefined : await readFile(join(dist, inside)));
       if (body === undefined) throw new Error('not here');
-      response.writeHead(200, { 'content-type': `${type}; charset=utf-8` });
+      response.writeHead(200, { 'content-type': type.startsWith('text/') ? `${type}; charset=utf-8` : type });
       response.end(body);
     } catch {
       response.writeHead(404);
