@@ -76,8 +76,8 @@ strategies! {
             "50 steps",
             "Nocedal & Wright 2006, chapter 10";
         ConsistentStart "consistent_start",
-            "variables without a start level that an equation defines are computed",
-            "50 evaluations of the rows",
+            "variables without a start level that are the only such one in an equation are computed from it",
+            "50 evaluations of the rows and their derivatives",
             "common in models with intermediate variables";
         SequentialQuadratic "sequential_quadratic",
             "up to 10 000 variables and constraints: sequential linear and quadratic programming goes first",
@@ -111,6 +111,18 @@ strategies! {
             "negative curvature on the tangent space of the active set: a step along it, and on from there",
             "three solves",
             "Moré & Sorensen 1979";
+        WeaklyActiveCurvature "weakly_active_curvature",
+            "bounds or rows are active without a multiplier: negative curvature is looked for beyond them as well",
+            "a factorisation and 60 products",
+            "copositivity: Nocedal & Wright 2006, 12.5";
+        ViolationCurvature "violation_curvature",
+            "linear programs see no way to lessen what is violated: negative curvature of the violation is followed",
+            "a factorisation, 60 products and the solve from there",
+            "Moré & Sorensen 1979";
+        RefusedSteps "refused_steps",
+            "half of the last 30 steps of the sequential method were refused: the interior point takes over",
+            "nothing",
+            "ablation";
         UnboundedBoxes "unbounded_boxes",
             "a run diverges: the program in two boxes tells whether it is unbounded",
             "four solves",
@@ -284,4 +296,9 @@ mod tests {
             );
         }
     }
+}
+
+/// (for experiments)
+pub fn knob(name: &str, default: f64) -> f64 {
+    std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default)
 }

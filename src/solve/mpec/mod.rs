@@ -531,7 +531,7 @@ impl Search<'_, '_> {
             if usable {
                 x.copy_from_slice(y);
             }
-            if usable && mu <= 1.01e-4 {
+            if usable && mu <= crate::solve::strategy::knob("X_MU", 1.01e-4) {
                 let pieces = self.program.nearest(&x);
                 // What it leads to may be much worse: then it is not what this point is near to.
                 let value = self.program.objective(&x);

@@ -1,16 +1,23 @@
 //! A start that agrees with the definitions in the model.
 //!
 //! Many models name intermediate quantities: `flow =e= rate·area`, with start levels for the main
-//! variables only. An equation in which a variable without a start level (its level is 0, put into its
-//! bounds) occurs linearly, and in which it is the only such variable, gives it a value; that may
-//! make the next one known. Equations are used in waves, each evaluated once.
+//! variables only. An equation in which one variable has no start level (its level is 0, put into its
+//! bounds) gives it a value, by Newton's method in this variable; that may make the next one known. Equations are used
+//! in waves, each evaluated once.
 
 use super::problem::Problem;
 use crate::autodiff::Evaluator;
 use crate::model::instance::{Instance, Relation};
 
 /// Waves at most: chains of definitions are short.
-const WAVES: usize = 50;
+const WAVES: usize = 100;
+/// Newton steps for one variable: one is enough where it occurs linearly.
+const STEPS: u32 = 3;
+/// An equation holds, relative to its right-hand side.
+const HOLDS: f64 = 1e-10;
+/// A slope or a value beyond these defines nothing.
+const FLATTEST: f64 = 1e-8;
+const FARTHEST: f64 = 1e10;
 
 /// The start point with defined variables computed; None if nothing changed.
 pub fn consistent_start(
@@ -19,7 +26,7 @@ pub fn consistent_start(
     evaluator: &mut Evaluator,
     start: &[f64],
 ) -> Option<Vec<f64>> {
-    let n = instance.column_count();
+    let (n, m) = (instance.column_count(), instance.row_count());
     let columns = &instance.columns;
     let mut level: Vec<f64> = (0..n)
         .map(|j| columns.level[j].max(columns.lower[j]).min(columns.upper[j]))
@@ -27,68 +34,61 @@ pub fn consistent_start(
     for (&j, &x) in problem.columns.iter().zip(start) {
         level[j as usize] = x;
     }
-    // columns in nonlinear terms, row by row
-    let mut nonlinear: Vec<Vec<u32>> = vec![Vec::new(); instance.row_count()];
-    for t in &instance.nonlinear {
-        let v = t.kernel.variables as usize;
-        for (k, &i) in t.row.iter().enumerate() {
-            nonlinear[i as usize].extend_from_slice(&t.columns[k * v..(k + 1) * v]);
-        }
-    }
+    let (first, column) = evaluator.jacobian_pattern();
+    let (first, column) = (first.to_vec(), column.to_vec());
+    let entries = |i: usize| (first[i]..first[i + 1]).map(|k| (k, column[k] as usize));
     let unset = |j: usize| columns.level[j] == 0.0 && columns.lower[j] != columns.upper[j];
-    // a variable is open if some equation could define it
     let mut open = vec![false; n];
-    let mut candidates = Vec::new();
-    for (i, nonlinear) in nonlinear.iter_mut().enumerate() {
-        if instance.rows.relation[i] != Relation::Equal {
-            continue;
-        }
-        nonlinear.sort_unstable();
+    let is_equation = |&i: &usize| instance.rows.relation[i] == Relation::Equal;
+    let mut candidates: Vec<usize> = (0..m).filter(is_equation).collect();
+    candidates.retain(|&i| {
         let mut any = false;
-        for (j, _) in instance.matrix.row(i) {
-            if unset(j) && nonlinear.binary_search(&(j as u32)).is_err() {
-                open[j] = true;
-                any = true;
-            }
+        for (_, j) in entries(i).filter(|e| unset(e.1)) {
+            open[j] = true;
+            any = true;
         }
-        if any {
-            candidates.push(i);
-        }
-    }
-    let mut activity = vec![0.0; instance.row_count()];
+        any
+    });
+    let (mut activity, mut slope) = (vec![0.0; m], vec![0.0; column.len()]);
+    let mut steps = vec![0; n];
     let mut changed = false;
     for _ in 0..WAVES {
-        if evaluator.rows(&level, &mut activity).is_err() {
+        if evaluator.rows(&level, &mut activity).is_err()
+            || evaluator.jacobian(&level, &mut slope).is_err()
+        {
             break;
         }
-        let mut found: Vec<(usize, f64)> = Vec::new();
+        // column, and the value that its equation gives it, if it is not what it has
+        let mut found: Vec<(usize, Option<f64>)> = Vec::new();
         candidates.retain(|&i| {
-            let linear = instance.matrix.row(i).map(|(j, _)| j);
-            let all = linear.chain(nonlinear[i].iter().map(|&j| j as usize));
-            let mut unknown: Vec<usize> = all.filter(|&j| open[j]).collect();
-            unknown.sort_unstable();
-            unknown.dedup();
-            let [j] = unknown[..] else {
-                return !unknown.is_empty();
+            let mut unknown = entries(i).filter(|e| open[e.1]);
+            let (Some((k, j)), None) = (unknown.next(), unknown.next()) else {
+                return entries(i).any(|e| open[e.1]);
             };
-            if nonlinear[i].binary_search(&(j as u32)).is_err()
-                && let Some((_, a)) = instance.matrix.row(i).find(|&(k, _)| k == j)
-            {
-                let v = level[j] + (instance.rows.rhs[i] - activity[i]) / a;
-                found.push((j, v));
+            let rest = instance.rows.rhs[i] - activity[i];
+            if rest.abs() <= HOLDS * instance.rows.rhs[i].abs().max(1.0) || steps[j] == STEPS {
+                found.push((j, None));
+                return false;
             }
-            false
+            if slope[k].abs() < FLATTEST {
+                return false;
+            }
+            steps[j] += 1;
+            found.push((j, Some(level[j] + rest / slope[k])));
+            true
         });
         if found.is_empty() {
             break;
         }
-        for (j, v) in found {
-            let v = v.max(columns.lower[j]).min(columns.upper[j]);
-            if open[j] && v.is_finite() && v.abs() < 1e10 {
-                changed |= v != level[j];
-                level[j] = v;
+        for (j, value) in found {
+            let value = value.map(|v| v.max(columns.lower[j]).min(columns.upper[j]));
+            match value.filter(|v| v.is_finite() && v.abs() < FARTHEST && *v != level[j]) {
+                Some(v) if open[j] => {
+                    changed = true;
+                    level[j] = v;
+                }
+                _ => open[j] = false,
             }
-            open[j] = false;
         }
     }
     changed.then(|| problem.columns.iter().map(|&j| level[j as usize]).collect())

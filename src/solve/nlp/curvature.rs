@@ -19,18 +19,18 @@ use crate::solve::random::Random;
 /// Steps of Lanczos's method at most.
 const STEPS: usize = 60;
 
-/// A direction of negative curvature of the Lagrangian at x, tangent to what is active; None if there
-/// is none, or nothing could be computed. `active` tells the variables that stay where they are and
+/// A direction of negative curvature of σ f + λᵀg at x, tangent to what is active; None if there
+/// is none, or nothing could be computed. `fixed` tells the variables that stay where they are, `binding`
 /// the constraints that bind.
 pub fn negative_curvature(
     nlp: &mut dyn Nlp,
     x: &[f64],
-    lambda: &[f64],
+    (sigma, lambda): (f64, &[f64]),
     fixed: &[bool],
     binding: &[bool],
 ) -> Option<Vec<f64>> {
     let (n, m) = nlp.size();
-    let hessian = nlp.hessian_entries(x, lambda)?;
+    let hessian = nlp.hessian_entries_of(x, sigma, lambda)?;
     let size = hessian.iter().fold(0.0f64, |s, e| s.max(e.2.abs()));
     if size == 0.0 || !size.is_finite() {
         return None;

@@ -17,7 +17,6 @@
 
 use super::Convexity;
 use super::consistent::consistent_start;
-use super::curvature::negative_curvature;
 use super::growth::Growth;
 use super::problem::{Nlp, Problem};
 use super::provider::{Control, Ended, Progress, Provider, Shared, Solution, lock};
@@ -27,7 +26,7 @@ use super::schedule::{
     LEAST_PATIENCE, OVERHEAD, PATIENCE, SCHEDULE, SHARP, TIMES,
 };
 use super::slqp;
-use super::trial::{Trial, active_set, clean, polished, residuals_at, tidy, without_noise};
+use super::trial::{Trial, clean, polished, residuals_at, tidy, without_noise};
 use crate::autodiff::{ErrorKind, EvalFailure, Evaluator, kinks};
 use crate::model::instance::Instance;
 use crate::solve::backend::Task;
@@ -45,6 +44,9 @@ const UNBOUNDED: f64 = 1e15;
 const LOST: f64 = 1e17;
 /// A point is unbounded evidence from here on, if the provider stopped with diverging iterates.
 const LARGE: f64 = 1e10;
+
+/// How often negative curvature of the violation is followed.
+const MOST_ESCAPES: u32 = 3;
 
 /// What rows without multipliers are widened by, in units of their largest entry.
 const WIDTH: f64 = 1e-8;
@@ -148,7 +150,7 @@ fn start_failure(e: &EvalFailure) -> SolveError {
 
 pub(super) struct Driver<'a, 'm> {
     /// For instances with kinks: derivatives a hair beside them.
-    kinks: Option<Evaluator>,
+    pub(super) kinks: Option<Evaluator>,
     /// A minimum of the violations, and multipliers of all rows that may prove it.
     pub(super) infeasibility: Option<(Trial, Vec<f64>)>,
     pub(super) instance: &'a Instance,
@@ -168,7 +170,7 @@ pub(super) struct Driver<'a, 'm> {
     pub(super) iterations: u64,
     pub(super) best: Option<Trial>,
     /// How the last run of the provider ended.
-    ended: Ended,
+    pub(super) ended: Ended,
     /// The best point is a saddle from which a run went astray.
     pub(super) at_saddle: bool,
     /// There is no feasible point.
@@ -177,6 +179,8 @@ pub(super) struct Driver<'a, 'm> {
     repeated: bool,
     /// The elastic form was solved.
     pub(super) elastic_tried: bool,
+    /// How often negative curvature of the violation was followed.
+    violation_escapes: u32,
     /// Work after which no further attempt is begun.
     enough: f64,
     /// What factors of the KKT matrix cost, once that is known.
@@ -215,6 +219,7 @@ impl<'a, 'm> Driver<'a, 'm> {
             impossible: false,
             repeated: false,
             elastic_tried: false,
+            violation_escapes: 0,
             enough: f64::INFINITY,
             factors: OnceCell::new(),
             patience: FIRST_PATIENCE,
@@ -491,11 +496,18 @@ impl Driver<'_, '_> {
             slqp::End::Spent => Ended::Iterations,
             slqp::End::Stuck => Ended::SmallStep,
         };
+        if run.end == slqp::End::Infeasible
+            && self.violation_escapes < MOST_ESCAPES
+            && let Some(x) = self.beyond_least_violation(&run.x, &run.lambda)
+        {
+            self.violation_escapes += 1;
+            return self.sequential(x, None);
+        }
         let trial = self.judge(run.x, run.lambda, ended);
         if run.end == slqp::End::Infeasible {
             self.note_infeasibility(&trial);
         }
-        let ended = matches!(run.end, slqp::End::Solved | slqp::End::Stuck);
+        let ended = !matches!(run.end, slqp::End::Infeasible | slqp::End::Diverging);
         let regular = self.kinks.is_some() || trial.lambda.is_empty();
         let irregular = ended && !regular && trial.is_feasible() && !trial.is_optimal();
         let trial = match irregular && self.settings.runs(Strategy::WidenedRows) {
@@ -745,87 +757,5 @@ impl Driver<'_, '_> {
         if better {
             self.best = Some(trial);
         }
-    }
-
-    /// While the best point is a saddle: follow the negative curvature and solve again.
-    pub(super) fn leave_saddles(&mut self) -> Result<(), SolveError> {
-        self.at_saddle = false;
-        for _ in 0..3 {
-            let Some(best) = self.best.clone().filter(Trial::is_optimal) else {
-                return Ok(());
-            };
-            if self.is_stopped() {
-                return Ok(());
-            }
-            let Some(x) = self.beyond_saddle(&best) else {
-                return Ok(());
-            };
-            if !self.settings.runs(Strategy::SaddleEscape) {
-                return Ok(());
-            }
-            let before = best.objective;
-            if !self.named {
-                self.sequential(x.clone(), None);
-            }
-            let now = self.best.as_ref().map_or(before, |t| t.objective);
-            if now < before - 1e-9 * before.abs().max(1.0) {
-                continue;
-            }
-            self.attempt_from(
-                x,
-                &[
-                    ("mu_init", "1e-3"),
-                    ("bound_push", "1e-6"),
-                    ("bound_frac", "1e-6"),
-                ],
-            )?;
-            let now = self.best.as_ref().map_or(before, |t| t.objective);
-            self.at_saddle = now == before && self.ended == Ended::Diverging;
-            if now >= before - 1e-9 * before.abs().max(1.0) {
-                return Ok(());
-            }
-        }
-        Ok(())
-    }
-
-    /// A point beyond the saddle, if the trial is one.
-    fn beyond_saddle(&mut self, t: &Trial) -> Option<Vec<f64>> {
-        if !self.affords_factors() {
-            return None;
-        }
-        let mut problem = lock(&*self.problem);
-        let (lower, upper) = (problem.bounds().0.to_vec(), problem.bounds().1.to_vec());
-        let active = active_set(self.instance, &problem, t, 1e-6);
-        let (fixed, binding) = (&active.fixed, &active.binding);
-        let curvature = |p: &mut Problem| negative_curvature(p, &t.x, &t.lambda, fixed, binding);
-        // a kink that points upwards shows once it is rounded
-        let rounded = || Problem::smoothed(self.instance, FINEST);
-        let d = match curvature(&mut problem) {
-            None if self.kinks.is_some() => curvature(&mut rounded())?,
-            d => d?,
-        };
-        let unit = d.iter().fold(0.0f64, |s, v| s.max(v.abs()));
-        let scale = t.x.iter().fold(1.0f64, |s, v| s.max(v.abs()));
-        // the first point along ±d that can be evaluated, has a lower objective and is nearly feasible
-        for length in [0.1, 0.01, 1e-3] {
-            let mut best: Option<(f64, Vec<f64>)> = None;
-            for sign in [1.0, -1.0] {
-                let y: Vec<f64> = (0..d.len())
-                    .map(|j| {
-                        let v = t.x[j] + sign * length * scale * d[j] / unit;
-                        v.max(lower[j]).min(upper[j])
-                    })
-                    .collect();
-                if let Some(f) = problem.objective(&y)
-                    && best.as_ref().is_none_or(|b| f < b.0)
-                {
-                    best = Some((f, y));
-                }
-            }
-            if let Some((_, y)) = best {
-                return Some(y);
-            }
-        }
-        None
     }
 }

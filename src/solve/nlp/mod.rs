@@ -22,6 +22,7 @@ pub mod problem;
 pub mod provider;
 pub mod quadratic;
 pub mod relaxation;
+mod saddle;
 mod schedule;
 mod slqp;
 mod symmetric;

@@ -66,8 +66,13 @@ pub trait Nlp {
 
     /// Lower triangle of ∇²f + Σ λ_i ∇²g_i: row, column, value.
     fn hessian_entries(&mut self, x: &[f64], lambda: &[f64]) -> Option<Vec<Entry>> {
+        self.hessian_entries_of(x, 1.0, lambda)
+    }
+
+    /// Lower triangle of σ ∇²f + Σ λ_i ∇²g_i: row, column, value.
+    fn hessian_entries_of(&mut self, x: &[f64], sigma: f64, lambda: &[f64]) -> Option<Vec<Entry>> {
         let mut value = vec![0.0; self.hessian_pattern().0.len()];
-        self.hessian(x, 1.0, lambda, &mut value)?;
+        self.hessian(x, sigma, lambda, &mut value)?;
         Some(entries(self.hessian_pattern(), value))
     }
 }
