@@ -18,21 +18,7 @@ fn corpus() -> Option<(PathBuf, Vec<StringRecord>)> {
 
 /// Runs a file; with `generate_only`, nothing is solved.
 fn run(file: &Path, generate_only: bool) -> Result<SolveReport, String> {
-    run_with(file, generate_only, None)
-}
-
-/// Runs a file with the nonlinear solver of that name.
-fn run_with(
-    file: &Path,
-    generate_only: bool,
-    provider: Option<&str>,
-) -> Result<SolveReport, String> {
-    let texts = ["nlp", "dnlp", "qcp"].map(str::to_string);
     let options = Options {
-        texts: provider
-            .map(|p| texts.into_iter().map(|t| (t, p.to_string())).collect())
-            .unwrap_or_default(),
-        solver_options: vec![("nlp_search".into(), "yes".into())],
         list: generate_only.then(|| ListOptions {
             limit: 0,
             only: Vec::new(),
@@ -98,47 +84,55 @@ fn linear_programs_have_the_objective_of_the_reference() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// With the search for better optima at least 95 in 100 reach an objective no worse than the reference's from the start of the file, with a
-/// certificate; never is a point called optimal that is not feasible.
+/// Where another certified local optimum is reached by default than the reference's, from the start of the file, or the reference is
+/// not an optimum: the objective, and why. Every other nonlinear program reaches the reference's objective or a better one.
+const OTHER_OPTIMA: &[(&str, f64, &str)] = &[
+    (
+        "nlp/ex5_4_4.gms",
+        12138.448027,
+        "a vertex with large multipliers",
+    ),
+    (
+        "nlp/ex7_3_5.gms",
+        1.2068964599,
+        "no multipliers at the solution: the reference is as much lower as its rows are violated",
+    ),
+];
+
+/// Without a search every nonlinear program of the corpus has a certified point, no worse than the reference's or the one above.
 #[test]
 fn nonlinear_programs_are_no_worse_than_the_reference() {
     let Some((folder, rows)) = corpus() else {
         return;
     };
-    for provider in bmod::solve::nlp::providers() {
-        let name = provider.name();
-        let (mut count, mut worse) = (0, Vec::new());
-        for row in &rows {
-            if !matches!(&row[2], "NLP" | "DNLP" | "QCP") {
-                continue;
-            }
-            count += 1;
-            let want: f64 = row[4].parse().expect("an objective");
-            let sign = if &row[5] == "max" { -1.0 } else { 1.0 };
-            match run_with(&folder.join(&row[0]), false, Some(name)) {
-                Ok(s) => {
-                    let got = s.objective.map_or(f64::NAN, |o| o.0);
-                    let reached = sign * (got - want) <= 1e-6 * want.abs().max(1.0);
-                    if !(reached && matches!(s.model_status.code, 1 | 2)) {
-                        worse.push(format!(
-                            "{}: {got} ({}), the reference has {want}",
-                            &row[0], s.model_status.name
-                        ));
-                    }
-                }
-                Err(e) => worse.push(format!("{}: {e}", &row[0])),
-            }
+    let (mut count, mut wrong) = (0, Vec::new());
+    for row in &rows {
+        if !matches!(&row[2], "NLP" | "DNLP" | "QCP") {
+            continue;
         }
-        println!(
-            "{name}: {} of {count}; the rest:\n{}",
-            count - worse.len(),
-            worse.join("\n")
-        );
-        assert!(
-            worse.len() * 20 <= count,
-            "{name}: {} of {count} are worse:\n{}",
-            worse.len(),
-            worse.join("\n")
-        );
+        count += 1;
+        let other = OTHER_OPTIMA.iter().find(|o| o.0 == &row[0]);
+        let reference: f64 = row[4].parse().expect("an objective");
+        let want = other.map_or(reference, |o| o.1);
+        let sign = if &row[5] == "max" { -1.0 } else { 1.0 };
+        let said = match run(&folder.join(&row[0]), false) {
+            Ok(s) => {
+                let got = s.objective.map_or(f64::NAN, |o| o.0);
+                let reached = sign * (got - want) <= 1e-6 * want.abs().max(1.0);
+                if reached && matches!(s.model_status.code, 1 | 2) {
+                    continue;
+                }
+                format!("{got} ({})", s.model_status.name)
+            }
+            Err(e) => e,
+        };
+        wrong.push(format!("{}: {said}, expected {want}", &row[0]));
     }
+    assert!(count > 100, "{count} nonlinear programs");
+    assert!(
+        wrong.is_empty(),
+        "{} of {count}:\n{}",
+        wrong.len(),
+        wrong.join("\n")
+    );
 }

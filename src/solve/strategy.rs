@@ -181,6 +181,10 @@ strategies! {
             "Neumaier 2004";
     }
     "mpec": {
+        InteriorRelaxation "interior_relaxation",
+            "more than 120 rows and columns: programs in which products are bounded or penalised go to the interior point, not to the sequential method",
+            "nothing",
+            "Raghunathan & Biegler 2005";
     }
     "mip": {
     }
@@ -296,9 +300,4 @@ mod tests {
             );
         }
     }
-}
-
-/// (for experiments)
-pub fn knob(name: &str, default: f64) -> f64 {
-    std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default)
 }

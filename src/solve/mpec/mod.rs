@@ -32,7 +32,9 @@ use super::backend::{Backend, Reply, Seen, Supports, Task, Terms};
 use super::bridge::products::{Kind, Relaxed};
 use super::lp::Ended;
 use super::registry::BACKENDS;
-use super::{Budget, Claim, ModelStatus, Outcome, Settings, SolveError, SolverStatus, Stop};
+use super::{
+    Budget, Claim, ModelStatus, Outcome, Settings, SolveError, SolverStatus, Stop, Strategy,
+};
 use crate::model::instance::Instance;
 use crate::model::option::OptionTable;
 use crate::model::outcome::Basis;
@@ -119,6 +121,9 @@ impl Backend for Bmpec {
 /// Until there is a feasible point: in iterations times rows and columns, and iterations in any case.
 const FIRST_WORK: u64 = 300_000;
 const FIRST_ITERATIONS: u64 = 3_000;
+
+/// Rows and columns up to which a relaxed program goes to the sequential method.
+const LARGEST_SEQUENTIAL: u64 = 120;
 
 /// A feasible point: the solution of a branch.
 #[derive(Clone)]
@@ -235,6 +240,7 @@ impl Search<'_, '_> {
     /// A nonlinear program on the way, within the present phase and so many iterations.
     fn program(
         &self,
+        choice: Option<&str>,
         instance: &Instance,
         extra: &[(&str, &str)],
         most: u64,
@@ -245,7 +251,7 @@ impl Search<'_, '_> {
         let most = most.min(self.left());
         self.budget.silently(|budget| {
             budget.within(f64::INFINITY, most, |budget| {
-                let task = Task::new(ProblemType::Nlp, instance).by(self.choice);
+                let task = Task::new(ProblemType::Nlp, instance).by(choice);
                 subproblem(&Task { seen, ..task }, &settings, budget)
             })
         })
@@ -285,7 +291,7 @@ impl Search<'_, '_> {
                     subproblem(&Task { basis, ..task }, self.settings, budget)
                 })
             }),
-            false => self.program(&instance, &[], most, None),
+            false => self.program(self.choice, &instance, &[], most, None),
         };
         let answer = match answer {
             Ok(a) => a,
@@ -503,11 +509,16 @@ impl Search<'_, '_> {
         let n = x.len();
         let mut mu = self.options.mu;
         let mut missed = 0;
+        // next to the products' bounds there are no vertices that a sequential method could go along
+        let mut interior = self.choice;
+        if self.size() > LARGEST_SEQUENTIAL && self.settings.runs(Strategy::InteriorRelaxation) {
+            interior = interior.or(super::nlp::providers().first().map(|p| p.name()));
+        }
         loop {
             relaxed.tighten(self.program, mu, &x);
             let extra = [("bound_relax_factor", "0"), ("mu_strategy", "adaptive")];
             let seen = relaxed.seen();
-            let a = self.program(&relaxed.instance, &extra, u64::MAX, Some(&seen));
+            let a = self.program(interior, &relaxed.instance, &extra, u64::MAX, Some(&seen));
             self.passed.extend(relaxed.exact.take().map(|mut level| {
                 level.truncate(n);
                 level
@@ -531,7 +542,7 @@ impl Search<'_, '_> {
             if usable {
                 x.copy_from_slice(y);
             }
-            if usable && mu <= crate::solve::strategy::knob("X_MU", 1.01e-4) {
+            if usable && mu <= 1.01e-4 {
                 let pieces = self.program.nearest(&x);
                 // What it leads to may be much worse: then it is not what this point is near to.
                 let value = self.program.objective(&x);
@@ -671,7 +682,10 @@ impl Search<'_, '_> {
                 let task = Task::new(ProblemType::Lp, envelope);
                 answer_with(BACKENDS, &task, self.settings, self.budget)?
             }
-            false => self.program(envelope, &[("nlp_attempts", "all")], u64::MAX, None)?,
+            false => {
+                let all = [("nlp_attempts", "all")];
+                self.program(self.choice, envelope, &all, u64::MAX, None)?
+            }
         };
         let mut outcome = a.outcome;
         let status = stopped.map_or(SolverStatus::NormalCompletion, Stop::status);

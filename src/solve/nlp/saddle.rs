@@ -191,7 +191,9 @@ fn row_sizes(problem: &Problem) -> Vec<f64> {
     let (below, above) = problem.sides();
     let finite = |v: f64| if v.is_finite() { v.abs() } else { 0.0 };
     let sides = below.iter().zip(above);
-    sides.map(|(&a, &b)| finite(a).max(finite(b)).max(1.0)).collect()
+    sides
+        .map(|(&a, &b)| finite(a).max(finite(b)).max(1.0))
+        .collect()
 }
 
 /// A row that a direction may be confined by: entries, and 1 where its value may not fall, −1 where it may not rise.
@@ -238,7 +240,8 @@ fn confined(d: &mut [f64], x: &[f64], (lower, upper): (&[f64], &[f64]), sides: &
             let size: f64 = line.iter().map(|&(_, a)| a * a).sum();
             if rate < 0.0 {
                 moved = true;
-                line.iter().for_each(|&(j, a)| d[j] -= sign * rate / size * a);
+                line.iter()
+                    .for_each(|&(j, a)| d[j] -= sign * rate / size * a);
             }
         }
         if !moved {

@@ -284,7 +284,8 @@ impl Method<'_, '_> {
             refused = (refused << 1 | u32::from(self.at.values.f == before)) & ((1 << WINDOW) - 1);
             if steps >= u64::from(WINDOW)
                 && refused.count_ones() >= MOST_REFUSED
-                && self.strategies.run(Strategy::RefusedSteps) {
+                && self.strategies.run(Strategy::RefusedSteps)
+            {
                 return (steps, End::Spent);
             }
             if self.at.x.iter().any(|x| x.abs() > FARTHEST) {
