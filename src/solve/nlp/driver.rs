@@ -22,7 +22,7 @@ use super::problem::{Nlp, Problem};
 use super::provider::{Control, Ended, Progress, Provider, Shared, Solution, lock};
 use super::quadratic::Quadratic;
 use super::schedule::{
-    AGREEMENT, BASE, BESIDE, BETTER, CHEAP, DOUBT, ENOUGH, EXACT, FINEST, FIRST_PATIENCE, From,
+    AGREEMENT, BASE, BESIDE, BETTER, CHEAP, DOUBT, ENOUGH, EXACT, FIRST_PATIENCE, From,
     LEAST_PATIENCE, OVERHEAD, PATIENCE, SCHEDULE, SHARP, TIMES,
 };
 use super::slqp;
