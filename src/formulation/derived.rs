@@ -12,6 +12,7 @@ use crate::check::node::{AggregateOp, EquationDef, Node, NodeKind, SymbolId};
 use crate::check::visit::Visitor;
 use crate::diag::Diagnostic;
 use crate::run::{Machine, Studied};
+use crate::solve::ModelStatus;
 use crate::source::Span;
 
 /// What is derived from a model.
@@ -116,7 +117,10 @@ fn linear_dual(
     let d =
         Derivation::new(symbols, store, primal, String::new(), "lp").map_err(|e| failed(e.1))?;
     let mut page = side::page(symbols, store, &side::own(&d), &shown);
-    page.extend(side::slackness(symbols, store, primal, shown.flipped));
+    match no_optimum(studied) {
+        None => page.extend(side::slackness(symbols, store, primal, shown.flipped)),
+        words => page.extend(words),
+    }
     Ok(Derived {
         title: format!("The dual of {}", primal.name),
         page,
@@ -198,6 +202,18 @@ fn refuse_discrete(
         .into())
 }
 
+/// What is said where the solve found no optimum: its levels and marginals satisfy nothing that is derived here.
+fn no_optimum(studied: &Studied) -> Option<Block> {
+    use ModelStatus::{LocallyOptimal, Optimal, Solved};
+    let status = studied.answer.as_ref().map(|(_, a)| a.status);
+    if let None | Some(Optimal | LocallyOptimal | Solved) = status {
+        return None;
+    }
+    let name = status.map_or(String::new(), |s| s.name().to_lowercase());
+    let words = format!("The solve ended with: {name}. Its levels and marginals are no optimum.");
+    Some(Block::Words(words))
+}
+
 fn definition<'a>(m: &'a Machine, e: SymbolId) -> Option<&'a EquationDef> {
     m.equations.iter().find(|d| d.symbol == e)
 }
@@ -230,6 +246,7 @@ fn conditions(
     ));
     page.extend(formulas(&mut Setter::new(symbols, store, &f), symbols, &f));
     page.extend(f.notes.iter().cloned().map(Block::Words));
+    page.extend(no_optimum(studied));
     // What is written is what was generated.
     let (formulation, check) = match check || write {
         false => (f, None),

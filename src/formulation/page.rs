@@ -467,7 +467,7 @@ pub const STYLE: &str = "body{font:16px/1.5 system-ui,sans-serif;max-width:60em;
 h1{font-size:1.6em}h2{font-size:1.15em;margin:1.6em 0 .4em;border-bottom:1px solid #ccc}\
 table{border-collapse:collapse;margin:.5em 0}td,th{padding:.15em 1em .15em 0;text-align:left;vertical-align:baseline}\
 th{font-weight:600;border-bottom:1px solid #999}td.n,th.n{text-align:right;font-variant-numeric:tabular-nums}\
-td.name{color:#666;font-size:.9em}td.runs{color:#444;padding-left:2em}math{font-size:1.08em;font-family:'STIX Two Math','Cambria Math','Latin Modern Math','DejaVu Math TeX Gyre',math}mtext{font-family:system-ui,sans-serif;font-size:.92em}\
+td.name{color:#666;font-size:.9em}td.runs{color:#444;padding-left:2em;white-space:nowrap}math{font-size:1.08em;font-family:'STIX Two Math','Cambria Math','Latin Modern Math','DejaVu Math TeX Gyre',math}mtext{font-family:system-ui,sans-serif}\
 .example td{color:#555;font-size:.9em}.f td{padding:.35em .6em .35em 0}@media print{body{font-size:11pt;max-width:none;margin:0}h2{break-after:avoid}tr{break-inside:avoid}}\
 @page{size:A4;margin:18mm}";
 

@@ -161,7 +161,7 @@ pub fn mathml_lines(m: &Math) -> String {
     for p in pieces(m) {
         // An operator that begins a piece stands between two terms all the same.
         let piece = mathml(&p).replacen("<mo>", "<mo form=\"infix\">", usize::from(begins(&p)));
-        out.push_str(&format!("<math displaystyle=\"true\">{piece}</math> "));
+        out.push_str(&format!("<math displaystyle=\"true\">{piece}</math><wbr>"));
     }
     out
 }
