@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Builds the playground into web/dist: bmod as WebAssembly, then the page. Installs what it needs (the Rust target by rustup, the
 # packages of package-lock.json by npm). Any file server can serve the folder, under any path.
-# usage: web/build.sh
+# usage: [DRAFT=1] web/build.sh
 set -euo pipefail
 cd "$(dirname "$0")"
 
@@ -18,14 +18,15 @@ if [ ! -e target/faer-traits-$version/Cargo.toml ]; then
     target/faer-traits-$version/src/lib.rs
 fi
 
+# A draft compiles sooner and runs slower: for tests.
+draft=()
+if [ -n "${DRAFT:-}" ]; then
+  draft=(--config profile.release.package.bmod.opt-level=1 --config profile.release.package.bmod.codegen-units=16)
+fi
 # A deeply nested text needs more stack than the usual megabyte.
 CARGO_TARGET_DIR=$PWD/target/cargo RUSTFLAGS="-Clink-arg=-zstack-size=33554432 -Ctarget-feature=+simd128" \
-  cargo build --release --manifest-path wasm/Cargo.toml --target wasm32-wasip1
-built=target/cargo/wasm32-wasip1/release/bmod_wasm.wasm
-if [ $built -nt target/bmod.wasm ]; then
-  node_modules/.bin/wasm-opt -Oz --enable-simd --enable-bulk-memory --enable-nontrapping-float-to-int --enable-sign-ext \
-    --enable-mutable-globals $built -o target/bmod.wasm
-fi
+  cargo build --release --manifest-path wasm/Cargo.toml --target wasm32-wasip1 ${draft[@]+"${draft[@]}"}
+cp target/cargo/wasm32-wasip1/release/bmod_wasm.wasm target/bmod.wasm
 
 node_modules/.bin/tsc
 node_modules/.bin/vite build --logLevel warn

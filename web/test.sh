@@ -7,7 +7,7 @@ cd "$(dirname "$0")"
 if ! command -v chromium >/dev/null; then
   apt-get update -qq && apt-get install -y -qq chromium
 fi
-./build.sh
+DRAFT=${DRAFT-1} ./build.sh
 if [ -z "${BMOD:-}" ]; then
   (cd .. && cargo build --quiet)
   export BMOD=$PWD/../target/debug/bmod

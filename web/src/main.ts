@@ -37,7 +37,7 @@ const service = new Service(checker, () => open);
 const extensions = serviceExtensions({ ask: (question) => service.ask(shown, question), go: goTo, change, say: toast });
 const editor = new Editor(byId('editor'), { readOnly, changed, run: () => void run(), stop, extensions });
 const sliders = new Sliders(byId('sliders'), () => void run(true));
-const view = (tab: 'formulas' | 'dual' | 'kkt' | 'words' | 'prices' | 'rows' | 'why') => new View(tab, runner, () => request());
+const view = (tab: 'formulas' | 'dual' | 'kkt' | 'words' | 'prices' | 'rows' | 'why') => new View(tab, runner, () => request(), say);
 const tabs = new Tabs(byId('tabs'), byId('panel'), {
   answer: { element: answerView.element },
   figures: { element: figures.element },

@@ -14,7 +14,7 @@ export class View {
   readonly element = h('div', { class: 'formulas' });
   private seen = '';
 
-  constructor(private kind: string, private engine: Engine, private request: () => Project & Settings) {}
+  constructor(private kind: string, private engine: Engine, private request: () => Project & Settings, private say: (text: string) => void) {}
 
   show(): void {
     const request = this.request();
@@ -34,6 +34,7 @@ export class View {
       const why = error instanceof Stopped ? texts.stopped : `${texts.broke} (${(error as Error).message})`;
       this.element.replaceChildren(h('p', { class: 'note' }, why));
     }
+    this.say('');
   }
 
   private async why(request: Project & Settings): Promise<Node[]> {
