@@ -4,9 +4,7 @@
 
 use super::backend::{Backend, Task};
 use super::{Budget, Claim, ModelStatus, Outcome, Settings, SolveError};
-use crate::model::instance::{
-    ColumnKind, Columns, Instance, Objective, Relation, Rows, Sense, SparseRows,
-};
+use crate::model::instance::{Columns, Instance, Relation, Sense};
 use crate::model::problem_type::ProblemType;
 use crate::solve::certificate;
 use Relation::{Equal, Free, Greater, Less};
@@ -20,21 +18,12 @@ pub type Row = (Vec<f64>, Relation, f64);
 
 /// An instance whose last column z is the objective, defined by the last row `z - c'x =e= 0`.
 pub fn linear(sense: Sense, cost: &[f64], bounds: &[(f64, f64)], rows: &[Row]) -> Instance {
-    let n = cost.len();
     let mut instance = Instance {
-        objective: Some(Objective {
-            column: n as u32,
-            sense,
-        }),
-        matrix: SparseRows {
-            start: vec![0],
-            ..SparseRows::default()
-        },
+        columns: columns(bounds),
         ..Instance::default()
     };
-    let mut bounds = bounds.to_vec();
-    bounds.push((-INF, INF));
-    instance.columns = columns(&bounds);
+    let z = instance.add_column(-INF, INF, 0.0);
+    instance.set_objective(z, sense);
     let definition: Vec<f64> = cost.iter().map(|&c| -c).chain([1.0]).collect();
     let all = rows.iter().cloned().chain([(definition, Equal, 0.0)]);
     for (coefficients, relation, rhs) in all {
@@ -45,34 +34,16 @@ pub fn linear(sense: Sense, cost: &[f64], bounds: &[(f64, f64)], rows: &[Row]) -
 
 /// Columns with these bounds, at level 0.
 pub fn columns(bounds: &[(f64, f64)]) -> Columns {
-    let n = bounds.len();
-    Columns {
-        lower: bounds.iter().map(|b| b.0).collect(),
-        upper: bounds.iter().map(|b| b.1).collect(),
-        level: vec![0.0; n],
-        marginal: vec![0.0; n],
-        scale: vec![1.0; n],
-        kind: vec![ColumnKind::Continuous; n],
+    let mut out = Columns::default();
+    for &(lower, upper) in bounds {
+        out.push(lower, upper);
     }
+    out
 }
 
 /// Appends a row given densely.
 pub fn push_row(instance: &mut Instance, coefficients: &[f64], relation: Relation, rhs: f64) {
-    let Rows {
-        relation: relations,
-        rhs: sides,
-        marginal,
-        scale,
-    } = &mut instance.rows;
-    relations.push(relation);
-    sides.push(rhs);
-    marginal.push(0.0);
-    scale.push(1.0);
-    for (j, &v) in coefficients.iter().enumerate().filter(|(_, v)| **v != 0.0) {
-        instance.matrix.column.push(j as u32);
-        instance.matrix.value.push(v);
-    }
-    instance.matrix.start.push(instance.matrix.column.len());
+    instance.add_row(coefficients.iter().copied().enumerate(), relation, rhs);
 }
 
 /// A backend with its settings.
@@ -226,13 +197,10 @@ fn shapes(solver: Solve, tol: f64) {
     optimum(&run(solver, &instance), 0.0, tol);
     // No rows: the objective variable itself is bounded.
     let mut bare = Instance {
-        objective: Some(Objective {
-            column: 0,
-            sense: Sense::Maximize,
-        }),
+        columns: columns(&[(-1.0, 6.0)]),
         ..Instance::default()
     };
-    bare.columns = columns(&[(-1.0, 6.0)]);
+    bare.set_objective(0, Sense::Maximize);
     bare.matrix.start.push(0);
     let o = run(solver, &bare);
     optimum(&o, 6.0, tol);

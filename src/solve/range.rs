@@ -139,40 +139,18 @@ pub fn solve_linear(p: &Instance) -> Option<Answer> {
     answer(ProblemType::Lp, None, p, &Settings::default(), &budget).ok()
 }
 
-/// Appends a row.
-fn push(p: &mut Instance, terms: &[(usize, f64)], relation: Relation, rhs: f64) {
-    if p.matrix.start.is_empty() {
-        p.matrix.start.push(0);
-    }
-    let mut terms: Vec<(usize, f64)> = terms.iter().copied().filter(|t| t.1 != 0.0).collect();
-    terms.sort_by_key(|t| t.0);
-    for (j, v) in terms {
-        p.matrix.column.push(j as u32);
-        p.matrix.value.push(v);
-    }
-    p.matrix.start.push(p.matrix.column.len());
-    p.rows.relation.push(relation);
-    p.rows.rhs.push(rhs);
-    p.rows.marginal.push(0.0);
-    p.rows.scale.push(1.0);
-}
-
 impl<'a> Reduced<'a> {
     fn new(p: &'a Instance, x: &'a [f64], activity: &'a [f64]) -> Option<Self> {
         let o = p.objective?;
         let z = o.column as usize;
-        let holds = |i: usize| p.matrix.row(i).any(|(j, v)| j == z && v != 0.0);
-        let mut rows = (0..p.row_count()).filter(|&i| holds(i));
-        let free = !p.columns.lower[z].is_finite() && !p.columns.upper[z].is_finite();
-        let gone = match (rows.next(), rows.next()) {
-            (Some(i), None) if free && p.rows.relation[i] == Relation::Equal => Some((i, z)),
-            _ => None,
-        };
+        let row = p
+            .objective_row()
+            .filter(|&(i, _)| p.is_free(z) && p.rows.relation[i] == Relation::Equal);
+        let gone = row.map(|(i, _)| (i, z));
         let sign = p.sign();
         let mut cost = vec![0.0; p.column_count()];
-        match gone {
-            Some((i, z)) => {
-                let a = p.matrix.row(i).find(|t| t.0 == z)?.1;
+        match row {
+            Some((i, a)) => {
                 p.matrix.row(i).for_each(|(j, v)| cost[j] = -sign * v / a);
                 cost[z] = 0.0;
             }
@@ -233,7 +211,7 @@ impl<'a> Reduced<'a> {
             if shifted == Some(j) {
                 terms.push((shift, -1.0));
             }
-            push(&mut d, &terms, relation, self.cost[j]);
+            d.add_row(terms, relation, self.cost[j]);
         }
         if shifted.is_none() {
             (d.columns.lower[shift], d.columns.upper[shift]) = (0.0, 0.0);
@@ -275,12 +253,12 @@ impl<'a> Reduced<'a> {
             if k == i {
                 terms.push((t, -direction));
             }
-            push(&mut d, &terms, self.p.rows.relation[k], self.p.rows.rhs[k]);
+            d.add_row(terms, self.p.rows.relation[k], self.p.rows.rhs[k]);
         }
         let mut terms: Vec<(usize, f64)> = self.cost.iter().copied().enumerate().collect();
         terms.push((t, -direction * price));
         let room = VALUE_TOLERANCE * (1.0 + self.value.abs());
-        push(&mut d, &terms, Relation::Less, self.value + room);
+        d.add_row(terms, Relation::Less, self.value + room);
         extreme(d, t, Sense::Maximize).map_or(0.0, |t| t.max(0.0))
     }
 

@@ -5,7 +5,7 @@
 //! of the nonlinear terms of a row becomes a column of its own, between the numbers that interval arithmetic over the
 //! bounds of the variables gives; if this linear program is infeasible (by multipliers that are checked), so is the program.
 
-use crate::model::instance::{Function, Instance, KernelTerms, Op, Relation, SparseRows};
+use crate::model::instance::{Function, Instance, KernelTerms, Op, Relation};
 use crate::model::problem_type::ProblemType;
 use crate::solve::answer::subproblem;
 use crate::solve::backend::Task;
@@ -49,27 +49,18 @@ fn relax(instance: &Instance) -> Instance {
     }
     let mut relaxed = Instance {
         columns: columns.clone(),
-        rows: instance.rows.clone(),
-        matrix: SparseRows {
-            start: vec![0],
-            ..SparseRows::default()
-        },
         ..Instance::default()
     };
     for (i, sum) in sums.into_iter().enumerate() {
-        for (j, a) in instance.matrix.row(i) {
-            relaxed.matrix.column.push(j as u32);
-            relaxed.matrix.value.push(a);
-        }
-        if let Some(Interval { low, high }) = sum {
+        let mut relation = instance.rows.relation[i];
+        let value = sum.map(|Interval { low, high }| {
             if low == f64::NEG_INFINITY && high == f64::INFINITY {
-                relaxed.rows.relation[i] = Relation::Free;
+                relation = Relation::Free;
             }
-            let column = relaxed.columns.push(low, high);
-            relaxed.matrix.column.push(column as u32);
-            relaxed.matrix.value.push(1.0);
-        }
-        relaxed.matrix.start.push(relaxed.matrix.column.len());
+            (relaxed.columns.push(low, high), 1.0)
+        });
+        let row = instance.matrix.row(i).chain(value);
+        relaxed.add_row(row, relation, instance.rows.rhs[i]);
     }
     relaxed
 }
