@@ -159,6 +159,45 @@ fn one_mistake_one_message() {
     );
 }
 
+/// What an editor offers as a fix mends what it is offered for: the message is gone, and nothing else is wrong instead.
+#[test]
+fn fixes_mend() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/mistakes");
+    let (mut fixed, mut worse) = (0, Vec::new());
+    for path in common::files(&folder, &["txt"]) {
+        let file = std::fs::read_to_string(&path).expect("the cases can be read");
+        for case in cases(&file) {
+            let mut editor = bmod::editor::Editor::new(None);
+            let mut check = |text: &str| {
+                editor.open("m.blk", text);
+                let found = editor.check("m.blk").into_iter();
+                found.flat_map(|f| f.diagnostics).collect::<Vec<_>>()
+            };
+            let before = check(&case.text);
+            for d in &before {
+                let Some(fix) = d.fixes.first() else { continue };
+                check(&case.text);
+                let edit = &fix.edits[0];
+                let mut changed = bmod::editor::Editor::new(None);
+                changed.open("m.blk", case.text.as_str());
+                changed.change("m.blk", Some(edit.range), &edit.new_text);
+                let text = changed.text("m.blk").expect("it is open").to_owned();
+                if check(&text).len() < before.len() {
+                    fixed += 1;
+                } else {
+                    worse.push(format!("{} ({}): {}", case.name, d.code, fix.title));
+                }
+            }
+        }
+    }
+    println!("{fixed} fixes mend; these do not:\n{}", worse.join("\n"));
+    assert!(
+        fixed >= 60 && worse.len() * 10 <= fixed,
+        "{fixed} mend, {} do not",
+        worse.len()
+    );
+}
+
 /// The codes of the sources are those of the table, and the page is made from it.
 #[test]
 fn every_code_is_declared() {

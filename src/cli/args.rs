@@ -30,6 +30,16 @@ pub const EXECUTION: u8 = 3;
                   answer, not a failure: 0."
 )]
 pub struct Cli {
+    /// Colours: on a terminal unless `NO_COLOR` is set, always, or never.
+    #[arg(
+        long,
+        global = true,
+        value_enum,
+        default_value_t,
+        hide_possible_values = true,
+        value_name = "auto|always|never"
+    )]
+    pub color: Color,
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
@@ -74,6 +84,19 @@ pub enum Command {
     Test(TestArgs),
     /// Lays texts out: indentation, blanks, capitals of keywords. What stands under one another still does; comments stay.
     Fmt(FmtArgs),
+    /// Serves editors: what is wrong, hover, completion, definition, rename, layout (language server protocol over standard
+    /// input and output).
+    Lsp {
+        /// Accepted because editors give it: standard input and output are all there is.
+        #[arg(long, hide = true)]
+        stdio: bool,
+    },
+    /// Writes the manual pages (`bmod.1`, `bmod-run.1` …) into a folder.
+    Man {
+        /// The folder.
+        #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
+        folder: PathBuf,
+    },
     /// Prints a script that completes bmod's commands in a shell.
     Completions {
         /// The shell.
@@ -93,6 +116,18 @@ pub struct GdxArgs {
     /// As comma-separated values.
     #[arg(long)]
     pub csv: bool,
+}
+
+/// Whether there are colours.
+#[derive(ValueEnum, Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Color {
+    /// As the terminal and `NO_COLOR` are.
+    #[default]
+    Auto,
+    /// Always.
+    Always,
+    /// Never.
+    Never,
 }
 
 /// Arguments of `bmod fmt`.
@@ -655,6 +690,15 @@ fn accept_gams(arguments: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
         k += 1;
     }
     arguments
+}
+
+/// Writes a manual page for bmod and one for each command into a folder.
+///
+/// # Errors
+/// If they cannot be written.
+pub fn manual(folder: &std::path::Path) -> std::io::Result<()> {
+    std::fs::create_dir_all(folder)?;
+    clap_mangen::generate_to(Cli::command(), folder)
 }
 
 /// The completion script for a shell.

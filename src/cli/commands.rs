@@ -4,8 +4,8 @@ use std::io::{IsTerminal, Write};
 use std::path::Path;
 
 use super::args::{
-    Cli, Command, EXECUTION, ListArgs, MessageFormat, ModelArgs, RunArgs, SolveArgs, USAGE,
-    completions,
+    Cli, Color, Command, EXECUTION, ListArgs, MessageFormat, ModelArgs, RunArgs, SolveArgs, USAGE,
+    completions, manual,
 };
 use super::host::{Output, SystemHost, watch_ctrl_c, write_whole};
 use super::watchdog::{Watch, Watchdog};
@@ -20,6 +20,11 @@ use crate::source::PreprocessOptions;
 
 /// Carries out a command; its exit status.
 pub fn execute(cli: &Cli) -> u8 {
+    diagnostics::set_color(match cli.color {
+        Color::Auto => None,
+        Color::Always => Some(true),
+        Color::Never => Some(false),
+    });
     match &cli.command {
         Command::Run(a) => run(a),
         Command::Check(a) => {
@@ -51,6 +56,14 @@ pub fn execute(cli: &Cli) -> u8 {
         Command::New(a) => super::new::new(a),
         Command::Test(a) => super::test::test(a),
         Command::Fmt(a) => super::fmt::fmt(a),
+        Command::Lsp { stdio: _ } => super::lsp::lsp(),
+        Command::Man { folder } => match manual(folder) {
+            Ok(()) => 0,
+            Err(e) => {
+                eprintln!("bmod: {} cannot be written: {e}", folder.display());
+                EXECUTION
+            }
+        },
         Command::Completions { shell } => {
             let _ = std::io::stdout().write_all(&completions(*shell));
             0

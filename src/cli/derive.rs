@@ -17,7 +17,7 @@ const WIDTH: usize = 100;
 
 /// How formulas are written.
 pub fn format(f: FormulaFormat) -> Format {
-    let columns = || std::env::var("COLUMNS").ok().and_then(|c| c.parse().ok());
+    let columns = || crate::report::diagnostics::columns(std::io::stdout().is_terminal());
     match f {
         FormulaFormat::Text => {
             let wide: usize = if std::io::stdout().is_terminal() {

@@ -8,6 +8,7 @@ pub mod explain;
 mod fmt;
 mod gdx;
 pub mod host;
+mod lsp;
 pub mod new;
 pub mod range;
 pub mod report;

@@ -7,7 +7,7 @@ use super::project::{Document, ProjectHost, has_slashes};
 use crate::check::{self, Program};
 use crate::diag::{self, Severity};
 use crate::solve::registry::OPTION_TABLES;
-use crate::source::{FileId, PreprocessOptions, SourceMap, Span};
+use crate::source::{PreprocessOptions, SourceMap, Span};
 use serde::Serialize;
 
 /// What data in a text may take while it is being written: a slip of the pen must not fill the memory.
@@ -93,6 +93,10 @@ impl Editor {
     /// file itself, and those where something was.
     pub fn check(&mut self, file: &str) -> Vec<FileDiagnostics> {
         let main = self.main_of(file);
+        if main != file {
+            // It was checked by itself before anything included it.
+            self.analyses.remove(file);
+        }
         let mut host = ProjectHost {
             open: &self.open,
             files: self.files.as_deref(),
@@ -225,13 +229,17 @@ impl Analysis {
             (hi, hi, ";".to_owned())
         } else {
             let help = d.help.as_deref()?;
-            let rest = help
-                .strip_prefix("did you mean `")
-                .or_else(|| help.strip_prefix("write `=").map(|_| &help[7..]))?;
-            let new = &rest[..rest.find('`')?];
+            let new = match help.strip_prefix("did you mean `") {
+                Some(rest) => &rest[..rest.find('`')?],
+                // A help that is nothing but what to write.
+                None => help.strip_prefix("write `")?.strip_suffix('`')?,
+            };
+            if new.contains(['`', '…']) {
+                return None;
+            }
             replacement(text, lo, hi, new)?
         };
-        let file = self.files.get(file_number(place.file))?.clone();
+        let file = self.files.get(place.file.0 as usize)?.clone();
         let index = LineIndex::new(text);
         let title = match lo == hi {
             true => format!("Insert `{new}`"),
@@ -246,10 +254,6 @@ impl Analysis {
             }],
         })
     }
-}
-
-fn file_number(file: FileId) -> usize {
-    file.0 as usize
 }
 
 /// The piece that a suggestion stands for, and what stands there instead: the place may hold quotes, or a word among others.

@@ -75,6 +75,19 @@ impl Editor {
             .insert(file.to_owned(), Document::new(file, text.into()));
     }
 
+    /// A piece of a text has changed; without a piece all of it.
+    pub fn change(&mut self, file: &str, range: Option<Range>, new: &str) {
+        let text = match (range, self.open.get(file)) {
+            (Some(r), Some(d)) => {
+                let (lo, hi) = (d.offset(r.start), d.offset(r.end));
+                let (lo, hi) = (lo.min(hi), lo.max(hi));
+                format!("{}{new}{}", &d.text[..lo], &d.text[hi..])
+            }
+            _ => new.to_owned(),
+        };
+        self.open(file, text);
+    }
+
     /// A text is open no more.
     pub fn close(&mut self, file: &str) {
         self.open.remove(file);

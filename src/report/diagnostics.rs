@@ -37,19 +37,38 @@ impl Look {
     }
 
     /// For a stream: colours and box drawing on a terminal, unless `NO_COLOR` is set or the terminal
-    /// is a dumb one.
+    /// is a dumb one; or as [`set_color`] says.
     #[cfg(feature = "cli")]
     pub fn stream(is_terminal: bool) -> Self {
         let set = |name| std::env::var_os(name).is_some_and(|v| !v.is_empty());
         let dumb = std::env::var_os("TERM").is_some_and(|v| v == "dumb");
         let fancy = is_terminal && !dumb && !set("NO_COLOR");
-        let columns = std::env::var("COLUMNS").ok().and_then(|c| c.parse().ok());
+        let fancy = COLOR.get().copied().flatten().unwrap_or(fancy);
         Self {
             color: fancy,
             unicode: fancy,
-            width: columns.unwrap_or(100).clamp(40, 140),
+            width: columns(is_terminal).unwrap_or(100).clamp(40, 140),
         }
     }
+}
+
+/// What `--color` said: always, never, or as the terminal is.
+#[cfg(feature = "cli")]
+static COLOR: std::sync::OnceLock<Option<bool>> = std::sync::OnceLock::new();
+
+/// Colours always (true) or never (false), whatever the stream: once, before anything is written.
+#[cfg(feature = "cli")]
+pub fn set_color(always: Option<bool>) {
+    // A second time is another run in one process, with the same command line.
+    let _ = COLOR.set(always);
+}
+
+/// Columns of the screen: `COLUMNS`, or what the terminal says.
+#[cfg(feature = "cli")]
+pub fn columns(is_terminal: bool) -> Option<usize> {
+    let said = std::env::var("COLUMNS").ok().and_then(|c| c.parse().ok());
+    let terminal = || Some(usize::from(terminal_size::terminal_size()?.0.0));
+    said.or_else(|| is_terminal.then(terminal).flatten())
 }
 
 /// Columns of a source line that are shown.

@@ -1,0 +1,1 @@
+autocmd BufNewFile,BufRead *.blk,*.gms setfiletype bmod
