@@ -206,6 +206,8 @@ impl Scan {
         s.end(false);
         let mut scan = s.scan;
         scan.lines.code = code;
+        // A statement without a word is none.
+        scan.statements.retain(|s| s.first < s.end);
         scan
     }
 
