@@ -161,7 +161,7 @@ def by_linopy(i, j, a, b, c):
     m.add_constraints(x.sum("j") <= xr.DataArray(a, [si]))
     m.add_constraints(x.sum("i") >= xr.DataArray(b, [sj]))
     m.add_objective((x * xr.DataArray(c, [si, sj])).sum())
-    m.solve(solver_name="highs", output_flag=False)
+    m.solve(solver_name="highs", io_api="direct", output_flag=False)
     return float(m.objective.value)
 
 

@@ -17,6 +17,8 @@
 4.0
 """
 
+from typing import TYPE_CHECKING, Any
+
 from . import _bmod
 from ._errors import (
     AbortError,
@@ -34,6 +36,9 @@ from ._errors import (
 from ._formulas import Formulas
 from ._model import Model
 from ._result import Figure, ModelStatus, Residuals, Result, Solve, SolverStatus, Symbol
+
+if TYPE_CHECKING:
+    from ._sweep import sweep
 
 __version__ = _bmod.__version__
 
@@ -62,14 +67,16 @@ __all__ = [
 ]
 
 
-def sweep(*arguments, **keywords):
-    """Runs a model for every combination of a grid: :func:`bmod._sweep.sweep`."""
-    from ._sweep import sweep as run
+def __getattr__(name: str) -> Any:
+    # What few programs need is loaded when it is asked for.
+    if name == "sweep":
+        from ._sweep import sweep
 
-    return run(*arguments, **keywords)
+        return sweep
+    raise AttributeError(f"module 'bmod' has no attribute {name!r}")
 
 
-def load_ipython_extension(shell):
+def load_ipython_extension(shell: Any) -> None:
     """``%load_ext bmod``: the cell magic ``%%bmod``."""
     from ._magic import register
 

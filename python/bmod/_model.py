@@ -40,6 +40,18 @@ class Model:
     its last solve ended. Models can be copied and pickled (one from a file by its path).
     """
 
+    #: The file, or the name and the text.
+    _source: Tuple[str, ...]
+    _model: _bmod.Model
+    #: What was done to it since, by name, for copies in other processes.
+    _define: Dict[str, str]
+    _files: Dict[str, bytes]
+    _folders: List[str]
+    _given: Dict[str, Tuple[Any, ...]]
+    #: What the text declares, and the same with the data as they are now.
+    _declared: Optional[Result]
+    _known: Optional[Result]
+
     def __init__(self, text: str, **keywords: Any):
         """The same as :meth:`from_text`."""
         made = Model.from_text(text, **keywords)
@@ -50,13 +62,8 @@ class Model:
         model = cls.__new__(cls)
         model._source = source
         model._model = _bmod.Model.from_file(*source) if len(source) == 1 else _bmod.Model.from_text(*source)
-        #: What was done to it since, by name, for copies in other processes.
-        model._define: Dict[str, str] = {}
-        model._files: Dict[str, bytes] = {}
-        model._folders: List[str] = []
-        model._given: Dict[str, Tuple[Any, ...]] = {}
-        model._declared: Optional[Result] = None
-        model._known: Optional[Result] = None
+        model._define, model._files, model._folders, model._given = {}, {}, [], {}
+        model._declared = model._known = None
         return model
 
     @classmethod
