@@ -190,7 +190,7 @@ def by_gamspy(i, j, a, b, c):
     demand[sj] = gp.Sum(si, x[si, sj]) >= pb[sj]
     model = gp.Model(m, "transport", equations=[supply, demand], problem="LP", sense=gp.Sense.MIN,
                      objective=gp.Sum((si, sj), pc[si, sj] * x[si, sj]))
-    model.solve(solver="highs")
+    model.solve()
     return model.objective_value
 
 
