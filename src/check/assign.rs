@@ -2,7 +2,7 @@
 
 use super::functions;
 use super::node::*;
-use super::symbols::{DomainPosition, SymbolKind, attribute};
+use super::symbols::{DomainPosition, SymbolKind, UNIVERSE, attribute};
 use super::visit::Visitor;
 use super::{Compiler, Failed};
 use crate::diag::Diagnostic;
@@ -282,11 +282,39 @@ impl Compiler {
 
     /// What drives a loop around a single assignment to a parameter or set, as GAMS runs it: turns in which the
     /// right side is 0 whatever the assignment's own indices are passed over, and nothing is assigned in them.
-    pub(super) fn driver(&self, body: &[Code]) -> Option<Node> {
+    /// What the right side reads is searched by its first positions, up to the first that the loop does not
+    /// control: of `loop(j, p(i) = q(j,i))` the turns are those for which q has a record with this j.
+    pub(super) fn driver(&mut self, body: &[Code]) -> Option<Node> {
+        let Driving {
+            table,
+            key,
+            fixed,
+            span,
+        } = self.driving(body)?;
+        if fixed == key.parts.len() {
+            return Some(Node::data(NodeKind::Data(table, key), span));
+        }
+        let mut domain = Domain::default();
+        let mut parts = key.parts;
+        for part in &mut parts[fixed..] {
+            let slot = self.new_slot();
+            *part = Part::Slot(slot);
+            domain.slots.push(slot);
+            domain.sets.push(self.symbols.get(UNIVERSE).table);
+            domain.names.push(UNIVERSE);
+        }
+        let key = Key { parts };
+        domain.members.push(Driver { table, key });
+        let one = Box::new(Node::data(NodeKind::Const(1.0), span));
+        let any = NodeKind::Aggregate(AggregateOp::Sor, Box::new(domain), one);
+        Some(Node::data(any, span))
+    }
+
+    fn driving(&self, body: &[Code]) -> Option<Driving> {
         let [only] = body else { return None };
         match &only.kind {
             CodeKind::If(arms, otherwise) if otherwise.is_empty() => match arms.as_slice() {
-                [(_, body)] => self.driver(body),
+                [(_, body)] => self.driving(body),
                 _ => None,
             },
             CodeKind::Assign {
@@ -373,36 +401,62 @@ fn same_index(a: &Part, b: &Part) -> bool {
     }
 }
 
-/// Something without these slots that makes an expression 0 where it is 0.
-fn zero_with(n: &Node, own: &[Slot]) -> Option<Node> {
+/// A table whose absent records make an expression 0.
+struct Driving {
+    table: TableId,
+    key: Key,
+    /// How many of its first positions are labels or indices of the loop.
+    fixed: usize,
+    span: Span,
+}
+
+/// What makes an expression 0 whatever its own indices are.
+fn zero_with(n: &Node, own: &[Slot]) -> Option<Driving> {
     match &n.kind {
-        NodeKind::Data(t, key) => {
-            let plain = |p: &Part| match p {
+        NodeKind::Data(table, key) => {
+            let is_fixed = |p: &&Part| match p {
                 Part::Slot(s) => !own.contains(s),
                 Part::Label(_) => true,
                 Part::Lag(_) | Part::Singleton(..) => false,
             };
-            let runs = key.parts.iter().any(|p| matches!(p, Part::Slot(_)));
-            (runs && key.parts.iter().all(plain))
-                .then(|| Node::data(NodeKind::Data(*t, key.clone()), n.span))
+            let fixed = key.parts.iter().take_while(is_fixed).count();
+            let runs = |p: &Part| matches!(p, Part::Slot(_));
+            key.parts[..fixed].iter().any(runs).then(|| Driving {
+                table: *table,
+                key: key.clone(),
+                fixed,
+                span: n.span,
+            })
         }
         NodeKind::Negate(a) => zero_with(a, own),
-        NodeKind::Call(Function::Sqr, a) => zero_with(&a[0], own),
+        NodeKind::Call(f, arguments) => {
+            let keeps_zero = matches!(
+                f,
+                Function::Sqr
+                    | Function::Sqrt
+                    | Function::Abs
+                    | Function::Sign
+                    | Function::Round
+                    | Function::Floor
+                    | Function::Ceil
+                    | Function::Trunc
+                    | Function::Sin
+                    | Function::Tanh
+            );
+            zero_with(arguments.first().filter(|_| keeps_zero)?, own)
+        }
         NodeKind::Dollar(a, c) => zero_with(a, own).or_else(|| zero_with(c, own)),
         // Of a sum, where all terms are driven by one table.
         NodeKind::Sum(list) => {
             let mut drivers = list.iter().map(|(_, x)| zero_with(x, own));
             let first = drivers.next()??;
-            let table = |n: &Node| match n.kind {
-                NodeKind::Data(t, _) => Some(t),
-                _ => None,
-            };
-            let same = |d: Option<Node>| d.is_some_and(|d| table(&d) == table(&first));
+            let same = |d: Option<Driving>| d.is_some_and(|d| d.table == first.table);
             drivers.all(same).then_some(first)
         }
-        NodeKind::Product(list) if list.iter().all(|(divide, _)| !divide) => {
-            list.iter().find_map(|(_, x)| zero_with(x, own))
-        }
+        NodeKind::Product(list) => list
+            .iter()
+            .filter(|(divides, _)| !divides)
+            .find_map(|(_, x)| zero_with(x, own)),
         _ => None,
     }
 }

@@ -7,6 +7,9 @@ p(i) = 2;  loop(j, p(i) = q(j) + 1);        display p;
 p(i) = 2;  loop(j, p(i) = w(i,j));          display p;
 p(i) = 2;  loop(j, p(i) = q(j); p(i) = p(i)); display p;
 k(i) = yes;  loop(j, k(i) = sj(j));         display k;
+parameter q2(j,i) / y.a 5 /, q3(j,j) / x.y 7 /;
+p(i) = 2;  loop(j, p(i) = q2(j,i));         display p;
+p(i) = 2;  loop(j, p(i) = abs(q3(j,j+1)));  display p;
 *> ----      4 PARAMETER p
 *>
 *> a 2.000,    b 2.000
@@ -30,3 +33,11 @@ k(i) = yes;  loop(j, k(i) = sj(j));         display k;
 *> ----      9 SET k
 *>
 *> a,    b
+*>
+*> ----     11 PARAMETER p
+*>
+*> a 5.000
+*>
+*> ----     12 PARAMETER p
+*>
+*> a 7.000,    b 7.000
