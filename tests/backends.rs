@@ -35,6 +35,12 @@ const MODELS: &[(&str, Option<f64>)] = &[
         None,
     ),
     (
+        "set i /1*2/; positive variable x(i); integer variable n; variable z; n.up = 3; equations o, need, a(i);
+         a(i).. x(i) =g= n - 0.5;  need.. n =g= 0.3;  o.. z =e= sum(i, x(i)) + 2*n;
+         model m / o, need, a.x /; solve m using mpec minimizing z;",
+        Some(3.0),
+    ),
+    (
         "variables x1, x2, x3, x4, z; equations c1, c2, obj;
          x1.lo = 1; x1.up = 5; x2.lo = 1; x2.up = 5; x3.lo = 1; x3.up = 5; x4.lo = 1; x4.up = 5;
          x1.l = 1; x2.l = 5; x3.l = 5; x4.l = 1;
@@ -134,7 +140,7 @@ fn each(check: &mut Check) {
             let task = Task::new(using, &instance);
             let mut taken = 0;
             for &backend in BACKENDS {
-                if backend.supports().takes(&task) {
+                if backend.takes(&task) {
                     taken += 1;
                     let what = format!("{} on model {k} using {using}", backend.name());
                     let named = task.by(Some(backend.name()));

@@ -13,6 +13,7 @@ mod editor;
 mod formulation;
 mod functions;
 mod highlighting;
+mod integers;
 mod layers;
 mod library;
 mod limits;

@@ -193,6 +193,7 @@ impl Compiler {
                         ))
                     });
                 };
+                self.suits(&symbol, attr)?;
                 match functions::record_attribute(&attr.name) {
                     Some(functions::RecordAttribute::Stored(o)) => Target::Table(symbol.table + o),
                     Some(functions::RecordAttribute::Fix) => Target::Fix(s),

@@ -2,7 +2,7 @@
 
 use super::functions::{self, Callee};
 use super::node::*;
-use super::symbols::{SymbolKind, UNIVERSE, attribute};
+use super::symbols::{Symbol, SymbolKind, UNIVERSE, attribute};
 use super::{Compiler, Failed};
 use crate::data::value;
 use crate::diag::{Diagnostic, nearest};
@@ -490,6 +490,7 @@ impl Compiler {
                 "l, m, lo, up, fx, scale, prior, slack, range",
             );
         };
+        self.suits(&symbol, a)?;
         let key = self.key(s, indices, span)?;
         self.used(s, span);
         match which {
@@ -505,6 +506,23 @@ impl Compiler {
                     .help("read `.l`, or `.lo` and `.up`"),
             ),
         }
+    }
+
+    /// Priorities are for discrete variables, scales for the others.
+    pub(super) fn suits(&mut self, symbol: &Symbol, a: &Ident) -> Result<(), Failed> {
+        let SymbolKind::Variable(kind) = symbol.kind else {
+            return Ok(());
+        };
+        let message = match (a.name.to_lowercase().as_str(), kind.is_discrete()) {
+            ("prior", false) => "only discrete variables have a priority",
+            ("scale", true) => "a discrete variable is not scaled",
+            _ => return Ok(()),
+        };
+        self.fail(
+            Diagnostic::error("E0314", a.span, message)
+                .label(format!("`{}` is {}", symbol.name, symbol.a_kind()))
+                .other(symbol.declared, "declared here"),
+        )
     }
 
     pub(super) fn unknown_attribute<T>(

@@ -215,7 +215,6 @@ pub const CODES: &[Code] = &[
     row("E0418", Warning, "too many variables", "free variables stand in fewer rows than there are variables"),
     row("E0422", Execution, "model cannot be solved", "rows and columns do not match, or functions have no value at the start"),
     row("E0424", Execution, "scenarios", "the dictionary of the scenarios cannot be used"),
-    row("E0425", Execution, "discrete variables", "an mpec whose bounds leave them undecided is not solved"),
     row("E0426", Execution, "option file", "an option file, or a line of it, is not used"),
     row("E0430", Execution, "no solve to derive from", "the model that is meant is not solved, or there is no solve with this number"),
     row("E0431", Execution, "no linear dual", "no objective, discrete variables, or equations that are not linear"),

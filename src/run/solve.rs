@@ -138,21 +138,6 @@ impl Machine<'_> {
             self.report().solves.push(self.not_solved(s, &generated));
             return Flow::Next;
         }
-        if s.using == ProblemType::Mpec
-            && let Some(column) = generated.instance.columns.first_undecided()
-        {
-            let name = self.origin_name(&generated.origin.columns, column);
-            let message =
-                format!("an `mpec` with discrete variables is not solved, and {name} is not fixed");
-            let help = "`solve … using rmpec` solves the relaxation; the run ends here";
-            self.note(
-                Diagnostic::execution("E0425", span, message)
-                    .label("not solved")
-                    .help(help),
-            );
-            self.report().solves.push(self.not_solved(s, &generated));
-            return Flow::Stop;
-        }
         let Some(mut options) = self.option_file(s.model, s.using, span) else {
             return Flow::Stop;
         };

@@ -160,7 +160,7 @@ fn certified(task: &Task, reply: Reply, dual: Option<Residuals>) -> Answer {
             .filter(|&j| j < instance.column_count());
     }
     let status = match &search {
-        Some(search) => status_of_search(search, &outcome, &residuals),
+        Some(search) => status_of_search(task, search, &outcome, &residuals),
         None => status(task, &outcome, &residuals, &activity),
     };
     Answer {
@@ -186,6 +186,7 @@ fn measured(task: &Task, outcome: &Outcome, search: Option<&mip::Report>) -> (Re
     let level = &outcome.level;
     match (task.using, search) {
         (_, Some(search)) if !search.solution => (Residuals::default(), activity(instance, level)),
+        (_, Some(_)) if task.has_pairs() => branch(&mip::fixed(instance, level), outcome),
         (_, Some(_)) => program(&mip::fixed(instance, level), outcome),
         (ProblemType::Mcp, _) => {
             let (_, at) = point(instance, outcome);
@@ -278,10 +279,17 @@ fn is_locally_infeasible(instance: &Instance, outcome: &Outcome) -> bool {
 }
 
 /// The same of a search over discrete columns.
-fn status_of_search(search: &mip::Report, outcome: &Outcome, residuals: &Residuals) -> ModelStatus {
+fn status_of_search(
+    task: &Task,
+    search: &mip::Report,
+    outcome: &Outcome,
+    residuals: &Residuals,
+) -> ModelStatus {
     use ModelStatus as S;
+    let feasible = residuals.is_feasible(TOLERANCE)
+        && (!task.has_pairs() || residuals.natural_relative <= TOLERANCE);
     match (search.solution, outcome.claim) {
-        (true, _) if !residuals.is_feasible(TOLERANCE) => S::IntermediateNonInteger,
+        (true, _) if !feasible => S::IntermediateNonInteger,
         (true, Claim::Unbounded) => S::Unbounded,
         (true, Claim::Solved) => S::Optimal,
         (true, _) => S::IntegerSolution,

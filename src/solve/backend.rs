@@ -156,6 +156,10 @@ pub trait Backend: Sync {
     fn version(&self) -> &'static str;
     /// What it takes.
     fn supports(&self) -> Supports;
+    /// Whether it takes a task, where there is more to say than [`Supports`] does.
+    fn takes(&self, task: &Task) -> bool {
+        self.supports().takes(task)
+    }
     /// Its options.
     fn options(&self) -> &'static OptionTable;
     /// Solves a task that it takes. Err: the instance cannot be solved as it is, with the row or column to blame.
@@ -173,12 +177,7 @@ pub fn is_called(backend: &dyn Backend, name: &str) -> bool {
 
 /// The backend for a task: the one that the user named if it takes the task, else the first in the list that does.
 pub fn choose<'b>(backends: &[&'b dyn Backend], task: &Task) -> Option<&'b dyn Backend> {
-    let able = || {
-        backends
-            .iter()
-            .copied()
-            .filter(|b| b.supports().takes(task))
-    };
+    let able = || backends.iter().copied().filter(|b| b.takes(task));
     let named = |name: &str| able().find(|b| is_called(*b, name));
     task.choice
         .and_then(named)

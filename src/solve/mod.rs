@@ -12,6 +12,8 @@ pub mod complementarity;
 #[cfg(test)]
 pub mod conformance;
 pub(crate) mod factor_size;
+#[cfg(feature = "highs")]
+pub mod highs;
 pub mod interval;
 pub mod lp;
 pub mod mcp;

@@ -2,6 +2,8 @@
 //! [`Backend`], and a line here.
 
 use super::backend::Backend;
+#[cfg(feature = "highs")]
+use super::highs;
 use super::{lp, mcp, mip, mpec, nlp};
 use crate::model::option::OptionTable;
 use crate::model::problem_type::ProblemType;
@@ -16,7 +18,11 @@ pub static BACKENDS: &[&dyn Backend] = &[
     &nlp::Nonlinear(&nlp::pounce::Pounce),
     &super::complementarity::Bmcp,
     &mpec::Bmpec,
+    #[cfg(feature = "highs")]
+    &highs::Highs,
     &mip::Bmip,
+    #[cfg(feature = "highs")]
+    &highs::Continuous,
 ];
 
 /// The option tables of all backends, and of what they share.
@@ -30,6 +36,8 @@ pub static OPTION_TABLES: &[&OptionTable] = &[
     &mcp::OPTIONS,
     &mpec::OPTIONS,
     &mip::OPTIONS,
+    #[cfg(feature = "highs")]
+    &highs::OPTIONS,
     &super::strategy::OPTIONS,
 ];
 

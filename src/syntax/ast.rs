@@ -207,6 +207,16 @@ pub enum VariableKind {
     Sos2,
 }
 
+impl VariableKind {
+    /// Whether its values are more than a range.
+    pub fn is_discrete(self) -> bool {
+        !matches!(
+            self,
+            Self::Unstated | Self::Free | Self::Positive | Self::Negative
+        )
+    }
+}
+
 /// `model m 'text' / all, -e2, f.x, (g,h).y /;`
 #[derive(Clone, Debug)]
 pub struct ModelDecl {

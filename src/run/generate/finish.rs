@@ -291,8 +291,11 @@ impl Builder<'_, '_> {
             for i in b.start..b.start + b.len {
                 let key = b.key(i);
                 let lower = get(attribute::LO, key);
-                c.lower.push(if semi { lower.min(0.0) } else { lower });
-                c.upper.push(get(attribute::UP, key));
+                let upper = get(attribute::UP, key);
+                // bounds that cross stay for the check
+                let zero = semi && lower <= upper;
+                c.lower.push(if zero { lower.min(0.0) } else { lower });
+                c.upper.push(upper);
                 c.level.push(get(attribute::L, key));
                 c.marginal.push(get(attribute::M, key));
                 c.scale.push(if self.options.scale {
@@ -362,7 +365,10 @@ impl Builder<'_, '_> {
                 ))
             } else {
                 let kind = self.instance.columns.kind[i];
-                broken_kind(kind, lo, up).map(|rule| format!("{rule}: {} has {lo} … {up}", name()))
+                let declared = &self.m.symbols.get(block().symbol).kind;
+                let binary = matches!(declared, SymbolKind::Variable(VariableKind::Binary));
+                broken_kind(kind, binary, lo, up)
+                    .map(|rule| format!("{rule}: {} has {lo} … {up}", name()))
             };
             if let Some(message) = problem {
                 self.m.note(
@@ -405,12 +411,15 @@ impl Builder<'_, '_> {
 }
 
 /// What bounds of a discrete variable must not be, relaxed or not.
-fn broken_kind(kind: ColumnKind, lower: f64, upper: f64) -> Option<&'static str> {
+fn broken_kind(kind: ColumnKind, binary: bool, lower: f64, upper: f64) -> Option<&'static str> {
     // As far as GAMS lets a bound be away from an integer.
     let whole = |x: f64| x.is_infinite() || (x - x.round()).abs() <= 1e-8;
     match kind {
         ColumnKind::Integer | ColumnKind::SemiInteger if !(whole(lower) && whole(upper)) => {
             Some("the bounds of a discrete variable must be integers")
+        }
+        ColumnKind::Integer if binary && (lower < -1e-8 || upper > 1.0 + 1e-8) => {
+            Some("the bounds of a binary variable must be 0 or 1")
         }
         ColumnKind::SemiContinuous | ColumnKind::SemiInteger if lower < 0.0 => {
             Some("the lower bound of a semicontinuous variable must not be negative")

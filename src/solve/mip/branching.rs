@@ -50,6 +50,9 @@ pub enum Branch {
 /// Gains that a column must have been seen to make before they are believed.
 const RELIABLE: u32 = 4;
 
+/// Sets that are looked at, at most.
+const SETS_LOOKED_AT: usize = 8;
+
 /// Candidates that are looked at, at most, without a better one.
 const PATIENCE: usize = 6;
 
@@ -63,7 +66,7 @@ impl<R: Relaxation> Search<'_, R> {
     ) -> Option<Branch> {
         let mut candidates = self.candidates(x);
         if candidates.is_empty() {
-            return self.branch_on_set(x);
+            return self.branch_on_set(x, value, SETS_LOOKED_AT, control);
         }
         if !self.mip.priority.is_empty() {
             let of = |j: usize| self.mip.priority[j];
@@ -200,38 +203,77 @@ impl<R: Relaxation> Search<'_, R> {
         }
     }
 
-    pub(super) fn branch_on_set(&self, x: &[f64]) -> Option<Branch> {
+    /// A set with more that is not 0 than it allows, and what to do about it: of the heaviest the one whose children rise most.
+    pub(super) fn branch_on_set(
+        &mut self,
+        x: &[f64],
+        value: f64,
+        looks: usize,
+        control: &mut Control,
+    ) -> Option<Branch> {
+        let mip = self.mip;
         let weight = |s: &OrderedSet| s.columns.iter().map(|&j| x[j as usize].abs()).sum::<f64>();
-        let violated = self
-            .mip
+        let mut violated: Vec<(f64, f64, &OrderedSet)> = mip
             .sets
             .iter()
-            .filter_map(|s| Some((s, self.mip.spread(s, x)?)));
-        let of = |s: &OrderedSet| match self.mip.priority.is_empty() {
-            true => 1.0,
-            false => s
-                .columns
-                .iter()
-                .map(|&j| self.mip.priority[j as usize])
-                .fold(f64::INFINITY, f64::min),
-        };
-        let best = violated.min_by(|a, b| {
-            of(a.0)
-                .total_cmp(&of(b.0))
-                .then(weight(b.0).total_cmp(&weight(a.0)))
-        });
-        let (set, (first, last)) = best?;
-        let place = |(k, &j): (usize, &u32)| k as f64 * x[j as usize].abs();
-        let middle: f64 = set.columns.iter().enumerate().map(place).sum::<f64>() / weight(set);
-        let zero = |k: usize| {
-            let column = set.columns[k] as usize;
-            Change {
-                column,
-                lower: 0.0,
-                upper: 0.0,
+            .filter(|s| mip.spread(s, x).is_some())
+            .map(|s| (self.set_priority(s), weight(s), s))
+            .collect();
+        violated.sort_by(|a, b| a.0.total_cmp(&b.0).then(b.1.total_cmp(&a.1)));
+        let least = violated.first()?.0;
+        violated.retain(|v| v.0 <= least);
+        violated.truncate(looks);
+        let halves: Vec<[Vec<Change>; 2]> = violated
+            .iter()
+            .map(|(_, weight, s)| {
+                let place = |(k, &j): (usize, &u32)| k as f64 * x[j as usize].abs();
+                let middle = s.columns.iter().enumerate().map(place).sum::<f64>() / weight;
+                let (first, last) = mip.spread(s, x).unwrap_or((0, s.columns.len() - 1));
+                self.halves(s, first, last, middle)
+            })
+            .collect();
+        let (mut best, mut best_score) = (0, -1.0);
+        let cutoff = self.cutoff();
+        for (k, sides) in halves.iter().enumerate() {
+            let spent = control.iterations / 2 + 20_000 > self.dives.probes;
+            if halves.len() == 1 || !spent || control.stop(control.iterations).is_some() {
+                break;
             }
-        };
-        // Left: what is behind the middle is 0; right: what is before it.
+            let before = control.iterations;
+            let mut gains = [0.0; 2];
+            for side in 0..2 {
+                match self.relaxation.probe(&sides[side], cutoff) {
+                    Some(v) if v >= cutoff => return Some(Branch::Fixed(sides[1 - side].clone())),
+                    Some(v) => gains[side] = (v - value).max(0.0),
+                    None => break,
+                }
+            }
+            self.dives.probes += 30 + control.iterations - before;
+            if product(gains) > best_score {
+                (best, best_score) = (k, product(gains));
+            }
+        }
+        let sum = |list: &[Change]| list.iter().map(|c| x[c.column].abs()).sum::<f64>();
+        let sides = halves.into_iter().nth(best)?;
+        let far = [sum(&sides[0]), sum(&sides[1])];
+        Some(Branch::Two {
+            first: usize::from(far[1] < far[0]),
+            sides,
+            column: None,
+            far,
+        })
+    }
+
+    fn set_priority(&self, set: &OrderedSet) -> f64 {
+        let of = |&j: &u32| self.mip.priority[j as usize];
+        match self.mip.priority.is_empty() {
+            true => 1.0,
+            false => set.columns.iter().map(of).fold(f64::INFINITY, f64::min),
+        }
+    }
+
+    /// The two sides of a branch on a set: what lies behind a place between two positions is 0, or what lies before it.
+    fn halves(&self, set: &OrderedSet, first: usize, last: usize, middle: f64) -> [Vec<Change>; 2] {
         let (left, right) = if set.neighbours {
             let at = (middle.round() as usize).clamp(first + 1, last - 1);
             (at + 1, at)
@@ -239,24 +281,61 @@ impl<R: Relaxation> Search<'_, R> {
             let at = (middle.floor() as usize).clamp(first, last - 1);
             (at + 1, at + 1)
         };
-        let open = |k: &usize| {
-            self.lower[set.columns[*k] as usize] != 0.0
-                || self.upper[set.columns[*k] as usize] != 0.0
+        let zero = |k: usize| Change {
+            column: set.columns[k] as usize,
+            lower: 0.0,
+            upper: 0.0,
         };
-        let low: Vec<Change> = (left..set.columns.len()).filter(open).map(zero).collect();
-        let high: Vec<Change> = (0..right).filter(open).map(zero).collect();
-        let sum = |list: &[Change]| list.iter().map(|c| x[c.column].abs()).sum::<f64>();
-        let far = [sum(&low), sum(&high)];
-        Some(Branch::Two {
-            first: usize::from(far[1] < far[0]),
-            sides: [low, high],
-            column: None,
-            far,
+        let open = |k: &usize| self.is_open(set.columns[*k] as usize);
+        let low = (left..set.columns.len()).filter(open).map(zero).collect();
+        let high = (0..right).filter(open).map(zero).collect();
+        [low, high]
+    }
+
+    fn is_open(&self, j: usize) -> bool {
+        self.lower[j] != 0.0 || self.upper[j] != 0.0
+    }
+
+    /// A branch on a set that bounds have not decided.
+    pub(super) fn split_set(&self) -> Option<Branch> {
+        self.mip.sets.iter().find_map(|s| {
+            let open = |j: &u32| self.is_open(*j as usize);
+            let first = s.columns.iter().position(open)?;
+            let last = s.columns.iter().rposition(open)?;
+            (last - first > usize::from(s.neighbours)).then(|| Branch::Two {
+                sides: self.halves(s, first, last, (first + last) as f64 / 2.0),
+                column: None,
+                far: [1.0; 2],
+                first: 0,
+            })
         })
     }
 
-    /// A branch on the discrete column with the widest bounds, where the relaxation says nothing.
+    /// A branch on the discrete column with the widest bounds, or on a set, where the relaxation says nothing.
     pub(super) fn split_widest(&self) -> Option<Branch> {
+        self.split_column().or_else(|| self.split_set())
+    }
+
+    /// A branch on the integer column that is farthest from an integer, although within the tolerance.
+    pub(super) fn split_rounded(&self, x: &[f64]) -> Option<Branch> {
+        let noise = match self.relaxation.is_linear() {
+            true => 1e-10,
+            false => 1e-7,
+        };
+        let far = |j: &usize| (x[*j] - x[*j].round()).abs();
+        let whole = (0..x.len()).filter(|&j| self.mip.integer[j] && self.lower[j] < self.upper[j]);
+        let j = whole
+            .filter(|j| far(j) > noise)
+            .max_by(|a, b| far(a).total_cmp(&far(b)))?;
+        Some(Branch::Two {
+            sides: self.sides(j, x[j]).map(|c| vec![c]),
+            column: None,
+            far: self.far(j, x[j]),
+            first: usize::from(x[j] > x[j].round()),
+        })
+    }
+
+    fn split_column(&self) -> Option<Branch> {
         let width = |j: &usize| self.upper[*j] - self.lower[*j];
         let whole = (0..self.lower.len()).filter(|&j| self.mip.integer[j] && width(&j) > 0.5);
         let j = whole.max_by(|a, b| width(a).total_cmp(&width(b)))?;

@@ -236,16 +236,22 @@ fn branches(mip: &Mip, p: &Problem, x: &[f64], solved: bool) -> Vec<Vec<Change>>
             return vec![vec![low], vec![high]];
         }
     }
-    for set in &mip.sets {
+    // Of the sets that bounds leave undecided the one that the point violates most.
+    let undecided = mip.sets.iter().filter_map(|set| {
         let open = |j: &u32| p.lower[*j as usize] != 0.0 || p.upper[*j as usize] != 0.0;
-        let first = set.columns.iter().position(open);
-        let last = set.columns.iter().rposition(open);
-        let (Some(first), Some(last)) = (first, last) else {
-            continue;
+        let first = set.columns.iter().position(open)?;
+        let last = set.columns.iter().rposition(open)?;
+        let weight = || {
+            set.columns
+                .iter()
+                .map(|&j| x[j as usize].abs())
+                .sum::<f64>()
         };
-        if last - first <= usize::from(set.neighbours) {
-            continue;
-        }
+        let doubt = mip.spread(set, x).map_or(-1.0, |_| weight());
+        (last - first > usize::from(set.neighbours)).then_some((doubt, set, first, last))
+    });
+    let worst = undecided.max_by(|a, b| a.0.total_cmp(&b.0));
+    if let Some((_, set, first, last)) = worst {
         let zero = |&j: &u32| Change {
             column: j as usize,
             lower: 0.0,

@@ -122,8 +122,7 @@ impl<R: Relaxation> Search<'_, R> {
     fn step(&mut self, kind: Dive, x: &[f64], control: &mut Control) -> Option<Vec<Vec<Change>>> {
         let candidates = self.candidates(x);
         if candidates.is_empty() {
-            let _ = control;
-            return match self.branch_on_set(x)? {
+            return match self.branch_on_set(x, 0.0, 1, control)? {
                 super::branching::Branch::Two {
                     sides: [a, b],
                     first,

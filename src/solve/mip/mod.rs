@@ -1,7 +1,7 @@
-//! Programs with discrete columns: `mip`, `miqcp`, `minlp`.
+//! Programs with discrete columns: `mip`, `miqcp`, `minlp`, `mpec`.
 //!
 //! [`presolve`] makes a linear program smaller, [`cuts`] tighten its relaxation, and [`tree`] searches, by branch and
-//! bound over the simplex method ([`linear`]) or a nonlinear solver ([`nonlinear`]). The answer is that of the program
+//! bound over the simplex method ([`linear`]), or a nonlinear solver or that of programs with pairs ([`nonlinear`]). The answer is that of the program
 //! with the discrete columns fixed at the best solution: so there are marginals, and the point is checked like any other.
 //!
 //! It is made for teaching and for small and middling models.
@@ -30,11 +30,14 @@ use super::{Budget, Claim, Outcome, Settings, SolveError, SolverStatus};
 use crate::model::instance::{ColumnKind, Instance};
 use crate::model::option::OptionTable;
 use crate::model::problem_type::ProblemType;
-use driver::{Found, search_linear};
-use model::{Mip, Units};
+pub(super) use driver::Found;
+use driver::search_linear;
+pub(super) use model::Mip;
+use model::Units;
 use nonlinear::Nonlinear;
 use relaxation::Control;
-use tree::{End, Search};
+pub(super) use tree::End;
+use tree::Search;
 
 /// Name of this solver.
 pub const NAME: &str = "bmip";
@@ -62,7 +65,12 @@ pub const OPTIONS: OptionTable = OptionTable {
 };
 
 /// The types in which columns may be discrete.
-const TYPES: &[ProblemType] = &[ProblemType::Mip, ProblemType::Miqcp, ProblemType::Minlp];
+const TYPES: &[ProblemType] = &[
+    ProblemType::Mip,
+    ProblemType::Miqcp,
+    ProblemType::Minlp,
+    ProblemType::Mpec,
+];
 
 /// Branch and bound as a backend.
 #[derive(Clone, Copy, Debug, Default)]
@@ -74,14 +82,19 @@ impl Backend for Bmip {
     }
 
     fn version(&self) -> &'static str {
-        "mip, miqcp, minlp: bmod's own, on the simplex method and the nonlinear solver"
+        "mip, miqcp, minlp, mpec with discrete variables: bmod's own, on the simplex method and the nonlinear solver"
     }
 
     fn supports(&self) -> Supports {
         Supports {
             integers: true,
+            pairs: true,
             ..Supports::new(TYPES, Terms::Kinks)
         }
+    }
+
+    fn takes(&self, task: &Task) -> bool {
+        self.supports().takes(task) && (task.using != ProblemType::Mpec || task.has_integers())
     }
 
     fn options(&self) -> &'static OptionTable {
@@ -94,38 +107,46 @@ impl Backend for Bmip {
         settings: &Settings,
         budget: &Budget,
     ) -> Result<Reply, SolveError> {
-        search(task.choice, task.instance, settings, budget)
+        search(task, settings, budget)
     }
 }
 
 /// Solves an instance with discrete columns.
-fn search(
-    choice: Option<&str>,
-    instance: &Instance,
-    settings: &Settings,
-    budget: &Budget,
-) -> Result<Reply, SolveError> {
+fn search(task: &Task, settings: &Settings, budget: &Budget) -> Result<Reply, SolveError> {
+    let instance = task.instance;
     let mut control = Control::new(budget);
     let mut aim = settings.search;
     aim.cutoff = aim.cutoff.map(|c| instance.sign() * c);
-    let found = match instance.is_linear() {
+    let found = match instance.is_linear() && !task.has_pairs() {
         true => linear_search(instance, aim, &mut control)?,
-        false => nonlinear_search(choice, instance, aim, settings, &mut control)?,
+        false => nonlinear_search(task, aim, settings, &mut control)?,
     };
-    let iterations = control.iterations;
-    budget.spend(iterations);
+    budget.spend(control.iterations);
+    let mut reply = concluded(task, found, settings, budget);
+    reply.outcome.iterations = control.iterations;
+    Ok(reply)
+}
+
+/// The reply after a search.
+pub(super) fn concluded(task: &Task, found: Found, settings: &Settings, budget: &Budget) -> Reply {
+    let instance = task.instance;
     let (mut outcome, complete) = match &found.x {
-        Some(x) => (solution(choice, instance, x, settings, budget), true),
+        Some(x) => (solution(task, x, settings, budget), true),
         None => (nothing(instance), false),
     };
+    // With integers rounded it may be another than the search had.
+    let value = match (complete, instance.objective) {
+        (true, Some(o)) => instance.sign() * outcome.level[o.column as usize],
+        _ => found.value,
+    };
     let bound = if found.x.is_some() && found.exact {
-        found.bound.min(found.value)
+        found.bound.min(value)
     } else {
         found.bound
     };
     let proved = match found.end {
         End::Complete => !found.incomplete,
-        _ => found.value - bound <= 1e-9 * found.value.abs().max(1e-9),
+        _ => value - bound <= 1e-9 * value.abs().max(1e-9),
     };
     outcome.claim = match (complete, &found.end) {
         (_, End::Unbounded) => Claim::Unbounded,
@@ -134,7 +155,15 @@ fn search(
         _ => Claim::Unfinished,
     };
     let infeasible = outcome.claim == Claim::Infeasible;
-    outcome.iterations = iterations;
+    let endless = matches!(found.end, End::Stopped(_)) && !found.incomplete;
+    for values in [
+        &mut outcome.level,
+        &mut outcome.row_marginal,
+        &mut outcome.column_marginal,
+    ] {
+        // no -0
+        values.iter_mut().for_each(|v| *v += 0.0);
+    }
     outcome.solver = NAME;
     outcome.basis = None;
     outcome.message = match () {
@@ -150,6 +179,10 @@ fn search(
         () if complete && !found.exact && found.end == End::Complete => {
             Some("not shown to be convex: a better solution is possible".into())
         }
+        () if endless && is_unlimited(instance) => Some(
+            "an integer variable has no finite bounds: the search may never end without them"
+                .into(),
+        ),
         () => None,
     };
     outcome.status = match found.end {
@@ -170,10 +203,18 @@ fn search(
         nodes: found.nodes,
         records: found.records,
     };
-    Ok(Reply {
+    Reply {
         search: Some(report),
         ..outcome.into()
-    })
+    }
+}
+
+/// Whether an integer column may take any number of values.
+fn is_unlimited(instance: &Instance) -> bool {
+    let c = &instance.columns;
+    let integer = |j: &usize| matches!(c.kind[*j], ColumnKind::Integer | ColumnKind::SemiInteger);
+    let mut integers = (0..c.kind.len()).filter(integer);
+    integers.any(|j| c.lower[j].is_infinite() || c.upper[j].is_infinite())
 }
 
 /// The search of a linear program: presolve, cuts, tree.
@@ -220,28 +261,28 @@ fn linear_search(
 
 /// The search of a nonlinear program.
 fn nonlinear_search(
-    choice: Option<&str>,
-    instance: &Instance,
+    task: &Task,
     aim: Aim,
     settings: &Settings,
     control: &mut Control,
 ) -> Result<Found, SolveError> {
+    let (instance, relaxed) = (task.instance, task.using.relaxation());
     let mip = Mip::of_nonlinear(instance, aim.priorities)?;
     let mut first = instance.clone();
     first.columns.lower.copy_from_slice(&mip.problem.lower);
     first.columns.upper.copy_from_slice(&mip.problem.upper);
-    let mut relaxation = Nonlinear::new(&first, choice, settings);
+    let mut relaxation = Nonlinear::new(&first, relaxed, task.choice, settings);
     // What keeps the solver from starting is said before anything else.
     control.budget.aside(|budget| {
         budget.within(f64::INFINITY, 1, |budget| {
             subproblem(
-                &Task::new(ProblemType::Rminlp, &first).by(choice),
+                &Task::new(relaxed, &first).by(task.choice),
                 settings,
                 budget,
             )
         })
     })?;
-    relaxation.convex = true;
+    relaxation.convex = !task.has_pairs();
     let units = Units {
         price: 1.0,
         offset: 0.0,
@@ -302,15 +343,10 @@ pub fn certified(
 }
 
 /// The answer at a solution of the search.
-fn solution(
-    choice: Option<&str>,
-    instance: &Instance,
-    x: &[f64],
-    settings: &Settings,
-    budget: &Budget,
-) -> Outcome {
-    let fixed = fixed(instance, x);
-    let task = Task::new(ProblemType::Rminlp, &fixed).by(choice);
+fn solution(task: &Task, x: &[f64], settings: &Settings, budget: &Budget) -> Outcome {
+    let rows = task.instance.row_count();
+    let fixed = fixed(task.instance, x);
+    let task = Task::new(task.using.relaxation(), &fixed).by(task.choice);
     let answer = budget.after_all(GRACE, |budget| subproblem(&task, settings, budget));
     if let Ok(a) = answer
         && a.status.is_solution()
@@ -318,7 +354,7 @@ fn solution(
         return a.outcome;
     }
     // The point of the search, without marginals.
-    Outcome::unfinished(NAME, x.to_vec(), instance.row_count())
+    Outcome::unfinished(NAME, x.to_vec(), rows)
 }
 
 /// Seconds for the marginals of a solution when the time is used up.

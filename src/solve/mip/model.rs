@@ -119,13 +119,16 @@ impl Mip {
         (scaled, scaling)
     }
 
-    /// The linear rows of an instance, without costs, over all of its columns.
+    /// The linear rows of an instance that are paired with no column, without costs, over all of its columns.
     pub fn of_nonlinear(instance: &Instance, priorities: bool) -> Result<Self, SolveError> {
         let mut rows = instance.clone();
         rows.objective = None;
-        let nonlinear = instance.nonlinear_rows();
-        for (relation, nonlinear) in rows.rows.relation.iter_mut().zip(nonlinear) {
-            if nonlinear {
+        let mut free = instance.nonlinear_rows();
+        for &i in instance.matched.iter().flatten().flatten() {
+            free[i as usize] = true;
+        }
+        for (relation, free) in rows.rows.relation.iter_mut().zip(free) {
+            if free {
                 *relation = crate::model::instance::Relation::Free;
             }
         }
@@ -153,6 +156,18 @@ impl Mip {
         let first = set.columns.iter().position(|j| off(&j))?;
         let last = set.columns.iter().rposition(|j| off(&j))?;
         (last - first > usize::from(set.neighbours)).then_some((first, last))
+    }
+
+    /// Columns of a set that must be 0 if those stay which a point has farthest from it.
+    pub fn outside<'s>(&self, set: &'s OrderedSet, x: &[f64]) -> impl Iterator<Item = usize> + 's {
+        let width = 1 + usize::from(set.neighbours);
+        let weight = |w: &[u32]| w.iter().map(|&j| x[j as usize].abs()).sum::<f64>();
+        let kept = set.columns.windows(width).map(weight).enumerate();
+        let kept = kept.reduce(|a, b| if b.1 > a.1 { b } else { a });
+        let first = kept.map_or(0, |k| k.0);
+        let all = set.columns.iter().enumerate();
+        all.filter(move |(k, _)| *k < first || *k >= first + width)
+            .map(|(_, &j)| j as usize)
     }
 
     /// Whether all discrete columns have values that they may have.

@@ -15,6 +15,8 @@ use std::rc::Rc;
 
 /// The instance under a node's bounds.
 pub struct Nonlinear {
+    /// Relaxed type.
+    using: ProblemType,
     instance: Instance,
     choice: Option<String>,
     settings: Settings,
@@ -22,13 +24,23 @@ pub struct Nonlinear {
     point: Rc<Vec<f64>>,
     /// Every value so far was a global one.
     pub convex: bool,
-    /// The root is solved: what is infeasible below it is not tried from elsewhere.
+    /// The root is solved: below it, what is infeasible is tried from elsewhere only so often.
     rooted: bool,
+    /// How often that was done.
+    again: u32,
 }
+
+/// Infeasible nodes that are tried from the start point as well.
+const AGAIN: u32 = 50;
 
 impl Nonlinear {
     /// For an instance.
-    pub fn new(instance: &Instance, choice: Option<&str>, settings: &Settings) -> Self {
+    pub fn new(
+        instance: &Instance,
+        using: ProblemType,
+        choice: Option<&str>,
+        settings: &Settings,
+    ) -> Self {
         let mut relaxed = instance.clone();
         relaxed.columns.kind.fill(ColumnKind::Continuous);
         relaxed.discrete = Default::default();
@@ -38,6 +50,7 @@ impl Nonlinear {
             .options
             .insert(0, ("nlp_attempts".into(), "few".into()));
         Self {
+            using,
             instance: relaxed,
             // of a convex quadratic program it says that its answer is a global one
             choice: Some(choice.unwrap_or("clarabel").to_string()),
@@ -46,6 +59,7 @@ impl Nonlinear {
             point: Rc::new(level.clone()),
             convex: true,
             rooted: false,
+            again: 0,
         }
     }
 
@@ -55,7 +69,7 @@ impl Nonlinear {
         for (j, x) in columns.level.iter_mut().enumerate() {
             *x = from[j].max(columns.lower[j]).min(columns.upper[j]);
         }
-        let task = Task::new(ProblemType::Rminlp, &self.instance).by(self.choice.as_deref());
+        let task = Task::new(self.using, &self.instance).by(self.choice.as_deref());
         let answer = control
             .budget
             .aside(|budget| subproblem(&task, &self.settings, budget));
@@ -91,7 +105,7 @@ impl Relaxation for Nonlinear {
                 return Solved::Stopped(why);
             }
             use ModelStatus as S;
-            self.convex &= matches!(answer.status, S::Optimal | S::Infeasible);
+            self.convex &= !self.using.has_pairs() && matches!(answer.status, S::Optimal | S::Infeasible);
             match answer.status {
                 S::Optimal | S::LocallyOptimal | S::Feasible => {
                     let value = self.instance.objective.map_or(0.0, |o| {
@@ -104,8 +118,13 @@ impl Relaxation for Nonlinear {
                 S::Infeasible | S::InfeasibleNoSolution => return Solved::Infeasible,
                 S::Unbounded | S::UnboundedNoSolution => return Solved::Unbounded,
                 // from elsewhere it may be feasible
-                S::LocallyInfeasible if self.rooted => return Solved::Infeasible,
-                S::LocallyInfeasible => solved = Solved::Infeasible,
+                S::LocallyInfeasible if self.rooted && self.again >= AGAIN => {
+                    return Solved::Infeasible;
+                }
+                S::LocallyInfeasible => {
+                    self.again += u32::from(self.rooted && solved == Solved::Failed);
+                    solved = Solved::Infeasible;
+                }
                 _ => {}
             }
         }

@@ -512,12 +512,19 @@ impl<'a, R: Relaxation> Search<'a, R> {
                     self.fate(number, "open");
                     return None;
                 }
-                if self.offer(&point, control) {
+                let offered = self.offer(&point, control);
+                // Integers to the tolerance only: rounded they are no solution, or one whose value is not the node's.
+                branch = match offered {
+                    true if bound < self.cutoff() => {
+                        self.split_rounded(&point).or_else(|| self.split_set())
+                    }
+                    true => None,
+                    false => self.split_widest(),
+                };
+                if branch.is_none() && offered {
                     self.fate(number, "solution");
                     return None;
                 }
-                // Integers to the tolerance only, and no solution when they are rounded.
-                branch = self.split_widest();
                 if branch.is_none() {
                     self.incomplete |= self.cutoff() > bound;
                     self.fate(number, "infeasible");
@@ -654,9 +661,9 @@ impl<'a, R: Relaxation> Search<'a, R> {
             }
         }
         for set in &self.mip.sets {
-            for &j in &set.columns {
-                if y[j as usize].abs() <= super::model::INTEGRAL {
-                    y[j as usize] = 0.0;
+            for j in self.mip.outside(set, x) {
+                if y[j].abs() <= super::model::INTEGRAL {
+                    y[j] = 0.0;
                 }
             }
         }
@@ -702,20 +709,13 @@ impl<'a, R: Relaxation> Search<'a, R> {
                 });
             }
         }
-        for column in self
-            .mip
-            .sets
-            .iter()
-            .flat_map(|s| &s.columns)
-            .map(|&j| j as usize)
-        {
-            if y[column] == 0.0 {
-                self.relaxation.set_bounds(Change {
-                    column,
-                    lower: 0.0,
-                    upper: 0.0,
-                });
-            }
+        let mip = self.mip;
+        for column in mip.sets.iter().flat_map(|s| mip.outside(s, y)) {
+            self.relaxation.set_bounds(Change {
+                column,
+                lower: 0.0,
+                upper: 0.0,
+            });
         }
         let solved = self.relaxation.solve(f64::INFINITY, control);
         let found = match solved {

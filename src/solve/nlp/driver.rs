@@ -15,7 +15,6 @@
 //! The first certified point wins. Where there is none, the best point that was seen is returned, and
 //! called what it is.
 
-use super::Convexity;
 use super::consistent::consistent_start;
 use super::growth::Growth;
 use super::problem::{Nlp, Problem};
@@ -27,6 +26,7 @@ use super::schedule::{
 };
 use super::slqp;
 use super::trial::{Trial, clean, polished, residuals_at, tidy, without_noise};
+use super::{Convexity, Engine};
 use crate::autodiff::{ErrorKind, EvalFailure, Evaluator, kinks};
 use crate::model::instance::Instance;
 use crate::solve::backend::Task;
@@ -80,16 +80,18 @@ pub fn solve(
     check_start(instance, &mut problem, &start)?;
     let quadratic = match convexity {
         Convexity::Ignored => None,
-        Convexity::Used | Convexity::Asked => Quadratic::new(&mut problem, budget),
+        Convexity::Used => Quadratic::new(&mut problem, Engine::Clarabel, budget),
+        Convexity::Asked(engine) => Quadratic::new(&mut problem, engine, budget),
     };
     let quadratic = quadratic.filter(|_| settings.runs(Strategy::ConvexQuadratic));
     let mut driver = Driver::new(instance, problem, provider, settings, budget);
-    driver.message = (convexity == Convexity::Asked && quadratic.is_none()).then(|| {
-        let name = provider.name();
-        format!(
-            "not a convex quadratic program with linear rows: solved by {name}, not by clarabel"
-        )
-    });
+    if let (Convexity::Asked(engine), None) = (convexity, &quadratic) {
+        driver.message = Some(format!(
+            "not a convex quadratic program with linear rows: solved by {}, not by {}",
+            provider.name(),
+            engine.name()
+        ));
+    }
     driver.convex = quadratic.is_some().then_some(convexity);
     driver.named = convexity == Convexity::Ignored;
     driver.run(quadratic)

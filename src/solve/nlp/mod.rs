@@ -38,6 +38,7 @@ pub use options::IPOPT_OPTIONS;
 pub use options::POUNCE_OPTIONS;
 pub use options::SHARED_OPTIONS;
 use provider::Provider;
+pub use quadratic::Engine;
 
 /// Name of the threads on which providers run that may panic.
 pub const THREAD: &str = "nonlinear solver";
@@ -59,8 +60,8 @@ pub enum Convexity {
     Ignored,
     /// Clarabel solves it.
     Used,
-    /// Clarabel solves it, the status is `optimal`, and the person hears if it is not convex.
-    Asked,
+    /// This solves it, the status is `optimal`, and the person hears if it is not convex.
+    Asked(Engine),
 }
 
 /// A nonlinear solver as a backend.
@@ -94,7 +95,9 @@ impl Backend for Nonlinear {
         budget: &Budget,
     ) -> Result<Reply, SolveError> {
         let convexity = match task.choice {
-            Some("clarabel") => Convexity::Asked,
+            Some("clarabel") => Convexity::Asked(Engine::Clarabel),
+            #[cfg(feature = "highs")]
+            Some("highs") => Convexity::Asked(Engine::Highs),
             Some(name) if is_called(self, name) => Convexity::Ignored,
             // a name that no solver of ours bears is some other solver of the same model type in GAMS
             _ => Convexity::Used,

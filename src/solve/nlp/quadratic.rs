@@ -27,9 +27,31 @@ const SHIFT: f64 = 1e-12;
 /// Clarabel's tolerance; the active set found there is solved for afterwards.
 const TOLERANCE: f64 = 1e-9;
 
+/// What solves a convex quadratic program.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Engine {
+    /// Clarabel's interior-point method.
+    Clarabel,
+    /// HiGHS's active-set method.
+    #[cfg(feature = "highs")]
+    Highs,
+}
+
+impl Engine {
+    /// Name of the solver.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Clarabel => "clarabel",
+            #[cfg(feature = "highs")]
+            Self::Highs => "highs",
+        }
+    }
+}
+
 /// A convex quadratic program.
 #[derive(Debug)]
 pub struct Quadratic {
+    engine: Engine,
     linear: form::Problem,
     /// Upper triangle of H by columns.
     hessian: Sparse,
@@ -37,7 +59,7 @@ pub struct Quadratic {
 
 impl Quadratic {
     /// Takes a problem apart; None where it is none of the kind.
-    pub fn new(problem: &mut Problem, budget: &Budget) -> Option<Self> {
+    pub fn new(problem: &mut Problem, engine: Engine, budget: &Budget) -> Option<Self> {
         let ObjectiveForm::Row { row, .. } = problem.form() else {
             return None;
         };
@@ -76,15 +98,22 @@ impl Quadratic {
             offset: 0.0,
         };
         Some(Self {
+            engine,
             linear,
             hessian: by_rows(n, &entries),
         })
     }
 
-    /// Runs Clarabel. Multipliers λ as in L = f + λᵀg.
+    /// Runs the engine. Multipliers λ as in L = f + λᵀg.
     pub fn solve(&self, budget: &Budget) -> Solution {
-        let hessian = Some(&self.hessian);
-        let run = interior::solve(&self.linear, hessian, Aim::Tolerance(TOLERANCE), budget);
+        let (linear, hessian) = (&self.linear, &self.hessian);
+        let run = match self.engine {
+            Engine::Clarabel => {
+                interior::solve(linear, Some(hessian), Aim::Tolerance(TOLERANCE), budget)
+            }
+            #[cfg(feature = "highs")]
+            Engine::Highs => crate::solve::highs::quadratic(linear, hessian, budget),
+        };
         Solution {
             ended: match run.ended {
                 lp::Ended::Solved => Ended::Solved,

@@ -49,7 +49,7 @@ impl Driver<'_, '_> {
             Claim::WithoutMultipliers
         } else if best.is_optimal() {
             match self.convex {
-                Some(Convexity::Asked) => Claim::Solved,
+                Some(Convexity::Asked(_)) => Claim::Solved,
                 _ if affine => Claim::Solved,
                 _ => Claim::LocallySolved,
             }
