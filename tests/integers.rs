@@ -95,8 +95,8 @@ fn open_nodes_are_limited_by_memory() {
     let mut host = Memory::text(text);
     let now = bmod::host::Host::memory(&host);
     let options = Options {
-        time_limit: 100.0,
-        max_memory: Some(now + (60 << 20)),
+        time_limit: 30.0,
+        max_memory: Some(now + (20 << 20)),
         ..common::quiet()
     };
     let finished = common::run(&mut host, "m.blk", options);
@@ -154,9 +154,9 @@ mod highs {
             ),
         ] {
             let s = solved(&text(using, objective, rows), common::quiet());
-            assert_eq!(s.solver, "highs", "{using} {objective}");
             assert_eq!(s.model_status.code, status, "{using} {objective}");
             if let Some(v) = value {
+                assert_eq!(s.solver, "highs", "{using} {objective}");
                 let z = number(s.objective);
                 assert!((z - v).abs() < 1e-3, "{objective}: {z}");
             }

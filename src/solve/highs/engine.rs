@@ -32,7 +32,7 @@ pub enum Status {
 pub struct Run {
     /// How it ended.
     pub status: Status,
-    /// Point with multipliers; of a search without multipliers. None: no point that satisfies the rows.
+    /// Point that satisfies the rows, with multipliers; of a search without them.
     pub point: Option<Point>,
     /// Of a search: no solution is better than this, with the offset.
     pub bound: f64,
@@ -170,7 +170,7 @@ impl Engine {
     /// Solves, at most as long as the budget allows.
     pub fn run(&self, budget: &Budget, searches: bool, shown: &dyn Fn(f64) -> f64) -> Run {
         if let Some(stop) = budget.stop() {
-            return self.gave(Status::Stopped(stop), searches);
+            return self.gave(Status::Stopped(stop));
         }
         if budget.seconds_left().is_finite() {
             self.number(c"time_limit", budget.seconds_left().max(1e-3));
@@ -229,7 +229,7 @@ impl Engine {
         if let Status::Stopped(stop) = status {
             budget.end(stop);
         }
-        self.gave(status, searches)
+        self.gave(status)
     }
 
     fn info(&self, name: &CStr) -> HighsInt {
@@ -239,7 +239,7 @@ impl Engine {
         value
     }
 
-    fn gave(&self, status: Status, searches: bool) -> Run {
+    fn gave(&self, status: Status) -> Run {
         let mut p = Point {
             x: vec![0.0; self.columns],
             y: vec![0.0; self.rows],
@@ -265,7 +265,7 @@ impl Engine {
         let fine = p.x.iter().all(|x| x.is_finite());
         Run {
             status,
-            point: ((feasible || !searches) && fine).then_some(p),
+            point: (feasible && fine).then_some(p),
             bound,
             nodes: nodes.max(0) as u64,
             iterations,

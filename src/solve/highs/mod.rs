@@ -206,14 +206,14 @@ fn search(
             engine.set(settings);
             engine.run(budget, true, &|v| v)
         });
-        let mut found = any.map_or(nothing(Status::Failed), |any| found(mip, any));
+        let mut found = any.map_or(nothing(Status::Failed), |any| found(mip, None, any));
         if found.x.is_some() || found.end != End::Complete {
             found.end = End::Unbounded;
         }
         found.bound = f64::NEG_INFINITY;
         return (found, iterations);
     }
-    (found(mip, run), iterations)
+    (found(mip, aim.cutoff, run), iterations)
 }
 
 /// No point, and why.
@@ -236,22 +236,29 @@ fn end(status: Status) -> End {
     }
 }
 
-/// What a search gave.
-fn found(mip: &Mip, run: Run) -> Found {
-    let x = run.point.map(|p| p.x);
-    let bound = match run.status {
+/// What a search gave. That nothing is left is known to a tolerance of HiGHS's, which the bound shows.
+fn found(mip: &Mip, cutoff: Option<f64>, run: Run) -> Found {
+    let mut found = nothing(run.status);
+    found.nodes = run.nodes;
+    found.bound = match run.status {
         Status::Infeasible => f64::INFINITY,
         _ => run.bound,
     };
-    Found {
-        value: x
-            .as_ref()
-            .map_or(f64::INFINITY, |x| mip.value(x) + mip.problem.offset),
-        x,
-        bound,
-        nodes: run.nodes,
-        ..nothing(run.status)
+    let worth = |x: &[f64]| mip.value(x) + mip.problem.offset;
+    found.x = run.point.map(|p| p.x);
+    found.value = found.x.as_deref().map_or(f64::INFINITY, worth);
+    let rest = found.value - found.bound;
+    if run.status == Status::Optimal && rest <= TOLERANCE * found.value.abs().max(1.0) {
+        found.bound = found.value;
     }
+    if cutoff.is_some_and(|c| found.value > c + TOLERANCE * c.abs().max(1.0)) {
+        // A start that is no better than what was asked for.
+        (found.x, found.value) = (None, f64::INFINITY);
+        if run.status == Status::Optimal {
+            found.end = End::Complete;
+        }
+    }
+    found
 }
 
 /// Linear programs, and convex quadratic ones.
