@@ -28,7 +28,7 @@ impl Kkt {
             return None;
         }
         let named = || backends.iter().filter(|b| is_called(**b, name));
-        if named().any(|b| b.supports().takes(task)) {
+        if named().any(|b| b.takes(task)) {
             return None;
         }
         named().find(|b| {

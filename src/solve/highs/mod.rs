@@ -6,12 +6,11 @@
 
 mod engine;
 
-use super::answer::{Answer, linear, linear_shown};
-use super::backend::{Backend, Supports, Task, Terms};
+use super::backend::{Backend, Reply, Supports, Task, Terms};
 use super::lp::form::{Form, Point, Problem, Sparse};
 use super::lp::{self, Ended, interior};
 use super::mip::{self, Aim, End, Found, Mip};
-use super::{Budget, Claim, Outcome, Settings, SolveError, Solver, SolverStatus, nlp};
+use super::{Budget, Claim, Outcome, Settings, SolveError, SolverStatus, nlp};
 use crate::model::instance::Instance;
 use crate::model::option::{Kind, OptionTable, row};
 use crate::model::problem_type::ProblemType;
@@ -78,9 +77,8 @@ impl Backend for Highs {
 
     fn supports(&self) -> Supports {
         Supports {
-            types: &[ProblemType::Mip],
             integers: true,
-            ..lp::SUPPORTS
+            ..Supports::new(&[ProblemType::Mip], Terms::Linear)
         }
     }
 
@@ -103,7 +101,7 @@ impl Backend for Highs {
         task: &Task,
         settings: &Settings,
         budget: &Budget,
-    ) -> Result<Answer, SolveError> {
+    ) -> Result<Reply, SolveError> {
         let instance = task.instance;
         let mut aim = settings.search;
         aim.cutoff = aim.cutoff.map(|c| instance.sign() * c);
@@ -114,8 +112,7 @@ impl Backend for Highs {
             .iter()
             .map(|&j| instance.columns.level[j as usize])
             .collect();
-        let fixed =
-            |fixed: &Instance, budget: &Budget| linear(&Continuous, fixed, settings, budget);
+        let task = task.by(Some(NAME));
         let mut iterations = 0;
         let mut solve = |tolerance: f64| {
             let (mut found, spent) =
@@ -132,19 +129,19 @@ impl Backend for Highs {
             let solved = found.end == End::Gap;
             let gap = aim.relative_gap * found.value.abs() + aim.absolute_gap;
             let claimed = found.value + gap.max(1e-6 * found.value.abs().max(1.0));
-            let answer = mip::concluded(&fixed, instance, found, budget);
+            let reply = mip::concluded(&task, found, settings, budget);
             let o = instance.objective.map(|o| o.column as usize);
-            let value = o.map_or(claimed, |o| form.sign * answer.outcome.level[o]);
-            (answer, solved && value > claimed)
+            let value = o.map_or(claimed, |o| form.sign * reply.outcome.level[o]);
+            (reply, solved && value > claimed)
         };
-        let (mut answer, lost) = solve(TOLERANCE);
+        let (mut reply, lost) = solve(TOLERANCE);
         if lost {
             // Integers that were none: rounded they are a worse solution than HiGHS had.
-            (answer, _) = solve(FINE);
+            (reply, _) = solve(FINE);
         }
-        answer.outcome.iterations = iterations;
-        answer.outcome.solver = NAME;
-        Ok(answer)
+        reply.outcome.iterations = iterations;
+        reply.outcome.solver = NAME;
+        Ok(reply)
     }
 }
 
@@ -276,9 +273,8 @@ impl Backend for Continuous {
 
     fn supports(&self) -> Supports {
         Supports {
-            terms: Terms::Smooth,
             only_by_name: true,
-            ..lp::SUPPORTS
+            ..Supports::new(lp::TYPES, Terms::Smooth)
         }
     }
 
@@ -291,67 +287,61 @@ impl Backend for Continuous {
         task: &Task,
         settings: &Settings,
         budget: &Budget,
-    ) -> Result<Answer, SolveError> {
-        match task.instance.is_linear() {
-            true => linear_shown(self, task.instance, settings, budget),
-            false => nlp::answer(Some(NAME), task.instance, settings, budget),
+    ) -> Result<Reply, SolveError> {
+        match (task.instance.is_linear(), nlp::providers().first()) {
+            (false, Some(&p)) => nlp::Nonlinear(p).solve(task, settings, budget),
+            _ => Ok(linear(task.instance, settings, budget)?.into()),
         }
     }
 }
 
-impl Solver for Continuous {
-    fn name(&self) -> &'static str {
-        NAME
+/// A linear program.
+fn linear(
+    instance: &Instance,
+    settings: &Settings,
+    budget: &Budget,
+) -> Result<Outcome, SolveError> {
+    let form = Form::new(instance)?;
+    let failed = || SolveError::new("HiGHS does not take these numbers");
+    let engine = Engine::new(&form.problem, &[], None).ok_or_else(failed)?;
+    engine.set(settings);
+    let shown = |v: f64| form.sign * v;
+    let mut run = engine.run(budget, false, &shown);
+    let mut iterations = run.iterations;
+    if run.status == Status::Unbounded {
+        // which of the two it is, and a direction
+        engine.word(c"presolve", "off");
+        engine.word(c"solver", "simplex");
+        run = engine.run(budget, false, &shown);
+        iterations += run.iterations;
     }
-
-    fn solve(
-        &self,
-        instance: &Instance,
-        settings: &Settings,
-        budget: &Budget,
-    ) -> Result<Outcome, SolveError> {
-        let form = Form::new(instance)?;
-        let failed = || SolveError::new("HiGHS does not take these numbers");
-        let engine = Engine::new(&form.problem, &[], None).ok_or_else(failed)?;
-        engine.set(settings);
-        let shown = |v: f64| form.sign * v;
-        let mut run = engine.run(budget, false, &shown);
-        let mut iterations = run.iterations;
-        if run.status == Status::Unbounded {
-            // which of the two it is, and a direction
-            engine.word(c"presolve", "off");
-            engine.word(c"solver", "simplex");
-            run = engine.run(budget, false, &shown);
-            iterations += run.iterations;
-        }
-        budget.spend(iterations);
-        let (claim, status) = match run.status {
-            Status::Optimal => (Claim::Solved, SolverStatus::NormalCompletion),
-            Status::Infeasible => (Claim::Infeasible, SolverStatus::NormalCompletion),
-            Status::Unbounded => (Claim::Unbounded, SolverStatus::NormalCompletion),
-            Status::Stopped(stop) => (Claim::Unfinished, stop.status()),
-            Status::Nodes | Status::Failed => (Claim::Unfinished, SolverStatus::TerminatedBySolver),
-        };
-        let ray = match claim {
-            Claim::Infeasible => engine.infeasibility().map(|y| form.multipliers(&y)),
-            Claim::Unbounded => engine.direction().map(|x| form.direction(instance, &x)),
-            _ => None,
-        };
-        let point = run.point.unwrap_or_else(|| zero(&form.problem));
-        let (level, row_marginal, column_marginal) = form.point(instance, &point);
-        Ok(Outcome {
-            level,
-            row_marginal,
-            column_marginal,
-            claim,
-            status,
-            iterations,
-            solver: NAME,
-            ray: ray.unwrap_or_default(),
-            message: None,
-            basis: None,
-        })
-    }
+    budget.spend(iterations);
+    let (claim, status) = match run.status {
+        Status::Optimal => (Claim::Solved, SolverStatus::NormalCompletion),
+        Status::Infeasible => (Claim::Infeasible, SolverStatus::NormalCompletion),
+        Status::Unbounded => (Claim::Unbounded, SolverStatus::NormalCompletion),
+        Status::Stopped(stop) => (Claim::Unfinished, stop.status()),
+        Status::Nodes | Status::Failed => (Claim::Unfinished, SolverStatus::TerminatedBySolver),
+    };
+    let ray = match claim {
+        Claim::Infeasible => engine.infeasibility().map(|y| form.multipliers(&y)),
+        Claim::Unbounded => engine.direction().map(|x| form.direction(instance, &x)),
+        _ => None,
+    };
+    let point = run.point.unwrap_or_else(|| zero(&form.problem));
+    let (level, row_marginal, column_marginal) = form.point(instance, &point);
+    Ok(Outcome {
+        level,
+        row_marginal,
+        column_marginal,
+        claim,
+        status,
+        iterations,
+        solver: NAME,
+        ray: ray.unwrap_or_default(),
+        message: None,
+        basis: None,
+    })
 }
 
 /// A convex quadratic program; of its Hessian the upper triangle by columns.

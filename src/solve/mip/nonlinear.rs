@@ -105,7 +105,8 @@ impl Relaxation for Nonlinear {
                 return Solved::Stopped(why);
             }
             use ModelStatus as S;
-            self.convex &= !self.using.has_pairs() && matches!(answer.status, S::Optimal | S::Infeasible);
+            self.convex &=
+                !self.using.has_pairs() && matches!(answer.status, S::Optimal | S::Infeasible);
             match answer.status {
                 S::Optimal | S::LocallyOptimal | S::Feasible => {
                     let value = self.instance.objective.map_or(0.0, |o| {
