@@ -389,7 +389,17 @@ pub const FILE_ATTRIBUTES: &[&str] = &[
 
 /// Solver names of bmod that an option may give.
 pub const OWN_SOLVERS: &[&str] = &[
-    "default", "clarabel", "simplex", "pounce", "ipopt", "bmcp", "mcp", "bmpec",
+    "default",
+    "clarabel",
+    "simplex",
+    "pounce",
+    "ipopt",
+    "bmcp",
+    "mcp",
+    "bmpec",
+    "bmip",
+    #[cfg(feature = "highs")]
+    "highs",
 ];
 
 /// Solver names that an option may give: bmod's own, and those of GAMS (for which bmod's own stands in).

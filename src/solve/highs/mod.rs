@@ -72,7 +72,7 @@ impl Backend for Highs {
     }
 
     fn version(&self) -> &'static str {
-        "mip: HiGHS 1.15.0 (highs-sys 1.15.0)"
+        "mip: HiGHS, by highs-sys 1.15.0"
     }
 
     fn supports(&self) -> Supports {
@@ -126,7 +126,7 @@ impl Backend for Highs {
                 };
                 found.x = Some(form.point(instance, &point).0);
             }
-            let solved = found.end == End::Gap;
+            let solved = matches!(found.end, End::Gap | End::Complete) && found.x.is_some();
             let gap = aim.relative_gap * found.value.abs() + aim.absolute_gap;
             let claimed = found.value + gap.max(1e-6 * found.value.abs().max(1.0));
             let reply = mip::concluded(&task, found, settings, budget);
@@ -137,7 +137,11 @@ impl Backend for Highs {
         let (mut reply, lost) = solve(TOLERANCE);
         if lost {
             // Integers that were none: rounded they are a worse solution than HiGHS had.
-            (reply, _) = solve(FINE);
+            let (finer, lost) = solve(FINE);
+            reply = finer;
+            if lost && reply.outcome.claim == Claim::Solved {
+                reply.outcome.claim = Claim::Unfinished;
+            }
         }
         reply.outcome.iterations = iterations;
         reply.outcome.solver = NAME;
@@ -246,7 +250,7 @@ fn found(mip: &Mip, cutoff: Option<f64>, run: Run) -> Found {
     found.value = found.x.as_deref().map_or(f64::INFINITY, worth);
     let rest = found.value - found.bound;
     if run.status == Status::Optimal && rest <= TOLERANCE * found.value.abs().max(1.0) {
-        found.bound = found.value;
+        (found.bound, found.end) = (found.value, End::Complete);
     }
     if cutoff.is_some_and(|c| found.value > c + TOLERANCE * c.abs().max(1.0)) {
         // A start that is no better than what was asked for.
