@@ -30,15 +30,15 @@ const MODELS: &[&str] = &[
      model m /all/; m.optcr = 0; solve m using mip minimizing z;",
     // semicontinuous purchases in lots
     "set r /1*6/; parameter c(r), q(r); c(r) = uniform(10,40); q(r) = uniform(0,4);
-     semicont variable x(r); integer variable n(r); variable z; equation o, all, good, lot(r);
+     semicont variable x(r); integer variable n(r); variable z; equation o, amount, good, lot(r);
      x.lo(r) = 10; x.up(r) = 50; n.up(r) = 9;
-     o.. z =e= sum(r, c(r)*x(r) + 25*n(r));  all.. sum(r, x(r)) =e= 90;
+     o.. z =e= sum(r, c(r)*x(r) + 25*n(r));  amount.. sum(r, x(r)) =e= 90;
      good.. sum(r, q(r)*x(r)) =l= 170;  lot(r).. x(r) =l= 8*n(r);
      model m /all/; m.optcr = 0; solve m using mip minimizing z;",
     // costs in pieces, by ordered sets
     "set k /1*3/, p /1*5/; parameter a(p) /1 0, 2 10, 3 25, 4 45, 5 70/, f(k,p); f(k,p) = a(p)*uniform(0.6,1.6) + 10$(ord(p) > 1);
-     sos2 variable l(k,p); variable z; equation o, one(k), all; l.up(k,p) = 1;
-     o.. z =e= sum((k,p), f(k,p)*l(k,p));  one(k).. sum(p, l(k,p)) =e= 1;  all.. sum((k,p), a(p)*l(k,p)) =g= 120;
+     sos2 variable l(k,p); variable z; equation o, one(k), need; l.up(k,p) = 1;
+     o.. z =e= sum((k,p), f(k,p)*l(k,p));  one(k).. sum(p, l(k,p)) =e= 1;  need.. sum((k,p), a(p)*l(k,p)) =g= 120;
      model m /all/; m.optcr = 0; solve m using mip minimizing z;",
 ];
 

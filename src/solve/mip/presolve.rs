@@ -44,6 +44,9 @@ pub fn reduce(mip: &Mip, fixed: &[Change]) -> Option<Reduced> {
     for set in &work.sets {
         set.columns.iter().for_each(|&j| in_set[j as usize] = true);
     }
+    if (0..work.problem.m()).any(|i| is_indivisible(&work, i)) {
+        return None;
+    }
     let mut idle = vec![false; work.problem.m()];
     for round in 0..6 {
         let mut changed = singletons(&mut work, &mut idle)?;
@@ -62,6 +65,25 @@ pub fn reduce(mip: &Mip, fixed: &[Change]) -> Option<Reduced> {
         }
     }
     Some(assemble(&work, &idle, &in_set))
+}
+
+/// Whether a row asks for a number that no sum of integers times its coefficients is.
+fn is_indivisible(mip: &Mip, row: usize) -> bool {
+    let p = &mip.problem;
+    let side = p.row_lower[row];
+    let whole = |(j, a): (usize, f64)| mip.integer[j] && a == a.trunc() && a.abs() < 1e9;
+    if side != p.row_upper[row] || side.abs() > 1e9 || !p.rows.line(row).all(whole) {
+        return false;
+    }
+    let greatest = |mut a: u64, mut b: u64| {
+        while b > 0 {
+            (a, b) = (b, a % b);
+        }
+        a
+    };
+    let coefficients = p.rows.line(row).map(|(_, a)| a.abs() as u64);
+    let divisor = coefficients.fold(0, greatest) as f64;
+    divisor > 0.0 && (side - (side / divisor).round() * divisor).abs() > 1e-6
 }
 
 /// Rows of one column become bounds. None: they cross.
