@@ -259,7 +259,7 @@ fn what_is_kept_changes_no_answer() {
             assert_eq!(columns(&a), columns(&b), "{k}: {name}");
         }
         // Where goods have no price their amounts are not unique.
-        assert!(k == 3 || a.files() == b.files(), "{k}");
+        assert!(matches!(k, 3 | 5) || a.files() == b.files(), "{k}");
     }
     // A label that is not there is found out, and the next run is right again.
     kept.set_parameter("price", [("d", 1.0)]);

@@ -179,6 +179,10 @@ impl Sheet {
     }
 }
 
+/// What is asked of a solve that has run.
+type Question<'a, T> =
+    &'a mut dyn FnMut(&Machine, &Primal, &Studied) -> Result<T, Box<diag::Diagnostic>>;
+
 impl Model {
     /// A model as formulas. Nothing is run, unless [`Choice::numbers`] asks for it.
     ///
@@ -298,12 +302,7 @@ impl Model {
     }
 
     /// Runs the model and looks at the solve that is meant.
-    fn study<T>(
-        &self,
-        choice: &Choice,
-        options: &Options,
-        f: &mut dyn FnMut(&Machine, &Primal, &Studied) -> Result<T, Box<diag::Diagnostic>>,
-    ) -> Result<T, Error> {
+    fn study<T>(&self, choice: &Choice, options: &Options, f: Question<'_, T>) -> Result<T, Error> {
         let mut host = RunHost::new(self, options);
         let study = StudyChoice {
             model: choice.model.clone(),

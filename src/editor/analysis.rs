@@ -226,14 +226,15 @@ impl Analysis {
         let text = &map.file(place.file).text;
         let (lo, hi) = (place.lo as usize, place.hi as usize);
         let (lo, hi, new) = if d.code == "E0201" {
+            // Another mark that stands there is what is wrong.
+            if text[lo..hi].ends_with([',', ':', '.']) || text[hi..].starts_with([',', ':', '.']) {
+                return None;
+            }
             (hi, hi, ";".to_owned())
         } else {
-            let help = d.help.as_deref()?;
-            let new = match help.strip_prefix("did you mean `") {
-                Some(rest) => &rest[..rest.find('`')?],
-                // A help that is nothing but what to write.
-                None => help.strip_prefix("write `")?.strip_suffix('`')?,
-            };
+            // What a help says to write is an example; only a nearer name is sure.
+            let rest = d.help.as_deref()?.strip_prefix("did you mean `")?;
+            let new = &rest[..rest.find('`')?];
             if new.contains(['`', '…']) {
                 return None;
             }

@@ -141,21 +141,34 @@ impl List<'_> {
             };
             for d in positions {
                 match d {
-                    DomainPosition::Set(id) => {
-                        let set = p.symbols.get(*id);
-                        let t = p.store.table(set.table);
-                        for r in 0..t.len().min(MOST_LABELS) as u32 {
-                            if let [label] = t.key(r) {
-                                let text = p.store.element_text(set.table, &[*label]).unwrap_or("");
-                                let detail = format!("element of {}", set.name);
-                                self.label(p.store.universe.name(*label), quoted, detail, text);
-                            }
-                        }
-                    }
+                    DomainPosition::Set(id) => self.elements(p, p.symbols.get(*id), quoted),
                     _ => self.all_labels(p, quoted),
                 }
             }
             return;
+        }
+    }
+
+    fn elements(&mut self, p: &Program, set: &Symbol, quoted: bool) {
+        let t = p.store.table(set.table);
+        for r in 0..t.len().min(MOST_LABELS) as u32 {
+            if let [label] = t.key(r) {
+                let text = p.store.element_text(set.table, &[*label]).unwrap_or("");
+                let detail = format!("element of {}", set.name);
+                self.label(p.store.universe.name(*label), quoted, detail, text);
+            }
+        }
+    }
+
+    /// Labels of the set of that name.
+    fn elements_of(&mut self, name: &str) {
+        for p in self.programs.clone() {
+            if let Some(s) = p.symbols.find(name).map(|s| p.symbols.get(s)) {
+                if s.is_set() {
+                    self.elements(p, s, false);
+                }
+                return;
+            }
         }
     }
 
@@ -247,12 +260,10 @@ fn propose(list: &mut List, d: &Document, word: usize, at: usize) {
     if last.role == Role::Dot && last.hi == word && statement.class != Class::Model && !last.data {
         return attributes(list, d, n);
     }
-    if statement.class.declares() && statement.class != Class::Equation
-        || matches!(statement.class, Class::Model)
-    {
-        if in_declaration(list, d, statement.first, n, statement.class) {
-            return;
-        }
+    let lists = statement.class.declares() && statement.class != Class::Equation
+        || statement.class == Class::Model;
+    if lists && in_declaration(list, d, statement.first, n, statement.class) {
+        return;
     }
     let first = d.word(statement.first).to_lowercase();
     let previous = d.word(n - 1).to_lowercase();
@@ -408,7 +419,16 @@ fn in_declaration(list: &mut List, d: &Document, first: usize, n: usize, class: 
             );
         }
     } else if slashes % 2 == 1 || class == Class::Table && opens == closes {
+        let before = list.out.len();
         list.labels(d.word(declared), None, false);
+        if list.out.len() == before {
+            // Not known yet: the domain as it stands in the text.
+            let words = declared + 1..n;
+            let in_domain = words.take_while(|&t| tokens[t].role != Role::Close);
+            for t in in_domain.filter(|&t| tokens[t].role != Role::Open) {
+                list.elements_of(d.word(t));
+            }
+        }
     } else if opens > closes {
         list.symbols(Symbol::is_set);
     }

@@ -80,6 +80,14 @@ pub fn lay_out(text: &str, slashes: bool) -> Option<String> {
 fn same_words(text: &str, scan: &Scan, out: &str, slashes: bool) -> bool {
     let again = Scan::of(out, slashes);
     let line = |s: &Scan, t: &Token| s.lines.kinds[s.lines.line_of(t.lo)];
+    // `.5` in a place where no number is expected stays `.5`.
+    let points = |s: &Scan, t: &str| {
+        let touching = s.tokens.windows(2).filter(|w| w[0].hi == w[1].lo);
+        touching.filter(|w| &t[w[0].lo..w[0].hi] == ".").count()
+    };
+    if points(scan, text) != points(&again, out) {
+        return false;
+    }
     scan.tokens.len() == again.tokens.len()
         && scan.tokens.iter().zip(&again.tokens).all(|(a, b)| {
             let (x, y) = (&text[a.lo..a.hi], &out[b.lo..b.hi]);

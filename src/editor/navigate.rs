@@ -82,10 +82,10 @@ impl Document {
         for (n, t) in self.scan.tokens.iter().enumerate() {
             let declares = matches!(t.role, Role::Declared | Role::Defined);
             match t.role {
-                Role::Name | Role::Declared | Role::Defined | Role::Argument if is_symbol => {
-                    if self.word(n).eq_ignore_ascii_case(name) {
-                        out.push((t.lo, t.hi, declares));
-                    }
+                Role::Name | Role::Declared | Role::Defined | Role::Argument
+                    if is_symbol && self.word(n).eq_ignore_ascii_case(name) =>
+                {
+                    out.push((t.lo, t.hi, declares));
                 }
                 Role::Label if !is_symbol && self.word(n).eq_ignore_ascii_case(name) => {
                     out.push((t.lo, t.hi, false))

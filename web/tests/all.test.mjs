@@ -83,6 +83,8 @@ test('the editor knows the names: completion, hover, definition, renaming, fixes
   await page.keyboard.type('pri', { delay: 100 });
   await page.waitForSelector('.cm-tooltip-autocomplete');
   assert.match(await page.textContent('.cm-tooltip-autocomplete'), /price/);
+  // CodeMirror takes a key that comes at once with the list for typing.
+  await page.waitForTimeout(300);
   await page.keyboard.press('Enter');
   await page.keyboard.type('(i));');
   await page.waitForSelector('.tok-parameter');

@@ -15,7 +15,7 @@ mod layout;
 pub mod png;
 mod svg;
 
-pub use crate::color::Paint;
+pub use crate::color::{Paint, series};
 #[cfg(feature = "png")]
 pub use png::{PngError, png};
 pub use svg::svg;

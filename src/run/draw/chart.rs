@@ -3,10 +3,9 @@
 
 use super::{Failed, Turns};
 use crate::check::figure::is_text;
-use crate::color;
 use crate::data::universe::Label;
 use crate::diag::Diagnostic;
-use crate::report::figure::{Anchor, Element, Paint, Scene, Shape, Style};
+use crate::report::figure::{Anchor, Element, Paint, Scene, Shape, Style, series};
 use crate::run::{Frame, Machine};
 use rustc_hash::FxHashMap;
 
@@ -27,10 +26,10 @@ pub(super) type Nodes = FxHashMap<Label, ([f64; 2], f64)>;
 
 /// Adds a label to an axis that does not have it.
 fn place(names: &mut Vec<String>, places: &mut FxHashMap<String, f64>, name: String, sign: f64) {
-    if !places.contains_key(&name) {
+    places.entry(name).or_insert_with_key(|name| {
         names.push(name.clone());
-        places.insert(name, sign * names.len() as f64);
-    }
+        sign * names.len() as f64
+    });
 }
 
 impl Machine<'_> {
@@ -191,7 +190,7 @@ impl Machine<'_> {
                 let number = jobs.binary_search(&last).unwrap_or(0);
                 style
                     .fill
-                    .get_or_insert(Paint::Color(color::series(number).into()));
+                    .get_or_insert(Paint::Color(series(number).into()));
                 name = Some(self.turn_name(&[last]));
             }
             let label = self.text_beside(t, frame)?.filter(|l| !l.is_empty());

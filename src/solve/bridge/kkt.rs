@@ -16,7 +16,7 @@ pub(super) struct Kkt(Instance);
 
 impl Kkt {
     /// Where the user named a backend that takes the conditions and not the program.
-    pub(super) fn new(
+    pub(super) fn bridge(
         backends: &[&dyn Backend],
         task: &Task,
         _: &Settings,

@@ -37,4 +37,4 @@ pub(super) trait Bridge {
 type Build = fn(&[&dyn Backend], &Task, &Settings) -> Option<Box<dyn Bridge>>;
 
 /// What is tried before a task is given to a backend as it is.
-pub(super) const BEFORE: [Build; 2] = [kkt::Kkt::new, epigraph::Epigraph::bridge];
+pub(super) const BEFORE: [Build; 2] = [kkt::Kkt::bridge, epigraph::Epigraph::bridge];

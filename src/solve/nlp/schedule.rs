@@ -67,8 +67,11 @@ pub(super) const SHARP: &[(&str, &str)] = &[("tol", "1e-11"), ("compl_inf_tol", 
 /// Bounds as they are, where a solution owes its objective to their relaxation.
 pub(super) const EXACT: &[(&str, &str)] = &[("bound_relax_factor", "0")];
 
+/// A restart: its name, where it begins, and its options.
+pub(super) type Attempt = (Strategy, From, &'static [(&'static str, &'static str)]);
+
 /// What to try when neither sequential programs nor a plain run has led to a certified point.
-pub(super) const SCHEDULE: [(Strategy, From, &[(&str, &str)]); 5] = [
+pub(super) const SCHEDULE: [Attempt; 5] = [
     (Strategy::RestartFromBest, From::Best, NEAR),
     (Strategy::RestartConsistent, From::Consistent, &[]),
     (Strategy::RestartNear, From::Start, NEAR),
