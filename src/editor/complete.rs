@@ -244,6 +244,12 @@ fn propose(list: &mut List, d: &Document, word: usize, at: usize) {
         (inside, _) => (inside, n),
     };
     let role = inside.map(|t| t.role);
+    if let Some(b) = n.checked_sub(1)
+        && tokens[b].role == Role::Comment
+        && d.text[tokens[b].hi.min(at)..at].chars().all(|c| c == ' ')
+    {
+        return;
+    }
     match role {
         Some(Role::Comment | Role::Raw | Role::Text) => return,
         Some(Role::Quoted) => return in_quotes(list, d, n),

@@ -80,12 +80,14 @@ pub fn lay_out(text: &str, slashes: bool) -> Option<String> {
 fn same_words(text: &str, scan: &Scan, out: &str, slashes: bool) -> bool {
     let again = Scan::of(out, slashes);
     let line = |s: &Scan, t: &Token| s.lines.kinds[s.lines.line_of(t.lo)];
-    // `.5` in a place where no number is expected stays `.5`.
-    let points = |s: &Scan, t: &str| {
+    // `.5` where no number is expected, and `==`, which is no relation, stay together.
+    let pairs = |s: &Scan, t: &str| {
         let touching = s.tokens.windows(2).filter(|w| w[0].hi == w[1].lo);
-        touching.filter(|w| &t[w[0].lo..w[0].hi] == ".").count()
+        let of = |k: &Token| t[k.lo..k.hi].to_owned();
+        let twice = |w: &&[Token]| w[0].role == Role::Operator && of(&w[0]) == of(&w[1]);
+        touching.filter(|w| of(&w[0]) == "." || twice(w)).count()
     };
-    if points(scan, text) != points(&again, out) {
+    if pairs(scan, text) != pairs(&again, out) {
         return false;
     }
     scan.tokens.len() == again.tokens.len()
