@@ -80,12 +80,18 @@ pub fn lay_out(text: &str, slashes: bool) -> Option<String> {
 fn same_words(text: &str, scan: &Scan, out: &str, slashes: bool) -> bool {
     let again = Scan::of(out, slashes);
     let line = |s: &Scan, t: &Token| s.lines.kinds[s.lines.line_of(t.lo)];
-    // `.5` where no number is expected, and `==`, which is no relation, stay together.
+    // `.5` where no number is expected, `==`, which is no relation, and `2a`, which is no name, stay together.
     let pairs = |s: &Scan, t: &str| {
         let touching = s.tokens.windows(2).filter(|w| w[0].hi == w[1].lo);
         let of = |k: &Token| t[k.lo..k.hi].to_owned();
         let twice = |w: &&[Token]| w[0].role == Role::Operator && of(&w[0]) == of(&w[1]);
-        touching.filter(|w| of(&w[0]) == "." || twice(w)).count()
+        let one_word = |w: &&[Token]| {
+            let is_letter = |c: Option<char>| c.is_some_and(char::is_alphanumeric);
+            is_letter(of(&w[0]).chars().last()) && is_letter(of(&w[1]).chars().next())
+        };
+        touching
+            .filter(|w| of(&w[0]) == "." || twice(w) || one_word(w))
+            .count()
     };
     if pairs(scan, text) != pairs(&again, out) {
         return false;
