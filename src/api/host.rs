@@ -24,6 +24,7 @@ pub(super) struct Question {
 }
 
 #[derive(Clone, Copy)]
+#[cfg_attr(not(feature = "system"), expect(dead_code))]
 enum What {
     File,
     IsFile,
@@ -104,6 +105,7 @@ impl<'a> RunHost<'a> {
         0
     }
 
+    #[cfg_attr(not(feature = "system"), expect(dead_code))]
     fn asked(&self, what: What, path: &str, from: Option<&Path>) {
         let asked = self.questions.take().map(|mut list| {
             list.push(Question {

@@ -1,4 +1,4 @@
-//! Solvers. They see an [`Instance`] of indices and numbers, never names.
+//! Solvers. They see an [`Instance`](crate::model::instance::Instance) of indices and numbers, never names.
 //!
 //! A solver's word is not believed: [`crate::solve::certificate`] recomputes the residuals of the
 //! point on the unscaled instance, and that decides the reported status.

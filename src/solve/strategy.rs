@@ -4,7 +4,7 @@
 //! `cargo bench --bench ablation` solves the corpora without each in turn. What loses nothing there is deleted. To add one: a row below, and a
 //! question at the place where it begins, after everything else that decides whether it applies:
 //!
-//! ```ignore
+//! ```text
 //! if is_stuck && settings.runs(Strategy::ElasticForm) { … }
 //! ```
 
