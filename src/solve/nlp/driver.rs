@@ -243,7 +243,7 @@ impl Driver<'_, '_> {
         if let Some(quadratic) = quadratic {
             self.attempt_quadratic(&quadratic);
             if self.is_settled() {
-                self.solver = "clarabel";
+                self.solver = quadratic.name();
                 return Ok(self.finish());
             }
         }

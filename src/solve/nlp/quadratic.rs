@@ -104,6 +104,11 @@ impl Quadratic {
         })
     }
 
+    /// Name of the engine.
+    pub fn name(&self) -> &'static str {
+        self.engine.name()
+    }
+
     /// Runs the engine. Multipliers λ as in L = f + λᵀg.
     pub fn solve(&self, budget: &Budget) -> Solution {
         let (linear, hessian) = (&self.linear, &self.hessian);
