@@ -45,10 +45,10 @@ def test_processes():
     assert list(table.objective) == [3, 4]
 
 
-#: Takes a while.
+#: Takes a fifth of a second on any machine.
 SLOW = """
-scalar n / 0 /, steps / 60000 /, price / %price% /;
-while(n < steps, n = n + 1);
+scalar n / 0 /, price / %price% /;
+while(timeElapsed < 0.2, n = n + 1);
 positive variable x; variable cost; equations total, enough;
 total.. cost =e= price*x;  enough.. x =g= 1;
 model m / all /; solve m using lp minimizing cost;
@@ -71,15 +71,18 @@ def test_a_killed_process_loses_nothing(tmp_path):
     killed = []
 
     def kill():
-        while not killed:
-            for child in multiprocessing.active_children():
-                os.kill(child.pid, signal.SIGKILL)
-                killed.append(child.pid)
-                break
-            time.sleep(0.2)
+        deadline = time.monotonic() + 60
+        while not (children := multiprocessing.active_children()) and time.monotonic() < deadline:
+            time.sleep(0.01)
+        time.sleep(0.5)  # of more than two seconds of work
+        for child in children[:1]:
+            os.kill(child.pid, signal.SIGKILL)
+            killed.append(child.pid)
 
-    threading.Timer(0.5, kill).start()
+    killer = threading.Thread(target=kill)
+    killer.start()
     table = bmod.sweep(SLOW, grid, jobs=2, out=tmp_path / "r", progress=False)
+    killer.join()
     assert killed and list(table.objective) == grid["price"]
     assert len(stored(tmp_path / "r")) == len(set(stored(tmp_path / "r"))) == 24
 
