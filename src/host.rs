@@ -54,13 +54,19 @@ pub trait Host {
     /// Writes a whole file inside the output folder, or nothing.
     fn write(&mut self, path: &str, bytes: &[u8]) -> Result<PathBuf, HostError>;
     /// Text for the user who runs the model (display, summaries, logs).
-    fn print(&mut self, text: &str);
-    /// Seconds since the run began.
-    fn elapsed(&self) -> f64;
-    /// Date and time now, as GAMS counts it: days since 1899-12-31 with fraction.
-    fn now(&self) -> f64;
+    fn print(&mut self, _text: &str) {}
+    /// Seconds since the run began; 0 where there is no clock.
+    fn elapsed(&self) -> f64 {
+        0.0
+    }
+    /// Date and time now, as GAMS counts it: days since 1899-12-31 with fraction; 0 where there is no clock.
+    fn now(&self) -> f64 {
+        0.0
+    }
     /// True once the user has asked to stop.
-    fn interrupted(&self) -> bool;
+    fn interrupted(&self) -> bool {
+        false
+    }
     /// Tells what a long step is doing: for a terminal, at most a few times a second.
     fn progress(&mut self, _message: &str) {}
     /// Bytes of memory in use, 0 where unknown.

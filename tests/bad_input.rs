@@ -33,15 +33,6 @@ impl Host for Bench {
     fn print(&mut self, text: &str) {
         self.printed.push_str(text);
     }
-    fn elapsed(&self) -> f64 {
-        0.0
-    }
-    fn now(&self) -> f64 {
-        0.0
-    }
-    fn interrupted(&self) -> bool {
-        false
-    }
 }
 
 /// Exit status, and what is shown.

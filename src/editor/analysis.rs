@@ -235,10 +235,7 @@ impl Analysis {
             // What a help says to write is an example; only a nearer name is sure.
             let rest = d.help.as_deref()?.strip_prefix("did you mean `")?;
             let new = &rest[..rest.find('`')?];
-            if new.contains('(') {
-                return None;
-            }
-            if new.contains(['`', '…']) {
+            if new.contains(['(', '…']) {
                 return None;
             }
             replacement(text, lo, hi, new)?

@@ -83,15 +83,14 @@ fn same_words(text: &str, scan: &Scan, out: &str, slashes: bool) -> bool {
     // `.5` where no number is expected, `==`, which is no relation, and `2a`, which is no name, stay together.
     let pairs = |s: &Scan, t: &str| {
         let touching = s.tokens.windows(2).filter(|w| w[0].hi == w[1].lo);
-        let of = |k: &Token| t[k.lo..k.hi].to_owned();
-        let twice = |w: &&[Token]| w[0].role == Role::Operator && of(&w[0]) == of(&w[1]);
-        let one_word = |w: &&[Token]| {
-            let is_letter = |c: Option<char>| c.is_some_and(char::is_alphanumeric);
-            is_letter(of(&w[0]).chars().last()) && is_letter(of(&w[1]).chars().next())
+        let one = |w: &&[Token]| {
+            let (a, b) = (&t[w[0].lo..w[0].hi], &t[w[1].lo..w[1].hi]);
+            let twice = w[0].role == Role::Operator && a == b;
+            a == "."
+                || twice
+                || a.ends_with(char::is_alphanumeric) && b.starts_with(char::is_alphanumeric)
         };
-        touching
-            .filter(|w| of(&w[0]) == "." || twice(w) || one_word(w))
-            .count()
+        touching.filter(one).count()
     };
     if pairs(scan, text) != pairs(&again, out) {
         return false;

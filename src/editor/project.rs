@@ -140,18 +140,4 @@ impl Host for ProjectHost<'_> {
     fn write(&mut self, path: &str, _: &[u8]) -> Result<PathBuf, HostError> {
         Ok(path.into())
     }
-
-    fn print(&mut self, _: &str) {}
-
-    fn elapsed(&self) -> f64 {
-        0.0
-    }
-
-    fn now(&self) -> f64 {
-        0.0
-    }
-
-    fn interrupted(&self) -> bool {
-        false
-    }
 }

@@ -129,9 +129,6 @@ impl Host for Memory {
     fn now(&self) -> f64 {
         46000.5
     }
-    fn interrupted(&self) -> bool {
-        false
-    }
     /// What the whole test holds, where the system says so.
     fn memory(&self) -> usize {
         let pages = std::fs::read_to_string("/proc/self/statm").ok();

@@ -88,16 +88,6 @@ impl Host for Text<'_> {
     fn write(&mut self, path: &str, _: &[u8]) -> Result<PathBuf, HostError> {
         Err(HostError::Outside(path.into()))
     }
-    fn print(&mut self, _: &str) {}
-    fn elapsed(&self) -> f64 {
-        0.0
-    }
-    fn now(&self) -> f64 {
-        0.0
-    }
-    fn interrupted(&self) -> bool {
-        false
-    }
 }
 
 /// A record's name and labels as words, in lower case.

@@ -130,6 +130,16 @@ pub struct Style {
     pub size: Option<f64>,
 }
 
+impl Style {
+    /// The usual one, with a size in pixels.
+    pub fn sized(size: f64) -> Self {
+        Self {
+            size: Some(size),
+            ..Self::default()
+        }
+    }
+}
+
 impl Element {
     /// A shape with default looks.
     pub fn new(shape: Shape) -> Self {

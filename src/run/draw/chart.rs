@@ -5,7 +5,7 @@ use super::{Failed, Turns};
 use crate::check::figure::is_text;
 use crate::data::universe::Label;
 use crate::diag::Diagnostic;
-use crate::report::figure::{Anchor, Element, Paint, Scene, Shape, Style, series};
+use crate::report::figure::{Anchor, Paint, Scene, Shape, Style, series};
 use crate::run::{Frame, Machine};
 use rustc_hash::FxHashMap;
 
@@ -134,15 +134,7 @@ impl Machine<'_> {
                 "line" => Shape::Line(pairs(points)),
                 _ => Shape::Whiskers(points),
             };
-            scene.elements.push(Element {
-                shape,
-                style,
-                name,
-                panel,
-            });
-            if !self.keep_going() {
-                return Err(Failed);
-            }
+            self.add(scene, (shape, style, name, panel))?;
         }
         Ok(())
     }
@@ -202,26 +194,10 @@ impl Machine<'_> {
                 [right, row + half],
                 [left, row + half],
             ];
-            let text_style = Style {
-                size: Some(11.0),
-                ..Style::default()
-            };
-            scene.elements.push(Element {
-                shape: Shape::Polygon(corners),
-                style,
-                name,
-                panel: panel.clone(),
-            });
+            self.add(scene, (Shape::Polygon(corners), style, name, panel.clone()))?;
             if let Some(label) = label {
-                scene.elements.push(Element {
-                    shape: Shape::Text([(left + right) / 2.0, row], label, Anchor::Middle),
-                    style: text_style,
-                    name: None,
-                    panel,
-                });
-            }
-            if !self.keep_going() {
-                return Err(Failed);
+                let text = Shape::Text([(left + right) / 2.0, row], label, Anchor::Middle);
+                self.add(scene, (text, Style::sized(11.0), None, panel))?;
             }
         }
         Ok(())
@@ -297,15 +273,8 @@ impl Machine<'_> {
             for points in segments {
                 let mut style = style.clone();
                 style.stroke.get_or_insert(Paint::Value(height));
-                scene.elements.push(Element {
-                    shape: Shape::Polyline(points.to_vec()),
-                    style,
-                    name: None,
-                    panel: panel.clone(),
-                });
-            }
-            if !self.keep_going() {
-                return Err(Failed);
+                let line = Shape::Polyline(points.to_vec());
+                self.add(scene, (line, style, None, panel.clone()))?;
             }
         }
         Ok(())
@@ -347,18 +316,8 @@ impl Machine<'_> {
             let panel = self.panel(t, frame)?;
             let label = self.text_beside(t, frame)?.filter(|l| !l.is_empty());
             let last = t.key(k)[t.width - 1];
-            let mut push = |shape, style| {
-                scene.elements.push(Element {
-                    shape,
-                    style,
-                    name: None,
-                    panel: panel.clone(),
-                });
-            };
-            let text_style = Style {
-                size: Some(11.5),
-                ..Style::default()
-            };
+            let mut add = |shape, style| self.add(scene, (shape, style, None, panel.clone()));
+            let text_style = Style::sized(11.5);
             if is_node {
                 let Some(&(at, size)) = nodes.get(&last) else {
                     continue;
@@ -366,9 +325,9 @@ impl Machine<'_> {
                 style.size = Some(size);
                 style.fill.get_or_insert(Paint::Color("#eef2f7".into()));
                 style.stroke.get_or_insert(Paint::Color("#2b3440".into()));
-                push(Shape::Points(vec![at]), style);
+                add(Shape::Points(vec![at]), style)?;
                 let label = label.unwrap_or_else(|| self.turn_name(&[last]));
-                push(Shape::Text(at, label, Anchor::Middle), text_style);
+                add(Shape::Text(at, label, Anchor::Middle), text_style)?;
             } else {
                 let first = t.key(k)[t.width - 2];
                 let (Some(&(from, a)), Some(&(to, b))) = (nodes.get(&first), nodes.get(&last))
@@ -387,14 +346,11 @@ impl Machine<'_> {
                     );
                     continue;
                 };
-                push(Shape::Arc(from, to, a.max(b) / 2.0 + 1.0), style);
+                add(Shape::Arc(from, to, a.max(b) / 2.0 + 1.0), style)?;
                 if let Some(label) = label {
                     let middle = [(from[0] + to[0]) / 2.0, (from[1] + to[1]) / 2.0];
-                    push(Shape::Text(middle, label, Anchor::Middle), text_style);
+                    add(Shape::Text(middle, label, Anchor::Middle), text_style)?;
                 }
-            }
-            if !self.keep_going() {
-                return Err(Failed);
             }
         }
         Ok(())

@@ -355,6 +355,26 @@ impl Machine<'_> {
         }
     }
 
+    /// Adds an element to a picture; fails once the run is to stop.
+    fn add(
+        &self,
+        scene: &mut Scene,
+        (shape, style, name, panel): (Shape, Style, Option<String>, Option<String>),
+    ) -> Result<(), Failed> {
+        scene.elements.push(Element {
+            shape,
+            style,
+            name,
+            panel,
+        });
+        self.going()
+    }
+
+    /// Fails once the run is to stop.
+    fn going(&self) -> Result<(), Failed> {
+        self.keep_going().then_some(()).ok_or(Failed)
+    }
+
     /// Polygons and polylines.
     fn paths(&self, t: &Turns<'_>, scene: &mut Scene, frame: &mut Frame) -> Result<(), Failed> {
         for range in t.runs() {
@@ -372,15 +392,7 @@ impl Machine<'_> {
                 Shape::Polyline(points)
             };
             let panel = self.panel(t, frame)?;
-            scene.elements.push(Element {
-                shape,
-                style,
-                name,
-                panel,
-            });
-            if !self.keep_going() {
-                return Err(Failed);
-            }
+            self.add(scene, (shape, style, name, panel))?;
         }
         Ok(())
     }
@@ -406,13 +418,11 @@ impl Machine<'_> {
                             style: s,
                             name: n,
                             panel: p,
-                        }) if *s == style && *n == name && *p == panel => list.push(at),
-                        _ => scene.elements.push(Element {
-                            shape: Shape::Points(vec![at]),
-                            style,
-                            name,
-                            panel,
-                        }),
+                        }) if *s == style && *n == name && *p == panel => {
+                            list.push(at);
+                            self.going()?;
+                        }
+                        _ => self.add(scene, (Shape::Points(vec![at]), style, name, panel))?,
                     }
                 }
                 "arrow" => {
@@ -420,12 +430,7 @@ impl Machine<'_> {
                         continue;
                     };
                     let name = self.legend_name(t, frame)?;
-                    scene.elements.push(Element {
-                        shape: Shape::Arrow(at, by),
-                        style,
-                        name,
-                        panel,
-                    });
+                    self.add(scene, (Shape::Arrow(at, by), style, name, panel))?;
                 }
                 _ => {
                     let text = self.text_beside(t, frame)?.unwrap_or_default();
@@ -448,16 +453,8 @@ impl Machine<'_> {
                             }
                         },
                     };
-                    scene.elements.push(Element {
-                        shape: Shape::Text(at, text, anchor),
-                        style,
-                        name: None,
-                        panel,
-                    });
+                    self.add(scene, (Shape::Text(at, text, anchor), style, None, panel))?;
                 }
-            }
-            if !self.keep_going() {
-                return Err(Failed);
             }
         }
         Ok(())

@@ -103,8 +103,7 @@ impl Backend for Highs {
         budget: &Budget,
     ) -> Result<Reply, SolveError> {
         let instance = task.instance;
-        let mut aim = settings.search;
-        aim.cutoff = aim.cutoff.map(|c| instance.sign() * c);
+        let aim = settings.search.minimizing(instance.sign());
         let form = Form::new(instance)?;
         let mip = Mip::new(form.problem.clone(), instance, &form.columns, false);
         let levels: Vec<f64> = form

@@ -115,8 +115,7 @@ impl Backend for Bmip {
 fn search(task: &Task, settings: &Settings, budget: &Budget) -> Result<Reply, SolveError> {
     let instance = task.instance;
     let mut control = Control::new(budget);
-    let mut aim = settings.search;
-    aim.cutoff = aim.cutoff.map(|c| instance.sign() * c);
+    let aim = settings.search.minimizing(instance.sign());
     let found = match instance.is_linear() && !task.has_pairs() {
         true => linear_search(instance, aim, &mut control)?,
         false => nonlinear_search(task, aim, settings, &mut control)?,

@@ -54,6 +54,14 @@ impl Default for Aim {
     }
 }
 
+impl Aim {
+    /// The same of sign × objective, which is minimized.
+    pub fn minimizing(self, sign: f64) -> Self {
+        let cutoff = self.cutoff.map(|c| sign * c);
+        Self { cutoff, ..self }
+    }
+}
+
 /// How a search ended.
 #[derive(Clone, Debug, PartialEq)]
 pub enum End {
