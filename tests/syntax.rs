@@ -60,8 +60,8 @@ fn read_files(files: &[(&str, &str)], defines: &[(&str, &str)]) -> Outcome {
         .iter()
         .map(|d| place(&parser, d))
         .collect();
-    out.log = parser.log();
     out.ending = parser.ending();
+    out.log = host.printed;
     out
 }
 
@@ -503,7 +503,7 @@ fn directives_shape_the_text() {
         &[],
     );
     assert_eq!(out.errors, Vec::<String>::new());
-    assert_eq!(out.log, ["set 3", "%nothing% %inner%."]);
+    assert_eq!(out.log, ["set 3\n", "%nothing% %inner%.\n"]);
     let shown: Vec<String> = out
         .statements
         .iter()

@@ -230,7 +230,7 @@ impl Preprocessor<'_> {
         let rest = &text[at..];
         match word {
             "title" => self.map.title = Some(rest.trim().to_owned()),
-            "log" => self.log.push(rest.trim().to_owned()),
+            "log" => self.host.print(&format!("{}\n", rest.trim())),
             "ontext" => return self.comment_block(line),
             "include" => {
                 let name = unquoted(rest).to_owned();
@@ -372,7 +372,7 @@ impl Preprocessor<'_> {
             "stop" => self.stop(Ending::Regular),
             "terminate" => self.stop(Ending::NoRun),
             "abort" if suffix == "noerror" => {
-                self.log.push(rest.trim().to_owned());
+                self.host.print(&format!("{}\n", rest.trim()));
                 self.stop(Ending::NoRun);
             }
             "abort" | "error" => {

@@ -207,7 +207,6 @@ pub(crate) struct Preprocessor<'h> {
     /// Comments open inside it.
     comment_depth: usize,
     pub(super) warnings: Vec<Diagnostic>,
-    pub(super) log: Vec<String>,
     pub(super) ending: Ending,
     pub(super) max_jumps: usize,
     /// How many of the errors so far `$clearError` made warnings.
@@ -248,7 +247,6 @@ impl<'h> Preprocessor<'h> {
             in_comment: None,
             comment_depth: 0,
             warnings: Vec::new(),
-            log: Vec::new(),
             ending: Ending::Regular,
             max_jumps: 100,
             cleared_errors: 0,
@@ -533,10 +531,6 @@ impl<'h> Preprocessor<'h> {
 
     pub(crate) fn take_warnings(&mut self) -> Vec<Diagnostic> {
         std::mem::take(&mut self.warnings)
-    }
-
-    pub(crate) fn take_log(&mut self) -> Vec<String> {
-        std::mem::take(&mut self.log)
     }
 
     pub(crate) fn ending(&self) -> Ending {

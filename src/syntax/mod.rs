@@ -321,11 +321,6 @@ impl<'h> Parser<'h> {
         self.text.take_warnings()
     }
 
-    /// Lines that `$log` wrote since the last call.
-    pub fn log(&mut self) -> Vec<String> {
-        self.text.take_log()
-    }
-
     /// How the text ended: whether it is to be run.
     pub fn ending(&self) -> Ending {
         self.text.ending()
