@@ -34,6 +34,67 @@ pub struct Separator<'a> {
 /// One variable, a column or n + row, in an aggregated row.
 type Terms = Vec<(usize, f64)>;
 
+/// An integer variable: number, coefficient and value in its units from a bound, that bound, its unit.
+type Whole = (usize, f64, f64, Shift, f64);
+
+/// A row Σ aᵢ tᵢ ≤ b in variables that are counted from a bound.
+struct Shifted {
+    whole: Vec<Whole>,
+    /// Number, coefficient, value, bound.
+    real: Vec<(usize, f64, f64, Shift)>,
+    b: f64,
+}
+
+impl Shifted {
+    /// How far the rounding of the row, divided by d, cuts the point off.
+    fn efficacy(&self, d: f64) -> f64 {
+        let (side, f) = (floor(self.b / d), fraction(self.b / d));
+        if !(FRACTION..=1.0 - FRACTION).contains(&f) {
+            return f64::NEG_INFINITY;
+        }
+        let (mut sum, mut norm) = (-side, 1e-12);
+        for e in &self.whole {
+            let g = rounded(e.1 / d, f);
+            sum += g * e.2;
+            norm += g * g;
+        }
+        for e in self.real.iter().filter(|e| e.1 < 0.0) {
+            let g = e.1 / d / (1.0 - f);
+            sum += g * e.2;
+            norm += g * g;
+        }
+        sum / norm.sqrt()
+    }
+
+    /// The best of these divisors, or of coefficients that suggest themselves.
+    fn divisor(&self, divisors: &[f64]) -> Option<f64> {
+        let mut tried: Vec<f64> = divisors.to_vec();
+        if divisors.is_empty() {
+            let mut inside: Vec<&Whole> = self
+                .whole
+                .iter()
+                .filter(|e| e.2 > 1e-6 && e.1.abs() > 1e-6)
+                .collect();
+            inside.sort_by(|a, b| b.2.total_cmp(&a.2));
+            for e in inside {
+                if tried.len() < 6 && tried.iter().all(|d| (d - e.1.abs()).abs() > 1e-9 * d) {
+                    tried.push(e.1.abs());
+                }
+            }
+        }
+        let best = |list: &[f64]| {
+            list.iter()
+                .copied()
+                .max_by(|x, y| self.efficacy(*x).total_cmp(&self.efficacy(*y)))
+        };
+        let mut d = best(&tried)?;
+        if divisors.is_empty() {
+            d = best(&[d, d / 2.0, d / 4.0, d / 8.0])?;
+        }
+        (self.efficacy(d) >= 1e-4).then_some(d)
+    }
+}
+
 /// How a variable is written by one that is not negative.
 #[derive(Clone, Copy)]
 enum Shift {
@@ -231,10 +292,51 @@ impl<'a> Separator<'a> {
         values: &[f64],
         divisors: &[f64],
     ) -> Option<(f64, Cut)> {
+        let s = self.shifted(linear, row, sign, values)?;
+        let d = s.divisor(divisors)?;
         let n = self.n();
-        // Variables with coefficient and value in their shifted form; integers first written in their units.
-        let mut whole: Vec<(usize, f64, f64, Shift, f64)> = Vec::new();
-        let mut real: Vec<(usize, f64, f64, Shift)> = Vec::new();
+        let (mut side, f) = (floor(s.b / d), fraction(s.b / d));
+        let mut out = vec![0.0; n];
+        let mut put = |v: usize, g: f64, shift: Shift, side: &mut f64| {
+            let mut add = |v: usize, g: f64| match v.checked_sub(n) {
+                None => out[v] += g,
+                Some(i) => linear
+                    .problem
+                    .rows
+                    .line(i)
+                    .for_each(|(j, a)| out[j] += g * a),
+            };
+            match shift {
+                Shift::Up(l) => {
+                    add(v, g);
+                    *side += g * l;
+                }
+                Shift::Down(u) => {
+                    add(v, -g);
+                    *side -= g * u;
+                }
+                Shift::Below(y, most) => {
+                    add(v, -g);
+                    add(y, g * most);
+                }
+            }
+        };
+        for e in &s.whole {
+            let g = rounded(e.1 / d, f);
+            if g != 0.0 {
+                put(e.0, g / e.4, e.3, &mut side);
+            }
+        }
+        for e in s.real.iter().filter(|e| e.1 < 0.0) {
+            put(e.0, e.1 / d / (1.0 - f), e.3, &mut side);
+        }
+        self.clean(out, side, values)
+    }
+
+    /// `sign · row ≤ 0` in variables that are counted from a bound. None: one has no bound.
+    fn shifted(&self, linear: &Linear, row: &Terms, sign: f64, values: &[f64]) -> Option<Shifted> {
+        let n = self.n();
+        let (mut whole, mut real) = (Vec::new(), Vec::new());
         let mut by_integer: Vec<(usize, f64)> = Vec::new();
         let mut b = 0.0;
         for &(v, a) in row {
@@ -280,7 +382,7 @@ impl<'a> Separator<'a> {
             }
         }
         for (y, a) in by_integer {
-            match whole.iter_mut().find(|e| e.0 == y) {
+            match whole.iter_mut().find(|e: &&mut Whole| e.0 == y) {
                 Some(e) => match e.3 {
                     Shift::Up(l) => {
                         e.1 += a;
@@ -308,85 +410,7 @@ impl<'a> Separator<'a> {
                 }
             }
         }
-        let mut tried: Vec<f64> = divisors.to_vec();
-        if divisors.is_empty() {
-            let mut inside: Vec<&(usize, f64, f64, Shift, f64)> = whole
-                .iter()
-                .filter(|e| e.2 > 1e-6 && e.1.abs() > 1e-6)
-                .collect();
-            inside.sort_by(|a, b| b.2.total_cmp(&a.2));
-            for e in inside {
-                if tried.len() < 6 && tried.iter().all(|d| (d - e.1.abs()).abs() > 1e-9 * d) {
-                    tried.push(e.1.abs());
-                }
-            }
-        }
-        let efficacy = |d: f64| {
-            let (side, f) = (floor(b / d), fraction(b / d));
-            if !(FRACTION..=1.0 - FRACTION).contains(&f) {
-                return f64::NEG_INFINITY;
-            }
-            let (mut sum, mut norm) = (-side, 1e-12);
-            for e in &whole {
-                let g = rounded(e.1 / d, f);
-                sum += g * e.2;
-                norm += g * g;
-            }
-            for e in real.iter().filter(|e| e.1 < 0.0) {
-                let g = e.1 / d / (1.0 - f);
-                sum += g * e.2;
-                norm += g * g;
-            }
-            sum / norm.sqrt()
-        };
-        let best = |list: &[f64]| {
-            list.iter()
-                .copied()
-                .max_by(|x, y| efficacy(*x).total_cmp(&efficacy(*y)))
-        };
-        let mut d = best(&tried)?;
-        if divisors.is_empty() {
-            d = best(&[d, d / 2.0, d / 4.0, d / 8.0])?;
-        }
-        if efficacy(d) < 1e-4 {
-            return None;
-        }
-        let (mut side, f) = (floor(b / d), fraction(b / d));
-        let mut out = vec![0.0; n];
-        let mut put = |v: usize, g: f64, shift: Shift, side: &mut f64| {
-            let mut add = |v: usize, g: f64| match v.checked_sub(n) {
-                None => out[v] += g,
-                Some(i) => linear
-                    .problem
-                    .rows
-                    .line(i)
-                    .for_each(|(j, a)| out[j] += g * a),
-            };
-            match shift {
-                Shift::Up(l) => {
-                    add(v, g);
-                    *side += g * l;
-                }
-                Shift::Down(u) => {
-                    add(v, -g);
-                    *side -= g * u;
-                }
-                Shift::Below(y, most) => {
-                    add(v, -g);
-                    add(y, g * most);
-                }
-            }
-        };
-        for e in &whole {
-            let g = rounded(e.1 / d, f);
-            if g != 0.0 {
-                put(e.0, g / e.4, e.3, &mut side);
-            }
-        }
-        for e in real.iter().filter(|e| e.1 < 0.0) {
-            put(e.0, e.1 / d / (1.0 - f), e.3, &mut side);
-        }
-        self.clean(out, side, values)
+        Some(Shifted { whole, real, b })
     }
 
     /// A cut with neither tiny nor very different coefficients, and by how much it is violated.

@@ -181,6 +181,18 @@ pub struct Search<'a, R: Relaxation> {
     failures: u32,
 }
 
+/// What the relaxation of a node says.
+enum Evaluated {
+    /// Nothing is left below it: what became of it.
+    Leaf(&'static str),
+    /// Nothing is known of it, and too many such nodes were divided before.
+    GivenUp,
+    /// The search ends here.
+    Ended(End),
+    /// It is divided.
+    Divided(Branch),
+}
+
 /// What reduced costs did to a node.
 enum Fixed {
     /// Nothing that its point does not satisfy.
@@ -402,203 +414,212 @@ impl<'a, R: Relaxation> Search<'a, R> {
     }
 
     /// From a node down until nothing is left below it. Some: why the search must end.
-    fn plunge(&mut self, node: Node<R::Start>, control: &mut Control) -> Option<End> {
-        let Node {
-            mut bound,
-            mut depth,
-            mut number,
-            mut path,
-            start,
-            mut from,
-        } = node;
-        if !self.load(&path) {
-            self.fate(number, "infeasible");
+    fn plunge(&mut self, mut node: Node<R::Start>, control: &mut Control) -> Option<End> {
+        if !self.load(&node.path) {
+            self.fate(node.number, "infeasible");
             return None;
         }
-        self.relaxation.restart(&start);
-        let stop = |s: &mut Self, bound, depth, number, path, from, end| {
-            let start = s.relaxation.start();
-            s.bound = s
+        self.relaxation.restart(&node.start);
+        loop {
+            self.nodes += 1;
+            let branch = match self.evaluate(&mut node, control) {
+                Evaluated::Divided(branch) => branch,
+                Evaluated::Leaf(fate) => {
+                    self.fate(node.number, fate);
+                    return None;
+                }
+                Evaluated::GivenUp => return None,
+                Evaluated::Ended(end) => return self.put_back(node, end),
+            };
+            self.fate(node.number, "branched");
+            node = self.descend(&node, branch)?;
+            let least = self
                 .open
                 .peek()
-                .map_or(bound, |n| n.bound.min(bound))
-                .max(s.bound);
-            s.open.push(Node {
-                bound,
-                depth,
-                number,
-                path,
-                start,
-                from,
-            });
-            Some(end)
-        };
+                .map_or(node.bound, |n| n.bound.min(node.bound));
+            self.bound = self.bound.max(least);
+            self.log(control, false);
+            if self.aim.nodes > 0 && self.nodes >= self.aim.nodes {
+                return self.put_back(node, End::Nodes);
+            }
+            if self.is_close() {
+                return self.put_back(node, End::Gap);
+            }
+        }
+    }
+
+    /// The search ends at a node that stays open.
+    fn put_back(&mut self, mut node: Node<R::Start>, end: End) -> Option<End> {
+        node.start = self.relaxation.start();
+        let least = self
+            .open
+            .peek()
+            .map_or(node.bound, |n| n.bound.min(node.bound));
+        self.bound = self.bound.max(least);
+        self.open.push(node);
+        Some(end)
+    }
+
+    /// Solves the relaxation of a node, again where that tightens its bounds.
+    fn evaluate(&mut self, node: &mut Node<R::Start>, control: &mut Control) -> Evaluated {
         let mut resolves = 0;
         loop {
-            self.nodes += u64::from(resolves == 0);
             let solved = self.relaxation.solve(self.cutoff(), control);
             let value = match solved {
                 Solved::Value(v) => v,
-                Solved::Infeasible | Solved::Cutoff => {
-                    let fate = if solved == Solved::Cutoff {
-                        "bound"
-                    } else {
-                        "infeasible"
-                    };
-                    self.fate(number, fate);
-                    return None;
-                }
-                Solved::Unbounded => {
-                    return stop(self, bound, depth, number, path, from, End::Unbounded);
-                }
-                Solved::Stopped(why) => {
-                    return stop(self, bound, depth, number, path, from, End::Stopped(why));
-                }
+                Solved::Cutoff => return Evaluated::Leaf("bound"),
+                Solved::Infeasible => return Evaluated::Leaf("infeasible"),
+                Solved::Unbounded => return Evaluated::Ended(End::Unbounded),
+                Solved::Stopped(why) => return Evaluated::Ended(End::Stopped(why)),
                 // Nothing is known: what is below is looked at with the parent's bound, while there is something to branch on.
-                Solved::Failed => bound,
+                Solved::Failed => node.bound,
             };
             let failed = solved == Solved::Failed;
-            if let Some((j, side, far)) = from.take()
-                && bound.is_finite()
+            if let Some((j, side, far)) = node.from.take()
+                && node.bound.is_finite()
                 && !failed
                 && resolves == 0
             {
-                self.pseudo[j][side].add((value - bound).max(0.0) / far.max(1e-6));
+                self.pseudo[j][side].add((value - node.bound).max(0.0) / far.max(1e-6));
             }
-            bound = bound.max(value);
-            if let Some(r) = self.records.get_mut(number as usize) {
-                r.value = bound;
+            node.bound = node.bound.max(value);
+            if let Some(r) = self.records.get_mut(node.number as usize) {
+                r.value = node.bound;
             }
-            if bound >= self.cutoff() && !failed {
-                self.fate(number, "bound");
-                return None;
+            if node.bound >= self.cutoff() && !failed {
+                return Evaluated::Leaf("bound");
             }
-            if depth == 0 {
-                self.bound = self.bound.max(bound);
+            if node.depth == 0 {
+                self.bound = self.bound.max(node.bound);
             }
             if resolves < 5 && !failed {
-                match self.fix_by_costs(value, depth == 0) {
+                match self.fix_by_costs(value, node.depth == 0) {
                     Fixed::Nothing => {}
                     Fixed::Moved => {
                         resolves += 1;
                         continue;
                     }
-                    Fixed::Empty => {
-                        self.fate(number, "bound");
-                        return None;
-                    }
+                    Fixed::Empty => return Evaluated::Leaf("bound"),
                 }
             }
             if failed {
                 self.failures += 1;
                 if self.failures > FAILURES {
                     self.incomplete = true;
-                    return None;
+                    return Evaluated::GivenUp;
                 }
             }
             let point = self.relaxation.x().to_vec();
-            let mut branch = match failed {
+            let branch = match failed {
                 false => self.branch(&point, value, control),
                 true => self.split_widest(),
             };
-            if let Some(Branch::Fixed(changes)) = &branch {
+            match branch {
                 // One side is empty: the node goes on without it.
-                if !self.apply(changes) {
-                    self.fate(number, "infeasible");
-                    return None;
-                }
-                path = Some(Rc::new(Path {
-                    changes: changes.clone(),
-                    parent: path,
-                }));
-                resolves += 1;
-                continue;
-            }
-            if branch.is_none() {
-                if failed {
-                    self.incomplete = true;
-                    self.fate(number, "open");
-                    return None;
-                }
-                let offered = self.offer(&point, control);
-                // Integers to the tolerance only: rounded they are no solution, or one whose value is not the node's.
-                branch = match offered {
-                    true if bound < self.cutoff() => {
-                        self.split_rounded(&point).or_else(|| self.split_set())
+                Some(Branch::Fixed(changes)) => {
+                    if !self.apply(&changes) {
+                        return Evaluated::Leaf("infeasible");
                     }
-                    true => None,
-                    false => self.split_widest(),
-                };
-                if branch.is_none() && offered {
-                    self.fate(number, "solution");
-                    return None;
+                    let parent = node.path.take();
+                    node.path = Some(Rc::new(Path { changes, parent }));
+                    resolves += 1;
                 }
-                if branch.is_none() {
-                    self.incomplete |= self.cutoff() > bound;
-                    self.fate(number, "infeasible");
-                    return None;
+                None if failed => {
+                    self.incomplete = true;
+                    return Evaluated::Leaf("open");
                 }
-            }
-            let Some(Branch::Two {
-                sides,
-                column,
-                far,
-                first,
-            }) = branch
-            else {
-                self.fate(number, "infeasible");
-                return None;
-            };
-            if !failed {
-                self.heuristics(depth, &point, control);
-                if bound >= self.cutoff() {
-                    self.fate(number, "bound");
-                    return None;
+                Some(branch) => return self.divided(node, branch, &point, failed, control),
+                None => {
+                    return match self.split_integral(&point, node.bound, control) {
+                        Ok(branch) => self.divided(node, branch, &point, failed, control),
+                        Err(fate) => Evaluated::Leaf(fate),
+                    };
                 }
-            }
-            self.fate(number, "branched");
-            let start = self.relaxation.start();
-            let before = (self.lower.clone(), self.upper.clone());
-            let child = |s: &mut Self, side: usize| {
-                let changes = sides[side].clone();
-                let parent = number;
-                Node {
-                    bound,
-                    depth: depth + 1,
-                    number: s.note(Some(parent), changes.first().copied(), bound),
-                    path: Some(Rc::new(Path {
-                        changes,
-                        parent: path.clone(),
-                    })),
-                    start: start.clone(),
-                    from: column.map(|j| (j, side, far[side])),
-                }
-            };
-            let (mut next, other) = (child(self, first), child(self, 1 - first));
-            if self.apply(&sides[first]) {
-                self.open.push(other);
-            } else {
-                self.fate(next.number, "infeasible");
-                next = other;
-                (self.lower, self.upper) = before;
-                self.send_bounds();
-                if !self.apply(&sides[1 - first]) {
-                    self.fate(next.number, "infeasible");
-                    return None;
-                }
-            }
-            (bound, depth, number, path, from) =
-                (next.bound, next.depth, next.number, next.path, next.from);
-            resolves = 0;
-            let least = self.open.peek().map_or(bound, |n| n.bound.min(bound));
-            self.bound = self.bound.max(least);
-            self.log(control, false);
-            let enough = self.aim.nodes > 0 && self.nodes >= self.aim.nodes;
-            if enough || self.is_close() {
-                let end = if enough { End::Nodes } else { End::Gap };
-                return stop(self, bound, depth, number, path, from, end);
             }
         }
+    }
+
+    /// What to do where nothing discrete is violated: the point is a solution, or integer to the tolerance only
+    /// (rounded it is no solution, or one whose value is not the node's). Err: what became of the node.
+    fn split_integral(
+        &mut self,
+        point: &[f64],
+        bound: f64,
+        control: &mut Control,
+    ) -> Result<Branch, &'static str> {
+        let offered = self.offer(point, control);
+        let branch = match offered {
+            true if bound < self.cutoff() => self.split_rounded(point).or_else(|| self.split_set()),
+            true => None,
+            false => self.split_widest(),
+        };
+        if branch.is_none() && !offered {
+            self.incomplete |= self.cutoff() > bound;
+        }
+        branch.ok_or(if offered { "solution" } else { "infeasible" })
+    }
+
+    /// A node that is to be divided, unless what heuristics find makes that superfluous.
+    fn divided(
+        &mut self,
+        node: &Node<R::Start>,
+        branch: Branch,
+        point: &[f64],
+        failed: bool,
+        control: &mut Control,
+    ) -> Evaluated {
+        if let Branch::Fixed(_) = branch {
+            return Evaluated::Leaf("infeasible");
+        }
+        if !failed {
+            self.heuristics(node.depth, point, control);
+            if node.bound >= self.cutoff() {
+                return Evaluated::Leaf("bound");
+            }
+        }
+        Evaluated::Divided(branch)
+    }
+
+    /// Makes the children of a node and goes to one of them. None: neither has a point.
+    fn descend(&mut self, node: &Node<R::Start>, branch: Branch) -> Option<Node<R::Start>> {
+        let Branch::Two {
+            sides,
+            column,
+            far,
+            first,
+        } = branch
+        else {
+            return None;
+        };
+        let start = self.relaxation.start();
+        let before = (self.lower.clone(), self.upper.clone());
+        let child = |s: &mut Self, side: usize| {
+            let changes = sides[side].clone();
+            Node {
+                bound: node.bound,
+                depth: node.depth + 1,
+                number: s.note(Some(node.number), changes.first().copied(), node.bound),
+                path: Some(Rc::new(Path {
+                    changes,
+                    parent: node.path.clone(),
+                })),
+                start: start.clone(),
+                from: column.map(|j| (j, side, far[side])),
+            }
+        };
+        let (next, other) = (child(self, first), child(self, 1 - first));
+        if self.apply(&sides[first]) {
+            self.open.push(other);
+            return Some(next);
+        }
+        self.fate(next.number, "infeasible");
+        (self.lower, self.upper) = before;
+        self.send_bounds();
+        if self.apply(&sides[1 - first]) {
+            return Some(other);
+        }
+        self.fate(other.number, "infeasible");
+        None
     }
 
     /// Integer columns whose reduced costs keep them from going far. What that does to the node.
