@@ -51,6 +51,8 @@ pub struct Ranges {
 const NEAR: f64 = 1e-7;
 /// What the value may be off along a range, relative.
 const VALUE_TOLERANCE: f64 = 1e-10;
+/// An end nearer to 0 than this, relative to the right-hand side and the way from it, is 0.
+const END_TOLERANCE: f64 = 1e-9;
 
 /// The program as a minimum without its objective variable.
 struct Reduced<'a> {
@@ -232,7 +234,15 @@ impl<'a> Reduced<'a> {
             true => self.as_far(i, price[usize::from(up)], if up { 1.0 } else { -1.0 }),
             false => 0.0,
         };
-        let interval = [value - far(false), value + far(true)].map(rounded);
+        let end = |by: f64| {
+            let size = value.abs() + by.abs();
+            // What is left of a difference of equal numbers is rounding.
+            match (value + by).abs() <= END_TOLERANCE * size && size.is_finite() {
+                true => 0.0,
+                false => rounded(value + by),
+            }
+        };
+        let interval = [end(-far(false)), end(far(true))];
         RowRange {
             row: i,
             value,
