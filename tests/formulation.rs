@@ -71,8 +71,10 @@ fn derived(m: &Machine, primal: &Primal) -> Derived {
     let (symbols, store) = (&m.symbols, &m.store);
     let written = |f: &Formulation| text::model(symbols, store, f, None, "", true);
     let result = match shape(&primal.generated.instance) {
-        Shape::Linear | Shape::ConvexQuadratic(_) => check::checked_dual(symbols, store, primal)
-            .map(|(f, c)| Derived::Dual(Box::new(f.clone()), c, written(&f))),
+        Shape::Linear | Shape::ConvexQuadratic { .. } => {
+            check::checked_dual(symbols, store, primal)
+                .map(|(f, c)| Derived::Dual(Box::new(f.clone()), c, written(&f)))
+        }
         _ => check::checked_kkt(symbols, store, primal)
             .map(|(f, c)| Derived::Kkt(Box::new(f.clone()), c, written(&f))),
     };
@@ -678,7 +680,7 @@ fn matrix(text: &str, rename: &dyn Fn(&str) -> String) -> Entries {
     let i = check::generate(text).expect("it was generated before");
     let p = &i.generated.instance;
     let z = p.objective.map(|o| o.column as usize);
-    let named = |r: &Record| (rename(&r.0), r.1.clone());
+    let named = |r: &Record| (rename(&r.0).into(), r.1.clone());
     let mut out = Entries::new();
     for r in (0..p.row_count()).filter(|&r| p.rows.relation[r] != Relation::Free) {
         if p.matrix.row(r).any(|(j, _)| Some(j) == z) {
@@ -695,28 +697,36 @@ fn matrix(text: &str, rename: &dyn Fn(&str) -> String) -> Entries {
 fn entries(
     i: &check::Instance,
     rename: &dyn Fn(&str) -> String,
-) -> BTreeMap<(String, Vec<String>, String, Vec<String>), f64> {
+) -> BTreeMap<(String, String, String, String), f64> {
     let mut out = BTreeMap::new();
     let g = &i.generated.instance;
     for r in 0..g.row_count() {
         let (row, row_key) = &i.rows[r];
         for (c, v) in g.matrix.row(r) {
             let (column, key) = &i.columns[c];
-            let at = (rename(row), row_key.clone(), rename(column), key.clone());
+            let at = (
+                rename(row),
+                row_key.to_string(),
+                rename(column),
+                key.to_string(),
+            );
             out.insert(at, v);
         }
         let at = (
             rename(row),
-            row_key.clone(),
+            row_key.to_string(),
             format!("{:?}", g.rows.relation[r]),
-            Vec::new(),
+            String::new(),
         );
         out.insert(at, g.rows.rhs[r]);
     }
     for c in 0..g.column_count() {
         let (column, key) = &i.columns[c];
         for (word, v) in [("lower", g.columns.lower[c]), ("upper", g.columns.upper[c])] {
-            out.insert((word.into(), Vec::new(), rename(column), key.clone()), v);
+            out.insert(
+                (word.into(), String::new(), rename(column), key.to_string()),
+                v,
+            );
         }
     }
     out

@@ -9,10 +9,15 @@ use crate::solve::nlp::quadratic::is_semidefinite;
 pub enum Shape {
     /// All rows are linear.
     Linear,
-    /// Linear rows, and a quadratic objective whose Hessian says that it is convex (of a maximum: concave).
-    ConvexQuadratic(Objective),
-    /// Linear rows and a quadratic objective that is not convex.
-    Quadratic,
+    /// Objective and rows are linear or quadratic, and their Hessians say that the program is convex.
+    ConvexQuadratic {
+        /// The objective function.
+        objective: Objective,
+        /// Whether a row is quadratic, too.
+        in_rows: bool,
+    },
+    /// Quadratic and not convex: the objective, or this row.
+    Quadratic(Option<usize>),
     /// This row is to blame.
     Nonlinear(usize),
 }
@@ -37,26 +42,84 @@ pub fn shape(p: &Instance) -> Shape {
     }
     let mut e = Evaluator::new(p);
     let degrees = e.degrees();
-    let nonlinear = |i: &usize| degrees[*i] != Degree::Linear;
-    let mut list = (0..p.row_count()).filter(nonlinear);
-    let (first, second) = (list.next().unwrap_or(0), list.next());
-    let z = p.objective.map(|o| o.column as usize);
-    let defines =
-        p.rows.relation[first] == Relation::Equal && p.matrix.row(first).any(|(j, _)| Some(j) == z);
-    let quadratic = degrees[first] == Degree::Quadratic;
-    if second.is_some() || !defines || !quadratic {
-        return Shape::Nonlinear(second.filter(|_| defines && quadratic).unwrap_or(first));
+    let eliminated = p
+        .objective
+        .map(|o| o.column as usize)
+        .zip(p.objective_row())
+        .filter(|(z, (i, _))| p.is_free(*z) && p.rows.relation[*i] == Relation::Equal);
+    let mut objective = Objective::default();
+    let mut in_rows = false;
+    for (row, degree) in degrees.into_iter().enumerate() {
+        let defined = eliminated.filter(|d| d.1.0 == row).map(|d| d.0);
+        match degree {
+            Degree::Linear if defined.is_none() => continue,
+            Degree::Linear | Degree::Quadratic => {}
+            _ => return Shape::Nonlinear(row),
+        }
+        let (convex, blame) = match defined {
+            Some(z) => match at_origin(p, &mut e, row, z) {
+                Some(f) => {
+                    objective = f;
+                    (is_convex(p, &objective.hessian, p.sign()), None)
+                }
+                None => return Shape::Nonlinear(row),
+            },
+            None => {
+                let sign = match p.rows.relation[row] {
+                    Relation::Less => 1.0,
+                    Relation::Greater => -1.0,
+                    Relation::Free => continue,
+                    Relation::Equal => return Shape::Quadratic(Some(row)),
+                };
+                in_rows = true;
+                let h = hessian(p, &mut e, row, sign);
+                (h.is_some_and(|h| is_convex(p, &h, 1.0)), Some(row))
+            }
+        };
+        if !convex {
+            return Shape::Quadratic(blame);
+        }
     }
-    let Some(f) = z.and_then(|z| at_origin(p, &mut e, first, z)) else {
-        return Shape::Nonlinear(first);
-    };
-    let sign = p.sign();
-    let lower = f.hessian.iter().filter(|e| e.0 >= e.1);
+    if let (None, Some(o)) = (eliminated, p.objective) {
+        objective.gradient = vec![0.0; p.column_count()];
+        objective.gradient[o.column as usize] = 1.0;
+    }
+    Shape::ConvexQuadratic { objective, in_rows }
+}
+
+/// Whether `sign` times a Hessian is positive semidefinite.
+fn is_convex(p: &Instance, hessian: &[(usize, usize, f64)], sign: f64) -> bool {
+    let lower = hessian.iter().filter(|e| e.0 >= e.1);
     let lower: Vec<_> = lower.map(|&(i, j, v)| (i, j, sign * v)).collect();
-    match is_semidefinite(p.column_count(), &lower) {
-        true => Shape::ConvexQuadratic(f),
-        false => Shape::Quadratic,
+    is_semidefinite(p.column_count(), &lower)
+}
+
+/// Entries of the Hessian of a quadratic row times a number: row, column, value, both triangles.
+fn hessian(
+    p: &Instance,
+    e: &mut Evaluator,
+    row: usize,
+    weight: f64,
+) -> Option<Vec<(usize, usize, f64)>> {
+    let mut weights = vec![0.0; p.row_count()];
+    weights[row] = weight;
+    let (i, j) = e.hessian_pattern();
+    let places: Vec<(usize, usize)> = i
+        .iter()
+        .zip(j)
+        .map(|(i, j)| (*i as usize, *j as usize))
+        .collect();
+    let mut entries = vec![0.0; places.len()];
+    e.hessian(&vec![0.0; p.column_count()], &weights, &mut entries)
+        .ok()?;
+    let mut hessian = Vec::new();
+    for ((i, j), v) in places.into_iter().zip(entries).filter(|e| e.1 != 0.0) {
+        hessian.push((i, j, v));
+        if i != j {
+            hessian.push((j, i, v));
+        }
     }
+    Some(hessian)
 }
 
 /// The function that a row defines for a column: value, gradient and Hessian at 0.
@@ -77,27 +140,10 @@ pub fn at_origin(p: &Instance, e: &mut Evaluator, row: usize, z: usize) -> Optio
     for k in range.filter(|&k| column[k] as usize != z) {
         gradient[column[k] as usize] = -values[k] / a;
     }
-    let mut weight = vec![0.0; p.row_count()];
-    weight[row] = -1.0 / a;
-    let (i, j) = e.hessian_pattern();
-    let places: Vec<(usize, usize)> = i
-        .iter()
-        .zip(j)
-        .map(|(i, j)| (*i as usize, *j as usize))
-        .collect();
-    let mut entries = vec![0.0; places.len()];
-    e.hessian(&x, &weight, &mut entries).ok()?;
-    let mut hessian = Vec::new();
-    for ((i, j), v) in places.into_iter().zip(entries).filter(|e| e.1 != 0.0) {
-        hessian.push((i, j, v));
-        if i != j {
-            hessian.push((j, i, v));
-        }
-    }
     Some(Objective {
         row,
         constant: (p.rows.rhs[row] - activity[row]) / a,
         gradient,
-        hessian,
+        hessian: hessian(p, e, row, -1.0 / a)?,
     })
 }

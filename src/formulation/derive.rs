@@ -326,6 +326,12 @@ impl<'a> Derivation<'a> {
         kind(self.symbols, v)
     }
 
+    /// Whether an equation is linear in the variables.
+    pub fn is_linear(&self, equation: usize) -> bool {
+        let of = |t: &Term| t.factors.iter().any(|(_, f)| f.has_variable());
+        !self.terms[equation].iter().any(of)
+    }
+
     /// The multiplier of an equation with its key.
     pub fn multiplier_of(&self, equation: usize) -> Option<Expr> {
         let key = self.primal.equations[equation].key.clone();

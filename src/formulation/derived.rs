@@ -18,7 +18,7 @@ use crate::source::Span;
 /// What is derived from a model.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Kind {
-    /// The dual of a linear program.
+    /// The dual of a linear or convex quadratic program.
     Dual,
     /// The optimality conditions of a smooth program.
     Kkt,
@@ -129,7 +129,15 @@ fn linear_dual(
             Ok((_, c)) => c,
             Err(why) => Comparison::impossible(&why),
         }),
-        compared: "the dual's matrix and the transposed matrix of the primal, right-hand sides and bounds included",
+        compared: match primal.generated.instance.is_linear() {
+            true => {
+                "the dual's matrix and the transposed matrix of the primal, right-hand sides and bounds included"
+            }
+            false => {
+                "the dual's matrix and the transposed matrix of the primal's tangents, right-hand sides and bounds \
+                 included, at points drawn at random"
+            }
+        },
     })
 }
 
@@ -148,20 +156,17 @@ fn refuse_dual(m: &Machine, primal: &Primal, studied: &Studied) -> Result<(), Bo
         return Err(no(message).help(help).into());
     }
     refuse_discrete(m, primal, no)?;
-    let (row, why) = match shape(instance) {
-        Shape::Linear | Shape::ConvexQuadratic(_) => return Ok(()),
-        Shape::Quadratic => (
-            None,
-            "its objective is quadratic and not convex".to_string(),
-        ),
-        Shape::Nonlinear(row) => {
-            let e = primal.generated.origin.rows.of(row as u32).symbol;
-            let name = &m.symbols.get(e).name;
-            let why =
-                format!("`{name}` is neither linear nor the objective of a quadratic program");
-            (definition(m, e), why)
-        }
+    let (row, what) = match shape(instance) {
+        Shape::Linear | Shape::ConvexQuadratic { .. } => return Ok(()),
+        Shape::Quadratic(row) => (row, "quadratic and not convex"),
+        Shape::Nonlinear(row) => (Some(row), "neither linear nor quadratic"),
     };
+    let row = row.map(|i| primal.generated.origin.rows.of(i as u32).symbol);
+    let why = match row {
+        Some(e) => format!("`{}` is {what}", m.symbols.get(e).name),
+        None => format!("its objective is {what}"),
+    };
+    let row = row.and_then(|e| definition(m, e));
     let message =
         format!("the dual of a linear or convex quadratic program is asked for, and {why}");
     let span = row.map_or(studied.span, |d| d.span);

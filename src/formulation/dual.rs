@@ -1,15 +1,18 @@
 //! The dual of a linear program, with indices and with GAMS's signs: its levels are the primal's marginals. Of a convex
-//! quadratic program with linear rows Dorn's dual: a further variable stands for the point at which the gradient is taken.
+//! quadratic program Dorn's dual, with quadratic rows Wolfe's: a further variable stands for the point at which the
+//! gradients are taken.
 
 use super::derive::{Derivation, Primal, domain_of};
+use super::kkt::{start_of_levels, start_of_multiplier};
+use super::lower::Equation;
 use super::tree::*;
 use super::{Formulation, Multiplier, Origin, Row, Sign};
 use crate::check::node::SymbolId;
 use crate::check::symbols::{Store, Symbols, attribute};
 use crate::data::universe::Label;
 
-/// Derives the dual of a linear model, or of a convex quadratic one with linear rows. `as_in_text`: multipliers have the signs of the variables that the text pairs with
-/// their rows. `Err` says why there is none.
+/// Derives the dual of a linear or convex quadratic model. `as_in_text`: multipliers have the signs of the variables that
+/// the text pairs with their rows. `Err` says why there is none.
 pub fn dual(
     symbols: &Symbols,
     store: &Store,
@@ -31,7 +34,16 @@ pub fn dual(
         let Some(number) = d.multiplier_number(k) else {
             continue;
         };
-        let b = d.right_side(k);
+        let b = match d.is_linear(k) {
+            true => d.right_side(k),
+            false => {
+                // The product of a multiplier and a quadratic form.
+                d.out.using = "nlp".into();
+                right_side_at(&primal.equations[k]).map_err(|why| {
+                    format!("`{}`: {why}", symbols.get(primal.equations[k].symbol).name)
+                })?
+            }
+        };
         let y = d.multiplier(number, primal.equations[k].key.clone());
         objective.push((false, sum_over(d.binders[k].clone(), times(b, y))));
     }
@@ -51,7 +63,34 @@ pub fn dual(
     if !is_linear {
         points(&mut d);
     }
+    if d.out.using == "nlp" {
+        // It is not concave in all its variables: it begins at the answer.
+        start(&mut d);
+    }
     Ok(d.out)
+}
+
+/// Levels of multipliers and points as they are at the answer.
+fn start(d: &mut Derivation) {
+    for k in 0..d.primal.equations.len() {
+        if let Some(y) = d.multiplier_number(k) {
+            start_of_multiplier(d, k, y);
+        }
+    }
+    for m in d.out.multipliers.clone() {
+        if let Origin::Point(v) = m.origin {
+            start_of_levels(d, v, &m.name);
+        }
+    }
+}
+
+/// What is on the right side of the tangent of a quadratic row, `b − g + ∇g·x`.
+fn right_side_at(e: &Equation) -> Result<Expr, String> {
+    if e.relation == Relation::Equal {
+        return Err("a quadratic equation is not convex".into());
+    }
+    let (left, right) = (less_slope(&e.left)?, less_slope(&e.right)?);
+    Ok(sum(vec![(false, right), (true, left)]))
 }
 
 /// `f − ∇f·x` of a quadratic function: its constants, less its quadratic terms.
@@ -59,8 +98,7 @@ fn less_slope(f: &Expr) -> Result<Expr, String> {
     if !f.has_variable() {
         return Ok(f.clone());
     }
-    let unknown =
-        || Err("its objective is not written as a sum of products and squares".to_string());
+    let unknown = || Err("it is not written as a sum of products and squares".to_string());
     // A product of two linear forms: their constants, less what is left of them.
     let pair = |a: &Expr, b: &Expr, make: &dyn Fn(Expr, Expr) -> Expr| {
         let (a0, b0) = (a.without_variables(), b.without_variables());

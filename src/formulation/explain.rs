@@ -141,11 +141,20 @@ impl Explained<'_> {
             (_, Shape::Linear) => {
                 "It is linear, and so convex: an optimum that is found is an optimum over all points".into()
             }
-            (_, Shape::ConvexQuadratic(_)) => format!(
+            (_, Shape::ConvexQuadratic { in_rows: true, .. }) => {
+                "Its quadratic functions stand where it is convex (their Hessians are semidefinite): an optimum that is \
+                 found is an optimum over all points"
+                    .into()
+            }
+            (_, Shape::ConvexQuadratic { .. }) => format!(
                 "Its rows are linear, and its quadratic objective is {curved} (the Hessian is {semi} semidefinite): an \
                  optimum that is found is an optimum over all points"
             ),
-            (_, Shape::Quadratic) => format!(
+            (_, Shape::Quadratic(Some(row))) => format!(
+                "{} is quadratic and not convex: an optimum that is found may be a local one",
+                self.name(&p.generated.origin.rows, row)
+            ),
+            (_, Shape::Quadratic(None)) => format!(
                 "Its objective is quadratic and not {curved}: an optimum that is found may be a local one"
             ),
             (_, Shape::Nonlinear(_)) => {

@@ -228,13 +228,22 @@ fn feasibility(d: &mut Derivation, k: usize, keep: bool) {
         right,
         pair: Some(Variable::Multiplier(y)),
     });
-    let Some(a) = &d.primal.answer else { return };
-    let records: Vec<(Vec<Label>, f64)> = rows
-        .iter()
-        .map(|&i| (block.key(i).to_vec(), a.row_marginal[i as usize]))
+    start_of_multiplier(d, k, y);
+}
+
+/// The level of the multiplier of an equation is its marginal.
+pub fn start_of_multiplier(d: &mut Derivation, equation: usize, multiplier: usize) {
+    let symbol = d.primal.equations[equation].symbol;
+    let block = d.primal.generated.origin.rows.symbol(symbol);
+    let (Some(a), Some(block)) = (&d.primal.answer, block) else {
+        return;
+    };
+    let records: Vec<(Vec<Label>, f64)> = (block.start..block.start + block.len)
+        .map(|i| (block.key(i).to_vec(), a.row_marginal[i as usize]))
         .collect();
-    let target = d.out.multipliers[y].name.clone();
-    let domain = domain_of(d.symbols, e.symbol);
+    let name = d.symbols.get(symbol).name.to_string();
+    let target = d.out.multipliers[multiplier].name.clone();
+    let domain = domain_of(d.symbols, symbol);
     assign(d, &format!("m_{name}"), &target, "l", domain, records);
 }
 
@@ -268,13 +277,20 @@ fn start_of_columns(d: &mut Derivation, v: SymbolId) {
     };
     differing(lower, 0, "lo");
     differing(upper, 1, "up");
-    let Some(a) = &d.primal.answer else { return };
-    let Some(b) = d.primal.generated.origin.columns.symbol(v) else {
+    start_of_levels(d, v, &name);
+}
+
+/// The levels of `target` are those of a variable.
+pub fn start_of_levels(d: &mut Derivation, v: SymbolId, target: &str) {
+    let block = d.primal.generated.origin.columns.symbol(v);
+    let (Some(a), Some(b)) = (&d.primal.answer, block) else {
         return;
     };
     let levels = (b.start..b.start + b.len).map(|j| (b.key(j).to_vec(), a.level[j as usize]));
     let records: Vec<(Vec<Label>, f64)> = levels.collect();
-    assign(d, &format!("l_{name}"), &name, "l", domain, records);
+    let name = d.symbols.get(v).name.to_string();
+    let domain = domain_of(d.symbols, v);
+    assign(d, &format!("l_{name}"), target, "l", domain, records);
 }
 
 /// `target.attribute(…)$data(…) = data(…);`

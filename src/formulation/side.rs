@@ -182,7 +182,7 @@ pub fn slackness(symbols: &Symbols, store: &Store, primal: &Primal, flipped: boo
     }
     // A column's reduced cost is what its row in the dual leaves.
     let (gone, mut cost) = costs(p);
-    if let Shape::ConvexQuadratic(f) = shape(p) {
+    if let Shape::ConvexQuadratic { objective: f, .. } = shape(p) {
         cost.clone_from(&f.gradient);
         f.hessian
             .iter()

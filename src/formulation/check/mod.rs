@@ -16,6 +16,7 @@ use crate::session;
 use crate::source::PreprocessOptions;
 use rustc_hash::FxHashMap;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 /// How far two numbers may be apart, relative to the larger.
 pub const TOLERANCE: f64 = 1e-10;
@@ -90,8 +91,8 @@ impl Host for Text<'_> {
     }
 }
 
-/// A record's name and labels as words, in lower case.
-pub type Record = (String, Vec<String>);
+/// A record's name, and its labels in quotes with commas between them, in lower case.
+pub type Record = (Rc<str>, Rc<str>);
 
 /// The instance of a derived model with the names of its rows and columns as words.
 pub struct Instance {
@@ -123,16 +124,23 @@ impl Instance {
 pub fn records(symbols: &Symbols, store: &Store, blocks: &Blocks) -> Vec<Record> {
     let mut out = Vec::new();
     for b in &blocks.list {
-        let name = symbols.get(b.symbol).name.to_lowercase();
+        let name: Rc<str> = symbols.get(b.symbol).name.to_lowercase().into();
         out.extend((b.start..b.start + b.len).map(|i| (name.clone(), words(store, b.key(i)))));
     }
     out
 }
 
-fn words(store: &Store, key: &[Label]) -> Vec<String> {
-    key.iter()
-        .map(|l| store.universe.name(*l).to_lowercase())
-        .collect()
+fn words(store: &Store, key: &[Label]) -> Rc<str> {
+    let mut out = String::new();
+    for l in key {
+        out.push_str(if out.is_empty() { "'" } else { ",'" });
+        out.push_str(store.universe.name(*l));
+        out.push('\'');
+    }
+    match out.bytes().any(|b| b.is_ascii_uppercase() || !b.is_ascii()) {
+        true => out.to_lowercase().into(),
+        false => out.into(),
+    }
 }
 
 /// Generates the last model that a text solves; the first complaint where it cannot be.
@@ -220,5 +228,5 @@ pub fn checked_kkt(
     Ok((f, c))
 }
 
-/// Points at which optimality conditions are compared.
+/// Points at which optimality conditions, and duals of quadratic programs, are compared.
 pub const POINTS: usize = 3;

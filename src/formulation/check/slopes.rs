@@ -8,6 +8,7 @@ use crate::formulation::tree::Variable;
 use crate::formulation::{Formulation, Origin};
 use crate::model::instance::{self, Relation, Sense};
 use crate::solve::random::Random;
+use std::rc::Rc;
 
 /// Compares the generated optimality conditions with `∇f − Jᵀλ` of the model's automatic derivatives, and its rows with the
 /// model's, at points around the answer drawn at random.
@@ -89,9 +90,9 @@ impl<'a> Places<'a> {
         let by_column = d.columns_by_name();
         let by_row = d.rows_by_name();
         let mut missing = None;
-        let row_of = |v: Variable| {
+        let row_of = |v: Variable| -> Option<Rc<str>> {
             let r = f.rows.iter().find(|r| r.pair == Some(v));
-            r.map(|r| r.name.to_lowercase())
+            r.map(|r| Rc::from(r.name.to_lowercase()))
         };
         let mut columns = vec![None; p.column_count()];
         for b in &g.origin.columns.list {
@@ -122,10 +123,11 @@ impl<'a> Places<'a> {
             let Some(b) = g.origin.rows.symbol(e) else {
                 continue;
             };
-            let row = row_of(Variable::Multiplier(n)).unwrap_or_default();
+            let row: Rc<str> = row_of(Variable::Multiplier(n)).unwrap_or_default();
+            let multiplier: Rc<str> = m.name.to_lowercase().into();
             for i in b.start as usize..(b.start + b.len) as usize {
                 let key = &row_names[i].1;
-                let column = by_column.get(&(m.name.to_lowercase(), key.clone()));
+                let column = by_column.get(&(multiplier.clone(), key.clone()));
                 let own = by_row.get(&(row.clone(), key.clone()));
                 match (column, own) {
                     (Some(&y), Some(&r)) => rows[i] = Some((y, r)),

@@ -2,15 +2,19 @@
 
 use super::{Comparison, Instance, Record, eliminated, records};
 use crate::autodiff::Evaluator;
+use crate::check::node::SymbolId;
 use crate::check::symbols::{Store, Symbols};
 use crate::formulation::convex::{Objective, at_origin};
 use crate::formulation::derive::Primal;
 use crate::formulation::tree::Variable;
 use crate::formulation::{Formulation, Origin};
 use crate::model::instance::{self, Relation};
+use crate::solve::random::Random;
 use rustc_hash::FxHashMap;
+use std::rc::Rc;
 
-/// Compares the generated dual with the transposed primal: matrix, right sides, costs, bounds and relations.
+/// Compares the generated dual with the transposed primal: matrix, right sides, costs, bounds and relations. Of quadratic
+/// programs the tangents are compared, at points drawn at random: there the one is the linear dual of the other.
 pub fn dual(
     symbols: &Symbols,
     store: &Store,
@@ -19,21 +23,129 @@ pub fn dual(
     d: &Instance,
 ) -> Comparison {
     let mut c = Comparison::default();
-    let objective = (f.objective_name.to_lowercase(), Vec::new());
-    let objective_row = (f.objective_name.to_lowercase() + "_row", Vec::new());
+    let p = &primal.generated.instance;
     let dual = &d.generated.instance;
-    let place = d.columns_by_name();
-    let defining = d.rows.iter().position(|r| *r == objective_row);
-    let found = defining.zip(place.get(&objective));
+    let names = Names::new(symbols, store, primal, f, d);
+    if p.is_linear() {
+        compare(symbols, f, &names, p, dual, &mut c);
+        return c;
+    }
+    let columns = 0..p.column_count();
+    let points: Vec<Option<usize>> = columns.map(|j| names.of_column(Origin::Point, j)).collect();
+    let mut stream = Random(1);
+    for _ in 0..super::POINTS {
+        let x: Vec<f64> = points
+            .iter()
+            .map(|_| 2.0 * stream.uniform() - 1.0)
+            .collect();
+        let mut y = vec![0.0; dual.column_count()];
+        let mut is_point = vec![false; y.len()];
+        for (place, x) in points.iter().zip(&x) {
+            if let Some(k) = place {
+                (y[*k], is_point[*k]) = (*x, true);
+            }
+        }
+        match (tangents(p, &x, &[]), tangents(dual, &y, &is_point)) {
+            (Some(p), Some(dual)) => compare(symbols, f, &names, &p, &dual, &mut c),
+            _ => c.differ("a function has no value".into()),
+        }
+    }
+    c
+}
+
+/// A program with the tangents at a point for its functions, and without the columns that are said.
+fn tangents(p: &instance::Instance, x: &[f64], without: &[bool]) -> Option<instance::Instance> {
+    let mut e = Evaluator::new(p);
+    let mut activity = vec![0.0; p.row_count()];
+    e.rows(x, &mut activity).ok()?;
+    let (start, column) = e.jacobian_pattern();
+    let (start, column) = (start.to_vec(), column.to_vec());
+    let mut values = vec![0.0; column.len()];
+    e.jacobian(x, &mut values).ok()?;
+    let mut out = instance::Instance {
+        columns: p.columns.clone(),
+        objective: p.objective,
+        ..instance::Instance::default()
+    };
+    for i in 0..p.row_count() {
+        let entries = (start[i]..start[i + 1]).map(|k| (column[k] as usize, values[k]));
+        let entries = entries.filter(|(j, _)| !without.get(*j).is_some_and(|w| *w));
+        let entries: Vec<(usize, f64)> = entries.collect();
+        let slope: f64 = entries.iter().map(|(j, v)| v * x[*j]).sum();
+        let rhs = p.rows.rhs[i] - activity[i] + slope;
+        out.add_row(entries, p.rows.relation[i], rhs);
+    }
+    Some(out)
+}
+
+/// Names of the rows and columns of a model, and where they are in its dual.
+struct Names<'a> {
+    primal: &'a Primal,
+    d: &'a Instance,
+    /// Names of the primal's rows and columns.
+    rows: Vec<Record>,
+    columns: Vec<Record>,
+    /// Names of multipliers.
+    multipliers: FxHashMap<Origin, Rc<str>>,
+    /// The dual's columns.
+    place: FxHashMap<&'a Record, usize>,
+}
+
+impl<'a> Names<'a> {
+    fn new(
+        symbols: &Symbols,
+        store: &Store,
+        primal: &'a Primal,
+        f: &Formulation,
+        d: &'a Instance,
+    ) -> Self {
+        let o = &primal.generated.origin;
+        let multipliers = f.multipliers.iter();
+        Self {
+            primal,
+            d,
+            rows: records(symbols, store, &o.rows),
+            columns: records(symbols, store, &o.columns),
+            multipliers: multipliers
+                .map(|m| (m.origin, m.name.to_lowercase().into()))
+                .collect(),
+            place: d.columns_by_name(),
+        }
+    }
+
+    /// The column of a multiplier in the dual.
+    fn multiplier(&self, origin: Origin, key: &Rc<str>) -> Option<usize> {
+        let name = self.multipliers.get(&origin)?.clone();
+        self.place.get(&(name, key.clone())).copied()
+    }
+
+    /// The column in the dual that belongs to a column.
+    fn of_column(&self, origin: fn(SymbolId) -> Origin, j: usize) -> Option<usize> {
+        let symbol = self.primal.generated.origin.columns.of(j as u32).symbol;
+        self.multiplier(origin(symbol), &self.columns[j].1)
+    }
+}
+
+/// Compares two linear programs.
+fn compare(
+    symbols: &Symbols,
+    f: &Formulation,
+    names: &Names,
+    p: &instance::Instance,
+    dual: &instance::Instance,
+    c: &mut Comparison,
+) {
+    let objective: Record = (f.objective_name.to_lowercase().into(), "".into());
+    let objective_row: Record = (format!("{}_row", objective.0).into(), "".into());
+    let defining = names.d.rows.iter().position(|r| *r == objective_row);
+    let found = defining.zip(names.place.get(&objective));
     let Some(d0) = found.and_then(|(i, &z)| at_origin(dual, &mut Evaluator::new(dual), i, z))
     else {
         c.differ("the dual has no objective".into());
-        return c;
+        return;
     };
-    let o = &primal.generated.origin;
-    let p = &primal.generated.instance;
     let z = p.objective.map(|o| o.column as usize);
-    let gone = eliminated(primal, f, z).zip(z);
+    let gone = eliminated(names.primal, f, z).zip(z);
     let by_row = gone.map(|(i, z)| at_origin(p, &mut Evaluator::new(p), i, z).unwrap_or_default());
     let f0 = by_row.unwrap_or_else(|| {
         let mut gradient = vec![0.0; p.column_count()];
@@ -43,48 +155,30 @@ pub fn dual(
             ..Objective::default()
         }
     });
+    c.number(f0.constant, d0.constant, &|| {
+        "the constant of the objective".into()
+    });
     let mut t = Transposed {
         c,
-        primal,
+        names,
         p,
-        d,
+        dual,
         minimum: p.sign() > 0.0,
-        rows: records(symbols, store, &o.rows),
-        columns: records(symbols, store, &o.columns),
-        names: f
-            .multipliers
-            .iter()
-            .map(|m| (m.origin, m.name.to_lowercase()))
-            .collect(),
-        place,
         gone,
         f0,
         d0,
     };
-    let constants = (t.f0.constant, t.d0.constant);
-    t.c.number(constants.0, constants.1, &|| {
-        "the constant of the objective".into()
-    });
-    let mut matrix = t.rows();
-    t.slopes(&mut matrix);
+    let matrix = t.rows();
     t.columns(symbols, f, defining, matrix);
-    t.c
 }
 
 /// The two instances, and where the one is in the other.
 struct Transposed<'a> {
-    c: Comparison,
-    primal: &'a Primal,
+    c: &'a mut Comparison,
+    names: &'a Names<'a>,
     p: &'a instance::Instance,
-    d: &'a Instance,
+    dual: &'a instance::Instance,
     minimum: bool,
-    /// Names of the primal's rows and columns.
-    rows: Vec<Record>,
-    columns: Vec<Record>,
-    /// Names of multipliers.
-    names: FxHashMap<Origin, String>,
-    /// The dual's columns.
-    place: FxHashMap<&'a Record, usize>,
     /// The row and the column of the objective, where they are eliminated.
     gone: Option<(usize, usize)>,
     /// The objective functions of the primal and of the dual.
@@ -93,12 +187,6 @@ struct Transposed<'a> {
 }
 
 impl Transposed<'_> {
-    /// The column of a multiplier in the dual.
-    fn multiplier(&self, origin: Origin, key: &[String]) -> Option<usize> {
-        let name = self.names.get(&origin)?.clone();
-        self.place.get(&(name, key.to_vec())).copied()
-    }
-
     /// The rows of the primal are columns of the dual: the transposed matrix by columns of the primal.
     fn rows(&mut self) -> Vec<Vec<(usize, f64)>> {
         let mut transposed = vec![Vec::new(); self.p.column_count()];
@@ -107,20 +195,19 @@ impl Transposed<'_> {
             if self.gone.is_some_and(|g| g.0 == i) || relation == Relation::Free {
                 continue;
             }
-            let symbol = self.primal.generated.origin.rows.of(i as u32).symbol;
-            let Some(y) = self.multiplier(Origin::Row(symbol), &self.rows[i].1) else {
+            let symbol = self.names.primal.generated.origin.rows.of(i as u32).symbol;
+            let name = &self.names.rows[i];
+            let Some(y) = self.names.multiplier(Origin::Row(symbol), &name.1) else {
                 // A row that holds nothing but an eliminated variable, or no number but zeros.
                 let z = self.gone.map(|g| g.1);
                 let mut entries = self.p.matrix.row(i);
                 let empty = entries.all(|(k, v)| v == 0.0 || Some(k) == z);
                 if !empty || rhs != 0.0 {
-                    let name = &self.rows[i];
                     self.c
                         .differ(format!("the multiplier of {name:?} is not in the dual"));
                 }
                 continue;
             };
-            let name = &self.rows[i];
             self.c.number(rhs, self.d0.gradient[y], &|| {
                 format!("the right side of {name:?}")
             });
@@ -129,7 +216,7 @@ impl Transposed<'_> {
                 (Relation::Greater, true) | (Relation::Less, false) => (0.0, f64::INFINITY),
                 _ => (f64::NEG_INFINITY, 0.0),
             };
-            let columns = &self.d.generated.instance.columns;
+            let columns = &self.dual.columns;
             if (columns.lower[y], columns.upper[y]) != bounds {
                 self.c
                     .differ(format!("the sign of the multiplier of {name:?}"));
@@ -141,42 +228,6 @@ impl Transposed<'_> {
         transposed
     }
 
-    /// The gradient of a quadratic objective stands on the right side, at the point of the dual.
-    fn slopes(&mut self, transposed: &mut [Vec<(usize, f64)>]) {
-        let point = |j: usize| {
-            let symbol = self.primal.generated.origin.columns.of(j as u32).symbol;
-            self.multiplier(Origin::Point(symbol), &self.columns[j].1)
-        };
-        let points: Vec<Option<usize>> = match self.f0.hessian.is_empty() {
-            true => Vec::new(),
-            false => (0..self.columns.len()).map(point).collect(),
-        };
-        let mut slopes: FxHashMap<(usize, usize), f64> = FxHashMap::default();
-        for &(j, k, v) in &self.f0.hessian {
-            match (points[j], points[k]) {
-                (Some(a), Some(b)) => {
-                    transposed[j].push((b, -v));
-                    slopes.insert((a, b), -v);
-                }
-                _ => self.c.differ(format!(
-                    "the point of {:?} is not in the dual",
-                    self.columns[k]
-                )),
-            }
-        }
-        for &(a, b, v) in &self.d0.hessian {
-            let want = slopes.remove(&(a, b)).unwrap_or(0.0);
-            let (a, b) = (&self.d.columns[a], &self.d.columns[b]);
-            self.c.number(want, v, &|| {
-                format!("{a:?} and {b:?} in the dual objective")
-            });
-        }
-        if !slopes.is_empty() {
-            self.c
-                .differ("the dual objective lacks quadratic terms".into());
-        }
-    }
-
     /// The columns of the primal are rows of the dual.
     fn columns(
         &mut self,
@@ -186,14 +237,14 @@ impl Transposed<'_> {
         mut transposed: Vec<Vec<(usize, f64)>>,
     ) {
         let own = |v| match v {
-            Variable::Own(s) => Some(symbols.get(s).name.to_lowercase()),
+            Variable::Own(s) => Some(Rc::from(symbols.get(s).name.to_lowercase())),
             Variable::Multiplier(_) => None,
         };
         let pairs = f.rows.iter();
-        let pairs = pairs.filter_map(|r| Some((r.name.to_lowercase(), own(r.pair?)?)));
-        let pairs: FxHashMap<String, String> = pairs.collect();
+        let pairs = pairs.filter_map(|r| Some((r.name.to_lowercase().into(), own(r.pair?)?)));
+        let pairs: FxHashMap<Rc<str>, Rc<str>> = pairs.collect();
         let mut row_of: FxHashMap<Record, usize> = FxHashMap::default();
-        for (i, (name, key)) in self.d.rows.iter().enumerate() {
+        for (i, (name, key)) in self.names.d.rows.iter().enumerate() {
             let column = pairs.get(name).map(|c| (c.clone(), key.clone()));
             if let Some(column) = column
                 && row_of.insert(column, i).is_some()
@@ -204,15 +255,22 @@ impl Transposed<'_> {
         }
         for (j, want) in transposed.iter_mut().enumerate() {
             if self.gone.is_none_or(|g| g.1 != j) {
-                let row = row_of.remove(&self.columns[j]);
+                let row = row_of.remove(&self.names.columns[j]);
                 self.column(j, row, std::mem::take(want));
             }
         }
         let unpaired =
             |(i, r): &(usize, &Record)| !pairs.contains_key(&r.0) && Some(*i) != defining;
-        let others = self.d.rows.iter().enumerate().filter(unpaired).map(|r| r.0);
+        let others = self
+            .names
+            .d
+            .rows
+            .iter()
+            .enumerate()
+            .filter(unpaired)
+            .map(|r| r.0);
         for i in row_of.into_values().chain(others) {
-            let name = &self.d.rows[i];
+            let name = &self.names.d.rows[i];
             self.c
                 .differ(format!("the row {name:?} of the dual belongs to no column"));
         }
@@ -220,21 +278,16 @@ impl Transposed<'_> {
 
     /// A column of the primal with its row in the dual, whose entries are to be `want` and the multipliers of bounds.
     fn column(&mut self, j: usize, row: Option<usize>, mut want: Vec<(usize, f64)>) {
-        let name = &self.columns[j];
-        let symbol = self.primal.generated.origin.columns.of(j as u32).symbol;
-        let [lower, upper, fixed] = [
-            Origin::Lower(symbol),
-            Origin::Upper(symbol),
-            Origin::Fixed(symbol),
-        ]
-        .map(|o| self.multiplier(o, &name.1));
+        let name = &self.names.columns[j];
+        let [lower, upper, fixed] = [Origin::Lower, Origin::Upper, Origin::Fixed]
+            .map(|o: fn(SymbolId) -> Origin| self.names.of_column(o, j));
         want.extend(
             [lower, upper, fixed]
                 .into_iter()
                 .flatten()
                 .map(|y| (y, 1.0)),
         );
-        let c = &mut self.c;
+        let c = &mut *self.c;
         let Some(i) = row else {
             // Without a multiplier it is a row of numbers, which holds, or the dual could not be generated.
             if !want.is_empty() {
@@ -242,18 +295,22 @@ impl Transposed<'_> {
             }
             return;
         };
-        let dual = &self.d.generated.instance;
-        let mut have: FxHashMap<usize, f64> = dual.matrix.row(i).filter(|t| t.1 != 0.0).collect();
+        let dual = self.dual;
         let entry = |c: &mut Comparison, y: usize, v: f64, w: f64| {
-            let columns = &self.d.columns;
+            let columns = &self.names.d.columns;
             c.number(v, w, &|| format!("{:?} in the row of {name:?}", columns[y]));
         };
+        want.sort_unstable_by_key(|t| t.0);
+        let mut have = dual.matrix.row(i).filter(|t| t.1 != 0.0).peekable();
         for (y, v) in want {
+            while let Some((other, w)) = have.next_if(|h| h.0 < y) {
+                entry(c, other, 0.0, w);
+            }
             c.entries += 1;
-            entry(c, y, v, have.remove(&y).unwrap_or(0.0));
+            entry(c, y, v, have.next_if(|h| h.0 == y).map_or(0.0, |h| h.1));
         }
-        for (y, w) in have {
-            entry(c, y, 0.0, w);
+        for (other, w) in have {
+            entry(c, other, 0.0, w);
         }
         c.number(self.f0.gradient[j], dual.rows.rhs[i], &|| {
             format!("the cost of {name:?}")
