@@ -9,7 +9,7 @@ use super::problem::Problem;
 use super::provider::Ended;
 use super::provider::lock;
 use super::quadratic::Quadratic;
-use super::schedule::{DOUBTS, FINEST, NEAR, NEARER, ROUNDING};
+use super::schedule::{DOUBTS, FINEST, NEARER, ROUNDING};
 use super::trial::{Trial, polished};
 use crate::solve::certificate::nonlinear::is_locally_infeasible;
 use crate::solve::{SolveError, Strategy};
@@ -160,26 +160,28 @@ impl Driver<'_, '_> {
         }
     }
 
-    /// The elastic form from the person's start, once; then, without a verdict, the least violation.
+    /// The elastic form from the person's start, once.
     pub(super) fn attempt_elastic(&mut self) -> Result<(), SolveError> {
         let runs = !self.elastic_tried && self.settings.runs(Strategy::ElasticForm);
-        let weights: &[f64] = if runs { &[1e3, 1e6] } else { &[] };
         self.elastic_tried = true;
-        let start = self.start.clone();
+        let weights: &[f64] = if runs { &[1e3, 1e6] } else { &[] };
         for &rho in weights {
-            lock(&*self.problem).set_start(start.clone());
-            let trial = self.elastic(rho, 1.0)?;
+            let start = self.start.clone();
+            lock(&*self.problem).set_start(start);
+            let elastic = Elastic::new(self.problem.clone(), rho);
+            let n = elastic.original_variables();
+            let solution = self.call(Arc::new(Mutex::new(elastic)), &[])?;
+            let mut x = solution.x;
+            x.truncate(n);
+            let trial = self.judge(x, solution.lambda, solution.ended);
             let optimal = trial.is_optimal();
             self.note_infeasibility(&trial);
             self.keep(trial);
             if optimal || self.is_stopped() {
-                return Ok(());
+                break;
             }
         }
-        if self.infeasibility.is_some() || !self.settings.runs(Strategy::LeastViolation) {
-            return Ok(());
-        }
-        self.minimise_violation()
+        Ok(())
     }
 
     /// Keeps an elastic solution whose multipliers prove that there is no feasible point nearby.
@@ -195,35 +197,5 @@ impl Driver<'_, '_> {
         if !trial.is_feasible() && self.infeasibility.is_none() && proved {
             self.infeasibility = Some((trial.clone(), y));
         }
-    }
-
-    fn elastic(&mut self, rho: f64, weight: f64) -> Result<Trial, SolveError> {
-        let elastic = Elastic::new(self.problem.clone(), rho, weight);
-        let n = elastic.original_variables();
-        let solution = self.call(Arc::new(Mutex::new(elastic)), &[])?;
-        let mut x = solution.x;
-        x.truncate(n);
-        Ok(self.judge(x, solution.lambda, solution.ended))
-    }
-
-    /// The nearest point to feasibility: a start for the problem itself, or evidence that there is
-    /// none.
-    fn minimise_violation(&mut self) -> Result<(), SolveError> {
-        let Some(best) = self.best.clone().filter(|t| !t.is_feasible()) else {
-            return Ok(());
-        };
-        lock(&*self.problem).set_start(best.x);
-        let trial = self.elastic(1.0, 0.0)?;
-        if trial.is_feasible() {
-            let x = trial.x.clone();
-            self.keep(trial);
-            if !self.is_stopped() {
-                self.attempt_from(x, NEAR)?;
-            }
-            return Ok(());
-        }
-        self.note_infeasibility(&trial);
-        self.keep(trial);
-        Ok(())
     }
 }

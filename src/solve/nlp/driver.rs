@@ -8,7 +8,7 @@
 //!
 //! * a point that satisfies them is looked at once more: negative curvature on the tangent space of
 //!   what is active shows a saddle, which is left along that direction and solved again;
-//! * anything else is tried again with other options and starts (see [`SCHEDULE`]), at last in
+//! * anything else is tried again from other starts (see [`RESTARTS`]), at last in
 //!   elastic form, which copes with dependent equations and with more equations than variables;
 //! * a claim of infeasibility or unboundedness must show in the point.
 //!
@@ -21,8 +21,8 @@ use super::problem::{Nlp, Problem};
 use super::provider::{Control, Ended, Progress, Provider, Shared, Solution, lock};
 use super::quadratic::Quadratic;
 use super::schedule::{
-    AGREEMENT, BASE, BESIDE, BETTER, CHEAP, DOUBT, ENOUGH, EXACT, FIRST_PATIENCE, From,
-    LEAST_PATIENCE, OVERHEAD, PATIENCE, SCHEDULE, SHARP, TIMES,
+    AGREEMENT, BASE, BETTER, CHEAP, DOUBT, ENOUGH, FIRST_PATIENCE, From, LEAST_PATIENCE, NEAR,
+    OVERHEAD, PATIENCE, RESTARTS, TIMES,
 };
 use super::slqp;
 use super::trial::{Trial, clean, polished, residuals_at, tidy, without_noise};
@@ -111,17 +111,6 @@ fn placed(nlp: &dyn Nlp, x: &[f64], by: f64, anywhere: bool, seed: u64) -> Vec<f
     x.iter().zip(lower.iter().zip(upper)).map(place).collect()
 }
 
-/// What to do about a point that is all but a solution.
-fn nearly(t: &Trial) -> Option<(Strategy, &'static [(&'static str, &'static str)])> {
-    let solved = matches!(t.ended, Ended::Solved | Ended::Acceptable);
-    match (t.is_nearly_optimal(), t.is_feasible() && solved) {
-        _ if t.is_stationary() => None,
-        (true, _) if t.ended != Ended::Iterations => Some((Strategy::TighterTolerance, SHARP)),
-        (_, true) => Some((Strategy::ExactBounds, EXACT)),
-        _ => None,
-    }
-}
-
 /// The start point must have values; derivatives may be missing there.
 fn check_start(
     instance: &Instance,
@@ -177,8 +166,6 @@ pub(super) struct Driver<'a, 'm> {
     pub(super) at_saddle: bool,
     /// There is no feasible point.
     pub(super) impossible: bool,
-    /// What was all but a solution was solved for once more.
-    repeated: bool,
     /// The elastic form was solved.
     pub(super) elastic_tried: bool,
     /// How often negative curvature of the violation was followed.
@@ -219,7 +206,6 @@ impl<'a, 'm> Driver<'a, 'm> {
             ended: Ended::Broken,
             at_saddle: false,
             impossible: false,
-            repeated: false,
             elastic_tried: false,
             violation_escapes: 0,
             enough: f64::INFINITY,
@@ -279,7 +265,7 @@ impl Driver<'_, '_> {
         if kinks.is_some() && self.settings.runs(Strategy::KinkSmoothing) {
             self.round_kinks()?;
         }
-        for (strategy, from, options) in SCHEDULE.into_iter().take(self.attempts()) {
+        for (strategy, from) in RESTARTS.into_iter().take(self.attempts()) {
             let proved =
                 self.infeasibility.is_some() && !self.best.as_ref().is_some_and(Trial::is_feasible);
             if self.is_settled() || proved || self.work() > self.enough {
@@ -289,14 +275,13 @@ impl Driver<'_, '_> {
                 continue;
             }
             if !self.named
-                && from != From::Start
                 && let Some(x) = self.start_point(from)
             {
                 self.sequential(x, None);
                 self.leave_saddles()?;
             }
             if !self.is_settled() {
-                self.attempt(from, options)?;
+                self.attempt(from, NEAR)?;
                 self.leave_saddles()?;
             }
         }
@@ -446,16 +431,6 @@ impl Driver<'_, '_> {
         Some(placed(&*problem, &self.start, by, anywhere, seed))
     }
 
-    /// A point near x with derivatives, where x has none: √ of a sum of squares that is 0 has a value only.
-    fn beside(&self, x: &[f64]) -> Option<Vec<f64>> {
-        let mut problem = lock(&*self.problem);
-        let all = BESIDE.map(|by| placed(&*problem, x, by, false, 1));
-        all.into_iter().find(|x| {
-            let mut gradient = vec![0.0; x.len()];
-            problem.gradient(x, &mut gradient).is_some() && problem.jacobian_entries(x).is_some()
-        })
-    }
-
     pub(super) fn consistent(&self) -> Option<Vec<f64>> {
         let problem = lock(&*self.problem);
         let mut evaluator = Evaluator::new(self.instance);
@@ -567,35 +542,14 @@ impl Driver<'_, '_> {
     ) -> Result<Option<f64>, SolveError> {
         lock(&*self.problem).set_start(x.clone());
         let shared: Shared = self.problem.clone();
-        let mut solution = self.call(shared.clone(), extra)?;
-        if solution.ended == Ended::InvalidNumber
-            && !self.is_stopped()
-            && let Some(beside) = self.beside(&x)
-            && self.settings.runs(Strategy::PerturbedStart)
-        {
-            lock(&*self.problem).set_start(beside);
-            solution = self.call(shared, extra)?;
-        }
+        let solution = self.call(shared, extra)?;
         if solution.ended == Ended::TooFewDegrees && !self.is_stopped() {
             if !self.elastic_tried {
                 self.attempt_elastic()?;
             }
             return Ok(None);
         }
-        let mut trial = self.judge(solution.x, solution.lambda, solution.ended);
-        if let Some((strategy, options)) = nearly(&trial)
-            && !self.repeated
-            && !self.is_stopped()
-            && self.settings.runs(strategy)
-        {
-            self.repeated = true;
-            let shared: Shared = self.problem.clone();
-            let solution = self.call(shared, options)?;
-            let again = self.judge(solution.x, solution.lambda, solution.ended);
-            if again.better(&trial) {
-                trial = again;
-            }
-        }
+        let trial = self.judge(solution.x, solution.lambda, solution.ended);
         let trial = self.follow(x, trial)?;
         let objective = trial.is_optimal().then_some(trial.objective);
         self.keep(trial);

@@ -17,8 +17,6 @@ pub struct Elastic {
     n: usize,
     m: usize,
     rho: f64,
-    /// Weight of f: 0 for a pure feasibility problem.
-    weight: f64,
     bounds: (Vec<f64>, Vec<f64>),
     sides: (Vec<f64>, Vec<f64>),
     start: Vec<f64>,
@@ -28,7 +26,7 @@ pub struct Elastic {
 
 impl Elastic {
     /// Wraps a problem; the elastic variables start at the violations.
-    pub fn new(inner: Shared, rho: f64, weight: f64) -> Self {
+    pub fn new(inner: Shared, rho: f64) -> Self {
         let mut guard = lock(&inner);
         let (n, m) = guard.size();
         let x = guard.start().to_vec();
@@ -69,7 +67,6 @@ impl Elastic {
             n,
             m,
             rho,
-            weight,
             bounds,
             sides,
             start,
@@ -121,14 +118,13 @@ impl Nlp for Elastic {
         let (x, slack) = x.split_at(self.n);
         let penalty = self.rho * slack.iter().sum::<f64>();
         let f = lock(&self.inner).objective(x)?;
-        Some(self.weight * f + penalty)
+        Some(f + penalty)
     }
 
     fn gradient(&mut self, x: &[f64], out: &mut [f64]) -> Option<()> {
         let (own, elastic) = out.split_at_mut(self.n);
         elastic.fill(self.rho);
         lock(&self.inner).gradient(&x[..self.n], own)?;
-        own.iter_mut().for_each(|v| *v *= self.weight);
         Some(())
     }
 
@@ -150,7 +146,7 @@ impl Nlp for Elastic {
     }
 
     fn hessian(&mut self, x: &[f64], sigma: f64, lambda: &[f64], out: &mut [f64]) -> Option<()> {
-        lock(&self.inner).hessian(&x[..self.n], sigma * self.weight, lambda, out)
+        lock(&self.inner).hessian(&x[..self.n], sigma, lambda, out)
     }
 
     fn failures(&self) -> u64 {

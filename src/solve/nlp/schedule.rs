@@ -33,9 +33,6 @@ pub(super) enum From {
     Anywhere(u64),
 }
 
-/// How far a start without derivatives is moved, relative to its size.
-pub(super) const BESIDE: [f64; 3] = [1e-6, 1e-4, 1e-2];
-
 /// Iterations that one attempt may take; the first less, for what takes so many is better begun elsewhere.
 pub(super) const PATIENCE: u64 = 3000;
 pub(super) const FIRST_PATIENCE: u64 = 500;
@@ -61,22 +58,10 @@ pub(super) const CENTRAL: &[(&str, &str)] = &[
     ("bound_frac", "0.5"),
 ];
 
-/// A smaller last barrier, for variables that are neither clearly at a bound nor clearly off it.
-pub(super) const SHARP: &[(&str, &str)] = &[("tol", "1e-11"), ("compl_inf_tol", "1e-14")];
-
-/// Bounds as they are, where a solution owes its objective to their relaxation.
-pub(super) const EXACT: &[(&str, &str)] = &[("bound_relax_factor", "0")];
-
-/// A restart: its name, where it begins, and its options.
-pub(super) type Attempt = (Strategy, From, &'static [(&'static str, &'static str)]);
-
-/// What to try when neither sequential programs nor a plain run has led to a certified point.
-pub(super) const SCHEDULE: [Attempt; 5] = [
-    (Strategy::RestartFromBest, From::Best, NEAR),
-    (Strategy::RestartConsistent, From::Consistent, &[]),
-    (Strategy::RestartNear, From::Start, NEAR),
-    (Strategy::RestartMoved, From::Moved(0.1), NEAR),
-    (Strategy::RestartCentral, From::Start, CENTRAL),
+/// Where to begin again when neither sequential programs nor a plain run has led to a certified point.
+pub(super) const RESTARTS: [(Strategy, From); 2] = [
+    (Strategy::RestartFromBest, From::Best),
+    (Strategy::RestartMoved, From::Moved(0.1)),
 ];
 
 /// From where sequential programs doubt a proof that nothing near the start is feasible.

@@ -60,11 +60,6 @@ impl Trial {
         misses.fold(0.0, f64::max)
     }
 
-    /// Feasible, and stationary but for a little.
-    pub(super) fn is_nearly_optimal(&self) -> bool {
-        self.is_feasible() && self.residuals.dual_relative <= 1e3 * TOLERANCE
-    }
-
     /// Whether the residuals are not above those of the other, or what matters.
     fn is_as_good(&self, other: &Self, matters: f64) -> bool {
         let (now, before) = (&self.residuals, &other.residuals);

@@ -42,8 +42,8 @@ impl Effort {
 
 /// Variables and constraints at most: each program is factorised afresh.
 const LARGEST: usize = 10_000;
-/// The penalty ν at first, from the same start again, and at most.
-const PENALTIES: [f64; 2] = [10.0, 1e5];
+/// The penalty ν at first, and at most.
+const FIRST_PENALTY: f64 = 10.0;
 const MOST_PENALTY: f64 = 1e9;
 /// A step is taken from this part of the promised decrease on.
 const TAKEN: f64 = 0.05;
@@ -113,53 +113,43 @@ pub fn solve(nlp: &mut dyn Nlp, request: Request<'_>, budget: &Budget) -> Option
     {
         *x = x.max(l).min(u);
     }
-    let mut run: Option<Run> = None;
-    // where a violation was taken for nothing the way led far away: then it costs more from the start
-    for penalty in PENALTIES {
-        let mut frame = Frame::new(nlp, &start)?;
-        frame.widen(request.width);
-        let values = Values::at(nlp, &frame, &start)?;
-        let at = Point::new(nlp, &frame, start.clone(), values)?;
-        let linear = Linear::new(&frame, &at, request.effort.pivots * (n + m) as u64);
-        let lambda = request.multipliers.map(|l| frame.in_units(l));
-        let mut method = Method {
-            nlp,
-            lambda: lambda.clone().unwrap_or_else(|| vec![0.0; m]),
-            linear,
-            frame,
-            at,
-            penalty,
-            weight: 0.0,
-            radius: 1.0,
-            linear_radius: 1.0,
-            budget,
-            lowered: 0,
-            shift: 1,
-            strategies: request.strategies,
-        };
-        let working = lambda.and_then(|l| method.named_by(&l));
-        let before = run.as_ref().map_or(0, |r| r.steps);
-        let (steps, mut end) = method.run(working, request.effort.steps);
-        let violated = method.frame.violation(&method.at.values.g) > 0.0;
-        if violated && matches!(end, End::Solved | End::Stuck) {
-            end = method.prove();
-        }
-        if budget.wants_log() {
-            let l = method.lambda.iter().fold(0.0_f64, |s, l| s.max(l.abs()));
-            budget.log(format!("largest multiplier {l:.1e}"));
-        }
-        run = Some(Run {
-            lambda: method.frame.multipliers(&method.lambda),
-            x: method.at.x,
-            steps: before + steps,
-            end,
-        });
-        let strategies = request.strategies;
-        if !(violated && end == End::Diverging && strategies.run(Strategy::HeavierPenalty)) {
-            break;
-        }
+    let mut frame = Frame::new(nlp, &start)?;
+    frame.widen(request.width);
+    let values = Values::at(nlp, &frame, &start)?;
+    let at = Point::new(nlp, &frame, start, values)?;
+    let linear = Linear::new(&frame, &at, request.effort.pivots * (n + m) as u64);
+    let lambda = request.multipliers.map(|l| frame.in_units(l));
+    let mut method = Method {
+        nlp,
+        lambda: lambda.clone().unwrap_or_else(|| vec![0.0; m]),
+        linear,
+        frame,
+        at,
+        penalty: FIRST_PENALTY,
+        weight: 0.0,
+        radius: 1.0,
+        linear_radius: 1.0,
+        budget,
+        lowered: 0,
+        shift: 1,
+        strategies: request.strategies,
+    };
+    let working = lambda.and_then(|l| method.named_by(&l));
+    let (steps, mut end) = method.run(working, request.effort.steps);
+    let violated = method.frame.violation(&method.at.values.g) > 0.0;
+    if violated && matches!(end, End::Solved | End::Stuck) {
+        end = method.prove();
     }
-    run
+    if budget.wants_log() {
+        let l = method.lambda.iter().fold(0.0_f64, |s, l| s.max(l.abs()));
+        budget.log(format!("largest multiplier {l:.1e}"));
+    }
+    Some(Run {
+        lambda: method.frame.multipliers(&method.lambda),
+        x: method.at.x,
+        steps,
+        end,
+    })
 }
 
 struct Method<'a, 'm> {
@@ -624,7 +614,7 @@ impl Method<'_, '_> {
             self.weight = 2.0 * needed;
         }
         if short == 0.0 {
-            self.penalty = (5.0 * needed).clamp(PENALTIES[0], self.penalty.max(PENALTIES[0]));
+            self.penalty = (5.0 * needed).clamp(FIRST_PENALTY, self.penalty.max(FIRST_PENALTY));
         }
     }
 
