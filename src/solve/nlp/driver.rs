@@ -17,6 +17,7 @@
 
 use super::consistent::consistent_start;
 use super::growth::Growth;
+use super::newton;
 use super::problem::{Nlp, Problem};
 use super::provider::{Control, Ended, Progress, Provider, Shared, Solution, lock};
 use super::quadratic::Quadratic;
@@ -31,6 +32,7 @@ use crate::autodiff::{ErrorKind, EvalFailure, Evaluator, kinks};
 use crate::model::instance::Instance;
 use crate::solve::backend::Task;
 use crate::solve::budget::{self, Budget, Size, Stop};
+use crate::solve::certificate::TOLERANCE;
 use crate::solve::certificate::nonlinear::beside_kinks;
 use crate::solve::factor_size::symmetric_size;
 use crate::solve::random::Random;
@@ -47,6 +49,9 @@ const LARGE: f64 = 1e10;
 
 /// How often negative curvature of the violation is followed.
 const MOST_ESCAPES: u32 = 3;
+
+/// Rows without multipliers are violated by less than this where the sequential method ends.
+const NEARLY: f64 = 1e-4;
 
 /// What rows without multipliers are widened by, in units of their largest entry.
 const WIDTH: f64 = 1e-8;
@@ -485,8 +490,12 @@ impl Driver<'_, '_> {
             self.note_infeasibility(&trial);
         }
         let ended = !matches!(run.end, slqp::End::Infeasible | slqp::End::Diverging);
-        let regular = self.kinks.is_some() || trial.lambda.is_empty();
-        let irregular = ended && !regular && trial.is_feasible() && !trial.is_optimal();
+        let regular = self.kinks.is_some() || trial.lambda.is_empty() || trial.is_optimal();
+        let near = match run.heavy {
+            true => trial.residuals.primal_relative <= NEARLY,
+            false => trial.is_feasible() && run.end != slqp::End::Spent,
+        };
+        let irregular = ended && !regular && near;
         let trial = match irregular && self.settings.runs(Strategy::WidenedRows) {
             true => self.without_multipliers(trial),
             false => trial,
@@ -496,9 +505,20 @@ impl Driver<'_, '_> {
 
     /// Where rows have no multipliers, as a square that is to be 0: the point is optimal if the same rows, a little wider, have an
     /// optimum with multipliers and all but the same value.
-    fn without_multipliers(&mut self, trial: Trial) -> Trial {
+    fn without_multipliers(&mut self, mut trial: Trial) -> Trial {
         let mut problem = lock(&*self.problem);
         problem.set_start(trial.x.clone());
+        if !trial.is_feasible() {
+            let budget = self.budget;
+            let run = newton::solve(&mut *problem, &mut |_| budget.is_over());
+            drop(problem);
+            if let Some(run) = run {
+                self.spend(run.steps);
+                trial = self.judge(run.x, trial.lambda, trial.ended);
+            }
+            problem = lock(&*self.problem);
+            problem.set_start(trial.x.clone());
+        }
         let request = slqp::Request {
             multipliers: None,
             effort: slqp::Effort::FULL,
@@ -510,14 +530,16 @@ impl Driver<'_, '_> {
         let Some(run) = run else { return trial };
         self.spend(run.steps);
         let wide = self.judge(run.x, run.lambda, Ended::Solved);
-        let near =
-            (wide.objective - trial.objective).abs() <= 1e-3 * trial.objective.abs().max(1.0);
-        match (wide.is_optimal(), near) {
-            (true, true) => Trial {
+        let difference = (wide.objective - trial.objective).abs();
+        let near = difference <= 1e-3 * trial.objective.abs().max(1.0);
+        let (primal, dual) = (wide.residuals.primal_relative, wide.residuals.dual_relative);
+        let solved = run.end == slqp::End::Solved && primal <= NEARLY && dual <= TOLERANCE;
+        match near && trial.is_feasible() {
+            true if solved => Trial {
                 irregular: true,
                 ..trial
             },
-            (true, false) => wide,
+            false if wide.is_optimal() => wide,
             _ => trial,
         }
     }

@@ -45,6 +45,8 @@ const LARGEST: usize = 10_000;
 /// The penalty ν at first, and at most.
 const FIRST_PENALTY: f64 = 10.0;
 const MOST_PENALTY: f64 = 1e9;
+/// Multipliers, in units, that rows of an ordinary program do not have.
+const HEAVY: f64 = 1e3;
 /// A step is taken from this part of the promised decrease on.
 const TAKEN: f64 = 0.05;
 /// A point with a larger number is a start for nothing.
@@ -94,6 +96,8 @@ pub struct Run {
     pub x: Vec<f64>,
     /// Multipliers λ of the constraints, L = f + λᵀg.
     pub lambda: Vec<f64>,
+    /// They are so large that the rows may have none.
+    pub heavy: bool,
     /// Steps.
     pub steps: u64,
     /// How.
@@ -140,11 +144,10 @@ pub fn solve(nlp: &mut dyn Nlp, request: Request<'_>, budget: &Budget) -> Option
     if violated && matches!(end, End::Solved | End::Stuck) {
         end = method.prove();
     }
-    if budget.wants_log() {
-        let l = method.lambda.iter().fold(0.0_f64, |s, l| s.max(l.abs()));
-        budget.log(format!("largest multiplier {l:.1e}"));
-    }
+    let largest = method.lambda.iter().fold(0.0_f64, |s, l| s.max(l.abs()));
+    budget.log(format!("largest multiplier {largest:.1e}"));
     Some(Run {
+        heavy: largest > HEAVY,
         lambda: method.frame.multipliers(&method.lambda),
         x: method.at.x,
         steps,
