@@ -210,7 +210,6 @@ fn a_stop_loses_nothing() {
 }
 
 #[test]
-#[ignore = "not yet seen to hold at every question"]
 fn a_stop_loses_nothing_of_an_mpec() {
     stopped_everywhere(&|using| using.has_pairs() && using.has_objective());
 }

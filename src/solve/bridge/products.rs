@@ -38,7 +38,8 @@ pub struct Relaxed {
     pub exact: Arc<Exact>,
 }
 
-/// The best point that satisfies the pairs of those at which a relaxed program was evaluated.
+/// The best point that satisfies the pairs of those at which a program was evaluated: a relaxed one, or a branch, where all do.
+#[derive(Default)]
 pub struct Exact {
     /// Column, its bound, and the slack between which there is a product.
     products: Vec<(usize, f64, usize)>,
@@ -57,10 +58,16 @@ impl Exact {
         }
     }
 
-    /// The point, once.
-    pub fn take(&self) -> Option<Vec<f64>> {
+    /// Who hears of the points of the program.
+    pub fn seen(self: &Arc<Self>) -> Seen {
+        let exact = Arc::clone(self);
+        Arc::new(move |objective, level| exact.see(objective, level))
+    }
+
+    /// The point with its objective, once.
+    pub fn take(&self) -> Option<(f64, Vec<f64>)> {
         let mut best = self.best.lock().unwrap_or_else(PoisonError::into_inner);
-        best.take().map(|b| b.1)
+        best.take()
     }
 }
 
@@ -160,12 +167,6 @@ impl Relaxed {
                 best: Mutex::new(None),
             }),
         }
-    }
-
-    /// Who hears of the points of the program.
-    pub fn seen(&self) -> Seen {
-        let exact = Arc::clone(&self.exact);
-        Arc::new(move |objective, level| exact.see(objective, level))
     }
 
     /// Sets μ, and starts from a point of the program.

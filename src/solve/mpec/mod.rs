@@ -29,7 +29,8 @@ mod tree;
 
 use super::answer::{Answer, answer_with, subproblem};
 use super::backend::{Backend, Reply, Seen, Supports, Task, Terms};
-use super::bridge::products::{Kind, Relaxed};
+use super::bridge::products::{Exact, Kind, Relaxed};
+use super::certificate::TOLERANCE;
 use super::lp::Ended;
 use super::registry::BACKENDS;
 use super::{
@@ -44,6 +45,7 @@ pub use settings::OPTIONS;
 use settings::{Method, Options};
 use stationarity::Verdict;
 use std::collections::HashSet;
+use std::sync::Arc;
 
 /// What is known about stationarity, for the report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -151,7 +153,7 @@ struct Search<'a, 'm> {
     reserve: Option<Found>,
     /// A point that satisfies everything, in case that nothing better is found: its branch was not solved.
     fallback: Option<Found>,
-    /// The start, and points of relaxed programs that satisfy the pairs, in case of a stop; without the objective's level.
+    /// The start, and points of programs on the way that satisfy the pairs: none of them may be lost; without the objective's level.
     passed: Vec<Vec<f64>>,
     /// No point satisfies all pairs, proved.
     empty: bool,
@@ -189,10 +191,12 @@ impl Search<'_, '_> {
                     self.improve(&self.program.complete(start.clone()))?;
                 }
                 self.allow(FIRST_WORK.max(FIRST_ITERATIONS * self.size()));
-                for kind in [kind, Kind::Penalty] {
-                    if self.best.is_none() && !self.is_over() {
-                        self.relax(kind, &start)?;
-                    }
+                let lacks_point = |me: &Self| me.best.is_none() && !me.is_over();
+                if lacks_point(self) {
+                    self.relax(kind, &start)?;
+                }
+                if lacks_point(self) && self.settings.runs(Strategy::PenalisedProducts) {
+                    self.relax(Kind::Penalty, &start)?;
                 }
                 if self.options.swaps {
                     self.explore(kind, &start)?;
@@ -284,6 +288,7 @@ impl Search<'_, '_> {
             return Ok(None);
         }
         let instance = self.program.branch(&pieces, start);
+        let passed = Arc::new(Exact::default());
         let answer = match instance.is_linear() {
             true => self.budget.silently(|budget| {
                 budget.within(f64::INFINITY, most, |budget| {
@@ -291,7 +296,7 @@ impl Search<'_, '_> {
                     subproblem(&Task { basis, ..task }, self.settings, budget)
                 })
             }),
-            false => self.program(self.choice, &instance, &[], most, None),
+            false => self.program(self.choice, &instance, &[], most, Some(&passed.seen())),
         };
         let answer = match answer {
             Ok(a) => a,
@@ -304,6 +309,8 @@ impl Search<'_, '_> {
         };
         let judged = self.program.judge(&answer.outcome.level);
         let objective = self.program.objective(&answer.outcome.level);
+        let worse = |p: &(f64, Vec<f64>)| !judged.feasible || p.0 < objective;
+        self.passed.extend(passed.take().filter(worse).map(|p| p.1));
         self.log(&format!(
             "branch: {}, objective {:.10}, primal {:.1e}, complementarity {:.1e}",
             answer.status.name(),
@@ -517,12 +524,13 @@ impl Search<'_, '_> {
         loop {
             relaxed.tighten(self.program, mu, &x);
             let extra = [("bound_relax_factor", "0"), ("mu_strategy", "adaptive")];
-            let seen = relaxed.seen();
+            let seen = relaxed.exact.seen();
             let a = self.program(interior, &relaxed.instance, &extra, u64::MAX, Some(&seen));
-            self.passed.extend(relaxed.exact.take().map(|mut level| {
-                level.truncate(n);
-                level
-            }));
+            self.passed
+                .extend(relaxed.exact.take().map(|(_, mut level)| {
+                    level.truncate(n);
+                    level
+                }));
             let a = a?;
             let y = &a.outcome.level[..n];
             let judged = self.program.judge(y);
@@ -551,7 +559,8 @@ impl Search<'_, '_> {
                         && f.objective <= value + 1e-2 * f.objective.abs().max(1.0)
                 };
                 if self.seen.contains(&pieces) {
-                    if self.best.as_ref().is_some_and(settled) {
+                    let is_settled = self.best.as_ref().is_some_and(settled);
+                    if is_settled || !self.settings.runs(Strategy::BranchAgain) {
                         return Ok(());
                     }
                     // From elsewhere another local solution of the branch may be reached.
@@ -584,20 +593,30 @@ impl Search<'_, '_> {
 
     /// What was found, and what is claimed of it.
     fn finish(&mut self) -> Result<Reply, SolveError> {
-        if self.budget.stopped().is_some() {
-            for level in std::mem::take(&mut self.passed) {
-                let level = self.program.complete(level);
-                let pieces = self.program.nearest(&level);
-                self.keep_point(&level, pieces);
+        for level in std::mem::take(&mut self.passed) {
+            let level = self.program.complete(level);
+            let pieces = self.program.nearest(&level);
+            self.keep_point(&level, pieces);
+        }
+        if let Some(found) = self.fallback.take() {
+            let better =
+                |b: &Found| found.objective < b.objective - TOLERANCE * b.objective.abs().max(1.0);
+            let goes_on = self.options.method != Method::Check && !self.is_over();
+            if goes_on && self.best.as_ref().is_none_or(better) {
+                // passed on the way to a worse local solution, or to none
+                self.seen.remove(&found.pieces);
+                self.improve(&found.outcome.level)?;
+            }
+            if self.best.is_none() || self.budget.stopped().is_some() {
+                self.keep(&found);
             }
         }
-        if let Some(found) = self.fallback.take()
-            && (self.best.is_none() || self.budget.stopped().is_some())
-        {
-            self.keep(&found);
-        }
         let searched = self.options.method != Method::Check;
-        if searched && self.best.is_none() && !self.is_over() {
+        if searched
+            && self.best.is_none()
+            && !self.is_over()
+            && self.settings.runs(Strategy::FeasibleByBranching)
+        {
             match bound::any(self.program, self.budget) {
                 bound::Any::Point(level) => self.improve(&level)?,
                 bound::Any::Empty => self.empty = true,

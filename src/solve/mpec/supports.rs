@@ -11,7 +11,7 @@
 use super::pieces::{Pieces, Round, Solution};
 use super::{Found, ModelStatus, Piece, Search, SolveError, Stationarity};
 use crate::solve::lp::watch;
-use crate::solve::{Budget, Progress};
+use crate::solve::{Budget, Progress, Strategy};
 
 /// Swaps, in simplex iterations.
 const SWAPS: u64 = 80_000;
@@ -43,7 +43,10 @@ impl Search<'_, '_> {
         } else {
             levels.extend(self.equilibrium(start, &[]));
         }
-        levels.extend(self.equilibrium(&vec![0.0; start.len()], &[("crash_method", "none")]));
+        if self.settings.runs(Strategy::EquilibriumFromZero) {
+            let options = [("crash_method", "none")];
+            levels.extend(self.equilibrium(&vec![0.0; start.len()], &options));
+        }
         let best = self.best_support(&mut pieces, &levels);
         self.budget.spend(pieces.iterations());
         match best {

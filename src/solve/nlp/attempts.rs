@@ -9,7 +9,7 @@ use super::problem::Problem;
 use super::provider::Ended;
 use super::provider::lock;
 use super::quadratic::Quadratic;
-use super::schedule::{DOUBTS, FINEST, NEARER, ROUNDING};
+use super::schedule::{ELSEWHERE, FINEST, NEARER, ROUNDING};
 use super::trial::{Trial, polished};
 use crate::solve::certificate::nonlinear::is_locally_infeasible;
 use crate::solve::{SolveError, Strategy};
@@ -60,15 +60,14 @@ impl Driver<'_, '_> {
 
     /// Where nothing near the start is feasible: from elsewhere. Whether that settles it.
     fn doubt(&mut self) -> Result<bool, SolveError> {
-        for from in DOUBTS {
-            if let Some(x) = self.start_point(from) {
-                if self.is_square() {
-                    lock(&*self.problem).set_start(x.clone());
-                    self.attempt_newton();
-                }
-                if !self.is_settled() {
-                    self.sequential(x, None);
-                }
+        for from in ELSEWHERE {
+            let x = self.start_point(from);
+            if self.is_square() {
+                lock(&*self.problem).set_start(x.clone());
+                self.attempt_newton();
+            }
+            if !self.is_settled() {
+                self.sequential(x, None);
             }
             if self.best.as_ref().is_some_and(Trial::is_feasible) {
                 return self.is_settled_by("slqp");

@@ -22,7 +22,7 @@ use super::problem::{Nlp, Problem};
 use super::provider::{Control, Ended, Progress, Provider, Shared, Solution, lock};
 use super::quadratic::Quadratic;
 use super::schedule::{
-    AGREEMENT, BASE, BETTER, CHEAP, DOUBT, ENOUGH, FIRST_PATIENCE, From, LEAST_PATIENCE, NEAR,
+    AGREEMENT, BASE, CHEAP, DOUBT, ELSEWHERE, ENOUGH, FIRST_PATIENCE, From, LEAST_PATIENCE, NEAR,
     OVERHEAD, PATIENCE, RESTARTS, TIMES,
 };
 use super::slqp;
@@ -279,9 +279,8 @@ impl Driver<'_, '_> {
             if !self.settings.runs(strategy) {
                 continue;
             }
-            if !self.named
-                && let Some(x) = self.start_point(from)
-            {
+            if !self.named {
+                let x = self.start_point(from);
                 self.sequential(x, None);
                 self.leave_saddles()?;
             }
@@ -326,12 +325,12 @@ impl Driver<'_, '_> {
             return Ok(());
         }
         let mut agreed = true;
-        for (k, (from, options)) in BETTER.into_iter().enumerate() {
+        for (k, from) in ELSEWHERE.into_iter().enumerate() {
             if self.is_stopped() || (k >= AGREEMENT && agreed) || self.work() > 5.0 * CHEAP {
                 break;
             }
             let before = optimal(self);
-            let found = self.attempt(from, options)?;
+            let found = self.attempt(from, NEAR)?;
             let same = found.is_none_or(|f| (f - first).abs() <= 1e-6 * first.abs().max(1.0));
             agreed &= same;
             if optimal(self) != before {
@@ -423,17 +422,16 @@ impl Driver<'_, '_> {
         self.budget.spend(iterations);
     }
 
-    /// None where this start is the same as the person's, or is a solution.
-    pub(super) fn start_point(&mut self, from: From) -> Option<Vec<f64>> {
+    /// The point where an attempt starts.
+    pub(super) fn start_point(&self, from: From) -> Vec<f64> {
         let (seed, by, anywhere) = match (from, &self.best) {
-            (From::Best, Some(best)) => return Some(best.x.clone()),
-            (From::Best, None) | (From::Start, _) => return Some(self.start.clone()),
-            (From::Consistent, _) => return self.consistent(),
+            (From::Best, Some(best)) => return best.x.clone(),
+            (From::Best, None) | (From::Start, _) => return self.start.clone(),
             (From::Moved(by), _) => (12345, by, false),
             (From::Anywhere(seed), _) => (seed.wrapping_mul(7919), 1.0, true),
         };
         let problem = lock(&*self.problem);
-        Some(placed(&*problem, &self.start, by, anywhere, seed))
+        placed(&*problem, &self.start, by, anywhere, seed)
     }
 
     pub(super) fn consistent(&self) -> Option<Vec<f64>> {
@@ -551,10 +549,7 @@ impl Driver<'_, '_> {
         from: From,
         extra: &[(&str, &str)],
     ) -> Result<Option<f64>, SolveError> {
-        match self.start_point(from) {
-            Some(x) => self.attempt_from(x, extra),
-            None => Ok(None),
-        }
+        self.attempt_from(self.start_point(from), extra)
     }
 
     pub(super) fn attempt_from(

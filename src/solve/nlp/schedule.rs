@@ -23,8 +23,6 @@ pub(super) use crate::solve::certificate::nonlinear::KINK_WIDTH as FINEST;
 pub(super) enum From {
     /// The person's start point.
     Start,
-    /// The person's start, with the variables that the model defines computed.
-    Consistent,
     /// The best point so far.
     Best,
     /// The person's start, moved by this fraction of its size (and at least by this much).
@@ -52,11 +50,6 @@ pub(super) const NEARER: &[(&str, &str)] = &[
     ("bound_push", "1e-8"),
     ("bound_frac", "1e-8"),
 ];
-pub(super) const CENTRAL: &[(&str, &str)] = &[
-    ("mu_init", "10"),
-    ("bound_push", "0.5"),
-    ("bound_frac", "0.5"),
-];
 
 /// Where to begin again when neither sequential programs nor a plain run has led to a certified point.
 pub(super) const RESTARTS: [(Strategy, From); 2] = [
@@ -64,8 +57,9 @@ pub(super) const RESTARTS: [(Strategy, From); 2] = [
     (Strategy::RestartMoved, From::Moved(0.1)),
 ];
 
-/// From where sequential programs doubt a proof that nothing near the start is feasible.
-pub(super) const DOUBTS: [From; 6] = [
+/// From where a proof that nothing near the start is feasible is doubted, and where a better optimum than a certified one is looked for:
+/// there the first [`AGREEMENT`] are always tried, the others where these did not agree.
+pub(super) const ELSEWHERE: [From; 6] = [
     From::Start,
     From::Moved(0.1),
     From::Moved(1.0),
@@ -73,19 +67,7 @@ pub(super) const DOUBTS: [From; 6] = [
     From::Anywhere(2),
     From::Anywhere(3),
 ];
-
-/// What to try to better a certified point of a small nonconvex problem. The first
-/// [`AGREEMENT`] are always tried; the others where these did not agree.
-pub(super) const BETTER: [(From, &[(&str, &str)]); 7] = [
-    (From::Consistent, NEAR),
-    (From::Start, NEAR),
-    (From::Moved(0.3), &[]),
-    (From::Anywhere(1), &[]),
-    (From::Start, NEARER),
-    (From::Start, CENTRAL),
-    (From::Anywhere(2), NEAR),
-];
-pub(super) const AGREEMENT: usize = 5;
+pub(super) const AGREEMENT: usize = 4;
 
 /// Work (iterations times nonzeros) of the first attempts up to which a search for a better optimum is
 /// cheap: a tenth of a second. What was found in the corpus took at most 1e5.
