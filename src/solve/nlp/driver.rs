@@ -694,7 +694,9 @@ impl Driver<'_, '_> {
             Some(t) if t.is_optimal() || !plain.is_optimal() => t,
             _ => plain,
         };
-        let nearly = affords && best.residual() < 1e-2 && best.residual() > 1e-13;
+        // who was stopped has no time for more factors, and chance would decide what they are worth
+        let ended = !affords || self.budget.stopped().is_some();
+        let nearly = !ended && best.residual() < 1e-2 && best.residual() > 1e-13;
         if nearly
             && self.settings.runs(Strategy::ActiveSetPolish)
             && let Some(t) = polished(self.instance, &mut problem, kinks, &best, 1e-6)

@@ -14,13 +14,15 @@
 
 mod equality;
 mod linear;
+mod model;
 mod point;
 
-use super::problem::{Entry, Nlp};
+use super::problem::Nlp;
 use crate::solve::Budget;
 use crate::solve::strategy::{Strategies, Strategy};
 use equality::{Equality, Working};
 use linear::{Aim, Linear, Step};
+use model::{Model, sum};
 use point::{Frame, Point, Values};
 
 /// What may be spent on it.
@@ -174,69 +176,6 @@ struct Method<'a, 'm> {
     shift: usize,
     strategies: Strategies,
     budget: &'a Budget<'m>,
-}
-
-/// The quadratic model of φ.
-struct Model<'a> {
-    frame: &'a Frame,
-    at: &'a Point,
-    hessian: &'a [Entry],
-    weight: f64,
-}
-
-impl Model<'_> {
-    /// Change of φ along d.
-    fn change(&self, d: &[f64]) -> f64 {
-        let slope: f64 = self.at.gradient.iter().zip(d).map(|(g, d)| g * d).sum();
-        let twice = |&(i, j, h): &Entry| h * d[i] * d[j] * if i == j { 1.0 } else { 2.0 };
-        let curvature: f64 = self.hessian.iter().map(twice).sum();
-        let along = self.at.along(d);
-        let violation = |i: usize| {
-            let g = self.at.values.g[i];
-            self.frame.missing(i, g + along[i]).abs() - self.frame.missing(i, g).abs()
-        };
-        let violation: f64 = (0..self.frame.m).map(violation).sum();
-        slope + 0.5 * curvature + self.weight * violation
-    }
-
-    /// The part of a direction that can be gone from a step, within bounds, rows that do not hold already, and the trust region.
-    fn longest(&self, from: &[f64], direction: &[f64], working: &Working, radius: f64) -> f64 {
-        let mut part = 1.0_f64;
-        let mut meet = |room: f64, rate: f64| {
-            if rate > 0.0 && room < rate * part {
-                part = (room / rate).max(0.0);
-            }
-        };
-        let frame = self.frame;
-        for j in 0..frame.n {
-            let (x, rate) = (self.at.x[j] + from[j], direction[j]);
-            if working.column[j].is_none() {
-                meet(frame.upper[j] - x, rate);
-                meet(x - frame.lower[j], -rate);
-            }
-            if frame.nonlinear[j] {
-                let most = radius * self.at.unit(j);
-                meet(most - from[j], rate);
-                meet(most + from[j], -rate);
-            }
-        }
-        let (start, along) = (self.at.along(from), self.at.along(direction));
-        for i in (0..frame.m).filter(|&i| working.row[i].is_none()) {
-            let value = self.at.values.g[i] + start[i];
-            let missing = frame.missing(i, value);
-            if missing >= 0.0 {
-                meet(frame.above[i] - value, along[i]);
-            }
-            if missing <= 0.0 {
-                meet(value - frame.below[i], -along[i]);
-            }
-        }
-        part
-    }
-}
-
-fn sum(a: &[f64], t: f64, b: &[f64]) -> Vec<f64> {
-    a.iter().zip(b).map(|(a, b)| a + t * b).collect()
 }
 
 /// What the linear program says about going on.
@@ -482,48 +421,11 @@ impl Method<'_, '_> {
         };
         let phi = |v: &Values, weight: f64, frame: &Frame| v.f + weight * frame.violation(&v.g);
         let now = phi(&self.at.values, self.weight, &self.frame);
-        // along the solution of the linear program as far as the quadratic model falls
-        let promise = Model {
-            hessian: &[],
-            ..model
-        }
-        .change(&linear.d);
-        let mut part = match self.at.length(&self.frame, &linear.d) {
-            l if l > self.radius => self.radius / l,
-            _ => 1.0,
+        let (cauchy, part) = model.cauchy(&linear.d, self.radius);
+        let (d, full) = match &quadratic {
+            Some(q) => model.onwards(&cauchy, q, &working, self.radius),
+            None => (cauchy.clone(), false),
         };
-        let zero = vec![0.0; self.frame.n];
-        let scaled = |t: f64| sum(&zero, t, &linear.d);
-        while part > 1e-12 && model.change(&scaled(part)) > 0.1 * part * promise {
-            part *= 0.5;
-        }
-        let cauchy = scaled(part);
-        let mut d = cauchy.clone();
-        let mut full = false;
-        if let Some(q) = &quadratic {
-            // where the model curves downwards beyond what the shift allows
-            let reach = if q.shifted { 16.0 } else { 1.0 };
-            let on = sum(&q.d, -1.0, &cauchy);
-            let far = sum(&zero, reach, &on);
-            let mut t = reach * model.longest(&cauchy, &far, &working, self.radius);
-            let mut best = model.change(&cauchy);
-            for _ in 0..8 {
-                let mut there = sum(&cauchy, t, &on);
-                self.frame.keep_inside(&self.at.x, &mut there);
-                let change = model.change(&there);
-                if change > best && d != cauchy {
-                    break;
-                }
-                if change <= best {
-                    full = t >= 1.0;
-                    (d, best) = (there, change);
-                    if !q.shifted {
-                        break;
-                    }
-                }
-                t *= 0.5;
-            }
-        }
         let promised = -model.change(&d);
         let small = promised <= ROUNDING * now.abs().max(1.0);
         let mut next = sum(&self.at.x, 1.0, &d);
