@@ -695,8 +695,8 @@ impl Driver<'_, '_> {
             _ => plain,
         };
         // who was stopped has no time for more factors, and chance would decide what they are worth
-        let ended = !affords || self.budget.stopped().is_some();
-        let nearly = !ended && best.residual() < 1e-2 && best.residual() > 1e-13;
+        let leaves_it = !affords || self.budget.stopped().is_some();
+        let nearly = !leaves_it && best.residual() < 1e-2 && best.residual() > 1e-13;
         if nearly
             && self.settings.runs(Strategy::ActiveSetPolish)
             && let Some(t) = polished(self.instance, &mut problem, kinks, &best, 1e-6)
