@@ -5,6 +5,7 @@ use super::node::*;
 use super::symbols::{DomainPosition, SymbolKind, UNIVERSE, attribute};
 use super::visit::Visitor;
 use super::{Compiler, Failed};
+use crate::autodiff::functions::function_value;
 use crate::diag::Diagnostic;
 use crate::model::instance::Function;
 use crate::source::Span;
@@ -282,21 +283,150 @@ impl Compiler {
     }
 
     /// What drives a loop around a single assignment to a parameter or set, as GAMS runs it: turns in which the
-    /// right side is 0 whatever the assignment's own indices are passed over, and nothing is assigned in them.
+    /// right side is 0 whatever the assignment's own indices are passed over, and nothing is assigned in them. Only
+    /// where each turn assigns the whole symbol: `p(i)`, not `p(i,j)` with j of the loop, `p(i,'a')`, `p(i+1)`, a
+    /// subset, or `p(*)`.
     /// What the right side reads is searched by its first positions, up to the first that the loop does not
     /// control: of `loop(j, p(i) = q(j,i))` the turns are those for which q has a record with this j.
     pub(super) fn driver(&mut self, body: &[Code]) -> Option<Node> {
-        let Driving {
-            table,
-            key,
-            fixed,
-            span,
-        } = self.driving(body)?;
-        if fixed == key.parts.len() {
-            return Some(Node::data(NodeKind::Data(table, key), span));
+        let (value, own) = self.driven(body)?;
+        match self.resting(value, own)? {
+            (0.0, unless) => unless.into_iter().reduce(either),
+            _ => None,
+        }
+    }
+
+    /// What an expression is where no record of the loop's indices is read, and the conditions of which one holds
+    /// elsewhere, whatever its own indices are.
+    fn resting(&mut self, n: &Node, own: &[Slot]) -> Option<(f64, Vec<Node>)> {
+        match &n.kind {
+            NodeKind::Const(x) if x.is_finite() => Some((*x, Vec::new())),
+            NodeKind::Data(table, key) => {
+                let found = self.begins_with(*table, key, own, n.span)?;
+                Some((0.0, vec![found]))
+            }
+            NodeKind::SameAs(a, b) if [a, b].iter().all(|p| is_fixed(p, own)) => {
+                let same = NodeKind::SameAs(a.clone(), b.clone());
+                Some((0.0, vec![Node::membership(same, n.span)]))
+            }
+            NodeKind::Negate(a) => self.together(&[a], own, |v| Some(-v[0])),
+            NodeKind::Sum(list) => {
+                let terms: Vec<&Node> = list.iter().map(|(_, t)| t).collect();
+                let signed = |v: &[f64]| {
+                    let terms = v.iter().zip(list);
+                    Some(
+                        terms
+                            .map(|(x, (minus, _))| if *minus { -x } else { *x })
+                            .sum(),
+                    )
+                };
+                self.together(&terms, own, signed)
+            }
+            NodeKind::Product(list) => {
+                let factors = list.iter().filter(|(divides, _)| !divides);
+                self.meeting(factors.map(|(_, f)| f), own)
+            }
+            NodeKind::Dollar(a, c) => self.meeting([&**a, c], own),
+            NodeKind::Binary(BinaryOp::And, a, b) => self.meeting([&**a, b], own),
+            NodeKind::Binary(BinaryOp::Power, a, _) => {
+                self.resting(a, own).filter(|(base, _)| *base == 0.0)
+            }
+            NodeKind::Binary(op, a, b) => self.together(&[a, b], own, |v| {
+                let holds = match op {
+                    BinaryOp::Or => v[0] != 0.0 || v[1] != 0.0,
+                    BinaryOp::Lt => v[0] < v[1],
+                    BinaryOp::Le => v[0] <= v[1],
+                    BinaryOp::Gt => v[0] > v[1],
+                    BinaryOp::Ge => v[0] >= v[1],
+                    BinaryOp::Eq => v[0] == v[1],
+                    BinaryOp::Ne => v[0] != v[1],
+                    _ => return None,
+                };
+                Some(f64::from(u8::from(holds)))
+            }),
+            // Others do not count, though some are 0 at 0.
+            NodeKind::Call(
+                f @ (Function::Sqr
+                | Function::Sqrt
+                | Function::Power
+                | Function::Abs
+                | Function::Max
+                | Function::Sign
+                | Function::Round
+                | Function::Floor
+                | Function::Ceil
+                | Function::Trunc
+                | Function::Sin
+                | Function::ArcTan
+                | Function::Tanh),
+                arguments,
+            ) => {
+                let arguments: Vec<&Node> = arguments.iter().collect();
+                self.together(&arguments, own, |v| function_value(*f, v).ok())
+            }
+            NodeKind::Aggregate(AggregateOp::Sum | AggregateOp::Sor, d, body) => {
+                let own: Vec<Slot> = own.iter().chain(&d.slots).copied().collect();
+                let members = d.members.iter().map(|m| {
+                    let kind = NodeKind::Data(m.table, m.key.clone());
+                    Node::data(kind, n.span)
+                });
+                let members: Vec<Node> = members.collect();
+                let parts = members.iter().chain(&d.conditions).chain([&**body]);
+                self.meeting(parts, &own)
+            }
+            _ => None,
+        }
+    }
+
+    /// Of several expressions that rest together.
+    fn together(
+        &mut self,
+        parts: &[&Node],
+        own: &[Slot],
+        value: impl Fn(&[f64]) -> Option<f64>,
+    ) -> Option<(f64, Vec<Node>)> {
+        let mut rests = Vec::new();
+        let mut unless = Vec::new();
+        for n in parts {
+            let (rest, here) = self.resting(n, own)?;
+            rests.push(rest);
+            unless.extend(here);
+        }
+        Some((value(&rests)?, unless))
+    }
+
+    /// Of a product: 0 where any factor is.
+    fn meeting<'n>(
+        &mut self,
+        factors: impl IntoIterator<Item = &'n Node>,
+        own: &[Slot],
+    ) -> Option<(f64, Vec<Node>)> {
+        let zero = factors.into_iter().filter_map(|f| self.resting(f, own));
+        let zero = zero.filter(|(rest, _)| *rest == 0.0);
+        let both = |a: Node, b: Node| {
+            let span = a.span;
+            Node::data(
+                NodeKind::Binary(BinaryOp::And, Box::new(a), Box::new(b)),
+                span,
+            )
+        };
+        let all = zero.filter_map(|(_, unless)| unless.into_iter().reduce(either));
+        Some((0.0, vec![all.reduce(both)?]))
+    }
+
+    /// Whether there is a record with these first positions, up to the first that the loop does not control.
+    fn begins_with(&mut self, table: TableId, key: &Key, own: &[Slot], span: Span) -> Option<Node> {
+        let fixed = key.parts.iter().take_while(|p| is_fixed(p, own)).count();
+        let runs = |p: &Part| matches!(p, Part::Slot(_));
+        if !key.parts[..fixed].iter().any(runs) {
+            return None;
+        }
+        let mut parts = key.parts.clone();
+        if fixed == parts.len() {
+            let kind = NodeKind::Data(table, Key { parts });
+            return Some(Node::data(kind, span));
         }
         let mut domain = Domain::default();
-        let mut parts = key.parts;
         for part in &mut parts[fixed..] {
             let slot = self.new_slot();
             *part = Part::Slot(slot);
@@ -311,11 +441,12 @@ impl Compiler {
         Some(Node::data(any, span))
     }
 
-    fn driving(&self, body: &[Code]) -> Option<Driving> {
+    /// The right side of such an assignment and its own indices.
+    fn driven<'b>(&self, body: &'b [Code]) -> Option<(&'b Node, &'b [Slot])> {
         let [only] = body else { return None };
         match &only.kind {
             CodeKind::If(arms, otherwise) if otherwise.is_empty() => match arms.as_slice() {
-                [(_, body)] => self.driving(body),
+                [(_, body)] => self.driven(body),
                 _ => None,
             },
             CodeKind::Assign {
@@ -323,14 +454,13 @@ impl Compiler {
                 target: Target::Table(t) | Target::Set(t),
                 value,
                 nonzero: false,
+                covers: true,
                 ..
-            } if !domain.slots.is_empty() && domain.conditions.is_empty() => {
+            } if !domain.slots.is_empty() => {
                 let mut symbols = self.symbols.iter();
                 let whole = symbols.any(|(_, s)| s.table == *t && !s.has_attributes());
                 let read = value.any(|n| matches!(&n.kind, NodeKind::Data(r, _) if r == t));
-                (whole && !read)
-                    .then(|| zero_with(value, &domain.slots))
-                    .flatten()
+                (whole && !read && !value.has_random()).then_some((value, &domain.slots))
             }
             _ => None,
         }
@@ -402,62 +532,20 @@ fn same_index(a: &Part, b: &Part) -> bool {
     }
 }
 
-/// A table whose absent records make an expression 0.
-struct Driving {
-    table: TableId,
-    key: Key,
-    /// How many of its first positions are labels or indices of the loop.
-    fixed: usize,
-    span: Span,
+/// Whether an index is a label or one that runs outside.
+fn is_fixed(p: &Part, own: &[Slot]) -> bool {
+    match p {
+        Part::Slot(s) => !own.contains(s),
+        Part::Label(_) => true,
+        Part::Lag(_) | Part::Singleton(..) => false,
+    }
 }
 
-/// What makes an expression 0 whatever its own indices are.
-fn zero_with(n: &Node, own: &[Slot]) -> Option<Driving> {
-    match &n.kind {
-        NodeKind::Data(table, key) => {
-            let is_fixed = |p: &&Part| match p {
-                Part::Slot(s) => !own.contains(s),
-                Part::Label(_) => true,
-                Part::Lag(_) | Part::Singleton(..) => false,
-            };
-            let fixed = key.parts.iter().take_while(is_fixed).count();
-            let runs = |p: &Part| matches!(p, Part::Slot(_));
-            key.parts[..fixed].iter().any(runs).then(|| Driving {
-                table: *table,
-                key: key.clone(),
-                fixed,
-                span: n.span,
-            })
-        }
-        NodeKind::Negate(a) => zero_with(a, own),
-        NodeKind::Call(f, arguments) => {
-            let keeps_zero = matches!(
-                f,
-                Function::Sqr
-                    | Function::Sqrt
-                    | Function::Abs
-                    | Function::Sign
-                    | Function::Round
-                    | Function::Floor
-                    | Function::Ceil
-                    | Function::Trunc
-                    | Function::Sin
-                    | Function::Tanh
-            );
-            zero_with(arguments.first().filter(|_| keeps_zero)?, own)
-        }
-        NodeKind::Dollar(a, c) => zero_with(a, own).or_else(|| zero_with(c, own)),
-        // Of a sum, where all terms are driven by one table.
-        NodeKind::Sum(list) => {
-            let mut drivers = list.iter().map(|(_, x)| zero_with(x, own));
-            let first = drivers.next()??;
-            let same = |d: Option<Driving>| d.is_some_and(|d| d.table == first.table);
-            drivers.all(same).then_some(first)
-        }
-        NodeKind::Product(list) => list
-            .iter()
-            .filter(|(divides, _)| !divides)
-            .find_map(|(_, x)| zero_with(x, own)),
-        _ => None,
-    }
+/// `a or b`
+fn either(a: Node, b: Node) -> Node {
+    let span = a.span;
+    Node::data(
+        NodeKind::Binary(BinaryOp::Or, Box::new(a), Box::new(b)),
+        span,
+    )
 }

@@ -20,6 +20,33 @@ impl Compiler {
             .map(|(_, parts)| parts.as_slice())
     }
 
+    /// An error where a set stands for what its own indices found, as `s` under `loop(s(i), …)`: it does not run.
+    pub(super) fn runs(&mut self, set: SymbolId, span: Span, what: &str) -> Result<(), Failed> {
+        let found = self.scope.iter().rposition(|(s, _)| *s == set);
+        let Some(at) = found.filter(|at| self.maps.contains(at)) else {
+            return Ok(());
+        };
+        let name = self.symbols.get(set).name.clone();
+        let same = |p: &[Part]| match (p, self.scope[at].1.as_slice()) {
+            ([Part::Slot(a)], [Part::Slot(b)]) => a == b,
+            _ => false,
+        };
+        let index = self.scope[..at].iter().rev().find(|(_, p)| same(p));
+        let help = match index.map(|(s, _)| &self.symbols.get(*s).name) {
+            Some(i) => format!("use `{i}`, which runs, or let `{name}` run alone"),
+            None => format!("let `{name}` run alone, with a condition on its elements"),
+        };
+        self.fail(
+            Diagnostic::error(
+                "E0309",
+                span,
+                format!("{what} needs a set that runs itself; `{name}` stands here for what `{name}(…)` found"),
+            )
+            .label("not running")
+            .help(help),
+        )
+    }
+
     pub(super) fn new_slot(&mut self) -> Slot {
         let s = self.next_slot;
         self.next_slot += 1;
@@ -33,6 +60,7 @@ impl Compiler {
         let scope = self.scope.len();
         let r = f(self);
         self.scope.truncate(scope);
+        self.maps.retain(|&m| m < scope);
         r
     }
 
@@ -133,6 +161,7 @@ impl Compiler {
             },
         });
         if self.controlled(id).is_none() {
+            self.maps.push(self.scope.len());
             self.scope.push((id, parts.clone()));
         }
         Ok(parts)

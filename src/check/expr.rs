@@ -599,6 +599,7 @@ impl Compiler {
             self.ordered(s, span, "`.ord`")?;
         }
         let mut parts = if indices.is_empty() {
+            self.runs(s, span, &format!("`.{lower}`"))?;
             self.set_index(s, name)?
         } else {
             self.key(s, indices, span)?.parts
@@ -749,6 +750,7 @@ impl Compiler {
         }
         self.lookup_set(n)?;
         self.used(s, n.span);
+        self.runs(s, n.span, "`ord`")?;
         self.ordered(s, n.span, "`ord`")?;
         let mut parts = self.set_index(s, n)?;
         if parts.len() != 1 {

@@ -476,6 +476,7 @@ impl Compiler {
                     self.lookup_set(name)?;
                 }
                 let mut part = self.set_index(s, name)?;
+                self.runs(s, name.span, "a lag or lead")?;
                 self.ordered(s, name.span, "a lag or lead")?;
                 self.fits(s, of, position, base.span)?;
                 let table = self.symbols.get(s).table;

@@ -91,6 +91,8 @@ pub(crate) struct Compiler {
     diagnostics: Vec<Diagnostic>,
     /// Sets under control, innermost last.
     scope: Vec<(SymbolId, Vec<Part>)>,
+    /// Which of them stand for what their indices found: `s` under `loop(s(i), …)`.
+    maps: Vec<usize>,
     /// Symbols declared with `<` behind an index: their data define those sets.
     defining: rustc_hash::FxHashMap<SymbolId, Vec<bool>>,
     /// The file that `$gdxIn` named.
@@ -223,6 +225,7 @@ impl Compiler {
             equations: Vec::new(),
             diagnostics: Vec::new(),
             scope: Vec::new(),
+            maps: Vec::new(),
             defining: rustc_hash::FxHashMap::default(),
             input: None,
             output: None,

@@ -320,13 +320,13 @@ impl Sheet<'_> {
     fn planes(&self, rows: usize, columns: usize, out: &mut String) {
         let records: Vec<(&[Label], f64)> = self.table.iter().collect();
         let lead = self.table.dim() - rows - columns;
-        // Headings of several labels stand in one line if all of them fit.
-        let joined = columns > 1
-            && records.iter().all(|(k, _)| {
-                let labels = &k[lead + rows..];
-                labels.iter().map(|&l| width(self.name(l))).sum::<usize>() + labels.len() - 1
-                    <= self.numbers.width()
-            });
+        // Headings of several labels stand in one line as long as they fit.
+        let fits = |(k, _): &(&[Label], f64)| {
+            let labels = &k[lead + rows..];
+            let length = labels.iter().map(|&l| width(self.name(l))).sum::<usize>();
+            length + labels.len() - 1 <= self.numbers.width()
+        };
+        let mut joined = columns > 1;
         let mut from = 0;
         while from < records.len() {
             let plane = &records[from].0[..lead];
@@ -346,6 +346,7 @@ impl Sheet<'_> {
                 }
                 out.push_str("\n\n");
             }
+            joined = joined && records[from..to].iter().all(fits);
             self.plane(&records[from..to], lead, rows, joined, out);
             from = to;
         }

@@ -16,7 +16,7 @@ pub const WIDEST: f64 = 32_767.0;
 /// Attributes and their values before anything is assigned.
 const DEFAULTS: &[(&str, f64)] = &[
     ("pw", WIDEST),
-    ("ps", 60.0),
+    ("ps", 58.0),
     ("pc", 2.0),
     ("nd", 2.0),
     ("nw", 12.0),
@@ -457,7 +457,7 @@ impl TextFile {
                 out.extend(std::iter::repeat_n(' ', margin));
             }
             out.push_str(line);
-            if pc == 7 {
+            if pc == 7 && !line.is_empty() {
                 let n = line.chars().count();
                 out.extend(std::iter::repeat_n(' ', width.saturating_sub(n)));
             }

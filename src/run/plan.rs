@@ -166,7 +166,7 @@ impl Machine<'_> {
         } else {
             Pick::Cheapest
         };
-        let mut analysis = Analysis::new(self);
+        let mut analysis = Analysis::new(self, &d.slots);
         let mut supports: Vec<Sparse> = Vec::new();
         if !d.slots.is_empty() {
             supports.extend(analysis.conjuncts(&d.conditions));
@@ -637,7 +637,8 @@ fn binds(key: &Key, free: &[Slot]) -> Option<Vec<Slot>> {
     (!new.is_empty()).then_some(new)
 }
 
-fn slots_of_key(key: &Key) -> Vec<Slot> {
+/// Slots that a key reads.
+pub(super) fn slots_of_key(key: &Key) -> Vec<Slot> {
     key.parts.iter().flat_map(slots_of_part).collect()
 }
 

@@ -276,7 +276,9 @@ impl Machine<'_> {
             NodeKind::ObjectAttribute(s, a @ ("tmodstat" | "tsolstat")) => {
                 Item::Text(self.status_text(*s, a))
             }
-            NodeKind::SameAs(..) if n.member => Item::Member(truth(self.eval(n, frame))),
+            NodeKind::SameAs(..) | NodeKind::Const(_) if n.member => {
+                Item::Member(truth(self.eval(n, frame)))
+            }
             NodeKind::Data(t, _)
                 if self
                     .table_symbol(*t)

@@ -11,6 +11,7 @@
 //!
 //! What is said of an expression can change with the data: [`Premise`]s tell when.
 
+use super::plan::slots_of_key;
 use super::{Machine, arithmetic};
 use crate::autodiff::functions::function_value;
 use crate::check::node::*;
@@ -64,6 +65,8 @@ enum Care {
 pub(super) struct Analysis<'m, 'h> {
     m: &'m Machine<'h>,
     pub premises: Vec<Premise>,
+    /// Indices that are run over.
+    indices: Vec<Slot>,
 }
 
 impl Machine<'_> {
@@ -99,10 +102,12 @@ impl Machine<'_> {
 }
 
 impl<'m, 'h> Analysis<'m, 'h> {
-    pub fn new(m: &'m Machine<'h>) -> Self {
+    /// Over the tuples of these indices.
+    pub fn new(m: &'m Machine<'h>, indices: &[Slot]) -> Self {
         Self {
             m,
             premises: Vec::new(),
+            indices: indices.to_vec(),
         }
     }
 
@@ -317,8 +322,8 @@ impl<'m, 'h> Analysis<'m, 'h> {
                 let care = others.map(|(_, (_, g))| self.care(g)).min_by_key(careless);
                 match care.unwrap_or(Some(Care::Total)) {
                     Some(Care::Total) => {}
-                    Some(Care::MayFail) => s.forced = true,
-                    None => continue,
+                    Some(Care::MayFail) if self.drives(&s) => s.forced = true,
+                    _ => continue,
                 }
             }
             out = Some(match out {
@@ -327,6 +332,17 @@ impl<'m, 'h> Analysis<'m, 'h> {
             });
         }
         out
+    }
+
+    /// Whether tuples can be found by its records: a scalar or `q('a')` that is 0 leaves out none, and what
+    /// stands beside it is evaluated.
+    fn drives(&self, s: &Sparse) -> bool {
+        let finds = |d: &Driver| {
+            slots_of_key(&d.key)
+                .iter()
+                .any(|s| self.indices.contains(s))
+        };
+        !s.support.is_empty() && s.support.iter().all(|a| a.iter().any(finds))
     }
 
     /// `a and b`
@@ -386,7 +402,11 @@ impl<'m, 'h> Analysis<'m, 'h> {
         for s in self.conjuncts(&d.conditions) {
             out = meet(out, s);
         }
-        if let Some(s) = self.nonzero(body, symbolic) {
+        let outside = self.indices.len();
+        self.indices.extend(&d.slots);
+        let inside = self.nonzero(body, symbolic);
+        self.indices.truncate(outside);
+        if let Some(s) = inside {
             out = meet(out, s);
         } else if !matches!(op, AggregateOp::Sum | AggregateOp::Sor) {
             return None;

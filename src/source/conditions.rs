@@ -141,7 +141,7 @@ impl Preprocessor<'_> {
                 Some(Ok((dimension.is_some() && dimension == asked, len + n + m)))
             }
             "settype" => of_kind(&["set", "alias"]),
-            "partype" => of_kind(&["parameter"]),
+            "partype" => of_kind(&["parameter", "scalar"]),
             "vartype" => of_kind(&["variable"]),
             "equtype" => of_kind(&["equation"]),
             "modtype" => of_kind(&["model"]),

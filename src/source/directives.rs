@@ -281,7 +281,15 @@ impl Preprocessor<'_> {
             "dropenv" => {
                 self.environment.remove(&rest.trim().to_lowercase());
             }
-            "prefixpath" | "phantom" => {}
+            "prefixpath" => {}
+            "phantom" => {
+                let span = self.place(lo, hi);
+                return refuse(
+                    Diagnostic::error("E0107", span, "phantom elements are not known here")
+                        .label("not done")
+                        .help("leave the element out of the sets, and write `$onEmpty` where one has no other"),
+                );
+            }
             "setargs" => {
                 let values = self
                     .frames

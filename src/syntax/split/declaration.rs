@@ -456,6 +456,7 @@ impl Splitter {
                 if bytes[at] == b';'
                     && memchr::memchr_iter(b';', &bytes[at..end]).count() > 1
                     && !text[line..end].contains('=')
+                    && !begins_statement(text, at + 1)
                 {
                     self.problems.push(
                         Diagnostic::error("E0248", span(at, at + 1), "`;` ends a table; it cannot stand between its columns")
@@ -496,6 +497,18 @@ fn not_available(bytes: &[u8], at: usize) -> bool {
         && !bytes[at - 2].is_ascii_alphanumeric()
         && is(at + 1, b'a')
         && !bytes.get(at + 2).is_some_and(u8::is_ascii_alphanumeric)
+}
+
+/// Whether a statement's keyword comes next.
+fn begins_statement(text: &str, at: usize) -> bool {
+    let bytes = text.as_bytes();
+    let first = at
+        + bytes[at..]
+            .iter()
+            .take_while(|b| words::is_blank(**b))
+            .count();
+    let end = words::word_end(bytes, first);
+    end > first && words::statement_word(text, first, end).is_some()
 }
 
 /// Whether a `;` separates records, as in a file of a spreadsheet: text follows on its line, and the slash comes
