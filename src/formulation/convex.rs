@@ -123,7 +123,7 @@ fn hessian(
 }
 
 /// The function that a row defines for a column: value, gradient and Hessian at 0.
-pub fn at_origin(p: &Instance, e: &mut Evaluator, row: usize, z: usize) -> Option<Objective> {
+fn at_origin(p: &Instance, e: &mut Evaluator, row: usize, z: usize) -> Option<Objective> {
     let n = p.column_count();
     let x = vec![0.0; n];
     let mut activity = vec![0.0; p.row_count()];

@@ -288,7 +288,11 @@ fn write_records(
             if n > 0 {
                 out.push('.');
             }
-            out.push_str(&quoted(store.universe.name(*l)));
+            let name = store.universe.name(*l);
+            match name.contains('\'') {
+                true => out.push_str(&quoted(name)),
+                false => out.extend(["'", name, "'"]),
+            }
         }
         if !is_set {
             if !key.is_empty() {

@@ -74,6 +74,8 @@ pub struct Derivation<'a> {
     terms: Vec<Vec<Term>>,
     /// The multiplier of each equation.
     multipliers: Vec<Option<usize>>,
+    /// By column: whether it stands in a row with a multiplier, or in a nonlinear term.
+    in_rows: Vec<bool>,
     /// Multipliers are those of the text with the opposite sign.
     flip: bool,
     taken: FxHashSet<String>,
@@ -108,11 +110,13 @@ impl<'a> Derivation<'a> {
             eliminated: None,
             binders: primal.equations.iter().map(|e| e.binder.clone()).collect(),
             multipliers: vec![None; terms.len()],
+            in_rows: Vec::new(),
             terms,
             flip: false,
             taken,
         };
         d.eliminated = d.eliminate();
+        d.in_rows = d.columns_in_rows();
         d.leave_out_unlimited();
         Ok(d)
     }
@@ -355,30 +359,26 @@ impl<'a> Derivation<'a> {
 
     /// Whether a column of a variable stands in no row with a multiplier, and in the objective at most linearly.
     pub fn is_without_row(&self, v: SymbolId) -> bool {
+        let block = self.primal.generated.origin.columns.symbol(v);
+        block.is_some_and(|b| {
+            let columns = b.start as usize..(b.start + b.len) as usize;
+            self.in_rows[columns].contains(&false)
+        })
+    }
+
+    /// By column: whether it stands in a row with a multiplier, or in a nonlinear term.
+    fn columns_in_rows(&self) -> Vec<bool> {
         let g = &self.primal.generated;
-        let Some(block) = g.origin.columns.symbol(v) else {
-            return false;
-        };
         let gone = self.eliminated.as_ref().and_then(|o| {
-            let rows = g
-                .origin
-                .rows
-                .symbol(self.primal.equations[o.equation].symbol);
+            let symbol = self.primal.equations[o.equation].symbol;
+            let rows = g.origin.rows.symbol(symbol);
             rows.map(|b| b.start as usize)
         });
-        let mut alone = vec![true; block.len as usize];
-        let mut seen = |j: u32| {
-            if let Some(a) = j
-                .checked_sub(block.start)
-                .and_then(|k| alone.get_mut(k as usize))
-            {
-                *a = false;
-            }
-        };
+        let mut out = vec![false; g.instance.column_count()];
         let relation = &g.instance.rows.relation;
         let m = &g.instance.matrix;
         for i in (0..relation.len()).filter(|&i| Some(i) != gone && relation[i] != Relation::Free) {
-            m.row(i).for_each(|(j, _)| seen(j as u32));
+            m.row(i).for_each(|(j, _)| out[j] = true);
         }
         for k in &g.instance.nonlinear {
             let width = k.kernel.variables as usize;
@@ -386,11 +386,11 @@ impl<'a> Derivation<'a> {
                 if relation[i as usize] != Relation::Free {
                     k.columns[t * width..(t + 1) * width]
                         .iter()
-                        .for_each(|j| seen(*j));
+                        .for_each(|j| out[*j as usize] = true);
                 }
             }
         }
-        alone.contains(&true)
+        out
     }
 
     /// The columns of a variable: keys, lower and upper bounds.

@@ -294,7 +294,6 @@ fn column(d: &mut Derivation, v: SymbolId) -> Result<Vec<(bool, Expr)>, String> 
     bounds.insert(0, (false, row.rows.clone()));
     let left = sum(bounds);
     for (n, class) in classes.iter().enumerate() {
-        let keys = class.keys.iter().map(|&i| columns[i].0.to_vec()).collect();
         let (suffix, guard) = match classes.len() {
             1 => (String::new(), None),
             _ => {
@@ -303,6 +302,7 @@ fn column(d: &mut Derivation, v: SymbolId) -> Result<Vec<(bool, Expr)>, String> 
                     Sign::Negative => "negative",
                     Sign::Free => "free",
                 };
+                let keys = class.keys.iter().map(|&i| columns[i].0.to_vec()).collect();
                 let guard = d.membership(
                     &format!("{word}_{name}"),
                     format!("columns of {name} that are {word}"),

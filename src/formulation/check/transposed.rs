@@ -4,7 +4,6 @@ use super::{Comparison, Instance, Record, eliminated, records};
 use crate::autodiff::Evaluator;
 use crate::check::node::SymbolId;
 use crate::check::symbols::{Store, Symbols};
-use crate::formulation::convex::{Objective, at_origin};
 use crate::formulation::derive::Primal;
 use crate::formulation::tree::Variable;
 use crate::formulation::{Formulation, Origin};
@@ -139,20 +138,19 @@ fn compare(
     let objective_row: Record = (format!("{}_row", objective.0).into(), "".into());
     let defining = names.d.rows.iter().position(|r| *r == objective_row);
     let found = defining.zip(names.place.get(&objective));
-    let Some(d0) = found.and_then(|(i, &z)| at_origin(dual, &mut Evaluator::new(dual), i, z))
-    else {
+    let Some(d0) = found.and_then(|(i, &z)| Objective::of(dual, i, z)) else {
         c.differ("the dual has no objective".into());
         return;
     };
     let z = p.objective.map(|o| o.column as usize);
     let gone = eliminated(names.primal, f, z).zip(z);
-    let by_row = gone.map(|(i, z)| at_origin(p, &mut Evaluator::new(p), i, z).unwrap_or_default());
+    let by_row = gone.map(|(i, z)| Objective::of(p, i, z).unwrap_or_default());
     let f0 = by_row.unwrap_or_else(|| {
         let mut gradient = vec![0.0; p.column_count()];
         z.into_iter().for_each(|z| gradient[z] = 1.0);
         Objective {
             gradient,
-            ..Objective::default()
+            constant: 0.0,
         }
     });
     c.number(f0.constant, d0.constant, &|| {
@@ -170,6 +168,25 @@ fn compare(
     };
     let matrix = t.rows();
     t.columns(symbols, f, defining, matrix);
+}
+
+/// A linear objective function.
+#[derive(Default)]
+struct Objective {
+    gradient: Vec<f64>,
+    constant: f64,
+}
+
+impl Objective {
+    /// The function that a linear row defines for a column.
+    fn of(p: &instance::Instance, row: usize, z: usize) -> Option<Self> {
+        let a = p.matrix.row(row).find(|t| t.0 == z && t.1 != 0.0)?.1;
+        let mut gradient = vec![0.0; p.column_count()];
+        p.matrix.row(row).for_each(|(j, v)| gradient[j] = -v / a);
+        gradient[z] = 0.0;
+        let constant = p.rows.rhs[row] / a;
+        Some(Self { gradient, constant })
+    }
 }
 
 /// The two instances, and where the one is in the other.
