@@ -8,6 +8,7 @@ pub mod crossover;
 pub mod form;
 pub mod interior;
 mod options;
+mod presolve;
 pub mod scale;
 pub mod simplex;
 
@@ -235,6 +236,9 @@ fn solve(
         }
         (Method::Crossover, _) => finished(&scaled, accuracy, budget),
         (Method::Simplex, _) => simplex_only(&scaled, accuracy, budget),
+        (Method::Auto, _) if !small => {
+            presolved(&form.problem, &scaling, &scaled, accuracy, budget)
+        }
         (Method::Auto, _) => auto(&scaled, accuracy, budget),
         (Method::Restart(from), _) => restarted(&scaled, &form.basis(from), accuracy, budget),
     };
@@ -321,6 +325,47 @@ fn restarted(p: &Problem, basis: &Basis, accuracy: Accuracy, budget: &Budget) ->
     budget.log_timed(&line);
     tighten(&mut simplex, accuracy, budget);
     simplex_answer(simplex, ended)
+}
+
+/// The smaller program first; then on from its basis in the program as it was given.
+fn presolved(
+    given: &Problem,
+    scaling: &Scaling,
+    scaled: &Problem,
+    accuracy: Accuracy,
+    budget: &Budget,
+) -> Gave {
+    let Some(reduced) = presolve::presolve(given) else {
+        return auto(scaled, accuracy, budget);
+    };
+    let p = &reduced.problem;
+    let line = format!("presolve: {} rows and {} columns are left", p.m(), p.n());
+    budget.log_timed(&line);
+    let units = Scaling::new(p);
+    let mut gave = auto(&units.apply(p), Accuracy::Fast(0.0), budget);
+    match (&mut gave.ended, gave.basis.take()) {
+        (Ended::Solved, Some(basis)) => {
+            let (_, basis) = reduced.restore(&units.restore(gave.point), &basis);
+            let mut done = restarted(scaled, &basis, accuracy, budget);
+            done.iterations += gave.iterations;
+            if gave.solver == "clarabel" {
+                done.solver = gave.solver;
+            }
+            done
+        }
+        (Ended::Infeasible(y), _) => {
+            units.restore_multipliers(y);
+            let mut y = reduced.restore_ray(y);
+            scaling.carry_multipliers(&mut y);
+            if scaled.proves_infeasible(&y) {
+                gave.ended = Ended::Infeasible(y);
+                gave.point = Point::default();
+                return gave;
+            }
+            auto(scaled, accuracy, budget)
+        }
+        _ => auto(scaled, accuracy, budget),
+    }
 }
 
 fn tighten(simplex: &mut Simplex, accuracy: Accuracy, budget: &Budget) {

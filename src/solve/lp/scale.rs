@@ -172,6 +172,11 @@ impl Scaling {
     pub fn restore_multipliers(&self, y: &mut [f64]) {
         y.iter_mut().zip(&self.row).for_each(|(y, &r)| *y *= r);
     }
+
+    /// The same into the new units.
+    pub fn carry_multipliers(&self, y: &mut [f64]) {
+        y.iter_mut().zip(&self.row).for_each(|(y, &r)| *y /= r);
+    }
 }
 
 /// Entries this small against the largest of their line are rounding of data, not a unit to scale by.

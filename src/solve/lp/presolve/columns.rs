@@ -1,0 +1,351 @@
+//! Columns that are decided, that are slacks, and that equations give by others.
+
+use super::{Doubleton, Entries, Hopeless, ROUNDING, Range, State, Step, Work, term};
+
+/// Rows of a column that is substituted, at most.
+const LONGEST: u32 = 6;
+
+/// Rows with more entries are not looked through for each of their columns.
+const LONG_ROW: u32 = 1000;
+
+/// Entries that a substitution may add to those that it takes away.
+const FILL: usize = 4;
+
+/// A pivot of a substitution against the largest entry of its column.
+const PIVOT: f64 = 1e-2;
+
+/// A reduced cost is clearly positive beyond this part of its terms.
+const CLEAR: f64 = 1e-9;
+
+impl Work {
+    /// What can be done about a column.
+    pub(super) fn column(&mut self, j: usize) -> Result<(), Hopeless> {
+        if self.lower[j] == self.upper[j] {
+            return self.fix(j, State::Basic);
+        }
+        if self.fix_by_cost(j)? {
+            return Ok(());
+        }
+        match self.column_count[j] {
+            0 => Ok(()),
+            1 => self.singleton_column(j),
+            n if n <= LONGEST => self.implied_free(j),
+            _ => Ok(()),
+        }
+    }
+
+    /// Fixes a column that no row holds back on its way to where the cost is less.
+    fn fix_by_cost(&mut self, j: usize) -> Result<bool, Hopeless> {
+        let (mut down, mut up) = (self.cost[j] >= 0.0, self.cost[j] <= 0.0);
+        for (i, a) in self.column_entries(j) {
+            let [low, high] = self.sides(i);
+            let held = [low.is_finite(), high.is_finite()];
+            let (falls, rises) = if a > 0.0 {
+                (held[0], held[1])
+            } else {
+                (held[1], held[0])
+            };
+            down &= !falls;
+            up &= !rises;
+            if !down && !up {
+                return Ok(false);
+            }
+        }
+        let state = match (self.lower[j].is_finite(), self.upper[j].is_finite()) {
+            (true, _) if down => State::Lower,
+            (_, true) if up => State::Upper,
+            // The rows of a column that may go on for ever at no cost hold anyway.
+            _ if self.cost[j] == 0.0 && self.column_count[j] > 0 => return Ok(false),
+            _ if self.cost[j] == 0.0 => State::Free,
+            _ => return Err(Hopeless),
+        };
+        self.fix(j, state)?;
+        Ok(true)
+    }
+
+    /// Fixes columns whose reduced cost has one sign for all multipliers that columns of one row allow.
+    pub(super) fn dominated(&mut self) -> Result<(), Hopeless> {
+        let mut y: Vec<[f64; 2]> = (0..self.rows.len())
+            .map(|i| {
+                let [low, high] = self.sides(i);
+                let least = if high.is_finite() {
+                    f64::NEG_INFINITY
+                } else {
+                    0.0
+                };
+                [least, if low.is_finite() { f64::INFINITY } else { 0.0 }]
+            })
+            .collect();
+        for j in 0..self.cost.len() {
+            if !self.column_alive[j] || self.column_count[j] != 1 {
+                continue;
+            }
+            let Some((i, a)) = self.column_entries(j).next() else {
+                continue;
+            };
+            let most = self.cost[j] / a;
+            // c − a·y ≥ 0 without an upper bound, ≤ 0 without a lower one
+            if self.upper[j].is_infinite() {
+                let k = usize::from(a > 0.0);
+                y[i][k] = if a > 0.0 {
+                    y[i][k].min(most)
+                } else {
+                    y[i][k].max(most)
+                };
+            }
+            if self.lower[j].is_infinite() {
+                let k = usize::from(a < 0.0);
+                y[i][k] = if a > 0.0 {
+                    y[i][k].max(most)
+                } else {
+                    y[i][k].min(most)
+                };
+            }
+        }
+        for j in 0..self.cost.len() {
+            // What bounds the multipliers stays.
+            if !self.column_alive[j] || self.column_count[j] < 2 {
+                continue;
+            }
+            let mut range = Range::default();
+            range.add([self.cost[j]; 2]);
+            self.column_entries(j)
+                .for_each(|(i, a)| range.add(term(-a, y[i])));
+            let clear = CLEAR * range.size;
+            if range.low() > clear {
+                self.fix(j, State::Lower)?;
+            } else if range.high() < -clear {
+                self.fix(j, State::Upper)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// A column of one row: given by it, or its slack.
+    fn singleton_column(&mut self, j: usize) -> Result<(), Hopeless> {
+        let Some((i, a)) = self.column_entries(j).next() else {
+            return Ok(());
+        };
+        if self.row_count[i] < 2 || self.row_count[i] > LONG_ROW {
+            return Ok(());
+        }
+        let range = self.activity(i);
+        if self.is_implied(j, i, a, &range) == [true, true] {
+            let y = self.cost[j] / a;
+            let at = match self.sides(i) {
+                [low, high] if low == high => State::Lower,
+                [low, _] if y > 0.0 || y == 0.0 && low.is_finite() => State::Lower,
+                _ => State::Upper,
+            };
+            return self.substitute(i, j, at, None);
+        }
+        if self.cost[j] == 0.0 || self.is_equation(i) {
+            self.slack(i, j, a);
+        }
+        Ok(())
+    }
+
+    /// Whether a row and the bounds of its other columns imply this one's.
+    fn is_implied(&self, j: usize, i: usize, a: f64, range: &Range) -> [bool; 2] {
+        let [low, high] = range.without(term(a, self.bounds(j)));
+        let [side_low, side_high] = self.sides(i);
+        let ends = [(side_low - high) / a, (side_high - low) / a];
+        let (l, u) = if a > 0.0 {
+            (ends[0], ends[1])
+        } else {
+            (ends[1], ends[0])
+        };
+        let slack = |bound: f64| match bound.is_finite() {
+            true => ROUNDING * (range.size / a.abs()).max(bound.abs()),
+            false => 0.0,
+        };
+        [
+            self.lower[j].is_infinite() || l >= self.lower[j] - slack(self.lower[j]),
+            self.upper[j].is_infinite() || u <= self.upper[j] + slack(self.upper[j]),
+        ]
+    }
+
+    /// Takes the column for the slack of its row.
+    fn slack(&mut self, i: usize, j: usize, a: f64) {
+        let (cost, bounds, sides) = (self.cost[j], self.bounds(j), self.sides(i));
+        let entries = self.row_entries(i).filter(|e| e.0 != j);
+        let entries: Entries = entries.map(|(k, v)| (k as u32, v)).collect();
+        if cost != 0.0 {
+            for &(k, v) in &entries {
+                self.cost[k as usize] -= v * cost / a;
+                self.new_columns.push(k as usize);
+            }
+        }
+        let [low, high] = term(a, bounds);
+        self.row_lower[i] -= high;
+        self.row_upper[i] -= low;
+        self.remove_column(j);
+        for &(k, _) in &entries {
+            self.new_columns.push(k as usize);
+        }
+        self.steps.push(Step::Slack {
+            row: i as u32,
+            column: j as u32,
+            a,
+            cost,
+            bounds,
+            sides,
+            entries,
+        });
+    }
+
+    /// Substitutes a column whose bounds its rows imply, by an equation.
+    fn implied_free(&mut self, j: usize) -> Result<(), Hopeless> {
+        let entries: Vec<(usize, f64)> = self.column_entries(j).collect();
+        let largest = entries.iter().fold(0.0f64, |t, e| t.max(e.1.abs()));
+        let mut implied = [self.lower[j].is_infinite(), self.upper[j].is_infinite()];
+        let mut best: Option<(u32, usize)> = None;
+        for &(i, a) in &entries {
+            if self.is_equation(i) && a.abs() >= PIVOT * largest {
+                let candidate = (self.row_count[i], i);
+                best = Some(best.map_or(candidate, |b| b.min(candidate)));
+            }
+        }
+        let Some((count, i)) = best else {
+            return Ok(());
+        };
+        let (rows, columns) = (entries.len(), count as usize);
+        if (rows - 1) * (columns - 1) > rows + columns - 1 + FILL {
+            return Ok(());
+        }
+        for &(r, a) in &entries {
+            if implied == [true, true] {
+                break;
+            }
+            if self.row_count[r] > LONG_ROW {
+                continue;
+            }
+            let more = self.is_implied(j, r, a, &self.activity(r));
+            implied = [implied[0] || more[0], implied[1] || more[1]];
+        }
+        match implied {
+            [true, true] => self.substitute(i, j, State::Lower, None),
+            _ => Ok(()),
+        }
+    }
+
+    /// An equation in two columns gives one by the other, which takes its bounds over.
+    pub(super) fn doubleton(&mut self, i: usize) -> Result<(), Hopeless> {
+        let mut entries = self.row_entries(i);
+        let (Some(one), Some(two)) = (entries.next(), entries.next()) else {
+            return Ok(());
+        };
+        drop(entries);
+        let rank = |e: (usize, f64)| (self.column_count[e.0], e.0);
+        let (mut gone, mut kept) = if rank(one) <= rank(two) {
+            (one, two)
+        } else {
+            (two, one)
+        };
+        if gone.1.abs() < PIVOT * kept.1.abs() {
+            (gone, kept) = (kept, gone);
+        }
+        let ((j, a), (k, b)) = (gone, kept);
+        if self.column_count[j] > 4 * LONGEST {
+            return Ok(());
+        }
+        let (bounds, side) = (self.bounds(j), self.row_lower[i]);
+        // x_k = (side − a·x_j) / b
+        let [low, high] = term(a, bounds);
+        let ends = [(side - high) / b, (side - low) / b];
+        let from_gone = self.narrow(k, if b > 0.0 { ends } else { [ends[1], ends[0]] })?;
+        let doubleton = Doubleton {
+            other: k as u32,
+            b,
+            from_gone,
+            fixed: self.lower[k] == self.upper[k],
+            bounds,
+        };
+        self.substitute(i, j, State::Lower, Some(doubleton))
+    }
+
+    /// Takes away a row, which stands at one of its sides, and a column, which it gives.
+    fn substitute(
+        &mut self,
+        i: usize,
+        j: usize,
+        at: State,
+        doubleton: Option<Doubleton>,
+    ) -> Result<(), Hopeless> {
+        let side = match at {
+            State::Upper => self.row_upper[i],
+            _ => self.row_lower[i],
+        };
+        if !side.is_finite() {
+            return Err(Hopeless);
+        }
+        let Some(a) = self.entry(i, j) else {
+            return Ok(());
+        };
+        let pick = |e: (usize, f64)| (e.0 as u32, e.1);
+        let entries: Entries = self.row_entries(i).filter(|e| e.0 != j).map(pick).collect();
+        let others: Entries = self
+            .column_entries(j)
+            .filter(|e| e.0 != i)
+            .map(pick)
+            .collect();
+        let cost = self.cost[j];
+        if cost != 0.0 {
+            entries
+                .iter()
+                .for_each(|&(k, v)| self.cost[k as usize] -= v * cost / a);
+        }
+        self.remove_column(j);
+        self.remove_row(i);
+        for &(r, v) in &others {
+            self.add_multiple(r as usize, &entries, -v / a);
+            self.row_lower[r as usize] -= v * side / a;
+            self.row_upper[r as usize] -= v * side / a;
+        }
+        self.steps.push(Step::Substituted {
+            row: i as u32,
+            column: j as u32,
+            a,
+            cost,
+            side,
+            at,
+            entries,
+            others,
+            doubleton,
+        });
+        Ok(())
+    }
+
+    /// Adds a multiple of these entries to a row.
+    fn add_multiple(&mut self, r: usize, entries: &[(u32, f64)], factor: f64) {
+        let old = std::mem::take(&mut self.rows[r]);
+        let mut new = Vec::with_capacity(old.len() + entries.len());
+        let mut old = old
+            .into_iter()
+            .filter(|e| self.column_alive[e.0 as usize])
+            .peekable();
+        for &(k, v) in entries {
+            while let Some(e) = old.next_if(|e| e.0 < k) {
+                new.push(e);
+            }
+            let add = factor * v;
+            self.new_columns.push(k as usize);
+            match old.next_if(|e| e.0 == k) {
+                Some((_, was)) if (was + add).abs() <= ROUNDING * was.abs() => {
+                    self.column_count[k as usize] -= 1;
+                    self.columns[k as usize].retain(|&i| i as usize != r);
+                }
+                Some((_, was)) => new.push((k, was + add)),
+                None => {
+                    new.push((k, add));
+                    self.column_count[k as usize] += 1;
+                    self.columns[k as usize].push(r as u32);
+                }
+            }
+        }
+        new.extend(old);
+        self.row_count[r] = new.len() as u32;
+        self.rows[r] = new;
+        self.new_rows.push(r);
+    }
+}

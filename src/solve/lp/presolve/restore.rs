@@ -1,0 +1,377 @@
+//! The way back: points, multipliers and bases, step by step from the last to the first.
+
+use super::super::form::Point;
+use super::super::simplex::{Basis, State};
+use super::{Doubleton, Presolved, Step};
+
+/// A point of the program before, as far as the way back has come. Reduced costs are for the rows that are there again.
+struct Back {
+    x: Vec<f64>,
+    y: Vec<f64>,
+    d: Vec<f64>,
+    columns: Vec<State>,
+    rows: Vec<State>,
+    /// Multipliers that prove infeasibility: costs are 0, and signs say where columns and rows are.
+    ray: bool,
+}
+
+impl Presolved {
+    /// A point and a basis of the program before, of those of the smaller one.
+    pub fn restore(&self, point: &Point, basis: &[State]) -> (Point, Basis) {
+        let mut back = self.begin(point, basis);
+        self.steps.iter().rev().for_each(|s| back.undo(s));
+        let basis = back.columns.into_iter().chain(back.rows).collect();
+        let (x, y, d) = (back.x, back.y, back.d);
+        (Point { x, y, d }, basis)
+    }
+
+    /// Multipliers that may prove the program before infeasible, of those that prove it of the smaller one.
+    pub fn restore_ray(&self, y: &[f64]) -> Vec<f64> {
+        let n = self.columns.len();
+        let p = &self.problem;
+        let reduced = |j: usize| -p.columns.line(j).map(|(i, a)| a * y[i]).sum::<f64>();
+        let point = Point {
+            x: vec![0.0; n],
+            y: y.to_vec(),
+            d: (0..n).map(reduced).collect(),
+        };
+        let mut back = self.begin(&point, &vec![State::Lower; n + y.len()]);
+        back.ray = true;
+        self.steps.iter().rev().for_each(|s| back.undo(s));
+        back.y
+    }
+
+    fn begin(&self, point: &Point, basis: &[State]) -> Back {
+        let [m, n] = self.size;
+        let mut back = Back {
+            x: vec![0.0; n],
+            y: vec![0.0; m],
+            d: vec![0.0; n],
+            columns: vec![State::Lower; n],
+            rows: vec![State::Basic; m],
+            ray: false,
+        };
+        for (k, &j) in self.columns.iter().enumerate() {
+            let j = j as usize;
+            (back.x[j], back.d[j], back.columns[j]) = (point.x[k], point.d[k], basis[k]);
+        }
+        for (k, &i) in self.rows.iter().enumerate() {
+            let i = i as usize;
+            let state = basis[self.columns.len() + k];
+            // An equation is at the side that its multiplier says.
+            let fixed = self.problem.row_lower[k] == self.problem.row_upper[k];
+            let state = match state {
+                State::Lower | State::Upper if fixed => by_sign(point.y[k]),
+                state => state,
+            };
+            (back.y[i], back.rows[i]) = (point.y[k], state);
+        }
+        back
+    }
+}
+
+/// Where what has this reduced cost is.
+fn by_sign(d: f64) -> State {
+    if d < 0.0 { State::Upper } else { State::Lower }
+}
+
+/// Whether a state is at a bound that is marked.
+fn is_at(state: State, marked: [bool; 2]) -> bool {
+    match state {
+        State::Lower => marked[0],
+        State::Upper => marked[1],
+        State::Basic | State::Free => false,
+    }
+}
+
+fn opposite(state: State) -> State {
+    match state {
+        State::Lower => State::Upper,
+        State::Upper => State::Lower,
+        other => other,
+    }
+}
+
+/// The bound that a value is nearer to.
+fn nearest(x: f64, [l, u]: [f64; 2]) -> State {
+    if u.is_infinite() || (x - l).abs() <= (u - x).abs() {
+        State::Lower
+    } else {
+        State::Upper
+    }
+}
+
+impl Back {
+    /// Where a column is; the sign of its reduced cost says at which of two equal bounds.
+    fn column_state(&mut self, j: usize, fixed: bool) -> State {
+        self.columns[j] = self.state(self.columns[j], self.d[j], fixed);
+        self.columns[j]
+    }
+
+    fn row_state(&mut self, i: usize, fixed: bool) -> State {
+        self.rows[i] = self.state(self.rows[i], self.y[i], fixed);
+        self.rows[i]
+    }
+
+    fn state(&self, state: State, d: f64, fixed: bool) -> State {
+        match (self.ray, state) {
+            (true, _) if d == 0.0 => State::Basic,
+            (true, _) => by_sign(d),
+            (false, State::Lower | State::Upper) if fixed => by_sign(d),
+            (false, state) => state,
+        }
+    }
+
+    fn cost(&self, cost: f64) -> f64 {
+        if self.ray { 0.0 } else { cost }
+    }
+
+    /// Σ a·v over entries.
+    fn sum(entries: &[(u32, f64)], v: &[f64]) -> f64 {
+        entries.iter().map(|&(k, a)| a * v[k as usize]).sum()
+    }
+
+    fn undo(&mut self, step: &Step) {
+        match step {
+            Step::Idle(row) => self.rows[*row as usize] = State::Basic,
+            Step::Fixed {
+                column,
+                value,
+                state,
+                cost,
+                entries,
+            } => {
+                let j = *column as usize;
+                self.x[j] = *value;
+                self.d[j] = self.cost(*cost) - Self::sum(entries, &self.y);
+                self.columns[j] = match state {
+                    State::Basic => by_sign(self.d[j]),
+                    state => *state,
+                };
+            }
+            Step::Singleton {
+                row,
+                column,
+                a,
+                from_row,
+                fixed,
+            } => {
+                let (i, j) = (*row as usize, *column as usize);
+                let state = self.column_state(j, *fixed);
+                if is_at(state, *from_row) {
+                    self.rows[i] = if *a > 0.0 { state } else { opposite(state) };
+                    self.columns[j] = State::Basic;
+                    self.y[i] = std::mem::take(&mut self.d[j]) / a;
+                }
+            }
+            Step::Forcing {
+                row,
+                upper,
+                entries,
+            } => self.forcing(*row as usize, *upper, entries),
+            Step::Slack { .. } => self.slack(step),
+            Step::Substituted { .. } => self.substituted(step),
+            Step::Row {
+                kept,
+                gone,
+                ratio,
+                from_gone,
+                fixed,
+            } => {
+                let (kept, gone) = (*kept as usize, *gone as usize);
+                let state = self.row_state(kept, *fixed);
+                if is_at(state, *from_gone) {
+                    self.rows[gone] = if *ratio > 0.0 { state } else { opposite(state) };
+                    self.rows[kept] = State::Basic;
+                    self.y[gone] = std::mem::take(&mut self.y[kept]) / ratio;
+                }
+            }
+            Step::Column { .. } => self.column(step),
+        }
+    }
+
+    /// The multiplier for which all columns may stay at their bounds; one of them becomes basic.
+    fn forcing(&mut self, i: usize, upper: bool, entries: &[(u32, f64)]) {
+        let mut worst = (0.0, None);
+        for &(j, a) in entries {
+            let y = self.d[j as usize] / a;
+            if if upper { y < worst.0 } else { y > worst.0 } {
+                worst = (y, Some(j as usize));
+            }
+        }
+        let (y, Some(basic)) = worst else {
+            return;
+        };
+        self.y[i] = y;
+        self.rows[i] = if upper { State::Upper } else { State::Lower };
+        entries
+            .iter()
+            .for_each(|&(j, a)| self.d[j as usize] -= a * y);
+        self.d[basic] = 0.0;
+        self.columns[basic] = State::Basic;
+    }
+
+    fn slack(&mut self, step: &Step) {
+        let Step::Slack {
+            row,
+            column,
+            a,
+            cost,
+            bounds,
+            sides,
+            entries,
+        } = step
+        else {
+            return;
+        };
+        let (i, j) = (*row as usize, *column as usize);
+        let rest = Self::sum(entries, &self.x);
+        let fixed = sides[0] == sides[1] && bounds[0] == bounds[1];
+        let state = self.row_state(i, fixed);
+        self.d[j] = -a * self.y[i];
+        self.y[i] += self.cost(*cost) / a;
+        if state != State::Basic {
+            // The row's lower side is the column's end that adds most.
+            self.columns[j] = if *a > 0.0 { opposite(state) } else { state };
+            self.x[j] = match self.columns[j] {
+                State::Upper => bounds[1],
+                _ => bounds[0],
+            };
+            if sides[0] == sides[1] {
+                self.rows[i] = by_sign(self.y[i]);
+            }
+            return;
+        }
+        for (bound, state) in bounds.iter().zip([State::Lower, State::Upper]) {
+            let activity = rest + a * bound;
+            if sides[0] < activity && activity < sides[1] {
+                (self.x[j], self.columns[j]) = (*bound, state);
+                return;
+            }
+        }
+        // Neither end will do: the row is at a side, and the column inside.
+        let low = sides[0].is_finite();
+        let low = low
+            && (sides[0] == sides[1] || sides[1].is_infinite() || {
+                let x = (sides[0] - rest) / a;
+                bounds[0] <= x && x <= bounds[1]
+            });
+        self.x[j] = (sides[usize::from(!low)] - rest) / a;
+        self.columns[j] = State::Basic;
+        self.rows[i] = if low { State::Lower } else { State::Upper };
+    }
+
+    fn substituted(&mut self, step: &Step) {
+        let Step::Substituted {
+            row,
+            column,
+            a,
+            cost,
+            side,
+            at,
+            entries,
+            others,
+            doubleton,
+        } = step
+        else {
+            return;
+        };
+        let (i, j) = (*row as usize, *column as usize);
+        self.y[i] = (self.cost(*cost) - Self::sum(others, &self.y)) / a;
+        self.x[j] = (side - Self::sum(entries, &self.x)) / a;
+        self.d[j] = 0.0;
+        self.columns[j] = State::Basic;
+        self.rows[i] = *at;
+        let Some(Doubleton {
+            other,
+            b,
+            from_gone,
+            fixed,
+            bounds,
+        }) = doubleton
+        else {
+            return;
+        };
+        let k = *other as usize;
+        if is_at(self.column_state(k, *fixed), *from_gone) {
+            let d = std::mem::take(&mut self.d[k]);
+            self.y[i] += d / b;
+            self.d[j] = -a * d / b;
+            self.columns[k] = State::Basic;
+            self.columns[j] = nearest(self.x[j], *bounds);
+        }
+    }
+
+    fn column(&mut self, step: &Step) {
+        let Step::Column {
+            kept,
+            gone,
+            ratio,
+            kept_bounds,
+            gone_bounds,
+        } = step
+        else {
+            return;
+        };
+        let (kept, gone) = (*kept as usize, *gone as usize);
+        self.d[gone] = ratio * self.d[kept];
+        let along = |s: State| if *ratio > 0.0 { s } else { opposite(s) };
+        let value = |s: State, [l, u]: [f64; 2]| match s {
+            State::Upper => u,
+            State::Lower => l,
+            _ => 0.0,
+        };
+        let (state, total) = (self.columns[kept], self.x[kept]);
+        if state != State::Basic {
+            let merged_free = state == State::Free;
+            self.columns[gone] = if merged_free {
+                free(*gone_bounds)
+            } else {
+                along(state)
+            };
+            self.columns[kept] = if merged_free {
+                free(*kept_bounds)
+            } else {
+                state
+            };
+            self.x[gone] = value(self.columns[gone], *gone_bounds);
+            self.x[kept] = value(self.columns[kept], *kept_bounds);
+            return;
+        }
+        // One of them at a bound from which the other fills the rest.
+        for at in [free(*gone_bounds), opposite(free(*gone_bounds))] {
+            let x = value(at, *gone_bounds);
+            let rest = total - ratio * x;
+            if x.is_finite() && kept_bounds[0] <= rest && rest <= kept_bounds[1] {
+                (self.columns[gone], self.x[gone], self.x[kept]) = (at, x, rest);
+                return;
+            }
+        }
+        let rest = |x: f64| (total - x) / ratio;
+        let fits = |x: f64| {
+            x.is_finite() && {
+                let r = rest(x);
+                gone_bounds[0] <= r && r <= gone_bounds[1]
+            }
+        };
+        let at = match fits(kept_bounds[0])
+            || !kept_bounds[1].is_finite() && kept_bounds[0].is_finite()
+        {
+            true => State::Lower,
+            false if kept_bounds[1].is_finite() => State::Upper,
+            false => State::Free,
+        };
+        let x = value(at, *kept_bounds);
+        (self.columns[kept], self.x[kept]) = (at, x);
+        (self.columns[gone], self.x[gone]) = (State::Basic, rest(x));
+    }
+}
+
+/// A bound at which a column may rest.
+fn free([l, u]: [f64; 2]) -> State {
+    match (l.is_finite(), u.is_finite()) {
+        (true, _) => State::Lower,
+        (false, true) => State::Upper,
+        (false, false) => State::Free,
+    }
+}
