@@ -55,6 +55,18 @@ macro_rules! strategies {
 // name, when it applies and what it does, what it costs at most, source
 strategies! {
     "lp": {
+        Presolve "presolve",
+            "more than 600 rows and columns: rows and columns that are decided, implied or multiples of others are taken out",
+            "the nonzeros, some thirty times at most",
+            "Andersen & Andersen 1995";
+        SimplexFirst "simplex_first",
+            "up to 12000 rows and columns: the simplex method is tried before the interior point",
+            "500 pivots and 2.5 for each row",
+            "Koberstein & Suhl 2007";
+        FaceVertex "face_vertex",
+            "an interior point in a face of 1500 dimensions: a second one, with a random objective, ends near a vertex of it",
+            "a second solve by the interior point",
+            "Mehrotra 1991";
     }
     "mcp": {
     }

@@ -121,6 +121,12 @@ impl Problem {
         self.row_lower.len()
     }
 
+    /// A value between the bounds of a column: one of them if there is one.
+    pub fn at_bound(&self, j: usize) -> f64 {
+        let bounds = [self.lower[j], self.upper[j]];
+        bounds.into_iter().find(|b| b.is_finite()).unwrap_or(0.0)
+    }
+
     /// Whether y proves the problem infeasible, clearly: more strictly than
     /// [`crate::solve::certificate`] asks.
     pub fn proves_infeasible(&self, y: &[f64]) -> bool {

@@ -14,6 +14,7 @@ pub mod simplex;
 
 use super::backend::{Backend, Reply, Supports, Task, Terms};
 use super::noise;
+use super::strategy::{Strategies, Strategy};
 use super::{Budget, Claim, Outcome, Settings, SolveError, SolverStatus, Stop};
 use crate::model::instance::Instance;
 use crate::model::option::OptionTable;
@@ -22,7 +23,7 @@ use form::{Form, Point, Problem};
 use interior::Aim;
 pub use options::OPTIONS;
 use scale::Scaling;
-use simplex::{Basis, Simplex};
+use simplex::{Basis, Simplex, State};
 
 /// How a method ended, in the units of the problem it was given.
 #[derive(Clone, Debug, PartialEq)]
@@ -215,6 +216,7 @@ fn solve(
         ));
     }
     let accuracy = Accuracy::new(settings);
+    let strategies = settings.strategies();
     let tolerance = settings.number("tolerance");
     let form = Form::new(instance)?;
     let scaling = Scaling::new(&form.problem);
@@ -231,16 +233,24 @@ fn solve(
             match answer.ended {
                 // Whatever is no solution is looked at more closely.
                 Ended::Solved | Ended::Time | Ended::Interrupted => answer,
-                _ => finished(&scaled, accuracy, budget),
+                _ => finished(&scaled, accuracy, strategies, budget),
             }
         }
-        (Method::Crossover, _) => finished(&scaled, accuracy, budget),
+        (Method::Crossover, _) => finished(&scaled, accuracy, strategies, budget),
         (Method::Simplex, _) => simplex_only(&scaled, accuracy, budget),
-        (Method::Auto, _) if !small => {
-            presolved(&form.problem, &scaling, &scaled, accuracy, budget)
+        (Method::Auto, _) if !small && strategies.run(Strategy::Presolve) => presolved(
+            &form.problem,
+            &scaling,
+            &scaled,
+            accuracy,
+            strategies,
+            budget,
+        ),
+        (Method::Auto, _) => auto(&scaled, accuracy, strategies, budget),
+        (Method::Restart(from), _) => {
+            let basis = form.basis(from);
+            restarted(&scaled, &basis, accuracy, strategies, budget)
         }
-        (Method::Auto, _) => auto(&scaled, accuracy, budget),
-        (Method::Restart(from), _) => restarted(&scaled, &form.basis(from), accuracy, budget),
     };
     budget.spend(answer.iterations);
     let (claim, status) = match answer.ended {
@@ -314,12 +324,18 @@ fn simplex_only(p: &Problem, accuracy: Accuracy, budget: &Budget) -> Gave {
     simplex_answer(simplex, ended)
 }
 
-fn restarted(p: &Problem, basis: &Basis, accuracy: Accuracy, budget: &Budget) -> Gave {
+fn restarted(
+    p: &Problem,
+    basis: &Basis,
+    accuracy: Accuracy,
+    strategies: Strategies,
+    budget: &Budget,
+) -> Gave {
     let most = (100 + p.m() + p.n()) as u64;
     let mut simplex = Simplex::new(p);
     let ended = simplex.solve_from_basis(basis, &mut watch(budget, most));
     if ended != Ended::Solved {
-        return auto(p, accuracy, budget);
+        return auto(p, accuracy, strategies, budget);
     }
     let line = format!("simplex: solved after {} iterations", simplex.iterations);
     budget.log_timed(&line);
@@ -333,38 +349,51 @@ fn presolved(
     scaling: &Scaling,
     scaled: &Problem,
     accuracy: Accuracy,
+    strategies: Strategies,
     budget: &Budget,
 ) -> Gave {
     let Some(reduced) = presolve::presolve(given) else {
-        return auto(scaled, accuracy, budget);
+        return auto(scaled, accuracy, strategies, budget);
     };
     let p = &reduced.problem;
     let line = format!("presolve: {} rows and {} columns are left", p.m(), p.n());
     budget.log_timed(&line);
     let units = Scaling::new(p);
-    let mut gave = auto(&units.apply(p), Accuracy::Fast(0.0), budget);
-    match (&mut gave.ended, gave.basis.take()) {
+    let mut gave = auto(&units.apply(p), Accuracy::Fast(0.0), strategies, budget);
+    match (gave.ended.clone(), gave.basis.take()) {
         (Ended::Solved, Some(basis)) => {
             let (_, basis) = reduced.restore(&units.restore(gave.point), &basis);
-            let mut done = restarted(scaled, &basis, accuracy, budget);
+            let mut done = restarted(scaled, &basis, accuracy, strategies, budget);
             done.iterations += gave.iterations;
             if gave.solver == "clarabel" {
                 done.solver = gave.solver;
             }
             done
         }
-        (Ended::Infeasible(y), _) => {
-            units.restore_multipliers(y);
-            let mut y = reduced.restore_ray(y);
+        (Ended::Infeasible(mut y), _) => {
+            units.restore_multipliers(&mut y);
+            let mut y = reduced.restore_ray(&y);
             scaling.carry_multipliers(&mut y);
-            if scaled.proves_infeasible(&y) {
-                gave.ended = Ended::Infeasible(y);
-                gave.point = Point::default();
-                return gave;
+            if !scaled.proves_infeasible(&y) {
+                return auto(scaled, accuracy, strategies, budget);
             }
-            auto(scaled, accuracy, budget)
+            gave.ended = Ended::Infeasible(y);
+            gave.point = Point {
+                x: (0..given.n()).map(|j| scaled.at_bound(j)).collect(),
+                y: vec![0.0; given.m()],
+                d: vec![0.0; given.n()],
+            };
+            gave
         }
-        _ => auto(scaled, accuracy, budget),
+        (Ended::Iterations | Ended::Time | Ended::Interrupted, basis)
+            if gave.point.x.len() == p.n() && gave.point.y.len() == p.m() =>
+        {
+            let basis = basis.unwrap_or_else(|| vec![State::Basic; p.n() + p.m()]);
+            let (point, _) = reduced.restore(&units.restore(gave.point), &basis);
+            gave.point = scaling.carry(point);
+            gave
+        }
+        _ => auto(scaled, accuracy, strategies, budget),
     }
 }
 
@@ -427,25 +456,38 @@ fn interior_only(p: &Problem, aim: Aim, budget: &Budget) -> Gave {
     }
 }
 
-/// Columns and rows together up to which the simplex method is tried first.
+/// Columns and rows together up to which the simplex method is all that is needed, as a rule.
 const SMALL: usize = 600;
+
+/// Columns and rows together up to which the simplex method is tried for a while. Beyond it an interior point is sooner
+/// there in most of Netlib.
+const MEDIUM: usize = 12_000;
 
 /// Columns and rows together from which an interior point of many digits saves more pivots than it costs.
 const LARGE: usize = 3000;
 
-/// Small programs by the simplex method, others by the interior point and its finish; where one
-/// fails the other is tried.
-fn auto(p: &Problem, accuracy: Accuracy, budget: &Budget) -> Gave {
-    if p.m() + p.n() > SMALL {
-        return finished(p, accuracy, budget);
-    }
+/// The simplex method where it is likely to be the faster one; the interior point and its finish for large programs and for
+/// those that take it long.
+fn auto(p: &Problem, accuracy: Accuracy, strategies: Strategies, budget: &Budget) -> Gave {
+    let size = p.m() + p.n();
+    let effort = match size {
+        ..=SMALL => 1000 + 20 * size,
+        // twice to thrice the rows is usual
+        ..=MEDIUM if strategies.run(Strategy::SimplexFirst) => 500 + 5 * p.m() / 2,
+        _ => return finished(p, accuracy, strategies, budget),
+    };
     let mut simplex = Simplex::new(p);
-    let effort = 1000 + 20 * (p.m() + p.n()) as u64;
     let left = budget.iterations_left();
-    let ended = simplex.solve(&mut watch(budget, effort));
-    let stuck = ended == Ended::Failed || (ended == Ended::Iterations && effort < left);
+    let ended = simplex.solve(&mut watch(budget, effort as u64));
+    let stuck = ended == Ended::Failed || (ended == Ended::Iterations && (effort as u64) < left);
+    let line = format!(
+        "simplex: {} after {} iterations",
+        ended.word(),
+        simplex.iterations
+    );
+    budget.log_timed(&line);
     if stuck {
-        return finished(p, accuracy, budget);
+        return finished(p, accuracy, strategies, budget);
     }
     if ended == Ended::Solved {
         tighten(&mut simplex, accuracy, budget);
@@ -454,7 +496,7 @@ fn auto(p: &Problem, accuracy: Accuracy, budget: &Budget) -> Gave {
 }
 
 /// Interior point, then a basis from it, then the simplex method.
-fn finished(p: &Problem, accuracy: Accuracy, budget: &Budget) -> Gave {
+fn finished(p: &Problem, accuracy: Accuracy, strategies: Strategies, budget: &Budget) -> Gave {
     let aim = match p.m() + p.n() > LARGE {
         true => Aim::Digits,
         false => Aim::Tolerance(1e-10),
@@ -464,7 +506,7 @@ fn finished(p: &Problem, accuracy: Accuracy, budget: &Budget) -> Gave {
     let mut most = u64::MAX;
     match answer.ended {
         Ended::Solved => {
-            let wide = crossover::is_wide(p, &answer.point);
+            let wide = crossover::is_wide(p, &answer.point) && strategies.run(Strategy::FaceVertex);
             let of_face = wide.then(|| {
                 let face = crossover::face(p, &answer.point);
                 interior_only(&face, Aim::Tolerance(1e-10), budget)

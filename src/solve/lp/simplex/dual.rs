@@ -81,7 +81,9 @@ impl Simplex {
 
     /// Pivots of the dual method, from a dual feasible basis.
     fn pivots(&mut self, stop: &mut dyn FnMut(u64) -> Option<Ended>) -> Stop {
-        let mut refused = vec![0u8; self.m];
+        // Slots that are passed over until the factor is fresh again, or until the next pivot.
+        let mut refused = vec![false; self.m];
+        let mut bad_rows = 0;
         loop {
             if self.iterations.is_multiple_of(32)
                 && let Some(why) = stop(self.iterations)
@@ -97,48 +99,41 @@ impl Simplex {
                     return Stop::Ended(Ended::Iterations);
                 }
             }
-            let Some((slot, above)) = self.leaving(&refused) else {
-                if self.is_trusted() {
-                    return Stop::Done;
-                }
-                if self.refresh().is_none() {
-                    return Stop::Ended(Ended::Failed);
-                }
-                if self.leaving(&refused).is_none() {
-                    return Stop::Done;
-                }
-                continue;
-            };
-            match self.dual_step(slot, above) {
-                Step::Done => refused.fill(0),
-                Step::Nothing(y) => {
-                    let fresh = self.is_fresh();
-                    if fresh && self.is_proof(&y) {
-                        return Stop::Infeasible(y);
+            let fresh = self.is_fresh();
+            let mut renew = false;
+            match self.leaving(&refused) {
+                None if self.is_trusted() => return Stop::Done,
+                None => renew = true,
+                Some((slot, above)) => match self.dual_step(slot, above) {
+                    Step::Done => {
+                        bad_rows = 0;
+                        if self.is_fresh() {
+                            refused.fill(false);
+                        }
                     }
-                    if fresh {
-                        // Entries too small to pivot on could still help.
-                        refused[slot] += 1;
-                    } else if self.refresh().is_none() {
-                        return Stop::Ended(Ended::Failed);
+                    Step::Nothing(y) if self.is_proof(&y) => {
+                        if fresh {
+                            return Stop::Infeasible(y);
+                        }
+                        renew = true;
                     }
-                }
-                Step::Unsafe => {
-                    let fresh = self.is_fresh();
-                    if fresh {
-                        // On a fresh factor the row itself is bad: look at the others first.
-                        refused[slot] += 1;
-                        if refused.iter().map(|&r| u32::from(r)).sum::<u32>() > 50 {
+                    // Entries too small to pivot on could still help.
+                    Step::Nothing(_) => refused[slot] = true,
+                    // On a fresh factor the row itself is bad: look at the others first.
+                    Step::Unsafe if fresh => {
+                        refused[slot] = true;
+                        bad_rows += 1;
+                        if bad_rows > 50 {
                             return Stop::Ended(Ended::Failed);
                         }
-                    } else if self.refresh().is_none() {
-                        return Stop::Ended(Ended::Failed);
                     }
-                }
-                Step::Broken => {
-                    if self.refresh().is_none() {
-                        return Stop::Ended(Ended::Failed);
-                    }
+                    Step::Unsafe | Step::Broken => renew = true,
+                },
+            }
+            if renew {
+                refused.fill(false);
+                if self.refresh().is_none() {
+                    return Stop::Ended(Ended::Failed);
                 }
             }
         }
@@ -215,14 +210,14 @@ impl Simplex {
 
     /// The slot that leaves: largest violation relative to the steepest-edge weight; and whether it
     /// is above its upper bound.
-    fn leaving(&self, refused: &[u8]) -> Option<(usize, bool)> {
+    fn leaving(&self, refused: &[bool]) -> Option<(usize, bool)> {
         let mut best = (0.0, None);
         for (k, &j) in self.head.iter().enumerate() {
             let j = j as usize;
             let x = self.x[j];
             let above = x - self.work_upper[j];
             let violation = above.max(self.work_lower[j] - x);
-            if violation > self.tolerance && refused[k] == 0 {
+            if violation > self.tolerance && !refused[k] {
                 let score = violation * violation / self.edge[k];
                 if score > best.0 {
                     best = (score, Some((k, above > 0.0)));
