@@ -11,7 +11,9 @@ use super::lp::certify::{Proof, Unproved};
 use super::mpec::Stationarity;
 use super::mpec::pairs::Program;
 use super::registry::BACKENDS;
-use super::{Budget, Claim, ModelStatus, Outcome, Settings, SolveError, lp, mip, noise};
+use super::{
+    Budget, Claim, ModelStatus, Outcome, Settings, SolveError, SolverStatus, lp, mip, noise,
+};
 use crate::autodiff::Evaluator;
 use crate::model::instance::{Instance, Relation};
 use crate::model::problem_type::ProblemType;
@@ -67,7 +69,10 @@ pub fn answer_with(
     budget: &Budget,
 ) -> Result<Answer, SolveError> {
     let mut found = solve(backends, task, settings, budget)?;
-    if found.status == ModelStatus::Infeasible && is_linear_program(task) {
+    // Rows that contradict each other by a rounding error neither hold nor prove that they cannot: the methods give up.
+    let gave_up = found.outcome.claim == Claim::Unfinished
+        && found.outcome.status == SolverStatus::TerminatedBySolver;
+    if is_linear_program(task) && (gave_up || found.status == ModelStatus::Infeasible) {
         found = least_violation(backends, task, found, settings, budget);
     }
     noise::zero_below_roundoff(&mut found.outcome.column_marginal);
@@ -384,6 +389,10 @@ fn least_violation(
                 };
             }
         }
+    }
+    let primal = |a: &Answer| a.residuals.primal.unwrap_or(f64::INFINITY);
+    if found.status != ModelStatus::Infeasible && primal(&found) <= primal(&near) {
+        return found;
     }
     Answer {
         outcome: Outcome {

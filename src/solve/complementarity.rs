@@ -290,6 +290,7 @@ fn run(
     infeasible: Infeasible,
 ) -> Result<(mcp::Outcome, SolverStatus), SolveError> {
     let mut limits = mcp::Settings::with(&settings.options);
+    limits.strategies = settings.strategies();
     let left = usize::try_from(budget.iterations_left()).unwrap_or(usize::MAX);
     limits.cumulative_iteration_limit = limits.cumulative_iteration_limit.min(left);
     let mut help = Help {
@@ -356,6 +357,15 @@ fn solve(
             }
         }
     }
+    if out.status == mcp::Status::Solved
+        && let Some(j) = running_away(&mut problem, &out.x)
+    {
+        out.message = format!(
+            "the residual is small, but {} = {:.1e} runs away: twice as far it is smaller still, so the solution may lie at infinity only",
+            budget.column_name(j),
+            out.x[j]
+        );
+    }
     let (claim, status) = match out.status {
         mcp::Status::Solved => (Claim::Solved, status),
         // That all methods from all starts failed is what GAMS calls locally infeasible.
@@ -374,4 +384,36 @@ fn solve(
         message: (!out.message.is_empty()).then_some(out.message),
         basis: None,
     })
+}
+
+/// A level beyond this may be on its way to infinity.
+const FAR: f64 = 1e6;
+
+/// The largest variable without a bound ahead if the residual falls where all that are so far out go twice as far.
+fn running_away(problem: &mut Square, x: &[f64]) -> Option<usize> {
+    let (lower, upper) = (problem.lower.clone(), problem.upper.clone());
+    let endless = |j: usize| {
+        if x[j] > 0.0 {
+            upper[j] > 1e20
+        } else {
+            lower[j] < -1e20
+        }
+    };
+    let far = (0..x.len()).filter(|&j| x[j].abs() > FAR && endless(j));
+    let largest = far.max_by(|&a, &b| x[a].abs().total_cmp(&x[b].abs()))?;
+    let mut residual = |x: &[f64]| {
+        let mut f = vec![0.0; x.len()];
+        mcp::Problem::function(problem, x, &mut f).ok()?;
+        Some(mcp::natural_residual(x, &f, &lower, &upper).0)
+    };
+    let farther = |(j, &v): (usize, &f64)| {
+        if v.abs() > FAR && endless(j) {
+            2.0 * v
+        } else {
+            v
+        }
+    };
+    let twice: Vec<f64> = x.iter().enumerate().map(farther).collect();
+    let (here, there) = (residual(x)?, residual(&twice)?);
+    (here > 0.0 && there < 0.75 * here).then_some(largest)
 }

@@ -69,6 +69,34 @@ strategies! {
             "Mehrotra 1991";
     }
     "mcp": {
+        PairPresolve "pair_presolve",
+            "rows of one variable become bounds, and variables that only report go",
+            "the nonzeros, a few times",
+            "Ferris & Munson 2000";
+        InteriorCrash "interior_crash",
+            "many variables: an interior point method leads to the first basis",
+            "its iterations",
+            "Wright 1997, chapter 8";
+        OtherCrash "other_crash",
+            "the path failed: once more with the Newton crash, or without a crash",
+            "a run of the path",
+            "Dirkse & Ferris 1995";
+        LinearStarts "linear_starts",
+            "a linear problem whose path failed: paths from other starts",
+            "a path for each",
+            "Cottle, Pang & Stone 1992";
+        Smoothing "smoothing",
+            "the path failed: a smoothing Newton method",
+            "its iterations",
+            "Chen & Mangasarian 1996";
+        Semismooth "semismooth",
+            "the path failed: a semismooth Newton method",
+            "its iterations",
+            "De Luca, Facchinei & Kanzow 1996";
+        RandomRestarts "random_restarts",
+            "all methods failed from the given start: 30 random ones",
+            "twice the work so far, or a second",
+            "PATH's restarts, Ferris & Munson 2000";
     }
     "nlp": {
         ConvexEpigraph "convex_epigraph",

@@ -54,6 +54,7 @@ mod starts;
 mod vertex;
 
 use super::Budget;
+use super::strategy::Strategies;
 pub use merit::natural_residual;
 pub use options::OPTIONS;
 
@@ -137,6 +138,8 @@ pub struct Settings {
     /// Whether it has the problem's size and, at the end, the status, the counts, and where the residual is
     /// largest. Default true.
     pub output_final_statistics: bool,
+    /// Which fallbacks and special treatments run. Default: all.
+    pub strategies: Strategies,
 }
 
 impl Default for Settings {
@@ -160,6 +163,7 @@ impl Default for Settings {
             output_major_iterations: true,
             output_minor_iterations: true,
             output_final_statistics: true,
+            strategies: Strategies::default(),
         }
     }
 }

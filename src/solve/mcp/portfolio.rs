@@ -17,6 +17,7 @@ use super::smoothing::smoothing;
 use super::starts::starts;
 use super::{Help, Outcome, Problem, Settings, Status};
 use crate::solve::Budget;
+use crate::solve::strategy::{Strategies, Strategy};
 
 /// A method of the portfolio.
 #[derive(Debug, Clone, Copy)]
@@ -36,6 +37,16 @@ impl Method {
             Method::Semismooth => "semismooth",
             Method::Starts => "path from random starts",
         }
+    }
+
+    /// As a fallback.
+    fn runs(self, strategies: Strategies) -> bool {
+        strategies.run(match self {
+            Method::Path { .. } => Strategy::OtherCrash,
+            Method::Smoothing => Strategy::Smoothing,
+            Method::Semismooth => Strategy::Semismooth,
+            Method::Starts => Strategy::LinearStarts,
+        })
     }
 
     fn run(self, run: &mut Run, start: Point) -> Result<End, Stop> {
@@ -61,7 +72,9 @@ pub(super) fn solve(
     }
     let statistics = budget.wants_log() && settings.output_final_statistics;
     // Without iterations the start is judged as it is, which the presolve would move.
-    let preprocess = settings.preprocess && settings.cumulative_iteration_limit > 0;
+    let preprocess = settings.preprocess
+        && settings.cumulative_iteration_limit > 0
+        && settings.strategies.run(Strategy::PairPresolve);
     let mut reduced = Reduced::new(problem, preprocess);
     if statistics {
         let line = format!(
@@ -185,7 +198,9 @@ fn attempt(run: &mut Run, restarts: &mut usize) -> Result<(), Stop> {
     if let Some(start) = first_point(run) {
         let path = |crash| Method::Path { crash };
         let mut methods = match run.settings.crash_method {
-            true if large => vec![path(Crash::Interior), path(Crash::Newton)],
+            true if large && run.settings.strategies.run(Strategy::InteriorCrash) => {
+                vec![path(Crash::Interior), path(Crash::Newton)]
+            }
             true => vec![path(Crash::Newton)],
             false => vec![path(Crash::None)],
         };
@@ -201,13 +216,19 @@ fn attempt(run: &mut Run, restarts: &mut usize) -> Result<(), Stop> {
             }
         }
         for (tried, method) in methods.into_iter().enumerate() {
+            if tried > 0 && !method.runs(run.settings.strategies) {
+                continue;
+            }
             if tried == 1 && run.help.proves_infeasible() || succeeds(run, method, start.clone())? {
                 return Ok(());
             }
         }
     }
     let acceptable = run.settings.acceptable_tolerance;
-    if !run.settings.fallbacks || run.best.as_ref().is_some_and(|b| b.residual <= acceptable) {
+    if !run.settings.fallbacks
+        || run.best.as_ref().is_some_and(|b| b.residual <= acceptable)
+        || !run.settings.strategies.run(Strategy::RandomRestarts)
+    {
         return Ok(());
     }
     let budget = match run.settings.restart_limit {

@@ -29,6 +29,7 @@ const ROUNDING: f64 = 1e-12;
 type Entries = Box<[(u32, f64)]>;
 
 /// What was taken away, for the way back.
+#[derive(Debug)]
 enum Step {
     /// A row that says nothing.
     Idle(u32),
@@ -100,6 +101,7 @@ enum Step {
 }
 
 /// The other column of an equation in two, and which of its bounds stem from the one that went.
+#[derive(Debug)]
 struct Doubleton {
     other: u32,
     b: f64,
@@ -449,3 +451,6 @@ impl Work {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

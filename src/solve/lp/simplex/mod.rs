@@ -215,10 +215,10 @@ impl Simplex {
             }
         }
         for j in 0..self.n + self.m {
-            let at_upper = basis.get(j) == Some(&State::Upper) && self.upper[j].is_finite();
-            self.x[j] = match at_upper {
-                true => self.upper[j],
-                false => self.resting(j, 0.0),
+            self.x[j] = match basis.get(j) {
+                Some(State::Upper) if self.upper[j].is_finite() => self.upper[j],
+                Some(State::Lower) if self.lower[j].is_finite() => self.lower[j],
+                _ => self.resting(j, 0.0),
             };
         }
         self.edge.fill(1.0);
