@@ -451,6 +451,3 @@ impl Work {
         }
     }
 }
-
-#[cfg(test)]
-mod tests;
