@@ -172,8 +172,7 @@ impl Work {
         let entries: Entries = entries.map(|(k, v)| (k as u32, v)).collect();
         if cost != 0.0 {
             for &(k, v) in &entries {
-                self.cost[k as usize] -= v * cost / a;
-                self.new_columns.push(k as usize);
+                self.change_cost(k as usize, v * cost / a);
             }
         }
         let [low, high] = term(a, bounds);
@@ -291,9 +290,9 @@ impl Work {
             .collect();
         let cost = self.cost[j];
         if cost != 0.0 {
-            entries
-                .iter()
-                .for_each(|&(k, v)| self.cost[k as usize] -= v * cost / a);
+            for &(k, v) in &entries {
+                self.change_cost(k as usize, v * cost / a);
+            }
         }
         self.remove_column(j);
         self.remove_row(i);
@@ -314,6 +313,15 @@ impl Work {
             doubleton,
         });
         Ok(())
+    }
+
+    /// Takes this off a cost; what rounding leaves of two that are the same is nothing.
+    fn change_cost(&mut self, k: usize, by: f64) {
+        let left = self.cost[k] - by;
+        self.cost[k] = match left.abs() <= ROUNDING * by.abs() {
+            true => 0.0,
+            false => left,
+        };
     }
 
     /// Adds a multiple of these entries to a row.

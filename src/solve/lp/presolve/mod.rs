@@ -16,6 +16,8 @@ mod columns;
 mod parallel;
 mod restore;
 mod rows;
+#[cfg(test)]
+mod tests;
 
 use super::form::{Problem, Sparse};
 use super::simplex::State;

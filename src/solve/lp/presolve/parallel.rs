@@ -106,8 +106,11 @@ impl Work {
         if more.abs() <= SAME * self.cost[gone].abs() {
             let (kept_bounds, gone_bounds) = (self.bounds(kept), self.bounds(gone));
             let [low, high] = term(ratio, gone_bounds);
-            self.lower[kept] += low;
-            self.upper[kept] += high;
+            let bounds = [kept_bounds[0] + low, kept_bounds[1] + high];
+            if bounds.iter().all(|b| b.is_infinite()) {
+                return false;
+            }
+            [self.lower[kept], self.upper[kept]] = bounds;
             self.remove_column(gone);
             self.new_columns.push(kept);
             self.steps.push(Step::Column {

@@ -323,17 +323,7 @@ impl Back {
         };
         let (state, total) = (self.columns[kept], self.x[kept]);
         if state != State::Basic {
-            let merged_free = state == State::Free;
-            self.columns[gone] = if merged_free {
-                free(*gone_bounds)
-            } else {
-                along(state)
-            };
-            self.columns[kept] = if merged_free {
-                free(*kept_bounds)
-            } else {
-                state
-            };
+            self.columns[gone] = along(state);
             self.x[gone] = value(self.columns[gone], *gone_bounds);
             self.x[kept] = value(self.columns[kept], *kept_bounds);
             return;

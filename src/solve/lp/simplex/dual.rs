@@ -404,7 +404,7 @@ impl Simplex {
         }
         // Every candidate was passed, or only bad pivots were left: the last good one enters.
         let (entering, flipped) = reserve?;
-        if candidates.is_empty() && slope > 0.0 {
+        if candidates.is_empty() && slope > self.tolerance {
             // All can change bounds and the violation is still there: infeasible.
             return None;
         }
