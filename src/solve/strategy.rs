@@ -60,7 +60,7 @@ strategies! {
             "the nonzeros, some thirty times at most",
             "Andersen & Andersen 1995";
         SimplexFirst "simplex_first",
-            "up to 12000 rows and columns: the simplex method is tried before the interior point",
+            "up to 12000 rows and columns: the simplex method is tried before the interior point, until its pivots fill up",
             "500 pivots and 2.5 for each row",
             "Koberstein & Suhl 2007";
         FaceVertex "face_vertex",

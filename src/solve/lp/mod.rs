@@ -463,6 +463,9 @@ const SMALL: usize = 600;
 /// there in most of Netlib.
 const MEDIUM: usize = 12_000;
 
+/// Where more than this part of the columns of pivots is not zero, an interior point is sooner there.
+const FULL: f64 = 0.4;
+
 /// Columns and rows together from which an interior point of many digits saves more pivots than it costs.
 const LARGE: usize = 3000;
 
@@ -470,21 +473,21 @@ const LARGE: usize = 3000;
 /// those that take it long.
 fn auto(p: &Problem, accuracy: Accuracy, strategies: Strategies, budget: &Budget) -> Gave {
     let size = p.m() + p.n();
-    let effort = match size {
-        ..=SMALL => 1000 + 20 * size,
+    let (effort, fullest) = match size {
+        ..=SMALL => (1000 + 20 * size, f64::INFINITY),
         // twice to thrice the rows is usual
-        ..=MEDIUM if strategies.run(Strategy::SimplexFirst) => 500 + 5 * p.m() / 2,
+        ..=MEDIUM if strategies.run(Strategy::SimplexFirst) => (500 + 5 * p.m() / 2, FULL),
         _ => return finished(p, accuracy, strategies, budget),
     };
     let mut simplex = Simplex::new(p);
+    simplex.fullest = fullest;
     let left = budget.iterations_left();
     let ended = simplex.solve(&mut watch(budget, effort as u64));
-    let stuck = ended == Ended::Failed || (ended == Ended::Iterations && (effort as u64) < left);
-    let line = format!(
-        "simplex: {} after {} iterations",
-        ended.word(),
-        simplex.iterations
-    );
+    simplex.fullest = f64::INFINITY;
+    let given_up = ended == Ended::Iterations && simplex.iterations < left;
+    let stuck = ended == Ended::Failed || given_up;
+    let word = if given_up { "given up" } else { ended.word() };
+    let line = format!("simplex: {word} after {} iterations", simplex.iterations);
     budget.log_timed(&line);
     if stuck {
         return finished(p, accuracy, strategies, budget);

@@ -103,6 +103,11 @@ pub struct Simplex {
     pub cutoff: f64,
     /// The methods give up (as at an iteration limit) when [`Self::iterations`] is this.
     pub limit: u64,
+    /// The dual method gives up (as at an iteration limit) when more than this part of a pivot's column is not zero, as a
+    /// moving average: pivots are dear from there on.
+    pub fullest: f64,
+    /// That average.
+    filled: f64,
     /// A factor that was updated at most so often counts as fresh.
     pub trusted: usize,
     perturb: bool,
@@ -146,6 +151,8 @@ impl Simplex {
             iterations: 0,
             cutoff: f64::INFINITY,
             limit: u64::MAX,
+            fullest: f64::INFINITY,
+            filled: 0.0,
             trusted: 0,
             perturb: true,
             crossing: None,
