@@ -463,8 +463,8 @@ const SMALL: usize = 600;
 /// there in most of Netlib.
 const MEDIUM: usize = 12_000;
 
-/// Where more than this part of the columns of pivots is not zero, an interior point is sooner there.
-const FULL: f64 = 0.4;
+/// Where the columns of pivots have more entries than so many, or than this part of all rows, an interior point is sooner there.
+const FULL: [f64; 2] = [400.0, 0.4];
 
 /// Columns and rows together from which an interior point of many digits saves more pivots than it costs.
 const LARGE: usize = 3000;
@@ -473,10 +473,11 @@ const LARGE: usize = 3000;
 /// those that take it long.
 fn auto(p: &Problem, accuracy: Accuracy, strategies: Strategies, budget: &Budget) -> Gave {
     let size = p.m() + p.n();
+    let full = FULL[0].min(FULL[1] * p.m() as f64);
     let (effort, fullest) = match size {
         ..=SMALL => (1000 + 20 * size, f64::INFINITY),
         // twice to thrice the rows is usual
-        ..=MEDIUM if strategies.run(Strategy::SimplexFirst) => (500 + 5 * p.m() / 2, FULL),
+        ..=MEDIUM if strategies.run(Strategy::SimplexFirst) => (500 + 5 * p.m() / 2, full),
         _ => return finished(p, accuracy, strategies, budget),
     };
     let mut simplex = Simplex::new(p);

@@ -272,7 +272,7 @@ impl Simplex {
         let Some(column) = factor.forward(&a_q).cloned() else {
             return Step::Broken;
         };
-        self.filled += 0.01 * (column.len() as f64 / self.m as f64 - self.filled);
+        self.filled += 0.01 * (column.len() as f64 - self.filled);
         let alpha = column.iter().find(|e| e.0 == slot).map_or(0.0, |e| e.1);
         if (alpha - pivot).abs() > 1e-7 * (top + alpha.abs()) * if fresh { 100.0 } else { 1.0 } {
             return Step::Unsafe;

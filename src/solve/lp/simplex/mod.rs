@@ -103,10 +103,10 @@ pub struct Simplex {
     pub cutoff: f64,
     /// The methods give up (as at an iteration limit) when [`Self::iterations`] is this.
     pub limit: u64,
-    /// The dual method gives up (as at an iteration limit) when more than this part of a pivot's column is not zero, as a
-    /// moving average: pivots are dear from there on.
+    /// The dual method gives up (as at an iteration limit) when the columns of its pivots have more entries than this, on
+    /// average: pivots are dear from there on.
     pub fullest: f64,
-    /// That average.
+    /// That average, a moving one.
     filled: f64,
     /// A factor that was updated at most so often counts as fresh.
     pub trusted: usize,
