@@ -89,10 +89,6 @@ strategies! {
             "the path failed: a smoothing Newton method",
             "its iterations",
             "Chen & Mangasarian 1996";
-        Semismooth "semismooth",
-            "the path failed: a semismooth Newton method",
-            "its iterations",
-            "De Luca, Facchinei & Kanzow 1996";
         RandomRestarts "random_restarts",
             "all methods failed from the given start: 30 random ones",
             "twice the work so far, or a second",

@@ -15,15 +15,13 @@
 //! following a piecewise linear path with Lemke-type pivots ([`path`]). Around it: a presolve
 //! ([`presolve`]), a crash by projected Newton steps ([`crash`]), a watchdog on the
 //! Fischer–Burmeister merit function ([`majors`], [`merit`]), and, where the path fails, the
-//! smoothing ([`smoothing`]) and semismooth ([`semismooth`]) Newton methods of the literature.
+//! smoothing Newton method ([`smoothing`]) of the literature.
 //! [`portfolio`] says in which order. Sources:
 //!
 //! - S. P. Dirkse, M. C. Ferris: The PATH solver, a non-monotone stabilization scheme for mixed
 //!   complementarity problems. Optimization Methods and Software 5 (1995).
 //! - M. C. Ferris, T. S. Munson: Complementarity problems in GAMS and the PATH solver. Journal of
 //!   Economic Dynamics and Control 24 (2000).
-//! - T. De Luca, F. Facchinei, C. Kanzow: A semismooth equation approach to the solution of
-//!   nonlinear complementarity problems. Mathematical Programming 75 (1996).
 //! - B. Chen, X. Chen, C. Kanzow: A penalized Fischer–Burmeister NCP-function. Mathematical
 //!   Programming 88 (2000).
 //!
@@ -48,7 +46,6 @@ mod portfolio;
 mod presolve;
 mod random;
 mod run;
-mod semismooth;
 mod smoothing;
 mod starts;
 mod vertex;

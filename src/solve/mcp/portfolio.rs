@@ -1,9 +1,8 @@
 //! The order of the methods, and the verdict.
 //!
 //! The main method first; the others fail on other problems than it does, which is what makes them
-//! good company: smoothing where the merit function has local minima, the semismooth method with
-//! a penalty, the main method without crash, and all of it again from random starts. Problems
-//! that are linear and not monotone (bimatrix games) often yield to one path from the right start,
+//! good company: smoothing where the merit function has local minima, the main method without crash,
+//! and all of it again from random starts. Problems that are linear and not monotone (bimatrix games) often yield to one path from the right start,
 //! so many are tried ([`starts`]).
 
 use super::log;
@@ -12,7 +11,6 @@ use super::merit::natural_residual;
 use super::presolve::Reduced;
 use super::random::Random;
 use super::run::{End, Point, Run, Stop, bound};
-use super::semismooth::semismooth;
 use super::smoothing::smoothing;
 use super::starts::starts;
 use super::{Help, Outcome, Problem, Settings, Status};
@@ -24,7 +22,6 @@ use crate::solve::strategy::{Strategies, Strategy};
 enum Method {
     Path { crash: Crash },
     Smoothing,
-    Semismooth,
     Starts,
 }
 
@@ -34,7 +31,6 @@ impl Method {
             Method::Path { crash: Crash::None } => "path without crash",
             Method::Path { .. } => "path",
             Method::Smoothing => "smoothing",
-            Method::Semismooth => "semismooth",
             Method::Starts => "path from random starts",
         }
     }
@@ -44,7 +40,6 @@ impl Method {
         strategies.run(match self {
             Method::Path { .. } => Strategy::OtherCrash,
             Method::Smoothing => Strategy::Smoothing,
-            Method::Semismooth => Strategy::Semismooth,
             Method::Starts => Strategy::LinearStarts,
         })
     }
@@ -54,7 +49,6 @@ impl Method {
         match self {
             Method::Path { crash } => majors(run, start, crash),
             Method::Smoothing => smoothing(run, start),
-            Method::Semismooth => semismooth(run, start),
             Method::Starts => starts(run, start),
         }
     }
@@ -208,7 +202,7 @@ fn attempt(run: &mut Run, restarts: &mut usize) -> Result<(), Stop> {
             if run.problem.is_linear() {
                 methods.push(Method::Starts);
             }
-            methods.extend([Method::Smoothing, Method::Semismooth]);
+            methods.push(Method::Smoothing);
             match run.settings.crash_method {
                 true if large => {}
                 true => methods.push(path(Crash::None)),
@@ -245,11 +239,7 @@ fn attempt(run: &mut Run, restarts: &mut usize) -> Result<(), Stop> {
         });
         let Some(start) = run.point(x) else { continue };
         let crash = Crash::Newton;
-        for method in [
-            Method::Path { crash },
-            Method::Smoothing,
-            Method::Semismooth,
-        ] {
+        for method in [Method::Path { crash }, Method::Smoothing] {
             if run.work() > budget || succeeds(run, method, start.clone())? {
                 return Ok(());
             }

@@ -3,15 +3,18 @@
 //! The smoothed system is that of the central path xᵢFᵢ = μ, so far from a solution it behaves
 //! like an interior point method and does not see the kinks that trap descent methods on Ψ.
 
-use super::factor::Factor;
+use feral::SparseColMatrix;
+
+use super::factor::{Factor, combine};
 use super::log;
 use super::majors::merit_gradient;
 use super::merit::Phi;
 use super::run::{End, Patience, Point, Run, Stop};
-use super::semismooth::{PATIENCE, levenberg_marquardt, newton_system, search};
 
 /// Iterations at most.
 const LIMIT: usize = 200;
+/// Iterations after which the merit function must have halved.
+const PATIENCE: usize = 20;
 /// First smoothing parameter.
 const MU: f64 = 1.0;
 /// Armijo constant.
@@ -48,17 +51,10 @@ pub(super) fn smoothing(run: &mut Run, start: Point) -> Result<End, Stop> {
         let gradient = merit_gradient(run, phi, &point, &jacobian);
         let (h, right) = newton_system(run, phi, &point, &jacobian);
         run.factorisations += 1;
-        let newton = Factor::new(h.clone(), run.fill).and_then(|mut a| a.solve(&right));
+        let newton = Factor::new(h, run.fill).and_then(|mut a| a.solve(&right));
         let (direction, kind) = match newton {
             Some(d) => (d, 'N'),
-            None => {
-                run.factorisations += 1;
-                let nu = (1e-2 * (2.0 * merit).sqrt()).clamp(1e-8, 1.0);
-                match levenberg_marquardt(&h, &right, nu, run.fill) {
-                    Some(d) => (d, 'L'),
-                    None => (gradient.iter().map(|g| -g).collect(), 'G'),
-                }
-            }
+            None => (gradient.iter().map(|g| -g).collect(), 'G'),
         };
         let slope: f64 = gradient.iter().zip(&direction).map(|(g, d)| g * d).sum();
         let Some((next, step)) = search(run, &point, &direction, |run, p, t| {
@@ -70,4 +66,45 @@ pub(super) fn smoothing(run: &mut Run, start: Point) -> Result<End, Stop> {
         log::newton_line(run, iteration + 1, &point, phi.mu, step, kind);
     }
     Ok(End::Limit)
+}
+
+/// H = Da + Db·J and −Φ.
+fn newton_system(
+    run: &Run,
+    phi: Phi,
+    point: &Point,
+    jacobian: &SparseColMatrix,
+) -> (SparseColMatrix, Vec<f64>) {
+    let slopes: Vec<(f64, f64)> = (0..run.n)
+        .map(|i| phi.pair_slopes(point.x[i], point.f[i], run.lower[i], run.upper[i]))
+        .collect();
+    let right = (0..run.n)
+        .map(|i| -phi.pair(point.x[i], point.f[i], run.lower[i], run.upper[i]))
+        .collect();
+    (combine(jacobian, |i| slopes[i].0, |i| slopes[i].1), right)
+}
+
+/// Halves the step until `accept` is content.
+fn search(
+    run: &mut Run,
+    point: &Point,
+    direction: &[f64],
+    accept: impl Fn(&Run, &Point, f64) -> bool,
+) -> Option<(Point, f64)> {
+    let mut step = 1.0;
+    while step > 1e-12 {
+        let x = point
+            .x
+            .iter()
+            .zip(direction)
+            .map(|(x, d)| x + step * d)
+            .collect();
+        if let Some(next) = run.point(x)
+            && accept(run, &next, step)
+        {
+            return Some((next, step));
+        }
+        step *= 0.5;
+    }
+    None
 }

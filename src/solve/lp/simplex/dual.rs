@@ -106,7 +106,9 @@ impl Simplex {
             let fresh = self.is_fresh();
             let mut renew = false;
             match self.leaving(&refused) {
-                None if self.is_trusted() => return Stop::Done,
+                None if fresh || self.is_trusted() && !refused.contains(&true) => {
+                    return Stop::Done;
+                }
                 None => renew = true,
                 Some((slot, above)) => match self.dual_step(slot, above) {
                     Step::Done => {
