@@ -317,6 +317,7 @@ pub fn watch<'a>(budget: &'a Budget, most: u64) -> impl FnMut(u64) -> Option<End
 
 fn simplex_only(p: &Problem, accuracy: Accuracy, budget: &Budget) -> Gave {
     let mut simplex = Simplex::new(p);
+    simplex.boxes = p.m() + p.n() > SMALL;
     let ended = simplex.solve(&mut watch(budget, u64::MAX));
     if ended == Ended::Solved {
         tighten(&mut simplex, accuracy, budget);
@@ -481,7 +482,7 @@ fn auto(p: &Problem, accuracy: Accuracy, strategies: Strategies, budget: &Budget
         _ => return finished(p, accuracy, strategies, budget),
     };
     let mut simplex = Simplex::new(p);
-    simplex.fullest = fullest;
+    (simplex.fullest, simplex.boxes) = (fullest, size > SMALL);
     let left = budget.iterations_left();
     let ended = simplex.solve(&mut watch(budget, effort as u64));
     simplex.fullest = f64::INFINITY;

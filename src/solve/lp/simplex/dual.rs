@@ -9,9 +9,6 @@ use super::{NONBASIC, PIVOT, SAFE_PIVOT, Simplex, Stop, jitter};
 use crate::solve::lp::Ended;
 use crate::solve::lp::form::proves_infeasible;
 
-/// Up to so many variables the primal method mends what shifted costs leave, as soon.
-const FEW: usize = 600;
-
 /// The box of a free variable where those with one bound have 1: it should be basic.
 const FREE: f64 = 1000.0;
 
@@ -20,7 +17,7 @@ impl Simplex {
     /// pivots until it is primal feasible.
     pub(super) fn dual(&mut self, stop: &mut dyn FnMut(u64) -> Option<Ended>) -> Stop {
         if self.perturb
-            && self.n + self.m > FEW
+            && self.boxes
             && self.is_endless_infeasible()
             && let Stop::Ended(why @ (Ended::Interrupted | Ended::Time | Ended::Iterations)) =
                 self.boxed(stop)

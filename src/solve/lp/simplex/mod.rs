@@ -103,6 +103,9 @@ pub struct Simplex {
     pub cutoff: f64,
     /// The methods give up (as at an iteration limit) when [`Self::iterations`] is this.
     pub limit: u64,
+    /// The dual method has a first phase in boxes; without it shifted costs, which the primal method mends, as soon in
+    /// small programs and near a solution.
+    pub boxes: bool,
     /// The dual method gives up (as at an iteration limit) when the columns of its pivots have more entries than this, on
     /// average: pivots are dear from there on.
     pub fullest: f64,
@@ -151,6 +154,7 @@ impl Simplex {
             iterations: 0,
             cutoff: f64::INFINITY,
             limit: u64::MAX,
+            boxes: false,
             fullest: f64::INFINITY,
             filled: 0.0,
             trusted: 0,

@@ -110,7 +110,17 @@ impl Linear {
         let scaled = scaling.apply(&p.problem);
         let elastic = p.elastic.iter().map(|&(i, k)| self.elastic[i][k]);
         let columns = self.columns.iter().copied();
-        let from: Basis = columns.chain(elastic).chain(self.rows.clone()).collect();
+        let from = columns.chain(elastic).chain(self.rows.clone());
+        let lower = p.problem.lower.iter().chain(&p.problem.row_lower);
+        let upper = p.problem.upper.iter().chain(&p.problem.row_upper);
+        // What was at its lower bound is where it has the shorter way to.
+        let from: Basis = from
+            .zip(lower.zip(upper))
+            .map(|(state, (l, u))| match state {
+                State::Lower if u.abs() < l.abs() => State::Upper,
+                state => state,
+            })
+            .collect();
         let mut last = Ended::Failed;
         for from in [from, Basis::new()] {
             let mut simplex = Simplex::new(&scaled);
