@@ -384,7 +384,8 @@ impl Splitter {
                             match word {
                                 Word::Control => {
                                     self.control = true;
-                                    let bare = !opens_parenthesis(bytes, end);
+                                    let bare = !opens_parenthesis(bytes, end)
+                                        || on_end && ends_in_word(text, end);
                                     let repeat = text[i..end].eq_ignore_ascii_case("repeat");
                                     if bare && (on_end || repeat) {
                                         // Inside parentheses a `;` ends nothing anyway.
