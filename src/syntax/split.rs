@@ -571,3 +571,35 @@ fn opens_parenthesis(bytes: &[u8], mut i: usize) -> bool {
     }
     matches!(bytes.get(i), Some(b'(' | b'[' | b'{'))
 }
+
+/// Whether `then` or `do` follows what a control word begins with: `if (a + b) > c then … endif`.
+fn ends_in_word(text: &str, mut i: usize) -> bool {
+    let bytes = text.as_bytes();
+    let mut depth = 0usize;
+    while let Some(&b) = bytes.get(i) {
+        let mut next = i + 1;
+        match b {
+            b'\'' | b'"' => {
+                if let Some(n) = memchr::memchr(b, &bytes[next..]) {
+                    next += n + 1;
+                }
+            }
+            b'(' | b'[' | b'{' => depth += 1,
+            b')' | b']' | b'}' => depth = depth.saturating_sub(1),
+            b';' => return false,
+            b'a'..=b'z' | b'A'..=b'Z' | b'_' => {
+                next = words::word_end(bytes, i);
+                let word = &text[i..next];
+                if words::statement_word(text, i, next) == Some(Word::Control) {
+                    return false;
+                }
+                if depth == 0 && ["then", "do"].iter().any(|w| word.eq_ignore_ascii_case(w)) {
+                    return true;
+                }
+            }
+            _ => {}
+        }
+        i = next;
+    }
+    false
+}

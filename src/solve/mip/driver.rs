@@ -184,6 +184,7 @@ fn nearby(mip: &Mip, fixed: &[Change], cutoff: f64, control: &mut Control) -> Op
     let mut sub = Control {
         budget: control.budget,
         last: control.last.min(last),
+        each: control.each,
         iterations: control.iterations,
     };
     let mut linear = Linear::new(&reduced.mip);

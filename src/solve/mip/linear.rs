@@ -104,7 +104,11 @@ impl Relaxation for Linear {
         self.simplex.cutoff = cutoff + 1e-7 * cutoff.abs().max(1.0);
         let before = self.simplex.iterations;
         let spent = control.iterations;
-        let mut stop = |k: u64| control.stop(spent + k - before);
+        let each = control.each;
+        let mut stop = |k: u64| match k - before >= each {
+            true => Some(Ended::Iterations),
+            false => control.stop(spent + k - before),
+        };
         let ended = self.simplex.resolve(&mut stop);
         control.iterations = spent + self.simplex.iterations - before;
         match ended {

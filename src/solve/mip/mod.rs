@@ -114,15 +114,22 @@ impl Backend for Bmip {
 /// Solves an instance with discrete columns.
 fn search(task: &Task, settings: &Settings, budget: &Budget) -> Result<Reply, SolveError> {
     let instance = task.instance;
-    let mut control = Control::new(budget);
     let aim = settings.search.minimizing(instance.sign());
-    let found = match instance.is_linear() && !task.has_pairs() {
-        true => linear_search(instance, aim, &mut control)?,
-        false => nonlinear_search(task, aim, settings, &mut control)?,
+    let (found, iterations) = match instance.is_linear() && !task.has_pairs() {
+        true => {
+            let mut control = Control::for_each_program(budget);
+            let found = linear_search(instance, aim, &mut control)?;
+            (found, control.iterations)
+        }
+        false => {
+            let mut control = Control::new(budget);
+            let found = nonlinear_search(task, aim, settings, &mut control)?;
+            budget.spend(control.iterations);
+            (found, control.iterations)
+        }
     };
-    budget.spend(control.iterations);
     let mut reply = concluded(task, found, settings, budget);
-    reply.outcome.iterations = control.iterations;
+    reply.outcome.iterations = iterations;
     Ok(reply)
 }
 

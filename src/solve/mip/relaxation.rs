@@ -27,6 +27,8 @@ pub struct Control<'b, 'm> {
     pub budget: &'b Budget<'m>,
     /// Iterations at which the search ends.
     pub last: u64,
+    /// Iterations that one linear program may take.
+    pub each: u64,
     /// Iterations so far.
     pub iterations: u64,
 }
@@ -37,6 +39,17 @@ impl<'b, 'm> Control<'b, 'm> {
         Self {
             budget,
             last: budget.iterations_left(),
+            each: u64::MAX,
+            iterations: 0,
+        }
+    }
+
+    /// Where `iterlim` holds for each linear program, not for all together.
+    pub fn for_each_program(budget: &'b Budget<'m>) -> Self {
+        Self {
+            budget,
+            last: u64::MAX,
+            each: budget.iterations_left(),
             iterations: 0,
         }
     }
