@@ -3,7 +3,7 @@
 use super::node::*;
 use super::symbols::{DomainPosition, SymbolKind, UNIVERSE, attribute};
 use super::{Compiler, Failed};
-use crate::diag::{Diagnostic, nearest};
+use crate::diag::{Diagnostic, Severity, nearest};
 use crate::source::Span;
 use crate::syntax::ast::{Expr, ExprKind, Ident, Sign};
 use std::sync::Arc;
@@ -399,14 +399,14 @@ impl Compiler {
     }
 
     /// A label that stands where the domain does not have it; `quote` stands around it.
-    pub(super) fn not_a_member<T>(
+    pub(super) fn not_a_member(
         &mut self,
         text: &str,
         quote: &str,
         of: SymbolId,
         position: usize,
         span: Span,
-    ) -> Result<T, Failed> {
+    ) -> Result<u32, Failed> {
         let symbol = self.symbols.get(of);
         let set = match symbol.domain.get(position) {
             Some(DomainPosition::Set(d)) => self.symbols.root(*d),
@@ -439,7 +439,7 @@ impl Compiler {
             ),
             None => format!("add `{quote}{text}{quote}` to `{set_name}`, or correct the label"),
         };
-        let d = Diagnostic::error(
+        let mut d = Diagnostic::error(
             "E0308",
             span,
             format!("`{quote}{text}{quote}` is not a member of the set `{set_name}`"),
@@ -450,6 +450,11 @@ impl Compiler {
         ))
         .other(set.declared, format!("`{set_name}` is declared here"))
         .help(help);
+        if self.modes.at(span).warnings {
+            d.severity = Severity::Warning;
+            self.report(d);
+            return Ok(self.store.universe.intern(text));
+        }
         self.fail(d)
     }
 

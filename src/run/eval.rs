@@ -49,6 +49,14 @@ impl Machine<'_> {
     /// The label that stands `times` offsets after another in the set of a lag.
     fn shift(&self, lag: &Lag, from: Label, times: i64, frame: &mut Frame) -> Option<Label> {
         let offset = number(self.eval(&lag.offset, frame));
+        if offset.is_nan() {
+            self.execution_error(
+                "E0403",
+                lag.offset.span,
+                "a lag by what is not available or undefined leads nowhere".into(),
+                "give it a value before, or guard the statement with a condition",
+            );
+        }
         if !offset.is_finite() {
             return None;
         }

@@ -185,6 +185,7 @@ impl Preprocessor<'_> {
             "dotl" => m.dot_l = on,
             "implicitassign" => m.implicit_assign = on,
             "uni" => m.universal = on,
+            "warning" => m.warnings = on,
             "strictsingleton" => m.loose_singleton = !on,
             "end" => self.on_end = on,
             "eolcom" => {

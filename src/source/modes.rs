@@ -24,6 +24,8 @@ pub struct Modes {
     pub universal: bool,
     /// `$onDotL`: a variable in an assignment means its level.
     pub dot_l: bool,
+    /// `$onWarning`: a label outside the domain is kept, with a warning.
+    pub warnings: bool,
     /// `$offStrictSingleton`: of several elements a singleton keeps the first.
     pub loose_singleton: bool,
 }
