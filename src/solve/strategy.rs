@@ -77,14 +77,6 @@ strategies! {
             "many variables: an interior point method leads to the first basis",
             "its iterations",
             "Wright 1997, chapter 8";
-        OtherCrash "other_crash",
-            "the path failed: once more with the Newton crash, or without a crash",
-            "a run of the path",
-            "Dirkse & Ferris 1995";
-        LinearStarts "linear_starts",
-            "a linear problem whose path failed: paths from other starts",
-            "a path for each",
-            "Cottle, Pang & Stone 1992";
         Smoothing "smoothing",
             "the path failed: a smoothing Newton method",
             "its iterations",

@@ -47,7 +47,6 @@ mod presolve;
 mod random;
 mod run;
 mod smoothing;
-mod starts;
 mod vertex;
 
 use super::Budget;

@@ -1,9 +1,8 @@
 //! The order of the methods, and the verdict.
 //!
 //! The main method first; the others fail on other problems than it does, which is what makes them
-//! good company: smoothing where the merit function has local minima, the main method without crash,
-//! and all of it again from random starts. Problems that are linear and not monotone (bimatrix games) often yield to one path from the right start,
-//! so many are tried ([`starts`]).
+//! good company: smoothing where the merit function has local minima, and all of it again from random
+//! starts. Problems that are linear and not monotone (bimatrix games) often yield to one path from the right start.
 
 use super::log;
 use super::majors::{Crash, INTERIOR, majors};
@@ -12,17 +11,15 @@ use super::presolve::Reduced;
 use super::random::Random;
 use super::run::{End, Point, Run, Stop, bound};
 use super::smoothing::smoothing;
-use super::starts::starts;
 use super::{Help, Outcome, Problem, Settings, Status};
 use crate::solve::Budget;
-use crate::solve::strategy::{Strategies, Strategy};
+use crate::solve::strategy::Strategy;
 
 /// A method of the portfolio.
 #[derive(Debug, Clone, Copy)]
 enum Method {
     Path { crash: Crash },
     Smoothing,
-    Starts,
 }
 
 impl Method {
@@ -31,17 +28,7 @@ impl Method {
             Method::Path { crash: Crash::None } => "path without crash",
             Method::Path { .. } => "path",
             Method::Smoothing => "smoothing",
-            Method::Starts => "path from random starts",
         }
-    }
-
-    /// As a fallback.
-    fn runs(self, strategies: Strategies) -> bool {
-        strategies.run(match self {
-            Method::Path { .. } => Strategy::OtherCrash,
-            Method::Smoothing => Strategy::Smoothing,
-            Method::Starts => Strategy::LinearStarts,
-        })
     }
 
     fn run(self, run: &mut Run, start: Point) -> Result<End, Stop> {
@@ -49,7 +36,6 @@ impl Method {
         match self {
             Method::Path { crash } => majors(run, start, crash),
             Method::Smoothing => smoothing(run, start),
-            Method::Starts => starts(run, start),
         }
     }
 }
@@ -191,28 +177,18 @@ fn attempt(run: &mut Run, restarts: &mut usize) -> Result<(), Stop> {
     let large = run.n > INTERIOR;
     if let Some(start) = first_point(run) {
         let path = |crash| Method::Path { crash };
+        let strategies = run.settings.strategies;
         let mut methods = match run.settings.crash_method {
-            true if large && run.settings.strategies.run(Strategy::InteriorCrash) => {
+            true if large && strategies.run(Strategy::InteriorCrash) => {
                 vec![path(Crash::Interior), path(Crash::Newton)]
             }
             true => vec![path(Crash::Newton)],
             false => vec![path(Crash::None)],
         };
-        if run.settings.fallbacks {
-            if run.problem.is_linear() {
-                methods.push(Method::Starts);
-            }
+        if run.settings.fallbacks && strategies.run(Strategy::Smoothing) {
             methods.push(Method::Smoothing);
-            match run.settings.crash_method {
-                true if large => {}
-                true => methods.push(path(Crash::None)),
-                false => methods.push(path(Crash::Newton)),
-            }
         }
         for (tried, method) in methods.into_iter().enumerate() {
-            if tried > 0 && !method.runs(run.settings.strategies) {
-                continue;
-            }
             if tried == 1 && run.help.proves_infeasible() || succeeds(run, method, start.clone())? {
                 return Ok(());
             }
@@ -264,7 +240,7 @@ fn succeeds(run: &mut Run, method: Method, start: Point) -> Result<bool, Stop> {
     run.best = None;
     match run.point(x) {
         Some(point) if run.converged(point.residual) => {
-            if !matches!(method, Method::Path { .. } | Method::Starts) {
+            if !matches!(method, Method::Path { .. }) {
                 majors(run, point, Crash::None)?;
             }
             Ok(true)
