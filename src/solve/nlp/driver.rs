@@ -103,11 +103,12 @@ pub fn solve(
 }
 
 /// x moved by up to this fraction of its size (at least by this much); or, where that is asked for, anywhere between near bounds.
+/// With `by` 0 halfway between them.
 fn placed(nlp: &dyn Nlp, x: &[f64], by: f64, anywhere: bool, seed: u64) -> Vec<f64> {
     let (lower, upper) = nlp.bounds();
     let mut random = Random(seed);
     let place = |(&x, (&l, &u)): (&f64, (&f64, &f64))| {
-        let r = random.uniform();
+        let r = if by > 0.0 { random.uniform() } else { 0.5 };
         if anywhere && u - l <= 1e4 {
             return l + r * (u - l);
         }
@@ -429,6 +430,7 @@ impl Driver<'_, '_> {
             (From::Best, None) | (From::Start, _) => return self.start.clone(),
             (From::Moved(by), _) => (12345, by, false),
             (From::Anywhere(seed), _) => (seed.wrapping_mul(7919), 1.0, true),
+            (From::Middle, _) => (0, 0.0, true),
         };
         let problem = lock(&*self.problem);
         placed(&*problem, &self.start, by, anywhere, seed)

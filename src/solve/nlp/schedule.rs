@@ -27,8 +27,10 @@ pub(super) enum From {
     Best,
     /// The person's start, moved by this fraction of its size (and at least by this much).
     Moved(f64),
-    /// Anywhere between the bounds, the start moved where there are none; the number is a seed.
+    /// Anywhere between near bounds, the start moved where there are none; the number is a seed.
     Anywhere(u64),
+    /// Halfway between near bounds, the start where there are none. Products of variables that start at 0 have no slopes there.
+    Middle,
 }
 
 /// Iterations that one attempt may take; the first less, for what takes so many is better begun elsewhere.
@@ -61,11 +63,11 @@ pub(super) const RESTARTS: [(Strategy, From); 2] = [
 /// there the first [`AGREEMENT`] are always tried, the others where these did not agree.
 pub(super) const ELSEWHERE: [From; 6] = [
     From::Start,
+    From::Middle,
     From::Moved(0.1),
     From::Moved(1.0),
     From::Anywhere(1),
     From::Anywhere(2),
-    From::Anywhere(3),
 ];
 pub(super) const AGREEMENT: usize = 4;
 
