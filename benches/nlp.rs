@@ -42,7 +42,7 @@ fn main() {
     let Some(folder) = common::shared("corpus") else {
         return;
     };
-    let names: Vec<&str> = bmod::solve::nlp::providers()
+    let names: Vec<&str> = bmod::solve::nlp::interior_point_solvers()
         .iter()
         .map(|p| p.name())
         .collect();

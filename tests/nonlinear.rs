@@ -5,7 +5,7 @@ use ModelStatus::*;
 use bmod::model::instance::*;
 use bmod::model::problem_type::ProblemType;
 use bmod::solve::answer::{Answer, answer};
-use bmod::solve::nlp::providers;
+use bmod::solve::nlp::interior_point_solvers;
 use bmod::solve::{
     Budget, Limits, ModelStatus, Monitor, Quiet, Settings, SolveError, SolverStatus,
 };
@@ -112,7 +112,7 @@ fn run(solver: &str, instance: &Instance) -> Result<Answer, SolveError> {
 /// Every solver must report this status; the objective, if it is given, to 1e-7.
 fn expect(m: &Model, status: ModelStatus, objective: Option<f64>) -> Vec<Answer> {
     let mut all = Vec::new();
-    for p in providers() {
+    for p in interior_point_solvers() {
         let a = run(p.name(), &m.0).unwrap_or_else(|e| panic!("{}: {}", p.name(), e.message));
         let z = a.outcome.level[0];
         assert_eq!(a.status, status, "{}: z = {z}, {:?}", p.name(), a.residuals);
@@ -313,7 +313,7 @@ fn crossed_bounds_are_refused() {
     let mut m = Model::new(Sense::Minimize);
     let x = m.var((2.0, 1.0), 0.0);
     m.objective(&[], &[(1.0, &[Var(x), PowerInt(2)])], 0.0);
-    for p in providers() {
+    for p in interior_point_solvers() {
         let e = run(p.name(), &m.0).unwrap_err();
         assert_eq!(e.column, Some(x as usize));
     }
@@ -423,7 +423,7 @@ fn degenerate_constraints() {
         Relation::Less,
         0.0,
     );
-    for p in providers() {
+    for p in interior_point_solvers() {
         let a = run(p.name(), &m.0).unwrap();
         assert!(
             matches!(a.status, LocallyOptimal | Feasible),
@@ -449,7 +449,7 @@ fn a_start_without_value_is_explained() {
         Relation::Less,
         0.0,
     );
-    for p in providers() {
+    for p in interior_point_solvers() {
         let e = run(p.name(), &m.0).unwrap_err();
         assert_eq!(
             e.message,
@@ -510,7 +510,7 @@ fn objective_columns_that_cannot_be_eliminated() {
 
 #[test]
 fn options_and_limits() {
-    for p in providers() {
+    for p in interior_point_solvers() {
         let mut settings = Settings::default();
         let limits = Limits {
             iterations: 3,
@@ -547,7 +547,7 @@ fn options_and_limits() {
 /// Started at the answer with its multipliers, a solver has little left to do.
 #[test]
 fn warm_start() {
-    for p in providers() {
+    for p in interior_point_solvers() {
         let options = |pairs: &[(&str, &str)]| Settings {
             options: pairs
                 .iter()
@@ -591,7 +591,7 @@ fn warm_start() {
 
 #[test]
 fn limit_of_time() {
-    for p in providers() {
+    for p in interior_point_solvers() {
         let limits = Limits {
             seconds: 0.0,
             ..Limits::default()
@@ -647,7 +647,7 @@ fn interruption_and_log() {
         .chain(ones.iter().map(|t| (1.0, &t[..])))
         .collect();
     m.objective(&[], &all, 0.0);
-    for p in providers() {
+    for p in interior_point_solvers() {
         let mut monitor = Impatient(0, vec![]);
         let budget = Budget::new(&mut monitor, Limits::default(), true);
         let a = answer(
@@ -692,7 +692,7 @@ fn kinks() {
         ],
         0.0,
     );
-    for p in providers() {
+    for p in interior_point_solvers() {
         let a = run(p.name(), &m.0).unwrap();
         assert!(
             (a.outcome.level[0] - 1.0).abs() < 1e-4,

@@ -8,7 +8,7 @@ use feral::symbolic::symbolic_factorize;
 
 /// Entries (of either triangle, in any order, without the diagonal) up to which the analysis is left out: whatever
 /// the fill, the factors of so small a matrix take no time.
-const SMALL: usize = 2_000;
+const MIN_ANALYSED_ENTRIES: usize = 2_000;
 
 /// The size of the factors of a symmetric matrix of order n with these entries and a full diagonal. Where the
 /// analysis fails, the size of the matrix itself.
@@ -27,7 +27,7 @@ pub fn symmetric_size(
     };
     // What is dense has the factors that it has: n² / 2 numbers.
     let full = 0.5 * (n as f64) * (n as f64);
-    if count <= SMALL || count as f64 > 0.5 * full {
+    if count <= MIN_ANALYSED_ENTRIES || count as f64 > 0.5 * full {
         return known(full.min(1e9_f64.max(full)), full * n as f64 * 2.0 / 3.0);
     }
     rows.extend(0..n);

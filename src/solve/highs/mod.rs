@@ -291,7 +291,10 @@ impl Backend for Continuous {
         settings: &Settings,
         budget: &Budget,
     ) -> Result<Reply, SolveError> {
-        match (task.instance.is_linear(), nlp::providers().first()) {
+        match (
+            task.instance.is_linear(),
+            nlp::interior_point_solvers().first(),
+        ) {
             (false, Some(&p)) => nlp::Nonlinear(p).solve(task, settings, budget),
             _ => Ok(linear(task.instance, settings, budget)?.into()),
         }

@@ -38,7 +38,7 @@ pub enum Ended {
     Iterations,
     /// Time limit.
     Time,
-    /// The person asked to stop.
+    /// The user asked to stop.
     Interrupted,
     /// Numerical trouble.
     Failed,
@@ -222,7 +222,7 @@ fn solve(
     let scaling = Scaling::new(&form.problem);
     let scaled = scaling.apply(&form.problem);
     budget.log_timed("scaling");
-    let small = scaled.m() + scaled.n() <= SMALL;
+    let small = scaled.m() + scaled.n() <= MAX_SMALL_SIZE;
     let answer = match (method, accuracy) {
         (Method::Interior, _) => {
             let aim = Aim::Tolerance(tolerance.unwrap_or(1e-10));
@@ -317,7 +317,7 @@ pub fn watch<'a>(budget: &'a Budget, most: u64) -> impl FnMut(u64) -> Option<End
 
 fn simplex_only(p: &Problem, accuracy: Accuracy, budget: &Budget) -> Gave {
     let mut simplex = Simplex::new(p);
-    simplex.boxes = p.m() + p.n() > SMALL;
+    simplex.boxes = p.m() + p.n() > MAX_SMALL_SIZE;
     let ended = simplex.solve(&mut watch(budget, u64::MAX));
     if ended == Ended::Solved {
         tighten(&mut simplex, accuracy, budget);
@@ -458,7 +458,7 @@ fn interior_only(p: &Problem, aim: Aim, budget: &Budget) -> Gave {
 }
 
 /// Columns and rows together up to which the simplex method is all that is needed, as a rule.
-const SMALL: usize = 600;
+const MAX_SMALL_SIZE: usize = 600;
 
 /// Columns and rows together up to which the simplex method is tried for a while. Beyond it an interior point is sooner
 /// there in most of Netlib.
@@ -476,13 +476,13 @@ fn auto(p: &Problem, accuracy: Accuracy, strategies: Strategies, budget: &Budget
     let size = p.m() + p.n();
     let full = FULL[0].min(FULL[1] * p.m() as f64);
     let (effort, fullest) = match size {
-        ..=SMALL => (1000 + 20 * size, f64::INFINITY),
+        ..=MAX_SMALL_SIZE => (1000 + 20 * size, f64::INFINITY),
         // twice to thrice the rows is usual
         ..=MEDIUM if strategies.run(Strategy::SimplexFirst) => (500 + 5 * p.m() / 2, full),
         _ => return finished(p, accuracy, strategies, budget),
     };
     let mut simplex = Simplex::new(p);
-    (simplex.fullest, simplex.boxes) = (fullest, size > SMALL);
+    (simplex.fullest, simplex.boxes) = (fullest, size > MAX_SMALL_SIZE);
     let left = budget.iterations_left();
     let ended = simplex.solve(&mut watch(budget, effort as u64));
     simplex.fullest = f64::INFINITY;

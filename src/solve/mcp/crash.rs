@@ -22,8 +22,8 @@ const PIVOTS_PER_FACTORISATION: usize = 500;
 const MEMORY: usize = 3;
 /// Directions longer than this come from a singular matrix.
 const DIRECTION_MAX: f64 = 1e10;
-/// Armijo constant of the crash.
-const ARMIJO: f64 = 2e-4;
+/// Armijo constant of the crash (sufficient decrease).
+const CRASH_DECREASE: f64 = 2e-4;
 
 /// Index sets of a point: −1 at the lower bound, 1 at the upper, 0 between (and to be solved for).
 pub(super) fn active_set(x: &[f64], f: &[f64], lower: &[f64], upper: &[f64]) -> Vec<i8> {
@@ -178,7 +178,7 @@ fn search(
         }
         run.clip(&mut x);
         if let Some(next) = run.point(x)
-            && next.merit <= (1.0 - ARMIJO * step) * reference
+            && next.merit <= (1.0 - CRASH_DECREASE * step) * reference
         {
             return Some((next, step));
         }

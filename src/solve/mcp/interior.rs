@@ -24,7 +24,7 @@ use super::active::active_sets;
 use super::arc::{around, fold_limit};
 use super::factor::{Analysis, Factor, combine};
 use super::log;
-use super::run::{Patience, Point, Run, Stop};
+use super::run::{Point, Run, StallCounter, Stop};
 
 /// Steps at most, over folds a share of the variables besides.
 const LIMIT: usize = 100;
@@ -33,7 +33,7 @@ const DAMPING: f64 = 0.995;
 /// A step shorter than this says that a fold is near.
 const STEP_BAD: f64 = 0.1;
 /// Steps in a row without progress that end the crash.
-const PATIENCE: usize = 20;
+const STALL_ITERATIONS: usize = 20;
 /// Corrections of outliers per step.
 const CORRECTIONS: usize = 3;
 /// A step below which the second order is left out.
@@ -114,7 +114,7 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
     let mut best = start.clone();
     let analysis = Analysis::default();
     let mut prox = PROX.0;
-    let mut patience = Patience::new();
+    let mut stall = StallCounter::new();
     // Whether the way around folds was too long, and the steps that are left.
     let (mut over, mut left) = (false, LIMIT);
     for iteration in 1.. {
@@ -132,7 +132,7 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
         let off = r.iter().fold(0.0f64, |m, r| m.max(r.abs()));
         if run.polished(best.residual)
             || mu < PRODUCT_MIN
-            || patience.idle(mu + off, 0.5) > PATIENCE
+            || stall.idle(mu + off, 0.5) > STALL_ITERATIONS
             || !(mu + off).is_finite()
             || left == 0
         {
@@ -187,13 +187,13 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
         if t < STEP_BAD && !over {
             state.distances(run, &bounds, &point.x);
             match around(run, (&point, &state), &bounds, &analysis)? {
-                Some(found) => ((point, state), patience) = (found, Patience::new()),
+                Some(found) => ((point, state), stall) = (found, StallCounter::new()),
                 None => (over, left) = (true, fold_limit(n)),
             }
         }
         if t < STEP_BAD && over {
             prox = (OVER.1 * prox).clamp(OVER.0, PROX.1);
-            patience = Patience::new();
+            stall = StallCounter::new();
         } else if t > 0.5 {
             prox = (OVER.2 * prox).max(PROX.0);
         }

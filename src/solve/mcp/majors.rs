@@ -23,7 +23,7 @@ use super::linear::{Kind, LinearProblem};
 use super::log;
 use super::merit::Phi;
 use super::path::{HARRIS, HARRIS_CLOSE, PathEnd, PathResult, Start, follow};
-use super::run::{End, Patience, Point, Run, Stop};
+use super::run::{End, Point, Run, StallCounter, Stop};
 use super::vertex::vertex;
 
 /// Armijo constant of the M test and of the line search.
@@ -44,7 +44,7 @@ const RAY_MIN: f64 = 1e-2;
 const VERTEX: f64 = 1e-2;
 /// Major iterations without a notable fall of the residual before the run is called stuck.
 const STAGNATION: usize = 30;
-/// Pivots without that, at least and times n: hopeless problems have many and long paths.
+/// Pivots without that, at least and times n: problems without a solution have many and long paths.
 const STAGNATION_PIVOTS: (usize, usize) = (10_000, 40);
 /// The same where the residual would be accepted already, and the problem is large.
 const STAGNATION_NEAR: usize = 4;
@@ -161,11 +161,11 @@ impl Majors {
         log::major_header(run, &self.point);
         // More iterations after convergence: Newton's method doubles the digits.
         let mut polishing = 0;
-        let mut patience = Patience::new();
+        let mut stall = StallCounter::new();
         let most = STAGNATION_PIVOTS.0.max(STAGNATION_PIVOTS.1 * run.n);
         let mut pivots_then = run.pivots;
         for _ in 0..run.settings.major_iteration_limit {
-            let idle = patience.idle(self.best.residual, 0.9);
+            let idle = stall.idle(self.best.residual, 0.9);
             if idle == 0 {
                 pivots_then = run.pivots;
             }

@@ -25,7 +25,7 @@ const OPERATIONS: f64 = 12.0;
 /// Columns per update of the others.
 const PANEL: usize = 32;
 /// Operations below which plain loops are faster than blocked products.
-const SMALL: usize = 3000;
+const MIN_BLOCKED_OPERATIONS: usize = 3000;
 
 /// The fronts of a pattern: what depends on no values.
 pub(super) struct Tree {
@@ -211,7 +211,7 @@ impl Front {
         }
         let (left, right) = self.values.split_at_mut(from * size);
         let right = &mut right[..width * size];
-        if count * width * (size - first) < SMALL {
+        if count * width * (size - first) < MIN_BLOCKED_OPERATIONS {
             for column in right.chunks_exact_mut(size) {
                 for k in first..last {
                     subtract(column, &left[k * size..][..size], k);

@@ -233,8 +233,8 @@ fn succeeds(run: &mut Run, method: Method, start: Point) -> Result<bool, Stop> {
     if !run.converged(best.residual) {
         return Ok(false);
     }
-    // A hair outside of the bounds a residual may be small that is not so within: where multipliers grow without
-    // limit. Only what is inside counts.
+    // Slightly outside of the bounds the residual may be small though it is not within them (where multipliers grow without
+    // limit). Only a point inside counts.
     let mut x = best.x;
     run.clip(&mut x);
     run.best = None;

@@ -34,14 +34,14 @@ pub(super) struct Point {
 }
 
 /// Counts the iterations without a notable fall of what shall become small.
-pub(super) struct Patience {
+pub(super) struct StallCounter {
     least: f64,
     idle: usize,
 }
 
-impl Patience {
+impl StallCounter {
     pub(super) fn new() -> Self {
-        Patience {
+        StallCounter {
             least: f64::INFINITY,
             idle: 0,
         }

@@ -9,12 +9,12 @@ use super::factor::{Factor, combine};
 use super::log;
 use super::majors::merit_gradient;
 use super::merit::Phi;
-use super::run::{End, Patience, Point, Run, Stop};
+use super::run::{End, Point, Run, StallCounter, Stop};
 
 /// Iterations at most.
 const LIMIT: usize = 200;
 /// Iterations after which the merit function must have halved.
-const PATIENCE: usize = 20;
+const STALL_ITERATIONS: usize = 20;
 /// First smoothing parameter.
 const MU: f64 = 1.0;
 /// Armijo constant.
@@ -30,7 +30,7 @@ pub(super) fn smoothing(run: &mut Run, start: Point) -> Result<End, Stop> {
     log::note(run, log::Part::Majors, || {
         "Smoothing Newton\n iter        mu    residual     step".into()
     });
-    let mut patience = Patience::new();
+    let mut stall = StallCounter::new();
     for iteration in 0..LIMIT {
         if run.converged(point.residual) {
             return Ok(End::Solved);
@@ -42,7 +42,7 @@ pub(super) fn smoothing(run: &mut Run, start: Point) -> Result<End, Stop> {
                 .min(0.2 * Phi::PLAIN.merit(&point.x, &point.f, &run.lower, &run.upper));
             merit = phi.merit(&point.x, &point.f, &run.lower, &run.upper);
         }
-        if patience.idle(merit + phi.mu, 0.5) > PATIENCE {
+        if stall.idle(merit + phi.mu, 0.5) > STALL_ITERATIONS {
             return Ok(End::Stuck);
         }
         let Some(jacobian) = run.jacobian(&point.x) else {

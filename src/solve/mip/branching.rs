@@ -54,7 +54,7 @@ const RELIABLE: u32 = 4;
 const SETS_LOOKED_AT: usize = 8;
 
 /// Candidates that are looked at, at most, without a better one.
-const PATIENCE: usize = 6;
+const MAX_IDLE_CANDIDATES: usize = 6;
 
 impl<R: Relaxation> Search<'_, R> {
     /// A discrete condition that the point violates, and what to do about it. None: there is none.
@@ -89,7 +89,7 @@ impl<R: Relaxation> Search<'_, R> {
             let known = self.pseudo[j].iter().map(|p| p.count).min().unwrap_or(0);
             let spent = control.iterations / 2 + 20_000 > self.dives.probes;
             let mut score = guess;
-            if known < RELIABLE && spent && idle < PATIENCE {
+            if known < RELIABLE && spent && idle < MAX_IDLE_CANDIDATES {
                 let before = control.iterations;
                 let mut gains = [0.0; 2];
                 let mut seen = true;
@@ -119,7 +119,7 @@ impl<R: Relaxation> Search<'_, R> {
                 (best, best_score, idle) = (j, score, 0);
             } else {
                 idle += 1;
-                if idle >= 2 * PATIENCE {
+                if idle >= 2 * MAX_IDLE_CANDIDATES {
                     break;
                 }
             }

@@ -29,7 +29,7 @@ struct Open {
 const NODES: usize = 200_000;
 
 /// Seconds it may take.
-const PATIENCE: f64 = 600.0;
+const MAX_SECONDS: f64 = 600.0;
 
 /// Proves a bound of a node, for its solution, with more effort.
 type Slowly<'s> = &'s dyn Fn(&Problem, &Point) -> Option<f64>;
@@ -42,7 +42,7 @@ pub fn certify(
     value: f64,
     budget: &Budget,
 ) -> Result<Proof, SolveError> {
-    budget.within(PATIENCE, u64::MAX, |budget| {
+    budget.within(MAX_SECONDS, u64::MAX, |budget| {
         prove(instance, proof, value, budget)
     })
 }

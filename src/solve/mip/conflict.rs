@@ -12,7 +12,7 @@ use crate::solve::Budget;
 use crate::solve::lp::form::Form;
 
 /// Seconds for all of it.
-const PATIENCE: f64 = 30.0;
+const MAX_SECONDS: f64 = 30.0;
 
 /// Rows and discrete columns of the instance that, with all bounds, have no solution; and whether it was shown that none
 /// can be spared.
@@ -28,7 +28,7 @@ pub struct Conflict {
 
 /// Finds one; None: the search says that there is a solution, or nothing in time.
 pub fn conflict(instance: &Instance, budget: &Budget) -> Option<Conflict> {
-    budget.within(PATIENCE, u64::MAX, |budget| {
+    budget.within(MAX_SECONDS, u64::MAX, |budget| {
         budget.silently(|budget| find(instance, budget))
     })
 }

@@ -183,7 +183,7 @@ impl Propagator {
                 new_l = (new_l - INTEGRAL).ceil();
                 new_u = (new_u + INTEGRAL).floor();
             } else {
-                // A hair outside, and only where it says much: such a bound is as good as its row.
+                // Widened by the tolerance, and only where it tightens much: such a bound is as good as its row.
                 let slack = |v: f64| 1e-7 * v.abs().max(1.0);
                 let much = |new: f64, old: f64, range: f64| {
                     new.abs() < 1e7 && (old.is_infinite() || (new - old).abs() > 0.5 * range)

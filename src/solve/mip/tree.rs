@@ -71,7 +71,7 @@ pub enum End {
     Gap,
     /// `nodLim`.
     Nodes,
-    /// Another limit, or the person.
+    /// Another limit, or the user.
     Stopped(Ended),
     /// The relaxation is unbounded.
     Unbounded,

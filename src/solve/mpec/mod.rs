@@ -519,7 +519,9 @@ impl Search<'_, '_> {
         // next to the products' bounds there are no vertices that a sequential method could go along
         let mut interior = self.choice;
         if self.size() > LARGEST_SEQUENTIAL && self.settings.runs(Strategy::InteriorRelaxation) {
-            interior = interior.or(super::nlp::providers().first().map(|p| p.name()));
+            interior = interior.or(super::nlp::interior_point_solvers()
+                .first()
+                .map(|p| p.name()));
         }
         loop {
             relaxed.tighten(self.program, mu, &x);

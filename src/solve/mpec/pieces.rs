@@ -6,7 +6,7 @@
 //!   multiplier first: the point of B that avoids it and is nearest to complementary to A's point (a
 //!   linear program), and the piece on that point's support. Where that is better, start again. A's optimum is
 //!   rarely unique, and what is near to complementary depends on it: rounds with other optima find more
-//!   ([`Round`]). At the end no single swap improves: the *plateau* around the point, which a local minimum in
+//!   ([`Round`]). At the end no single swap improves: the set of points with equal value around it, which a local minimum in
 //!   the usual sense may lie on, is searched as far as single swaps reach.
 //! * **alternation**: A's program with the products penalised, B's with the products as its cost, in
 //!   turn, with a growing penalty, until the products vanish. Random penalties and costs (from a fixed

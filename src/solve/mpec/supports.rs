@@ -176,7 +176,7 @@ impl Search<'_, '_> {
                 false => Stationarity::NotProved,
             });
             if settled && pieces.exhausted {
-                let note = "plateau: no single swap of supports improves";
+                let note = "no single swap of supports improves";
                 self.notes.push(note.into());
             }
             self.keep(&found);

@@ -1,13 +1,13 @@
-//! Attempts other than a plain run of the provider: from where an earlier solve ended, Newton's method on the equations, Clarabel
+//! Attempts other than a plain run of the interior-point solver: from where an earlier solve ended, Newton's method on the equations, Clarabel
 //! for convex quadratic programs, rounded kinks, and the elastic form.
 
 use super::driver::Driver;
 use super::elastic::Elastic;
 use super::growth::Growth;
+use super::interior_point::Ended;
+use super::interior_point::lock;
 use super::newton;
 use super::problem::Problem;
-use super::provider::Ended;
-use super::provider::lock;
 use super::quadratic::Quadratic;
 use super::schedule::{ELSEWHERE, FINEST, NEARER, ROUNDING};
 use super::trial::{Trial, polished};
@@ -24,7 +24,7 @@ const SHARE: f64 = 1e-3;
 impl Driver<'_, '_> {
     /// Where an earlier solve ended, linear programs from there, and Newton's method where there is nothing to choose. Whether
     /// that settles it.
-    pub(super) fn settle_without_provider(&mut self) -> Result<bool, SolveError> {
+    pub(super) fn settle_without_interior_point(&mut self) -> Result<bool, SolveError> {
         let again = self.attempt_again();
         self.leave_saddles()?;
         if self.is_settled() {
@@ -159,7 +159,7 @@ impl Driver<'_, '_> {
         }
     }
 
-    /// The elastic form from the person's start, once.
+    /// The elastic form from the user's start, once.
     pub(super) fn attempt_elastic(&mut self) -> Result<(), SolveError> {
         let runs = !self.elastic_tried && self.settings.runs(Strategy::ElasticForm);
         self.elastic_tried = true;

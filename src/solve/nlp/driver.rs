@@ -1,10 +1,10 @@
-//! From an instance to a certified answer, with any provider.
+//! From an instance to a certified answer, with any interior-point solver.
 //!
 //! A convex quadratic program goes to Clarabel, and a certified point is then a global optimum. The
 //! status says so where Clarabel was asked for; a model that asks for no solver expects, as in GAMS,
 //! a local optimum, and the message says that it is global.
-//! Otherwise, or where that point is not good enough, the provider is asked first with ordinary options from the person's own start point. What comes
-//! back is judged by the KKT residuals of the instance, not by the provider's word:
+//! Otherwise, or where that point is not good enough, the interior-point solver is asked first with ordinary options from the user's own start point. What comes
+//! back is judged by the KKT residuals of the instance, not by the interior-point solver's word:
 //!
 //! * a point that satisfies them is looked at once more: negative curvature on the tangent space of
 //!   what is active shows a saddle, which is left along that direction and solved again;
@@ -17,13 +17,13 @@
 
 use super::consistent::consistent_start;
 use super::growth::Growth;
+use super::interior_point::{Control, Ended, InteriorPoint, Progress, Shared, Solution, lock};
 use super::newton;
 use super::problem::{Nlp, Problem};
-use super::provider::{Control, Ended, Progress, Provider, Shared, Solution, lock};
 use super::quadratic::Quadratic;
 use super::schedule::{
-    AGREEMENT, BASE, CHEAP, DOUBT, ELSEWHERE, ENOUGH, FIRST_PATIENCE, From, LEAST_PATIENCE, NEAR,
-    OVERHEAD, PATIENCE, RESTARTS, TIMES,
+    AGREEMENT, BASE, CHEAP, DOUBT, ELSEWHERE, ENOUGH, FIRST_ATTEMPT_ITERATIONS, From,
+    MAX_ATTEMPT_ITERATIONS, MIN_ATTEMPT_ITERATIONS, NEAR, OVERHEAD, RESTARTS, TIMES,
 };
 use super::slqp;
 use super::trial::{Trial, clean, polished, residuals_at, tidy, without_noise};
@@ -44,7 +44,7 @@ use std::sync::{Arc, Mutex};
 const UNBOUNDED: f64 = 1e15;
 /// A run whose objective is worse than this has lost its way.
 const LOST: f64 = 1e17;
-/// A point is unbounded evidence from here on, if the provider stopped with diverging iterates.
+/// A point is unbounded evidence from here on, if the interior-point solver stopped with diverging iterates.
 const LARGE: f64 = 1e10;
 
 /// How often negative curvature of the violation is followed.
@@ -59,7 +59,7 @@ const WIDTH: f64 = 1e-8;
 /// Solves an instance and certifies the answer.
 pub fn solve(
     task: &Task,
-    provider: &dyn Provider,
+    interior_point: &dyn InteriorPoint,
     convexity: Convexity,
     settings: &Settings,
     budget: &Budget,
@@ -89,11 +89,11 @@ pub fn solve(
         Convexity::Asked(engine) => Quadratic::new(&mut problem, engine, budget),
     };
     let quadratic = quadratic.filter(|_| settings.runs(Strategy::ConvexQuadratic));
-    let mut driver = Driver::new(instance, problem, provider, settings, budget);
+    let mut driver = Driver::new(instance, problem, interior_point, settings, budget);
     if let (Convexity::Asked(engine), None) = (convexity, &quadratic) {
         driver.message = Some(format!(
             "not a convex quadratic program with linear rows: solved by {}, not by {}",
-            provider.name(),
+            interior_point.name(),
             engine.name()
         ));
     }
@@ -146,29 +146,29 @@ fn start_failure(e: &EvalFailure) -> SolveError {
 }
 
 pub(super) struct Driver<'a, 'm> {
-    /// For instances with kinks: derivatives a hair beside them.
+    /// For instances with kinks: derivatives at slightly perturbed points.
     pub(super) kinks: Option<Evaluator>,
     /// A minimum of the violations, and multipliers of all rows that may prove it.
     pub(super) infeasibility: Option<(Trial, Vec<f64>)>,
     pub(super) instance: &'a Instance,
-    pub(super) provider: &'a dyn Provider,
+    pub(super) interior_point: &'a dyn InteriorPoint,
     pub(super) settings: &'a Settings,
     pub(super) budget: &'a Budget<'m>,
     /// A point that satisfies the KKT conditions is a global optimum.
     pub(super) convex: Option<Convexity>,
-    /// The model asks for this provider.
+    /// The model asks for this interior-point solver.
     pub(super) named: bool,
     /// Name of who found the answer.
     pub(super) solver: &'static str,
-    /// What the person is to hear in any case.
+    /// What the user is to hear in any case.
     pub(super) message: Option<String>,
     pub(super) start: Vec<f64>,
     pub(super) problem: Arc<Mutex<Problem>>,
     pub(super) iterations: u64,
     pub(super) best: Option<Trial>,
-    /// How the last run of the provider ended.
+    /// How the last run of the interior-point solver ended.
     pub(super) ended: Ended,
-    /// The best point is a saddle from which a run went astray.
+    /// The best point is a saddle from which a run diverged.
     pub(super) at_saddle: bool,
     /// There is no feasible point.
     pub(super) impossible: bool,
@@ -181,7 +181,7 @@ pub(super) struct Driver<'a, 'm> {
     /// What factors of the KKT matrix cost, once that is known.
     factors: OnceCell<Size>,
     /// Iterations one attempt may take.
-    pub(super) patience: u64,
+    pub(super) attempt_iterations: u64,
     /// What is done about runs that lead far away.
     pub(super) growth: Growth,
 }
@@ -190,7 +190,7 @@ impl<'a, 'm> Driver<'a, 'm> {
     pub(super) fn new(
         instance: &'a Instance,
         problem: Problem,
-        provider: &'a dyn Provider,
+        interior_point: &'a dyn InteriorPoint,
         settings: &'a Settings,
         budget: &'a Budget<'m>,
     ) -> Self {
@@ -198,12 +198,12 @@ impl<'a, 'm> Driver<'a, 'm> {
             kinks: beside_kinks(instance),
             infeasibility: None,
             instance,
-            provider,
+            interior_point,
             settings,
             budget,
             convex: None,
             named: false,
-            solver: provider.name(),
+            solver: interior_point.name(),
             message: None,
             start: problem.start().to_vec(),
             problem: Arc::new(Mutex::new(problem)),
@@ -216,7 +216,7 @@ impl<'a, 'm> Driver<'a, 'm> {
             violation_escapes: 0,
             enough: f64::INFINITY,
             factors: OnceCell::new(),
-            patience: FIRST_PATIENCE,
+            attempt_iterations: FIRST_ATTEMPT_ITERATIONS,
             growth: Growth::Watched(0),
         }
     }
@@ -239,14 +239,14 @@ impl Driver<'_, '_> {
                 return Ok(self.finish());
             }
         }
-        if self.settle_without_provider()? {
+        if self.settle_without_interior_point()? {
             return Ok(self.finish());
         }
         if self.impossible {
             return Ok(self.finish());
         }
         if self.infeasibility.is_some() {
-            self.patience = DOUBT;
+            self.attempt_iterations = DOUBT;
         }
         let before = self.iterations;
         self.attempt(From::Start, &[])?;
@@ -255,7 +255,8 @@ impl Driver<'_, '_> {
         }
         if self.is_settled() {
             // there is an answer: to look for a better one may not take much longer
-            self.patience = (4 * (self.iterations - before)).clamp(LEAST_PATIENCE, PATIENCE);
+            self.attempt_iterations = (4 * (self.iterations - before))
+                .clamp(MIN_ATTEMPT_ITERATIONS, MAX_ATTEMPT_ITERATIONS);
         }
         self.leave_saddles()?;
         if self.is_settled() {
@@ -266,7 +267,7 @@ impl Driver<'_, '_> {
         if self.is_impossible() {
             return Ok(self.finish());
         }
-        self.patience = PATIENCE;
+        self.attempt_iterations = MAX_ATTEMPT_ITERATIONS;
         let kinks = kinks(self.instance);
         if kinks.is_some() && self.settings.runs(Strategy::KinkSmoothing) {
             self.round_kinks()?;
@@ -350,7 +351,7 @@ impl Driver<'_, '_> {
         equations >= problem.size().0
     }
 
-    /// Whether there may be several local optima, and the person lets us look for them.
+    /// Whether there may be several local optima, and the user lets us look for them.
     fn wants_search(&self) -> bool {
         self.settings.switch("nlp_search").unwrap_or(false)
     }
@@ -544,7 +545,7 @@ impl Driver<'_, '_> {
         }
     }
 
-    /// One run of the provider, judged and kept if it is the best so far. The objective of the point if
+    /// One run of the interior-point solver, judged and kept if it is the best so far. The objective of the point if
     /// it is optimal.
     pub(super) fn attempt(
         &mut self,
@@ -605,7 +606,7 @@ impl Driver<'_, '_> {
         for (k, v) in BASE.iter().chain(extra) {
             put(k, v);
         }
-        for (k, v) in self.settings.of(self.provider.options()) {
+        for (k, v) in self.settings.of(self.interior_point.options()) {
             put(k, v);
         }
         let left = self.budget.iterations_left();
@@ -614,10 +615,10 @@ impl Driver<'_, '_> {
         } else {
             // an attempt begun late is not cut off at once
             let affordable = (self.enough - self.work()) / self.work_of_iteration();
-            self.patience.min(affordable.max(100.0) as u64)
+            self.attempt_iterations.min(affordable.max(100.0) as u64)
         };
         let (budget, log) = (self.budget, self.budget.wants_log());
-        let name = self.provider.name();
+        let name = self.interior_point.name();
         if log {
             let extra: Vec<String> = extra.iter().map(|(k, v)| format!(", {k} {v}")).collect();
             budget.log(format!("{name}{}", extra.concat()));
@@ -651,9 +652,9 @@ impl Driver<'_, '_> {
             });
             let failures = lock(&*nlp).failures();
             let unbounded = p.objective < -UNBOUNDED && p.primal < 1e-3;
-            let astray = unbounded || p.objective > LOST;
+            let diverged = unbounded || p.objective > LOST;
             let stopped = budget.stop_after_failures(failures).is_some();
-            !stopped && (p.restoration || !astray)
+            !stopped && (p.restoration || !diverged)
         };
         let seconds = Some(budget.seconds_left()).filter(|s| *s < 1e9);
         let mut control = Control {
@@ -662,7 +663,7 @@ impl Driver<'_, '_> {
             seconds: seconds.map(|s| s.max(1e-3)),
             watch: &mut watch,
         };
-        let result = self.provider.solve(nlp.clone(), &mut control);
+        let result = self.interior_point.solve(nlp.clone(), &mut control);
         let solution = result.map_err(SolveError::new)?;
         self.spend(solution.iterations);
         self.note_end(solution.ended);
@@ -670,7 +671,7 @@ impl Driver<'_, '_> {
         if let Ended::InvalidOption = solution.ended {
             return Err(SolveError::new(format!(
                 "{} does not take one of the options",
-                self.provider.name()
+                self.interior_point.name()
             )));
         }
         Ok(solution)

@@ -8,8 +8,8 @@
 // Rows, bounds and slacks stand side by side.
 #![allow(clippy::needless_range_loop)]
 
+use super::interior_point::{Shared, lock};
 use super::problem::Nlp;
-use super::provider::{Shared, lock};
 
 /// A problem with elastic constraints.
 pub struct Elastic {

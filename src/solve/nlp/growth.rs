@@ -3,7 +3,7 @@
 //! An interior point that is led to infinity loses the rows on the way: where x y = 1 and x grows, y falls below
 //! every tolerance. What its last point says is then worth nothing, but a program confined to a box,
 //! |xⱼ| ≤ R for what has no nearer bound, is solved like any other. So where a run diverges, or ends where the objective
-//! still changes ([`Trial::receding`]), the program is solved in two boxes:
+//! still changes ([`Trial::diverging`]), the program is solved in two boxes:
 //!
 //! * an optimum that the box does not touch is one of the program itself;
 //! * an objective that is considerably better in the larger box (or that has no optimum in the smaller one), and would change
@@ -11,8 +11,8 @@
 //! * otherwise nothing was found out.
 
 use super::driver::Driver;
+use super::interior_point::{Ended, lock};
 use super::problem::{Nlp, ObjectiveForm, Problem};
-use super::provider::{Ended, lock};
 use super::schedule::From;
 use super::trial::{CONSIDERABLE, FAR, Trial};
 use crate::model::instance::Instance;
@@ -42,11 +42,11 @@ impl Driver<'_, '_> {
         };
         let is_far = |reach| is_far(self.instance, self.eliminated(), &trial.level, reach);
         let far = trial.is_feasible() && is_far(FAR);
-        let astray = trial.ended == Ended::Diverging || trial.receding || far;
+        let diverged = trial.ended == Ended::Diverging || trial.diverging || far;
         // a second time only for points that the rows allow
         let tried = times == TIMES || times > 0 && !trial.is_feasible();
         if trial.is_optimal()
-            || !astray
+            || !diverged
             || tried
             || self.is_stopped()
             || !self.settings.runs(Strategy::UnboundedBoxes)
@@ -61,7 +61,7 @@ impl Driver<'_, '_> {
             Some(found) => found,
             // it is as good as stationary, if it is not beyond all boxes
             None => Trial {
-                receding: trial.receding && beyond,
+                diverging: trial.diverging && beyond,
                 ..trial
             },
         })
@@ -84,7 +84,7 @@ impl Driver<'_, '_> {
             }
             let exact = trial.residuals.is_feasible(EXACT);
             let considerable = |f: f64| trial.objective < f - CONSIDERABLE * f.abs().max(1.0);
-            if exact && trial.receding && before.is_none_or(considerable) {
+            if exact && trial.diverging && before.is_none_or(considerable) {
                 return Ok(Some(Trial {
                     unbounded: true,
                     ..trial
@@ -126,8 +126,8 @@ impl Driver<'_, '_> {
         let inside = start.iter().zip(lower.iter().zip(upper));
         let start = inside.map(|(x, (&l, &u))| x.max(l).min(u)).collect();
         problem.set_start(start);
-        let (provider, settings) = (self.provider, self.settings);
-        let mut inner = Driver::new(&instance, problem, provider, settings, self.budget);
+        let (interior_point, settings) = (self.interior_point, self.settings);
+        let mut inner = Driver::new(&instance, problem, interior_point, settings, self.budget);
         inner.growth = Growth::Ignored;
         inner.iterations = self.iterations;
         inner.sequential(inner.start.clone(), None);

@@ -10,8 +10,8 @@
 // the only module that talks to C
 #![allow(unsafe_code)]
 
+use super::interior_point::{Control, Ended, InteriorPoint, Progress, Shared, Solution, lock};
 use super::options::IPOPT_OPTIONS;
-use super::provider::{Control, Ended, Progress, Provider, Shared, Solution, lock};
 use crate::model::option::OptionTable;
 use ipopt_sys as c;
 use std::ffi::{CString, c_void};
@@ -66,7 +66,7 @@ static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
 /// Options of later versions and of pounce, without which this one does as well.
 const OPTIONAL: [&str; 1] = ["acceptable_dual_inf_tol"];
 
-impl Provider for Ipopt {
+impl InteriorPoint for Ipopt {
     fn name(&self) -> &'static str {
         "ipopt"
     }

@@ -1,6 +1,6 @@
 //! Nonlinear programs: problem types nlp, dnlp, qcp and the relaxed ones.
 //!
-//! [`problem`] puts an instance into the form min f(x), l ≤ x ≤ u, a ≤ g(x) ≤ b; a provider
+//! [`problem`] puts an instance into the form min f(x), l ≤ x ≤ u, a ≤ g(x) ≤ b; an interior-point solver
 //! ([`pounce`], or Ipopt with the cargo feature `ipopt`) solves it, or Clarabel where it is a convex
 //! quadratic program ([`quadratic`]); [`driver`] judges the point by the
 //! KKT residuals of the instance, tries again where they are not small, and says what is known.
@@ -11,6 +11,7 @@ pub mod curvature;
 pub mod driver;
 pub mod elastic;
 mod growth;
+pub mod interior_point;
 #[cfg(feature = "ipopt")]
 pub mod ipopt;
 mod newton;
@@ -19,7 +20,6 @@ pub mod polish;
 #[cfg(feature = "pounce")]
 pub mod pounce;
 pub mod problem;
-pub mod provider;
 pub mod quadratic;
 pub mod relaxation;
 mod saddle;
@@ -32,19 +32,19 @@ mod verdict;
 use super::backend::{Backend, Reply, Supports, Task, Terms, is_called};
 use super::{Budget, Settings, SolveError, lp};
 use crate::model::option::OptionTable;
+use interior_point::InteriorPoint;
 #[cfg(feature = "ipopt")]
 pub use options::IPOPT_OPTIONS;
 #[cfg(feature = "pounce")]
 pub use options::POUNCE_OPTIONS;
 pub use options::SHARED_OPTIONS;
-use provider::Provider;
 pub use quadratic::Engine;
 
-/// Name of the threads on which providers run that may panic.
+/// Name of the threads on which interior-point solvers run that may panic.
 pub const THREAD: &str = "nonlinear solver";
 
 /// The solvers that are in this build, the default first.
-pub fn providers() -> &'static [&'static dyn Provider] {
+pub fn interior_point_solvers() -> &'static [&'static dyn InteriorPoint] {
     &[
         #[cfg(feature = "ipopt")]
         &ipopt::Ipopt,
@@ -56,17 +56,17 @@ pub fn providers() -> &'static [&'static dyn Provider] {
 /// What is made of a convex quadratic program.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Convexity {
-    /// Nothing: the provider was chosen by name.
+    /// Nothing: the interior-point solver was chosen by name.
     Ignored,
     /// Clarabel solves it.
     Used,
-    /// This solves it, the status is `optimal`, and the person hears if it is not convex.
+    /// This solves it, the status is `optimal`, and the user hears if it is not convex.
     Asked(Engine),
 }
 
 /// A nonlinear solver as a backend.
 #[derive(Clone, Copy)]
-pub struct Nonlinear(pub &'static dyn Provider);
+pub struct Nonlinear(pub &'static dyn InteriorPoint);
 
 impl Backend for Nonlinear {
     fn name(&self) -> &'static str {

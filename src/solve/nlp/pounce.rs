@@ -7,8 +7,8 @@
 //! shared, progress comes back through a channel, and a panic ends the thread, not the program.
 //! Without its restoration phase wired in, every hard case ends `RestorationFailed`.
 
+use super::interior_point::{Control, Ended, InteriorPoint, Progress, Shared, Solution, lock};
 use super::options::{INSTALLATION, POUNCE_OPTIONS, is_described};
-use super::provider::{Control, Ended, Progress, Provider, Shared, Solution, lock};
 use crate::model::option::{Kind, OptionRow, OptionTable, row};
 use pounce_algorithm::application::{
     IpoptApplication, Ma57Config, default_backend_factory, feral_config_from_options,
@@ -35,7 +35,7 @@ use std::sync::mpsc::channel;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Pounce;
 
-impl Provider for Pounce {
+impl InteriorPoint for Pounce {
     fn name(&self) -> &'static str {
         "pounce"
     }

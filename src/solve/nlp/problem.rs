@@ -14,7 +14,7 @@ use crate::autodiff::{EvalFailure, Evaluator};
 use crate::model::instance::{Instance, Relation};
 use crate::solve::backend::Seen;
 
-/// What a provider needs of a nonlinear program.
+/// What an interior-point solver needs of a nonlinear program.
 pub trait Nlp {
     /// Numbers of variables and constraints.
     fn size(&self) -> (usize, usize);

@@ -10,8 +10,8 @@
 //! ε = 1e-12 · max |H|, which is below what the evaluation of H is good for. A programme for which
 //! this fails, for whatever reason, is one for the general method.
 
+use super::interior_point::{Ended, Solution};
 use super::problem::{Entry, Nlp, ObjectiveForm, Problem};
-use super::provider::{Ended, Solution};
 use crate::autodiff::Degree;
 use crate::solve::Budget;
 use crate::solve::factor_size::symmetric_size;

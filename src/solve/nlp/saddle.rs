@@ -8,9 +8,9 @@
 
 use super::curvature::negative_curvature;
 use super::driver::Driver;
+use super::interior_point::{Ended, lock};
 use super::polish::Active;
 use super::problem::{Nlp, Problem};
-use super::provider::{Ended, lock};
 use super::schedule::FINEST;
 use super::trial::{Trial, active_set};
 use crate::model::instance::Relation;

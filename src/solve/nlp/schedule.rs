@@ -2,7 +2,7 @@
 
 use crate::solve::Strategy;
 
-/// Options of every attempt; the person's own come after them.
+/// Options of every attempt; the user's own come after them.
 pub(super) const BASE: [(&str, &str); 8] = [
     ("tol", "1e-9"),
     ("constr_viol_tol", "1e-9"),
@@ -21,11 +21,11 @@ pub(super) use crate::solve::certificate::nonlinear::KINK_WIDTH as FINEST;
 /// Where an attempt starts.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) enum From {
-    /// The person's start point.
+    /// The user's start point.
     Start,
     /// The best point so far.
     Best,
-    /// The person's start, moved by this fraction of its size (and at least by this much).
+    /// The user's start, moved by this fraction of its size (and at least by this much).
     Moved(f64),
     /// Anywhere between near bounds, the start moved where there are none; the number is a seed.
     Anywhere(u64),
@@ -34,12 +34,12 @@ pub(super) enum From {
 }
 
 /// Iterations that one attempt may take; the first less, for what takes so many is better begun elsewhere.
-pub(super) const PATIENCE: u64 = 3000;
-pub(super) const FIRST_PATIENCE: u64 = 500;
+pub(super) const MAX_ATTEMPT_ITERATIONS: u64 = 3000;
+pub(super) const FIRST_ATTEMPT_ITERATIONS: u64 = 500;
 /// What a proof that nothing nearby is feasible is doubted for.
 pub(super) const DOUBT: u64 = 100;
 /// Where there is an answer, a search for a better one may take this many at least.
-pub(super) const LEAST_PATIENCE: u64 = 50;
+pub(super) const MIN_ATTEMPT_ITERATIONS: u64 = 50;
 
 /// Options that keep an interior point near its start.
 pub(super) const NEAR: &[(&str, &str)] = &[

@@ -1,8 +1,8 @@
 //! A point and what it is worth.
 
+use super::interior_point::Ended;
 use super::polish::{Active, polish};
 use super::problem::{Nlp, Problem};
-use super::provider::Ended;
 use crate::autodiff::{Degree, Evaluator};
 use crate::model::instance::{Instance, Relation};
 pub(super) use crate::solve::certificate::nonlinear::{CONSIDERABLE, FAR};
@@ -23,9 +23,9 @@ pub(super) struct Trial {
     /// Minimised.
     pub(super) objective: f64,
     /// Stationary to the tolerance only because it is far away: the objective still changes there.
-    pub(super) receding: bool,
+    pub(super) diverging: bool,
     /// Feasible to the tolerance only because it is far away: without what is violated, the objective would be another.
-    pub(super) hollow: bool,
+    pub(super) feasible_only_by_scaling: bool,
     /// The objective gets better without limit.
     pub(super) unbounded: bool,
     /// The rows have no multipliers here; rows a little wider have, with all but the same value.
@@ -34,7 +34,7 @@ pub(super) struct Trial {
 
 impl Trial {
     pub(super) fn is_optimal(&self) -> bool {
-        self.is_stationary() && !self.receding || self.irregular
+        self.is_stationary() && !self.diverging || self.irregular
     }
 
     /// Satisfies the conditions of first order.
@@ -43,7 +43,7 @@ impl Trial {
     }
 
     pub(super) fn is_feasible(&self) -> bool {
-        self.residuals.is_feasible(TOLERANCE) && !self.hollow
+        self.residuals.is_feasible(TOLERANCE) && !self.feasible_only_by_scaling
     }
 
     /// The larger of the relative residuals.
@@ -96,8 +96,9 @@ pub(super) fn residuals_at(
         .objective
         .map_or(0.0, |o| o.sense.sign() * level[o.column as usize]);
     let (residuals, at) = measure(instance, problem.evaluator(), kinks, &level, &row_marginal);
-    let receding = is_receding(instance, &level, &at.reduced, objective);
-    let hollow = is_feasible_only_by_scaling(instance, &level, &row_marginal, &at.activity);
+    let diverging = is_diverging(instance, &level, &at.reduced, objective);
+    let feasible_only_by_scaling =
+        is_feasible_only_by_scaling(instance, &level, &row_marginal, &at.activity);
     Trial {
         x,
         lambda,
@@ -107,8 +108,8 @@ pub(super) fn residuals_at(
         residuals,
         ended,
         objective,
-        receding,
-        hollow,
+        diverging,
+        feasible_only_by_scaling,
         unbounded: false,
         irregular: false,
     }
@@ -116,7 +117,7 @@ pub(super) fn residuals_at(
 
 /// Whether a variable beyond [`FAR`] promises a considerable change of the objective if it goes on as far again:
 /// where everything flattens out towards infinity, derivatives alone say little.
-fn is_receding(instance: &Instance, level: &[f64], reduced: &[f64], objective: f64) -> bool {
+fn is_diverging(instance: &Instance, level: &[f64], reduced: &[f64], objective: f64) -> bool {
     let columns = &instance.columns;
     let sign = instance.sign();
     let promise = |j: usize| {
@@ -138,7 +139,7 @@ fn violation(instance: &Instance, at: &Linearised, i: usize) -> f64 {
     row_violation(rows.relation[i], at.activity[i], rows.rhs[i])
 }
 
-/// An interior point stops short of the bounds by a hair. Puts such variables on their bounds, also on those that
+/// An interior point stops slightly short of the bounds. Puts such variables on their bounds, also on those that
 /// linear rows of one variable are, and multipliers of slack rows and reduced costs of variables between their bounds to 0.
 pub(super) fn tidy(
     instance: &Instance,

@@ -2,8 +2,8 @@
 
 use super::Convexity;
 use super::driver::Driver;
+use super::interior_point::{Ended, lock};
 use super::problem::Nlp;
-use super::provider::{Ended, lock};
 use super::relaxation;
 use super::trial::Trial;
 use crate::autodiff::{Degree, Evaluator};
@@ -76,7 +76,7 @@ impl Driver<'_, '_> {
         let solver_status = match (claim, self.budget.stopped().map(Stop::status)) {
             (Claim::Unfinished, Some(s)) => s,
             (Claim::Unfinished, None) => match best.ended {
-                // the limit was the person's, not that of an attempt
+                // the limit was the user's, not that of an attempt
                 Ended::Iterations if self.settings.option("max_iter").is_some() => {
                     SolverStatus::IterationInterrupt
                 }

@@ -28,7 +28,7 @@ pub enum Member {
 }
 
 /// Seconds for the search.
-const PATIENCE: f64 = 60.0;
+const MAX_SECONDS: f64 = 60.0;
 
 /// What a set of members is when it is asked.
 enum Tested {
@@ -41,7 +41,9 @@ enum Tested {
 /// Finds one such set, from a proof's multipliers for the instance's rows (or from none). None: no
 /// contradiction was found.
 pub fn irreducible(instance: &Instance, ray: &[f64], budget: &Budget) -> Option<Finding> {
-    budget.within(PATIENCE, u64::MAX, |budget| members(instance, ray, budget))
+    budget.within(MAX_SECONDS, u64::MAX, |budget| {
+        members(instance, ray, budget)
+    })
 }
 
 fn members(instance: &Instance, ray: &[f64], budget: &Budget) -> Option<Finding> {

@@ -89,7 +89,7 @@ impl Enclosed {
 }
 
 /// Columns and rows together up to which exact arithmetic is tried first.
-const SMALL: usize = 120;
+const MAX_EXACT_SIZE: usize = 120;
 
 /// Proves what it can about the optimal value of a linear instance, near an outcome.
 pub fn certify(
@@ -104,7 +104,7 @@ pub fn certify(
 pub fn exact_low(p: &Problem) -> f64 {
     let mut quiet = Quiet::default();
     let budget = Budget::new(&mut quiet, Limits::default(), false);
-    let small = p.m() + p.n() <= SMALL;
+    let small = p.m() + p.n() <= MAX_EXACT_SIZE;
     let value = small.then(|| exact::value(p, 2_000_000, &budget));
     let value = value.flatten().and_then(|v| v.lower.ok());
     value.map_or(f64::NEG_INFINITY, |v| v.low)
@@ -130,7 +130,7 @@ pub(super) fn certify_by(
         let extreme = why("the coefficients are so extreme that they cannot be scaled exactly");
         (upper, lower) = (Err(extreme.clone()), Err(extreme));
     } else {
-        let small = p.m() + p.n() <= SMALL;
+        let small = p.m() + p.n() <= MAX_EXACT_SIZE;
         if by_basis
             && small
             && let Some(value) = exact::value(&p, 2_000_000, budget)

@@ -296,27 +296,27 @@ impl Simplex {
         None
     }
 
-    /// Rests of A x − s = 0, in twice the working precision.
-    fn rests(&self) -> Vec<f64> {
-        let mut rests = Vec::with_capacity(self.m);
+    /// Residuals of A x − s = 0, in twice the working precision.
+    fn row_residuals(&self) -> Vec<f64> {
+        let mut residuals = Vec::with_capacity(self.m);
         for i in 0..self.m {
             let mut sum = Sum::new(self.x[self.n + i]);
             for (j, a) in self.rows.line(i) {
                 sum.add_product(-a, self.x[j]);
             }
-            rests.push(sum.value());
+            residuals.push(sum.value());
         }
-        rests
+        residuals
     }
 
     /// Values of the basic variables from those of the others.
     fn compute_values(&mut self) -> Option<()> {
         for _ in 0..2 {
-            let mut rests = self.rests();
+            let mut residuals = self.row_residuals();
             let factor = self.factor.as_mut()?;
-            factor.forward_dense(&mut rests)?;
+            factor.forward_dense(&mut residuals)?;
             for (k, &j) in self.head.iter().enumerate() {
-                self.x[j as usize] += rests[k];
+                self.x[j as usize] += residuals[k];
             }
         }
         self.x.iter().all(|v| v.is_finite()).then_some(())
@@ -336,13 +336,13 @@ impl Simplex {
     fn multipliers(&mut self) -> Option<Vec<f64>> {
         let mut y = vec![0.0; self.m];
         for _ in 0..2 {
-            let mut rests: Vec<f64> = self
+            let mut residuals: Vec<f64> = self
                 .head
                 .iter()
                 .map(|&j| self.price(j as usize, &y))
                 .collect();
-            self.factor.as_mut()?.backward_dense(&mut rests)?;
-            y.iter_mut().zip(&rests).for_each(|(y, r)| *y += r);
+            self.factor.as_mut()?.backward_dense(&mut residuals)?;
+            y.iter_mut().zip(&residuals).for_each(|(y, r)| *y += r);
         }
         y.iter().all(|v| v.is_finite()).then_some(y)
     }
@@ -604,7 +604,7 @@ impl Simplex {
             (*high, *low) = two_sum(s, *low + e);
         };
         for _ in 0..4 {
-            let mut rests = Vec::with_capacity(self.m);
+            let mut residuals = Vec::with_capacity(self.m);
             for i in 0..self.m {
                 let logical = self.n + i;
                 let mut sum = WideSum::new(self.x[logical]);
@@ -613,17 +613,17 @@ impl Simplex {
                     sum.add_product(-a, self.x[j]);
                     sum.add_product(-a, low[j]);
                 }
-                rests.push(sum.value().middle());
+                residuals.push(sum.value().middle());
             }
-            self.factor.as_mut()?.forward_dense(&mut rests)?;
+            self.factor.as_mut()?.forward_dense(&mut residuals)?;
             for (k, &j) in self.head.iter().enumerate() {
                 let j = j as usize;
-                shift(&mut self.x[j], &mut low[j], rests[k]);
+                shift(&mut self.x[j], &mut low[j], residuals[k]);
             }
         }
         let (mut y, mut y_low) = (vec![0.0; self.m], vec![0.0; self.m]);
         for _ in 0..5 {
-            let mut rests = Vec::with_capacity(self.m);
+            let mut residuals = Vec::with_capacity(self.m);
             for &j in &self.head {
                 let j = j as usize;
                 let mut sum = WideSum::new(self.cost[j]);
@@ -636,10 +636,10 @@ impl Simplex {
                     sum.add(y[j - self.n]);
                     sum.add(y_low[j - self.n]);
                 }
-                rests.push(sum.value().middle());
+                residuals.push(sum.value().middle());
             }
-            self.factor.as_mut()?.backward_dense(&mut rests)?;
-            for (i, &r) in rests.iter().enumerate() {
+            self.factor.as_mut()?.backward_dense(&mut residuals)?;
+            for (i, &r) in residuals.iter().enumerate() {
                 shift(&mut y[i], &mut y_low[i], r);
             }
         }

@@ -67,7 +67,7 @@ impl Simplex {
                 (self.work_lower[j], self.work_upper[j]) = (bound, bound);
             }
         }
-        // Where there is far to go, a basis that is nearly dependent leads astray.
+        // Where there is far to go, a nearly dependent basis gives wrong values.
         let far = self.far().next().is_some();
         self.crossing = Some(if far { SAFE_PIVOT } else { ZERO });
         let ready = self.bring_inside(start);

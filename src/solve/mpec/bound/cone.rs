@@ -64,7 +64,7 @@ impl Space {
     }
 
     /// N with Pᵀ (W ∘ P N Qᵀ) Q = C to some digits, by conjugate gradients. Where W is 0 the equations are singular, and
-    /// rounding leads astray in the end: the best on the way counts.
+    /// rounding errors dominate in the end: the best on the way counts.
     fn conjugate(
         &self,
         c: &Mat<f64>,
@@ -78,7 +78,7 @@ impl Space {
         let mut best = (size, sum.clone());
         let enough = DIGITS * size;
         for _ in 0..CORRECTIONS {
-            if best.0 <= enough || size > ASTRAY * best.0 || stop() {
+            if best.0 <= enough || size > DIVERGENCE * best.0 || stop() {
                 break;
             }
             let image = self.down(&weighted(self.up(&step), weight));
@@ -103,7 +103,7 @@ impl Space {
 /// Steps of conjugate gradients at most, what of the residual's square is enough, what is too much after the best.
 const CORRECTIONS: usize = 300;
 const DIGITS: f64 = 1e-12;
-const ASTRAY: f64 = 1e6;
+const DIVERGENCE: f64 = 1e6;
 
 /// How often they start again from the residual.
 const PASSES: usize = 4;

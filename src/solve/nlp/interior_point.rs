@@ -4,7 +4,7 @@ use super::problem::Nlp;
 use crate::model::option::OptionTable;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// How a provider says it ended, in Ipopt's distinctions.
+/// How an interior-point solver says it ended, in Ipopt's distinctions.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Ended {
     /// Converged to its tolerance.
@@ -37,7 +37,7 @@ pub enum Ended {
     Broken,
 }
 
-/// A provider's answer, in the variables of the [`Nlp`].
+/// An interior-point solver's answer, in the variables of the [`Nlp`].
 #[derive(Clone, Debug)]
 pub struct Solution {
     /// How it ended.
@@ -93,16 +93,16 @@ impl Control<'_> {
     }
 }
 
-/// A problem that a provider may take to another thread.
+/// A problem that an interior-point solver may take to another thread.
 pub type Shared = Arc<Mutex<dyn Nlp + Send>>;
 
-/// Locks the problem, also after a panic of a provider: it holds numbers only.
+/// Locks the problem, also after a panic of an interior-point solver: it holds numbers only.
 pub fn lock<T: ?Sized>(nlp: &Mutex<T>) -> MutexGuard<'_, T> {
     nlp.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// A solver of nonlinear programs.
-pub trait Provider: Sync {
+pub trait InteriorPoint: Sync {
     /// Lower-case name.
     fn name(&self) -> &'static str;
     /// What it is made of.
@@ -110,6 +110,6 @@ pub trait Provider: Sync {
     /// The options that it takes.
     fn options(&self) -> &'static OptionTable;
 
-    /// Solves. Err: an option that the provider does not take, in words.
+    /// Solves. Err: an option that the interior-point solver does not take, in words.
     fn solve(&self, nlp: Shared, control: &mut Control<'_>) -> Result<Solution, String>;
 }
