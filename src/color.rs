@@ -44,7 +44,7 @@ impl Paint {
 
 /// Colour of `t` in 0 … 1 on a scale from dark blue over green to yellow that is even to the eye
 /// and readable without colour vision (viridis, van der Walt & Smith 2015).
-pub fn scale(t: f64) -> String {
+pub(crate) fn scale(t: f64) -> String {
     const STOPS: [[f64; 3]; 9] = [
         [68., 1., 84.],
         [71., 44., 122.],

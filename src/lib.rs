@@ -54,7 +54,7 @@
 //!
 //! Without default features the library does no input or output, and asks for the time only through
 //! [`Options::clock`]. `examples/` has programs to start from; the language is described in `docs/language.md`.
-#![warn(missing_docs)]
+#![warn(missing_docs, unreachable_pub)]
 
 mod api;
 pub mod autodiff;

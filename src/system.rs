@@ -10,7 +10,7 @@ use crate::host::HostError;
 
 /// Which files a model may read, and where they are looked for.
 #[derive(Clone, Debug)]
-pub struct Files {
+pub(crate) struct Files {
     model: Option<PathBuf>,
     model_folder: PathBuf,
     /// The current folder.
@@ -21,7 +21,7 @@ pub struct Files {
 
 impl Files {
     /// For a model file, and further folders in which files are looked for. Any file may be read.
-    pub fn new(model: &Path, allow_read: &[PathBuf]) -> Self {
+    pub(crate) fn new(model: &Path, allow_read: &[PathBuf]) -> Self {
         let current = std::env::current_dir()
             .and_then(|d| d.canonicalize())
             .unwrap_or_else(|_| PathBuf::from("."));
@@ -42,12 +42,12 @@ impl Files {
     }
 
     /// Whether only the model's folder, the current one and those that were allowed may be read.
-    pub fn sandbox(self, sandbox: bool) -> Self {
+    pub(crate) fn sandbox(self, sandbox: bool) -> Self {
         Self { sandbox, ..self }
     }
 
     /// The same, and another folder that may be read.
-    pub fn and_allow(mut self, folder: &Path) -> Self {
+    pub(crate) fn and_allow(mut self, folder: &Path) -> Self {
         self.allowed.extend(folder.canonicalize());
         self
     }
@@ -98,7 +98,11 @@ impl Files {
     }
 
     /// Reads a text, as [`crate::host::Host::read`] does.
-    pub fn read(&self, path: &str, from: Option<&Path>) -> Result<(PathBuf, String), HostError> {
+    pub(crate) fn read(
+        &self,
+        path: &str,
+        from: Option<&Path>,
+    ) -> Result<(PathBuf, String), HostError> {
         let (known, bytes) = self.read_bytes(path, from)?;
         if bytes.starts_with(b"*GAMS*") {
             return Err(HostError::Compressed);
@@ -121,7 +125,7 @@ impl Files {
     }
 
     /// Reads a file, as [`crate::host::Host::read_bytes`] does.
-    pub fn read_bytes(
+    pub(crate) fn read_bytes(
         &self,
         path: &str,
         from: Option<&Path>,
@@ -135,12 +139,12 @@ impl Files {
     }
 
     /// Whether a file may be read and is there.
-    pub fn exists(&self, path: &str, from: Option<&Path>) -> bool {
+    pub(crate) fn exists(&self, path: &str, from: Option<&Path>) -> bool {
         self.find(path, from).is_ok()
     }
 
     /// Whether there is a folder whose files may be read.
-    pub fn folder_exists(&self, path: &str, from: Option<&Path>) -> bool {
+    pub(crate) fn folder_exists(&self, path: &str, from: Option<&Path>) -> bool {
         let mut real = self
             .places(path, from)
             .filter_map(|p| p.canonicalize().ok());
@@ -149,7 +153,7 @@ impl Files {
 }
 
 /// A path without `.` parts, which say nothing.
-pub fn tidy(path: &Path) -> PathBuf {
+pub(crate) fn tidy(path: &Path) -> PathBuf {
     let parts = path.components().filter(|c| *c != Component::CurDir);
     let tidy: PathBuf = parts.collect();
     if tidy.as_os_str().is_empty() {
@@ -160,7 +164,7 @@ pub fn tidy(path: &Path) -> PathBuf {
 }
 
 /// What the system says, in plain words.
-pub fn other(e: std::io::Error) -> HostError {
+pub(crate) fn other(e: std::io::Error) -> HostError {
     match e.kind() {
         std::io::ErrorKind::NotFound => HostError::NotFound,
         std::io::ErrorKind::PermissionDenied => {
@@ -177,18 +181,18 @@ fn is_gams(path: &Path) -> bool {
 }
 
 /// Seconds since 1970-01-01 UTC.
-pub fn clock() -> f64 {
+pub(crate) fn clock() -> f64 {
     let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
     since.map_or(0.0, |d| d.as_secs_f64())
 }
 
 /// Date and time now, as [`crate::host::Host::now`] counts it.
-pub fn now() -> f64 {
+pub(crate) fn now() -> f64 {
     crate::host::day_number(clock())
 }
 
 /// Bytes of memory that the process holds, 0 where the system does not say.
-pub fn memory() -> usize {
+pub(crate) fn memory() -> usize {
     let statm = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();
     let pages = statm
         .split(' ')

@@ -14,7 +14,7 @@ use std::hash::{Hash, Hasher};
 
 /// A compiled kernel and its terms.
 #[derive(Debug)]
-pub struct Block {
+pub(super) struct Block {
     /// The expression.
     pub graph: Graph,
     /// Code for the value.
@@ -43,12 +43,12 @@ pub struct Block {
 
 impl Block {
     /// Number of terms.
-    pub fn terms(&self) -> usize {
+    pub(super) fn terms(&self) -> usize {
         self.row.len()
     }
 
     /// The operands of the programs at x.
-    pub fn operands<'a>(&'a self, x: &'a [f64]) -> Operands<'a> {
+    pub(super) fn operands<'a>(&'a self, x: &'a [f64]) -> Operands<'a> {
         Operands {
             x,
             columns: &self.columns,
@@ -58,12 +58,12 @@ impl Block {
     }
 
     /// Column in a slot of a term.
-    pub fn column(&self, slot: u32, term: usize) -> u32 {
+    pub(super) fn column(&self, slot: u32, term: usize) -> u32 {
         self.columns[slot as usize * self.terms() + term]
     }
 
     /// Constant in a slot of a term.
-    pub fn constant(&self, slot: u32, term: usize) -> f64 {
+    pub(super) fn constant(&self, slot: u32, term: usize) -> f64 {
         self.constants[slot as usize * self.terms() + term]
     }
 
@@ -125,7 +125,7 @@ impl Block {
 }
 
 /// Compiles the nonlinear part of an instance; `smoothing` as in [`Graph::new`].
-pub fn compile(instance: &Instance, smoothing: f64) -> Vec<Block> {
+pub(super) fn compile(instance: &Instance, smoothing: f64) -> Vec<Block> {
     let mut groups: Vec<(Kernel, Vec<KernelTerms>)> = Vec::new();
     let mut known: FxHashMap<u64, Vec<usize>> = FxHashMap::default();
     for terms in instance.nonlinear.iter().filter(|t| !t.row.is_empty()) {

@@ -20,7 +20,7 @@ use rustc_hash::FxHashMap;
 
 /// One output of a [`Code`].
 #[derive(Clone, Copy, Debug)]
-pub struct Output {
+pub(super) struct Output {
     /// Variable slots: unused for a value, the first for a gradient, both (first ≥ second) for a Hessian.
     pub slots: [u32; 2],
     /// The step that computes it.
@@ -28,7 +28,7 @@ pub struct Output {
 }
 
 /// Straight-line code with its outputs.
-pub struct Code {
+pub(super) struct Code {
     /// The steps.
     pub steps: Steps,
     /// What is wanted.
@@ -54,7 +54,7 @@ struct Derivation<'g> {
 }
 
 /// Code for the value.
-pub fn value(graph: &Graph) -> Code {
+pub(super) fn value(graph: &Graph) -> Code {
     let mut d = Derivation::new(graph, 0);
     d.forward();
     let step = d.value[graph.root as usize];
@@ -65,7 +65,7 @@ pub fn value(graph: &Graph) -> Code {
 }
 
 /// Code for the gradient: one output per slot with a derivative that is not identically 0.
-pub fn gradient(graph: &Graph) -> Code {
+pub(super) fn gradient(graph: &Graph) -> Code {
     let mut d = Derivation::new(graph, 1);
     d.forward();
     let adjoint = d.adjoints();
@@ -83,7 +83,7 @@ pub fn gradient(graph: &Graph) -> Code {
 }
 
 /// Code for the lower triangle of the Hessian.
-pub fn hessian(graph: &Graph) -> Code {
+pub(super) fn hessian(graph: &Graph) -> Code {
     let mut d = Derivation::new(graph, 2);
     d.forward();
     let edges = d.push_edges();

@@ -8,7 +8,7 @@ use crate::model::instance::{Instance, Kernel, KernelTerms, Op, SparseRows};
 use rustc_hash::FxHashMap;
 
 /// The nonlinear part of an instance without its fixed columns; None where these are in polynomials only.
-pub fn without_fixed(instance: &Instance) -> Option<Instance> {
+pub(super) fn without_fixed(instance: &Instance) -> Option<Instance> {
     let columns = &instance.columns;
     let fixed = |j: u32| columns.lower[j as usize] == columns.upper[j as usize];
     let may_fail = |op: &Op| matches!(op, Op::Call(..) | Op::Power | Op::Divide | Op::PowerInt(_));

@@ -12,11 +12,11 @@ use crate::model::instance::{Function, Kernel, Op};
 use rustc_hash::FxHashMap;
 
 /// Number of a node.
-pub type Id = u32;
+pub(super) type Id = u32;
 
 /// An elementary operation. Operands have smaller numbers.
 #[derive(Clone, PartialEq, Debug)]
-pub enum Element {
+pub(super) enum Element {
     /// The variable in a slot.
     Var(u32),
     /// The constant in a slot.
@@ -47,7 +47,7 @@ pub enum Element {
 
 /// The graph of a kernel.
 #[derive(Clone, Debug)]
-pub struct Graph {
+pub(super) struct Graph {
     /// Nodes, operands first.
     pub elements: Vec<Element>,
     /// Whether a node depends on a variable.
@@ -77,7 +77,7 @@ impl Graph {
     /// undefined (NaN), so that its evaluation fails instead of the process.
     ///
     /// With a smoothing δ > 0, |a| becomes √(a² + δ²), √a √(a + δ²), and min and max follow from |a|.
-    pub fn new(kernel: &Kernel, uniform: &[Option<f64>], smoothing: f64) -> Self {
+    pub(super) fn new(kernel: &Kernel, uniform: &[Option<f64>], smoothing: f64) -> Self {
         let mut b = Builder {
             smoothing,
             elements: Vec::new(),

@@ -42,7 +42,7 @@ struct CallSite {
 
 /// Code ready to run.
 #[derive(Clone, Debug, Default)]
-pub struct Program {
+pub(super) struct Program {
     numbers: Vec<(Register, f64)>,
     instructions: Vec<Instruction>,
     calls: Vec<CallSite>,
@@ -51,7 +51,7 @@ pub struct Program {
 
 /// The terms a program runs on, slot by slot: `columns[slot · terms + t]`.
 #[derive(Clone, Copy)]
-pub struct Operands<'a> {
+pub(super) struct Operands<'a> {
     /// The point.
     pub x: &'a [f64],
     /// Column of each variable slot of each term.
@@ -63,14 +63,14 @@ pub struct Operands<'a> {
 }
 
 /// Where the outputs of a program go.
-pub trait Sink {
+pub(super) trait Sink {
     /// Takes output number `entry` of the terms from `first` on.
     fn store(&mut self, entry: usize, first: usize, values: &[f64]);
 }
 
 /// Memory for running programs.
 #[derive(Default, Debug)]
-pub struct Workspace {
+pub(super) struct Workspace {
     registers: Vec<f64>,
     args: Vec<f64>,
     gradient: Vec<f64>,
@@ -79,7 +79,7 @@ pub struct Workspace {
 
 impl Program {
     /// Drops dead steps, fuses, assigns registers.
-    pub fn new(code: &Code) -> Self {
+    pub(super) fn new(code: &Code) -> Self {
         Assembler::new(code).assemble()
     }
 
@@ -87,7 +87,7 @@ impl Program {
     ///
     /// Errors: some term could not be evaluated, or an output is not finite; it is among the 64 terms
     /// from the one returned on.
-    pub fn run(
+    pub(super) fn run(
         &self,
         operands: Operands<'_>,
         work: &mut Workspace,

@@ -9,7 +9,7 @@ use super::graph::{Element, Graph, Id};
 use super::partials::{partials, power_partials};
 
 /// The failure among the terms from `first` on. `order` is 0 for values, 1 and 2 for derivatives.
-pub fn diagnose(block: &Block, first: usize, x: &[f64], order: u8) -> EvalFailure {
+pub(super) fn diagnose(block: &Block, first: usize, x: &[f64], order: u8) -> EvalFailure {
     let last = (first + 64).min(block.terms());
     for t in first..last {
         let row = block.row[t];

@@ -8,11 +8,11 @@ use crate::model::instance::Function;
 use rustc_hash::FxHashMap;
 
 /// Number of a step; also the name of its result.
-pub type Step = u32;
+pub(super) type Step = u32;
 
 /// What a step computes from its operands a, b, c.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub enum Action {
+pub(super) enum Action {
     /// A number.
     Number(f64),
     /// The variable in a slot.
@@ -84,7 +84,7 @@ pub enum Action {
 
 /// A function that is computed lane by lane, with its derivatives.
 #[derive(Clone, Debug)]
-pub struct Call {
+pub(super) struct Call {
     /// The function.
     pub function: Function,
     /// Steps of the arguments.
@@ -97,7 +97,7 @@ pub struct Call {
 
 /// One step.
 #[derive(Clone, Copy, Debug)]
-pub struct StepInfo {
+pub(super) struct StepInfo {
     /// What is computed.
     pub action: Action,
     /// Operands; unused ones are [`NONE`].
@@ -107,11 +107,11 @@ pub struct StepInfo {
 }
 
 /// No operand.
-pub const NONE: Step = u32::MAX;
+pub(super) const NONE: Step = u32::MAX;
 
 /// Straight-line code under construction.
 #[derive(Default, Debug)]
-pub struct Steps {
+pub(super) struct Steps {
     /// The steps.
     pub list: Vec<StepInfo>,
     /// The calls that [`Action::Part`] refers to.
@@ -139,7 +139,7 @@ impl Steps {
     }
 
     /// The number, if the step is one.
-    pub fn as_number(&self, a: Step) -> Option<f64> {
+    pub(super) fn as_number(&self, a: Step) -> Option<f64> {
         match self.list[a as usize].action {
             Action::Number(v) => Some(v),
             _ => None,
@@ -152,28 +152,28 @@ impl Steps {
     }
 
     /// A number.
-    pub fn number(&mut self, v: f64) -> Step {
+    pub(super) fn number(&mut self, v: f64) -> Step {
         self.push(Action::Number(v), [NONE; 3], false)
     }
 
     /// The variable in slot k.
-    pub fn var(&mut self, k: u32) -> Step {
+    pub(super) fn var(&mut self, k: u32) -> Step {
         self.push(Action::Var(k), [NONE; 3], true)
     }
 
     /// The constant in slot k.
-    pub fn constant(&mut self, k: u32) -> Step {
+    pub(super) fn constant(&mut self, k: u32) -> Step {
         self.push(Action::Const(k), [NONE; 3], false)
     }
 
     /// A step with one operand, no simplification.
-    pub fn unary(&mut self, action: Action, a: Step) -> Step {
+    pub(super) fn unary(&mut self, action: Action, a: Step) -> Step {
         let active = self.is_active(a);
         self.push(action, [a, NONE, NONE], active)
     }
 
     /// A step with several operands, no simplification.
-    pub fn plain(&mut self, action: Action, operands: &[Step]) -> Step {
+    pub(super) fn plain(&mut self, action: Action, operands: &[Step]) -> Step {
         let mut o = [NONE; 3];
         o[..operands.len()].copy_from_slice(operands);
         let active = operands.iter().any(|&a| self.is_active(a));
@@ -181,7 +181,7 @@ impl Steps {
     }
 
     /// a + b.
-    pub fn add(&mut self, a: Step, b: Step) -> Step {
+    pub(super) fn add(&mut self, a: Step, b: Step) -> Step {
         match (self.as_number(a), self.as_number(b)) {
             (Some(x), Some(y)) => return self.number(x + y),
             (Some(0.0), _) => return b,
@@ -202,7 +202,7 @@ impl Steps {
     }
 
     /// a − b.
-    pub fn subtract(&mut self, a: Step, b: Step) -> Step {
+    pub(super) fn subtract(&mut self, a: Step, b: Step) -> Step {
         match (self.as_number(a), self.as_number(b)) {
             (Some(x), Some(y)) => return self.number(x - y),
             (_, Some(0.0)) => return a,
@@ -219,7 +219,7 @@ impl Steps {
     }
 
     /// −a.
-    pub fn negate(&mut self, a: Step) -> Step {
+    pub(super) fn negate(&mut self, a: Step) -> Step {
         if let Some(x) = self.as_number(a) {
             return self.number(-x);
         }
@@ -230,7 +230,7 @@ impl Steps {
     }
 
     /// a · b.
-    pub fn multiply(&mut self, a: Step, b: Step) -> Step {
+    pub(super) fn multiply(&mut self, a: Step, b: Step) -> Step {
         let (x, y) = (self.as_number(a), self.as_number(b));
         match (x, y) {
             (Some(x), Some(y)) => return self.number(x * y),
@@ -285,7 +285,7 @@ impl Steps {
     }
 
     /// a / b.
-    pub fn divide(&mut self, a: Step, b: Step) -> Step {
+    pub(super) fn divide(&mut self, a: Step, b: Step) -> Step {
         match (self.as_number(a), self.as_number(b)) {
             (Some(x), Some(y)) if y != 0.0 => return self.number(x / y),
             (Some(0.0), _) => return a,
@@ -300,7 +300,7 @@ impl Steps {
     }
 
     /// 1/a.
-    pub fn reciprocal(&mut self, a: Step) -> Step {
+    pub(super) fn reciprocal(&mut self, a: Step) -> Step {
         match self.as_number(a) {
             Some(x) if x != 0.0 => self.number(1.0 / x),
             _ => self.unary(Action::Reciprocal, a),
@@ -308,7 +308,7 @@ impl Steps {
     }
 
     /// a².
-    pub fn square(&mut self, a: Step) -> Step {
+    pub(super) fn square(&mut self, a: Step) -> Step {
         if let Some(x) = self.as_number(a) {
             return self.number(x * x);
         }
@@ -317,7 +317,7 @@ impl Steps {
     }
 
     /// aⁿ without checks, by products where n is small.
-    pub fn power_int(&mut self, a: Step, n: i32) -> Step {
+    pub(super) fn power_int(&mut self, a: Step, n: i32) -> Step {
         match n {
             0 => self.number(1.0),
             1 => a,
@@ -336,7 +336,13 @@ impl Steps {
     }
 
     /// All outputs of a function up to derivatives of the given order.
-    pub fn call(&mut self, function: Function, args: &[Step], active: &[bool], order: u8) -> u32 {
+    pub(super) fn call(
+        &mut self,
+        function: Function,
+        args: &[Step],
+        active: &[bool],
+        order: u8,
+    ) -> u32 {
         let id = self.calls.len() as u32;
         self.calls.push(Call {
             function,
@@ -348,7 +354,7 @@ impl Steps {
     }
 
     /// One output of a call.
-    pub fn part(&mut self, call: u32, part: u32) -> Step {
+    pub(super) fn part(&mut self, call: u32, part: u32) -> Step {
         let active = self.calls[call as usize].active.iter().any(|&a| a);
         self.push(Action::Part { call, part }, [NONE; 3], active)
     }

@@ -8,7 +8,7 @@ use rustc_hash::FxHashSet;
 
 /// What a piece of code changes.
 #[derive(Default, Debug)]
-pub struct Effects {
+pub(super) struct Effects {
     tables: FxHashSet<TableId>,
     /// Solves, loads: levels, marginals and attributes of models may change, and any data.
     everything: bool,
@@ -18,7 +18,7 @@ pub struct Effects {
 
 impl Effects {
     /// The effects of statements.
-    pub fn of(code: &[Code], symbols: &Symbols) -> Self {
+    pub(super) fn of(code: &[Code], symbols: &Symbols) -> Self {
         let mut e = Self::default();
         code.iter().for_each(|c| {
             Changes {
@@ -31,7 +31,7 @@ impl Effects {
     }
 
     /// Whether the value of an expression may change with them.
-    pub fn touch(&self, n: &Node) -> bool {
+    pub(super) fn touch(&self, n: &Node) -> bool {
         let mut reads = Reads {
             effects: self,
             touched: false,

@@ -21,14 +21,14 @@ pub(super) fn record_bytes(dim: usize) -> usize {
 }
 
 /// A range or a product of sets in data may not make more records than this.
-pub const MAX_EXPANSION: usize = 50_000_000;
+pub(crate) const MAX_EXPANSION: usize = 50_000_000;
 
 /// A set without elements, in data: `set s / system.empty /`.
 const NO_ELEMENTS: &str = "system.empty";
 
 /// Tuples of labels, one behind the other.
 #[derive(Default)]
-pub struct Tuples {
+pub(crate) struct Tuples {
     /// Labels a tuple.
     pub width: usize,
     /// All of them.
@@ -41,7 +41,7 @@ pub struct Tuples {
 
 /// A tuple, and what data say of it besides.
 #[derive(Clone, Copy)]
-pub struct Row<'a> {
+pub(crate) struct Row<'a> {
     /// Its labels.
     pub labels: &'a [Label],
     /// Factor of its value.
@@ -61,7 +61,7 @@ pub(super) fn together<'a>(first: &'a str, second: &'a str) -> Cow<'a, str> {
 
 impl Tuples {
     /// One label a tuple.
-    pub fn single(labels: Vec<Label>) -> Self {
+    pub(crate) fn single(labels: Vec<Label>) -> Self {
         Self {
             width: 1,
             labels,
@@ -70,7 +70,7 @@ impl Tuples {
     }
 
     /// The keys of a table.
-    pub fn of(table: &Table) -> Self {
+    pub(crate) fn of(table: &Table) -> Self {
         Self {
             width: table.dim(),
             labels: table.iter().flat_map(|(k, _)| k.iter().copied()).collect(),
@@ -79,12 +79,12 @@ impl Tuples {
     }
 
     /// How many.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.labels.len() / self.width.max(1)
     }
 
     /// The tuples.
-    pub fn rows(&self) -> impl Iterator<Item = Row<'_>> {
+    pub(crate) fn rows(&self) -> impl Iterator<Item = Row<'_>> {
         let keys = self.labels.chunks_exact(self.width.max(1)).enumerate();
         keys.map(|(n, labels)| Row {
             labels,
@@ -129,13 +129,13 @@ impl Tuples {
     }
 
     /// Every tuple with every one of the other.
-    pub fn times(&self, other: &Self) -> Self {
+    pub(crate) fn times(&self, other: &Self) -> Self {
         let pairs = self.rows().flat_map(|a| other.rows().map(move |b| (a, b)));
         Self::joined(self.width + other.width, pairs)
     }
 
     /// The first with the first, the second with the second, until one side ends.
-    pub fn beside(&self, other: &Self) -> Self {
+    pub(crate) fn beside(&self, other: &Self) -> Self {
         Self::joined(self.width + other.width, self.rows().zip(other.rows()))
     }
 
@@ -148,7 +148,7 @@ impl Tuples {
 
 /// Why two labels span no range.
 #[derive(Debug, PartialEq)]
-pub enum NoRange {
+pub(crate) enum NoRange {
     /// They do not differ in one number.
     Unlike,
     /// So many labels.
@@ -156,7 +156,7 @@ pub enum NoRange {
 }
 
 /// `i1*i10`: labels that differ in one number, up or down, so many at most; leading zeros are kept.
-pub fn range(from: &str, to: &str, most: usize) -> Result<Vec<String>, NoRange> {
+pub(crate) fn range(from: &str, to: &str, most: usize) -> Result<Vec<String>, NoRange> {
     let (a, b) = (from.as_bytes(), to.as_bytes());
     if from.eq_ignore_ascii_case(to) {
         return Ok(vec![from.to_string()]);

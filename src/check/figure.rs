@@ -41,7 +41,7 @@ const WORDS: &[(&str, &[&str])] = &[
 ];
 
 /// The kinds of elements.
-pub fn kinds() -> impl Iterator<Item = &'static str> {
+pub(crate) fn kinds() -> impl Iterator<Item = &'static str> {
     KINDS.iter().map(|k| k.0)
 }
 

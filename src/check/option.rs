@@ -120,7 +120,7 @@ const WHOLE: &[&str] = &["decimals", "domlim", "iterlim", "limcol", "limrow", "s
 
 /// Whether an option is the language's and not a solver's: a problem type (`nlp = ipopt`), a limit, a
 /// switch.
-pub fn is_statement_option(name: &str) -> bool {
+pub(crate) fn is_statement_option(name: &str) -> bool {
     let mut known = [OPTIONS, functions::PROBLEM_TYPES].into_iter().flatten();
     known.any(|o| o.eq_ignore_ascii_case(name))
 }

@@ -256,7 +256,7 @@ pub(super) fn display_attribute(name: &str) -> Option<&'static str> {
 }
 
 /// Offset of an attribute table by the name that `display` shows.
-pub fn shown_offset(attr: &str) -> Option<u32> {
+pub(crate) fn shown_offset(attr: &str) -> Option<u32> {
     Some(match attr {
         "L" => attribute::L,
         "M" => attribute::M,

@@ -8,7 +8,7 @@ use super::host::write_whole;
 use crate::editor;
 
 /// Carries out `bmod fmt`; with `--check` 1 if a file is not laid out as it would be.
-pub fn fmt(a: &FmtArgs) -> u8 {
+pub(super) fn fmt(a: &FmtArgs) -> u8 {
     let status = a.files.iter().map(|file| one(file, a.check)).max();
     status.unwrap_or(0)
 }

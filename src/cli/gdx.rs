@@ -7,7 +7,7 @@ use crate::diag::nearest;
 use crate::gdx::{Domain, Error, File, Value};
 
 /// Shows the symbols of a file, or the records of one; the exit status.
-pub fn show(a: &GdxArgs) -> u8 {
+pub(super) fn show(a: &GdxArgs) -> u8 {
     let name = a.file.display();
     let bytes = match std::fs::read(&a.file) {
         Ok(bytes) => bytes,

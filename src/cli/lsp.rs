@@ -25,7 +25,7 @@ const MOST_FILES: usize = 300;
 const LARGEST_MAIN: u64 = 1 << 20;
 
 /// Carries out `bmod lsp`: until the editor says goodbye.
-pub fn lsp() -> u8 {
+pub(super) fn lsp() -> u8 {
     let (connection, threads) = Connection::stdio();
     let status = serve(&connection);
     drop(connection);

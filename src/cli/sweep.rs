@@ -25,7 +25,7 @@ type Point = Vec<(String, String)>;
 const MOST_VALUES: f64 = 1e6;
 
 /// Carries out `bmod sweep`; its exit status.
-pub fn sweep(a: &SweepArgs) -> u8 {
+pub(super) fn sweep(a: &SweepArgs) -> u8 {
     let points = match points(&a.model.define) {
         Ok(points) => points,
         Err(why) => {

@@ -71,12 +71,12 @@ pub struct Fix {
 
 impl Analysis {
     /// The programs that may know an answer, the newest first.
-    pub fn programs(&self) -> impl Iterator<Item = &Program> {
+    pub(super) fn programs(&self) -> impl Iterator<Item = &Program> {
         self.program.iter().chain(&self.good)
     }
 
     /// A place of the newest program as one in a file.
-    pub fn location(&self, map: &SourceMap, span: Span) -> Option<Location> {
+    pub(super) fn location(&self, map: &SourceMap, span: Span) -> Option<Location> {
         let p = map.place(span)?;
         let file = self.files.get(p.file.0 as usize)?.clone();
         let text = &map.file(p.file).text;

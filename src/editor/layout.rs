@@ -70,7 +70,7 @@ pub fn format(text: &str, slashes: bool) -> String {
 }
 
 /// The same; None if the result would not be the same words.
-pub fn lay_out(text: &str, slashes: bool) -> Option<String> {
+pub(super) fn lay_out(text: &str, slashes: bool) -> Option<String> {
     let scan = Scan::of(text, slashes);
     let out = Layout::new(text, &scan).render();
     same_words(text, &scan, &out, slashes).then_some(out)

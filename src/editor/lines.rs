@@ -8,7 +8,7 @@ use crate::source::quoted_end;
 
 /// What a line is.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum LineKind {
+pub(super) enum LineKind {
     /// Statements, or blank.
     Code,
     /// Statements whose columns or blanks count: `$onDelim`, `$minCol`. A formatter leaves them.
@@ -23,7 +23,7 @@ pub enum LineKind {
 
 /// A piece of a text, in bytes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub struct Piece {
+pub(super) struct Piece {
     /// First byte.
     pub lo: usize,
     /// Behind the last.
@@ -32,7 +32,7 @@ pub struct Piece {
 
 /// A text taken apart into lines.
 #[derive(Debug)]
-pub struct Lines {
+pub(super) struct Lines {
     /// The text with blanks in the place of what is no statement.
     pub code: String,
     /// First byte of each line, and the length of the text at the end.
@@ -56,7 +56,7 @@ struct Marks {
 }
 
 /// The directive that a line begins with, in lower case, and what stands behind it.
-pub fn directive(line: &str, dollar: u8) -> Option<(String, &str)> {
+pub(super) fn directive(line: &str, dollar: u8) -> Option<(String, &str)> {
     let bytes = line.as_bytes();
     let first = bytes.iter().position(|b| !matches!(b, b' ' | b'\t'))?;
     let rest = match bytes[first] == dollar && bytes.get(first + 1) == Some(&dollar) {
@@ -84,7 +84,7 @@ fn taken_out_up_to(word: &str) -> Option<&'static str> {
 
 impl Lines {
     /// Takes a text apart; `slashes`: `//` begins a comment, as in a `.blk`.
-    pub fn of(text: &str, slashes: bool) -> Self {
+    pub(super) fn of(text: &str, slashes: bool) -> Self {
         let mut lines = Self {
             code: String::new(),
             starts: Vec::new(),
@@ -166,13 +166,13 @@ impl Lines {
     }
 
     /// The line that a byte stands in, from 0.
-    pub fn line_of(&self, at: usize) -> usize {
+    pub(super) fn line_of(&self, at: usize) -> usize {
         let n = self.starts.partition_point(|s| *s <= at);
         n.saturating_sub(1).min(self.kinds.len().saturating_sub(1))
     }
 
     /// The bytes of a line without its end.
-    pub fn range(&self, line: usize, text: &str) -> Piece {
+    pub(super) fn range(&self, line: usize, text: &str) -> Piece {
         let lo = self.starts.get(line).copied().unwrap_or(text.len());
         let hi = self.starts.get(line + 1).copied().unwrap_or(text.len());
         let body = text.get(lo..hi).unwrap_or("");

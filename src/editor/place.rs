@@ -35,18 +35,18 @@ pub struct Location {
 
 /// Where the lines of a text begin.
 #[derive(Debug)]
-pub struct LineIndex(Vec<usize>);
+pub(super) struct LineIndex(Vec<usize>);
 
 impl LineIndex {
     /// Of a text.
-    pub fn new(text: &str) -> Self {
+    pub(super) fn new(text: &str) -> Self {
         let mut starts = vec![0];
         starts.extend(memchr::memchr_iter(b'\n', text.as_bytes()).map(|n| n + 1));
         Self(starts)
     }
 
     /// The place of a byte.
-    pub fn position(&self, text: &str, at: usize) -> Position {
+    pub(super) fn position(&self, text: &str, at: usize) -> Position {
         let mut at = at.min(text.len());
         while !text.is_char_boundary(at) {
             at -= 1;
@@ -61,7 +61,7 @@ impl LineIndex {
     }
 
     /// The byte at a place; behind the end of a line that end, behind the last line the end of the text.
-    pub fn offset(&self, text: &str, p: Position) -> usize {
+    pub(super) fn offset(&self, text: &str, p: Position) -> usize {
         let Some(&lo) = self.0.get(p.line as usize) else {
             return text.len();
         };
@@ -80,7 +80,7 @@ impl LineIndex {
     }
 
     /// The piece between two bytes.
-    pub fn range(&self, text: &str, lo: usize, hi: usize) -> Range {
+    pub(super) fn range(&self, text: &str, lo: usize, hi: usize) -> Range {
         Range {
             start: self.position(text, lo),
             end: self.position(text, hi),

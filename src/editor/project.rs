@@ -21,7 +21,7 @@ pub trait Files {
 
 /// A text, taken apart.
 #[derive(Debug)]
-pub struct Document {
+pub(super) struct Document {
     /// The text.
     pub text: String,
     /// What each word is.
@@ -32,7 +32,7 @@ pub struct Document {
 
 impl Document {
     /// Takes a text apart; the ending of the file's name says which language it is in.
-    pub fn new(path: &str, text: String) -> Self {
+    pub(super) fn new(path: &str, text: String) -> Self {
         let scan = Scan::of(&text, has_slashes(path));
         let index = LineIndex::new(&text);
         Self { text, scan, index }
@@ -57,7 +57,7 @@ impl Document {
 }
 
 /// Whether `//` begins a comment in a file: in all but GAMS's own.
-pub fn has_slashes(path: &str) -> bool {
+pub(super) fn has_slashes(path: &str) -> bool {
     let extension = Path::new(path).extension();
     !extension.is_some_and(|e| {
         ["gms", "inc", "dat"]
@@ -67,7 +67,7 @@ pub fn has_slashes(path: &str) -> bool {
 }
 
 /// `a/../b/./c` as `b/c`.
-pub fn plain(path: &Path) -> PathBuf {
+pub(super) fn plain(path: &Path) -> PathBuf {
     let mut out = PathBuf::new();
     for c in path.components() {
         match c {

@@ -12,7 +12,7 @@ use crate::syntax::words::{self, Class, Word};
 
 /// What a token is.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Role {
+pub(super) enum Role {
     /// A comment, whole line or part of one.
     Comment,
     /// `$include`: the name of a directive with its `$`.
@@ -57,7 +57,7 @@ pub enum Role {
 
 /// A word or a sign.
 #[derive(Clone, Copy, Debug)]
-pub struct Token {
+pub(super) struct Token {
     /// First byte.
     pub lo: usize,
     /// Behind the last byte.
@@ -72,7 +72,7 @@ pub struct Token {
 
 /// A statement; those inside of a `loop` follow it in the list.
 #[derive(Clone, Copy, Debug)]
-pub struct Statement {
+pub(super) struct Statement {
     /// Its first token.
     pub first: usize,
     /// Behind its last token.
@@ -89,7 +89,7 @@ pub struct Statement {
 
 /// A text, taken apart.
 #[derive(Debug)]
-pub struct Scan {
+pub(super) struct Scan {
     /// Its lines.
     pub lines: Lines,
     /// All tokens in order of the text.
@@ -99,7 +99,7 @@ pub struct Scan {
 }
 
 /// Words of the language inside of statements, beside those that begin one.
-pub const INNER_WORDS: &[&str] = &[
+pub(super) const INNER_WORDS: &[&str] = &[
     "sum", "prod", "smin", "smax", "sand", "sor", "and", "or", "xor", "not", "imp", "eqv", "eq",
     "ne", "lt", "le", "gt", "ge", "inf", "eps", "na", "undf", "yes", "no", "then", "do", "until",
     "else", "elseif", "endif", "endloop", "endwhile", "endfor",
@@ -176,7 +176,7 @@ struct Scanner<'a> {
 
 impl Scan {
     /// Takes a text apart; `slashes`: `//` begins a comment.
-    pub fn of(text: &str, slashes: bool) -> Self {
+    pub(super) fn of(text: &str, slashes: bool) -> Self {
         let mut lines = Lines::of(text, slashes);
         let code = std::mem::take(&mut lines.code);
         let mut s = Scanner {
@@ -212,7 +212,7 @@ impl Scan {
     }
 
     /// The token at a byte, or the one that ends there.
-    pub fn token_at(&self, at: usize) -> Option<usize> {
+    pub(super) fn token_at(&self, at: usize) -> Option<usize> {
         let n = self.tokens.partition_point(|t| t.lo <= at).checked_sub(1)?;
         let covers = |n: usize| at < self.tokens[n].hi;
         let wordy = |n: usize| {
@@ -235,7 +235,7 @@ impl Scan {
     }
 
     /// The innermost statement around a byte: begun before it, and not ended.
-    pub fn statement_at(&self, at: usize) -> Option<&Statement> {
+    pub(super) fn statement_at(&self, at: usize) -> Option<&Statement> {
         let before = self.statements.iter().rev();
         before
             .filter(|s| self.tokens[s.first].lo <= at)
@@ -243,7 +243,7 @@ impl Scan {
     }
 
     /// The text of a token.
-    pub fn text_of<'t>(&self, token: usize, text: &'t str) -> &'t str {
+    pub(super) fn text_of<'t>(&self, token: usize, text: &'t str) -> &'t str {
         self.tokens.get(token).map_or("", |t| &text[t.lo..t.hi])
     }
 }

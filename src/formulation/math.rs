@@ -174,11 +174,11 @@ pub struct Setter<'a> {
 }
 
 mod level {
-    pub const LOGIC: u8 = 1;
-    pub const RELATION: u8 = 2;
-    pub const SUM: u8 = 3;
-    pub const PRODUCT: u8 = 4;
-    pub const ATOM: u8 = 6;
+    pub(super) const LOGIC: u8 = 1;
+    pub(super) const RELATION: u8 = 2;
+    pub(super) const SUM: u8 = 3;
+    pub(super) const PRODUCT: u8 = 4;
+    pub(super) const ATOM: u8 = 6;
 }
 
 impl<'a> Setter<'a> {

@@ -36,15 +36,15 @@ pub fn taken(symbols: &Symbols, f: &Formulation) -> FxHashSet<String> {
 
 /// How tightly an operator binds.
 mod level {
-    pub const OR: u8 = 1;
-    pub const AND: u8 = 2;
-    pub const NOT: u8 = 3;
-    pub const RELATION: u8 = 4;
-    pub const SUM: u8 = 5;
-    pub const PRODUCT: u8 = 6;
-    pub const POWER: u8 = 7;
-    pub const DOLLAR: u8 = 8;
-    pub const ATOM: u8 = 9;
+    pub(super) const OR: u8 = 1;
+    pub(super) const AND: u8 = 2;
+    pub(super) const NOT: u8 = 3;
+    pub(super) const RELATION: u8 = 4;
+    pub(super) const SUM: u8 = 5;
+    pub(super) const PRODUCT: u8 = 6;
+    pub(super) const POWER: u8 = 7;
+    pub(super) const DOLLAR: u8 = 8;
+    pub(super) const ATOM: u8 = 9;
 }
 
 /// The name of an attribute's parameter in a model that stands alone.

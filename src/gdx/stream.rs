@@ -15,7 +15,7 @@ pub(super) struct Input<'a> {
 
 impl<'a> Input<'a> {
     /// The part that begins at a place.
-    pub fn new(bytes: &'a [u8], at: i64, packed: bool) -> Result<Self> {
+    pub(super) fn new(bytes: &'a [u8], at: i64, packed: bool) -> Result<Self> {
         match usize::try_from(at) {
             Ok(at) if at < bytes.len() => Ok(Self {
                 bytes,
@@ -75,34 +75,34 @@ impl<'a> Input<'a> {
         Ok(())
     }
 
-    pub fn array<const N: usize>(&mut self) -> Result<[u8; N]> {
+    pub(super) fn array<const N: usize>(&mut self) -> Result<[u8; N]> {
         let mut out = [0; N];
         self.fill(&mut out)?;
         Ok(out)
     }
 
-    pub fn byte(&mut self) -> Result<u8> {
+    pub(super) fn byte(&mut self) -> Result<u8> {
         Ok(self.array::<1>()?[0])
     }
 
-    pub fn u16(&mut self) -> Result<u16> {
+    pub(super) fn u16(&mut self) -> Result<u16> {
         Ok(u16::from_le_bytes(self.array()?))
     }
 
-    pub fn i32(&mut self) -> Result<i32> {
+    pub(super) fn i32(&mut self) -> Result<i32> {
         Ok(i32::from_le_bytes(self.array()?))
     }
 
-    pub fn i64(&mut self) -> Result<i64> {
+    pub(super) fn i64(&mut self) -> Result<i64> {
         Ok(i64::from_le_bytes(self.array()?))
     }
 
-    pub fn f64(&mut self) -> Result<f64> {
+    pub(super) fn f64(&mut self) -> Result<f64> {
         Ok(f64::from_le_bytes(self.array()?))
     }
 
     /// A length and as many bytes. What is not UTF-8 was written under an older code page: Latin-1.
-    pub fn text(&mut self) -> Result<String> {
+    pub(super) fn text(&mut self) -> Result<String> {
         let len = usize::from(self.byte()?);
         let mut bytes = vec![0; len];
         self.fill(&mut bytes)?;
@@ -111,7 +111,7 @@ impl<'a> Input<'a> {
     }
 
     /// A mark that must stand here.
-    pub fn mark(&mut self, mark: &str) -> Result<()> {
+    pub(super) fn mark(&mut self, mark: &str) -> Result<()> {
         match self.text()? {
             t if t == mark => Ok(()),
             _ => fail(format!("the mark `{mark}` is not where it should be")),
@@ -119,7 +119,7 @@ impl<'a> Input<'a> {
     }
 
     /// A count of something that takes at least a byte each.
-    pub fn count(&mut self, what: &str) -> Result<usize> {
+    pub(super) fn count(&mut self, what: &str) -> Result<usize> {
         let n = self.i32()?;
         match usize::try_from(n) {
             Ok(n) => Ok(n),
@@ -139,14 +139,14 @@ pub(super) struct Output {
 
 impl Output {
     /// Begins a part; its place.
-    pub fn begin(&mut self, packed: bool) -> i64 {
+    pub(super) fn begin(&mut self, packed: bool) -> i64 {
         self.end();
         self.packed = packed;
         self.bytes.len() as i64
     }
 
     /// Ends a part.
-    pub fn end(&mut self) {
+    pub(super) fn end(&mut self) {
         while !self.pending.is_empty() {
             self.pack();
         }
@@ -163,7 +163,7 @@ impl Output {
         self.bytes.extend(body);
     }
 
-    pub fn raw(&mut self, bytes: &[u8]) {
+    pub(super) fn raw(&mut self, bytes: &[u8]) {
         if !self.packed {
             return self.bytes.extend_from_slice(bytes);
         }
@@ -173,24 +173,24 @@ impl Output {
         }
     }
 
-    pub fn byte(&mut self, b: u8) {
+    pub(super) fn byte(&mut self, b: u8) {
         self.raw(&[b]);
     }
 
-    pub fn i32(&mut self, n: i32) {
+    pub(super) fn i32(&mut self, n: i32) {
         self.raw(&n.to_le_bytes());
     }
 
-    pub fn i64(&mut self, n: i64) {
+    pub(super) fn i64(&mut self, n: i64) {
         self.raw(&n.to_le_bytes());
     }
 
-    pub fn f64(&mut self, x: f64) {
+    pub(super) fn f64(&mut self, x: f64) {
         self.raw(&x.to_le_bytes());
     }
 
     /// A text of at most 255 bytes; what is longer is cut.
-    pub fn text(&mut self, t: &str) {
+    pub(super) fn text(&mut self, t: &str) {
         let mut len = t.len().min(255);
         while !t.is_char_boundary(len) {
             len -= 1;

@@ -7,7 +7,7 @@ use crate::model::instance::Op;
 
 /// A nonlinear term in the making.
 #[derive(Default)]
-pub struct Tape {
+pub(super) struct Tape {
     /// The program, in postfix form.
     pub ops: Vec<Op>,
     /// Column of each variable slot.
@@ -24,13 +24,13 @@ enum Part {
 
 impl Tape {
     /// Appends a number.
-    pub fn number(&mut self, x: f64) {
+    pub(super) fn number(&mut self, x: f64) {
         self.ops.push(Op::Const(self.constants.len() as u32));
         self.constants.push(x);
     }
 
     /// Whether 0 stands in it as a number.
-    pub fn has_zero(&self) -> bool {
+    pub(super) fn has_zero(&self) -> bool {
         let zero = |op: &Op| matches!(*op, Op::Const(k) if self.constants[k as usize] == 0.0);
         self.ops.iter().any(zero)
     }
@@ -62,7 +62,7 @@ impl Tape {
 
     /// The same with functions of numbers computed, and without products with 0 and 0 divided by something: such
     /// variables do not occur, as in GAMS.
-    pub fn folded(&self) -> Result<Self, DomainError> {
+    pub(super) fn folded(&self) -> Result<Self, DomainError> {
         let mut stack: Vec<Part> = Vec::new();
         for &op in &self.ops {
             let args = stack.split_off(stack.len().saturating_sub(op.arguments()));
@@ -132,7 +132,7 @@ fn value(op: Op, a: &[f64]) -> Result<f64, DomainError> {
 
 /// A constant and coefficients of variable slots, in the order in which they were met.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Affine {
+pub(super) struct Affine {
     /// What does not depend on variables.
     pub constant: f64,
     /// Variable slot and coefficient.
@@ -185,7 +185,7 @@ fn product(factors: &[Option<Affine>]) -> Option<Affine> {
 
 /// The affine form that a program computes by its structure, if it does: sums, products with numbers,
 /// and any function of numbers.
-pub fn affine(ops: &[Op], constants: &[f64]) -> Result<Option<Affine>, DomainError> {
+pub(super) fn affine(ops: &[Op], constants: &[f64]) -> Result<Option<Affine>, DomainError> {
     // None is anything else.
     let mut stack: Vec<Option<Affine>> = Vec::new();
     for op in ops {

@@ -10,7 +10,7 @@ use crate::syntax::ast::Exchange;
 
 /// Files that `put_utility` named for the next unload and load without a name.
 #[derive(Clone, Debug, Default)]
-pub struct ExchangeState {
+pub(super) struct ExchangeState {
     pub(super) unload_to: Option<String>,
     pub(super) load_from: Option<String>,
 }

@@ -5,7 +5,7 @@ use crate::check::visit::{Reading, Visitor};
 
 /// Collects tables whose order matters, and those that may drive a sum or an assignment.
 #[derive(Default)]
-pub struct Scans {
+pub(super) struct Scans {
     tables: Vec<TableId>,
     /// Records that are read here may be scanned.
     driving: bool,
@@ -13,7 +13,7 @@ pub struct Scans {
 
 impl Scans {
     /// Tables in domains, conditions, sums, `ord` and lags of a statement (not of the statements inside).
-    pub fn of(code: &Code) -> Box<[TableId]> {
+    pub(super) fn of(code: &Code) -> Box<[TableId]> {
         // What is stored and what a sparse right side holds are made tidy when they turn out to drive
         // the assignment: an assignment to a few records of a large table must not cost the table.
         let mut scans = Self::default();
@@ -22,14 +22,14 @@ impl Scans {
     }
 
     /// What was collected, each once.
-    pub fn tables(mut self) -> Box<[TableId]> {
+    pub(super) fn tables(mut self) -> Box<[TableId]> {
         self.tables.sort_unstable();
         self.tables.dedup();
         self.tables.into()
     }
 
     /// An expression over which something runs.
-    pub fn driving(&mut self, n: &Node) {
+    pub(super) fn driving(&mut self, n: &Node) {
         self.with(true, |s| s.node(n));
     }
 

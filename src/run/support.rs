@@ -103,7 +103,7 @@ impl Machine<'_> {
 
 impl<'m, 'h> Analysis<'m, 'h> {
     /// Over the tuples of these indices.
-    pub fn new(m: &'m Machine<'h>, indices: &[Slot]) -> Self {
+    pub(super) fn new(m: &'m Machine<'h>, indices: &[Slot]) -> Self {
         Self {
             m,
             premises: Vec::new(),
@@ -119,12 +119,12 @@ impl<'m, 'h> Analysis<'m, 'h> {
     }
 
     /// The support of an expression that rests at 0.
-    pub fn nonzero(&mut self, n: &Node, symbolic: bool) -> Option<Sparse> {
+    pub(super) fn nonzero(&mut self, n: &Node, symbolic: bool) -> Option<Sparse> {
         self.resting_at(0.0, n, symbolic)
     }
 
     /// The support of an expression that rests at a value.
-    pub fn resting_at(&mut self, rest: f64, n: &Node, symbolic: bool) -> Option<Sparse> {
+    pub(super) fn resting_at(&mut self, rest: f64, n: &Node, symbolic: bool) -> Option<Sparse> {
         let before = self.premises.len();
         let found = self.sparse(n, symbolic).filter(|s| s.rest == rest);
         if found.is_none() {
@@ -135,7 +135,7 @@ impl<'m, 'h> Analysis<'m, 'h> {
     }
 
     /// Supports of conditions that must all hold.
-    pub fn conjuncts(&mut self, conditions: &[Node]) -> Vec<Sparse> {
+    pub(super) fn conjuncts(&mut self, conditions: &[Node]) -> Vec<Sparse> {
         if self.are_joint(conditions) {
             return Vec::new();
         }
@@ -148,7 +148,7 @@ impl<'m, 'h> Analysis<'m, 'h> {
     }
 
     /// Whether a condition is evaluated without an error: then it need not be where another one is false.
-    pub fn is_safe(&mut self, n: &Node) -> bool {
+    pub(super) fn is_safe(&mut self, n: &Node) -> bool {
         self.is_quiet(n)
             || self.is_defined(n)
                 && !n.any(|n| match &n.kind {
@@ -165,7 +165,7 @@ impl<'m, 'h> Analysis<'m, 'h> {
     }
 
     /// Whether conditions must be evaluated together: `na and 0` is `na`, which counts as true.
-    pub fn are_joint(&mut self, conditions: &[Node]) -> bool {
+    pub(super) fn are_joint(&mut self, conditions: &[Node]) -> bool {
         conditions.len() > 1 && !conditions.iter().all(|c| self.is_defined(c))
     }
 
@@ -499,7 +499,7 @@ impl<'m, 'h> Analysis<'m, 'h> {
     }
 
     /// Whether evaluation never reports an error and never gives `undf`.
-    pub fn is_quiet(&mut self, n: &Node) -> bool {
+    pub(super) fn is_quiet(&mut self, n: &Node) -> bool {
         self.care(n) == Some(Care::Total)
     }
 

@@ -12,7 +12,7 @@ const MIN_ANALYSED_ENTRIES: usize = 2_000;
 
 /// The size of the factors of a symmetric matrix of order n with these entries and a full diagonal. Where the
 /// analysis fails, the size of the matrix itself.
-pub fn symmetric_size(
+pub(crate) fn symmetric_size(
     what: &'static str,
     n: usize,
     entries: impl Iterator<Item = (usize, usize)>,

@@ -1,7 +1,7 @@
 //! Rounding errors in levels and marginals.
 
 /// Rounding error of levels, relative to the largest.
-pub const LEVELS: f64 = 1e-14;
+pub(super) const LEVELS: f64 = 1e-14;
 /// The same of multipliers, which come from a factorisation.
 const MULTIPLIERS: f64 = 1e-13;
 
@@ -10,7 +10,7 @@ fn largest(values: &[f64]) -> f64 {
 }
 
 /// Puts levels on the bounds that they are at up to rounding.
-pub fn snap(x: &mut [f64], lower: &[f64], upper: &[f64]) {
+pub(super) fn snap(x: &mut [f64], lower: &[f64], upper: &[f64]) {
     let rounding = LEVELS * largest(x);
     for (v, (&l, &u)) in x.iter_mut().zip(lower.iter().zip(upper)) {
         for bound in [l, u] {
@@ -22,7 +22,7 @@ pub fn snap(x: &mut [f64], lower: &[f64], upper: &[f64]) {
 }
 
 /// Sets marginals to 0 that are below the rounding error of the largest.
-pub fn zero_below_roundoff(marginals: &mut [f64]) {
+pub(super) fn zero_below_roundoff(marginals: &mut [f64]) {
     let rounding = MULTIPLIERS * largest(marginals);
     for v in marginals.iter_mut().filter(|v| v.abs() <= rounding) {
         *v = 0.0;

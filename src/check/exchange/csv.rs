@@ -62,7 +62,7 @@ fn is_long(header: &StringRecord) -> bool {
 }
 
 /// The symbols that a file holds, each once, in their order; none for a file of one symbol.
-pub fn names(text: &str) -> Vec<String> {
+pub(super) fn names(text: &str) -> Vec<String> {
     let mut out: Vec<String> = Vec::new();
     if let Ok(rows) = parse(text)
         && is_long(&rows.header)
@@ -80,7 +80,12 @@ pub fn names(text: &str) -> Vec<String> {
 }
 
 /// Reads the wanted symbols.
-pub fn read(file: &str, text: &str, items: &[Wanted], loading: &mut Loading<'_>) -> Loaded<()> {
+pub(super) fn read(
+    file: &str,
+    text: &str,
+    items: &[Wanted],
+    loading: &mut Loading<'_>,
+) -> Loaded<()> {
     let fail = |w: &Wanted, message: String, help: &str| {
         Box::new(
             Diagnostic::execution("E0478", w.span, format!("{file}: {message}"))

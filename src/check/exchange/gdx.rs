@@ -38,7 +38,7 @@ fn same_kind(inside: Kind, symbol: &SymbolKind) -> bool {
 }
 
 /// Names in a file that fit symbols of the program.
-pub fn names(file: &str, bytes: &[u8], at: Span, symbols: &Symbols) -> Loaded<Vec<String>> {
+pub(super) fn names(file: &str, bytes: &[u8], at: Span, symbols: &Symbols) -> Loaded<Vec<String>> {
     let gdx = open(file, bytes, at)?;
     let fits = |s: &&gdx::Symbol| {
         symbols.find(&s.name).is_some_and(|id| {
@@ -53,7 +53,7 @@ pub fn names(file: &str, bytes: &[u8], at: Span, symbols: &Symbols) -> Loaded<Ve
 }
 
 /// A symbol that was declared without index positions takes those of the file.
-pub fn shape(
+pub(super) fn shape(
     file: &str,
     bytes: &[u8],
     items: &[Wanted],
@@ -90,7 +90,7 @@ pub fn shape(
 }
 
 /// Reads symbols.
-pub fn read(
+pub(super) fn read(
     file: &str,
     bytes: &[u8],
     at: Span,
@@ -400,7 +400,7 @@ fn domain_set(d: &DomainPosition) -> Option<crate::check::node::SymbolId> {
 }
 
 /// The bytes of a file with these symbols.
-pub fn write(
+pub(super) fn write(
     symbols: &Symbols,
     store: &Store,
     equations: &[EquationDef],

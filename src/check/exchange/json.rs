@@ -7,7 +7,7 @@ use crate::diag::Diagnostic;
 use serde_json::{Map, Value};
 
 /// The names in a file.
-pub fn names(text: &str) -> Vec<String> {
+pub(super) fn names(text: &str) -> Vec<String> {
     match serde_json::from_str::<Map<String, Value>>(text) {
         Ok(m) => m.keys().cloned().collect(),
         Err(_) => Vec::new(),
@@ -15,7 +15,12 @@ pub fn names(text: &str) -> Vec<String> {
 }
 
 /// Reads the wanted symbols.
-pub fn read(file: &str, text: &str, items: &[Wanted], loading: &mut Loading<'_>) -> Loaded<()> {
+pub(super) fn read(
+    file: &str,
+    text: &str,
+    items: &[Wanted],
+    loading: &mut Loading<'_>,
+) -> Loaded<()> {
     let Some(first) = items.first() else {
         return Ok(());
     };

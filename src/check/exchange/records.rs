@@ -48,7 +48,7 @@ pub(super) struct Records {
 }
 
 impl<'a> Loading<'a> {
-    pub fn new(symbols: &'a Symbols, store: &'a Store, request: &'a Request<'a>) -> Self {
+    pub(super) fn new(symbols: &'a Symbols, store: &'a Store, request: &'a Request<'a>) -> Self {
         Self {
             symbols,
             store,
@@ -60,7 +60,7 @@ impl<'a> Loading<'a> {
     }
 
     /// Number of a label, new or not.
-    pub fn label(&mut self, text: &str) -> Label {
+    pub(super) fn label(&mut self, text: &str) -> Label {
         match self.store.universe.get(text) {
             Some(l) => l,
             None => self.store.universe.len() as Label + self.new.intern(text),
@@ -68,22 +68,22 @@ impl<'a> Loading<'a> {
     }
 
     /// Number of a label that is known.
-    pub fn known(&self, text: &str) -> Option<Label> {
+    pub(super) fn known(&self, text: &str) -> Option<Label> {
         let new = || Some(self.store.universe.len() as Label + self.new.get(text)?);
         self.store.universe.get(text).or_else(new)
     }
 
     /// An explanatory text for a symbol that has none.
-    pub fn text(&mut self, symbol: SymbolId, text: &str) {
+    pub(super) fn text(&mut self, symbol: SymbolId, text: &str) {
         self.out.explanations.push((symbol, text.into()));
     }
 
     /// Tells of something that does not stop the load.
-    pub fn warn(&mut self, d: Diagnostic) {
+    pub(super) fn warn(&mut self, d: Diagnostic) {
         self.out.warnings.push(d);
     }
 
-    pub fn name(&self, l: Label) -> &str {
+    pub(super) fn name(&self, l: Label) -> &str {
         match (l as usize).checked_sub(self.store.universe.len()) {
             Some(k) => self.new.name(k as Label),
             None => self.store.universe.name(l),
@@ -91,7 +91,7 @@ impl<'a> Loading<'a> {
     }
 
     /// A value, or a message about the place in the file.
-    pub fn value(&self, text: &str, file: &str, place: usize, w: &Wanted) -> Loaded<f64> {
+    pub(super) fn value(&self, text: &str, file: &str, place: usize, w: &Wanted) -> Loaded<f64> {
         parse_value(text, &self.store.acronyms).ok_or_else(|| {
             Box::new(
                 Diagnostic::execution(
@@ -106,7 +106,7 @@ impl<'a> Loading<'a> {
     }
 
     /// Whether a label belongs to the set of a position.
-    pub fn belongs(&self, set: SymbolId, l: Label) -> bool {
+    pub(super) fn belongs(&self, set: SymbolId, l: Label) -> bool {
         let root = self.symbols.root(set);
         if root == crate::check::symbols::UNIVERSE {
             return true;
@@ -188,7 +188,13 @@ impl<'a> Loading<'a> {
 
     /// Takes the records of a symbol. `columns` says which tables the values of a record go to, counted
     /// from the symbol's first.
-    pub fn take(&mut self, w: &Wanted, file: &str, mut r: Records, columns: &[u32]) -> Loaded<()> {
+    pub(super) fn take(
+        &mut self,
+        w: &Wanted,
+        file: &str,
+        mut r: Records,
+        columns: &[u32],
+    ) -> Loaded<()> {
         self.check_domain(w, file, &r)?;
         let root = self.symbols.root(w.symbol);
         let symbol = self.symbols.get(root);
@@ -276,7 +282,7 @@ impl<'a> Loading<'a> {
         Ok(())
     }
 
-    pub fn finish(mut self) -> Finished {
+    pub(super) fn finish(mut self) -> Finished {
         self.out.labels = (0..self.new.len() as Label)
             .map(|l| self.new.name(l).to_string())
             .collect();

@@ -52,7 +52,7 @@ fn parts(symbol: &Symbol) -> Vec<(&'static str, u32)> {
 
 impl Writer<'_> {
     /// One symbol with its own columns, or several in one long table.
-    pub fn csv(&self, items: &[Wanted]) -> String {
+    pub(super) fn csv(&self, items: &[Wanted]) -> String {
         let mut out = csv::Writer::from_writer(Vec::new());
         // A vector takes everything: writing cannot fail.
         if let [one] = items {
@@ -153,7 +153,7 @@ impl Writer<'_> {
     }
 
     /// One object with a member per symbol, one record per line.
-    pub fn json(&self, items: &[Wanted]) -> String {
+    pub(super) fn json(&self, items: &[Wanted]) -> String {
         let mut out = String::from("{");
         for (n, w) in items.iter().enumerate() {
             let symbol = self.symbols.get(self.symbols.root(w.symbol));

@@ -12,7 +12,7 @@ use std::rc::Rc;
 
 /// Compares the generated optimality conditions with `∇f − Jᵀλ` of the model's automatic derivatives, and its rows with the
 /// model's, at points around the answer drawn at random.
-pub fn kkt(
+pub(super) fn kkt(
     symbols: &Symbols,
     store: &Store,
     primal: &Primal,

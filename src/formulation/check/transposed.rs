@@ -14,7 +14,7 @@ use std::rc::Rc;
 
 /// Compares the generated dual with the transposed primal: matrix, right sides, costs, bounds and relations. Of quadratic
 /// programs the tangents are compared, at points drawn at random: there the one is the linear dual of the other.
-pub fn dual(
+pub(super) fn dual(
     symbols: &Symbols,
     store: &Store,
     primal: &Primal,

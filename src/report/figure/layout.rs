@@ -4,7 +4,7 @@ use super::{Scene, Shape};
 
 /// An axis: a range of the scene's coordinate laid on a range of pixels.
 #[derive(Clone, Copy, Debug)]
-pub struct Axis {
+pub(super) struct Axis {
     /// Coordinates at the two ends.
     pub range: [f64; 2],
     /// Pixels at the two ends.
@@ -15,7 +15,7 @@ pub struct Axis {
 
 impl Axis {
     /// Pixel of a coordinate. NaN for what a logarithmic axis cannot show.
-    pub fn at(&self, v: f64) -> f64 {
+    pub(super) fn at(&self, v: f64) -> f64 {
         let f = |v: f64| if self.log { v.log10() } else { v };
         let [lo, hi] = [f(self.range[0]), f(self.range[1])];
         let part = if hi > lo {
@@ -28,12 +28,12 @@ impl Axis {
 }
 
 /// Whether a coordinate can be shown; beyond 1e100 the arithmetic of ranges would overflow.
-pub fn visible(v: f64) -> bool {
+pub(super) fn visible(v: f64) -> bool {
     v.abs() <= 1e100
 }
 
 /// The smallest ranges in x and y that hold all shapes; None where there is nothing to hold.
-pub fn extent(scene: &Scene) -> [Option<[f64; 2]>; 2] {
+pub(super) fn extent(scene: &Scene) -> [Option<[f64; 2]>; 2] {
     let mut range: [Option<[f64; 2]>; 2] = [None, None];
     let mut see = |axis: usize, v: f64, log: bool| {
         if visible(v) && (!log || v > 0.0) {
@@ -102,7 +102,7 @@ pub fn extent(scene: &Scene) -> [Option<[f64; 2]>; 2] {
 }
 
 /// Round numbers within a range, about `wanted` of them.
-pub fn ticks(range: [f64; 2], wanted: f64) -> Vec<f64> {
+pub(super) fn ticks(range: [f64; 2], wanted: f64) -> Vec<f64> {
     let width = range[1] - range[0];
     if width <= 0.0 || !width.is_finite() {
         return vec![range[0]];
@@ -116,7 +116,7 @@ pub fn ticks(range: [f64; 2], wanted: f64) -> Vec<f64> {
 }
 
 /// Powers of ten within a range, thinned to at most about `wanted`.
-pub fn log_ticks(range: [f64; 2], wanted: f64) -> Vec<f64> {
+pub(super) fn log_ticks(range: [f64; 2], wanted: f64) -> Vec<f64> {
     let first = (range[0].log10() - 1e-9).ceil() as i32;
     let last = (range[1].log10() + 1e-9).floor() as i32;
     let every = (f64::from(last - first + 1) / wanted.max(1.0))
@@ -129,7 +129,7 @@ pub fn log_ticks(range: [f64; 2], wanted: f64) -> Vec<f64> {
 }
 
 /// 1, 2 or 5 times a power of ten, not less than `x`.
-pub fn nice_step(x: f64) -> f64 {
+pub(super) fn nice_step(x: f64) -> f64 {
     let power = 10f64.powf(x.log10().floor());
     let lead = x / power;
     let nice = [1.0, 2.0, 5.0]
@@ -139,7 +139,7 @@ pub fn nice_step(x: f64) -> f64 {
 }
 
 /// A range widened to whole steps, for axes with ticks at their ends.
-pub fn rounded(range: [f64; 2], wanted: f64) -> [f64; 2] {
+pub(super) fn rounded(range: [f64; 2], wanted: f64) -> [f64; 2] {
     let width = range[1] - range[0];
     if width <= 0.0 || !width.is_finite() {
         let pad = if range[0] == 0.0 {
@@ -157,7 +157,7 @@ pub fn rounded(range: [f64; 2], wanted: f64) -> [f64; 2] {
 }
 
 /// Labels of ticks: as many decimals as the steps need, powers of ten where numbers get long.
-pub fn tick_labels(ticks: &[f64]) -> Vec<String> {
+pub(super) fn tick_labels(ticks: &[f64]) -> Vec<String> {
     let step = match ticks {
         [a, b, ..] => (b - a).abs(),
         [a] if *a != 0.0 => a.abs(),
@@ -192,7 +192,7 @@ impl std::fmt::Display for Short {
 }
 
 /// Label of a power of ten.
-pub fn power_label(v: f64) -> String {
+pub(super) fn power_label(v: f64) -> String {
     let k = v.log10().round() as i32;
     if (-3..=3).contains(&k) {
         return format!("{}", 10f64.powi(k));
@@ -209,7 +209,7 @@ pub fn power_label(v: f64) -> String {
 }
 
 /// About how wide a text is, in pixels.
-pub fn text_width(text: &str, size: f64) -> f64 {
+pub(super) fn text_width(text: &str, size: f64) -> f64 {
     text.chars()
         .map(|c| match c {
             'i' | 'l' | 'j' | '.' | ',' | '\'' | '|' | ':' | ';' | ' ' | 'I' => 0.3,

@@ -7,14 +7,14 @@ use crate::model::instance::OrderedSet;
 
 /// Gains per unit of a column, in one direction.
 #[derive(Clone, Copy, Default, Debug)]
-pub struct Pseudo {
+pub(super) struct Pseudo {
     sum: f64,
     count: u32,
 }
 
 impl Pseudo {
     /// Learns from a branch.
-    pub fn add(&mut self, gain: f64) {
+    pub(super) fn add(&mut self, gain: f64) {
         if gain.is_finite() {
             self.sum += gain;
             self.count += 1;
@@ -31,7 +31,7 @@ impl Pseudo {
 }
 
 /// What to do at a node.
-pub enum Branch {
+pub(super) enum Branch {
     /// A side is empty: these bounds hold below the node.
     Fixed(Vec<Change>),
     /// Two children.

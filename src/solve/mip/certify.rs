@@ -36,7 +36,7 @@ type Slowly<'s> = &'s dyn Fn(&Problem, &Point) -> Option<f64>;
 
 /// Proves what it can of the lower bound (of a maximum: the upper one); the other side of `proof` is the
 /// solution's, whose value is about `value`.
-pub fn certify(
+pub(super) fn certify(
     instance: &Instance,
     proof: Proof,
     value: f64,

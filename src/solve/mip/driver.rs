@@ -8,7 +8,7 @@ use super::relaxation::{Control, Relaxation, Solved};
 use super::tree::{Aim, End, Record, Search};
 
 /// What a search gave, in columns of the instance, for a minimisation.
-pub struct Found {
+pub(crate) struct Found {
     /// The best point.
     pub x: Option<Vec<f64>>,
     /// No solution is better.
@@ -29,7 +29,7 @@ pub struct Found {
 
 impl Found {
     /// Of a program without a solution, seen before any search.
-    pub fn empty() -> Self {
+    pub(crate) fn empty() -> Self {
         Self {
             x: None,
             bound: f64::INFINITY,
@@ -44,7 +44,12 @@ impl Found {
 }
 
 /// The best solution of a linear program with discrete columns; `start` may be one.
-pub fn search_linear(mip: &Mip, aim: Aim, start: Option<Vec<f64>>, control: &mut Control) -> Found {
+pub(super) fn search_linear(
+    mip: &Mip,
+    aim: Aim,
+    start: Option<Vec<f64>>,
+    control: &mut Control,
+) -> Found {
     let Some(reduced) = presolve::reduce(mip, &[]) else {
         return Found::empty();
     };

@@ -17,7 +17,7 @@ use std::rc::Rc;
 const TOLERANCE: f64 = 1e-9;
 
 /// A linear program with pairs; a pair's `column` and `row` are the program's.
-pub struct Lpcc<'a> {
+pub(super) struct Lpcc<'a> {
     /// The linear program; the rows of pairs and their columns have bounds of their own.
     pub problem: &'a Problem,
     /// The pairs.
@@ -28,7 +28,7 @@ pub struct Lpcc<'a> {
 
 /// Limits of a search.
 #[derive(Clone, Copy, Debug)]
-pub struct Limits {
+pub(super) struct Limits {
     /// Nodes.
     pub nodes: usize,
     /// Only solutions with a value below this are of interest.
@@ -41,11 +41,11 @@ pub struct Limits {
 
 /// Proves a bound of a node's linear program, for its multipliers: those of its solution, or (`true`) of its
 /// infeasibility; +∞ says that it is empty, −∞ that nothing was proved.
-pub type Prover<'p> = &'p mut dyn FnMut(&Problem, &[f64], bool) -> f64;
+pub(super) type Prover<'p> = &'p mut dyn FnMut(&Problem, &[f64], bool) -> f64;
 
 /// What a search found.
 #[derive(Clone, Debug)]
-pub struct Found {
+pub(super) struct Found {
     /// Value and point of the best solution below the cutoff.
     pub best: Option<(f64, Vec<f64>)>,
     /// No solution has a value below this (or the best solution's, if that is less).
@@ -62,7 +62,7 @@ pub struct Found {
 
 impl Found {
     /// There is no solution at all, if the cutoff was +∞.
-    pub fn is_empty(&self) -> bool {
+    pub(super) fn is_empty(&self) -> bool {
         self.complete && self.best.is_none() && self.bound == f64::INFINITY
     }
 }
@@ -106,7 +106,7 @@ impl Ord for Node {
 
 impl Lpcc<'_> {
     /// Bounds of a pair's column and of its row's activity on a piece, or in the envelope.
-    pub fn bounds(&self, k: usize, piece: Option<Piece>) -> [(f64, f64); 2] {
+    pub(super) fn bounds(&self, k: usize, piece: Option<Piece>) -> [(f64, f64); 2] {
         let (p, b) = (&self.pairs[k], self.rhs[k]);
         let (l, u) = (p.lower, p.upper);
         let inf = f64::INFINITY;
@@ -150,7 +150,7 @@ impl Lpcc<'_> {
     }
 
     /// Searches. With a prover nothing counts as a bound, and no node as infeasible, but what it proves.
-    pub fn search(
+    pub(super) fn search(
         &self,
         limits: &Limits,
         mut prover: Option<Prover>,

@@ -31,7 +31,7 @@ const EXACT: f64 = 1e-14;
 
 /// Where it ended.
 #[derive(Debug)]
-pub struct Run {
+pub(super) struct Run {
     /// Point.
     pub x: Vec<f64>,
     /// Multipliers λ of the constraints, L = f + λᵀg.
@@ -42,7 +42,7 @@ pub struct Run {
 
 /// Runs from the start point until told to stop, by the number of evaluations that failed. None where the start has no values
 /// or derivatives.
-pub fn solve(nlp: &mut dyn Nlp, stop: &mut dyn FnMut(u64) -> bool) -> Option<Run> {
+pub(super) fn solve(nlp: &mut dyn Nlp, stop: &mut dyn FnMut(u64) -> bool) -> Option<Run> {
     let mut x = nlp.start().to_vec();
     let mut here = System::at(nlp, &x)?;
     let mut steps = 0;

@@ -163,7 +163,7 @@ const IPOPT: &[OptionRow] = &[
 ];
 
 /// Options that would make a solver read or write files, print, or load libraries: they mean nothing here.
-pub const INSTALLATION: &[&str] = &[
+pub(super) const INSTALLATION: &[&str] = &[
     "file_append",
     "file_print_level",
     "hsllib",
@@ -206,6 +206,6 @@ pub const IPOPT_OPTIONS: OptionTable = OptionTable {
 };
 
 /// Whether a row of [`IPOPT`] describes the option.
-pub fn is_described(name: &str) -> bool {
+pub(super) fn is_described(name: &str) -> bool {
     IPOPT.iter().any(|r| r.name == name)
 }

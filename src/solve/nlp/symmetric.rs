@@ -7,14 +7,14 @@
 use feral::{CscMatrix, FactorStatus, Solver};
 
 /// A symmetric matrix and its factors.
-pub struct Symmetric {
+pub(super) struct Symmetric {
     matrix: CscMatrix,
     solver: Solver,
 }
 
 /// Entries (row, column, value) with row ≥ column; those of the same place add up.
 #[derive(Clone, Default)]
-pub struct Lower {
+pub(super) struct Lower {
     rows: Vec<usize>,
     columns: Vec<usize>,
     values: Vec<f64>,
@@ -22,7 +22,7 @@ pub struct Lower {
 
 impl Lower {
     /// Adds an entry of either triangle.
-    pub fn push(&mut self, i: usize, j: usize, value: f64) {
+    pub(super) fn push(&mut self, i: usize, j: usize, value: f64) {
         self.rows.push(i.max(j));
         self.columns.push(i.min(j));
         self.values.push(value);
@@ -31,7 +31,7 @@ impl Lower {
 
 impl Symmetric {
     /// Factors a matrix of order n; None if it is singular or not finite.
-    pub fn new(n: usize, lower: &Lower) -> Option<Self> {
+    pub(super) fn new(n: usize, lower: &Lower) -> Option<Self> {
         if !lower.values.iter().all(|v| v.is_finite()) {
             return None;
         }
@@ -46,13 +46,13 @@ impl Symmetric {
     }
 
     /// A⁻¹b, refined; None if it is not finite.
-    pub fn solve(&self, b: &[f64]) -> Option<Vec<f64>> {
+    pub(super) fn solve(&self, b: &[f64]) -> Option<Vec<f64>> {
         let x = self.solver.solve_refined(&self.matrix, b).ok()?;
         x.iter().all(|v| v.is_finite()).then_some(x)
     }
 
     /// Numbers of positive and negative eigenvalues.
-    pub fn inertia(&self) -> Option<(usize, usize)> {
+    pub(super) fn inertia(&self) -> Option<(usize, usize)> {
         let i = self.solver.inertia()?;
         Some((i.positive, i.negative))
     }

@@ -21,7 +21,7 @@ use crate::solve::Budget;
 use crate::solve::interval::Interval;
 
 /// What the basis proves.
-pub struct Value {
+pub(super) struct Value {
     /// The value of the point, if it is feasible.
     pub upper: Result<Interval, Unproved>,
     /// The value of the multipliers, if they are feasible.
@@ -35,7 +35,7 @@ fn rational(x: f64) -> BigRational {
 
 /// Solves the program and its basis exactly, with at most so much work (word operations, roughly).
 /// None: it was not solved, or not within that.
-pub fn value(p: &Problem, effort: u64, budget: &Budget) -> Option<Value> {
+pub(super) fn value(p: &Problem, effort: u64, budget: &Budget) -> Option<Value> {
     let mut simplex = Simplex::new(p);
     let most = 2000 + 20 * (p.m() + p.n()) as u64;
     if simplex.solve(&mut watch(budget, most)) != Ended::Solved {

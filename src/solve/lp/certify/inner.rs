@@ -21,11 +21,11 @@ use super::polyhedron::Polyhedron;
 use crate::solve::Budget;
 
 /// Slacks below this are none.
-pub const SLACK: f64 = 1e-7;
+pub(super) const SLACK: f64 = 1e-7;
 
 /// A point with room around it, as nearly as floating-point numbers go. None: none was found.
 /// `near` is a point that is (nearly) optimal.
-pub fn point(poly: &Polyhedron, near: &[f64], budget: &Budget) -> Option<Vec<f64>> {
+pub(super) fn point(poly: &Polyhedron, near: &[f64], budget: &Budget) -> Option<Vec<f64>> {
     let value: f64 = poly.cost.iter().zip(near).map(|(c, x)| c * x).sum();
     let limit = value + if value == 0.0 { 1.0 } else { value.abs() };
     for limit in [limit, f64::INFINITY] {
@@ -40,7 +40,7 @@ pub fn point(poly: &Polyhedron, near: &[f64], budget: &Budget) -> Option<Vec<f64
 
 /// A point between `central`, which has room everywhere, and one that has the most room where `lack` (of the
 /// rows, then the columns) is largest.
-pub fn room_for(
+pub(super) fn room_for(
     lack: &[f64],
     poly: &Polyhedron,
     central: &[f64],

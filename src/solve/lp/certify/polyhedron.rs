@@ -11,7 +11,7 @@ use super::Enclosed;
 use crate::solve::interval::{Interval, WideSum};
 
 /// `l ≤ x ≤ u, L ≤ Ax ≤ U`, with the row numbers of what it was made from.
-pub struct Polyhedron {
+pub(super) struct Polyhedron {
     pub lower: Vec<f64>,
     pub upper: Vec<f64>,
     pub row_lower: Vec<f64>,
@@ -27,7 +27,7 @@ pub struct Polyhedron {
 
 impl Polyhedron {
     /// The feasible points of a program.
-    pub fn primal(p: &Problem) -> Self {
+    pub(super) fn primal(p: &Problem) -> Self {
         Self {
             lower: p.lower.clone(),
             upper: p.upper.clone(),
@@ -41,7 +41,7 @@ impl Polyhedron {
     }
 
     /// The feasible multipliers of a program.
-    pub fn dual(p: &Problem) -> Self {
+    pub(super) fn dual(p: &Problem) -> Self {
         let side = |finite: bool, value: f64| if finite { 0.0 } else { value };
         let mut d = Self {
             lower: Vec::with_capacity(p.m()),
@@ -86,23 +86,23 @@ impl Polyhedron {
     }
 
     /// Number of columns.
-    pub fn n(&self) -> usize {
+    pub(super) fn n(&self) -> usize {
         self.lower.len()
     }
 
     /// Number of rows.
-    pub fn m(&self) -> usize {
+    pub(super) fn m(&self) -> usize {
         self.row_lower.len()
     }
 
     /// Value of a row at a point of plain numbers.
-    pub fn activity(&self, i: usize, x: &[f64]) -> f64 {
+    pub(super) fn activity(&self, i: usize, x: &[f64]) -> f64 {
         self.rows.line(i).map(|(j, a)| a * x[j]).sum()
     }
 }
 
 /// cᵀx over the enclosed point: an upper bound of the minimum is its upper end.
-pub fn primal_value(p: &Problem, x: &Enclosed) -> Interval {
+pub(super) fn primal_value(p: &Problem, x: &Enclosed) -> Interval {
     let mut sum = WideSum::default();
     for j in 0..p.n() {
         x.add_to(&mut sum, p.cost[j], j);
@@ -111,7 +111,7 @@ pub fn primal_value(p: &Problem, x: &Enclosed) -> Interval {
 }
 
 /// The dual value at the enclosed multipliers: a lower bound of the minimum is its lower end.
-pub fn dual_value(p: &Problem, y: &Enclosed) -> Interval {
+pub(super) fn dual_value(p: &Problem, y: &Enclosed) -> Interval {
     let mut sum = WideSum::default();
     for i in 0..p.m() {
         let (l, u) = (p.row_lower[i], p.row_upper[i]);

@@ -21,7 +21,7 @@ use super::polyhedron::Polyhedron;
 use crate::solve::interval::{WideSum, two_sum};
 
 /// A basis of equations with proved bounds on its inverse.
-pub struct System {
+pub(super) struct System {
     /// The equations.
     rows: Vec<usize>,
     /// The columns that take the correction.
@@ -43,7 +43,7 @@ fn rounded_up(sum: f64, terms: usize) -> f64 {
 impl System {
     /// For the equations `rows`; column j may move if `room[j] > 0`, the more the better. Err: an
     /// equation that depends on others, or on which no column may move.
-    pub fn new(
+    pub(super) fn new(
         poly: &Polyhedron,
         rows: Vec<usize>,
         room: &[f64],
@@ -144,13 +144,13 @@ impl System {
     }
 
     /// The equations.
-    pub fn rows(&self) -> &[usize] {
+    pub(super) fn rows(&self) -> &[usize] {
         &self.rows
     }
 
     /// Moves the basis columns of `x` until the equations hold as well as pairs of numbers allow,
     /// and encloses the point at which they hold exactly. None: numbers broke down.
-    pub fn enclose(&mut self, poly: &Polyhedron, x: &mut Enclosed) -> Option<()> {
+    pub(super) fn enclose(&mut self, poly: &Polyhedron, x: &mut Enclosed) -> Option<()> {
         for _ in 0..4 {
             let mut rest: Vec<f64> = Vec::with_capacity(self.rows.len());
             for &i in &self.rows {

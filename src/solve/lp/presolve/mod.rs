@@ -115,7 +115,7 @@ struct Doubleton {
 }
 
 /// The way back from a smaller program.
-pub struct Presolved {
+pub(super) struct Presolved {
     /// The smaller program.
     pub problem: Problem,
     columns: Vec<u32>,
@@ -234,7 +234,7 @@ fn term(a: f64, [l, u]: [f64; 2]) -> [f64; 2] {
 }
 
 /// The smaller program. None: nothing came of it, or it was found to have no solution, which the program itself proves.
-pub fn presolve(p: &Problem) -> Option<Presolved> {
+pub(super) fn presolve(p: &Problem) -> Option<Presolved> {
     let mut work = Work::new(p);
     work.run().ok()?;
     (!work.steps.is_empty()).then(|| work.assemble(p))

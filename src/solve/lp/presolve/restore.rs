@@ -17,7 +17,7 @@ struct Back {
 
 impl Presolved {
     /// A point and a basis of the program before, of those of the smaller one.
-    pub fn restore(&self, point: &Point, basis: &[State]) -> (Point, Basis) {
+    pub(crate) fn restore(&self, point: &Point, basis: &[State]) -> (Point, Basis) {
         let mut back = self.begin(point, basis);
         self.steps.iter().rev().for_each(|s| back.undo(s));
         let basis = back.columns.into_iter().chain(back.rows).collect();
@@ -26,7 +26,7 @@ impl Presolved {
     }
 
     /// Multipliers that may prove the program before infeasible, of those that prove it of the smaller one.
-    pub fn restore_ray(&self, y: &[f64]) -> Vec<f64> {
+    pub(crate) fn restore_ray(&self, y: &[f64]) -> Vec<f64> {
         let n = self.columns.len();
         let p = &self.problem;
         let reduced = |j: usize| -p.columns.line(j).map(|(i, a)| a * y[i]).sum::<f64>();

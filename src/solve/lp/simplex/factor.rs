@@ -19,11 +19,11 @@ const MARK: f64 = 0.987_654_321_012_345_6;
 const MOST_UPDATES: usize = 150;
 
 /// A column as row–value pairs.
-pub type Entries = Vec<(usize, f64)>;
+pub(crate) type Entries = Vec<(usize, f64)>;
 
 /// A factorised basis.
 #[derive(Clone)]
-pub struct Factor {
+pub(crate) struct Factor {
     lu: Rc<RefCell<SparseLu>>,
     /// Replacements since the LU is shared.
     etas: Vec<Eta>,
@@ -46,7 +46,7 @@ struct Eta {
 
 /// Why there is no factor.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Failure {
+pub(crate) enum Failure {
     /// These slots hold dependent columns; the logicals of these rows would complete the basis.
     Dependent(Vec<(usize, usize)>),
     /// Numbers that are not finite.
@@ -54,7 +54,7 @@ pub enum Failure {
 }
 
 /// A smaller pivot is none, usually.
-pub const ZERO: f64 = 1e-11;
+pub(crate) const ZERO: f64 = 1e-11;
 
 fn parameters(zero: f64) -> LuParams {
     LuParams {
@@ -67,12 +67,16 @@ fn parameters(zero: f64) -> LuParams {
 
 impl Factor {
     /// Factorises the matrix with these columns.
-    pub fn new(m: usize, columns: &[Entries]) -> Result<Self, Failure> {
+    pub(crate) fn new(m: usize, columns: &[Entries]) -> Result<Self, Failure> {
         Self::without_pivots_below(ZERO, m, columns)
     }
 
     /// The same, where columns count as dependent whose pivots are smaller than `zero`.
-    pub fn without_pivots_below(zero: f64, m: usize, columns: &[Entries]) -> Result<Self, Failure> {
+    pub(crate) fn without_pivots_below(
+        zero: f64,
+        m: usize,
+        columns: &[Entries],
+    ) -> Result<Self, Failure> {
         let matrix =
             SparseColMatrix::from_sparse_columns(m, columns).map_err(|_| Failure::Numbers)?;
         let lu =
@@ -94,7 +98,7 @@ impl Factor {
     }
 
     /// Solves B x = a. None if the factor has broken down.
-    pub fn forward(&mut self, a: &[(usize, f64)]) -> Option<&Entries> {
+    pub(crate) fn forward(&mut self, a: &[(usize, f64)]) -> Option<&Entries> {
         let mut lu = self.lu.borrow_mut();
         lu.ftran_sparse(a, &mut self.solution).ok()?;
         if !self.etas.is_empty() {
@@ -118,7 +122,7 @@ impl Factor {
     }
 
     /// Solves Bᵀ y = a. None if the factor has broken down.
-    pub fn backward(&mut self, a: &[(usize, f64)]) -> Option<&Entries> {
+    pub(crate) fn backward(&mut self, a: &[(usize, f64)]) -> Option<&Entries> {
         let mut lu = self.lu.borrow_mut();
         if self.etas.is_empty() {
             lu.btran_sparse(a, &mut self.solution).ok()?;
@@ -140,20 +144,20 @@ impl Factor {
     }
 
     /// Solves B x = a in place for a dense right-hand side.
-    pub fn forward_dense(&mut self, a: &mut [f64]) -> Option<()> {
+    pub(crate) fn forward_dense(&mut self, a: &mut [f64]) -> Option<()> {
         self.lu.borrow_mut().ftran(a).ok()?;
         self.etas.iter().for_each(|eta| eta.forward(a));
         Some(())
     }
 
     /// Solves Bᵀ y = a in place for a dense right-hand side.
-    pub fn backward_dense(&mut self, a: &mut [f64]) -> Option<()> {
+    pub(crate) fn backward_dense(&mut self, a: &mut [f64]) -> Option<()> {
         self.etas.iter().rev().for_each(|eta| eta.backward(a));
         self.lu.borrow_mut().btran(a).ok()
     }
 
     /// Replaces the column in a slot. False: factorise afresh.
-    pub fn replace(&mut self, slot: usize, column: &[(usize, f64)]) -> bool {
+    pub(crate) fn replace(&mut self, slot: usize, column: &[(usize, f64)]) -> bool {
         if self.etas.is_empty()
             && let Some(lu) = Rc::get_mut(&mut self.lu)
         {
@@ -175,12 +179,12 @@ impl Factor {
     }
 
     /// Number of updates since the factorisation.
-    pub fn updates(&self) -> usize {
+    pub(crate) fn updates(&self) -> usize {
         self.lu.borrow().updates_since_refactor() + self.etas.len()
     }
 
     /// Whether a fresh factorisation is due.
-    pub fn is_worn(&self) -> bool {
+    pub(crate) fn is_worn(&self) -> bool {
         let lu = self.lu.borrow();
         let etas: usize = self.etas.iter().map(|e| 1 + e.others.len()).sum();
         // A factorisation costs hundreds of times what its nonzeros suggest, so the solves may grow

@@ -16,7 +16,7 @@ use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatRef, Par, Scale};
 
 /// The two orthonormal bases.
-pub struct Space {
+pub(super) struct Space {
     /// P.
     pub p: Mat<f64>,
     /// Q.
@@ -25,7 +25,7 @@ pub struct Space {
 
 impl Space {
     /// Pᵀ Y Q.
-    pub fn down(&self, y: &Mat<f64>) -> Mat<f64> {
+    pub(super) fn down(&self, y: &Mat<f64>) -> Mat<f64> {
         times(
             times(self.p.transpose(), y.as_ref()).as_ref(),
             self.q.as_ref(),
@@ -33,7 +33,7 @@ impl Space {
     }
 
     /// P C Qᵀ.
-    pub fn up(&self, c: &Mat<f64>) -> Mat<f64> {
+    pub(super) fn up(&self, c: &Mat<f64>) -> Mat<f64> {
         times(
             times(self.p.as_ref(), c.as_ref()).as_ref(),
             self.q.transpose(),
@@ -42,7 +42,7 @@ impl Space {
 
     /// Y with its part in the space made C, by changes of the entries with a weight, least in its units. What cannot be
     /// reached stays, and what is left when `stop` says so.
-    pub fn corrected(
+    pub(super) fn corrected(
         &self,
         y: &Mat<f64>,
         c: &Mat<f64>,
@@ -129,7 +129,7 @@ fn inner(a: &Mat<f64>, b: &Mat<f64>) -> f64 {
 }
 
 /// The method's state.
-pub struct Search<'s> {
+pub(super) struct Search<'s> {
     space: &'s Space,
     target: Mat<f64>,
     z: Mat<f64>,
@@ -144,7 +144,7 @@ const RELAX: f64 = 1.6;
 
 impl<'s> Search<'s> {
     /// Begins at 0.
-    pub fn new(space: &'s Space, target: Mat<f64>) -> Self {
+    pub(super) fn new(space: &'s Space, target: Mat<f64>) -> Self {
         let (m, n) = (space.p.nrows(), space.q.nrows());
         Self {
             space,
@@ -156,7 +156,7 @@ impl<'s> Search<'s> {
     }
 
     /// One step; `nearest` gives for an entry's number (by columns) and a value y the least of its objective + ½(· − y)².
-    pub fn step(&mut self, nearest: impl Fn(usize, f64) -> f64) {
+    pub(super) fn step(&mut self, nearest: impl Fn(usize, f64) -> f64) {
         let move_to = self.space.up(&(&self.target - self.space.down(&self.z)));
         let mut distance = 0.0f64;
         let mut number = 0;

@@ -9,7 +9,7 @@
 mod cone;
 mod products;
 mod sides;
-pub mod weak;
+pub(crate) mod weak;
 
 use super::pairs::Program;
 use super::settings::Bound;
@@ -21,15 +21,15 @@ use crate::solve::lp::{Ended, certify, watch};
 use products::Products;
 
 /// A gap up to this, relative to the objective if that is above 1, is closed.
-pub const GAP: f64 = 1e-6;
+pub(crate) const GAP: f64 = 1e-6;
 
 /// Whether a lower bound proves a value to be the global minimum.
-pub fn is_closed(low: f64, value: f64) -> bool {
+pub(crate) fn is_closed(low: f64, value: f64) -> bool {
     value - low <= GAP * value.abs().max(1.0)
 }
 
 /// What was proved.
-pub struct Proof {
+pub(crate) struct Proof {
     /// No feasible point has a (minimised) objective below this.
     pub value: Option<f64>,
     /// A point that satisfies all pairs and is better than the one that was given.
@@ -57,7 +57,7 @@ const ROOM: f64 = 1e-2;
 const NODES: usize = 1_000;
 
 /// A lower bound of the (minimised) objective; `level` is the best point known.
-pub fn lower(program: &Program, level: &[f64], wanted: Bound, budget: &Budget) -> Proof {
+pub(crate) fn lower(program: &Program, level: &[f64], wanted: Bound, budget: &Budget) -> Proof {
     let seconds = match wanted {
         Bound::Seconds(s) => s,
         Bound::None | Bound::Quick => f64::INFINITY,
@@ -126,7 +126,7 @@ fn prove(program: &Program, level: &[f64], wanted: Bound, budget: &Budget) -> Pr
 }
 
 /// What a search says that is content with any point.
-pub enum Any {
+pub(crate) enum Any {
     /// This one satisfies all pairs.
     Point(Vec<f64>),
     /// None does, proved.
@@ -137,7 +137,7 @@ pub enum Any {
 
 /// A point that satisfies all pairs of a linear program, where the other methods find none; or a proof that there
 /// is none.
-pub fn any(program: &Program, budget: &Budget) -> Any {
+pub(crate) fn any(program: &Program, budget: &Budget) -> Any {
     if !program.envelope.is_linear() {
         return Any::Unknown;
     }

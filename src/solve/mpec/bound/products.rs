@@ -49,14 +49,14 @@ use crate::solve::lp::form::Problem;
 use crate::solve::lp::simplex::Simplex;
 
 /// The state of a proof.
-pub struct Products<'a, 'm> {
+pub(super) struct Products<'a, 'm> {
     /// What it may spend.
     pub budget: &'a Budget<'m>,
 }
 
 /// What is tried at most.
 #[derive(Clone, Copy)]
-pub struct Limits {
+pub(super) struct Limits {
     /// Products of an inequality of each side.
     pub products: usize,
     /// Steps of the search for multipliers.
@@ -91,7 +91,7 @@ impl Products<'_, '_> {
     /// The bound, −∞ if none is proved. `level` is the best solution known, `cutoff` a little above its
     /// value. The columns of side A in `whole`, the program without its pairs, get the bounds that solutions not above the
     /// cutoff have.
-    pub fn bound(
+    pub(super) fn bound(
         &mut self,
         program: &Program,
         whole: &mut Problem,

@@ -17,7 +17,7 @@ use crate::solve::lp::form::{Problem, Sparse};
 
 /// Σ terms + constant, over the columns of one side.
 #[derive(Clone, Debug, Default)]
-pub struct Factor {
+pub(super) struct Factor {
     /// Column and coefficient.
     pub terms: Vec<(usize, f64)>,
     /// Of the column 1.
@@ -26,7 +26,7 @@ pub struct Factor {
 
 impl Factor {
     /// One column.
-    pub fn column(j: usize) -> Self {
+    pub(super) fn column(j: usize) -> Self {
         Self {
             terms: vec![(j, 1.0)],
             constant: 0.0,
@@ -34,7 +34,7 @@ impl Factor {
     }
 
     /// 1.
-    pub fn one() -> Self {
+    pub(super) fn one() -> Self {
         Self {
             terms: Vec::new(),
             constant: 1.0,
@@ -42,21 +42,21 @@ impl Factor {
     }
 
     /// As many times.
-    pub fn times(mut self, by: f64) -> Self {
+    pub(super) fn times(mut self, by: f64) -> Self {
         self.terms.iter_mut().for_each(|t| t.1 *= by);
         self.constant *= by;
         self
     }
 
     /// Terms with the constant as that of a last column, which is 1.
-    pub fn all(&self, one: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+    pub(super) fn all(&self, one: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let constant = (self.constant != 0.0).then_some((one, self.constant));
         self.terms.iter().copied().chain(constant)
     }
 }
 
 /// One side.
-pub struct Half {
+pub(super) struct Half {
     /// Columns; the number after the last stands for 1.
     pub count: usize,
     /// Factors that are 0.
@@ -183,7 +183,7 @@ fn opposites(program: &Program, place: &[usize], half: &mut Half) {
 }
 
 /// The two sides of a program.
-pub struct Sides {
+pub(super) struct Sides {
     /// That of the objective.
     pub a: Half,
     /// The other one.
@@ -198,7 +198,7 @@ pub struct Sides {
 impl Sides {
     /// None: the program does not come apart. Solutions whose (minimised) objective is above `cutoff`
     /// are left out.
-    pub fn new(program: &Program, cutoff: f64) -> Option<Self> {
+    pub(super) fn new(program: &Program, cutoff: f64) -> Option<Self> {
         let on_a = sides(program)?;
         let objective = program.envelope.objective?.column as usize;
         let (mut place_a, mut place_b) =
@@ -232,7 +232,7 @@ impl Sides {
     }
 
     /// The program of side A alone.
-    pub fn first(&self) -> Problem {
+    pub(super) fn first(&self) -> Problem {
         let a = &self.a;
         let mut p = Problem {
             cost: vec![0.0; a.count],
@@ -255,17 +255,17 @@ impl Sides {
     }
 
     /// Columns of the program that are on side A, or on B.
-    pub fn columns(&self, on_a: bool) -> &[usize] {
+    pub(super) fn columns(&self, on_a: bool) -> &[usize] {
         &self.columns[usize::from(!on_a)]
     }
 
     /// What stands there in a vector over all columns.
-    pub fn pick(&self, on_a: bool, all: &[f64]) -> Vec<f64> {
+    pub(super) fn pick(&self, on_a: bool, all: &[f64]) -> Vec<f64> {
         self.columns(on_a).iter().map(|&j| all[j]).collect()
     }
 
     /// The objective as a linear form of side A, minimised.
-    pub fn objective(&self) -> Factor {
+    pub(super) fn objective(&self) -> Factor {
         Factor {
             terms: vec![(self.target, self.sign)],
             constant: 0.0,
@@ -273,7 +273,7 @@ impl Sides {
     }
 
     /// Inequalities of A and B whose products the pairs make 0.
-    pub fn pairs(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+    pub(super) fn pairs(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         let both = self.a.pair.iter().zip(&self.b.pair);
         both.filter_map(|(k, l)| Some(((*k)?, (*l)?)))
     }
@@ -281,7 +281,7 @@ impl Sides {
     /// What the equations of side B say about the size of its columns where that of some is known:
     /// |z_j| ≤ `radius[j]`, infinite where it is not. Only sums of magnitudes are used, so that radii
     /// k times as large give radii at most k times as large, for k ≥ 1.
-    pub fn spread(&self, radius: &mut [f64]) {
+    pub(super) fn spread(&self, radius: &mut [f64]) {
         let b = &self.b;
         loop {
             let mut better = false;

@@ -18,12 +18,12 @@ use crate::solve::lp::form::{Problem, Sparse};
 use crate::solve::lp::simplex::Simplex;
 
 /// A lower bound of costᵀx over the rows and bounds of a problem.
-pub fn bound(p: &Problem, cost: &[f64], y: &[f64]) -> f64 {
+pub(crate) fn bound(p: &Problem, cost: &[f64], y: &[f64]) -> f64 {
     wide_bound(p, cost, (y, &[]))
 }
 
 /// The same of multipliers that are sums of two numbers, the second being what the first lacks. Empty: it lacks nothing.
-pub fn wide_bound(p: &Problem, cost: &[f64], (y, rest): (&[f64], &[f64])) -> f64 {
+pub(crate) fn wide_bound(p: &Problem, cost: &[f64], (y, rest): (&[f64], &[f64])) -> f64 {
     let none = f64::NEG_INFINITY;
     let mut sum = WideSum::default();
     let mut used = y.to_vec();
@@ -75,7 +75,7 @@ pub fn wide_bound(p: &Problem, cost: &[f64], (y, rest): (&[f64], &[f64])) -> f64
 }
 
 /// The program that asks by how much rows must be relaxed to have a point within the bounds: min t.
-pub fn elastic(p: &Problem) -> Problem {
+pub(crate) fn elastic(p: &Problem) -> Problem {
     let n = p.n();
     let mut q = Problem {
         cost: vec![0.0; n],
@@ -102,7 +102,7 @@ pub fn elastic(p: &Problem) -> Problem {
 }
 
 /// Whether multipliers prove that there is no feasible point.
-pub fn is_empty(p: &Problem, y: &[f64]) -> bool {
+pub(crate) fn is_empty(p: &Problem, y: &[f64]) -> bool {
     bound(p, &vec![0.0; p.n()], y) > 0.0
 }
 
@@ -113,7 +113,7 @@ pub fn is_empty(p: &Problem, y: &[f64]) -> bool {
 /// its bound. Within the box of all bounds tried, multipliers prove that no column comes near them.
 /// The feasible set is convex and has a point in the box; had it a point outside, it would have one on
 /// the box's boundary too. So all of it is inside, and the bounds are proved.
-pub fn derive(
+pub(crate) fn derive(
     p: &mut Problem,
     cutoff: f64,
     known: &[f64],

@@ -27,7 +27,7 @@ use point::{Frame, Point, Values};
 
 /// What may be spent on it.
 #[derive(Clone, Copy, Debug)]
-pub struct Effort {
+pub(super) struct Effort {
     /// Steps.
     pub steps: u64,
     /// Pivots of the simplex method, all programs together, by the number of rows and columns.
@@ -36,7 +36,7 @@ pub struct Effort {
 
 impl Effort {
     /// From anywhere.
-    pub const FULL: Self = Self {
+    pub(super) const FULL: Self = Self {
         steps: 100,
         pivots: 30,
     };
@@ -65,7 +65,7 @@ const ROUNDING: f64 = 1e-13;
 
 /// How it ended.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum End {
+pub(super) enum End {
     /// At a point that satisfies the conditions of first order, as far as numbers say.
     Solved,
     /// Where no step lessens what is violated: the multipliers may prove it.
@@ -80,7 +80,7 @@ pub enum End {
 
 /// What is asked for besides.
 #[derive(Clone, Copy, Debug)]
-pub struct Request<'a> {
+pub(super) struct Request<'a> {
     /// Start from the active set that these multipliers name.
     pub multipliers: Option<&'a [f64]>,
     /// What is spent at most.
@@ -93,7 +93,7 @@ pub struct Request<'a> {
 
 /// Where it ended.
 #[derive(Debug)]
-pub struct Run {
+pub(super) struct Run {
     /// Point.
     pub x: Vec<f64>,
     /// Multipliers λ of the constraints, L = f + λᵀg.
@@ -107,7 +107,7 @@ pub struct Run {
 }
 
 /// Runs from the start point. None where the start has no values or derivatives, and where the problem is too large.
-pub fn solve(nlp: &mut dyn Nlp, request: Request<'_>, budget: &Budget) -> Option<Run> {
+pub(super) fn solve(nlp: &mut dyn Nlp, request: Request<'_>, budget: &Budget) -> Option<Run> {
     let (n, m) = nlp.size();
     if n + m > LARGEST {
         return None;
