@@ -18,10 +18,8 @@
 //! terms, κ/β = |x|/|z|, leaves an error some hundred times larger: measured on walls, where it is the
 //! larger side that must not be disturbed.)
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 #[cfg(feature = "system")]
-use std::time::Duration;
+use std::sync::{Mutex, mpsc};
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
@@ -35,6 +33,9 @@ use super::scale::power_of_two;
 use crate::solve::budget::Size;
 use crate::solve::factor_size::symmetric_size;
 use crate::solve::{Budget, Stop};
+
+/// Whether to stop: asked in each iteration.
+type Question = Box<dyn FnMut() -> bool + Send + Sync>;
 
 /// What one run gave.
 #[derive(Debug)]
@@ -153,41 +154,39 @@ pub fn solve(p: &Problem, hessian: Option<&Sparse>, aim: Aim, budget: &Budget) -
             almost: false,
         };
     }
-    let stop = Arc::new(AtomicBool::new(false));
     let objective = match hessian {
         None => CscMatrix::zeros((free, free)),
         Some(h) => reduced(p, h, &fixed, &number, &mut q),
     };
-    let run = || {
+    let run = |mut stop: Question| {
         let first = match aim {
             Aim::Tolerance(t) => t,
             Aim::Digits => ROUGH,
         };
         let mut solver = DefaultSolver::new(&objective, &q, &a, &b, &cones, asked(first)).ok()?;
-        let flag = Arc::clone(&stop);
-        solver.set_termination_callback(move |_: &_| flag.load(Ordering::Relaxed));
+        solver.set_termination_callback(move |_: &_| stop());
         solver.solve();
         if aim == Aim::Digits && solver.solution.status == SolverStatus::Solved {
             refine(&mut solver, [&q, &b], asked(FINE))?;
         }
         Some(solver.solution)
     };
-    // Clarabel's callback must own what it sees, so the budget is asked from this thread.
+    // Clarabel's callback must own what it sees, so this thread asks the budget for it, once in each iteration.
     #[cfg(not(feature = "system"))]
     let solution = {
-        stop.store(budget.is_over(), Ordering::Relaxed);
-        run()
+        let is_over = budget.is_over();
+        run(Box::new(move || is_over))
     };
     #[cfg(feature = "system")]
     let solution = std::thread::scope(|scope| {
-        let worker = scope.spawn(run);
-        let start = budget.seconds();
-        while !worker.is_finished() {
-            let pause = (budget.seconds() - start) * 1e6 / 16.0;
-            std::thread::park_timeout(Duration::from_micros((pause as u64).clamp(20, 20_000)));
-            if budget.is_over() {
-                stop.store(true, Ordering::Relaxed);
-            }
+        let (question, questions) = mpsc::channel();
+        let (answer, answers) = mpsc::channel();
+        let answers = Mutex::new(answers);
+        let reply = move || answers.lock().ok()?.recv().ok();
+        let stop = move || question.send(()).is_err() || reply().unwrap_or(true);
+        let worker = scope.spawn(move || run(Box::new(stop)));
+        for () in questions {
+            let _ = answer.send(budget.is_over());
         }
         worker.join().ok().flatten()
     });
