@@ -20,7 +20,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     (
         "check",
         &[
-            "color", "data", "diag", "gdx", "host", "model", "source", "syntax",
+            "autodiff", "color", "data", "diag", "gdx", "host", "model", "source", "syntax",
         ],
     ),
     ("solve", &["autodiff", "model"]),
