@@ -1,13 +1,15 @@
 """The linear programs of Netlib, for docs/lab/accuracy.md.
 
-    python3 benches/netlib.py BMOD FOLDER [NAME...]
+    python3 benches/netlib.py [--times] BMOD FOLDER [NAME...]
 
 FOLDER is `benchmarks/benchmarks/linprog_benchmark_files` of SciPy's source distribution (pip download --no-deps --no-binary
 :all: scipy), which has the programs as arrays; numpy and scipy read them. Each is written as a model, solved by bmod with
 --certify and by HiGHS (through SciPy), and printed where the two disagree; the programs of the subfolder `infeasible` have to
-be called so. A run may take 100 s.
+be called so. A run may take 100 s. --times: without --certify and without the infeasible ones; processor time of the whole process of bmod, which
+reads the text, beside that of the call of HiGHS; ratios with a floor of 20 ms.
 """
 import json
+import math
 import os
 import pathlib
 import subprocess
@@ -21,6 +23,7 @@ from scipy.sparse import coo_matrix
 
 warnings.filterwarnings("ignore")
 SECONDS = 100
+FLOOR = 0.02
 
 
 def arrays(path):
@@ -81,9 +84,11 @@ def highs(cost, inequalities, equations, bounds):
 
 
 def main():
-    program, folder, names = sys.argv[1], pathlib.Path(sys.argv[2]), sys.argv[3:]
-    files = sorted(folder.glob("*.npz")) + sorted(folder.glob("infeasible/*.npz"))
-    count, proved, mine, theirs = 0, 0, 0.0, 0.0
+    times = "--times" in sys.argv
+    program, folder, *names = [a for a in sys.argv[1:] if a != "--times"]
+    folder = pathlib.Path(folder)
+    files = sorted(folder.glob("*.npz")) + ([] if times else sorted(folder.glob("infeasible/*.npz")))
+    count, proved, mine, theirs, ratios = 0, 0, 0.0, 0.0, []
     for path in files:
         if path.stem.startswith("milp") or names and path.stem not in names:
             continue
@@ -94,7 +99,7 @@ def main():
             file.write_text(model(*data))
             command = [program, "run", str(file), "--json", "-", "--out", place, "--time-limit", str(SECONDS)]
             before = os.times().children_user
-            done = subprocess.run([*command, "--certify"], capture_output=True, text=True)
+            done = subprocess.run([*command, *([] if times else ["--certify"])], capture_output=True, text=True)
             seconds = os.times().children_user - before
         solve = json.loads(done.stdout)["solves"][-1]
         status, objective = solve["model_status"]["name"], solve.get("objective")
@@ -106,13 +111,19 @@ def main():
         bounds = solve.get("bounds")
         proved += bounds is not None and all(isinstance(b, float) for b in bounds)
         mine, theirs = mine + seconds, theirs + other_seconds
+        ratios.append((max(seconds, FLOOR) / max(other_seconds, FLOOR), path.stem))
         remark = "" if right and error < 1e-8 else "   <--"
         print(
             f"{path.stem:12} {status:12} {objective} error {error:.1e} interval {bounds} {seconds:.2f} s"
             f" | HiGHS {other.status} {other.fun} {other_seconds:.2f} s{remark}",
             flush=True,
         )
-    print(f"{count} programs, {proved} with a proved interval; {mine:.1f} s with the proofs, HiGHS {theirs:.1f} s without")
+    if times:
+        mean = math.exp(sum(math.log(r) for r, _ in ratios) / len(ratios))
+        worst = ", ".join(f"{name} {r:.1f}" for r, name in sorted(ratios, reverse=True)[:10])
+        print(f"{count} programs: {mine:.1f} s, HiGHS {theirs:.1f} s; ratios: mean {mean:.2f}, worst {worst}")
+    else:
+        print(f"{count} programs, {proved} with a proved interval; {mine:.1f} s with the proofs, HiGHS {theirs:.1f} s without")
 
 
 if __name__ == "__main__":
