@@ -327,6 +327,17 @@ fn the_last_good_program_answers() {
     );
 }
 
+/// A quote that is still open, behind it a character of several bytes.
+#[test]
+fn an_open_quote() {
+    let text = "Set i / a /;\ndisplay i, '😀\n";
+    let mut e = open(text);
+    e.check("blend.blk");
+    let place = at(text, "'😀", 0, 1);
+    assert!(e.hover("blend.blk", place).is_none());
+    assert!(e.references("blend.blk", place, true).is_empty());
+}
+
 /// Files that include others are one model; what is wrong in an included file is told there.
 #[test]
 fn includes() {

@@ -53,6 +53,13 @@ pub(super) enum Subject {
     Label(String),
 }
 
+/// What stands between the quotes of a word that has two; a quote may be open while a person types.
+fn between_quotes(word: &str) -> Option<&str> {
+    let quote = word.chars().next()?;
+    let inside = word.strip_prefix(quote)?.strip_suffix(quote)?;
+    (!inside.is_empty()).then_some(inside)
+}
+
 impl Document {
     /// The symbol or label that a token names.
     pub(super) fn subject(&self, token: usize) -> Option<Subject> {
@@ -65,9 +72,7 @@ impl Document {
             }
             // In data an unquoted word is a label, a quoted one a label or a text.
             Role::Label => Some(Subject::Label(word.to_owned())),
-            Role::Quoted if word.len() > 2 => {
-                Some(Subject::Label(word[1..word.len() - 1].to_owned()))
-            }
+            Role::Quoted => between_quotes(word).map(|l| Subject::Label(l.to_owned())),
             _ => None,
         }
     }
@@ -91,8 +96,8 @@ impl Document {
                     out.push((t.lo, t.hi, false))
                 }
                 Role::Quoted if !is_symbol => {
-                    let word = self.word(n);
-                    if word.len() > 2 && word[1..word.len() - 1].eq_ignore_ascii_case(name) {
+                    let inside = between_quotes(self.word(n));
+                    if inside.is_some_and(|l| l.eq_ignore_ascii_case(name)) {
                         out.push((t.lo + 1, t.hi - 1, false));
                     }
                 }
