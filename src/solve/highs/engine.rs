@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// How a run ended.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Status {
+pub(crate) enum Status {
     /// Solved to its tolerances.
     Optimal,
     /// No point satisfies rows, bounds and kinds.
@@ -29,7 +29,7 @@ pub enum Status {
 }
 
 /// What a run gave.
-pub struct Run {
+pub(crate) struct Run {
     /// How it ended.
     pub status: Status,
     /// Point that satisfies the rows, with multipliers; of a search without them.
@@ -43,7 +43,7 @@ pub struct Run {
 }
 
 /// HiGHS with a problem.
-pub struct Engine {
+pub(crate) struct Engine {
     raw: *mut c_void,
     columns: usize,
     rows: usize,
@@ -64,7 +64,7 @@ fn integers<T: Copy + TryInto<HighsInt>>(of: impl IntoIterator<Item = T>) -> Opt
 impl Engine {
     /// With a problem, the kinds of its columns (none: all continuous), and the upper triangle of a Hessian by columns. None:
     /// HiGHS does not take it.
-    pub fn new(p: &Problem, kinds: &[HighsInt], hessian: Option<&Sparse>) -> Option<Self> {
+    pub(crate) fn new(p: &Problem, kinds: &[HighsInt], hessian: Option<&Sparse>) -> Option<Self> {
         let empty = Sparse::new();
         let hessian = hessian.unwrap_or(&empty);
         // what is the upper triangle by columns is the lower one by rows, and HiGHS wants that by columns
@@ -115,26 +115,26 @@ impl Engine {
     }
 
     /// Sets a switch.
-    pub fn switch(&self, name: &CStr, value: bool) {
+    pub(crate) fn switch(&self, name: &CStr, value: bool) {
         // SAFETY: the name ends with 0. What is not an option is refused with a status.
         unsafe { Highs_setBoolOptionValue(self.raw, name.as_ptr(), value.into()) };
     }
 
     /// Sets a whole number, no larger than HiGHS's integers.
-    pub fn whole(&self, name: &CStr, value: u64) {
+    pub(crate) fn whole(&self, name: &CStr, value: u64) {
         let value = HighsInt::try_from(value).unwrap_or(HighsInt::MAX);
         // SAFETY: as above.
         unsafe { Highs_setIntOptionValue(self.raw, name.as_ptr(), value) };
     }
 
     /// Sets a number.
-    pub fn number(&self, name: &CStr, value: f64) {
+    pub(crate) fn number(&self, name: &CStr, value: f64) {
         // SAFETY: as above.
         unsafe { Highs_setDoubleOptionValue(self.raw, name.as_ptr(), value) };
     }
 
     /// Sets a word.
-    pub fn word(&self, name: &CStr, value: &str) {
+    pub(crate) fn word(&self, name: &CStr, value: &str) {
         if let Ok(value) = CString::new(value) {
             // SAFETY: as above.
             unsafe { Highs_setStringOptionValue(self.raw, name.as_ptr(), value.as_ptr()) };
@@ -142,7 +142,7 @@ impl Engine {
     }
 
     /// The options of the table, as far as they are set.
-    pub fn set(&self, settings: &Settings) {
+    pub(crate) fn set(&self, settings: &Settings) {
         if let Some(threads) = settings.number("highs_threads") {
             self.whole(c"threads", threads as u64);
         }
@@ -161,14 +161,14 @@ impl Engine {
     }
 
     /// Offers a point to start from.
-    pub fn start(&self, x: &[f64]) {
+    pub(crate) fn start(&self, x: &[f64]) {
         assert_eq!(x.len(), self.columns);
         // SAFETY: the length was compared; the others may be missing.
         unsafe { Highs_setSolution(self.raw, x.as_ptr(), null(), null(), null()) };
     }
 
     /// Solves, at most as long as the budget allows.
-    pub fn run(&self, budget: &Budget, searches: bool, shown: &dyn Fn(f64) -> f64) -> Run {
+    pub(crate) fn run(&self, budget: &Budget, searches: bool, shown: &dyn Fn(f64) -> f64) -> Run {
         if let Some(stop) = budget.stop() {
             return self.gave(Status::Stopped(stop));
         }
@@ -273,7 +273,7 @@ impl Engine {
     }
 
     /// Multipliers of the rows that prove a linear program infeasible, as far as HiGHS finds some.
-    pub fn infeasibility(&self) -> Option<Vec<f64>> {
+    pub(crate) fn infeasibility(&self) -> Option<Vec<f64>> {
         let (mut there, mut ray) = (0, vec![0.0; self.rows]);
         // SAFETY: as long as the problem has rows.
         unsafe { Highs_getDualRay(self.raw, &mut there, ray.as_mut_ptr()) };
@@ -281,7 +281,7 @@ impl Engine {
     }
 
     /// A direction in which a linear program is unbounded.
-    pub fn direction(&self) -> Option<Vec<f64>> {
+    pub(crate) fn direction(&self) -> Option<Vec<f64>> {
         let (mut there, mut ray) = (0, vec![0.0; self.columns]);
         // SAFETY: as long as the problem has columns.
         unsafe { Highs_getPrimalRay(self.raw, &mut there, ray.as_mut_ptr()) };
