@@ -12,10 +12,10 @@ use crate::model::problem_type::ProblemType;
 pub static BACKENDS: &[&dyn Backend] = &[
     &lp::Clarabel,
     &lp::SimplexAlone,
-    #[cfg(feature = "ipopt")]
-    &nlp::Nonlinear(&nlp::ipopt::Ipopt),
     #[cfg(feature = "pounce")]
     &nlp::Nonlinear(&nlp::pounce::Pounce),
+    #[cfg(feature = "ipopt")]
+    &nlp::Nonlinear(&nlp::ipopt::Ipopt),
     &super::complementarity::Bmcp,
     &mpec::Bmpec,
     #[cfg(feature = "highs")]

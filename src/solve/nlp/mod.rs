@@ -46,10 +46,10 @@ pub const THREAD: &str = "nonlinear solver";
 /// The solvers that are in this build, the default first.
 pub fn interior_point_solvers() -> &'static [&'static dyn InteriorPoint] {
     &[
-        #[cfg(feature = "ipopt")]
-        &ipopt::Ipopt,
         #[cfg(feature = "pounce")]
         &pounce::Pounce,
+        #[cfg(feature = "ipopt")]
+        &ipopt::Ipopt,
     ]
 }
 
