@@ -111,6 +111,10 @@ strategies! {
             "up to 10 000 variables and constraints: sequential linear and quadratic programming goes first",
             "100 steps",
             "Byrd, Gould, Nocedal & Waltz 2004";
+        InteriorFirst "interior_first",
+            "at least 50 constraints, and a quarter of all, are nonlinear equations: the interior point goes before the sequential method",
+            "a run of the interior point",
+            "ablation";
         SecondOrderCorrection "second_order_correction",
             "a step is refused: the curvature of the held rows is taken off",
             "a solve with the factors and an evaluation",
@@ -124,8 +128,8 @@ strategies! {
             "nothing",
             "programs built from the rounded answers of others";
         InfeasibilityDoubt "infeasibility_doubt",
-            "linear programs prove that nothing nearby is feasible: again from six other starts",
-            "600 steps",
+            "linear programs prove that nothing nearby is feasible: again from halfway between the bounds",
+            "100 steps",
             "multistart";
         WidenedRows "widened_rows",
             "rows without multipliers at the solution: the same rows 1e-8 wider",

@@ -9,7 +9,7 @@ use super::interior_point::lock;
 use super::newton;
 use super::problem::Problem;
 use super::quadratic::Quadratic;
-use super::schedule::{ELSEWHERE, FINEST, NEARER, ROUNDING};
+use super::schedule::{FINEST, From, NEARER, ROUNDING};
 use super::trial::{Trial, polished};
 use crate::solve::certificate::nonlinear::is_locally_infeasible;
 use crate::solve::{SolveError, Strategy};
@@ -22,20 +22,21 @@ const SHARPLY: f64 = 1e-9;
 const SHARE: f64 = 1e-3;
 
 impl Driver<'_, '_> {
-    /// Where an earlier solve ended, linear programs from there, and Newton's method where there is nothing to choose. Whether
-    /// that settles it.
-    pub(super) fn settle_without_interior_point(&mut self) -> Result<bool, SolveError> {
-        let again = self.attempt_again();
+    /// Where an earlier solve ended, and Newton's method where there is nothing to choose. Whether that settles it.
+    pub(super) fn settle_at_once(&mut self) -> Result<bool, SolveError> {
         self.leave_saddles()?;
         if self.is_settled() {
             return Ok(true);
         }
         if self.is_square() && self.settings.runs(Strategy::SquareNewton) {
             self.attempt_newton();
-            if self.is_settled_by("newton")? {
-                return Ok(true);
-            }
+            return self.is_settled_by("newton");
         }
+        Ok(false)
+    }
+
+    /// Sequential programs, from where an earlier solve ended if there was one. Whether that settles it.
+    pub(super) fn settle_by_sequence(&mut self, again: bool) -> Result<bool, SolveError> {
         if self.named {
             return Ok(false);
         }
@@ -58,20 +59,18 @@ impl Driver<'_, '_> {
         Ok(settled)
     }
 
-    /// Where nothing near the start is feasible: from elsewhere. Whether that settles it.
+    /// Where nothing near the start is feasible: from halfway between the bounds. Whether that settles it.
     fn doubt(&mut self) -> Result<bool, SolveError> {
-        for from in ELSEWHERE {
-            let x = self.start_point(from);
-            if self.is_square() {
-                lock(&*self.problem).set_start(x.clone());
-                self.attempt_newton();
-            }
-            if !self.is_settled() {
-                self.sequential(x, None);
-            }
-            if self.best.as_ref().is_some_and(Trial::is_feasible) {
-                return self.is_settled_by("slqp");
-            }
+        let x = self.start_point(From::Middle);
+        if self.is_square() {
+            lock(&*self.problem).set_start(x.clone());
+            self.attempt_newton();
+        }
+        if !self.is_settled() {
+            self.sequential(x, None);
+        }
+        if self.best.as_ref().is_some_and(Trial::is_feasible) {
+            return self.is_settled_by("slqp");
         }
         Ok(false)
     }
@@ -88,7 +87,7 @@ impl Driver<'_, '_> {
 
     /// The start with the marginals that an earlier solve left: where little or nothing has changed since, that is the answer,
     /// perhaps after a Newton step on its active set. Whether there are such marginals.
-    fn attempt_again(&mut self) -> bool {
+    pub(super) fn attempt_again(&mut self) -> bool {
         let lambda = lock(&*self.problem).marginals_of(self.instance);
         if lambda.iter().all(|&l| l == 0.0) || !self.settings.runs(Strategy::WarmStart) {
             return false;

@@ -28,7 +28,7 @@ use super::schedule::{
 use super::slqp;
 use super::trial::{Trial, clean, polished, residuals_at, tidy, without_noise};
 use super::{Convexity, Engine};
-use crate::autodiff::{ErrorKind, EvalFailure, Evaluator, kinks};
+use crate::autodiff::{Degree, ErrorKind, EvalFailure, Evaluator, kinks};
 use crate::model::instance::Instance;
 use crate::solve::backend::Task;
 use crate::solve::budget::{self, Budget, Size, Stop};
@@ -52,6 +52,9 @@ const MOST_ESCAPES: u32 = 3;
 
 /// Rows without multipliers are violated by less than this where the sequential method ends.
 const NEARLY: f64 = 1e-4;
+
+/// Nonlinear equations from which on the interior point may go first.
+const MANY_CURVED: usize = 50;
 
 /// What rows without multipliers are widened by, in units of their largest entry.
 const WIDTH: f64 = 1e-8;
@@ -239,10 +242,15 @@ impl Driver<'_, '_> {
                 return Ok(self.finish());
             }
         }
-        if self.settle_without_interior_point()? {
+        let again = self.attempt_again();
+        if self.settle_at_once()? {
             return Ok(self.finish());
         }
-        if self.impossible {
+        let interior_first = !self.named
+            && !again
+            && self.is_mostly_nonlinear()
+            && self.settings.runs(Strategy::InteriorFirst);
+        if !interior_first && (self.settle_by_sequence(again)? || self.impossible) {
             return Ok(self.finish());
         }
         if self.infeasibility.is_some() {
@@ -262,6 +270,10 @@ impl Driver<'_, '_> {
         if self.is_settled() {
             self.growth = Growth::Ignored;
             self.search()?;
+            return Ok(self.finish());
+        }
+        let lacks_point = !self.best.as_ref().is_some_and(Trial::is_feasible);
+        if interior_first && lacks_point && self.settle_by_sequence(again)? {
             return Ok(self.finish());
         }
         if self.is_impossible() {
@@ -349,6 +361,18 @@ impl Driver<'_, '_> {
         let (lower, upper) = problem.sides();
         let equations = lower.iter().zip(upper).filter(|(l, u)| l == u).count();
         equations >= problem.size().0
+    }
+
+    /// A discretised system, say: linear programs would see little of it, and their pivots would take longer than factors.
+    fn is_mostly_nonlinear(&self) -> bool {
+        let mut problem = lock(&*self.problem);
+        let degrees = problem.evaluator().degrees();
+        let (lower, upper) = problem.sides();
+        let sides = problem.rows.iter().zip(lower.iter().zip(upper));
+        let curved = sides
+            .filter(|(i, (l, u))| l == u && degrees[**i as usize] > Degree::Linear)
+            .count();
+        curved >= MANY_CURVED && 4 * curved >= problem.rows.len()
     }
 
     /// Whether there may be several local optima, and the user lets us look for them.

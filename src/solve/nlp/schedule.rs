@@ -59,8 +59,8 @@ pub(super) const RESTARTS: [(Strategy, From); 2] = [
     (Strategy::RestartMoved, From::Moved(0.1)),
 ];
 
-/// From where a proof that nothing near the start is feasible is doubted, and where a better optimum than a certified one is looked for:
-/// there the first [`AGREEMENT`] are always tried, the others where these did not agree.
+/// From where a better optimum than a certified one is looked for: the first [`AGREEMENT`] are always tried, the others where
+/// these did not agree.
 pub(super) const ELSEWHERE: [From; 6] = [
     From::Start,
     From::Middle,

@@ -26,6 +26,8 @@ pub(super) struct Trial {
     pub(super) diverging: bool,
     /// Feasible to the tolerance only because it is far away: without what is violated, the objective would be another.
     pub(super) feasible_only_by_scaling: bool,
+    /// Complementary only because a variable is near its bound: the slope is so steep that the objective still changes on the way there.
+    pub(super) steep: bool,
     /// The objective gets better without limit.
     pub(super) unbounded: bool,
     /// The rows have no multipliers here; rows a little wider have, with all but the same value.
@@ -34,7 +36,7 @@ pub(super) struct Trial {
 
 impl Trial {
     pub(super) fn is_optimal(&self) -> bool {
-        self.is_stationary() && !self.diverging || self.irregular
+        self.is_stationary() && !self.diverging && !self.steep || self.irregular
     }
 
     /// Satisfies the conditions of first order.
@@ -96,7 +98,9 @@ pub(super) fn residuals_at(
         .objective
         .map_or(0.0, |o| o.sense.sign() * level[o.column as usize]);
     let (residuals, at) = measure(instance, problem.evaluator(), kinks, &level, &row_marginal);
-    let diverging = is_diverging(instance, &level, &at.reduced, objective);
+    let diverging = is_promising(instance, &level, &at.reduced, objective, |x, _| x >= FAR);
+    let steep = |x: f64, distance: f64| distance <= TOLERANCE * x.max(1.0);
+    let steep = is_promising(instance, &level, &at.reduced, objective, steep);
     let feasible_only_by_scaling =
         is_feasible_only_by_scaling(instance, &level, &row_marginal, &at.activity);
     Trial {
@@ -110,27 +114,34 @@ pub(super) fn residuals_at(
         objective,
         diverging,
         feasible_only_by_scaling,
+        steep,
         unbounded: false,
         irregular: false,
     }
 }
 
-/// Whether a variable beyond [`FAR`] promises a considerable change of the objective if it goes on as far again:
-/// where everything flattens out towards infinity, derivatives alone say little.
-fn is_diverging(instance: &Instance, level: &[f64], reduced: &[f64], objective: f64) -> bool {
+/// Whether a variable of some size and distance from its bound promises a considerable change of the objective if it goes on to
+/// that bound, or as far again: beyond [`FAR`], where everything flattens out towards infinity, and next to a pole derivatives alone say little.
+fn is_promising(
+    instance: &Instance,
+    level: &[f64],
+    reduced: &[f64],
+    objective: f64,
+    concerns: impl Fn(f64, f64) -> bool,
+) -> bool {
     let columns = &instance.columns;
     let sign = instance.sign();
-    let promise = |j: usize| {
+    let considerable = CONSIDERABLE * objective.abs().max(1.0);
+    (0..level.len()).any(|j| {
         let slope = sign * reduced[j];
         let bound = if slope > 0.0 {
             columns.lower[j]
         } else {
             columns.upper[j]
         };
-        slope.abs() * (level[j] - bound).abs().min(level[j].abs())
-    };
-    let considerable = CONSIDERABLE * objective.abs().max(1.0);
-    (0..level.len()).any(|j| level[j].abs() >= FAR && promise(j) > considerable)
+        let (size, distance) = (level[j].abs(), (level[j] - bound).abs());
+        concerns(size, distance) && slope.abs() * distance.min(size) > considerable
+    })
 }
 
 /// Violation of row i.

@@ -83,6 +83,9 @@ impl Driver<'_, '_> {
                 Ended::TooLarge => SolverStatus::ResourceInterrupt,
                 Ended::Broken if self.message.is_some() => SolverStatus::ResourceInterrupt,
                 Ended::Broken => SolverStatus::InternalSolverFailure,
+                Ended::Failed if problem.last_failure.is_some() => {
+                    SolverStatus::EvaluationInterrupt
+                }
                 _ => SolverStatus::TerminatedBySolver,
             },
             _ => SolverStatus::NormalCompletion,
