@@ -132,7 +132,7 @@ pub const CODES: &[Code] = &[
     row("E0319", Error, "no values", "a symbol is used before it gets data, is assigned or solved for"),
     row("E0320", Error, "domain changed", "a set that is a domain cannot be assigned; declare a subset"),
     row("E0321", Error, "`for` over a set", "`for` counts with a scalar; `loop` runs over a set"),
-    row("E0322", Warning, "other program", "`execute` is passed over"),
+    row("E0322", Warning, "other program", "`execute`, embedded code that gives nothing back, and exports to other programs are passed over"),
     row("E0323", Error, "not a figure", "`draw` takes a figure and a file name in quotes"),
     row("E0324", Error, "declaration in a block", "declarations and equations stand outside loops"),
     row("E0325", Error, "not assignable", "only parameters, sets, and attributes are assigned"),

@@ -40,12 +40,7 @@ pub struct Answer {
 impl Answer {
     /// A search ended without a solution: levels and marginals are as before.
     pub fn is_without_point(&self) -> bool {
-        use ModelStatus as S;
-        self.search.is_some()
-            && matches!(
-                self.status,
-                S::IntegerInfeasible | S::NoSolution | S::UnboundedNoSolution
-            )
+        self.search.as_ref().is_some_and(|s| !s.solution)
     }
 }
 
@@ -298,7 +293,12 @@ fn status_of_search(
         (true, Claim::Unbounded) => S::Unbounded,
         (true, Claim::Solved) => S::Optimal,
         (true, _) => S::IntegerSolution,
-        (false, Claim::Infeasible) => S::IntegerInfeasible,
+        // The nonlinear solver found no point for the root: this is not due to integers.
+        (false, Claim::LocallyInfeasible) if search.nodes <= 1 => S::LocallyInfeasible,
+        (false, Claim::Infeasible) if search.nodes <= 1 && !task.instance.is_linear() => {
+            S::Infeasible
+        }
+        (false, Claim::Infeasible | Claim::LocallyInfeasible) => S::IntegerInfeasible,
         (false, Claim::Unbounded) => S::UnboundedNoSolution,
         _ => S::NoSolution,
     }

@@ -27,7 +27,7 @@ impl Preprocessor<'_> {
     }
 
     /// Passes over lines up to the one that begins with a directive, and shows each.
-    fn collect_to(&mut self, word: &str, each: &mut dyn FnMut(&str, u32)) -> bool {
+    pub(super) fn collect_to(&mut self, word: &str, each: &mut dyn FnMut(&str, u32)) -> bool {
         loop {
             let Some(frame) = self.frames.last() else {
                 return false;

@@ -71,6 +71,18 @@ pub(super) const SILENT: &[&str] = &[
     "ident",
 ];
 
+/// Files of `$libInclude` that hand data to another program, and give nothing back.
+pub(super) const EXPORTS: &[&str] = &[
+    "gams2tbl",
+    "gams2txt",
+    "gnuplot",
+    "gnuplotxyz",
+    "gnupltxy",
+    "xlchart",
+    "xldump",
+    "xlexport",
+];
+
 /// Directives with the rest of their line as argument, without effect here.
 pub(super) const SILENT_LINES: &[&str] = &[
     "stitle",

@@ -6,12 +6,12 @@
 
 use super::Modes;
 use super::conditions::Flavour;
-use super::directive_names::{OTHERS, SILENT, SILENT_LINES, SILENT_SWITCHES};
+use super::directive_names::{EXPORTS, OTHERS, SILENT, SILENT_LINES, SILENT_SWITCHES};
 use super::evaluate::{evaluate, number_text};
 use super::line::Line;
 use super::preprocess::{Ending, Known, Preprocessor};
 use super::variables::Reach;
-use super::{Outcome, embedded_code, refuse};
+use super::{Outcome, embedded_code, passed_over, refuse};
 use crate::diag::{Diagnostic, nearest};
 
 /// Length of the word at the start of a text.
@@ -246,6 +246,16 @@ impl Preprocessor<'_> {
                     tail = t;
                 }
                 let outcome = self.include(name, Some(arguments), lo, hi);
+                let missing =
+                    word == "libinclude" && matches!(&outcome, Err(d) if d.code == "E0103");
+                if missing && EXPORTS.contains(&name.to_lowercase().as_str()) {
+                    let span = self.place(lo, hi);
+                    self.warnings.push(passed_over(
+                        span,
+                        format!("`{name}` belongs to the library of a GAMS installation, which is not there"),
+                    ));
+                    return Ok(());
+                }
                 return outcome.map_err(|d| match (word, d.code) {
                     ("libinclude" | "sysinclude", "E0103") => Box::new(
                         Diagnostic::error(
@@ -439,8 +449,15 @@ impl Preprocessor<'_> {
             }
             "onembeddedcode" | "onembeddedcodes" | "onembeddedcodev" => {
                 let span = self.place(lo, hi);
-                self.skip_to("offembeddedcode");
-                return refuse(embedded_code(span));
+                let mut gives_back = !rest.trim_start().to_lowercase().starts_with("connect");
+                self.collect_to("offembeddedcode", &mut |line, _| {
+                    gives_back |= line.to_lowercase().contains("gamswriter");
+                });
+                let d = embedded_code(span, gives_back);
+                if gives_back {
+                    return refuse(d);
+                }
+                self.warnings.push(d);
             }
             "gdxin" | "gdxout" | "gdxload" | "gdxunload" | "load" | "loaddc" | "loadm"
             | "loadr" | "loaddcm" | "loaddcr" | "loadfiltered" | "loadidx" | "unload" | "kill"

@@ -37,9 +37,20 @@ pub(crate) fn refuse<T>(d: Diagnostic) -> Outcome<T> {
     Err(Box::new(d))
 }
 
-/// Code of another language in the model.
-pub(crate) fn embedded_code(at: Span) -> Diagnostic {
-    Diagnostic::error("E0113", at, "embedded code of other languages is not run")
-        .label("not run")
-        .help("write the computation in the language itself")
+/// Code of another language in the model. Only an export gives nothing back; what does not is passed over, as `execute` is.
+pub(crate) fn embedded_code(at: Span, gives_back: bool) -> Diagnostic {
+    let what = "embedded code of other languages is not run";
+    match gives_back {
+        true => Diagnostic::error("E0113", at, what)
+            .label("not run")
+            .help("write the computation in the language itself"),
+        false => passed_over(at, what),
+    }
+}
+
+/// An export that is not done.
+pub(crate) fn passed_over(at: Span, what: impl Into<String>) -> Diagnostic {
+    Diagnostic::warning("E0322", at, what)
+        .label("passed over: it gives nothing back")
+        .help("`execute_unload` and `put` write files; `--json` has everything")
 }

@@ -313,10 +313,12 @@ impl Splitter {
             return Some(false);
         };
         let rest = memchr::memchr2(b';', b'\n', &text.as_bytes()[end..]);
+        let names = &text[end..rest.map_or(text.len(), |n| end + n)];
+        let gives_back = !names.trim().is_empty() || inside[..end - start].contains("gamswriter");
         self.pos = rest.map_or(text.len(), |n| end + n + 1);
         self.last_end = self.pos;
         self.problems
-            .push(embedded_code(span(start, start + BEGIN.len())));
+            .push(embedded_code(span(start, start + BEGIN.len()), gives_back));
         Some(true)
     }
 

@@ -157,10 +157,11 @@ pub(super) fn concluded(task: &Task, found: Found, settings: &Settings, budget: 
     outcome.claim = match (complete, &found.end) {
         (_, End::Unbounded) => Claim::Unbounded,
         (true, _) if proved && found.exact => Claim::Solved,
-        (false, End::Complete) if !found.incomplete => Claim::Infeasible,
+        (false, End::Complete) if found.incomplete => Claim::Unfinished,
+        (false, End::Complete) if found.exact => Claim::Infeasible,
+        (false, End::Complete) => Claim::LocallyInfeasible,
         _ => Claim::Unfinished,
     };
-    let infeasible = outcome.claim == Claim::Infeasible;
     let endless = matches!(found.end, End::Stopped(_)) && !found.incomplete;
     for values in [
         &mut outcome.level,
@@ -173,10 +174,10 @@ pub(super) fn concluded(task: &Task, found: Found, settings: &Settings, budget: 
     outcome.solver = NAME;
     outcome.basis = None;
     outcome.message = match () {
-        () if infeasible && !found.exact => {
+        () if outcome.claim == Claim::LocallyInfeasible => {
             Some("not convex: the nonlinear solver found no point, which proves nothing".into())
         }
-        () if infeasible && found.nodes == 0 => {
+        () if outcome.claim == Claim::Infeasible && found.nodes == 0 => {
             Some("the bounds and rows contradict each other before any search".into())
         }
         () if found.incomplete => {

@@ -179,6 +179,8 @@ pub struct Search<'a, R: Relaxation> {
     made: u32,
     /// Nodes whose relaxation was not solved.
     failures: u32,
+    /// Nodes of a plunge: more than it takes to decide all columns once, for bounds may be infinite.
+    longest: u32,
 }
 
 /// What the relaxation of a node says.
@@ -189,6 +191,8 @@ enum Evaluated {
     GivenUp,
     /// The search ends here.
     Ended(End),
+    /// It is left as it is for now.
+    Later,
     /// It is divided.
     Divided(Branch),
 }
@@ -247,6 +251,7 @@ impl<'a, R: Relaxation> Search<'a, R> {
             next_log: 0.0,
             made: 0,
             failures: 0,
+            longest: 100 + 2 * mip.integer.iter().filter(|i| **i).count() as u32,
         }
     }
 
@@ -420,6 +425,7 @@ impl<'a, R: Relaxation> Search<'a, R> {
             return None;
         }
         self.relaxation.restart(&node.start);
+        let deepest = node.depth + self.longest;
         loop {
             self.nodes += 1;
             let branch = match self.evaluate(&mut node, control) {
@@ -429,6 +435,10 @@ impl<'a, R: Relaxation> Search<'a, R> {
                     return None;
                 }
                 Evaluated::GivenUp => return None,
+                Evaluated::Later => {
+                    self.postpone(node);
+                    return None;
+                }
                 Evaluated::Ended(end) => return self.put_back(node, end),
             };
             self.fate(node.number, "branched");
@@ -445,18 +455,27 @@ impl<'a, R: Relaxation> Search<'a, R> {
             if self.is_close() {
                 return self.put_back(node, End::Gap);
             }
+            if node.depth > deepest {
+                self.postpone(node);
+                return None;
+            }
         }
     }
 
-    /// The search ends at a node that stays open.
-    fn put_back(&mut self, mut node: Node<R::Start>, end: End) -> Option<End> {
+    /// A node stays open, to be gone on with from here.
+    fn postpone(&mut self, mut node: Node<R::Start>) {
         node.start = self.relaxation.start();
+        self.open.push(node);
+    }
+
+    /// The search ends at a node that stays open.
+    fn put_back(&mut self, node: Node<R::Start>, end: End) -> Option<End> {
         let least = self
             .open
             .peek()
             .map_or(node.bound, |n| n.bound.min(node.bound));
         self.bound = self.bound.max(least);
-        self.open.push(node);
+        self.postpone(node);
         Some(end)
     }
 
@@ -523,6 +542,10 @@ impl<'a, R: Relaxation> Search<'a, R> {
                     let parent = node.path.take();
                     node.path = Some(Rc::new(Path { changes, parent }));
                     resolves += 1;
+                    // Without finite bounds this may go on for ever: the others have their turn.
+                    if resolves > self.longest {
+                        return Evaluated::Later;
+                    }
                 }
                 None if failed => {
                     self.incomplete = true;
