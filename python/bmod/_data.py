@@ -141,6 +141,8 @@ def parameter(
     import numpy as np
     import pandas as pd
 
+    columns: List[Any]
+    values: Any
     dimension = None if domain is None else len(domain)
     if hasattr(data, "to_series") and hasattr(data, "dims"):
         data = data.to_series() if data.dims else data.item()  # xarray
@@ -183,6 +185,7 @@ def members(
     """Members of a set: a list of labels or tuples, or a dict with their texts."""
     import pandas as pd
 
+    columns: List[Any]
     texts = None
     if isinstance(data, Mapping):
         texts = ["" if t is None else str(t) for t in data.values()]
@@ -204,7 +207,7 @@ def members(
     return _keys(name, columns), texts
 
 
-def index(keys: List[Key], names: List[str]) -> Any:
+def index(keys: List[Tuple[List[str], bytearray]], names: List[str]) -> Any:
     """The pandas index of records: unique labels and codes, no copy per record."""
     import numpy as np
     import pandas as pd
@@ -214,8 +217,8 @@ def index(keys: List[Key], names: List[str]) -> Any:
         labels = np.array(keys[0][0], dtype=object)
         return pd.Index(labels.take(arrays[0]) if len(labels) else labels, name=names[0])
     return pd.MultiIndex(
-        levels=[pd.Index(labels, dtype=object) for labels, _ in keys],
-        codes=arrays,
+        levels=[pd.Index(labels, dtype=object) for labels, _ in keys],  # type: ignore[misc]  # the stubs forbid an Index
+        codes=arrays,  # type: ignore[arg-type]  # and arrays
         names=names,
         verify_integrity=False,
     )

@@ -197,7 +197,7 @@ def sweep(
     rows: Dict[int, Dict[str, Any]] = {}
     if known:
         for n, point in enumerate(points):
-            found = known.get(_key_at(fixed, point, outputs, keywords))
+            found = known.get(_key_at(fixed, point, outputs, keywords) or "")
             if found is not None:
                 rows[n] = found
     bar = _bar(len(points), len(rows), progress)
@@ -253,7 +253,7 @@ def _end_with(parent: int) -> None:
 _LOST = {"run": "lost"}
 
 
-def _key_at(fixed: Any, point: Mapping[str, Any], outputs: Sequence[str], keywords: Mapping[str, Any]) -> Optional[str]:
+def _key_at(fixed: Tuple[Source, Dict[str, Any]], point: Mapping[str, Any], outputs: Sequence[str], keywords: Mapping[str, Any]) -> Optional[str]:
     from . import Error
 
     try:
