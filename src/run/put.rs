@@ -244,12 +244,21 @@ impl Machine<'_> {
                     return Some(Item::Text(String::new()));
                 }
                 let k = &k[..key.parts.len()];
+                let file = self.put.current.and_then(|s| self.put.files.get(&s));
+                // `.tf`: the labels stand for a text that is missing (1, 2) or for any (3, 4: in quotes).
+                let fill = file.map_or(2.0, |f| f.text.get("tf"));
                 match self.store.element_text(*t, k) {
-                    Some(text) => Item::Text(text.to_string()),
-                    None => {
-                        let names: Vec<&str> =
-                            k.iter().map(|&l| self.store.universe.name(l)).collect();
-                        Item::Text(names.join("."))
+                    Some(text) if fill < 3.0 => Item::Text(text.to_string()),
+                    None if fill == 0.0 => Item::Text(String::new()),
+                    _ => {
+                        let names = k.iter().map(|&l| self.store.universe.name(l));
+                        Item::Text(match fill >= 4.0 {
+                            true => names
+                                .map(|n| format!("\"{n}\""))
+                                .collect::<Vec<_>>()
+                                .join(","),
+                            false => names.collect::<Vec<_>>().join("."),
+                        })
                     }
                 }
             }
