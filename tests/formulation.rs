@@ -69,7 +69,7 @@ fn derived(m: &Machine, primal: &Primal) -> Derived {
         return Derived::Nothing;
     }
     let (symbols, store) = (&m.symbols, &m.store);
-    let written = |f: &Formulation| text::model(symbols, store, f, None, "", true);
+    let written = |f: &Formulation| text::model(symbols, store, f, None, "", true, None);
     let result = match shape(&primal.generated.instance) {
         Shape::Linear | Shape::ConvexQuadratic { .. } => {
             check::checked_dual(symbols, store, primal)
@@ -260,6 +260,24 @@ fn latex_is_compiled() {
     }
 }
 
+/// A column that stands in no row and makes the program unbounded has a row in the dual that holds nowhere.
+#[test]
+fn the_dual_of_an_unlimited_column_is_infeasible() {
+    let text = "set i / a, b, c /;  parameter c(i) / a 1, b -2, c 3 /;
+        positive variable x(i);  negative variable n;  variables f, z;  equations o, r;
+        o..  z =e= sum(i, c(i)*x(i)) + 2*n + f;
+        r..  x('a') + f =g= 1;
+        model m / all /;  solve m using lp minimizing z;";
+    let Derived::Dual(f, c, written) = derive_text(text) else {
+        panic!("a linear program");
+    };
+    assert!(c.passed(), "{:?}", c.differences);
+    let named = |n: &str| f.multipliers.iter().any(|m| m.name == n);
+    assert!(named("y_lo_x") && named("y_up_n"));
+    let solve = solved(&written, &bmod::Options::default()).expect("a solve");
+    assert_eq!(solve.model_status, bmod::ModelStatus::Infeasible);
+}
+
 /// What cannot be derived is refused with its place and a reason.
 #[test]
 fn refusals_have_place_and_reason() {
@@ -336,7 +354,7 @@ fn a_derived_model_may_include_the_text() {
     let name = file.to_string_lossy();
     let model = look(&mut host, &name, StudyChoice::default(), &mut |m, p| {
         let f = dual::dual(&m.symbols, &m.store, &p, false).expect("a dual");
-        text::model(&m.symbols, &m.store, &f, Some("diet.blk"), "", true)
+        text::model(&m.symbols, &m.store, &f, Some("diet.blk"), "", true, None)
     });
     let mut derived = Model::from_text("dual.blk", model.expect("it is solved"));
     derived.file("diet.blk", std::fs::read(&file).expect("the text"));
@@ -677,7 +695,7 @@ type Entries = BTreeMap<(Record, Record), f64>;
 
 /// The matrix that a text generates, by names, its objective's row and column left out.
 fn matrix(text: &str, rename: &dyn Fn(&str) -> String) -> Entries {
-    let i = check::generate(text).expect("it was generated before");
+    let i = check::generate(text, Vec::new()).expect("it was generated before");
     let p = &i.generated.instance;
     let z = p.objective.map(|o| o.column as usize);
     let named = |r: &Record| (rename(&r.0).into(), r.1.clone());
@@ -758,17 +776,20 @@ fn the_kinematic_theorem_written_by_hand_is_the_dual_of_the_static_one() {
                 }
                 let dual = dual::dual(&m.symbols, &m.store, &primal, true).expect("a dual");
                 assert!(dual.by_instance.is_empty());
-                let text = text::model(&m.symbols, &m.store, &dual, None, "", true);
-                entries(&check::generate(&text).expect("generated"), &|n| {
-                    let names = [
-                        ("dual_alpha", "norm"),
-                        ("dual_x", "normal"),
-                        ("dual_objective_row", "work"),
-                        ("dual_objective", "rate"),
-                    ];
-                    let known = names.iter().find(|k| k.0 == n);
-                    known.map_or(n.to_string(), |k| k.1.to_string())
-                })
+                let text = text::model(&m.symbols, &m.store, &dual, None, "", true, None);
+                entries(
+                    &check::generate(&text, Vec::new()).expect("generated"),
+                    &|n| {
+                        let names = [
+                            ("dual_alpha", "norm"),
+                            ("dual_x", "normal"),
+                            ("dual_objective_row", "work"),
+                            ("dual_objective", "rate"),
+                        ];
+                        let known = names.iter().find(|k| k.0 == n);
+                        known.map_or(n.to_string(), |k| k.1.to_string())
+                    },
+                )
             },
         );
         found.push(all.expect("it is solved"));

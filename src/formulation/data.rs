@@ -5,12 +5,14 @@ use super::tree::*;
 use super::{NewData, Row};
 use crate::check::node::SymbolId;
 use crate::check::symbols::{DomainPosition, Store, SymbolKind, Symbols, UNIVERSE};
+use crate::data::input::{Input, InputData, Keys};
 use crate::data::table::Table;
 use crate::data::universe::Label;
 use crate::data::value::{is_eps, is_na};
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeSet;
 use std::fmt::Write;
+use std::sync::Arc;
 
 /// A number as the language reads it, with all its digits.
 pub fn number(x: f64) -> String {
@@ -117,8 +119,8 @@ impl<'a> Data<'a> {
     }
 
     /// All of it as statements.
-    pub fn statements(&self) -> String {
-        let mut out = self.order();
+    pub fn statements(&self, out: &mut Statements) {
+        self.order(out);
         for &s in &self.sets {
             let symbol = self.symbols.get(s);
             if let SymbolKind::Alias(root) = symbol.kind {
@@ -126,38 +128,22 @@ impl<'a> Data<'a> {
                     UNIVERSE => "*".to_string(),
                     r => self.symbols.get(r).name.to_string(),
                 };
-                let _ = writeln!(out, "Alias ({root},{});", symbol.name);
+                let _ = writeln!(out.text, "Alias ({root},{});", symbol.name);
                 continue;
             }
             let singleton = matches!(symbol.kind, SymbolKind::Set { singleton: true });
             let word = if singleton { "Singleton set" } else { "Set" };
             let table = self.store.table(symbol.table);
             let head = self.head(s, &symbol.name);
-            let keys = records(table).map(|(k, _)| k.to_vec());
-            write_records(
-                self.store,
-                &mut out,
-                word,
-                &head,
-                &symbol.text,
-                true,
-                keys.map(|k| (k, 1.0)),
-            );
+            let keys = records(table).map(|(k, _)| (k.to_vec(), 1.0));
+            out.records(word, &head, &symbol.text, true, keys);
         }
         for &p in &self.parameters {
             let symbol = self.symbols.get(p);
             let table = self.store.table(symbol.table);
             let head = self.head(p, &symbol.name);
             let all = records(table).map(|(k, v)| (k.to_vec(), v));
-            write_records(
-                self.store,
-                &mut out,
-                "Parameter",
-                &head,
-                &symbol.text,
-                false,
-                all,
-            );
+            out.records("Parameter", &head, &symbol.text, false, all);
         }
         for &(s, offset) in &self.attributes {
             let symbol = self.symbols.get(s);
@@ -171,7 +157,7 @@ impl<'a> Data<'a> {
             let default = table.default_value();
             if default == 0.0 {
                 let all = records(table).map(|(k, v)| (k.to_vec(), v));
-                write_records(self.store, &mut out, "Parameter", &head, &text, false, all);
+                out.records("Parameter", &head, &text, false, all);
                 continue;
             }
             // What is not stored has another value than 0.
@@ -192,14 +178,13 @@ impl<'a> Data<'a> {
                 let v = table.get(&k);
                 (k, v)
             });
-            write_records(self.store, &mut out, "Parameter", &head, &text, false, all);
+            out.records("Parameter", &head, &text, false, all);
         }
-        out.push('\n');
-        out
+        out.text.push('\n');
     }
 
     /// Labels in the order they had, where the sets alone would bring them up in another one.
-    fn order(&self) -> String {
+    fn order(&self, out: &mut Statements) {
         let mut seen: FxHashSet<Label> = FxHashSet::default();
         let mut order: Vec<Label> = Vec::new();
         for &s in &self.sets {
@@ -211,21 +196,16 @@ impl<'a> Data<'a> {
             }
         }
         if order.is_sorted() {
-            return String::new();
+            return;
         }
         order.sort_unstable();
         let mut name = "labels_in_order".to_string();
         while self.symbols.find(&name).is_some() {
             name.push('_');
         }
-        let labels: Vec<String> = order
-            .iter()
-            .map(|l| quoted(self.store.universe.name(*l)))
-            .collect();
-        format!(
-            "Set {name} 'the labels in the order of the text'\n   / {} /;\n",
-            labels.join("\n     ")
-        )
+        let labels = order.into_iter().map(|l| (vec![l], 1.0));
+        let text = "the labels in the order of the text";
+        out.records("Set", &name, text, true, labels);
     }
 
     fn head(&self, s: SymbolId, name: &str) -> String {
@@ -250,62 +230,114 @@ fn records(t: &Table) -> impl Iterator<Item = (&[Label], f64)> {
     (0..t.len() as u32).map(|r| (t.key(r), t.value(r)))
 }
 
-/// Data that a derivation introduces, as a statement.
-pub fn statement(symbols: &Symbols, store: &Store, d: &NewData) -> String {
-    let mut out = String::new();
-    let word = if d.is_set { "Set" } else { "Parameter" };
-    let head = head(symbols, &d.name, &d.domain);
-    write_records(
-        store,
-        &mut out,
-        word,
-        &head,
-        &d.text,
-        d.is_set,
-        d.records.iter().cloned(),
-    );
-    out
+/// Statements that declare data, and the data: in the text, or apart from it.
+pub struct Statements<'a> {
+    symbols: &'a Symbols,
+    store: &'a Store,
+    /// The text.
+    pub text: String,
+    /// Where the records of what has indices go that are not to be written.
+    pub apart: Option<&'a mut Vec<Arc<Input>>>,
 }
 
-fn write_records(
+impl<'a> Statements<'a> {
+    /// Nothing yet.
+    pub fn new(
+        symbols: &'a Symbols,
+        store: &'a Store,
+        apart: Option<&'a mut Vec<Arc<Input>>>,
+    ) -> Self {
+        Self {
+            symbols,
+            store,
+            text: String::new(),
+            apart,
+        }
+    }
+
+    /// Data that a derivation introduces.
+    pub fn introduced(&mut self, d: &NewData) {
+        let word = if d.is_set { "Set" } else { "Parameter" };
+        let head = head(self.symbols, &d.name, &d.domain);
+        self.records(word, &head, &d.text, d.is_set, d.records.iter().cloned());
+    }
+
+    fn records(
+        &mut self,
+        word: &str,
+        head: &str,
+        text: &str,
+        is_set: bool,
+        records: impl Iterator<Item = (Vec<Label>, f64)>,
+    ) {
+        let out = &mut self.text;
+        let _ = write!(out, "{word} {head}");
+        if !text.is_empty() {
+            let _ = write!(out, " {}", quoted(text));
+        }
+        let mut records = records.peekable();
+        let has_indices = records.peek().is_some_and(|r| !r.0.is_empty());
+        if let Some(apart) = self.apart.as_mut().filter(|_| has_indices) {
+            out.push_str(";\n");
+            let name = head.split('(').next().unwrap_or_default();
+            apart.push(Arc::new(input(self.store, name, is_set, records)));
+            return;
+        }
+        let mut any = false;
+        for (key, v) in records {
+            out.push_str(if any { ",\n     " } else { "\n   / " });
+            any = true;
+            for (n, l) in key.iter().enumerate() {
+                if n > 0 {
+                    out.push('.');
+                }
+                let name = self.store.universe.name(*l);
+                match name.contains('\'') {
+                    true => out.push_str(&quoted(name)),
+                    false => out.extend(["'", name, "'"]),
+                }
+            }
+            if !is_set {
+                if !key.is_empty() {
+                    out.push(' ');
+                }
+                out.push_str(&number(v));
+            }
+        }
+        // A parameter without records is 0 everywhere.
+        out.push_str(if any { " /;\n" } else { " / /;\n" });
+    }
+}
+
+/// Records as data from outside the text.
+fn input(
     store: &Store,
-    out: &mut String,
-    word: &str,
-    head: &str,
-    text: &str,
+    name: &str,
     is_set: bool,
     records: impl Iterator<Item = (Vec<Label>, f64)>,
-) {
-    let _ = write!(out, "{word} {head}");
-    if !text.is_empty() {
-        let _ = write!(out, " {}", quoted(text));
-    }
-    let mut any = false;
-    for (key, v) in records {
-        out.push_str(if any { ",\n     " } else { "\n   / " });
-        any = true;
-        for (n, l) in key.iter().enumerate() {
-            if n > 0 {
-                out.push('.');
-            }
-            let name = store.universe.name(*l);
-            match name.contains('\'') {
-                true => out.push_str(&quoted(name)),
-                false => out.extend(["'", name, "'"]),
-            }
+) -> Input {
+    let (mut labels, mut codes, mut values) = (Vec::new(), Vec::new(), Vec::new());
+    let mut known: Vec<FxHashMap<Label, u32>> = Vec::new();
+    for (key, v) in records.filter(|r| r.1 != 0.0) {
+        labels.resize(key.len(), Vec::new());
+        codes.resize(key.len(), Vec::new());
+        known.resize(key.len(), FxHashMap::default());
+        for (p, l) in key.into_iter().enumerate() {
+            let code = *known[p].entry(l).or_insert_with(|| {
+                labels[p].push(store.universe.name(l).to_string());
+                labels[p].len() as u32 - 1
+            });
+            codes[p].push(code);
         }
-        if !is_set {
-            if !key.is_empty() {
-                out.push(' ');
-            }
-            out.push_str(&number(v));
-        }
+        values.push(v);
     }
-    if !any && !is_set {
-        // A parameter without records is 0 everywhere.
-        out.push_str(" / /");
-    } else {
-        out.push_str(if any { " /" } else { " / /" });
+    let keys = Keys::new(labels, codes).unwrap_or_default();
+    let data = match is_set {
+        true => InputData::Members(keys, Vec::new()),
+        false => InputData::Values(keys, values),
+    };
+    Input {
+        name: name.into(),
+        data,
     }
-    out.push_str(";\n");
 }

@@ -366,6 +366,28 @@ impl<'a> Derivation<'a> {
         })
     }
 
+    /// The columns of a variable, by their places in it, that stand in no row and make the objective better without limit:
+    /// their rows in the dual hold nowhere, and need a multiplier all the same to be rows.
+    pub fn unlimited_alone(&self, v: SymbolId) -> Vec<usize> {
+        let g = &self.primal.generated;
+        let (Some(b), Some((row, a))) = (
+            g.origin.columns.symbol(v).filter(|_| self.is_without_row(v)),
+            g.instance.objective_row(),
+        ) else {
+            return Vec::new();
+        };
+        let better = |j: usize| {
+            let mut entries = g.instance.matrix.row(row);
+            let cost = entries.find(|t| t.0 == j).map_or(0.0, |t| -t.1 / a) * g.instance.sign();
+            let c = &g.instance.columns;
+            cost < 0.0 && c.upper[j] == f64::INFINITY
+                || cost > 0.0 && c.lower[j] == f64::NEG_INFINITY
+        };
+        let all = (0..b.len as usize).map(|n| (n, b.start as usize + n));
+        let alone = all.filter(|&(_, j)| !self.in_rows[j] && better(j));
+        alone.map(|(n, _)| n).collect()
+    }
+
     /// By column: whether it stands in a row with a multiplier, or in a nonlinear term.
     fn columns_in_rows(&self) -> Vec<bool> {
         let g = &self.primal.generated;

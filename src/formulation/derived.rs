@@ -96,7 +96,7 @@ impl Derived {
         );
         let include = include.then_some(file);
         let f = &self.formulation;
-        text::model(&m.symbols, &m.store, f, include, &head, true)
+        text::model(&m.symbols, &m.store, f, include, &head, true, None)
     }
 }
 

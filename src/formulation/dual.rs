@@ -223,26 +223,30 @@ fn column(d: &mut Derivation, v: SymbolId) -> Result<Vec<(bool, Expr)>, String> 
     let mut bounds = Vec::new();
     let single = (classes.len() == 1).then(|| classes[0].sign);
     let sign_of = |lo: f64, up: f64| single.unwrap_or(SIGNS[class_of(lo, up)]);
-    let pick = |test: &dyn Fn(f64, f64) -> bool| -> Vec<Vec<Label>> {
-        let wanted = columns.iter().filter(|(_, lo, up)| test(*lo, *up));
-        wanted.map(|(key, ..)| key.to_vec()).collect()
+    let alone = d.unlimited_alone(v);
+    let pick = |test: &dyn Fn(bool, f64, f64) -> bool| -> Vec<Vec<Label>> {
+        let each = columns.iter().enumerate();
+        let wanted = each.filter(|(n, (_, lo, up))| test(alone.contains(n), *lo, *up));
+        wanted.map(|(_, (key, ..))| key.to_vec()).collect()
     };
     let kinds = [
         (
             "lo",
             attribute::LO,
-            pick(&|lo, up| {
-                lo.is_finite() && lo != up && !(sign_of(lo, up) == Sign::Positive && lo == 0.0)
+            pick(&|alone, lo, up| {
+                let said = sign_of(lo, up) == Sign::Positive && lo == 0.0;
+                lo.is_finite() && lo != up && (alone || !said)
             }),
         ),
         (
             "up",
             attribute::UP,
-            pick(&|lo, up| {
-                up.is_finite() && lo != up && !(sign_of(lo, up) == Sign::Negative && up == 0.0)
+            pick(&|alone, lo, up| {
+                let said = sign_of(lo, up) == Sign::Negative && up == 0.0;
+                up.is_finite() && lo != up && (alone || !said)
             }),
         ),
-        ("fx", attribute::LO, pick(&|lo, up| lo == up)),
+        ("fx", attribute::LO, pick(&|_, lo, up| lo == up)),
     ];
     for (which, offset, keys) in kinds {
         if keys.is_empty() {

@@ -1,16 +1,18 @@
 //! A formulation as a model: statements of the language.
 
-use super::data::{Data, number, quoted};
+use super::data::{Data, Statements, number, quoted};
 use super::names::Names;
 use super::tree::*;
 use super::{Formulation, Row, Sign};
 use crate::check::functions::name_of;
 use crate::check::node::SymbolId;
 use crate::check::symbols::{Store, Symbols, attribute};
+use crate::data::input::Input;
 use crate::report::names::join;
 use crate::syntax::ast::VariableKind;
 use rustc_hash::FxHashSet;
 use std::fmt::Write;
+use std::sync::Arc;
 
 /// Writes expressions as statements of the language.
 pub struct Writer<'a> {
@@ -409,6 +411,7 @@ pub fn model(
     include: Option<&str>,
     head: &str,
     solve: bool,
+    apart: Option<&mut Vec<Arc<Input>>>,
 ) -> String {
     let mut w = Writer::new(symbols, store, f, include.is_none());
     let mut rows = String::new();
@@ -454,20 +457,20 @@ pub fn model(
     for v in &f.own {
         data.domain_of(*v);
     }
-    let mut out = String::new();
-    out.push_str(head);
+    let mut data_text = Statements::new(symbols, store, apart);
+    data_text.text.push_str(head);
     match include {
         Some(file) => {
-            let _ = writeln!(out, "$include {file}\n");
+            let _ = writeln!(data_text.text, "$include {file}\n");
         }
-        None => out.push_str(&data.statements()),
+        None => data.statements(&mut data_text),
     }
     for (set, name) in &w.names.aliases {
-        let _ = writeln!(out, "Alias ({},{name});", symbols.get(*set).name);
+        let root = &symbols.get(*set).name;
+        let _ = writeln!(data_text.text, "Alias ({root},{name});");
     }
-    for d in new() {
-        out.push_str(&super::data::statement(symbols, store, d));
-    }
+    new().for_each(|d| data_text.introduced(d));
+    let mut out = data_text.text;
     // The user's variables with the kind that they were declared with, discrete ones relaxed.
     let own = |sign: Sign| {
         let of = f.own.iter().filter(move |v| {

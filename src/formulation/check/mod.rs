@@ -8,6 +8,7 @@ use super::derive::Primal;
 use super::tree::Variable;
 use super::{Formulation, dual, kkt, text};
 use crate::check::symbols::{Store, Symbols};
+use crate::data::input::Input;
 use crate::data::universe::Label;
 use crate::host::{Host, HostError};
 use crate::model::origin::Blocks;
@@ -17,6 +18,7 @@ use crate::source::PreprocessOptions;
 use rustc_hash::FxHashMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
+use std::sync::Arc;
 
 /// How far two numbers may be apart, relative to the larger.
 pub const TOLERANCE: f64 = 1e-10;
@@ -143,8 +145,15 @@ fn words(store: &Store, key: &[Label]) -> Rc<str> {
     }
 }
 
-/// Generates the last model that a text solves; the first complaint where it cannot be.
-pub fn generate(text: &str) -> Result<Instance, String> {
+/// Generates a derived model: its text is read, its data are handed over.
+fn generated(symbols: &Symbols, store: &Store, f: &Formulation) -> Result<Instance, String> {
+    let mut data = Vec::new();
+    let text = text::model(symbols, store, f, None, "", true, Some(&mut data));
+    generate(&text, data)
+}
+
+/// Generates the last model that a text solves, with data from outside the text; the first complaint where it cannot be.
+pub fn generate(text: &str, data: Vec<Arc<Input>>) -> Result<Instance, String> {
     let mut host = Text { text };
     let options = Options {
         quiet: true,
@@ -157,6 +166,7 @@ pub fn generate(text: &str) -> Result<Instance, String> {
     };
     let preprocess = PreprocessOptions {
         slash_comments: true,
+        inputs: data,
         ..PreprocessOptions::default()
     };
     let mut found = None;
@@ -206,7 +216,7 @@ pub fn checked_dual(
     primal: &Primal,
 ) -> Result<(Formulation, Comparison), String> {
     let f = dual::dual(symbols, store, primal, false)?;
-    let d = generate(&text::model(symbols, store, &f, None, "", true))?;
+    let d = generated(symbols, store, &f)?;
     let c = transposed::dual(symbols, store, primal, &f, &d);
     Ok((f, c))
 }
@@ -220,8 +230,7 @@ pub fn checked_kkt(
 ) -> Result<(Formulation, Comparison), String> {
     let derived = |keep| -> Result<(Formulation, Instance), String> {
         let f = kkt::kkt(symbols, store, primal, keep, false).map_err(|(_, why)| why)?;
-        let text = text::model(symbols, store, &f, None, "", true);
-        generate(&text).map(|d| (f, d))
+        generated(symbols, store, &f).map(|d| (f, d))
     };
     let (f, d) = derived(false).or_else(|why| derived(true).map_err(|_| why))?;
     let c = slopes::kkt(symbols, store, primal, &f, &d, POINTS);
