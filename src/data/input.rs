@@ -105,14 +105,14 @@ impl Keys {
         self.labels.len()
     }
 
-    /// The labels of a position.
+    /// The labels of a position; none where there are no records.
     pub fn labels(&self, position: usize) -> &[String] {
-        &self.labels[position]
+        self.labels.get(position).map_or(&[], Vec::as_slice)
     }
 
     /// By record, the place of its label at a position.
     pub fn codes(&self, position: usize) -> &[u32] {
-        &self.codes[position]
+        self.codes.get(position).map_or(&[], Vec::as_slice)
     }
 
     /// The labels of a record.
