@@ -371,7 +371,10 @@ impl<'a> Derivation<'a> {
     pub fn unlimited_alone(&self, v: SymbolId) -> Vec<usize> {
         let g = &self.primal.generated;
         let (Some(b), Some((row, a))) = (
-            g.origin.columns.symbol(v).filter(|_| self.is_without_row(v)),
+            g.origin
+                .columns
+                .symbol(v)
+                .filter(|_| self.is_without_row(v)),
             g.instance.objective_row(),
         ) else {
             return Vec::new();
