@@ -338,68 +338,82 @@ impl TextFile {
         if *item == Item::Page && part == Part::Body {
             text = self.pages.to_string();
         }
-        let quoted = !matches!(item, Item::Number(_) | Item::Page);
         if (4..=6).contains(&pc) || pc == 8 {
-            if pc != 8 && !quoted {
-                // Scientific numbers keep the place of the sign.
-                let sign = if self.get("nr") == 2.0 && !text.contains('-') {
-                    " "
-                } else {
-                    ""
-                };
-                text = format!("{sign}{}", text.trim());
-            }
-            if let (Item::Special(_), Some(width)) = (item, format.width)
-                && width > 0
-                && text.len() > width as usize
-            {
-                text = "*".repeat(width as usize);
-            }
-            if quoted {
-                text = text.replace('"', "\"\"");
-                if pc != 8 {
-                    text = format!("\"{text}\"");
-                }
-            }
-            let delimiter = match pc {
-                5 => ",",
-                6 => "\t",
-                _ => " ",
-            };
-            if self.block(part).column > 0 {
-                let wraps = pc == 8
-                    && self.block(part).column + 1 + text.chars().count()
-                        > self.integer("pw") as usize;
-                if wraps {
-                    self.new_line(part);
-                    self.begin(part);
-                } else {
-                    text.insert_str(0, delimiter);
-                }
-            }
+            text = self.separated(part, item, text, format);
         } else {
-            let (width, align) = match item {
-                Item::Number(_) | Item::Special(_) | Item::Eps => ("nw", "nj"),
-                Item::Label(_) => ("lw", "lj"),
-                Item::Member(_) => ("sw", "sj"),
-                Item::Text(_) | Item::Page => ("tw", "tj"),
-            };
-            let width = format.width.unwrap_or_else(|| self.integer(width)).max(0) as usize;
-            let align = match format.align {
-                Some('<') => 2,
-                Some('>') => 1,
-                Some(_) => 3,
-                None => self.integer(align),
-            };
-            let fits = text.chars().count() <= width;
-            if !fits && matches!(item, Item::Special(_)) && width > 0 {
-                text = "*".repeat(width);
-                trouble = Err(Overflow::Number);
-            }
-            text = aligned(&text, width, align);
+            let (wide, fits) = self.justified(item, &text, format);
+            (text, trouble) = (wide, trouble.and(fits));
         }
         self.write(part, &text)?;
         trouble
+    }
+
+    /// An item between the marks of `.pc` 4, 5, 6 and 8.
+    fn separated(&mut self, part: Part, item: &Item, mut text: String, format: Format) -> String {
+        let pc = self.integer("pc");
+        let quoted = !matches!(item, Item::Number(_) | Item::Page);
+        if pc != 8 && !quoted {
+            // Scientific numbers keep the place of the sign.
+            let sign = if self.get("nr") == 2.0 && !text.contains('-') {
+                " "
+            } else {
+                ""
+            };
+            text = format!("{sign}{}", text.trim());
+        }
+        if let (Item::Special(_), Some(width)) = (item, format.width)
+            && width > 0
+            && text.len() > width as usize
+        {
+            text = "*".repeat(width as usize);
+        }
+        if quoted {
+            text = text.replace('"', "\"\"");
+            if pc != 8 {
+                text = format!("\"{text}\"");
+            }
+        }
+        let delimiter = match pc {
+            5 => ",",
+            6 => "\t",
+            _ => " ",
+        };
+        if self.block(part).column > 0 {
+            let wraps = pc == 8
+                && self.block(part).column + 1 + text.chars().count() > self.integer("pw") as usize;
+            if wraps {
+                self.new_line(part);
+                self.begin(part);
+            } else {
+                text.insert_str(0, delimiter);
+            }
+        }
+        text
+    }
+
+    /// An item in its width.
+    fn justified(&self, item: &Item, text: &str, format: Format) -> (String, Result<(), Overflow>) {
+        let (width, align) = match item {
+            Item::Number(_) | Item::Special(_) | Item::Eps => ("nw", "nj"),
+            Item::Label(_) => ("lw", "lj"),
+            Item::Member(_) => ("sw", "sj"),
+            Item::Text(_) | Item::Page => ("tw", "tj"),
+        };
+        let width = format.width.unwrap_or_else(|| self.integer(width)).max(0) as usize;
+        let align = match format.align {
+            Some('<') => 2,
+            Some('>') => 1,
+            Some(_) => 3,
+            None => self.integer(align),
+        };
+        let fits = text.chars().count() <= width;
+        if !fits && matches!(item, Item::Special(_)) && width > 0 {
+            return (
+                aligned(&"*".repeat(width), width, align),
+                Err(Overflow::Number),
+            );
+        }
+        (aligned(text, width, align), Ok(()))
     }
 
     fn write(&mut self, part: Part, text: &str) -> Result<(), Overflow> {

@@ -70,20 +70,9 @@ impl Machine<'_> {
     }
 
     fn show(&mut self, s: SymbolId, attr: Option<&'static str>, page: &mut Page) {
-        let symbol = self.symbols.get(s);
-        if matches!(symbol.kind, SymbolKind::Model(_) | SymbolKind::File(_)) {
-            let attr = attr.unwrap_or("modelstat");
-            let value = self.object_attribute(s, attr);
-            let symbol = self.symbols.get(s);
-            let kind = if matches!(symbol.kind, SymbolKind::Model(_)) {
-                "MODEL"
-            } else {
-                "FILE"
-            };
-            let name = format!("{}.{}", symbol.name, spelled(attr));
-            page.line(&self.numbers(s).scalar(kind, &name, value, &symbol.text));
-            self.collect_scalar(page.line, format!("{}.{attr}", symbol.name), value);
-            return;
+        let kind = &self.symbols.get(s).kind;
+        if matches!(kind, SymbolKind::Model(_) | SymbolKind::File(_)) {
+            return self.show_object(s, attr.unwrap_or("modelstat"), page);
         }
         let root = self.symbols.root(s);
         if root == crate::check::symbols::UNIVERSE {
@@ -166,27 +155,41 @@ impl Machine<'_> {
             }
             page.text.push('\n');
         }
-        if self.options.collect {
-            let records = table
-                .iter()
-                .map(|(k, v)| {
-                    let labels = k
-                        .iter()
-                        .map(|&l| self.store.universe.name(l).to_string())
-                        .collect();
-                    (labels, Number(v))
-                })
-                .collect();
-            let domain = self.symbols.domain_names(self.symbols.get(root));
+        let domain = self.symbols.domain_names(self.symbols.get(root));
+        let records = (self.options.collect).then(|| self.records(&table));
+        drop(table);
+        if let Some(records) = records {
             let display = Display::Indexed {
                 line: page.line,
                 symbol: short,
                 domain,
                 records,
             };
-            drop(table);
             self.report().displays.push(display);
         }
+    }
+
+    /// Labels and values of a table's records.
+    fn records(&self, table: &Table) -> Vec<(Vec<String>, Number)> {
+        let labels = |k: &[u32]| {
+            let names = k.iter().map(|&l| self.store.universe.name(l).to_string());
+            names.collect()
+        };
+        table.iter().map(|(k, v)| (labels(k), Number(v))).collect()
+    }
+
+    /// An attribute of a model or a file.
+    fn show_object(&mut self, s: SymbolId, attr: &'static str, page: &mut Page) {
+        let value = self.object_attribute(s, attr);
+        let symbol = self.symbols.get(s);
+        let kind = if matches!(symbol.kind, SymbolKind::Model(_)) {
+            "MODEL"
+        } else {
+            "FILE"
+        };
+        let name = format!("{}.{}", symbol.name, spelled(attr));
+        page.line(&self.numbers(s).scalar(kind, &name, value, &symbol.text));
+        self.collect_scalar(page.line, format!("{}.{attr}", symbol.name), value);
     }
 
     fn collect_scalar(&mut self, line: usize, symbol: String, value: f64) {

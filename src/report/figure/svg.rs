@@ -203,7 +203,6 @@ fn plot(scene: &Scene, common: Common<'_>, with_legend: bool) -> String {
     let has_chart = scene.elements.iter().any(chart);
     let axes = scene.axes.unwrap_or(has_chart);
     let equal = scene.equal.unwrap_or(!has_chart) && !scene.x_log && !scene.y_log;
-    let [x_range, y_range] = common.extent;
     let Common { colors, names, .. } = common;
 
     // What surrounds the plot.
@@ -214,34 +213,7 @@ fn plot(scene: &Scene, common: Common<'_>, with_legend: bool) -> String {
     };
     let legend_top = headings_height(scene);
     let top = legend_top + legend_height(&legend);
-    let mut y_range = match scene.y_categories.is_empty() {
-        true => pad(y_range, scene.y_log, axes, equal),
-        false => y_range,
-    };
-    let mut x_range = match scene.categories.is_empty() {
-        true => pad(
-            x_range,
-            scene.x_log,
-            axes && has_bars(scene).is_none(),
-            equal,
-        ),
-        false => x_range,
-    };
-    if has_bars(scene).is_some() {
-        // Bars stand on the axis.
-        y_range = [y_range[0].min(0.0), y_range[1].max(0.0)];
-    }
-    for (range, limits) in [
-        (&mut x_range, scene.x_limits),
-        (&mut y_range, scene.y_limits),
-    ] {
-        // What the author said about an axis is not rounded.
-        let [low, high] = limits;
-        let asked = [low.unwrap_or(range[0]), high.unwrap_or(range[1])];
-        if asked[0] < asked[1] {
-            *range = asked;
-        }
-    }
+    let [mut x_range, mut y_range] = ranges(scene, common.extent, axes, equal);
     let y_labels = y_ticks(scene, y_range);
     let left_labels = y_labels.iter().map(|(_, t)| text_width(t, 11.5));
     let mut left = MARGIN;
@@ -269,21 +241,7 @@ fn plot(scene: &Scene, common: Common<'_>, with_legend: bool) -> String {
 
     // The plot itself.
     let around = top + bottom;
-    let wanted = scene
-        .height
-        .filter(|h| h.is_finite())
-        .map(|h| (h - around).clamp(20.0, 10_000.0));
-    let plot_height = match wanted {
-        Some(h) => h,
-        None if equal => {
-            let ratio = (y_range[1] - y_range[0]) / (x_range[1] - x_range[0]);
-            (plot_width * ratio).clamp(60.0, plot_width.max(560.0))
-        }
-        None if !scene.y_categories.is_empty() => {
-            (26.0 * scene.y_categories.len() as f64).clamp(90.0, 900.0)
-        }
-        None => (plot_width * 0.6).clamp(60.0, 420.0),
-    };
+    let plot_height = plot_height(scene, around, plot_width, [x_range, y_range], equal);
     if equal {
         let per_unit =
             (plot_width / (x_range[1] - x_range[0])).min(plot_height / (y_range[1] - y_range[0]));
@@ -338,6 +296,46 @@ fn plot(scene: &Scene, common: Common<'_>, with_legend: bool) -> String {
     d.color_legend(width - right + 14.0);
     d.out.push_str("</svg>\n");
     d.out
+}
+
+/// What the axes reach over: the data with some room, the foot of the bars, and what the author said, which is not rounded.
+fn ranges(scene: &Scene, [x, y]: [[f64; 2]; 2], axes: bool, equal: bool) -> [[f64; 2]; 2] {
+    let bars = has_bars(scene).is_some();
+    let mut x = match scene.categories.is_empty() {
+        true => pad(x, scene.x_log, axes && !bars, equal),
+        false => x,
+    };
+    let mut y = match scene.y_categories.is_empty() {
+        true => pad(y, scene.y_log, axes, equal),
+        false => y,
+    };
+    if bars {
+        y = [y[0].min(0.0), y[1].max(0.0)];
+    }
+    for (range, limits) in [(&mut x, scene.x_limits), (&mut y, scene.y_limits)] {
+        let [low, high] = limits;
+        let asked = [low.unwrap_or(range[0]), high.unwrap_or(range[1])];
+        if asked[0] < asked[1] {
+            *range = asked;
+        }
+    }
+    [x, y]
+}
+
+/// Height of the plot without what is around it: as asked, as equal units want it, or as is usual.
+fn plot_height(scene: &Scene, around: f64, width: f64, [x, y]: [[f64; 2]; 2], equal: bool) -> f64 {
+    let wanted = scene.height.filter(|h| h.is_finite());
+    match wanted {
+        Some(h) => (h - around).clamp(20.0, 10_000.0),
+        None if equal => {
+            let ratio = (y[1] - y[0]) / (x[1] - x[0]);
+            (width * ratio).clamp(60.0, width.max(560.0))
+        }
+        None if !scene.y_categories.is_empty() => {
+            (26.0 * scene.y_categories.len() as f64).clamp(90.0, 900.0)
+        }
+        None => (width * 0.6).clamp(60.0, 420.0),
+    }
 }
 
 fn has_bars(scene: &Scene) -> Option<()> {

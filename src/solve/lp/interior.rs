@@ -23,8 +23,8 @@ use std::sync::{Mutex, mpsc};
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
-    DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, SupportedConeT,
-    ZeroConeT,
+    DefaultSettings, DefaultSolution, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus,
+    SupportedConeT, ZeroConeT,
 };
 
 use super::Ended;
@@ -171,25 +171,7 @@ pub fn solve(p: &Problem, hessian: Option<&Sparse>, aim: Aim, budget: &Budget) -
         }
         Some(solver.solution)
     };
-    // Clarabel's callback must own what it sees, so this thread asks the budget for it, once in each iteration.
-    #[cfg(not(feature = "system"))]
-    let solution = {
-        let is_over = budget.is_over();
-        run(Box::new(move || is_over))
-    };
-    #[cfg(feature = "system")]
-    let solution = std::thread::scope(|scope| {
-        let (question, questions) = mpsc::channel();
-        let (answer, answers) = mpsc::channel();
-        let answers = Mutex::new(answers);
-        let reply = move || answers.lock().ok()?.recv().ok();
-        let stop = move || question.send(()).is_err() || reply().unwrap_or(true);
-        let worker = scope.spawn(move || run(Box::new(stop)));
-        for () in questions {
-            let _ = answer.send(budget.is_over());
-        }
-        worker.join().ok().flatten()
-    });
+    let solution = asking(budget, run);
     let mut point = point;
     let Some(solution) = solution else {
         return Run {
@@ -218,15 +200,53 @@ pub fn solve(p: &Problem, hessian: Option<&Sparse>, aim: Aim, budget: &Budget) -
             Source::Upper(_) | Source::Lower(_) => {}
         }
     }
-    let (ended, almost) = match solution.status {
+    let (ended, almost) = ended(solution.status, &point, &fixed, budget);
+    point.d = reduced_costs(p, hessian, &point);
+    Run {
+        point,
+        ended,
+        iterations,
+        almost,
+    }
+}
+
+/// Runs Clarabel on a thread of its own where there are threads: its callback must own what it sees, so this thread asks the
+/// budget for it, once in each iteration.
+fn asking(
+    budget: &Budget,
+    run: impl FnOnce(Question) -> Option<DefaultSolution<f64>> + Send,
+) -> Option<DefaultSolution<f64>> {
+    #[cfg(not(feature = "system"))]
+    {
+        let is_over = budget.is_over();
+        run(Box::new(move || is_over))
+    }
+    #[cfg(feature = "system")]
+    std::thread::scope(|scope| {
+        let (question, questions) = mpsc::channel();
+        let (answer, answers) = mpsc::channel();
+        let answers = Mutex::new(answers);
+        let reply = move || answers.lock().ok()?.recv().ok();
+        let stop = move || question.send(()).is_err() || reply().unwrap_or(true);
+        let worker = scope.spawn(move || run(Box::new(stop)));
+        for () in questions {
+            let _ = answer.send(budget.is_over());
+        }
+        worker.join().ok().flatten()
+    })
+}
+
+/// What Clarabel's status means, and whether it is nearly so only.
+fn ended(status: SolverStatus, point: &Point, fixed: &[bool], budget: &Budget) -> (Ended, bool) {
+    match status {
         SolverStatus::Solved => (Ended::Solved, false),
         SolverStatus::AlmostSolved => (Ended::Solved, true),
         SolverStatus::PrimalInfeasible => (Ended::Infeasible(point.y.clone()), false),
         SolverStatus::AlmostPrimalInfeasible => (Ended::Infeasible(point.y.clone()), true),
         SolverStatus::DualInfeasible | SolverStatus::AlmostDualInfeasible => {
-            let mut ray = point.x.clone();
-            (0..p.n()).filter(|&j| fixed[j]).for_each(|j| ray[j] = 0.0);
-            let almost = solution.status == SolverStatus::AlmostDualInfeasible;
+            let moved = |(&x, &fixed): (&f64, &bool)| if fixed { 0.0 } else { x };
+            let ray = point.x.iter().zip(fixed).map(moved).collect();
+            let almost = status == SolverStatus::AlmostDualInfeasible;
             (Ended::Unbounded(ray), almost)
         }
         SolverStatus::MaxIterations => (Ended::Iterations, false),
@@ -238,23 +258,20 @@ pub fn solve(p: &Problem, hessian: Option<&Sparse>, aim: Aim, budget: &Budget) -
         SolverStatus::Unsolved
         | SolverStatus::NumericalError
         | SolverStatus::InsufficientProgress => (Ended::Failed, false),
-    };
-    for j in 0..p.n() {
-        point.d[j] = p.cost[j] - p.columns.line(j).map(|(i, a)| a * point.y[i]).sum::<f64>();
     }
-    // d = c + Px − Aᵀy
+}
+
+/// d = c + Px − Aᵀy.
+fn reduced_costs(p: &Problem, hessian: Option<&Sparse>, point: &Point) -> Vec<f64> {
+    let price = |j: usize| p.columns.line(j).map(|(i, a)| a * point.y[i]).sum::<f64>();
+    let mut d: Vec<f64> = (0..p.n()).map(|j| p.cost[j] - price(j)).collect();
     for (j, i, v) in hessian.into_iter().flat_map(entries) {
-        point.d[j] += v * point.x[i];
+        d[j] += v * point.x[i];
         if i != j {
-            point.d[i] += v * point.x[j];
+            d[i] += v * point.x[j];
         }
     }
-    Run {
-        point,
-        ended,
-        iterations,
-        almost,
-    }
+    d
 }
 
 /// Solves again in the units that suit the solution so far, for more digits; in the units of the problem

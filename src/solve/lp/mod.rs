@@ -23,7 +23,7 @@ use form::{Form, Point, Problem};
 use interior::Aim;
 pub use options::OPTIONS;
 use scale::Scaling;
-use simplex::{Basis, Simplex, State};
+use simplex::{Basis, Pivot, Simplex, State};
 
 /// How a method ended, in the units of the problem it was given.
 #[derive(Clone, Debug, PartialEq)]
@@ -202,6 +202,8 @@ struct Gave {
     remark: Option<&'static str>,
     /// Of a vertex.
     basis: Option<Basis>,
+    /// For the log of a small program.
+    pivots: Vec<Pivot>,
 }
 
 fn solve(
@@ -252,6 +254,7 @@ fn solve(
             restarted(&scaled, &basis, accuracy, strategies, budget)
         }
     };
+    log_pivots(&answer.pivots, &form, &scaling, budget);
     budget.spend(answer.iterations);
     let (claim, status) = match answer.ended {
         Ended::Solved if answer.almost => (Claim::Unfinished, SolverStatus::TerminatedBySolver),
@@ -318,6 +321,7 @@ pub fn watch<'a>(budget: &'a Budget, most: u64) -> impl FnMut(u64) -> Option<End
 fn simplex_only(p: &Problem, accuracy: Accuracy, budget: &Budget) -> Gave {
     let mut simplex = Simplex::new(p);
     simplex.boxes = p.m() + p.n() > MAX_SMALL_SIZE;
+    simplex.pivots = logged(p, budget);
     let ended = simplex.solve(&mut watch(budget, u64::MAX));
     if ended == Ended::Solved {
         tighten(&mut simplex, accuracy, budget);
@@ -398,6 +402,27 @@ fn presolved(
     }
 }
 
+/// A place for the pivots, if they are to be seen.
+fn logged(p: &Problem, budget: &Budget) -> Option<Vec<Pivot>> {
+    (budget.wants_log() && p.m() + p.n() <= MAX_SMALL_SIZE).then(Vec::new)
+}
+
+/// A line for each pivot.
+fn log_pivots(pivots: &[Pivot], form: &Form, scaling: &Scaling, budget: &Budget) {
+    let name = |k: usize| match form.columns.get(k) {
+        Some(&j) => budget.column_name(j as usize),
+        None => budget.row_name(form.rows[k - form.columns.len()] as usize),
+    };
+    for (k, p) in pivots.iter().enumerate() {
+        let value = form.sign * (p.objective * scaling.price * scaling.size + form.problem.offset);
+        let (enters, leaves) = (name(p.entering), name(p.leaving));
+        budget.log(format!(
+            "pivot {}: {enters} enters the basis, {leaves} leaves, objective {value:.6}",
+            k + 1
+        ));
+    }
+}
+
 fn tighten(simplex: &mut Simplex, accuracy: Accuracy, budget: &Budget) {
     if matches!(accuracy, Accuracy::Fast(_)) {
         return;
@@ -432,6 +457,7 @@ fn simplex_answer(mut simplex: Simplex, ended: Ended) -> Gave {
         solver: "simplex",
         almost: false,
         basis,
+        pivots: simplex.pivots.take().unwrap_or_default(),
         remark: match others {
             (true, true) => Some("neither the solution nor its marginals are unique"),
             (true, false) => Some("the solution is not unique"),
@@ -454,6 +480,7 @@ fn interior_only(p: &Problem, aim: Aim, budget: &Budget) -> Gave {
         almost: run.almost,
         remark: None,
         basis: None,
+        pivots: Vec::new(),
     }
 }
 
@@ -465,7 +492,7 @@ const MAX_SMALL_SIZE: usize = 600;
 const MEDIUM: usize = 12_000;
 
 /// Where the columns of pivots have more entries than so many, or than this part of all rows, an interior point is sooner there.
-const FULL: [f64; 2] = [400.0, 0.4];
+const FULL: [f64; 2] = [300.0, 0.7];
 
 /// Columns and rows together from which an interior point of many digits saves more pivots than it costs.
 const LARGE: usize = 3000;
@@ -483,6 +510,7 @@ fn auto(p: &Problem, accuracy: Accuracy, strategies: Strategies, budget: &Budget
     };
     let mut simplex = Simplex::new(p);
     (simplex.fullest, simplex.boxes) = (fullest, size > MAX_SMALL_SIZE);
+    simplex.pivots = logged(p, budget);
     let left = budget.iterations_left();
     let ended = simplex.solve(&mut watch(budget, effort as u64));
     simplex.fullest = f64::INFINITY;

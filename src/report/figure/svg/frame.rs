@@ -181,6 +181,13 @@ impl Drawing<'_> {
             Px(right),
             y = Px(base)
         );
+        self.axis_labels(rotate);
+    }
+
+    /// What the axes are called.
+    fn axis_labels(&mut self, rotate: bool) {
+        let [left, right] = self.x.pixels;
+        let [bottom, top] = self.y.pixels;
         if let Some(label) = &self.scene.x_label {
             let room = if rotate { 0.0 } else { 38.0 };
             let y = if rotate {

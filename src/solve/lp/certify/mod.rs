@@ -247,35 +247,9 @@ fn side(
     let Some(inner) = inner::point(poly, &near, budget) else {
         return fail(nothing, None, None);
     };
-    // Room of a variable or row between its sides, at both points.
-    let room = |l: f64, u: f64, a: f64, b: f64| (a - l).min(u - a).max((b - l).min(u - b));
-    let mut free = Vec::with_capacity(poly.n());
     let mut inner = inner;
-    for j in 0..poly.n() {
-        let (l, u) = (poly.lower[j], poly.upper[j]);
-        let r = room(l, u, near[j], inner[j]);
-        let held = l == u || r <= inner::SLACK;
-        if held {
-            // Held where it is.
-            let at = if near[j] - l <= u - near[j] { l } else { u };
-            (near[j], near_low[j]) = (at, 0.0);
-            inner[j] = at;
-        }
-        free.push(if held { 0.0 } else { r.min(1.0) });
-    }
-    let mut equations = Vec::new();
-    let mut target = vec![0.0; poly.m()];
-    let mut unit = Vec::new();
-    for (i, target) in target.iter_mut().enumerate() {
-        let (l, u) = (poly.row_lower[i], poly.row_upper[i]);
-        let (a, b) = (poly.activity(i, &near), poly.activity(i, &inner));
-        if l == u || room(l, u, a, b) <= inner::SLACK {
-            *target = if a - l <= u - a { l } else { u };
-            equations.push(i);
-            let terms = poly.rows.line(i).map(|(j, v)| (v * near[j]).abs());
-            unit.push(terms.fold(target.abs().max(1e-3), f64::max));
-        }
-    }
+    let free = hold(poly, &mut near, &mut near_low, &mut inner);
+    let (equations, target, unit) = equations(poly, &near, &inner);
     let mut stop = || budget.is_over();
     let mut system = match System::new(poly, equations, &free, unit, &mut stop) {
         Ok(s) => s,
@@ -343,6 +317,43 @@ fn side(
             Some(_) => fail("rounding decides whether it holds", row, column),
         }
     })
+}
+
+/// Room of a variable or row between its sides, at two points.
+fn room([l, u]: [f64; 2], [a, b]: [f64; 2]) -> f64 {
+    (a - l).min(u - a).max((b - l).min(u - b))
+}
+
+/// How far each variable may move; those without room are put to their bound in both points.
+fn hold(poly: &Polyhedron, near: &mut [f64], near_low: &mut [f64], inner: &mut [f64]) -> Vec<f64> {
+    let sides = poly.lower.iter().zip(&poly.upper).enumerate();
+    let reach = |(j, (&l, &u)): (usize, (&f64, &f64))| {
+        let r = room([l, u], [near[j], inner[j]]);
+        if l != u && r > inner::SLACK {
+            return r.min(1.0);
+        }
+        let at = if near[j] - l <= u - near[j] { l } else { u };
+        (near[j], near_low[j], inner[j]) = (at, 0.0, at);
+        0.0
+    };
+    sides.map(reach).collect()
+}
+
+/// The rows that are equations or have no room; the value of each row that is to be met; and the size of their terms.
+fn equations(poly: &Polyhedron, near: &[f64], inner: &[f64]) -> (Vec<usize>, Vec<f64>, Vec<f64>) {
+    let (mut equations, mut unit) = (Vec::new(), Vec::new());
+    let mut target = vec![0.0; poly.m()];
+    for (i, target) in target.iter_mut().enumerate() {
+        let (l, u) = (poly.row_lower[i], poly.row_upper[i]);
+        let (a, b) = (poly.activity(i, near), poly.activity(i, inner));
+        if l == u || room([l, u], [a, b]) <= inner::SLACK {
+            *target = if a - l <= u - a { l } else { u };
+            equations.push(i);
+            let terms = poly.rows.line(i).map(|(j, v)| (v * near[j]).abs());
+            unit.push(terms.fold(target.abs().max(1e-3), f64::max));
+        }
+    }
+    (equations, target, unit)
 }
 
 /// A share of the inner point that costs nothing to speak of.

@@ -5,9 +5,12 @@
 //! Variables with two bounds whose reduced cost changes sign on the way change bounds instead
 //! (Maros 2003).
 
+use super::factor::Entries;
 use super::{NONBASIC, PIVOT, SAFE_PIVOT, Simplex, Stop, jitter};
 use crate::solve::lp::Ended;
 use crate::solve::lp::form::proves_infeasible;
+use std::cmp::{Ordering, Reverse};
+use std::collections::BinaryHeap;
 
 /// The box of a free variable where those with one bound have 1: it should be basic.
 const FREE: f64 = 1000.0;
@@ -29,7 +32,7 @@ impl Simplex {
     }
 
     /// Whether a variable that no flip helps has a reduced cost of the wrong sign.
-    fn is_endless_infeasible(&self) -> bool {
+    pub(super) fn is_endless_infeasible(&self) -> bool {
         (0..self.n + self.m).any(|j| {
             let endless = self.work_lower[j].is_infinite() || self.work_upper[j].is_infinite();
             endless && self.slot[j] == NONBASIC && self.dual_violation(j) > self.dual_tolerance
@@ -285,7 +288,30 @@ impl Simplex {
         if !flips.is_empty() {
             self.flip(&flips);
         }
-        // Dual step: the entering reduced cost becomes 0; one of the wrong sign is shifted away.
+        let theta = self.shift_reduced(entering, alpha, sign);
+        self.d[leaving] = -theta;
+        // Primal step: the leaving variable goes to its bound.
+        let step = (self.x[leaving] - bound) / alpha;
+        for &(k, a) in &column {
+            let j = self.head[k] as usize;
+            self.x[j] -= step * a;
+        }
+        self.x[entering] += step;
+        self.x[leaving] = bound;
+        self.update_weights(slot, alpha, weight, &column, &tau);
+        self.iterations += 1;
+        let worn = self.exchange(slot, entering);
+        if worn.is_none() {
+            return Step::Broken;
+        }
+        if self.is_fresh() {
+            self.shift_costs(false);
+        }
+        Step::Done
+    }
+
+    /// The dual step: the entering reduced cost becomes 0; those of the wrong sign are shifted away. Returns its length.
+    fn shift_reduced(&mut self, entering: usize, alpha: f64, sign: f64) -> f64 {
         let mut theta = self.d[entering] / alpha;
         if theta * sign < 0.0 {
             self.work_cost[entering] -= self.d[entering];
@@ -303,18 +329,20 @@ impl Simplex {
                 }
             }
         }
-        self.d[leaving] = -theta;
-        // Primal step: the leaving variable goes to its bound.
-        let step = (self.x[leaving] - bound) / alpha;
-        for &(k, a) in &column {
-            let j = self.head[k] as usize;
-            self.x[j] -= step * a;
-        }
-        self.x[entering] += step;
-        self.x[leaving] = bound;
-        // Weights.
+        theta
+    }
+
+    /// Steepest-edge weights for the next basis; `tau` is B⁻¹ρ, `weight` |ρ|².
+    fn update_weights(
+        &mut self,
+        slot: usize,
+        alpha: f64,
+        weight: f64,
+        column: &Entries,
+        tau: &Entries,
+    ) {
         let mut t = tau.iter().peekable();
-        for &(k, a) in &column {
+        for &(k, a) in column {
             if k == slot {
                 continue;
             }
@@ -327,15 +355,6 @@ impl Simplex {
             self.edge[k] = w.max(1e-4).max(1e-3 * ratio * ratio * weight);
         }
         self.edge[slot] = (weight / (alpha * alpha)).max(1e-4);
-        self.iterations += 1;
-        let worn = self.exchange(slot, entering);
-        if worn.is_none() {
-            return Step::Broken;
-        }
-        if self.is_fresh() {
-            self.shift_costs(false);
-        }
-        Step::Done
     }
 
     /// The entering variable and the variables that change bounds. None: no variable can enter.
@@ -362,49 +381,51 @@ impl Simplex {
                 candidates.push((j, alpha.abs(), if free { 0.0 } else { self.d[k].abs() }));
             }
         }
+        // In the order of their ratios, each group by the ratios with slack: what is left has larger ones.
+        let mut queue: BinaryHeap<Reverse<Ratio>> = (candidates.iter().enumerate())
+            .map(|(k, c)| Reverse(Ratio(c.2 / c.1, k)))
+            .collect();
         let mut slope = violation;
         let mut flips: Vec<u32> = Vec::new();
         let mut reserve: Option<(usize, usize)> = None;
-        loop {
-            let slack = 0.5 * self.dual_tolerance;
-            let limit = candidates
-                .iter()
-                .fold(f64::INFINITY, |t, c| t.min((c.2 + slack) / c.1));
-            if limit.is_infinite() {
-                break;
-            }
-            let group = candidates.iter().filter(|c| c.2 / c.1 <= limit);
-            let (mut drop, mut best) = (0.0, (0.0, 0u32));
-            for c in group {
-                let k = c.0 as usize;
-                drop += c.1 * (self.work_upper[k] - self.work_lower[k]);
-                if c.1 > best.0 {
-                    best = (c.1, c.0);
+        let slack = 0.5 * self.dual_tolerance;
+        while !queue.is_empty() {
+            let before = flips.len();
+            let (mut limit, mut drop) = (f64::INFINITY, 0.0);
+            let mut best = (0.0, usize::MAX);
+            while let Some(&Reverse(Ratio(ratio, k))) = queue.peek()
+                && ratio <= limit
+            {
+                queue.pop();
+                let (j, alpha, d) = candidates[k];
+                limit = limit.min((d + slack) / alpha);
+                drop += alpha * (self.work_upper[j as usize] - self.work_lower[j as usize]);
+                if alpha > best.0 || (alpha == best.0 && k < best.1) {
+                    best = (alpha, k);
                 }
+                flips.push(j);
             }
+            if flips.len() == before {
+                break; // what is left is not a number
+            }
+            let entering = candidates[best.1].0 as usize;
             let enough = best.0 >= SAFE_PIVOT * top.min(1.0);
             if slope - drop < 0.0 || drop.is_nan() {
+                flips.truncate(before);
                 if enough || reserve.is_none() {
-                    return Some((best.1 as usize, flips));
+                    return Some((entering, flips));
                 }
                 break;
             }
             // The violation outlasts the whole group: all of it changes bounds.
             if enough {
-                reserve = Some((best.1 as usize, flips.len()));
+                reserve = Some((entering, before));
             }
             slope -= drop;
-            candidates.retain(|c| {
-                let pass = c.2 / c.1 <= limit;
-                if pass {
-                    flips.push(c.0);
-                }
-                !pass
-            });
         }
         // Every candidate was passed, or only bad pivots were left: the last good one enters.
         let (entering, flipped) = reserve?;
-        if candidates.is_empty() && slope > self.tolerance {
+        if flips.len() == candidates.len() && slope > self.tolerance {
             // All can change bounds and the violation is still there: infeasible.
             return None;
         }
@@ -414,15 +435,17 @@ impl Simplex {
 
     /// Moves variables to their other bounds and updates the basic values.
     fn flip(&mut self, flips: &[u32]) {
-        let mut change: Vec<(usize, f64)> = Vec::new();
+        let mut change = vec![0.0; self.m];
         for &j in flips {
             let j = j as usize;
             let (l, u) = (self.work_lower[j], self.work_upper[j]);
             let to = if self.x[j] - l <= u - self.x[j] { u } else { l };
             let by = to - self.x[j];
             self.x[j] = to;
-            change.extend(self.column(j).into_iter().map(|(i, a)| (i, a * by)));
+            (self.column(j).iter()).for_each(|&(i, a)| change[i] += a * by);
         }
+        let change = change.into_iter().enumerate();
+        let change: Entries = change.filter(|e| e.1 != 0.0).collect();
         if let Some(moved) = self
             .factor
             .as_mut()
@@ -432,6 +455,24 @@ impl Simplex {
                 self.x[self.head[k] as usize] -= v;
             }
         }
+    }
+}
+
+/// At which ratio a reduced cost reaches 0, and whose it is.
+#[derive(PartialEq)]
+struct Ratio(f64, usize);
+
+impl Eq for Ratio {}
+
+impl Ord for Ratio {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.0.total_cmp(&other.0).then(self.1.cmp(&other.1))
+    }
+}
+
+impl PartialOrd for Ratio {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
     }
 }
 

@@ -60,6 +60,17 @@ enum Stop {
     Ended(Ended),
 }
 
+/// A change of the basis, for the log. Variables are counted as everywhere here: columns, then rows.
+#[derive(Clone, Copy, Debug)]
+pub struct Pivot {
+    /// The variable that leaves.
+    pub leaving: usize,
+    /// The variable that enters.
+    pub entering: usize,
+    /// The objective afterwards, in the units of the scaled problem.
+    pub objective: f64,
+}
+
 /// The engine. A clone is a state to come back to: it costs far less than to factorise again.
 #[derive(Clone)]
 pub struct Simplex {
@@ -113,6 +124,8 @@ pub struct Simplex {
     filled: f64,
     /// A factor that was updated at most so often counts as fresh.
     pub trusted: usize,
+    /// The pivots, where they are asked for.
+    pub pivots: Option<Vec<Pivot>>,
     perturb: bool,
     /// A crossover is under way: variables that leave the basis in a repair stay where they are, and
     /// columns with a smaller pivot than this leave it.
@@ -158,6 +171,7 @@ impl Simplex {
             fullest: f64::INFINITY,
             filled: 0.0,
             trusted: 0,
+            pivots: None,
             perturb: true,
             crossing: None,
         };
@@ -554,9 +568,11 @@ impl Simplex {
                 return Ended::Failed;
             }
             let primal = self.violation() <= self.tolerance;
+            // From the basis of all logicals flips alone may make the reduced costs right.
+            let by_flips = round == 0 && self.boxes && !self.is_endless_infeasible();
             let end = if primal && self.dual_infeasibility() <= self.dual_tolerance {
                 return Ended::Solved;
-            } else if primal {
+            } else if primal && !by_flips {
                 self.primal(stop)
             } else {
                 self.dual(stop)
@@ -680,6 +696,14 @@ impl Simplex {
         self.slot[entering] = slot as u32;
         self.head[slot] = entering as u32;
         self.d[entering] = 0.0;
+        if let Some(pivots) = &mut self.pivots {
+            let terms = self.cost.iter().zip(&self.x).map(|(c, x)| c * x);
+            pivots.push(Pivot {
+                leaving,
+                entering,
+                objective: terms.sum(),
+            });
+        }
         let column = self.column(entering);
         let factor = self.factor.as_mut()?;
         if !factor.replace(slot, &column) || factor.is_worn() {
