@@ -491,8 +491,9 @@ const MAX_SMALL_SIZE: usize = 600;
 /// there in most of Netlib.
 const MEDIUM: usize = 12_000;
 
-/// Where the columns of pivots have more entries than so many, or than this part of all rows, an interior point is sooner there.
-const FULL: [f64; 2] = [300.0, 0.7];
+/// Where the columns of pivots have more entries than so many, or than this part of all nonzeros, an interior point is sooner there:
+/// a pivot costs the entries of its column, an iteration of the interior point costs nonzeros.
+const FULL: [f64; 2] = [300.0, 0.07];
 
 /// Columns and rows together from which an interior point of many digits saves more pivots than it costs.
 const LARGE: usize = 3000;
@@ -501,7 +502,7 @@ const LARGE: usize = 3000;
 /// those that take it long.
 fn auto(p: &Problem, accuracy: Accuracy, strategies: Strategies, budget: &Budget) -> Gave {
     let size = p.m() + p.n();
-    let full = FULL[0].min(FULL[1] * p.m() as f64);
+    let full = FULL[0].min(FULL[1] * p.rows.value.len() as f64);
     let (effort, fullest) = match size {
         ..=MAX_SMALL_SIZE => (1000 + 20 * size, f64::INFINITY),
         // twice to thrice the rows is usual
