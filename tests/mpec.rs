@@ -106,7 +106,7 @@ fn an_end_of_the_corner_is_proved() {
 
 #[test]
 fn the_search_goes_on_from_a_corner() {
-    for method in ["auto", "relaxation", "penalty"] {
+    for method in ["auto", "relaxation"] {
         let all = text(
             method,
             &format!("{CORNER} option mpec_method = {method}; solve m using mpec minimizing f;"),
@@ -237,7 +237,7 @@ fn load_factors_are_not_above_the_paper() {
 /// The only other local minimum of the branch y = 0 is (1, 0), with the value 1; no direction leads from it to (0, 1).
 #[test]
 fn a_swap_leads_to_the_better_piece() {
-    for method in ["auto", "relaxation", "penalty", "pieces"] {
+    for method in ["auto", "relaxation", "pieces"] {
         let all = text(
             "swap",
             &format!(

@@ -167,10 +167,6 @@ strategies! {
             "no certified point: again from the start moved by a tenth, which may have derivatives where the start has none",
             "a run of each method",
             "multistart";
-        ElasticForm "elastic_form",
-            "no feasible point and no proof that there is none: violations are penalised",
-            "two runs of the interior point",
-            "Gill, Murray & Saunders 2005";
         ActiveSetPolish "active_set_polish",
             "residuals above 1e-13: Newton steps on the active set of the point",
             "a few factorisations",
@@ -185,20 +181,12 @@ strategies! {
             "two systems that only the pairs join: a second start, at the end of the complementarity solver's path from zero",
             "a solve of the complementarity problem",
             "basic solutions have small supports";
-        PenalisedProducts "penalised_products",
-            "programs with bounded products lead to no feasible point: the products are penalised instead",
-            "a sequence of nonlinear programs",
-            "Luo, Pang & Ralph 1996";
-        BranchAgain "branch_again",
-            "a relaxed program leads to the same branch as the one before, whose solution is worse than it: the branch is solved from there again",
-            "a nonlinear program a step",
-            "ablation";
         FeasibleByBranching "feasible_by_branching",
             "nothing feasible was found: branch and bound over the pieces finds a point that satisfies all pairs, or proves that there is none",
             "branch and bound",
             "Hu, Mitchell, Pang, Bennett & Kunapuli 2008";
         InteriorRelaxation "interior_relaxation",
-            "more than 120 rows and columns: programs in which products are bounded or penalised go to the interior point, not to the sequential method",
+            "more than 120 rows and columns: programs in which products are bounded go to the interior point, not to the sequential method",
             "nothing",
             "Raghunathan & Biegler 2005";
     }

@@ -4,13 +4,12 @@
 //! them: F = v − w, v, w ≥ 0. At a solution (x − l)·v = 0 and (u − x)·w = 0. Instead of that
 //!
 //! * **Scholtes** (2001): each product ≤ μ;
-//! * **aggregate** (Ferris & Tin-Loi 2001, problem (11)): their sum ≤ μ;
-//! * **penalty** (Hu & Ralph 2004): ρ = 1/μ times their sum is added to the objective.
+//! * **aggregate** (Ferris & Tin-Loi 2001, problem (11)): their sum ≤ μ.
 //!
-//! All of them satisfy usual constraint qualifications where the program with the products equal to
+//! Both satisfy usual constraint qualifications where the program with the products equal to
 //! 0 does not, and their solutions tend to stationary points as μ → 0.
 
-use crate::model::instance::{Instance, Kernel, KernelTerms, Objective, Op, Relation, Sense};
+use crate::model::instance::{Instance, Kernel, KernelTerms, Op, Relation};
 use crate::solve::backend::Seen;
 use crate::solve::mpec::pairs::Program;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -22,15 +21,12 @@ pub enum Kind {
     Scholtes,
     /// Their sum at most μ.
     Aggregate,
-    /// Their sum over μ in the objective.
-    Penalty,
 }
 
 /// The nonlinear program for a μ that may be changed.
 pub struct Relaxed {
     /// The instance: the program's columns come first.
     pub instance: Instance,
-    kind: Kind,
     /// The rows of the products.
     first: usize,
     columns: usize,
@@ -125,19 +121,6 @@ impl Relaxed {
             Kind::Scholtes => terms.row.len(),
             _ => 1,
         };
-        let mut last = Vec::new();
-        if kind == Kind::Penalty {
-            // penalised = ± objective + ρ·sum
-            let penalised = out.columns.push(f64::NEG_INFINITY, f64::INFINITY);
-            if let Some(o) = out.objective {
-                last.push((o.column as usize, -program.sign()));
-            }
-            last.push((penalised, 1.0));
-            out.objective = Some(Objective {
-                column: penalised as u32,
-                sense: Sense::Minimize,
-            });
-        }
         let (matrix, rows) = (
             std::mem::take(&mut out.matrix),
             std::mem::take(&mut out.rows),
@@ -147,19 +130,14 @@ impl Relaxed {
         }
         out.rows.marginal[..first].copy_from_slice(&rows.marginal);
         out.rows.scale[..first].copy_from_slice(&rows.scale);
-        let relation = match kind {
-            Kind::Penalty => Relation::Equal,
-            _ => Relation::Less,
-        };
         for _ in 0..count {
-            out.add_row(last.iter().copied(), relation, 0.0);
+            out.add_row([], Relation::Less, 0.0);
         }
         if !terms.row.is_empty() {
             out.nonlinear.push(terms);
         }
         Self {
             instance: out,
-            kind,
             first,
             columns: n,
             exact: Arc::new(Exact {
@@ -171,14 +149,7 @@ impl Relaxed {
 
     /// Sets μ, and starts from a point of the program.
     pub fn tighten(&mut self, program: &Program, mu: f64, start: &[f64]) {
-        match self.kind {
-            Kind::Penalty => {
-                if let Some(t) = self.instance.nonlinear.last_mut() {
-                    t.coef.fill(-1.0 / mu);
-                }
-            }
-            _ => self.instance.rows.rhs[self.first..].fill(mu),
-        }
+        self.instance.rows.rhs[self.first..].fill(mu);
         let level = &mut self.instance.columns.level;
         level[..self.columns].copy_from_slice(start);
         let activity = program.activity(start);

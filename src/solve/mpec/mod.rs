@@ -6,7 +6,7 @@
 //! its bound or F = 0 to rounding, so complementarity is exact, whatever the accuracy of what
 //! led there. What differs is how the branch is found:
 //!
-//! * [`super::bridge::products`]: nonlinear programs in which the products are bounded by μ → 0, or penalised;
+//! * [`super::bridge::products`]: nonlinear programs in which the products are bounded by μ → 0;
 //! * [`pieces`]: where everything is linear and the pairs couple two otherwise separate systems,
 //!   linear programs on supports.
 //!
@@ -182,21 +182,16 @@ impl Search<'_, '_> {
                 self.check_start(&start, pieces)?;
             }
             _ => {
-                let kind = match (method, self.options.aggregate) {
-                    (Method::Penalty, _) => Kind::Penalty,
-                    (_, true) => Kind::Aggregate,
-                    (_, false) => Kind::Scholtes,
+                let kind = match self.options.aggregate {
+                    true => Kind::Aggregate,
+                    false => Kind::Scholtes,
                 };
                 if method == Method::Pieces {
                     self.improve(&self.program.complete(start.clone()))?;
                 }
                 self.allow(FIRST_WORK.max(FIRST_ITERATIONS * self.size()));
-                let lacks_point = |me: &Self| me.best.is_none() && !me.is_over();
-                if lacks_point(self) {
+                if self.best.is_none() && !self.is_over() {
                     self.relax(kind, &start)?;
-                }
-                if lacks_point(self) && self.settings.runs(Strategy::PenalisedProducts) {
-                    self.relax(Kind::Penalty, &start)?;
                 }
                 if self.options.swaps {
                     self.explore(kind, &start)?;
@@ -554,20 +549,15 @@ impl Search<'_, '_> {
             }
             if usable && mu <= 1.01e-4 {
                 let pieces = self.program.nearest(&x);
+                if self.seen.contains(&pieces) {
+                    return Ok(());
+                }
                 // What it leads to may be much worse: then it is not what this point is near to.
                 let value = self.program.objective(&x);
                 let settled = |f: &Found| {
                     f.verdict == Some(Stationarity::Proved)
                         && f.objective <= value + 1e-2 * f.objective.abs().max(1.0)
                 };
-                if self.seen.contains(&pieces) {
-                    let is_settled = self.best.as_ref().is_some_and(settled);
-                    if is_settled || !self.settings.runs(Strategy::BranchAgain) {
-                        return Ok(());
-                    }
-                    // From elsewhere another local solution of the branch may be reached.
-                    self.seen.remove(&pieces);
-                }
                 if let Some(f) = self.branch(pieces, &x)?
                     && settled(&self.descend(f)?)
                 {

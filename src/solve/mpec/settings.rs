@@ -6,12 +6,10 @@ use crate::solve::Settings;
 /// Which way to go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// `pieces` where it applies, otherwise `relaxation`, and `penalty` where that fails.
+    /// `pieces` where it applies, otherwise `relaxation`.
     Auto,
     /// A sequence of relaxed nonlinear programs.
     Relaxation,
-    /// A sequence of penalised nonlinear programs.
-    Penalty,
     /// Linear programs on the pieces; for linear programs only.
     Pieces,
     /// None: the start point is judged, and solved on its own branch at most.
@@ -32,7 +30,7 @@ pub enum Bound {
 /// All options, `option mpec_… = …` or `--option mpec_…=…`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// `mpec_method` = `auto | relaxation | penalty | pieces | check`.
+    /// `mpec_method` = `auto | relaxation | pieces | check`.
     pub method: Method,
     /// `mpec_relaxation` = `scholtes | aggregate`: every product at most μ, or their sum.
     pub aggregate: bool,
@@ -78,7 +76,6 @@ impl Options {
             match (name.to_lowercase().as_str(), text.as_str()) {
                 ("mpec_method", "auto") => out.method = Method::Auto,
                 ("mpec_method", "relaxation") => out.method = Method::Relaxation,
-                ("mpec_method", "penalty") => out.method = Method::Penalty,
                 ("mpec_method", "pieces") => out.method = Method::Pieces,
                 ("mpec_method", _) => out.method = Method::Check,
                 ("mpec_relaxation", text) => out.aggregate = text == "aggregate",
@@ -107,9 +104,9 @@ pub const OPTIONS: OptionTable = OptionTable {
     rows: &[
         row(
             "mpec_method",
-            Kind::Words(&["auto", "relaxation", "penalty", "pieces", "check"]),
+            Kind::Words(&["auto", "relaxation", "pieces", "check"]),
             "auto",
-            "what leads to the branch: `pieces` where it applies, otherwise `relaxation`, and `penalty` where that fails; `check` judges the levels as they are",
+            "what leads to the branch: `pieces` where it applies, otherwise `relaxation`; `check` judges the levels as they are",
         ),
         row(
             "mpec_relaxation",

@@ -1,8 +1,7 @@
 //! Attempts other than a plain run of the interior-point solver: from where an earlier solve ended, Newton's method on the equations, Clarabel
-//! for convex quadratic programs, rounded kinks, and the elastic form.
+//! for convex quadratic programs, and rounded kinks.
 
 use super::driver::Driver;
-use super::elastic::Elastic;
 use super::growth::Growth;
 use super::interior_point::Ended;
 use super::interior_point::lock;
@@ -158,31 +157,7 @@ impl Driver<'_, '_> {
         }
     }
 
-    /// The elastic form from the user's start, once.
-    pub(super) fn attempt_elastic(&mut self) -> Result<(), SolveError> {
-        let runs = !self.elastic_tried && self.settings.runs(Strategy::ElasticForm);
-        self.elastic_tried = true;
-        let weights: &[f64] = if runs { &[1e3, 1e6] } else { &[] };
-        for &rho in weights {
-            let start = self.start.clone();
-            lock(&*self.problem).set_start(start);
-            let elastic = Elastic::new(self.problem.clone(), rho);
-            let n = elastic.original_variables();
-            let solution = self.call(Arc::new(Mutex::new(elastic)), &[])?;
-            let mut x = solution.x;
-            x.truncate(n);
-            let trial = self.judge(x, solution.lambda, solution.ended);
-            let optimal = trial.is_optimal();
-            self.note_infeasibility(&trial);
-            self.keep(trial);
-            if optimal || self.is_stopped() {
-                break;
-            }
-        }
-        Ok(())
-    }
-
-    /// Keeps an elastic solution whose multipliers prove that there is no feasible point nearby.
+    /// Keeps a point whose multipliers prove that there is no feasible one nearby.
     pub(super) fn note_infeasibility(&mut self, trial: &Trial) {
         let mut problem = lock(&*self.problem);
         // the constraints push with −λ

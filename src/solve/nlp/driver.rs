@@ -8,8 +8,7 @@
 //!
 //! * a point that satisfies them is looked at once more: negative curvature on the tangent space of
 //!   what is active shows a saddle, which is left along that direction and solved again;
-//! * anything else is tried again from other starts (see [`RESTARTS`]), at last in
-//!   elastic form, which copes with dependent equations and with more equations than variables;
+//! * anything else is tried again from other starts (see [`RESTARTS`]);
 //! * a claim of infeasibility or unboundedness must show in the point.
 //!
 //! The first certified point wins. Where there is none, the best point that was seen is returned, and
@@ -175,8 +174,6 @@ pub(super) struct Driver<'a, 'm> {
     pub(super) at_saddle: bool,
     /// There is no feasible point.
     pub(super) impossible: bool,
-    /// The elastic form was solved.
-    pub(super) elastic_tried: bool,
     /// How often negative curvature of the violation was followed.
     violation_escapes: u32,
     /// Work after which no further attempt is begun.
@@ -215,7 +212,6 @@ impl<'a, 'm> Driver<'a, 'm> {
             ended: Ended::Broken,
             at_saddle: false,
             impossible: false,
-            elastic_tried: false,
             violation_escapes: 0,
             enough: f64::INFINITY,
             factors: OnceCell::new(),
@@ -302,10 +298,6 @@ impl Driver<'_, '_> {
                 self.attempt(from, NEAR)?;
                 self.leave_saddles()?;
             }
-        }
-        let lacks_point = !self.best.as_ref().is_some_and(Trial::is_feasible);
-        if !self.is_settled() && lacks_point && self.infeasibility.is_none() {
-            self.attempt_elastic()?;
         }
         self.leave_saddles()?;
         Ok(self.finish())
@@ -588,9 +580,6 @@ impl Driver<'_, '_> {
         let shared: Shared = self.problem.clone();
         let solution = self.call(shared, extra)?;
         if solution.ended == Ended::TooFewDegrees && !self.is_stopped() {
-            if !self.elastic_tried {
-                self.attempt_elastic()?;
-            }
             return Ok(None);
         }
         let trial = self.judge(solution.x, solution.lambda, solution.ended);

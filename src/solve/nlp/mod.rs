@@ -9,7 +9,6 @@ mod attempts;
 pub mod consistent;
 pub mod curvature;
 pub mod driver;
-pub mod elastic;
 mod growth;
 pub mod interior_point;
 #[cfg(feature = "ipopt")]
