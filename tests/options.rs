@@ -70,8 +70,8 @@ fn what_no_solver_takes_is_refused() {
         ("nosuchoption", "1", "bmod help options"),
         (
             "without",
-            "square_newton,elastic_from",
-            "not `elastic_from`; did you mean `elastic_form`?",
+            "square_newton,interval_prof",
+            "not `interval_prof`; did you mean `interval_proof`?",
         ),
         #[cfg(feature = "pounce")]
         ("tol", "small", "a number above 0, not `small`"),
@@ -87,7 +87,7 @@ fn what_no_solver_takes_is_refused() {
         ("lemke_start", "automatic"),
         ("lp", "clarabel"),
         ("reslim", "10"),
-        ("without", "elastic_form, square_newton"),
+        ("without", "interval_proof, square_newton"),
     ] {
         assert_eq!(refused(name, value), None, "{name}={value}");
     }

@@ -299,6 +299,11 @@ impl Driver<'_, '_> {
                 self.leave_saddles()?;
             }
         }
+        let lacks_point = !self.best.as_ref().is_some_and(Trial::is_feasible);
+        if self.named && lacks_point && !self.is_settled() && self.infeasibility.is_none() {
+            // linear programs at the least violation may prove that there is no feasible point nearby
+            self.sequential(self.start_point(From::Best), None);
+        }
         self.leave_saddles()?;
         Ok(self.finish())
     }
