@@ -278,6 +278,30 @@ fn the_dual_of_an_unlimited_column_is_infeasible() {
     assert_eq!(solve.model_status, bmod::ModelStatus::Infeasible);
 }
 
+/// No price is told where a right-hand side cannot move.
+#[test]
+fn an_explanation_says_where_nothing_is_feasible() {
+    let text = "set i / a, b /;  variable z;  positive variable x(i);  equations o, r(i), s;
+        o..  z =e= sum(i, x(i));  r(i)..  x(i) =l= 3;  s..  sum(i, x(i)) =g= 6;
+        model m / all /;  solve m using lp minimizing z;";
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("tight.blk");
+    std::fs::write(&file, text).expect("written");
+    let out = std::process::Command::new(env!("CARGO_BIN_EXE_bmod"))
+        .arg("explain")
+        .arg(&file)
+        .output()
+        .expect("bmod runs");
+    let told = String::from_utf8(out.stdout).expect("UTF-8");
+    for sentence in [
+        "r('a') binds: one unit more changes z by 0, with less nothing is feasible.",
+        "s binds: with more nothing is feasible, one unit less changes z by −1.",
+    ] {
+        assert!(told.contains(sentence), "{told}");
+    }
+    assert!(!told.contains('∞'), "{told}");
+}
+
 /// What cannot be derived is refused with its place and a reason.
 #[test]
 fn refusals_have_place_and_reason() {

@@ -239,11 +239,18 @@ impl Explained<'_> {
                     short(r.interval[0]),
                     short(r.interval[1])
                 ),
-                Some(r) => format!(
-                    "{name} binds, and the vertex is degenerate: one unit more changes {objective} by {}, one unit less by {}.",
-                    short(r.price[1]),
-                    short(-r.price[0])
-                ),
+                Some(r) => {
+                    let of = |price: f64, word: &str| match price.is_finite() {
+                        true => format!("one unit {word} changes {objective} by {}", short(price)),
+                        false => format!("with {word} nothing is feasible"),
+                    };
+                    let degenerate = match r.price.iter().all(|p| p.is_finite()) {
+                        true => ", and the vertex is degenerate",
+                        false => "",
+                    };
+                    let [more, less] = [of(r.price[1], "more"), of(-r.price[0], "less")];
+                    format!("{name} binds{degenerate}: {more}, {less}.")
+                }
                 None if a.row_marginal[i] == 0.0 => continue,
                 None => format!(
                     "{name} binds: a little more on its right side changes {objective} by {} per unit.",
