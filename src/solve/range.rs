@@ -5,10 +5,14 @@
 //! largest and the smallest multiplier of the optimal dual face; a price holds as far as the value of the program grows with
 //! it, which one more linear program says.
 
-use super::answer::{Answer, answer};
+use super::answer::answer_with;
+use super::backend::Task;
+use super::registry::BACKENDS;
 use super::{Budget, ModelStatus, Quiet, Settings};
 use crate::model::instance::{Instance, Objective, Relation, Sense};
+use crate::model::outcome::Basis;
 use crate::model::problem_type::ProblemType;
+use std::cell::RefCell;
 
 /// A row's right-hand side.
 #[derive(Clone, Debug)]
@@ -64,6 +68,10 @@ struct Reduced<'a> {
     x: &'a [f64],
     activity: &'a [f64],
     value: f64,
+    /// On the optimal dual face; on that of a program with another cost; and along a right-hand side.
+    prices: Family,
+    costs: Family,
+    ways: Family,
 }
 
 /// The ranges of an optimal point: its levels and the activities of its rows. `wanted`: rows and columns to look at;
@@ -116,29 +124,38 @@ fn rounded(x: f64) -> f64 {
     }
 }
 
-/// The least or the largest value of a column of a linear program; infinite if there is none, None if nothing is feasible.
-fn extreme(mut p: Instance, column: usize, sense: Sense) -> Option<f64> {
-    p.objective = Some(Objective {
-        column: column as u32,
-        sense,
-    });
-    let far = match sense {
-        Sense::Minimize => f64::NEG_INFINITY,
-        Sense::Maximize => f64::INFINITY,
-    };
-    let a = solve_linear(&p)?;
-    match a.status {
-        ModelStatus::Optimal => Some(a.outcome.level[column]),
-        ModelStatus::Unbounded | ModelStatus::UnboundedNoSolution => Some(far),
-        _ => None,
-    }
+/// Linear programs that differ little: each begins with the basis in which the last one ended.
+#[derive(Default)]
+struct Family {
+    basis: RefCell<Option<Basis>>,
 }
 
-/// Solves a linear instance.
-pub fn solve_linear(p: &Instance) -> Option<Answer> {
-    let mut quiet = Quiet::default();
-    let budget = Budget::unlimited(&mut quiet);
-    answer(ProblemType::Lp, None, p, &Settings::default(), &budget).ok()
+impl Family {
+    /// The least or the largest value of a column; infinite if there is none, None if nothing is feasible.
+    fn extreme(&self, mut p: Instance, column: usize, sense: Sense) -> Option<f64> {
+        p.objective = Some(Objective {
+            column: column as u32,
+            sense,
+        });
+        let far = match sense {
+            Sense::Minimize => f64::NEG_INFINITY,
+            Sense::Maximize => f64::INFINITY,
+        };
+        let basis = self.basis.take();
+        let task = Task {
+            basis: basis.as_ref(),
+            ..Task::new(ProblemType::Lp, &p)
+        };
+        let mut quiet = Quiet::default();
+        let budget = Budget::unlimited(&mut quiet);
+        let a = answer_with(BACKENDS, &task, &Settings::default(), &budget).ok()?;
+        self.basis.replace(a.outcome.basis.or(basis));
+        match a.status {
+            ModelStatus::Optimal => Some(a.outcome.level[column]),
+            ModelStatus::Unbounded | ModelStatus::UnboundedNoSolution => Some(far),
+            _ => None,
+        }
+    }
 }
 
 impl<'a> Reduced<'a> {
@@ -167,6 +184,9 @@ impl<'a> Reduced<'a> {
             x,
             activity,
             value,
+            prices: Family::default(),
+            costs: Family::default(),
+            ways: Family::default(),
         })
     }
 
@@ -226,7 +246,8 @@ impl<'a> Reduced<'a> {
         let tight = p.rows.relation[i] == Relation::Equal || near(self.activity[i], p.rows.rhs[i]);
         let mut price = [0.0, 0.0];
         if tight {
-            let side = |sense| extreme(self.dual_face(None), i, sense).unwrap_or(f64::NAN);
+            let side = |sense| self.prices.extreme(self.dual_face(None), i, sense);
+            let side = |sense| side(sense).unwrap_or(f64::NAN);
             price = [side(Sense::Minimize), side(Sense::Maximize)];
         }
         let value = p.rows.rhs[i];
@@ -269,12 +290,13 @@ impl<'a> Reduced<'a> {
         terms.push((t, -direction * price));
         let room = VALUE_TOLERANCE * (1.0 + self.value.abs());
         d.add_row(terms, Relation::Less, self.value + room);
-        extreme(d, t, Sense::Maximize).map_or(0.0, |t| t.max(0.0))
+        let furthest = self.ways.extreme(d, t, Sense::Maximize);
+        furthest.map_or(0.0, |t| t.max(0.0))
     }
 
     fn cost_of(&self, j: usize) -> CostRange {
         let shift = self.p.row_count();
-        let side = |sense| extreme(self.dual_face(Some(j)), shift, sense);
+        let side = |sense| self.costs.extreme(self.dual_face(Some(j)), shift, sense);
         let (down, up) = (side(Sense::Minimize), side(Sense::Maximize));
         let fixed = self.p.columns.lower[j] == self.p.columns.upper[j];
         let c = self.cost[j];
