@@ -339,12 +339,17 @@ fn restarted(
     let most = (100 + p.m() + p.n()) as u64;
     let mut simplex = Simplex::new(p);
     let ended = simplex.solve_from_basis(basis, &mut watch(budget, most));
-    if ended != Ended::Solved {
+    if matches!(ended, Ended::Failed | Ended::Iterations) {
         return auto(p, accuracy, strategies, budget);
     }
-    let line = format!("simplex: solved after {} iterations", simplex.iterations);
-    budget.log_timed(&line);
-    tighten(&mut simplex, accuracy, budget);
+    let word = ended.word();
+    budget.log_timed(&format!(
+        "simplex: {word} after {} iterations",
+        simplex.iterations
+    ));
+    if ended == Ended::Solved {
+        tighten(&mut simplex, accuracy, budget);
+    }
     simplex_answer(simplex, ended)
 }
 
@@ -369,6 +374,10 @@ fn presolved(
         (Ended::Solved, Some(basis)) => {
             let (_, basis) = reduced.restore(&units.restore(gave.point), &basis);
             let mut done = restarted(scaled, &basis, accuracy, strategies, budget);
+            if matches!(done.ended, Ended::Infeasible(_) | Ended::Unbounded(_)) {
+                // contradicts the smaller program
+                return auto(scaled, accuracy, strategies, budget);
+            }
             done.iterations += gave.iterations;
             if gave.solver == "clarabel" {
                 done.solver = gave.solver;
@@ -493,7 +502,7 @@ const MEDIUM: usize = 12_000;
 
 /// Where the columns of pivots have more entries than so many, or than this part of all nonzeros, an interior point is sooner there:
 /// a pivot costs the entries of its column, an iteration of the interior point costs nonzeros.
-const FULL: [f64; 2] = [300.0, 0.07];
+const FULL: [f64; 2] = [400.0, 0.07];
 
 /// Columns and rows together from which an interior point of many digits saves more pivots than it costs.
 const LARGE: usize = 3000;
