@@ -338,6 +338,28 @@ fn an_open_quote() {
     assert!(e.references("blend.blk", place, true).is_empty());
 }
 
+/// What is missing behind a character of several bytes is told, and mended, behind it.
+#[test]
+fn a_mistake_at_a_wide_character() {
+    let text = "scalar x\né\nx = 1;\n";
+    let mut e = open(text);
+    let found = e.check("blend.blk");
+    let fixes: Vec<_> = found
+        .iter()
+        .flat_map(|f| &f.diagnostics)
+        .flat_map(|d| &d.fixes)
+        .collect();
+    let [fix] = fixes[..] else {
+        panic!("one fix: {}", fixes.len());
+    };
+    assert_eq!(fix.edits[0].new_text, ";");
+    let behind = Position {
+        line: 1,
+        character: 1,
+    };
+    assert_eq!(fix.edits[0].range.start, behind);
+}
+
 /// Files that include others are one model; what is wrong in an included file is told there.
 #[test]
 fn includes() {

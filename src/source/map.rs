@@ -185,11 +185,20 @@ impl SourceMap {
         } else {
             a.origin + a.origin_len
         };
-        let end = self.files[a.file.0 as usize].text.len() as u32;
+        // Whole characters.
+        let text = &self.files[a.file.0 as usize].text;
+        let mut lo = text.len().min(lo as usize);
+        let mut hi = (hi as usize).clamp(lo, text.len());
+        while !text.is_char_boundary(lo) {
+            lo -= 1;
+        }
+        while !text.is_char_boundary(hi) {
+            hi += 1;
+        }
         Some(Place {
             file: a.file,
-            lo: lo.min(end),
-            hi: hi.clamp(lo.min(end), end),
+            lo: lo as u32,
+            hi: hi as u32,
         })
     }
 
