@@ -168,9 +168,11 @@ impl Compiler {
                 true => f64::from(u8::from(truth(value))),
                 false => self.stored(value, cell.span),
             };
-            match (&lines.row, &lines.columns[cell.place]) {
-                (Line::Refused, _) | (_, Line::Refused) => continue,
-                (Line::Labels(row), Line::Labels(column)) if row.len() + column.len() == dim => {
+            match (&lines.row, lines.columns.get(cell.place)) {
+                (Line::Refused, _) | (_, Some(Line::Refused)) => continue,
+                (Line::Labels(row), Some(Line::Labels(column)))
+                    if row.len() + column.len() == dim =>
+                {
                     self.take(1, record_bytes(dim), cell.span)?;
                     lines.key.clear();
                     lines.key.extend_from_slice(row);
