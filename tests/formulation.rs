@@ -278,14 +278,42 @@ fn the_dual_of_an_unlimited_column_is_infeasible() {
     assert_eq!(solve.model_status, bmod::ModelStatus::Infeasible);
 }
 
-/// No price is told where a right-hand side cannot move.
+/// A free column that stands in no row and has a cost: its row in the dual is generated, holds nowhere, and says so.
 #[test]
-fn an_explanation_says_where_nothing_is_feasible() {
-    let text = "set i / a, b /;  variable z;  positive variable x(i);  equations o, r(i), s;
-        o..  z =e= sum(i, x(i));  r(i)..  x(i) =l= 3;  s..  sum(i, x(i)) =g= 6;
+fn the_dual_of_a_free_column_without_rows_is_infeasible() {
+    let text = "set i / a, b, c /;  parameter c(i) / a 1, b -2, c 3 /;
+        variables x(i), z;  equations o, r;
+        o..  z =e= sum(i, c(i)*x(i));  r..  x('a') =g= 1;
         model m / all /;  solve m using lp minimizing z;";
+    let Derived::Dual(f, c, written) = derive_text(text) else {
+        panic!("a linear program");
+    };
+    assert!(c.passed(), "{:?}", c.differences);
+    assert!(
+        f.notes[0].starts_with("x('b') (and 1 more like it) is free"),
+        "{:?}",
+        f.notes
+    );
+    let solve = solved(&written, &bmod::Options::default()).expect("a solve");
+    assert_eq!(solve.model_status, bmod::ModelStatus::Infeasible);
+}
+
+/// A linear objective over quadratic rows is convex as the rows are.
+#[test]
+fn a_linear_objective_over_quadratic_rows_has_a_dual() {
+    let text = "set i / a, b /;  variables z, w(i);  positive variable x(i);  equations o, c(i), d;
+        o..  z =e= sum(i, 2*x(i));  c(i)..  sqr(w(i)) =l= x(i);  d..  sum(i, w(i)) =g= 3;
+        model m / all /;  solve m using qcp minimizing z;";
+    let Derived::Dual(_, c, _) = derive_text(text) else {
+        panic!("a convex program");
+    };
+    assert!(c.passed(), "{:?}", c.differences);
+}
+
+/// What `bmod explain` says of a text.
+fn explained(text: &str) -> String {
     let folder = tempfile::tempdir().expect("a folder");
-    let file = folder.path().join("tight.blk");
+    let file = folder.path().join("told.blk");
     std::fs::write(&file, text).expect("written");
     let out = std::process::Command::new(env!("CARGO_BIN_EXE_bmod"))
         .arg("explain")
@@ -293,13 +321,61 @@ fn an_explanation_says_where_nothing_is_feasible() {
         .output()
         .expect("bmod runs");
     let told = String::from_utf8(out.stdout).expect("UTF-8");
+    assert!(!told.contains('∞'), "{told}");
+    // As one line: where lines break is another matter.
+    told.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// No price is told where a right-hand side cannot move.
+#[test]
+fn an_explanation_says_where_nothing_is_feasible() {
+    let told = explained(
+        "set i / a, b /;  variable z;  positive variable x(i);  equations o, r(i), s;
+        o..  z =e= sum(i, x(i));  r(i)..  x(i) =l= 3;  s..  sum(i, x(i)) =g= 6;
+        model m / all /;  solve m using lp minimizing z;",
+    );
     for sentence in [
-        "r('a') binds: one unit more changes z by 0, with less nothing is feasible.",
-        "s binds: with more nothing is feasible, one unit less changes z by −1.",
+        "r('a') and r('b') bind; for each, more on its right side changes nothing, with less nothing is feasible.",
+        "s binds: each unit less on its right side changes z by −1 (from 0 to 6), with more nothing is feasible.",
     ] {
         assert!(told.contains(sentence), "{told}");
     }
-    assert!(!told.contains('∞'), "{told}");
+}
+
+/// Records that say the same are one sentence; a block of which there is too much to say is summed up.
+#[test]
+fn an_explanation_does_not_repeat_itself() {
+    let told = explained(
+        "set i / i1*i9 /, j / j1*j5 /;  variable z;  positive variables x(i), y(j);
+        equations o, r(i), s(j), c;
+        o..  z =e= sum(i, ord(i)*x(i)) + sum(j, y(j));  r(i)..  x(i) =g= 1;  s(j)..  y(j) =l= 4;
+        c..  sum(j, y(j)) =g= 20;  x.fx('i9') = 1;
+        model m / all /;  solve m using lp minimizing z;",
+    );
+    for sentence in [
+        "8 of the 9 rows of r bind: each unit more on a right side changes z by between 1 (r('i1')) and 8 (r('i8')).",
+        "All 5 rows of s bind; for each, more on its right side changes nothing, with less nothing is feasible.",
+    ] {
+        assert!(told.contains(sentence), "{told}");
+    }
+}
+
+/// A model with discrete variables has no prices: none are told, and ranges are refused.
+#[test]
+fn discrete_variables_have_no_prices() {
+    let text = "set i / a, b, c /;  variable z;  binary variable x(i);  equations o, r;
+        o..  z =e= sum(i, ord(i)*x(i));  r..  sum(i, x(i)) =g= 2;
+        model m / all /;  option optcr = 0;  solve m using mip minimizing z;";
+    let told = explained(text);
+    assert!(told.contains("but for 3 discrete columns"), "{told}");
+    assert!(told.ends_with("r binds."), "{told}");
+    let refused = bmod::Model::from_text("m.blk", text)
+        .ranges(&bmod::Choice::default(), &bmod::Options::default())
+        .expect_err("no ranges");
+    assert!(
+        refused.to_string().contains("x('a') is discrete"),
+        "{refused}"
+    );
 }
 
 /// What cannot be derived is refused with its place and a reason.

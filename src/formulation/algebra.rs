@@ -241,6 +241,7 @@ pub fn algebra(symbols: &Symbols, store: &Store, f: &Formulation) -> Algebra {
             Origin::Lower(s) => ("lower bounds", n.name(s)),
             Origin::Upper(s) => ("upper bounds", n.name(s)),
             Origin::Fixed(s) => ("fixed values", n.name(s)),
+            Origin::Missing(s) => ("missing bounds", n.name(s)),
             Origin::Point(s) => ("gradient", n.name(s)),
         }),
     });

@@ -8,10 +8,10 @@ use super::tree::*;
 use super::{Formulation, Multiplier, NewData, Origin, Sign};
 use crate::check::node::SymbolId;
 use crate::check::symbols::{DomainPosition, Store, SymbolKind, Symbols, UNIVERSE};
-use crate::data::universe::Label;
 use crate::run::Generated;
 use crate::syntax::ast::{ModelItem, VariableKind};
 use rustc_hash::FxHashSet;
+use std::cell::OnceCell;
 
 /// A model of the user at one of its solves.
 pub struct Primal {
@@ -74,8 +74,10 @@ pub struct Derivation<'a> {
     terms: Vec<Vec<Term>>,
     /// The multiplier of each equation.
     multipliers: Vec<Option<usize>>,
-    /// By column: whether it stands in a row with a multiplier, or in a nonlinear term.
-    in_rows: Vec<bool>,
+    /// Whether all rows of all equations bind, so that each has a multiplier.
+    pub(super) all_bind: bool,
+    /// By column, once it was asked for: whether it stands in a row with a multiplier, or in a nonlinear term.
+    pub(super) in_rows: OnceCell<Vec<bool>>,
     /// Multipliers are those of the text with the opposite sign.
     flip: bool,
     taken: FxHashSet<String>,
@@ -110,13 +112,13 @@ impl<'a> Derivation<'a> {
             eliminated: None,
             binders: primal.equations.iter().map(|e| e.binder.clone()).collect(),
             multipliers: vec![None; terms.len()],
-            in_rows: Vec::new(),
+            all_bind: true,
+            in_rows: OnceCell::new(),
             terms,
             flip: false,
             taken,
         };
         d.eliminated = d.eliminate();
-        d.in_rows = d.columns_in_rows();
         d.leave_out_unlimited();
         Ok(d)
     }
@@ -128,12 +130,15 @@ impl<'a> Derivation<'a> {
             let Some(b) = g.origin.rows.symbol(e.symbol) else {
                 continue;
             };
-            let relation = |i: &u32| g.instance.rows.relation[*i as usize];
-            let rows = b.start..b.start + b.len;
-            let binding: Vec<u32> = rows.filter(|i| relation(i) == e.relation).collect();
-            if binding.len() == b.len as usize {
+            let rows = b.start as usize..(b.start + b.len) as usize;
+            let binds = |r: &Relation| *r == e.relation;
+            self.all_bind &= e.relation != Relation::Free;
+            if g.instance.rows.relation[rows].iter().all(binds) {
                 continue;
             }
+            self.all_bind = false;
+            let relation = |i: &u32| &g.instance.rows.relation[*i as usize];
+            let binding = (b.start..b.start + b.len).filter(|i| binds(relation(i)));
             let name = self.symbols.get(e.symbol).name.to_string();
             let unique = self.fresh(&format!("binding_{name}"));
             self.out.data.push(NewData {
@@ -141,7 +146,7 @@ impl<'a> Derivation<'a> {
                 text: format!("rows of {name} with a finite right side"),
                 domain: domain_of(self.symbols, e.symbol),
                 is_set: !e.key.is_empty(),
-                records: binding.iter().map(|&i| (b.key(i).to_vec(), 1.0)).collect(),
+                records: binding.map(|i| (b.key(i).to_vec(), 1.0)).collect(),
             });
             let number = self.out.data.len() - 1;
             let inside = match e.key.is_empty() {
@@ -357,77 +362,9 @@ impl<'a> Derivation<'a> {
             .collect()
     }
 
-    /// Whether a column of a variable stands in no row with a multiplier, and in the objective at most linearly.
-    pub fn is_without_row(&self, v: SymbolId) -> bool {
-        let block = self.primal.generated.origin.columns.symbol(v);
-        block.is_some_and(|b| {
-            let columns = b.start as usize..(b.start + b.len) as usize;
-            self.in_rows[columns].contains(&false)
-        })
-    }
-
-    /// The columns of a variable, by their places in it, that stand in no row and make the objective better without limit:
-    /// their rows in the dual hold nowhere, and need a multiplier all the same to be rows.
-    pub fn unlimited_alone(&self, v: SymbolId) -> Vec<usize> {
-        let g = &self.primal.generated;
-        let (Some(b), Some((row, a))) = (
-            g.origin
-                .columns
-                .symbol(v)
-                .filter(|_| self.is_without_row(v)),
-            g.instance.objective_row(),
-        ) else {
-            return Vec::new();
-        };
-        let better = |j: usize| {
-            let mut entries = g.instance.matrix.row(row);
-            let cost = entries.find(|t| t.0 == j).map_or(0.0, |t| -t.1 / a) * g.instance.sign();
-            let c = &g.instance.columns;
-            cost < 0.0 && c.upper[j] == f64::INFINITY
-                || cost > 0.0 && c.lower[j] == f64::NEG_INFINITY
-        };
-        let all = (0..b.len as usize).map(|n| (n, b.start as usize + n));
-        let alone = all.filter(|&(_, j)| !self.in_rows[j] && better(j));
-        alone.map(|(n, _)| n).collect()
-    }
-
-    /// By column: whether it stands in a row with a multiplier, or in a nonlinear term.
-    fn columns_in_rows(&self) -> Vec<bool> {
-        let g = &self.primal.generated;
-        let gone = self.eliminated.as_ref().and_then(|o| {
-            let symbol = self.primal.equations[o.equation].symbol;
-            let rows = g.origin.rows.symbol(symbol);
-            rows.map(|b| b.start as usize)
-        });
-        let mut out = vec![false; g.instance.column_count()];
-        let relation = &g.instance.rows.relation;
-        let m = &g.instance.matrix;
-        for i in (0..relation.len()).filter(|&i| Some(i) != gone && relation[i] != Relation::Free) {
-            m.row(i).for_each(|(j, _)| out[j] = true);
-        }
-        for k in &g.instance.nonlinear {
-            let width = k.kernel.variables as usize;
-            for (t, &i) in k.row.iter().enumerate() {
-                if relation[i as usize] != Relation::Free {
-                    k.columns[t * width..(t + 1) * width]
-                        .iter()
-                        .for_each(|j| out[*j as usize] = true);
-                }
-            }
-        }
-        out
-    }
-
-    /// The columns of a variable: keys, lower and upper bounds.
-    pub fn columns(&self, v: SymbolId) -> Vec<(&'a [Label], f64, f64)> {
-        let primal: &'a Primal = self.primal;
-        let Some(b) = primal.generated.origin.columns.symbol(v) else {
-            return Vec::new();
-        };
-        let c = &primal.generated.instance.columns;
-        (b.start..b.start + b.len)
-            .map(|j| (b.key(j), c.lower[j as usize], c.upper[j as usize]))
-            .collect()
+    /// Whether an equation holds a variable.
+    pub(super) fn is_mentioned(&self, v: Variable) -> bool {
+        self.terms.iter().flatten().any(|t| t.variable == v)
     }
 
     /// The row of a variable's columns: its indices, what the equations add to it (with their multipliers), and what the
@@ -480,9 +417,9 @@ impl<'a> Derivation<'a> {
             });
         }
         // A column that stands in no row has one of its own all the same.
-        let common = match self.is_without_row(v) {
-            true => Vec::new(),
-            false => common(&mut rows, &mut cost),
+        let common = match self.without_row(v).is_empty() {
+            true => common(&mut rows, &mut cost),
+            false => Vec::new(),
         };
         let add = |list: Vec<Inverted>| {
             sum(list
@@ -499,31 +436,30 @@ impl<'a> Derivation<'a> {
         })
     }
 
-    /// A set of records as data, guarded by it; no condition where it has all tuples.
+    /// The columns of a variable at these places as data, guarded by it; no condition where these are all tuples.
     pub fn membership(
         &mut self,
         name: &str,
         text: String,
-        domain: Vec<SymbolId>,
-        over: &[SymbolId],
-        target: &[IndexId],
-        keys: Vec<Vec<Label>>,
+        v: SymbolId,
+        row: &ColumnRow,
+        places: &[usize],
     ) -> Option<Expr> {
         let size = |s: &SymbolId| self.store.table(self.symbols.get(*s).table).len();
-        let all: usize = over.iter().map(size).product();
-        if keys.len() == all {
+        let all: usize = row.sets.iter().map(size).product();
+        if places.len() == all {
             return None;
         }
+        let keys = self.columns(v).keys(places);
         let name = self.fresh(name);
         self.out.data.push(NewData {
             name,
             text,
-            domain,
+            domain: domain_of(self.symbols, v),
             is_set: true,
             records: keys.into_iter().map(|k| (k, 1.0)).collect(),
         });
-        let key = target.iter().map(|j| Part::Index(*j)).collect();
-        Some(Expr::NewMember(self.out.data.len() - 1, key))
+        Some(Expr::NewMember(self.out.data.len() - 1, row.key()))
     }
 
     /// The constants of an equation on its right side.
@@ -579,7 +515,7 @@ fn common(rows: &mut [Inverted], cost: &mut [Inverted]) -> Vec<Expr> {
     common
 }
 
-fn mentions(e: &Expr, v: SymbolId) -> bool {
+pub(super) fn mentions(e: &Expr, v: SymbolId) -> bool {
     e.any(&|e| matches!(e, Expr::Variable(Variable::Own(s), _) if *s == v))
 }
 

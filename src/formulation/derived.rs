@@ -184,23 +184,29 @@ fn refuse_dual(m: &Machine, primal: &Primal, studied: &Studied) -> Result<(), Bo
     .into())
 }
 
+/// A record that is a discrete choice, and its symbol, where the solve leaves one.
+pub fn discrete(m: &Machine, primal: &Primal) -> Option<(SymbolId, String)> {
+    let columns = &primal.generated.instance.columns;
+    let j = columns
+        .first_undecided()
+        .filter(|_| !primal.using.starts_with('r'))?;
+    let b = primal.generated.origin.columns.of(j as u32);
+    Some((b.symbol, m.record_name(b.symbol, b.key(j as u32))))
+}
+
 /// A model with discrete variables has neither a linear dual nor optimality conditions; its relaxation has.
 fn refuse_discrete(
     m: &Machine,
     primal: &Primal,
     no: impl Fn(String) -> Diagnostic,
 ) -> Result<(), Box<Diagnostic>> {
-    let relaxed = primal.using.starts_with('r');
-    let columns = &primal.generated.instance.columns;
-    let Some(j) = columns.first_undecided().filter(|_| !relaxed) else {
+    let Some((symbol, name)) = discrete(m, primal) else {
         return Ok(());
     };
-    let b = primal.generated.origin.columns.of(j as u32);
-    let name = m.record_name(b.symbol, b.key(j as u32));
-    let declared = m.symbols.get(b.symbol).declared;
     let message = format!(
         "a model with discrete variables has no dual and no optimality conditions of this kind, and {name} is discrete"
     );
+    let declared = m.symbols.get(symbol).declared;
     Err(no(message)
         .other(declared, "declared here")
         .help("its relaxation has them: `solve … using rmip`")

@@ -2,14 +2,15 @@
 //! quadratic program Dorn's dual, with quadratic rows Wolfe's: a further variable stands for the point at which the
 //! gradients are taken.
 
-use super::derive::{Derivation, Primal, domain_of};
+use super::columns::Columns;
+use super::derive::{ColumnRow, Derivation, Primal, domain_of};
 use super::kkt::{start_of_levels, start_of_multiplier};
 use super::lower::Equation;
 use super::tree::*;
 use super::{Formulation, Multiplier, Origin, Row, Sign};
 use crate::check::node::SymbolId;
 use crate::check::symbols::{Store, Symbols, attribute};
-use crate::data::universe::Label;
+use crate::data::value::EPS;
 
 /// Derives the dual of a linear or convex quadratic model. `as_in_text`: multipliers have the signs of the variables that
 /// the text pairs with their rows. `Err` says why there is none.
@@ -208,112 +209,52 @@ fn points(d: &mut Derivation) {
 /// The columns of a variable that have the same sign.
 struct Class {
     sign: Sign,
-    keys: Vec<usize>,
+    places: Vec<usize>,
+}
+
+/// Bounds of a variable that have a multiplier.
+struct Bounds {
+    /// How the multiplier's name begins, and what its columns have.
+    which: &'static str,
+    text: &'static str,
+    origin: Origin,
+    /// The sign for a minimum.
+    sign: Sign,
+    /// The data of the bound; None where there is none.
+    data: Option<u32>,
+    /// The columns that have it.
+    places: Vec<usize>,
 }
 
 /// The rows of a variable's columns, and what their bounds add to the objective.
 fn column(d: &mut Derivation, v: SymbolId) -> Result<Vec<(bool, Expr)>, String> {
     let columns = d.columns(v);
     let row = d.column_row(v)?;
-    let name = d.symbols.get(v).name.to_string();
-    let minimum = d.is_minimum();
     let classes = classes(&columns);
+    let mut left = vec![(false, row.rows.clone())];
     let mut objective = Vec::new();
-    // Bounds that are not said by the sign: multipliers of their own.
-    let mut bounds = Vec::new();
-    let single = (classes.len() == 1).then(|| classes[0].sign);
-    let sign_of = |lo: f64, up: f64| single.unwrap_or(SIGNS[class_of(lo, up)]);
-    let alone = d.unlimited_alone(v);
-    let pick = |test: &dyn Fn(bool, f64, f64) -> bool| -> Vec<Vec<Label>> {
-        let each = columns.iter().enumerate();
-        let wanted = each.filter(|(n, (_, lo, up))| test(alone.contains(n), *lo, *up));
-        wanted.map(|(_, (key, ..))| key.to_vec()).collect()
-    };
-    let kinds = [
-        (
-            "lo",
-            attribute::LO,
-            pick(&|alone, lo, up| {
-                let said = sign_of(lo, up) == Sign::Positive && lo == 0.0;
-                lo.is_finite() && lo != up && (alone || !said)
-            }),
-        ),
-        (
-            "up",
-            attribute::UP,
-            pick(&|alone, lo, up| {
-                let said = sign_of(lo, up) == Sign::Negative && up == 0.0;
-                up.is_finite() && lo != up && (alone || !said)
-            }),
-        ),
-        ("fx", attribute::LO, pick(&|_, lo, up| lo == up)),
-    ];
-    for (which, offset, keys) in kinds {
-        if keys.is_empty() {
-            continue;
-        }
-        let (origin, sign, text) = match (which, minimum) {
-            ("lo", m) => (
-                Origin::Lower(v),
-                if m { Sign::Positive } else { Sign::Negative },
-                "a lower bound",
-            ),
-            ("up", m) => (
-                Origin::Upper(v),
-                if m { Sign::Negative } else { Sign::Positive },
-                "an upper bound",
-            ),
-            _ => (Origin::Fixed(v), Sign::Free, "a fixed value"),
-        };
-        let domain = domain_of(d.symbols, v);
-        let multiplier = Multiplier {
-            name: d.fresh(&format!("y_{which}_{name}")),
-            domain: domain.clone(),
-            sign: d.flipped(sign),
-            origin,
-        };
-        let number = d.out.multipliers.len();
-        d.out.multipliers.push(multiplier);
-        let y = d.multiplier(number, row.key());
-        let guard = d.membership(
-            &format!("has_{which}_{name}"),
-            format!("columns of {name} with {text}"),
-            domain,
-            &row.sets,
-            &row.target,
-            keys,
-        );
-        bounds.push((false, guarded(y.clone(), guard.iter().cloned().collect())));
-        let bound = Expr::Data(Source::Attribute(v, offset), row.key());
-        let binder = match &guard {
-            // The conditions of the row hold where there is such a column.
-            Some(g) => Binder {
-                indices: row.target.clone(),
-                conditions: vec![g.clone()],
-            },
-            None => row.binder(None),
-        };
-        objective.push((false, sum_over(binder, times(bound, y))));
+    for bounds in limits(d, v, &columns, &classes) {
+        let (term, worth) = multiplier_of_bounds(d, v, &row, &bounds);
+        left.push((false, term));
+        objective.extend(worth.map(|w| (false, w)));
     }
-    bounds.insert(0, (false, row.rows.clone()));
-    let left = sum(bounds);
+    let (left, minimum) = (sum(left), d.is_minimum());
+    let name = d.symbols.get(v).name.to_string();
     for (n, class) in classes.iter().enumerate() {
+        let word = match class.sign {
+            Sign::Positive => "positive",
+            Sign::Negative => "negative",
+            Sign::Free => "free",
+        };
         let (suffix, guard) = match classes.len() {
             1 => (String::new(), None),
             _ => {
-                let word = match class.sign {
-                    Sign::Positive => "positive",
-                    Sign::Negative => "negative",
-                    Sign::Free => "free",
-                };
-                let keys = class.keys.iter().map(|&i| columns[i].0.to_vec()).collect();
                 let guard = d.membership(
                     &format!("{word}_{name}"),
                     format!("columns of {name} that are {word}"),
-                    domain_of(d.symbols, v),
-                    &row.sets,
-                    &row.target,
-                    keys,
+                    v,
+                    &row,
+                    &class.places,
                 );
                 (format!("_{}", n + 1), guard)
             }
@@ -323,11 +264,10 @@ fn column(d: &mut Derivation, v: SymbolId) -> Result<Vec<(bool, Expr)>, String> 
             (Sign::Positive, true) | (Sign::Negative, false) => Relation::Less,
             _ => Relation::Greater,
         };
-        let text = format!("dual of {name}");
         let row_name = d.fresh(&format!("dual_{name}{suffix}"));
         d.out.rows.push(Row {
             name: row_name,
-            text,
+            text: format!("dual of {name}"),
             domain: domain_of(d.symbols, v),
             key: row.key(),
             binder: row.binder(guard),
@@ -338,6 +278,137 @@ fn column(d: &mut Derivation, v: SymbolId) -> Result<Vec<(bool, Expr)>, String> 
         });
     }
     Ok(objective)
+}
+
+/// The bounds that are not said by the sign, and those that are missed.
+fn limits(d: &mut Derivation, v: SymbolId, columns: &Columns, classes: &[Class]) -> Vec<Bounds> {
+    let single = (classes.len() == 1).then(|| classes[0].sign);
+    let sign_of = |lo: f64, up: f64| single.unwrap_or(SIGNS[class_of(lo, up)]);
+    let said_lower = |lo: f64, up: f64| sign_of(lo, up) == Sign::Positive && lo == 0.0;
+    let said_upper = |lo: f64, up: f64| sign_of(lo, up) == Sign::Negative && up == 0.0;
+    let mut lower = columns.places(|lo, up| lo.is_finite() && lo != up && !said_lower(lo, up));
+    let mut upper = columns.places(|lo, up| up.is_finite() && lo != up && !said_upper(lo, up));
+    let mut missing = Vec::new();
+    let alone = d.unlimited_alone(v);
+    if !alone.is_empty() {
+        let bounds: Vec<(f64, f64)> = columns.bounds().collect();
+        for n in alone {
+            match bounds[n] {
+                (lo, _) if lo.is_finite() => lower.push(n),
+                (_, up) if up.is_finite() => upper.push(n),
+                _ => missing.push(n),
+            }
+        }
+        for places in [&mut lower, &mut upper] {
+            places.sort_unstable();
+            places.dedup();
+        }
+    }
+    if let Some(&n) = missing.first() {
+        let name = &d.symbols.get(v).name;
+        let record = super::text::record(d.store, name, columns.key(n));
+        let others = match missing.len() {
+            1 => String::new(),
+            n => format!(" (and {} more like it)", n - 1),
+        };
+        d.out.notes.push(format!(
+            "{record}{others} is free, stands in no row and makes the objective better without limit: its row here says that \
+             its coefficient is 0, and holds nowhere, as the dual of an unbounded program must."
+        ));
+    }
+    let of = |which, text, origin, sign, data, places| Bounds {
+        which,
+        text,
+        origin,
+        sign,
+        data,
+        places,
+    };
+    let fixed = columns.places(|lo, up| lo == up);
+    let (lo, up) = (Some(attribute::LO), Some(attribute::UP));
+    let mut all = vec![
+        of(
+            "lo",
+            "a lower bound",
+            Origin::Lower(v),
+            Sign::Positive,
+            lo,
+            lower,
+        ),
+        of(
+            "up",
+            "an upper bound",
+            Origin::Upper(v),
+            Sign::Negative,
+            up,
+            upper,
+        ),
+        of(
+            "fx",
+            "a fixed value",
+            Origin::Fixed(v),
+            Sign::Free,
+            lo,
+            fixed,
+        ),
+        of(
+            "no",
+            "neither row nor bound",
+            Origin::Missing(v),
+            Sign::Free,
+            None,
+            missing,
+        ),
+    ];
+    all.retain(|b| !b.places.is_empty());
+    all
+}
+
+/// The multiplier of bounds: its term in the row of the columns, and in the objective.
+fn multiplier_of_bounds(
+    d: &mut Derivation,
+    v: SymbolId,
+    row: &ColumnRow,
+    bounds: &Bounds,
+) -> (Expr, Option<Expr>) {
+    let name = d.symbols.get(v).name.to_string();
+    let sign = match (bounds.sign, d.is_minimum()) {
+        (Sign::Positive, false) => Sign::Negative,
+        (Sign::Negative, false) => Sign::Positive,
+        (sign, _) => sign,
+    };
+    let multiplier = Multiplier {
+        name: d.fresh(&format!("y_{}_{name}", bounds.which)),
+        domain: domain_of(d.symbols, v),
+        sign: d.flipped(sign),
+        origin: bounds.origin,
+    };
+    let number = d.out.multipliers.len();
+    d.out.multipliers.push(multiplier);
+    let y = d.multiplier(number, row.key());
+    let guard = d.membership(
+        &format!("has_{}_{name}", bounds.which),
+        format!("columns of {name} with {}", bounds.text),
+        v,
+        row,
+        &bounds.places,
+    );
+    let Some(offset) = bounds.data else {
+        // It keeps the row in the model.
+        let term = times(Expr::Number(EPS), y);
+        return (guarded(term, guard.into_iter().collect()), None);
+    };
+    let bound = Expr::Data(Source::Attribute(v, offset), row.key());
+    let binder = match &guard {
+        // The conditions of the row hold where there is such a column.
+        Some(g) => Binder {
+            indices: row.target.clone(),
+            conditions: vec![g.clone()],
+        },
+        None => row.binder(None),
+    };
+    let worth = sum_over(binder, times(bound, y.clone()));
+    (guarded(y, guard.into_iter().collect()), Some(worth))
 }
 
 const SIGNS: [Sign; 3] = [Sign::Positive, Sign::Negative, Sign::Free];
@@ -352,23 +423,19 @@ fn class_of(lower: f64, upper: f64) -> usize {
 }
 
 /// Columns that are at least 0, at most 0, and others.
-fn classes(columns: &[(&[Label], f64, f64)]) -> Vec<Class> {
-    let mut out: Vec<Class> = SIGNS
-        .map(|sign| Class {
-            sign,
-            keys: Vec::new(),
-        })
-        .into();
-    for (i, &(_, lo, up)) in columns.iter().enumerate() {
-        out[class_of(lo, up)].keys.push(i);
-    }
-    out.retain(|c| !c.keys.is_empty());
+fn classes(columns: &Columns) -> Vec<Class> {
+    let of = |(n, sign): (usize, &Sign)| Class {
+        sign: *sign,
+        places: columns.places(|lo, up| class_of(lo, up) == n),
+    };
+    let mut out: Vec<Class> = SIGNS.iter().enumerate().map(of).collect();
+    out.retain(|c| !c.places.is_empty());
     if let [one] = out.as_mut_slice() {
         // A sign that no column needs is none.
-        let mut each = columns.iter();
+        let mut each = columns.bounds();
         let needed = match one.sign {
-            Sign::Positive => each.any(|c| c.1 == 0.0 && c.2 > 0.0),
-            Sign::Negative => each.any(|c| c.2 == 0.0 && c.1 < 0.0),
+            Sign::Positive => each.any(|(lo, up)| lo == 0.0 && up > 0.0),
+            Sign::Negative => each.any(|(lo, up)| up == 0.0 && lo < 0.0),
             Sign::Free => true,
         };
         if !needed {

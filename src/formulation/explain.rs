@@ -3,18 +3,24 @@
 use super::convex::{Shape, shape};
 use super::derive::Primal;
 use super::math::explained;
-use super::range::{self, Ranges};
+use super::range::{self, Ranges, RowRange};
 use super::side::{costs, short};
 use super::text::record;
 use crate::check::node::SymbolId;
 use crate::check::symbols::{Store, Symbols};
-use crate::model::instance::{Relation, Sense};
+use crate::model::instance::{ColumnKind, Relation, Sense};
 use crate::model::origin::Blocks;
 use crate::run::{Machine, Studied};
 use crate::solve::ModelStatus;
 
-/// More records than this are not named.
+/// More records than this are not named; more sentences of one kind are not said.
 const MAX_NAMES: usize = 12;
+/// More sentences than this about one block are summed up in one.
+const MAX_SENTENCES: usize = 4;
+/// Of records that are said the same of, so many are named.
+const MAX_ALIKE: usize = 4;
+/// A reduced cost, or a way to another optimum, below this is 0, relative.
+const NONE: f64 = 1e-9;
 
 /// What is asked of a model in words.
 pub struct Explained<'a> {
@@ -56,7 +62,7 @@ pub fn of(m: &Machine, primal: &Primal, studied: &Studied) -> (Vec<String>, Opti
 pub fn explain(e: &Explained) -> Vec<String> {
     let mut out = vec![e.decided(), e.size()];
     match e.status {
-        ModelStatus::Optimal | ModelStatus::LocallyOptimal | ModelStatus::Solved => {
+        s if s.is_solution() || s == ModelStatus::IntegerSolution => {
             out.push(e.answer());
             out.extend(e.binding());
             out.extend(e.unused());
@@ -69,6 +75,21 @@ pub fn explain(e: &Explained) -> Vec<String> {
     }
     out.retain(|p| !p.is_empty());
     out
+}
+
+/// What is said of a row or a column.
+struct Said {
+    /// Its number.
+    at: usize,
+    /// Its verb, of one and of many.
+    verb: [&'static str; 2],
+    /// What completes the verb.
+    place: String,
+    /// What follows.
+    words: String,
+    /// What is said in place of that where there are many different numbers, and the number.
+    lead: String,
+    number: f64,
 }
 
 impl Explained<'_> {
@@ -112,11 +133,14 @@ impl Explained<'_> {
             .map(|s| self.described(s))
             .collect();
         let aim = match p.objective {
-            Some((Sense::Minimize, z)) => {
-                format!(", so that {} is as small as possible", self.described(z))
-            }
-            Some((Sense::Maximize, z)) => {
-                format!(", so that {} is as large as possible", self.described(z))
+            Some((sense, z)) => {
+                let name = self.described(z);
+                let comma = if name.contains(',') { "," } else { "" };
+                let how = match sense {
+                    Sense::Minimize => "small",
+                    Sense::Maximize => "large",
+                };
+                format!(", so that {name}{comma} is as {how} as possible")
             }
             None => ", so that all its conditions hold".into(),
         };
@@ -127,84 +151,106 @@ impl Explained<'_> {
         )
     }
 
+    /// How many columns are discrete choices.
+    fn discrete(&self) -> usize {
+        let c = &self.primal.generated.instance.columns;
+        let undecided =
+            |j: &usize| c.kind[*j] != ColumnKind::Continuous && c.lower[*j] < c.upper[*j];
+        match self.primal.using.starts_with('r') {
+            true => 0,
+            false => (0..c.kind.len()).filter(undecided).count(),
+        }
+    }
+
     fn size(&self) -> String {
         let p = self.primal;
         let i = &p.generated.instance;
-        let (rows, columns) = (i.row_count(), i.column_count());
-        let maximum = i.sign() < 0.0;
-        let curved = if maximum { "concave" } else { "convex" };
-        let semi = if maximum { "negative" } else { "positive" };
+        let curved = if i.sign() < 0.0 { "concave" } else { "convex" };
+        let semi = if i.sign() < 0.0 {
+            "negative"
+        } else {
+            "positive"
+        };
+        let row = |k| self.name(&p.generated.origin.rows, k);
+        let global = "an optimum that is found is an optimum over all points";
+        let local = "an optimum that is found may be a local one";
+        let discrete = self.discrete();
         let kind = match (i.objective.is_some(), shape(i)) {
             (false, _) => {
-                "It is a complementarity problem or a system of equations and has no objective".into()
-            }
-            (_, Shape::Linear) => {
-                "It is linear, and so convex: an optimum that is found is an optimum over all points".into()
-            }
-            (_, Shape::ConvexQuadratic { in_rows: true, .. }) => {
-                "Its quadratic functions stand where it is convex (their Hessians are semidefinite): an optimum that is \
-                 found is an optimum over all points"
+                "It is a complementarity problem or a system of equations and has no objective"
                     .into()
             }
-            (_, Shape::ConvexQuadratic { .. }) => format!(
-                "Its rows are linear, and its quadratic objective is {curved} (the Hessian is {semi} semidefinite): an \
-                 optimum that is found is an optimum over all points"
-            ),
-            (_, Shape::Quadratic(Some(row))) => format!(
-                "{} is quadratic and not convex: an optimum that is found may be a local one",
-                self.name(&p.generated.origin.rows, row)
-            ),
-            (_, Shape::Quadratic(None)) => format!(
-                "Its objective is quadratic and not {curved}: an optimum that is found may be a local one"
-            ),
-            (_, Shape::Nonlinear(_)) => {
-                "It is not linear; unless it is convex, an optimum that is found may be a local one".into()
+            (_, Shape::Linear) if discrete > 0 => {
+                format!("It is linear but for {}", discretely(discrete))
             }
+            (_, Shape::Linear) => format!("It is linear, and so convex: {global}"),
+            (_, Shape::ConvexQuadratic { in_rows: true, .. }) => format!(
+                "Its quadratic functions stand where it is convex (their Hessians are semidefinite): {global}"
+            ),
+            (_, Shape::ConvexQuadratic { .. }) => format!(
+                "Its rows are linear, and its quadratic objective is {curved} (the Hessian is {semi} semidefinite): {global}"
+            ),
+            (_, Shape::Quadratic(Some(k))) => {
+                format!("{} is quadratic and not convex: {local}", row(k))
+            }
+            (_, Shape::Quadratic(None)) => {
+                format!("Its objective is quadratic and not {curved}: {local}")
+            }
+            (_, Shape::Nonlinear(_)) => format!("It is not linear; unless it is convex, {local}"),
         };
-        format!(
-            "It has {rows} rows and {columns} columns ({}). {kind}.",
-            p.using
-        )
+        let also = match discrete > 0 && !i.is_linear() {
+            true => format!(" It has {}.", discretely(discrete)),
+            false => String::new(),
+        };
+        let (rows, columns) = (
+            counted(i.row_count(), "row"),
+            counted(i.column_count(), "column"),
+        );
+        format!("It has {rows} and {columns} ({}). {kind}.{also}", p.using)
     }
 
     fn answer(&self) -> String {
         let p = self.primal;
-        let (Some(a), Some((sense, z))) = (&p.answer, p.objective) else {
+        let Some(a) = &p.answer else {
             return "It was solved.".into();
         };
-        let column = p
-            .generated
-            .instance
-            .objective
-            .map_or(0, |o| o.column as usize);
-        let word = match sense {
-            Sense::Minimize => "smallest",
-            Sense::Maximize => "largest",
+        let i = &p.generated.instance;
+        let column = i.objective.map(|o| o.column as usize);
+        let proved = matches!(shape(i), Shape::Linear | Shape::ConvexQuadratic { .. })
+            && self.status != ModelStatus::IntegerSolution;
+        let mut text = match p.objective.zip(column) {
+            Some(((sense, z), column)) => format!(
+                "The {} {}{} is {}{}.",
+                match sense {
+                    Sense::Minimize => "smallest",
+                    Sense::Maximize => "largest",
+                },
+                self.symbols.get(z).name,
+                if proved { "" } else { " found" },
+                short(a.level[column]),
+                self.unit(z)
+            ),
+            None => "It was solved.".into(),
         };
-        let name = &self.symbols.get(z).name;
-        let mut text = format!(
-            "The {word} {name} is {}{}.",
-            short(a.level[column]),
-            self.unit(z)
-        );
         let columns = &p.generated.origin.columns;
-        let nonzero: Vec<String> = (0..a.level.len())
-            .filter(|&j| j != column && a.level[j].abs() > 1e-9)
-            .map(|j| format!("{} = {}", self.name(columns, j), short(a.level[j])))
-            .collect();
-        let zeros = a.level.len() - 1 - nonzero.len();
+        let others = (0..a.level.len()).filter(|j| Some(*j) != column);
+        let (nonzero, zeros): (Vec<usize>, Vec<usize>) =
+            others.partition(|&j| a.level[j].abs() > 1e-9);
+        text.pop();
         text.push_str(&match nonzero.len() {
-            0 => " All variables are 0.".to_string(),
-            n if n <= MAX_NAMES => format!(" It is reached at {}", nonzero.join(", ")),
-            n => format!(" It is reached with {n} variables that are not 0"),
+            0 => return text + ": all variables are 0.",
+            n if n > MAX_NAMES => format!(": {n} variables are not 0"),
+            _ => {
+                let one = |&j: &usize| format!("{} = {}", self.name(columns, j), short(a.level[j]));
+                let each: Vec<String> = nonzero.iter().map(one).collect();
+                format!(", at {}", each.join(", "))
+            }
         });
-        if !nonzero.is_empty() {
-            text.push_str(&match zeros {
-                0 => ".".to_string(),
-                1 => "; one other is 0.".to_string(),
-                n => format!("; the {n} others are 0."),
-            });
-        }
+        text.push_str(&match zeros.len() {
+            0 => ".".to_string(),
+            1 => "; one other is 0.".to_string(),
+            n => format!("; the {n} others are 0."),
+        });
         text
     }
 
@@ -215,50 +261,52 @@ impl Explained<'_> {
             return Vec::new();
         };
         let g = &p.generated;
-        let objective = &self.symbols.get(z).name;
+        let rows = &g.instance.rows;
+        let discrete = self.discrete() > 0;
+        let defines = g.instance.objective_row().map(|r| r.0);
+        let mut by_row = self.ranges.map_or(&[][..], |r| &r.rows).iter().peekable();
         let mut out = Vec::new();
-        for i in 0..g.instance.row_count() {
-            let relation = g.instance.rows.relation[i];
-            let tight = relation == Relation::Equal
-                || (a.activity[i] - g.instance.rows.rhs[i]).abs()
-                    <= 1e-7 * (1.0 + a.activity[i].abs());
-            let defines = g
-                .instance
-                .matrix
-                .row(i)
-                .any(|(j, _)| g.instance.objective.is_some_and(|o| o.column as usize == j));
-            if !tight || relation == Relation::Free || defines && relation == Relation::Equal {
+        for i in 0..rows.relation.len() {
+            let range = by_row.next_if(|r| r.row == i);
+            let equal = rows.relation[i] == Relation::Equal;
+            let off = (a.activity[i] - rows.rhs[i]).abs();
+            let tight = equal || off <= 1e-7 * (1.0 + a.activity[i].abs());
+            let price = a.row_marginal[i];
+            let silent = match (discrete, range) {
+                (true, _) => equal,
+                (_, None) => price == 0.0,
+                _ => false,
+            };
+            if !tight || silent || rows.relation[i] == Relation::Free || equal && defines == Some(i)
+            {
                 continue;
             }
-            let name = self.name(&g.origin.rows, i);
-            let range = self.ranges.and_then(|r| r.rows.iter().find(|r| r.row == i));
-            out.push(match range {
-                Some(r) if r.price[0] == r.price[1] => format!(
-                    "{name} binds: one unit more on its right side changes {objective} by {}, from {} to {}.",
-                    short(r.price[1]),
-                    short(r.interval[0]),
-                    short(r.interval[1])
+            let (lead, number, words) = match discrete {
+                true => Default::default(),
+                false => worth(
+                    range,
+                    price,
+                    &self.symbols.get(z).name,
+                    g.instance.is_linear(),
                 ),
-                Some(r) => {
-                    let of = |price: f64, word: &str| match price.is_finite() {
-                        true => format!("one unit {word} changes {objective} by {}", short(price)),
-                        false => format!("with {word} nothing is feasible"),
-                    };
-                    let degenerate = match r.price.iter().all(|p| p.is_finite()) {
-                        true => ", and the vertex is degenerate",
-                        false => "",
-                    };
-                    let [more, less] = [of(r.price[1], "more"), of(-r.price[0], "less")];
-                    format!("{name} binds{degenerate}: {more}, {less}.")
-                }
-                None if a.row_marginal[i] == 0.0 => continue,
-                None => format!(
-                    "{name} binds: a little more on its right side changes {objective} by {} per unit.",
-                    short(a.row_marginal[i])
-                ),
+            };
+            out.push(Said {
+                at: i,
+                verb: ["binds", "bind"],
+                place: String::new(),
+                words,
+                lead,
+                number,
             });
         }
-        shortened(out, "rows that bind")
+        let mut out = self.told(&g.origin.rows, "row", out);
+        let two = |r: &&RowRange| r.price[0] != r.price[1] && r.price.iter().all(|p| p.is_finite());
+        if self.ranges.is_some_and(|r| r.rows.iter().any(|r| two(&r))) {
+            out.push(
+                "The vertex is degenerate: a unit less is not worth what a unit more is.".into(),
+            );
+        }
+        out
     }
 
     fn unused(&self) -> Vec<String> {
@@ -273,71 +321,274 @@ impl Explained<'_> {
             let relation = g.instance.rows.relation[i];
             let inequality = matches!(relation, Relation::Less | Relation::Greater);
             if inequality && slack > 1e-7 * (1.0 + a.activity[i].abs()) {
-                let name = self.name(&g.origin.rows, i);
-                out.push(format!("{name} does not bind: {} are left.", short(slack)));
+                out.push(Said {
+                    at: i,
+                    verb: ["does not bind", "do not bind"],
+                    place: String::new(),
+                    words: format!("its slack is {}", short(slack)),
+                    lead: "their slacks are".into(),
+                    number: slack,
+                });
             }
         }
-        shortened(out, "rows that do not bind")
+        self.told(&g.origin.rows, "row", out)
     }
 
+    /// Columns at a bound, and what would make them leave it.
     fn reduced(&self) -> Vec<String> {
         let p = self.primal;
-        let (Some(a), Some((_, z)), true) =
-            (&p.answer, p.objective, p.generated.instance.is_linear())
-        else {
+        let g = &p.generated;
+        let (Some(a), Some((sense, z)), true, 0) = (
+            &p.answer,
+            p.objective,
+            g.instance.is_linear(),
+            self.discrete(),
+        ) else {
             return Vec::new();
         };
         let objective = &self.symbols.get(z).name;
-        let g = &p.generated;
         let c = &g.instance.columns;
         let (_, cost) = costs(&g.instance);
+        let mut by_column = self.ranges.map_or(&[][..], |r| &r.costs).iter().peekable();
+        let one_price = |r: &Ranges| r.rows.iter().all(|r| r.price[0] == r.price[1]);
+        let unique = self.ranges.is_some_and(one_price);
         let mut out = Vec::new();
         let mut others = Vec::new();
         for (j, &d) in a.column_marginal.iter().enumerate() {
-            let at = a.level[j] == c.lower[j] || a.level[j] == c.upper[j];
-            if !at || c.lower[j] == c.upper[j] {
+            let range = by_column.next_if(|r| r.column == j);
+            let lower = a.level[j] == c.lower[j];
+            if !lower && a.level[j] != c.upper[j] || c.lower[j] == c.upper[j] {
                 continue;
             }
-            let name = self.name(&g.origin.columns, j);
-            if d.abs() < 1e-9 {
-                others.push(name);
+            // It stays at a bound as long as its coefficient is on one side of this.
+            let falls = lower == (sense == Sense::Minimize);
+            let limit = range.map(|r| r.interval[usize::from(!falls)]);
+            let away = limit.map_or(d, |limit| cost[j] - limit);
+            if away.abs() <= NONE * (1.0 + cost[j].abs()) {
+                others.push(self.name(&g.origin.columns, j));
                 continue;
             }
-            let which = if a.level[j] == c.lower[j] {
-                "lower"
-            } else {
-                "upper"
-            };
-            let change = match a.level[j] == 0.0 && cost[j] != 0.0 {
-                true => format!(
-                    "its coefficient, {}, would have to become {}",
-                    short(cost[j]),
-                    short(cost[j] - d)
+            let how = if falls { "fall" } else { "rise" };
+            let (lead, number, words) = match limit {
+                Some(limit) if a.level[j] == 0.0 && limit.is_finite() => (
+                    format!("what a coefficient would have to {how} by to leave them is"),
+                    away.abs(),
+                    format!(
+                        "its coefficient, {}, would have to {how} {} {}",
+                        short(cost[j]),
+                        if falls { "below" } else { "above" },
+                        short(limit)
+                    ),
                 ),
-                false => format!("a unit more would change {objective} by {}", short(d)),
+                _ if unique => (
+                    format!("raising one a little changes {objective}, per unit, by"),
+                    d,
+                    format!(
+                        "raising it a little changes {objective} by {} per unit",
+                        short(d)
+                    ),
+                ),
+                _ => (
+                    "the reduced costs are".into(),
+                    d,
+                    format!("its reduced cost is {}", short(d)),
+                ),
             };
+            let verb = match lower {
+                true => ["is at its lower bound", "are at their lower bounds"],
+                false => ["is at its upper bound", "are at their upper bounds"],
+            };
+            out.push(Said {
+                at: j,
+                verb,
+                place: format!(", {}", short(a.level[j])),
+                words,
+                lead,
+                number,
+            });
+        }
+        let mut out = self.told(&g.origin.columns, "column", out);
+        if !others.is_empty() {
+            let (is, could) = match self.ranges.is_some() {
+                true => ("is", "can"),
+                false => ("may", "could"),
+            };
+            let be = if is == "may" { " be" } else { "" };
             out.push(format!(
-                "{name} is at its {which} bound, {}: {change}.",
-                short(a.level[j])
+                "The optimum {is} not{be} the only one: {} {could} leave a bound without changing {objective}.",
+                listed(&others, MAX_NAMES)
             ));
         }
-        let mut out = shortened(out, "variables at a bound");
-        if !others.is_empty() {
-            others.truncate(MAX_NAMES);
-            out.push(format!(
-                "The optimum may not be the only one: {} could leave a bound without changing {objective}.",
-                others.join(", ")
-            ));
+        out
+    }
+
+    /// Sentences: one for the records of a block that say the same, and one for a block whose records say too much.
+    fn told(&self, blocks: &Blocks, kind: &str, all: Vec<Said>) -> Vec<String> {
+        let class = |s: &&Said| (blocks.of(s.at as u32).start, s.verb[0], s.lead.clone());
+        let words = |s: &&Said| (s.place.clone(), s.words.clone());
+        let mut sorted: Vec<&Said> = all.iter().collect();
+        sorted.sort_by_cached_key(|s| (class(s), words(s)));
+        let mut out: Vec<(String, usize)> = Vec::new();
+        for each in sorted.chunk_by(|a, b| class(a) == class(b)) {
+            let block = blocks.of(each[0].at as u32);
+            let (whole, name) = (block.len as usize, &self.symbols.get(block.symbol).name);
+            let mut alike: Vec<&[&Said]> = each.chunk_by(|a, b| words(a) == words(b)).collect();
+            alike.sort_by_key(|a| a[0].at);
+            if alike.len() > MAX_SENTENCES {
+                let by = |a: &&&Said, b: &&&Said| a.number.total_cmp(&b.number);
+                let end = |s: &Said| format!("{} ({})", short(s.number), self.name(blocks, s.at));
+                let numbers = match (each.iter().min_by(by), each.iter().max_by(by)) {
+                    (Some(a), Some(b)) if short(a.number) != short(b.number) => {
+                        format!("between {} and {}", end(a), end(b))
+                    }
+                    (a, _) => a.map_or(String::new(), |a| short(a.number)),
+                };
+                let of = match each.len() {
+                    n if n == whole => format!("All {n}"),
+                    n => format!("{n} of the {whole}"),
+                };
+                let Said { verb, lead, .. } = each[0];
+                let sentence = format!("{of} {kind}s of {name} {}: {lead} {numbers}.", verb[1]);
+                out.push((sentence, each.len()));
+                continue;
+            }
+            for alike in alike {
+                let s = alike[0];
+                let names = alike.iter().map(|s| self.name(blocks, s.at));
+                let (names, verb, each) = match alike.len() {
+                    1 => (self.name(blocks, s.at), s.verb[0], ": "),
+                    n if n == whole && n > 2 => (
+                        format!("All {n} {kind}s of {name}"),
+                        s.verb[1],
+                        "; for each, ",
+                    ),
+                    _ => (
+                        listed(&names.collect::<Vec<_>>(), MAX_ALIKE),
+                        s.verb[1],
+                        "; for each, ",
+                    ),
+                };
+                let each = if s.words.is_empty() { "" } else { each };
+                out.push((
+                    format!("{names} {verb}{}{each}{}.", s.place, s.words),
+                    alike.len(),
+                ));
+            }
+        }
+        let more: usize = out.iter().skip(MAX_NAMES).map(|s| s.1).sum();
+        out.truncate(MAX_NAMES);
+        let mut out: Vec<String> = out.into_iter().map(|s| s.0).collect();
+        if let Some(s) = all.first().filter(|_| more > 0) {
+            let (of, verb) = (
+                counted(more, &format!("more {kind}")),
+                s.verb[usize::from(more > 1)],
+            );
+            out.push(format!("{of} {verb}."));
         }
         out
     }
 }
 
-fn shortened(mut list: Vec<String>, what: &str) -> Vec<String> {
-    let more = list.len().saturating_sub(MAX_NAMES);
-    if more > 0 {
-        list.truncate(MAX_NAMES);
-        list.push(format!("There are {more} more {what}."));
+/// What a row's right side is worth: what is said of many, the number of this one, and what is said of it.
+fn worth(
+    range: Option<&RowRange>,
+    marginal: f64,
+    objective: &str,
+    linear: bool,
+) -> (String, f64, String) {
+    let Some(r) = range else {
+        return match linear {
+            true => (
+                "their marginals are".into(),
+                marginal,
+                format!("its marginal is {}", short(marginal)),
+            ),
+            false => (
+                format!("a little more on a right side changes {objective}, per unit, by"),
+                marginal,
+                format!(
+                    "a little more on its right side changes {objective} by {} per unit",
+                    short(marginal)
+                ),
+            ),
+        };
+    };
+    let [below, above] = r.price;
+    let [from, to] = r.interval.map(short);
+    let limits = match r.interval.map(f64::is_finite) {
+        [true, true] => format!(" (from {from} to {to})"),
+        [true, false] => format!(" (down to {from})"),
+        [false, true] => format!(" (up to {to})"),
+        [false, false] => String::new(),
+    };
+    let on = format!(" on its right side changes {objective} by ");
+    let many = format!(" on a right side changes {objective} by");
+    let [more, less] = ["each unit more", "each unit less"];
+    match r.price.map(f64::is_finite) {
+        [true, true] if below == 0.0 && above == 0.0 => {
+            let words = "changing its right side a little changes nothing";
+            (String::new(), 0.0, words.into())
+        }
+        [true, true] => {
+            let other = match below == above {
+                true => String::new(),
+                false => format!(", {less} by {}", short(-below)),
+            };
+            let words = format!("{more}{on}{}{other}{limits}", short(above));
+            (format!("{more}{many}"), above, words)
+        }
+        [false, true] if above == 0.0 => {
+            let words = "more on its right side changes nothing, with less nothing is feasible";
+            (String::new(), 0.0, words.into())
+        }
+        [true, false] if below == 0.0 => {
+            let words = "less on its right side changes nothing, with more nothing is feasible";
+            (String::new(), 0.0, words.into())
+        }
+        [false, true] => (
+            format!("with less on a right side nothing is feasible, {more}{many}"),
+            above,
+            format!(
+                "{more}{on}{}{limits}, with less nothing is feasible",
+                short(above)
+            ),
+        ),
+        [true, false] => (
+            format!("with more on a right side nothing is feasible, {less}{many}"),
+            -below,
+            format!(
+                "{less}{on}{}{limits}, with more nothing is feasible",
+                short(-below)
+            ),
+        ),
+        [false, false] => {
+            let words = "with any other right side nothing is feasible";
+            (String::new(), 0.0, words.into())
+        }
     }
-    list
+}
+
+/// `1 row`, `2 rows`.
+fn counted(n: usize, what: &str) -> String {
+    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
+}
+
+fn discretely(n: usize) -> String {
+    format!(
+        "{}, which are decided by a search",
+        counted(n, "discrete column")
+    )
+}
+
+/// Names with commas, the last after "and"; of more than `most` only the first and how many others there are.
+fn listed(names: &[String], most: usize) -> String {
+    match names {
+        [] => String::new(),
+        [one] => one.clone(),
+        [first @ .., last] if names.len() <= most => format!("{} and {last}", first.join(", ")),
+        _ => {
+            let (first, others) = names.split_at(most - 1);
+            format!("{} and {} others", first.join(", "), others.len())
+        }
+    }
 }

@@ -69,23 +69,24 @@ fn stationarity(d: &mut Derivation, v: SymbolId, keep: bool) -> Result<(), Strin
     let row = d.column_row(v)?;
     let columns = d.columns(v);
     let name = d.symbols.get(v).name.to_string();
-    let each = |test: &dyn Fn(f64, f64) -> bool| columns.iter().all(|c| test(c.1, c.2));
+    let each = |test: &dyn Fn(f64, f64) -> bool| match columns.alike() {
+        Some((lower, upper)) => test(lower, upper),
+        None => columns.bounds().all(|(lower, upper)| test(lower, upper)),
+    };
     let relation = match () {
         () if each(&|lo, up| !lo.is_finite() && !up.is_finite()) => Relation::Equal,
         () if each(&|lo, up| lo.is_finite() && !up.is_finite()) => Relation::Greater,
         () if each(&|lo, up| !lo.is_finite() && up.is_finite()) => Relation::Less,
         () => Relation::Free,
     };
-    let keys: Vec<Vec<Label>> = columns.iter().map(|c| c.0.to_vec()).collect();
-    let guard = match is_exact(d, &row.conditions, &row.sets, &row.target, keys.len()) {
+    let guard = match is_exact(d, &row.conditions, &row.sets, &row.target, columns.len()) {
         true => None,
         false => d.membership(
             &format!("in_{name}"),
             format!("columns of {name}"),
-            domain_of(d.symbols, v),
-            &row.sets,
-            &row.target,
-            keys,
+            v,
+            &row,
+            &columns.places(|_, _| true),
         ),
     };
     let left = match d.is_minimum() {
@@ -93,7 +94,7 @@ fn stationarity(d: &mut Derivation, v: SymbolId, keep: bool) -> Result<(), Strin
         false => sum(vec![(false, row.rows.clone()), (true, row.cost.clone())]),
     };
     // A variable that stands in no row is kept in the model by a coefficient eps.
-    let left = match keep || d.is_without_row(v) {
+    let left = match keep || !d.without_row(v).is_empty() {
         true => {
             let eps = times(
                 Expr::Number(EPS),
@@ -260,12 +261,14 @@ fn start_of_columns(d: &mut Derivation, v: SymbolId) {
     // What is 0 is stored as eps, so that the record is there.
     let stored = |x: f64| if x == 0.0 { EPS } else { x };
     let mut differing = |bound: f64, side: usize, word: &'static str| {
-        let pick = |c: &(&[Label], f64, f64)| [c.1, c.2][side];
-        let records: Vec<(Vec<Label>, f64)> = columns
-            .iter()
-            .filter(|c| pick(c) != bound)
-            .map(|c| (c.0.to_vec(), stored(pick(c))))
-            .collect();
+        let pick = |lower: f64, upper: f64| [lower, upper][side];
+        let those = columns.places(|lower, upper| pick(lower, upper) != bound);
+        let bounds: Vec<(f64, f64)> = columns.bounds().collect();
+        let records = those.iter().map(|&n| {
+            let (lower, upper) = bounds[n];
+            (columns.key(n).to_vec(), stored(pick(lower, upper)))
+        });
+        let records: Vec<(Vec<Label>, f64)> = records.collect();
         assign(
             d,
             &format!("{word}_{name}"),

@@ -7,6 +7,7 @@
 
 pub mod algebra;
 pub mod check;
+mod columns;
 pub mod convex;
 pub mod data;
 pub mod derive;
@@ -55,6 +56,9 @@ pub enum Origin {
     Upper(SymbolId),
     /// From the columns of a variable that are fixed.
     Fixed(SymbolId),
+    /// From the bounds that columns of a variable do not have: they stand in no row and make the objective better without
+    /// limit, so that their rows in the dual are to hold nowhere. Its coefficient is 0.
+    Missing(SymbolId),
     /// It is no multiplier but the point at which the dual of a quadratic program takes the gradient.
     Point(SymbolId),
 }

@@ -109,6 +109,12 @@ pub fn formulas(s: &mut Setter, symbols: &Symbols, f: &Formulation) -> Page {
                 Origin::Lower(v) => format!("multiplier of the lower bounds of {}", named(v)),
                 Origin::Upper(v) => format!("multiplier of the upper bounds of {}", named(v)),
                 Origin::Fixed(v) => format!("multiplier of the fixed values of {}", named(v)),
+                Origin::Missing(v) => {
+                    format!(
+                        "has no effect: {} has no bound where it stands in no row",
+                        named(v)
+                    )
+                }
                 Origin::Point(v) => format!("stands for {} in the gradient", named(v)),
             };
             Formula {

@@ -1,6 +1,7 @@
 //! Ranges of a solve, as a page.
 
 use super::derive::Primal;
+use super::derived::discrete;
 use super::page::{Block, Page};
 use super::side::short;
 use super::text::record;
@@ -30,6 +31,11 @@ pub fn of(
     };
     if primal.objective.is_none() || !primal.generated.instance.is_linear() {
         return Err(no("ranges belong to a linear program").into());
+    }
+    if let Some((_, name)) = discrete(m, primal) {
+        let message = format!("ranges belong to a linear program, and {name} is discrete");
+        let help = "its relaxation has them: `solve … using rmip`";
+        return Err(no(&message).help(help).into());
     }
     let solved = studied.answer.as_ref().map(|(_, a)| a.status);
     let answer = primal.answer.as_ref();

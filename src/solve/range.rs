@@ -56,7 +56,7 @@ const NEAR: f64 = 1e-7;
 /// What the value may be off along a range, relative.
 const VALUE_TOLERANCE: f64 = 1e-10;
 /// An end nearer to 0 than this, relative to the right-hand side and the way from it, is 0.
-const END_TOLERANCE: f64 = 1e-9;
+const END_TOLERANCE: f64 = 1e-8;
 
 /// The program as a minimum without its objective variable.
 struct Reduced<'a> {

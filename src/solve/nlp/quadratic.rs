@@ -151,8 +151,8 @@ pub(super) fn by_rows(m: usize, entries: &[Entry]) -> Sparse {
 /// Whether a symmetric matrix, given by the entries of its lower triangle, is positive semidefinite.
 pub fn is_semidefinite(n: usize, lower: &[Entry]) -> bool {
     let top = lower.iter().fold(0.0f64, |t, e| t.max(e.2.abs()));
-    if !top.is_finite() {
-        return false;
+    if !top.is_finite() || top == 0.0 {
+        return top == 0.0;
     }
     let entries = lower.iter().map(|&(i, j, v)| Triplet::new(i, j, v));
     let shift = (0..n).map(|i| Triplet::new(i, i, SHIFT * top));
