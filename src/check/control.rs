@@ -215,7 +215,7 @@ impl Compiler {
                     table: self.symbols.get(s).table,
                     key: Key { parts: one.clone() },
                 });
-                self.scope.push((s, one));
+                self.run(s, one);
             }
             None => {
                 let other = self.index(second, UNIVERSE, 0)?;
@@ -250,8 +250,15 @@ impl Compiler {
                 parts: parts.clone(),
             },
         });
-        self.scope.push((id, parts.clone()));
+        self.run(id, parts.clone());
         parts
+    }
+
+    fn run(&mut self, set: SymbolId, parts: Vec<Part>) {
+        if self.in_equation {
+            self.running.push(set);
+        }
+        self.scope.push((set, parts));
     }
 
     /// An index that is put under control if it is a set that is not yet.

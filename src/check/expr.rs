@@ -599,7 +599,9 @@ impl Compiler {
             self.ordered(s, span, "`.ord`")?;
         }
         let mut parts = if indices.is_empty() {
-            self.runs(s, span, &format!("`.{lower}`"))?;
+            if !matches!(which, LabelAttribute::TextLen | LabelAttribute::TextVal) {
+                self.runs(s, span, &format!("`.{lower}`"))?;
+            }
             self.set_index(s, name)?
         } else {
             self.key(s, indices, span)?.parts

@@ -88,6 +88,8 @@ pub(crate) struct Compiler {
     /// Sets and parameters without data that the equation at hand reads, where it does; and each of the equations.
     reads: Vec<(SymbolId, Span)>,
     without_data: Vec<Vec<(SymbolId, Span)>>,
+    /// Sets that run in the equation at hand.
+    running: Vec<SymbolId>,
     diagnostics: Vec<Diagnostic>,
     /// Sets under control, innermost last.
     scope: Vec<(SymbolId, Vec<Part>)>,
@@ -235,6 +237,7 @@ impl Compiler {
             in_equation: false,
             reads: Vec::new(),
             without_data: Vec::new(),
+            running: Vec::new(),
             new_labels: false,
             texts_allowed: false,
             nesting: 0,
@@ -372,6 +375,10 @@ impl Known for Compiler {
             }
             _ => None,
         }
+    }
+
+    fn put_open(&self) -> bool {
+        self.put_named.is_some()
     }
 
     fn is_function(&self, name: &str) -> bool {

@@ -78,6 +78,7 @@ impl Compiler {
             failed |= self.check_class(r.definition, using, s.using.span).is_err();
         }
         failed |= self.check_discrete(&rows, using, s.using.span).is_err();
+        failed |= self.check_loops(&rows, s.model.span).is_err();
         let whole = !rows
             .iter()
             .any(|r| self.lost.definitions.contains(&r.definition));
@@ -439,6 +440,34 @@ impl Compiler {
                 )
             }
         }
+    }
+
+    /// The sets of the loops around a solve may not run in its equations: in GAMS neither, and whether the
+    /// whole set or the loop's element is meant cannot be seen.
+    fn check_loops(&mut self, rows: &[ModelRow], solve: Span) -> Result<(), Failed> {
+        let looped = self.scope.iter().enumerate();
+        let looped = looped.filter(|(at, _)| !self.maps.contains(at));
+        let looped: Vec<SymbolId> = looped.map(|(_, (s, _))| *s).collect();
+        let found = rows.iter().find_map(|r| {
+            let e = &self.equations[r.definition];
+            let set = e.running.iter().find(|s| looped.contains(s));
+            set.map(|&s| (s, e.symbol, e.span))
+        });
+        let Some((set, equation, defined)) = found else {
+            return Ok(());
+        };
+        let name = &self.symbols.get(set).name;
+        let equation = &self.symbols.get(equation).name;
+        let message = format!(
+            "`{name}` runs in a loop around this solve and in the equation `{equation}` of the model"
+        );
+        let error = Diagnostic::error("E0369", solve, message)
+            .label(format!("solved once for each `{name}`"))
+            .other(defined, format!("`{name}` runs here too"))
+            .help(format!(
+                "loop over an alias: `alias({name},{name}_);` and `loop({name}_, …)`"
+            ));
+        self.fail(error)
     }
 
     /// Some types have no discrete variables at all; for the others the solve decides.

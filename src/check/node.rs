@@ -257,6 +257,8 @@ pub struct EquationDef {
     pub relation: Relation,
     /// Right side.
     pub right: Node,
+    /// The sets that run in it: those of its domain, sums and products.
+    pub running: Vec<SymbolId>,
     /// Place.
     pub span: Span,
 }

@@ -175,7 +175,10 @@ impl Compiler {
                     value.span,
                 )
             }
-            _ => self.expr(value)?,
+            _ => match self.record_name(value)? {
+                Some(name) => name,
+                None => self.expr(value)?,
+            },
         };
         Ok(PutCode::Item {
             value,
@@ -183,6 +186,27 @@ impl Compiler {
             width,
             decimals,
         })
+    }
+
+    /// A variable or an equation without attribute stands for its name: `put x(i) ' ' x.l(i)`.
+    fn record_name(&mut self, value: &Expr) -> Result<Option<Node>, Failed> {
+        let ExprKind::Apply {
+            name,
+            attribute: None,
+            arguments,
+        } = &value.kind
+        else {
+            return Ok(None);
+        };
+        let found = self.symbols.find(&name.name).filter(|&s| {
+            let kind = &self.symbols.get(s).kind;
+            matches!(kind, SymbolKind::Variable(_) | SymbolKind::Equation(_))
+        });
+        let Some(s) = found.filter(|_| !self.modes.at(value.span).dot_l) else {
+            return Ok(None);
+        };
+        let key = self.key(s, arguments.as_deref().unwrap_or(&[]), value.span)?;
+        Ok(Some(Node::data(NodeKind::RecordName(s, key), value.span)))
     }
 
     /// `put out (a + b)`, `put s (2*s)`, `put i.tl (p(i)*2)` read like a name with an index, but there is none to give:

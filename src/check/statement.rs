@@ -305,10 +305,12 @@ impl Compiler {
                 left,
                 relation: e.relation,
                 right,
+                running: std::mem::take(&mut c.running),
                 span,
             })
         });
         self.in_equation = false;
+        self.running.clear();
         self.without_data.push(std::mem::take(&mut self.reads));
         // Defined, even if wrongly: one mistake, one message.
         let index = self.equations.len();
@@ -340,6 +342,7 @@ impl Compiler {
                     left: zero(),
                     relation: e.relation,
                     right: zero(),
+                    running: Vec::new(),
                     span,
                 });
                 Err(Failed)

@@ -182,6 +182,7 @@ pub const CODES: &[Code] = &[
     row("E0366", Error, "pair over different sets", "an equation and its variable run over the same sets in the same order"),
     row("E0367", Error, "paired twice", "an equation has one partner"),
     row("E0368", Error, "partner in no equation", "the variable of a pair must stand in the model"),
+    row("E0369", Error, "index of a loop in an equation", "loop over an alias of the set around the solve"),
 
     row("E0370", Error, "unknown argument of a figure", "the message lists the arguments"),
     row("E0371", Error, "text for a number", "this argument of a figure is a number"),

@@ -88,8 +88,6 @@ impl Preprocessor<'_> {
                 && let Some(l) = line[at..].split_whitespace().next()
                 && l.eq_ignore_ascii_case(&label)
             {
-                // A jump may leave open blocks.
-                frame.ifs.clear();
                 // A label that ends the skipping is not listed.
                 let ends = i64::from(pos >= frame.pos);
                 frame.pos = pos;

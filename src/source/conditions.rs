@@ -163,14 +163,8 @@ impl Preprocessor<'_> {
                 let (_, n) = term(after, false);
                 Some(Ok((false, len + n)))
             }
-            "putopen" | "uelexist" | "solver" => {
-                let n = if word == "putopen" {
-                    0
-                } else {
-                    term(after, false).1
-                };
-                Some(Ok((false, len + n)))
-            }
+            "putopen" => Some(Ok((known.put_open(), len))),
+            "uelexist" | "solver" => Some(Ok((false, len + term(after, false).1))),
             _ => None,
         }
     }
@@ -242,6 +236,7 @@ impl Preprocessor<'_> {
                     // Let the directive itself decide.
                     let line = self.take_line();
                     let line = self.substituted(line)?;
+                    let line = self.without_comments(line);
                     self.set_listed(listed);
                     if self.branch(&line, known)? {
                         return Ok(());

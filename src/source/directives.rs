@@ -80,9 +80,10 @@ fn behind_separators(rest: &str) -> &str {
 
 impl Preprocessor<'_> {
     /// A line that begins with `$`.
-    pub(super) fn directive_line(&mut self, line: &Line, known: &dyn Known) -> Outcome<()> {
+    pub(super) fn directive_line(&mut self, line: Line, known: &dyn Known) -> Outcome<()> {
+        let line = self.without_comments(line);
         let start = self.marks.directive(&line.text).unwrap_or(1);
-        self.directives(line, start, known)
+        self.directives(&line, start, known)
     }
 
     /// The directives from byte `at` on (behind the `$`).
@@ -123,7 +124,7 @@ impl Preprocessor<'_> {
                     }
                 }
                 let rest = behind_separators(&text[at..]);
-                if rest.is_empty() || self.starts_comment(rest) {
+                if rest.is_empty() {
                     return Ok(());
                 }
                 at = text.len() - rest.len();
@@ -134,12 +135,6 @@ impl Preprocessor<'_> {
             }
             return self.directive(line, &word, from, at, known);
         }
-    }
-
-    fn starts_comment(&self, rest: &str) -> bool {
-        let b = rest.as_bytes();
-        self.marks.eol_on && b.starts_with(&self.marks.eol)
-            || self.marks.slashes && b.starts_with(b"//")
     }
 
     /// Another directive in what is left of a line: `$inlineCom { } eolCom !`.
@@ -269,16 +264,19 @@ impl Preprocessor<'_> {
                 });
             }
             "set" | "setlocal" | "setglobal" | "eval" | "evallocal" | "evalglobal" => {
-                // Behind a value in quotes the line goes on: `$set x 'a' $set y 'b'`.
+                // Behind a value in quotes the line goes on: `$set x 'a' set y 'b' $set z c`.
+                let dollar = self.marks.dollar as char;
                 let next = quoted(argument(rest).1.trim_start())
                     .map(|(_, behind)| behind)
-                    .filter(|b| b.trim_start().starts_with(self.marks.dollar as char));
+                    .filter(|b| word.starts_with("set") || b.trim_start().starts_with(dollar));
                 let end = rest.len() - next.map_or(0, str::len);
                 self.define(word, suffix == "set", &rest[..end], lo, hi, known)?;
-                return match next {
-                    Some(b) => self.directives(line, text.len() - b.trim_start().len() + 1, known),
-                    None => Ok(()),
-                };
+                let next = behind_separators(next.unwrap_or_default());
+                if next.is_empty() {
+                    return Ok(());
+                }
+                let mark = usize::from(next.starts_with(dollar));
+                return self.directives(line, text.len() - next.len() + mark, known);
             }
             "drop" | "droplocal" | "dropglobal" => {
                 let (name, _) = argument(rest);
@@ -307,8 +305,15 @@ impl Preprocessor<'_> {
                     .last()
                     .and_then(|f| f.arguments.clone())
                     .unwrap_or_default();
-                for (i, name) in rest.split_whitespace().enumerate() {
-                    let value = values.get(i).cloned().unwrap_or_default();
+                // The last name takes all that is left.
+                let names: Vec<&str> = rest.split_whitespace().collect();
+                for (i, name) in names.iter().enumerate() {
+                    let end = if i + 1 < names.len() {
+                        i + 1
+                    } else {
+                        values.len()
+                    };
+                    let value = values.get(i..end).unwrap_or_default().join(" ");
                     self.names.set(Reach::Local, name, value);
                 }
             }
@@ -316,7 +321,7 @@ impl Preprocessor<'_> {
                 let (all, tail) = argument(rest);
                 let components = all.split('.').chain(std::iter::repeat(""));
                 for (name, value) in tail.split_whitespace().zip(components) {
-                    self.names.set(Reach::Local, name, value.to_owned());
+                    self.names.set(Reach::Scoped, name, value.to_owned());
                 }
             }
             "setnames" => {
@@ -333,7 +338,7 @@ impl Preprocessor<'_> {
                     .extension()
                     .map_or(String::new(), |s| format!(".{}", s.to_string_lossy()));
                 for (name, value) in tail.split_whitespace().zip([dir, stem, ext]) {
-                    self.names.set(Reach::Local, name, value);
+                    self.names.set(Reach::Scoped, name, value);
                 }
             }
             "shift" => {
@@ -539,9 +544,6 @@ impl Preprocessor<'_> {
             self.conditions_on_line -= 1;
             return outcome;
         }
-        if self.starts_comment(&line.text[start..]) {
-            return Ok(());
-        }
         self.finish_text(line.clone(), start)
     }
 
@@ -558,10 +560,6 @@ impl Preprocessor<'_> {
         }
         let (lo, hi) = line.origin(0, text.trim_end().len().max(1));
         let Some(open) = self.frames.last_mut().and_then(|f| f.ifs.last_mut()) else {
-            // A jump may have led into the middle of a block.
-            if self.frames.last().is_some_and(|f| !f.jumps.is_empty()) {
-                return Ok(true);
-            }
             let span = self.place(lo, hi);
             return refuse(
                 Diagnostic::error(
@@ -684,12 +682,7 @@ impl Preprocessor<'_> {
                             .help("`%name%` stands for UNDF after it"),
                     );
                 }
-                Ok((x, n))
-                    if value[n..].trim().is_empty()
-                        || self.starts_comment(value[n..].trim_start()) =>
-                {
-                    number_text(x)
-                }
+                Ok((x, n)) if value[n..].trim().is_empty() => number_text(x),
                 Ok((_, n)) => {
                     let message = format!(
                         "`${word} {name}`: the expression ends before `{}`",
@@ -735,6 +728,7 @@ impl Preprocessor<'_> {
             }
             hi = next.origin(0, next.text.len()).1;
             let next = self.substituted(next)?;
+            let next = self.without_comments(next);
             text.push(' ');
             text.push_str(&next.text);
         }

@@ -66,6 +66,10 @@ pub trait Known {
     fn is_function(&self, _name: &str) -> bool {
         false
     }
+    /// Whether a `put` has named a file.
+    fn put_open(&self) -> bool {
+        false
+    }
     /// A day number, or a part of one: `jdate(2012,3,1)`, `gdow(d)`.
     fn date(&self, _function: &str, _arguments: &[f64]) -> Option<f64> {
         None
@@ -462,7 +466,7 @@ impl<'h> Preprocessor<'h> {
                     let line = self.take_line();
                     let outcome = self
                         .substituted(line)
-                        .and_then(|l| self.directive_line(&l, known));
+                        .and_then(|l| self.directive_line(l, known));
                     if let Err(d) = outcome {
                         return Err(vec![*d]);
                     }
@@ -491,7 +495,7 @@ impl<'h> Preprocessor<'h> {
                             self.advance(pos);
                             return Ok(true);
                         }
-                        self.directive_line(&l, known)
+                        self.directive_line(l, known)
                     } else {
                         self.finish_text(l, 0)
                     }
@@ -762,7 +766,7 @@ impl<'h> Preprocessor<'h> {
             });
         }
         if let Some(name) = lower.strip_prefix("sysenv.") {
-            return Some(self.environment.get(name).cloned().unwrap_or_default());
+            return self.environment.get(name).cloned();
         }
         None
     }
@@ -858,6 +862,16 @@ impl<'h> Preprocessor<'h> {
         let file = self.frames.last().map_or(FileId(0), |f| f.file);
         self.map.push_substitute("\n", file, hi, hi);
         Ok(())
+    }
+
+    /// A line of directives without its comments; where marks of comments are named, they stay.
+    pub(super) fn without_comments(&mut self, mut line: Line) -> Line {
+        let lower = line.text.to_ascii_lowercase();
+        if !lower.contains("eolcom") && !lower.contains("inlinecom") {
+            let end = self.strip_comments(&mut line, 0);
+            line.replace(&[(end, line.text.len(), String::new())]);
+        }
+        line
     }
 
     /// Blanks comments out; gives the end of what counts.

@@ -1,0 +1,29 @@
+$eolCom //
+$inlineCom { }
+* Comments may stand on lines of directives, as on any line; in quotes they are text.
+$set a yes // not in the value
+$setGlobal b 'it' // nor here
+$set c // nothing
+$set d 'x // y' // but this
+$set e { before } left { behind }
+$eval n 6/2//three
+$macro twice(x) 2*x \
+  + 1 // a comment behind a macro
+$if set a $set f g // with a condition
+$ifThenE %n%-1==2 // a number
+scalar three / 1 /;
+$elseIf x == y // not reached
+$endIf
+$onEcho > comments_on_directives.inc // a file
+scalar read / 1 /; // of the text
+$offEcho // end
+$include comments_on_directives.inc // read
+$setEnv BMOD_SUITE on // set
+scalar k / 0 /;
+$if "%a%|%b%|%c%|%d%|%e%" == "yes|it||x // y|left" k = k + 1;
+$if "%f%|%sysEnv.BMOD_SUITE%|%n%" == "g|on|3" k = k + 1;
+scalar m;  m = twice(3);
+*= three 1
+*= read 1
+*= k 2
+*= m 7
