@@ -2,15 +2,13 @@
 //! for convex quadratic programs, and rounded kinks.
 
 use super::driver::Driver;
-use super::growth::Growth;
 use super::interior_point::Ended;
 use super::interior_point::lock;
 use super::newton;
 use super::problem::Problem;
 use super::quadratic::Quadratic;
-use super::schedule::{FINEST, From, NEARER, ROUNDING};
+use super::schedule::{FINEST, NEARER, ROUNDING};
 use super::trial::{Trial, polished};
-use crate::solve::certificate::nonlinear::is_locally_infeasible;
 use crate::solve::{SolveError, Strategy};
 use std::sync::{Arc, Mutex};
 
@@ -34,48 +32,8 @@ impl Driver<'_, '_> {
         Ok(false)
     }
 
-    /// Sequential programs, from where an earlier solve ended if there was one. Whether that settles it.
-    pub(super) fn settle_by_sequence(&mut self, again: bool) -> Result<bool, SolveError> {
-        if self.named {
-            return Ok(false);
-        }
-        let marginals = again.then(|| lock(&*self.problem).marginals_of(self.instance));
-        let runs = |s| self.settings.runs(s);
-        let defined = if again { None } else { self.consistent() };
-        let defined = defined.filter(|_| runs(Strategy::ConsistentStart));
-        let start = defined.unwrap_or_else(|| self.start.clone());
-        self.sequential(start, marginals.as_deref());
-        let settled = self.is_settled_by("slqp")?;
-        if settled {
-            self.growth = Growth::Ignored;
-            self.search()?;
-        } else if self.infeasibility.is_some()
-            && !self.is_impossible()
-            && self.settings.runs(Strategy::InfeasibilityDoubt)
-        {
-            return self.doubt();
-        }
-        Ok(settled)
-    }
-
-    /// Where nothing near the start is feasible: from halfway between the bounds. Whether that settles it.
-    fn doubt(&mut self) -> Result<bool, SolveError> {
-        let x = self.start_point(From::Middle);
-        if self.is_square() {
-            lock(&*self.problem).set_start(x.clone());
-            self.attempt_newton();
-        }
-        if !self.is_settled() {
-            self.sequential(x, None);
-        }
-        if self.best.as_ref().is_some_and(Trial::is_feasible) {
-            return self.is_settled_by("slqp");
-        }
-        Ok(false)
-    }
-
     /// Whether the best point is an answer, of the method of that name if it is no saddle.
-    fn is_settled_by(&mut self, method: &'static str) -> Result<bool, SolveError> {
+    pub(super) fn is_settled_by(&mut self, method: &'static str) -> Result<bool, SolveError> {
         let before = self.iterations;
         self.leave_saddles()?;
         if self.is_settled() && self.iterations == before {
@@ -100,7 +58,7 @@ impl Driver<'_, '_> {
     }
 
     /// Newton's method on the equations, where they leave nothing to choose.
-    fn attempt_newton(&mut self) {
+    pub(super) fn attempt_newton(&mut self) {
         if !self.affords_factors() {
             return;
         }
@@ -154,21 +112,6 @@ impl Driver<'_, '_> {
         if let Some(t) = polished(self.instance, &mut rounded, &mut None, trial, 1e-6) {
             let trial = self.judge(t.x, t.lambda, t.ended);
             self.keep(trial);
-        }
-    }
-
-    /// Keeps a point whose multipliers prove that there is no feasible one nearby.
-    pub(super) fn note_infeasibility(&mut self, trial: &Trial) {
-        let mut problem = lock(&*self.problem);
-        // the constraints push with −λ
-        let mut y = vec![0.0; self.instance.row_count()];
-        for (&i, l) in problem.rows.iter().zip(&trial.lambda) {
-            y[i as usize] = -l;
-        }
-        let evaluator = problem.evaluator();
-        let proved = is_locally_infeasible(self.instance, evaluator, &trial.level, &y, 1e-4);
-        if !trial.is_feasible() && self.infeasibility.is_none() && proved {
-            self.infeasibility = Some((trial.clone(), y));
         }
     }
 }

@@ -16,22 +16,20 @@
 
 use super::consistent::consistent_start;
 use super::growth::Growth;
-use super::interior_point::{Control, Ended, InteriorPoint, Progress, Shared, Solution, lock};
-use super::newton;
+use super::interior_point::{Ended, InteriorPoint, lock};
 use super::problem::{Nlp, Problem};
 use super::quadratic::Quadratic;
 use super::schedule::{
-    AGREEMENT, BASE, CHEAP, DOUBT, ELSEWHERE, ENOUGH, FIRST_ATTEMPT_ITERATIONS, From,
+    AGREEMENT, CHEAP, DOUBT, ELSEWHERE, ENOUGH, FIRST_ATTEMPT_ITERATIONS, From,
     MAX_ATTEMPT_ITERATIONS, MIN_ATTEMPT_ITERATIONS, NEAR, OVERHEAD, RESTARTS, TIMES,
 };
-use super::slqp;
+use super::slqp::Effort;
 use super::trial::{Trial, clean, polished, residuals_at, tidy, without_noise};
 use super::{Convexity, Engine};
 use crate::autodiff::{Degree, ErrorKind, EvalFailure, Evaluator, kinks};
 use crate::model::instance::Instance;
 use crate::solve::backend::Task;
-use crate::solve::budget::{self, Budget, Size, Stop};
-use crate::solve::certificate::TOLERANCE;
+use crate::solve::budget::{Budget, Size};
 use crate::solve::certificate::nonlinear::beside_kinks;
 use crate::solve::factor_size::symmetric_size;
 use crate::solve::random::Random;
@@ -40,23 +38,12 @@ use std::cell::OnceCell;
 use std::sync::{Arc, Mutex};
 
 /// An objective better than this, at a feasible point, is called unbounded (GAMS's solvers: 1e15).
-const UNBOUNDED: f64 = 1e15;
-/// A run whose objective is worse than this has lost its way.
-const LOST: f64 = 1e17;
+pub(super) const UNBOUNDED: f64 = 1e15;
 /// A point is unbounded evidence from here on, if the interior-point solver stopped with diverging iterates.
 const LARGE: f64 = 1e10;
 
-/// How often negative curvature of the violation is followed.
-const MOST_ESCAPES: u32 = 3;
-
-/// Rows without multipliers are violated by less than this where the sequential method ends.
-const NEARLY: f64 = 1e-4;
-
 /// Nonlinear equations from which on the interior point may go first.
 const MANY_CURVED: usize = 50;
-
-/// What rows without multipliers are widened by, in units of their largest entry.
-const WIDTH: f64 = 1e-8;
 
 /// Solves an instance and certifies the answer.
 pub fn solve(
@@ -175,9 +162,9 @@ pub(super) struct Driver<'a, 'm> {
     /// There is no feasible point.
     pub(super) impossible: bool,
     /// How often negative curvature of the violation was followed.
-    violation_escapes: u32,
+    pub(super) violation_escapes: u32,
     /// Work after which no further attempt is begun.
-    enough: f64,
+    pub(super) enough: f64,
     /// What factors of the KKT matrix cost, once that is known.
     factors: OnceCell<Size>,
     /// Iterations one attempt may take.
@@ -243,10 +230,15 @@ impl Driver<'_, '_> {
             return Ok(self.finish());
         }
         let interior_first = !self.named
-            && !again
             && self.is_mostly_nonlinear()
             && self.settings.runs(Strategy::InteriorFirst);
-        if !interior_first && (self.settle_by_sequence(again)? || self.impossible) {
+        let effort = if interior_first {
+            Effort::AGAIN
+        } else {
+            Effort::FULL
+        };
+        let sequence = !interior_first || again;
+        if sequence && (self.settle_by_sequence(again, effort)? || self.impossible) {
             return Ok(self.finish());
         }
         if self.infeasibility.is_some() {
@@ -269,7 +261,7 @@ impl Driver<'_, '_> {
             return Ok(self.finish());
         }
         let lacks_point = !self.best.as_ref().is_some_and(Trial::is_feasible);
-        if interior_first && lacks_point && self.settle_by_sequence(again)? {
+        if interior_first && lacks_point && self.settle_by_sequence(again, Effort::FULL)? {
             return Ok(self.finish());
         }
         if self.is_impossible() {
@@ -291,7 +283,7 @@ impl Driver<'_, '_> {
             }
             if !self.named {
                 let x = self.start_point(from);
-                self.sequential(x, None);
+                self.sequential(x, None, Effort::FULL);
                 self.leave_saddles()?;
             }
             if !self.is_settled() {
@@ -302,7 +294,7 @@ impl Driver<'_, '_> {
         let lacks_point = !self.best.as_ref().is_some_and(Trial::is_feasible);
         if self.named && lacks_point && !self.is_settled() && self.infeasibility.is_none() {
             // linear programs at the least violation may prove that there is no feasible point nearby
-            self.sequential(self.start_point(From::Best), None);
+            self.sequential(self.start_point(From::Best), None, Effort::FULL);
         }
         self.leave_saddles()?;
         Ok(self.finish())
@@ -310,7 +302,7 @@ impl Driver<'_, '_> {
 
     /// Iterations times nonzeros so far: what decides how much is tried. Time would make the answer
     /// depend on the machine.
-    fn work(&self) -> f64 {
+    pub(super) fn work(&self) -> f64 {
         self.iterations as f64 * self.work_of_iteration()
     }
 
@@ -462,237 +454,6 @@ impl Driver<'_, '_> {
         let problem = lock(&*self.problem);
         let mut evaluator = Evaluator::new(self.instance);
         consistent_start(self.instance, &problem, &mut evaluator, &self.start)
-    }
-
-    /// Sequential programs from a point, judged and kept; with multipliers, from the active set that they name.
-    pub(super) fn sequential(&mut self, x: Vec<f64>, multipliers: Option<&[f64]>) {
-        if !self.settings.runs(Strategy::SequentialQuadratic) {
-            return;
-        }
-        let mut problem = lock(&*self.problem);
-        problem.set_start(x);
-        let own = self.settings.number("max_iter");
-        let own = own.map_or(u64::MAX, |n| n as u64);
-        let full = slqp::Effort::FULL;
-        let effort = slqp::Effort {
-            steps: full.steps.min(self.budget.iterations_left()).min(own),
-            ..full
-        };
-        let request = slqp::Request {
-            multipliers,
-            effort,
-            width: 0.0,
-            strategies: self.settings.strategies(),
-        };
-        let run = slqp::solve(&mut *problem, request, self.budget);
-        let failures = problem.failures();
-        drop(problem);
-        self.budget.stop_after_failures(failures);
-        let Some(run) = run else { return };
-        self.spend(run.steps);
-        let (steps, end) = (run.steps, run.end);
-        self.budget
-            .log(format!("slqp: {end:?} after {steps} steps"));
-        let ended = match run.end {
-            slqp::End::Solved => Ended::Solved,
-            slqp::End::Infeasible => Ended::Infeasible,
-            slqp::End::Diverging => Ended::Diverging,
-            slqp::End::Spent => Ended::Iterations,
-            slqp::End::Stuck => Ended::SmallStep,
-        };
-        if run.end == slqp::End::Infeasible
-            && self.violation_escapes < MOST_ESCAPES
-            && let Some(x) = self.beyond_least_violation(&run.x, &run.lambda)
-        {
-            self.violation_escapes += 1;
-            return self.sequential(x, None);
-        }
-        let trial = self.judge(run.x, run.lambda, ended);
-        if run.end == slqp::End::Infeasible {
-            self.note_infeasibility(&trial);
-        }
-        let ended = !matches!(run.end, slqp::End::Infeasible | slqp::End::Diverging);
-        let regular = self.kinks.is_some() || trial.lambda.is_empty() || trial.is_optimal();
-        let near = match run.heavy {
-            true => trial.residuals.primal_relative <= NEARLY,
-            false => trial.is_feasible() && run.end != slqp::End::Spent,
-        };
-        let irregular = ended && !regular && near;
-        let trial = match irregular && self.settings.runs(Strategy::WidenedRows) {
-            true => self.without_multipliers(trial),
-            false => trial,
-        };
-        self.keep(trial);
-    }
-
-    /// Where rows have no multipliers, as a square that is to be 0: the point is optimal if the same rows, a little wider, have an
-    /// optimum with multipliers and all but the same value.
-    fn without_multipliers(&mut self, mut trial: Trial) -> Trial {
-        let mut problem = lock(&*self.problem);
-        problem.set_start(trial.x.clone());
-        if !trial.is_feasible() {
-            let budget = self.budget;
-            let run = newton::solve(&mut *problem, &mut |_| budget.is_over());
-            drop(problem);
-            if let Some(run) = run {
-                self.spend(run.steps);
-                trial = self.judge(run.x, trial.lambda, trial.ended);
-            }
-            problem = lock(&*self.problem);
-            problem.set_start(trial.x.clone());
-        }
-        let request = slqp::Request {
-            multipliers: None,
-            effort: slqp::Effort::FULL,
-            width: WIDTH,
-            strategies: self.settings.strategies(),
-        };
-        let run = slqp::solve(&mut *problem, request, self.budget);
-        drop(problem);
-        let Some(run) = run else { return trial };
-        self.spend(run.steps);
-        let wide = self.judge(run.x, run.lambda, Ended::Solved);
-        let difference = (wide.objective - trial.objective).abs();
-        let near = difference <= 1e-3 * trial.objective.abs().max(1.0);
-        let (primal, dual) = (wide.residuals.primal_relative, wide.residuals.dual_relative);
-        let solved = run.end == slqp::End::Solved && primal <= NEARLY && dual <= TOLERANCE;
-        match near && trial.is_feasible() {
-            true if solved => Trial {
-                irregular: true,
-                ..trial
-            },
-            false if wide.is_optimal() => wide,
-            _ => trial,
-        }
-    }
-
-    /// One run of the interior-point solver, judged and kept if it is the best so far. The objective of the point if
-    /// it is optimal.
-    pub(super) fn attempt(
-        &mut self,
-        from: From,
-        extra: &[(&str, &str)],
-    ) -> Result<Option<f64>, SolveError> {
-        self.attempt_from(self.start_point(from), extra)
-    }
-
-    pub(super) fn attempt_from(
-        &mut self,
-        x: Vec<f64>,
-        extra: &[(&str, &str)],
-    ) -> Result<Option<f64>, SolveError> {
-        lock(&*self.problem).set_start(x.clone());
-        let shared: Shared = self.problem.clone();
-        let solution = self.call(shared, extra)?;
-        if solution.ended == Ended::TooFewDegrees && !self.is_stopped() {
-            return Ok(None);
-        }
-        let trial = self.judge(solution.x, solution.lambda, solution.ended);
-        let trial = self.follow(x, trial)?;
-        let objective = trial.is_optimal().then_some(trial.objective);
-        self.keep(trial);
-        Ok(objective)
-    }
-
-    /// Whether how a solver ended leaves room for a further attempt.
-    pub(super) fn note_end(&mut self, ended: Ended) {
-        if ended == Ended::Time {
-            self.budget.end(Stop::Time);
-        }
-    }
-
-    pub(super) fn call(
-        &mut self,
-        nlp: Shared,
-        extra: &[(&str, &str)],
-    ) -> Result<Solution, SolveError> {
-        if !self.affords_factors() {
-            let nlp = lock(&nlp);
-            return Ok(Solution {
-                ended: Ended::TooLarge,
-                x: nlp.start().to_vec(),
-                lambda: vec![0.0; nlp.size().1],
-                objective: f64::NAN,
-                iterations: 0,
-            });
-        }
-        let mut options: Vec<(String, String)> = Vec::new();
-        let mut put = |k: &str, v: &str| {
-            options.retain(|(old, _)| !old.eq_ignore_ascii_case(k));
-            options.push((k.to_string(), v.to_string()));
-        };
-        for (k, v) in BASE.iter().chain(extra) {
-            put(k, v);
-        }
-        for (k, v) in self.settings.of(self.interior_point.options()) {
-            put(k, v);
-        }
-        let left = self.budget.iterations_left();
-        let cap = if options.iter().any(|(k, _)| k == "max_iter") {
-            u64::MAX
-        } else {
-            // an attempt begun late is not cut off at once
-            let affordable = (self.enough - self.work()) / self.work_of_iteration();
-            self.attempt_iterations.min(affordable.max(100.0) as u64)
-        };
-        let (budget, log) = (self.budget, self.budget.wants_log());
-        let name = self.interior_point.name();
-        if log {
-            let extra: Vec<String> = extra.iter().map(|(k, v)| format!(", {k} {v}")).collect();
-            budget.log(format!("{name}{}", extra.concat()));
-        }
-        let sign = self.instance.sign();
-        let mut header = log;
-        let mut watch = |p: &Progress| {
-            if header {
-                header = false;
-                budget.log("   iter       objective     primal       dual         mu      step");
-            }
-            if log {
-                budget.log(format!(
-                    "{:>7}{} {:>15.8e} {:>10.2e} {:>10.2e} {:>10.2e} {:>9.2e}",
-                    p.iteration,
-                    if p.restoration { 'r' } else { ' ' },
-                    p.objective,
-                    p.primal,
-                    p.dual,
-                    p.mu,
-                    p.step
-                ));
-            }
-            budget.progress(budget::Progress {
-                method: name,
-                iteration: p.iteration,
-                objective: Some(sign * p.objective),
-                primal: Some(p.primal),
-                dual: Some(p.dual),
-                ..budget::Progress::default()
-            });
-            let failures = lock(&*nlp).failures();
-            let unbounded = p.objective < -UNBOUNDED && p.primal < 1e-3;
-            let diverged = unbounded || p.objective > LOST;
-            let stopped = budget.stop_after_failures(failures).is_some();
-            !stopped && (p.restoration || !diverged)
-        };
-        let seconds = Some(budget.seconds_left()).filter(|s| *s < 1e9);
-        let mut control = Control {
-            options,
-            iterations: left.min(cap),
-            seconds: seconds.map(|s| s.max(1e-3)),
-            watch: &mut watch,
-        };
-        let result = self.interior_point.solve(nlp.clone(), &mut control);
-        let solution = result.map_err(SolveError::new)?;
-        self.spend(solution.iterations);
-        self.note_end(solution.ended);
-        self.ended = solution.ended;
-        if let Ended::InvalidOption = solution.ended {
-            return Err(SolveError::new(format!(
-                "{} does not take one of the options",
-                self.interior_point.name()
-            )));
-        }
-        Ok(solution)
     }
 
     /// Puts a point into the bounds and computes its residuals.

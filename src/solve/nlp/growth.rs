@@ -14,6 +14,7 @@ use super::driver::Driver;
 use super::interior_point::{Ended, lock};
 use super::problem::{Nlp, ObjectiveForm, Problem};
 use super::schedule::From;
+use super::slqp::Effort;
 use super::trial::{CONSIDERABLE, FAR, Trial};
 use crate::model::instance::Instance;
 use crate::solve::{SolveError, Strategy};
@@ -130,7 +131,7 @@ impl Driver<'_, '_> {
         let mut inner = Driver::new(&instance, problem, interior_point, settings, self.budget);
         inner.growth = Growth::Ignored;
         inner.iterations = self.iterations;
-        inner.sequential(inner.start.clone(), None);
+        inner.sequential(inner.start.clone(), None, Effort::FULL);
         inner.leave_saddles()?;
         if !inner.is_settled() {
             inner.attempt(From::Start, &[])?;

@@ -12,6 +12,7 @@ use super::interior_point::{Ended, lock};
 use super::polish::Active;
 use super::problem::{Nlp, Problem};
 use super::schedule::FINEST;
+use super::slqp::Effort;
 use super::trial::{Trial, active_set};
 use crate::model::instance::Relation;
 use crate::solve::{SolveError, Strategy};
@@ -50,7 +51,7 @@ impl Driver<'_, '_> {
             let before = best.objective;
             let margin = 1e-9 * before.abs().max(1.0);
             if !self.named {
-                self.sequential(x.clone(), None);
+                self.sequential(x.clone(), None, Effort::FULL);
             }
             let now = self.best.as_ref().map_or(before, |t| t.objective);
             if now < before - margin {

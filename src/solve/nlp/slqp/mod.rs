@@ -22,7 +22,7 @@ use crate::solve::Budget;
 use crate::solve::strategy::{Strategies, Strategy};
 use equality::{Equality, Working};
 use linear::{Aim, Linear, Step};
-use model::{Model, sum};
+use model::{Course, Model, sum};
 use point::{Frame, Point, Values};
 
 /// What may be spent on it.
@@ -35,6 +35,12 @@ pub(super) struct Effort {
 }
 
 impl Effort {
+    /// Where a program is only solved again if little has changed.
+    pub(super) const AGAIN: Self = Self {
+        steps: 10,
+        pivots: 30,
+    };
+
     /// From anywhere.
     pub(super) const FULL: Self = Self {
         steps: 100,
@@ -422,17 +428,20 @@ impl Method<'_, '_> {
         let phi = |v: &Values, weight: f64, frame: &Frame| v.f + weight * frame.violation(&v.g);
         let now = phi(&self.at.values, self.weight, &self.frame);
         let (cauchy, part) = model.cauchy(&linear.d, self.radius);
-        let (d, full) = match &quadratic {
-            Some(q) => model.onwards(&cauchy, q, &working, self.radius),
-            None => (cauchy.clone(), false),
-        };
+        let Course {
+            d,
+            full,
+            working,
+            quadratic,
+        } = model.course(&cauchy, quadratic, working, self.radius, &mut self.shift);
         let promised = -model.change(&d);
         let small = promised <= ROUNDING * now.abs().max(1.0);
         let mut next = sum(&self.at.x, 1.0, &d);
         self.frame.clip(&mut next);
         let mut there = Values::at(self.nlp, &self.frame, &next);
+        let weight = self.weight;
         let ratio = |v: &Option<Values>, frame: &Frame| match v {
-            Some(v) => (now - phi(v, self.weight, frame)) / promised,
+            Some(v) => (now - phi(v, weight, frame)) / promised,
             None => -1.0,
         };
         let mut gain = if small {
@@ -440,31 +449,19 @@ impl Method<'_, '_> {
         } else {
             ratio(&there, &self.frame)
         };
-        // what the curvature of the held rows added on the way is taken off
         if gain < TAKEN
             && let (Some(v), Some(q)) = (&there, &quadratic)
-            && self.strategies.run(Strategy::SecondOrderCorrection)
+            && let Some(other) = self.corrected(&next, v, &d, q)
         {
-            let along = self.at.along(&d);
-            let held = |i: usize| v.g[i] - self.at.values.g[i] - along[i];
-            let curvature: Vec<f64> = (0..self.frame.m).map(held).collect();
-            if let Some(off) = q.correction(&curvature) {
-                let mut other = sum(&next, 1.0, &off);
-                self.frame.clip(&mut other);
-                let values = Values::at(self.nlp, &self.frame, &other);
-                let corrected = ratio(&values, &self.frame);
-                if corrected > gain {
-                    (next, there, gain) = (other, values, corrected);
-                }
+            let values = Values::at(self.nlp, &self.frame, &other);
+            let corrected = ratio(&values, &self.frame);
+            if corrected > gain {
+                (next, there, gain) = (other, values, corrected);
             }
         }
         let length = self.at.length(&self.frame, &d);
-        self.resize(
-            gain,
-            length,
-            self.at.length(&self.frame, &cauchy),
-            part >= 1.0,
-        );
+        let first = self.at.length(&self.frame, &cauchy);
+        self.resize(gain, length, first, part >= 1.0);
         if gain < TAKEN {
             return Ok(None);
         }
@@ -490,13 +487,7 @@ impl Method<'_, '_> {
             self.at = point;
             let again = Equality::new(&self.frame, &self.at, &hessian, &working, &mut self.shift);
             let last = [again, quadratic].into_iter().flatten().map(|q| q.lambda);
-            let mut worth = self.at.residual(&self.frame, &self.lambda);
-            for other in last.chain([lambda]) {
-                let left = self.at.residual(&self.frame, &other);
-                if left < worth {
-                    (self.lambda, worth) = (other, left);
-                }
-            }
+            self.choose(last.chain([lambda]));
             return Err(End::Solved);
         }
         self.at = point;
@@ -505,6 +496,30 @@ impl Method<'_, '_> {
             && self.signs_are_right(&working)
             && self.strategies.run(Strategy::ActiveSetNewton);
         Ok(stays.then_some(working))
+    }
+
+    /// Where a refused step had ended, without what the curvature of the held rows added on the way.
+    fn corrected(&self, next: &[f64], there: &Values, d: &[f64], q: &Equality) -> Option<Vec<f64>> {
+        if !self.strategies.run(Strategy::SecondOrderCorrection) {
+            return None;
+        }
+        let along = self.at.along(d);
+        let held = |i: usize| there.g[i] - self.at.values.g[i] - along[i];
+        let curvature: Vec<f64> = (0..self.frame.m).map(held).collect();
+        let mut other = sum(next, 1.0, &q.correction(&curvature)?);
+        self.frame.clip(&mut other);
+        Some(other)
+    }
+
+    /// Of these multipliers and those there are the ones that leave least of the conditions of first order.
+    fn choose(&mut self, others: impl Iterator<Item = Vec<f64>>) {
+        let mut worth = self.at.residual(&self.frame, &self.lambda);
+        for other in others {
+            let left = self.at.residual(&self.frame, &other);
+            if left < worth {
+                (self.lambda, worth) = (other, left);
+            }
+        }
     }
 
     /// The weight of violations in φ: somewhat above the multipliers. Where it was far above them, it becomes less, for a

@@ -13,6 +13,27 @@ pub(super) struct Model<'a> {
     pub(super) weight: f64,
 }
 
+/// A bound or a side of a row that a step meets.
+#[derive(Clone, Copy)]
+enum Met {
+    Column(usize, f64),
+    Row(usize, f64),
+}
+
+/// Bounds and rows that are added to a working set at most, each for a factorisation.
+const MOST_MET: u32 = 10;
+/// What is met within this part of the way is met at once.
+const AT_ONCE: f64 = 1e-6;
+
+/// A step, and the working set that it ends on.
+pub(super) struct Course {
+    pub(super) d: Vec<f64>,
+    /// It is the solution of the quadratic program.
+    pub(super) full: bool,
+    pub(super) working: Working,
+    pub(super) quadratic: Option<Equality>,
+}
+
 impl Model<'_> {
     /// Change of φ along d.
     pub(super) fn change(&self, d: &[f64]) -> f64 {
@@ -46,8 +67,57 @@ impl Model<'_> {
         (scaled(part), part)
     }
 
-    /// From there towards the solution of the quadratic program on the working set: the step, and whether it gets there.
-    pub(super) fn onwards(
+    /// From the first step towards the solution of the quadratic program on the working set. Where a bound or a row is met on the
+    /// way, it joins the set, as in an active-set method for quadratic programs (Nocedal & Wright 2006, 16.5): left to the
+    /// next linear program, the same would be met again.
+    pub(super) fn course(
+        &self,
+        cauchy: &[f64],
+        quadratic: Option<Equality>,
+        working: Working,
+        radius: f64,
+        shift: &mut usize,
+    ) -> Course {
+        let (d, full) = match &quadratic {
+            Some(q) => self.onwards(cauchy, q, &working, radius),
+            None => (cauchy.to_vec(), false),
+        };
+        let mut course = Course {
+            d,
+            full,
+            working,
+            quadratic,
+        };
+        for _ in 0..MOST_MET {
+            let Some(q) = course.quadratic.as_ref().filter(|_| !course.full) else {
+                break;
+            };
+            let rest = sum(&q.d, -1.0, &course.d);
+            let (part, met) = self.blocked(&course.d, &rest, &course.working, radius);
+            let mut working = course.working.clone();
+            match met.filter(|_| part <= AT_ONCE) {
+                Some(Met::Column(j, bound)) => working.column[j] = Some(bound),
+                Some(Met::Row(i, side)) => working.row[i] = Some(side),
+                None => break,
+            }
+            let next = Equality::new(self.frame, self.at, self.hessian, &working, shift);
+            let Some(q) = next else { break };
+            let (d, full) = self.onwards(&course.d, &q, &working, radius);
+            if self.change(&d) > self.change(&course.d) {
+                break;
+            }
+            course = Course {
+                d,
+                full,
+                working,
+                quadratic: Some(q),
+            };
+        }
+        course
+    }
+
+    /// From a step towards the solution of the quadratic program on the working set: the step, and whether it gets there.
+    fn onwards(
         &self,
         cauchy: &[f64],
         q: &Equality,
@@ -88,23 +158,36 @@ impl Model<'_> {
         working: &Working,
         radius: f64,
     ) -> f64 {
-        let mut part = 1.0_f64;
-        let mut meet = |room: f64, rate: f64| {
+        self.blocked(from, direction, working, radius).0
+    }
+
+    /// The same, and what is met there, if that is not the trust region.
+    fn blocked(
+        &self,
+        from: &[f64],
+        direction: &[f64],
+        working: &Working,
+        radius: f64,
+    ) -> (f64, Option<Met>) {
+        let (mut part, mut met) = (1.0_f64, None);
+        let mut meet = |room: f64, rate: f64, what: Option<Met>| {
             if rate > 0.0 && room < rate * part {
                 part = (room / rate).max(0.0);
+                met = what;
             }
         };
         let frame = self.frame;
         for j in 0..frame.n {
             let (x, rate) = (self.at.x[j] + from[j], direction[j]);
             if working.column[j].is_none() {
-                meet(frame.upper[j] - x, rate);
-                meet(x - frame.lower[j], -rate);
+                let (l, u) = (frame.lower[j], frame.upper[j]);
+                meet(u - x, rate, Some(Met::Column(j, u)));
+                meet(x - l, -rate, Some(Met::Column(j, l)));
             }
             if frame.nonlinear[j] {
                 let most = radius * self.at.unit(j);
-                meet(most - from[j], rate);
-                meet(most + from[j], -rate);
+                meet(most - from[j], rate, None);
+                meet(most + from[j], -rate, None);
             }
         }
         let (start, along) = (self.at.along(from), self.at.along(direction));
@@ -112,13 +195,15 @@ impl Model<'_> {
             let value = self.at.values.g[i] + start[i];
             let missing = frame.missing(i, value);
             if missing >= 0.0 {
-                meet(frame.above[i] - value, along[i]);
+                let side = frame.above[i];
+                meet(side - value, along[i], Some(Met::Row(i, side)));
             }
             if missing <= 0.0 {
-                meet(value - frame.below[i], -along[i]);
+                let side = frame.below[i];
+                meet(value - side, -along[i], Some(Met::Row(i, side)));
             }
         }
-        part
+        (part, met)
     }
 }
 

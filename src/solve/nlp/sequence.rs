@@ -1,0 +1,184 @@
+//! Sequential programs ([`slqp`]) from a point: what they prove, and what is made of rows without multipliers.
+
+use super::driver::Driver;
+use super::growth::Growth;
+use super::interior_point::{Ended, lock};
+use super::newton;
+use super::problem::Nlp;
+use super::schedule::From;
+use super::slqp::{self, Effort};
+use super::trial::Trial;
+use crate::solve::certificate::TOLERANCE;
+use crate::solve::certificate::nonlinear::is_locally_infeasible;
+use crate::solve::{SolveError, Strategy};
+
+/// How often negative curvature of the violation is followed.
+const MOST_ESCAPES: u32 = 3;
+
+/// Rows without multipliers are violated by less than this where the sequential method ends.
+const NEARLY: f64 = 1e-4;
+
+/// What rows without multipliers are widened by, in units of their largest entry.
+const WIDTH: f64 = 1e-8;
+
+impl Driver<'_, '_> {
+    /// Sequential programs, from where an earlier solve ended if there was one. Whether that settles it.
+    pub(super) fn settle_by_sequence(
+        &mut self,
+        again: bool,
+        effort: Effort,
+    ) -> Result<bool, SolveError> {
+        if self.named {
+            return Ok(false);
+        }
+        let marginals = again.then(|| lock(&*self.problem).marginals_of(self.instance));
+        let runs = |s| self.settings.runs(s);
+        let defined = if again { None } else { self.consistent() };
+        let defined = defined.filter(|_| runs(Strategy::ConsistentStart));
+        let start = defined.unwrap_or_else(|| self.start.clone());
+        self.sequential(start, marginals.as_deref(), effort);
+        let settled = self.is_settled_by("slqp")?;
+        if settled {
+            self.growth = Growth::Ignored;
+            self.search()?;
+        } else if self.infeasibility.is_some()
+            && !self.is_impossible()
+            && self.settings.runs(Strategy::InfeasibilityDoubt)
+        {
+            return self.doubt();
+        }
+        Ok(settled)
+    }
+
+    /// Where nothing near the start is feasible: from halfway between the bounds. Whether that settles it.
+    fn doubt(&mut self) -> Result<bool, SolveError> {
+        let x = self.start_point(From::Middle);
+        if self.is_square() {
+            lock(&*self.problem).set_start(x.clone());
+            self.attempt_newton();
+        }
+        if !self.is_settled() {
+            self.sequential(x, None, Effort::FULL);
+        }
+        if self.best.as_ref().is_some_and(Trial::is_feasible) {
+            return self.is_settled_by("slqp");
+        }
+        Ok(false)
+    }
+
+    /// Sequential programs from a point, judged and kept; with multipliers, from the active set that they name.
+    pub(super) fn sequential(&mut self, x: Vec<f64>, multipliers: Option<&[f64]>, effort: Effort) {
+        if !self.settings.runs(Strategy::SequentialQuadratic) {
+            return;
+        }
+        let mut problem = lock(&*self.problem);
+        problem.set_start(x);
+        let own = self.settings.number("max_iter");
+        let own = own.map_or(u64::MAX, |n| n as u64);
+        let effort = Effort {
+            steps: effort.steps.min(self.budget.iterations_left()).min(own),
+            ..effort
+        };
+        let request = slqp::Request {
+            multipliers,
+            effort,
+            width: 0.0,
+            strategies: self.settings.strategies(),
+        };
+        let run = slqp::solve(&mut *problem, request, self.budget);
+        let failures = problem.failures();
+        drop(problem);
+        self.budget.stop_after_failures(failures);
+        let Some(run) = run else { return };
+        self.spend(run.steps);
+        let (steps, end) = (run.steps, run.end);
+        self.budget
+            .log(format!("slqp: {end:?} after {steps} steps"));
+        let ended = match run.end {
+            slqp::End::Solved => Ended::Solved,
+            slqp::End::Infeasible => Ended::Infeasible,
+            slqp::End::Diverging => Ended::Diverging,
+            slqp::End::Spent => Ended::Iterations,
+            slqp::End::Stuck => Ended::SmallStep,
+        };
+        if run.end == slqp::End::Infeasible
+            && self.violation_escapes < MOST_ESCAPES
+            && let Some(x) = self.beyond_least_violation(&run.x, &run.lambda)
+        {
+            self.violation_escapes += 1;
+            return self.sequential(x, None, effort);
+        }
+        let trial = self.judge(run.x, run.lambda, ended);
+        if run.end == slqp::End::Infeasible {
+            self.note_infeasibility(&trial);
+        }
+        let ended = !matches!(run.end, slqp::End::Infeasible | slqp::End::Diverging);
+        let regular = self.kinks.is_some() || trial.lambda.is_empty() || trial.is_optimal();
+        let near = match run.heavy {
+            true => trial.residuals.primal_relative <= NEARLY,
+            false => trial.is_feasible() && run.end != slqp::End::Spent,
+        };
+        let irregular = ended && !regular && near;
+        let trial = match irregular && self.settings.runs(Strategy::WidenedRows) {
+            true => self.without_multipliers(trial),
+            false => trial,
+        };
+        self.keep(trial);
+    }
+
+    /// Where rows have no multipliers, as a square that is to be 0: the point is optimal if the same rows, a little wider, have an
+    /// optimum with multipliers and all but the same value.
+    fn without_multipliers(&mut self, mut trial: Trial) -> Trial {
+        let mut problem = lock(&*self.problem);
+        problem.set_start(trial.x.clone());
+        if !trial.is_feasible() {
+            let budget = self.budget;
+            let run = newton::solve(&mut *problem, &mut |_| budget.is_over());
+            drop(problem);
+            if let Some(run) = run {
+                self.spend(run.steps);
+                trial = self.judge(run.x, trial.lambda, trial.ended);
+            }
+            problem = lock(&*self.problem);
+            problem.set_start(trial.x.clone());
+        }
+        let request = slqp::Request {
+            multipliers: None,
+            effort: Effort::FULL,
+            width: WIDTH,
+            strategies: self.settings.strategies(),
+        };
+        let run = slqp::solve(&mut *problem, request, self.budget);
+        drop(problem);
+        let Some(run) = run else { return trial };
+        self.spend(run.steps);
+        let wide = self.judge(run.x, run.lambda, Ended::Solved);
+        let difference = (wide.objective - trial.objective).abs();
+        let near = difference <= 1e-3 * trial.objective.abs().max(1.0);
+        let (primal, dual) = (wide.residuals.primal_relative, wide.residuals.dual_relative);
+        let solved = run.end == slqp::End::Solved && primal <= NEARLY && dual <= TOLERANCE;
+        match near && trial.is_feasible() {
+            true if solved => Trial {
+                irregular: true,
+                ..trial
+            },
+            false if wide.is_optimal() => wide,
+            _ => trial,
+        }
+    }
+
+    /// Keeps a point whose multipliers prove that there is no feasible one nearby.
+    pub(super) fn note_infeasibility(&mut self, trial: &Trial) {
+        let mut problem = lock(&*self.problem);
+        // the constraints push with −λ
+        let mut y = vec![0.0; self.instance.row_count()];
+        for (&i, l) in problem.rows.iter().zip(&trial.lambda) {
+            y[i as usize] = -l;
+        }
+        let evaluator = problem.evaluator();
+        let proved = is_locally_infeasible(self.instance, evaluator, &trial.level, &y, 1e-4);
+        if !trial.is_feasible() && self.infeasibility.is_none() && proved {
+            self.infeasibility = Some((trial.clone(), y));
+        }
+    }
+}
