@@ -2,7 +2,7 @@
 
 use super::node::*;
 use super::symbols::{SymbolKind, attribute};
-use super::{Compiler, Failed};
+use super::{Compiler, Failed, functions};
 use crate::diag::Diagnostic;
 use crate::source::Span;
 use crate::syntax::ast::{DisplayItem, Expr, ExprKind, Ident, Put, PutItem};
@@ -229,14 +229,19 @@ impl Compiler {
         let [last] = arguments.as_slice() else {
             return None;
         };
-        let text = |a: &Ident| matches!(&*a.name.to_lowercase(), "tl" | "ts");
-        let symbol = || Some(self.symbols.get(self.symbols.find(&name.name)?));
-        let without = match attribute {
+        let is_text = |a: &Ident| matches!(&*a.name.to_lowercase(), "tl" | "ts");
+        let symbol = self.symbols.find(&name.name).map(|s| self.symbols.get(s));
+        let without = match (attribute, symbol) {
             _ if is_system(name) => true,
-            Some(a) if text(a) => true,
-            _ if symbol()?.dim() > 0 => false,
-            Some(_) => true,
-            None => !symbol()?.is_set(),
+            (Some(a), _) if is_text(a) => true,
+            (Some(_), Some(s)) if s.dim() == 0 => true,
+            (Some(a), Some(s)) => {
+                s.is_set()
+                    && functions::label_attribute(&a.name.to_lowercase()).is_some()
+                    && !self.is_index(last)
+            }
+            (None, Some(s)) => s.dim() == 0 && !s.is_set(),
+            (_, None) => false,
         };
         let first = Expr {
             kind: ExprKind::Apply {
@@ -247,6 +252,19 @@ impl Compiler {
             span: name.span,
         };
         without.then(|| (first, last.clone()))
+    }
+
+    /// Whether an argument is an index: a set, a label, a set with a lag.
+    fn is_index(&self, e: &Expr) -> bool {
+        match &e.kind {
+            ExprKind::Text(_) => true,
+            ExprKind::Binary(_, a, _) => self.is_index(a),
+            ExprKind::Apply { name, .. } => {
+                let set = self.symbols.find(&name.name);
+                set.is_some_and(|s| self.symbols.get(s).is_set())
+            }
+            _ => false,
+        }
     }
 
     /// The file of this name, if it is one.

@@ -306,8 +306,8 @@ impl TextFile {
             Item::Eps => String::new(),
             Item::Number(x) => {
                 let width = match format.width {
+                    _ if pc == 8 => 0,
                     Some(w) => w.max(0) as usize,
-                    None if pc == 8 => 0,
                     None => self.integer("nw").max(0) as usize,
                 };
                 let decimals = format
@@ -354,15 +354,13 @@ impl TextFile {
         let quoted = !matches!(item, Item::Number(_) | Item::Page);
         if pc != 8 && !quoted {
             // Scientific numbers keep the place of the sign.
-            let sign = if self.get("nr") == 2.0 && !text.contains('-') {
-                " "
-            } else {
-                ""
-            };
-            text = format!("{sign}{}", text.trim());
+            let number = text.trim();
+            let place = self.get("nr") == 2.0 && !number.starts_with(['-', '*']);
+            text = format!("{}{number}", if place { " " } else { "" });
         }
         if let (Item::Special(_), Some(width)) = (item, format.width)
             && width > 0
+            && pc != 8
             && text.len() > width as usize
         {
             text = "*".repeat(width as usize);

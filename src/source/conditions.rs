@@ -136,9 +136,10 @@ impl Preprocessor<'_> {
             "dimension" => {
                 let (number, n) = term(after, false);
                 let (name, m) = term(&after[n..], false);
-                let dimension = known.dimension(name);
-                let asked = number.parse::<usize>().ok();
-                Some(Ok((dimension.is_some() && dimension == asked, len + n + m)))
+                let Some(dimension) = known.dimension(name) else {
+                    return Some(Err(format!("`{name}` is not declared")));
+                };
+                Some(Ok((number.parse() == Ok(dimension), len + n + m)))
             }
             "settype" => of_kind(&["set", "alias"]),
             "partype" => of_kind(&["parameter", "scalar"]),
