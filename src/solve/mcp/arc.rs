@@ -204,6 +204,38 @@ impl Path<'_> {
             tau,
         })
     }
+
+    /// The tangent here, and the way back to the path, with the factors for more; None where the matrix is singular.
+    fn directions(
+        &self,
+        run: &mut Run,
+        through: &Target,
+        analysis: &Analysis,
+    ) -> Option<(Factor, Direction, Direction)> {
+        let jacobian = run.jacobian(&self.point.x)?;
+        let s = &self.state;
+        let diagonal = |i: usize| s.w[i] / s.a[i] + s.v[i] / s.b[i] + PROX.0;
+        run.factorisations += 1;
+        run.crash_iterations += 1;
+        let matrix = combine(&jacobian, diagonal, |_| 1.0);
+        let mut factor = Factor::analysed(matrix, run.fill, analysis)?;
+        let gap = |goal: &[f64], now: Vec<f64>| -> Vec<f64> {
+            let each = goal.iter().zip(now);
+            each.map(|(g, n)| self.tau * g - n).collect()
+        };
+        let missing = Target {
+            r: gap(&through.r, self.equations()),
+            p: gap(&through.p, products(&s.a, &s.w)),
+            q: gap(&through.q, products(&s.b, &s.v)),
+        };
+        let tangent = self.solve(&mut factor, through, 1.0)?;
+        let correction = self.solve(&mut factor, &missing, 0.0)?;
+        Some((factor, tangent, correction))
+    }
+}
+
+fn products(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a * b).collect()
 }
 
 /// Follows the path through the point until τ falls freely, and returns the point reached; None if it leads to
@@ -220,7 +252,6 @@ pub(super) fn around(
         state: state.clone(),
         tau: 1.0,
     };
-    let products = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).collect();
     let mut path = at_start();
     let through = Target {
         r: path.equations(),
@@ -238,32 +269,8 @@ pub(super) fn around(
     });
     for iteration in 0..fold_limit(run.n) {
         run.check()?;
-        let Some(jacobian) = run.jacobian(&path.point.x) else {
-            return Ok(None);
-        };
-        let s = &path.state;
-        let diagonal = |i: usize| s.w[i] / s.a[i] + s.v[i] / s.b[i] + PROX.0;
-        run.factorisations += 1;
-        run.crash_iterations += 1;
-        let matrix = combine(&jacobian, diagonal, |_| 1.0);
-        let Some(mut factor) = Factor::analysed(matrix, run.fill, analysis) else {
-            return Ok(None);
-        };
-        let gap = |goal: &[f64], now: Vec<f64>| -> Vec<f64> {
-            goal.iter()
-                .zip(now)
-                .map(|(g, n)| path.tau * g - n)
-                .collect()
-        };
-        let missing = Target {
-            r: gap(&through.r, path.equations()),
-            p: gap(&through.p, products(&s.a, &s.w)),
-            q: gap(&through.q, products(&s.b, &s.v)),
-        };
-        let (Some(tangent), Some(correction)) = (
-            path.solve(&mut factor, &through, 1.0),
-            path.solve(&mut factor, &missing, 0.0),
-        ) else {
+        let Some((mut factor, tangent, correction)) = path.directions(run, &through, analysis)
+        else {
             return Ok(None);
         };
         // Which way goes on, and the cosine of the angle to the tangent before.

@@ -72,41 +72,27 @@ pub(super) struct Bounds {
     count: usize,
 }
 
+impl Bounds {
+    fn of(run: &Run) -> Self {
+        let finite = |bounds: &[f64]| bounds.iter().map(|b| b.is_finite()).collect::<Vec<_>>();
+        let (lower, upper) = (finite(&run.lower), finite(&run.upper));
+        let count = lower.iter().chain(&upper).filter(|b| **b).count();
+        Self {
+            lower,
+            upper,
+            count,
+        }
+    }
+}
+
 /// Looks for a better point than `start`. None if there is none, or nothing to do.
 pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, Stop> {
-    let n = run.n;
-    let finite = |bounds: &[f64]| bounds.iter().map(|b| b.is_finite()).collect::<Vec<_>>();
-    let (lower, upper) = (finite(&run.lower), finite(&run.upper));
-    let count = lower.iter().chain(&upper).filter(|b| **b).count();
-    let bounds = Bounds {
-        lower,
-        upper,
-        count,
-    };
-    if count == 0 {
+    let bounds = Bounds::of(run);
+    if bounds.count == 0 {
         return Ok(None);
     }
-    let x = (0..n)
-        .map(|i| {
-            let inside = (0.5 * (run.upper[i] - run.lower[i])).min(1.0);
-            // Without a bound on a side the other one decides; max and min ignore NaN.
-            start.x[i]
-                .max(run.lower[i] + inside)
-                .min(run.upper[i] - inside)
-        })
-        .collect();
-    let Some(mut point) = run.point(x) else {
+    let Some((mut point, mut state)) = inside(run, start, &bounds) else {
         return Ok(None);
-    };
-    let slack = |is: &[bool], sign: f64| -> Vec<f64> {
-        let at = |(&is, f): (&bool, &f64)| if is { (sign * f).max(1.0) } else { 0.0 };
-        is.iter().zip(&point.f).map(at).collect()
-    };
-    let mut state = State {
-        a: vec![1.0; n],
-        w: slack(&bounds.lower, 1.0),
-        b: vec![1.0; n],
-        v: slack(&bounds.upper, -1.0),
     };
     log::note(run, log::Part::Crash, || {
         "Interior crash\n iter    product  equations    residual     step     prox".into()
@@ -126,9 +112,8 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
             best = found;
         }
         let mu = state.product(&bounds);
-        let r: Vec<f64> = (0..n)
-            .map(|i| point.f[i] - state.w[i] + state.v[i])
-            .collect();
+        let left_over = |i: usize| point.f[i] - state.w[i] + state.v[i];
+        let r: Vec<f64> = (0..run.n).map(left_over).collect();
         let off = r.iter().fold(0.0f64, |m, r| m.max(r.abs()));
         if run.polished(best.residual)
             || mu < PRODUCT_MIN
@@ -166,29 +151,20 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
                 iteration
             )
         });
-        let x = point
-            .x
-            .iter()
-            .zip(&step.x)
-            .map(|(x, d)| x + t * d)
-            .collect();
-        let Some(next) = run.point(x) else { break };
+        let along = |from: &[f64], d: &[f64]| -> Vec<f64> {
+            from.iter().zip(d).map(|(v, d)| v + t * d).collect()
+        };
+        let Some(next) = run.point(along(&point.x, &step.x)) else {
+            break;
+        };
         point = next;
-        state
-            .w
-            .iter_mut()
-            .zip(&step.w)
-            .for_each(|(w, d)| *w += t * d);
-        state
-            .v
-            .iter_mut()
-            .zip(&step.v)
-            .for_each(|(v, d)| *v += t * d);
+        state.w = along(&state.w, &step.w);
+        state.v = along(&state.v, &step.v);
         if t < STEP_BAD && !over {
             state.distances(run, &bounds, &point.x);
             match around(run, (&point, &state), &bounds, &analysis)? {
                 Some(found) => ((point, state), stall) = (found, StallCounter::new()),
-                None => (over, left) = (true, fold_limit(n)),
+                None => (over, left) = (true, fold_limit(run.n)),
             }
         }
         if t < STEP_BAD && over {
@@ -206,6 +182,31 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
         }
     }
     Ok((best.residual < start.residual).then_some(best))
+}
+
+/// The point moved off its bounds, with slacks; None where it has no values.
+fn inside(run: &mut Run, start: &Point, bounds: &Bounds) -> Option<(Point, State)> {
+    let n = run.n;
+    let place = |i: usize| {
+        let inside = (0.5 * (run.upper[i] - run.lower[i])).min(1.0);
+        // Without a bound on a side the other one decides; max and min ignore NaN.
+        start.x[i]
+            .max(run.lower[i] + inside)
+            .min(run.upper[i] - inside)
+    };
+    let x = (0..n).map(place).collect();
+    let point = run.point(x)?;
+    let slack = |is: &[bool], sign: f64| -> Vec<f64> {
+        let at = |(&is, f): (&bool, &f64)| if is { (sign * f).max(1.0) } else { 0.0 };
+        is.iter().zip(&point.f).map(at).collect()
+    };
+    let state = State {
+        a: vec![1.0; n],
+        w: slack(&bounds.lower, 1.0),
+        b: vec![1.0; n],
+        v: slack(&bounds.upper, -1.0),
+    };
+    Some((point, state))
 }
 
 /// x with the bounds active whose slack is the larger.

@@ -197,40 +197,10 @@ impl Majors {
             let polish = polishing > 0;
             let (candidate, tries) = self.linear_solution(run, &jacobian, polish)?;
             if polish {
-                // The point is good already: keep the step only if it is better.
-                let better = candidate.and_then(|c| Some((run.point(c.y.clone())?, c)));
-                let Some((next, candidate)) = better else {
-                    return Ok(End::Solved);
-                };
-                let kind = match next.residual {
-                    r if r <= 0.1 * self.point.residual => 'M',
-                    _ => '-',
-                };
-                let (end, t, prox) = (candidate.end, candidate.t, candidate.prox);
-                log::major_line(
-                    run,
-                    &next,
-                    run.pivots - pivots,
-                    end,
-                    t,
-                    prox,
-                    1.0,
-                    kind,
-                    tries,
-                );
-                if kind == '-' {
-                    // The proximal term may be what keeps the digits away: at a vertex none is needed. The
-                    // way there is long, and not gone for the last two digits.
-                    let far = self.point.residual > 1e-2 * run.settings.convergence_tolerance;
-                    if far && prox > 0.0 && !std::mem::replace(&mut self.at_vertex, true) {
-                        (self.prox, self.to_vertex) = (0.0, true);
-                        continue;
-                    }
-                    return Ok(End::Solved);
+                match self.keep_if_better(run, candidate, run.pivots - pivots, tries) {
+                    true => continue,
+                    false => return Ok(End::Solved),
                 }
-                (self.warm, self.point) = (candidate.kind, next);
-                self.reduce_prox(prox);
-                continue;
             }
             let Some(candidate) = candidate else {
                 log::major_line(
@@ -268,6 +238,39 @@ impl Majors {
         })
     }
 
+    /// After convergence: keeps the step only if it is better. Whether another may follow.
+    fn keep_if_better(
+        &mut self,
+        run: &mut Run,
+        candidate: Option<Candidate>,
+        pivots: usize,
+        tries: usize,
+    ) -> bool {
+        let better = candidate.and_then(|c| Some((run.point(c.y.clone())?, c)));
+        let Some((next, candidate)) = better else {
+            return false;
+        };
+        let kind = match next.residual {
+            r if r <= 0.1 * self.point.residual => 'M',
+            _ => '-',
+        };
+        let (end, t, prox) = (candidate.end, candidate.t, candidate.prox);
+        log::major_line(run, &next, pivots, end, t, prox, 1.0, kind, tries);
+        if kind == '-' {
+            // The proximal term may be what keeps the digits away: at a vertex none is needed. The
+            // way there is long, and not gone for the last two digits.
+            let far = self.point.residual > 1e-2 * run.settings.convergence_tolerance;
+            let again = far && prox > 0.0 && !std::mem::replace(&mut self.at_vertex, true);
+            if again {
+                (self.prox, self.to_vertex) = (0.0, true);
+            }
+            return again;
+        }
+        (self.warm, self.point) = (candidate.kind, next);
+        self.reduce_prox(prox);
+        true
+    }
+
     /// Tries proximal terms and starting states until the linear problem is solved.
     fn linear_solution(
         &mut self,
@@ -276,19 +279,7 @@ impl Majors {
         polish: bool,
     ) -> Result<(Option<Candidate>, usize), Stop> {
         let r = (2.0 * self.point.merit).sqrt();
-        let mut prox = vec![self.prox];
-        // Where one linearisation is exact, a small term saves the iterations that remove it again.
-        let small = if run.problem.is_linear() { 1e-5 } else { 1e-3 };
-        for v in [
-            (small * r.min(1.0)).max(10.0 * self.prox).max(PROX_FIRST),
-            (0.1 * r.min(1.0)).max(100.0 * self.prox),
-            1.0,
-            10.0,
-        ] {
-            if v > *prox.last().unwrap_or(&0.0) {
-                prox.push(v);
-            }
-        }
+        let prox = self.proximal_terms(run, r);
         // Large, and close to a solution: long paths are not worth their pivots any more.
         let near = run.n > LARGE && self.point.residual <= run.settings.acceptable_tolerance;
         let limit = match run.settings.minor_iteration_limit {
@@ -301,19 +292,9 @@ impl Majors {
         let (mut reserve, mut ray): (Option<(Candidate, f64)>, Option<Candidate>) = (None, None);
         let mut tries = 0;
         for (level, &v) in prox.iter().enumerate() {
-            let m = if v > 0.0 {
-                shifted(jacobian, v)
-            } else {
-                jacobian.clone()
-            };
-            let mut q = vec![0.0; run.n];
-            m.matvec(&self.point.x, &mut q);
-            q.iter_mut()
-                .zip(&self.point.f)
-                .for_each(|(q, f)| *q = f - *q);
-            if m.values.iter().chain(&q).any(|v| !v.is_finite()) {
+            let Some((m, q)) = self.linearised(jacobian, v) else {
                 continue;
-            }
+            };
             for mut start in self.starts(run, level) {
                 if polish {
                     start.tolerance = HARRIS_CLOSE;
@@ -349,12 +330,8 @@ impl Majors {
                 log::try_line(run, end, t, v, pivots, start.cover);
                 match end {
                     PathEnd::Solved => {
-                        let length = x
-                            .iter()
-                            .zip(&self.point.x)
-                            .map(|(a, b)| (a - b).powi(2))
-                            .sum::<f64>()
-                            .sqrt();
+                        let off = x.iter().zip(&self.point.x).map(|(a, b)| (a - b).powi(2));
+                        let length = off.sum::<f64>().sqrt();
                         let found = Candidate {
                             y: x,
                             end,
@@ -394,6 +371,44 @@ impl Majors {
             }
         }
         Ok((reserve.map(|r| r.0).or(ray), tries))
+    }
+
+    /// The proximal terms to try, from the last one upwards, at a point of residual r.
+    fn proximal_terms(&self, run: &Run, r: f64) -> Vec<f64> {
+        let mut prox = vec![self.prox];
+        // Where one linearisation is exact, a small term saves the iterations that remove it again.
+        let small = if run.problem.is_linear() { 1e-5 } else { 1e-3 };
+        for v in [
+            (small * r.min(1.0)).max(10.0 * self.prox).max(PROX_FIRST),
+            (0.1 * r.min(1.0)).max(100.0 * self.prox),
+            1.0,
+            10.0,
+        ] {
+            if v > *prox.last().unwrap_or(&0.0) {
+                prox.push(v);
+            }
+        }
+        prox
+    }
+
+    /// M and q of F(x) + J(y − x) with a proximal term. None where a number is not finite.
+    fn linearised(
+        &self,
+        jacobian: &SparseColMatrix,
+        prox: f64,
+    ) -> Option<(SparseColMatrix, Vec<f64>)> {
+        let m = if prox > 0.0 {
+            shifted(jacobian, prox)
+        } else {
+            jacobian.clone()
+        };
+        let mut q = vec![0.0; self.point.x.len()];
+        m.matvec(&self.point.x, &mut q);
+        for (q, f) in q.iter_mut().zip(&self.point.f) {
+            *q = f - *q;
+        }
+        let finite = m.values.iter().chain(&q).all(|v| v.is_finite());
+        finite.then_some((m, q))
     }
 
     /// Starting states for the path, the likeliest first.

@@ -34,27 +34,7 @@ pub(super) fn vertex(
     let n = problem.q.len();
     let m = shifted(problem.m, EPSILON);
     let regular = LinearProblem { m: &m, ..*problem };
-    let mut kind = start.kind.clone();
-    // Every index's value: of x where it is between, else of its slack.
-    let mut x = start.x.clone();
-    for k in 0..n {
-        match kind[k] {
-            Kind::AtLower => x[k] = problem.lower[k],
-            Kind::AtUpper => x[k] = problem.upper[k],
-            Kind::Between => {}
-        }
-    }
-    let mut f = problem.q.to_vec();
-    let mut product = vec![0.0; n];
-    problem.m.matvec(&x, &mut product);
-    f.iter_mut().zip(&product).for_each(|(f, p)| *f += p);
-    let mut value: Vec<f64> = (0..n)
-        .map(|k| match kind[k] {
-            Kind::Between => x[k],
-            Kind::AtLower => f[k].max(0.0),
-            Kind::AtUpper => (-f[k]).max(0.0),
-        })
-        .collect();
+    let (mut kind, mut value) = (start.kind.clone(), values(problem, start));
     let slots = |kind: &[Kind]| -> Vec<Variable> {
         kind.iter()
             .enumerate()
@@ -72,16 +52,12 @@ pub(super) fn vertex(
             basis = factorise(run, &regular, &slots(&kind));
         }
         let Some(factors) = basis.as_mut() else {
-            log::note(run, log::Part::Paths, || {
-                format!("no vertex: no factors after {moves} moves")
-            });
+            refused(run, "no factors", moves);
             return Ok(None);
         };
         let mut z: Vec<f64> = (0..n).map(|_| random.between(-1.0, 1.0)).collect();
         if !factors.solve(&mut z) {
-            log::note(run, log::Part::Paths, || {
-                format!("no vertex: no solution after {moves} moves")
-            });
+            refused(run, "no solution", moves);
             return Ok(None);
         }
         let size = |z: &[f64]| z.iter().fold(0.0f64, |m, v| m.max(v.abs()));
@@ -105,9 +81,7 @@ pub(super) fn vertex(
         let scale = 1.0 / size(&z);
         z.iter_mut().for_each(|z| *z *= scale);
         let Some((k, step, upper)) = block(problem, &kind, &value, &z) else {
-            log::note(run, log::Part::Paths, || {
-                format!("no vertex: nothing blocks after {moves} moves")
-            });
+            refused(run, "nothing blocks", moves);
             return Ok(None);
         };
         value.iter_mut().zip(&z).for_each(|(v, z)| *v += step * z);
@@ -132,9 +106,7 @@ pub(super) fn vertex(
         // Columns outside the range of B have directions as long as null vectors; others leave the
         // defect as it is, as happens where the problem is not monotone.
         if direction.iter().map(|d| d.1 * d.1).sum::<f64>().sqrt() < 1e-2 * LENGTH {
-            log::note(run, log::Part::Paths, || {
-                format!("no vertex: the defect stays after {moves} moves")
-            });
+            refused(run, "the defect stays", moves);
             return Ok(None);
         }
         if !factors.replace(k, &column, &direction) {
@@ -147,6 +119,31 @@ pub(super) fn vertex(
     }
     log::note(run, log::Part::Paths, || "no vertex: too many moves".into());
     Ok(None)
+}
+
+/// Every index's value at the start: of x where it is between, else of its slack.
+fn values(problem: &LinearProblem, start: &Start) -> Vec<f64> {
+    let at = |(k, &x): (usize, &f64)| match start.kind[k] {
+        Kind::AtLower => problem.lower[k],
+        Kind::AtUpper => problem.upper[k],
+        Kind::Between => x,
+    };
+    let x: Vec<f64> = start.x.iter().enumerate().map(at).collect();
+    let mut product = vec![0.0; x.len()];
+    problem.m.matvec(&x, &mut product);
+    let slack = |k: usize| problem.q[k] + product[k];
+    let value = |k: usize| match start.kind[k] {
+        Kind::Between => x[k],
+        Kind::AtLower => slack(k).max(0.0),
+        Kind::AtUpper => (-slack(k)).max(0.0),
+    };
+    (0..x.len()).map(value).collect()
+}
+
+fn refused(run: &mut Run, why: &str, moves: usize) {
+    log::note(run, log::Part::Paths, || {
+        format!("no vertex: {why} after {moves} moves")
+    });
 }
 
 /// The index that meets a bound first along z or −z, the step to it, and whether the bound is the upper

@@ -137,7 +137,7 @@ impl Lpcc<'_> {
     }
 
     /// Pair that is farthest from being satisfied, among those without a piece.
-    fn worst(&self, x: &[f64], decided: &[bool]) -> Option<(usize, f64)> {
+    fn worst(&self, x: &[f64], decided: &[bool]) -> Option<usize> {
         let mut worst: Option<(usize, f64)> = None;
         for (k, p) in self.pairs.iter().enumerate().filter(|(k, _)| !decided[*k]) {
             let f = self.activity(p.row, x) - self.rhs[k];
@@ -146,7 +146,49 @@ impl Lpcc<'_> {
                 worst = Some((k, v));
             }
         }
-        worst
+        worst.map(|w| w.0)
+    }
+
+    fn objective(&self, x: &[f64]) -> f64 {
+        let terms = x.iter().zip(&self.problem.cost).map(|(x, c)| x * c);
+        terms.sum::<f64>() + self.problem.offset
+    }
+
+    /// One node for each piece that pair k may be on.
+    fn children(
+        &self,
+        node: &Node,
+        k: usize,
+        bound: f64,
+        basis: &Rc<Basis>,
+        number: &mut usize,
+    ) -> Vec<Node> {
+        let pieces = [Piece::Inside, Piece::Lower, Piece::Upper];
+        let allowed = pieces.into_iter().filter(|&p| self.pairs[k].allows(p));
+        let child = |piece: Piece| {
+            *number += 1;
+            Node {
+                bound,
+                depth: node.depth + 1,
+                number: *number - 1,
+                chosen: Rc::new(Chosen::Also(k, piece, node.chosen.clone())),
+                basis: basis.clone(),
+            }
+        };
+        allowed.map(child).collect()
+    }
+
+    /// Puts the pieces that a node has chosen in place; which pairs have one.
+    fn apply_all(&self, simplex: &mut Simplex, here: &mut Problem, chosen: &Chosen) -> Vec<bool> {
+        let mut decided = vec![false; self.pairs.len()];
+        (0..self.pairs.len()).for_each(|k| self.apply(simplex, here, k, None));
+        let mut chosen = chosen;
+        while let Chosen::Also(k, piece, rest) = chosen {
+            self.apply(simplex, here, *k, Some(*piece));
+            decided[*k] = true;
+            chosen = rest;
+        }
+        decided
     }
 
     /// Searches. With a prover nothing counts as a bound, and no node as infeasible, but what it proves.
@@ -166,14 +208,13 @@ impl Lpcc<'_> {
             nodes: 0,
             iterations: 0,
         };
-        let mut heap = BinaryHeap::new();
-        heap.push(Node {
+        let mut heap = BinaryHeap::from([Node {
             bound: f64::NEG_INFINITY,
             depth: 0,
             number: 0,
             chosen: Rc::new(Chosen::None),
             basis: Rc::new(simplex.basis()),
-        });
+        }]);
         let mut number = 1;
         // Bounds of nodes that were given up.
         let mut lost = f64::INFINITY;
@@ -189,14 +230,7 @@ impl Lpcc<'_> {
                 break;
             }
             out.nodes += 1;
-            let mut decided = vec![false; self.pairs.len()];
-            (0..self.pairs.len()).for_each(|k| self.apply(&mut simplex, &mut here, k, None));
-            let mut chosen = &node.chosen;
-            while let Chosen::Also(k, piece, rest) = &**chosen {
-                self.apply(&mut simplex, &mut here, *k, Some(*piece));
-                decided[*k] = true;
-                chosen = rest;
-            }
+            let decided = self.apply_all(&mut simplex, &mut here, &node.chosen);
             let ended = simplex.solve_from_basis(&node.basis, stop);
             let point = match ended {
                 Ended::Solved => simplex.point(),
@@ -214,63 +248,43 @@ impl Lpcc<'_> {
                     continue;
                 }
             };
-            let mut reached = f64::INFINITY;
             let (value, branch_on) = match &point {
                 Some(p) => {
-                    let terms = p.x.iter().zip(&self.problem.cost).map(|(x, c)| x * c);
-                    reached = terms.sum::<f64>() + self.problem.offset;
+                    let reached = self.objective(&p.x);
                     let value = prover
                         .as_mut()
                         .map_or(reached, |prover| prover(&here, &p.y, false));
                     (value.max(node.bound), self.worst(&p.x, &decided))
                 }
-                None => {
-                    // Unbounded so far: the pairs that are left may bound it.
-                    let open = decided.iter().position(|d| !d);
-                    (f64::NEG_INFINITY, open.map(|k| (k, 1.0)))
-                }
+                // Unbounded so far: the pairs that are left may bound it.
+                None => (f64::NEG_INFINITY, decided.iter().position(|d| !d)),
             };
             if value >= cutoff(&out) - limits.gap {
                 lost = lost.min(value);
                 continue;
             }
-            let Some((k, _)) = branch_on else {
-                match point {
-                    Some(p) => {
-                        if prover.is_some() {
-                            lost = lost.min(value);
-                        }
-                        if reached < cutoff(&out) {
-                            out.best = Some((reached, p.x));
-                        }
-                        if reached < limits.enough {
-                            out.complete = false;
-                            lost = lost.min(node.bound);
-                            break;
-                        }
-                    }
-                    None => {
-                        out.unbounded = true;
-                        out.complete = false;
-                        lost = f64::NEG_INFINITY;
-                        break;
-                    }
+            let Some(k) = branch_on else {
+                let Some(p) = point else {
+                    (out.unbounded, out.complete) = (true, false);
+                    lost = f64::NEG_INFINITY;
+                    break;
+                };
+                if prover.is_some() {
+                    lost = lost.min(value);
+                }
+                let reached = self.objective(&p.x);
+                if reached < cutoff(&out) {
+                    out.best = Some((reached, p.x));
+                }
+                if reached < limits.enough {
+                    out.complete = false;
+                    lost = lost.min(node.bound);
+                    break;
                 }
                 continue;
             };
             let basis = Rc::new(simplex.basis());
-            for piece in [Piece::Inside, Piece::Lower, Piece::Upper] {
-                if self.pairs[k].allows(piece) {
-                    heap.push(Node {
-                        bound: value,
-                        depth: node.depth + 1,
-                        number,
-                        chosen: Rc::new(Chosen::Also(k, piece, node.chosen.clone())),
-                        basis: basis.clone(),
-                    });
-                    number += 1;
-                }
-            }
+            heap.extend(self.children(&node, k, value, &basis, &mut number));
         }
         let open = heap.iter().map(|n| n.bound).fold(lost, f64::min);
         out.bound = open.min(cutoff(&out));
