@@ -7,13 +7,14 @@ use std::process::Command;
 
 use crate::common::{Memory, files, shared};
 use bmod::cli::host::{Output, SystemHost};
-use bmod::formulation::check::{self, Comparison, Record};
+use bmod::formulation::check::{self, Comparison};
 use bmod::formulation::convex::{Shape, shape};
 use bmod::formulation::derive::Primal;
 use bmod::formulation::{Formulation, dual, study, text};
 use bmod::host::Host;
 use bmod::model::instance::Relation;
-use bmod::run::{Machine, Options, StudyChoice};
+use bmod::model::origin::Blocks;
+use bmod::run::{Generated, Machine, Options, StudyChoice};
 use bmod::session;
 use bmod::solve::random::Random;
 use bmod::source::PreprocessOptions;
@@ -791,14 +792,51 @@ fn the_dual_of_the_dual_is_the_primal() {
     assert!(count * 3 > cases(), "{count}");
 }
 
+/// The name of a row or column in lower case, and its labels.
+type Record = (String, String);
+
 type Entries = BTreeMap<(Record, Record), f64>;
+
+/// An instance with the names of its rows and columns.
+struct Named {
+    generated: Generated,
+    rows: Vec<Record>,
+    columns: Vec<Record>,
+}
+
+impl Named {
+    fn new(m: &Machine, generated: Generated) -> Self {
+        let names = |blocks: &Blocks| {
+            let mut out = Vec::new();
+            for b in &blocks.list {
+                let name = m.symbols.get(b.symbol).name.to_lowercase();
+                let label = |l: &u32| m.store.universe.name(*l).to_lowercase();
+                let key = |i| b.key(i).iter().map(label).collect::<Vec<_>>();
+                out.extend((b.start..b.start + b.len).map(|i| (name.clone(), key(i).join("."))));
+            }
+            out
+        };
+        Self {
+            rows: names(&generated.origin.rows),
+            columns: names(&generated.origin.columns),
+            generated,
+        }
+    }
+
+    /// What a text generates.
+    fn of(text: &str) -> Self {
+        let mut host = Memory::text(text);
+        let f = &mut |m: &Machine, p: Primal| Named::new(m, p.generated);
+        look(&mut host, "m.blk", generated(None), f).expect("it is generated")
+    }
+}
 
 /// The matrix that a text generates, by names, its objective's row and column left out.
 fn matrix(text: &str, rename: &dyn Fn(&str) -> String) -> Entries {
-    let i = check::generate(text, Vec::new()).expect("it was generated before");
+    let i = Named::of(text);
     let p = &i.generated.instance;
     let z = p.objective.map(|o| o.column as usize);
-    let named = |r: &Record| (rename(&r.0).into(), r.1.clone());
+    let named = |r: &Record| (rename(&r.0), r.1.clone());
     let mut out = Entries::new();
     for r in (0..p.row_count()).filter(|&r| p.rows.relation[r] != Relation::Free) {
         if p.matrix.row(r).any(|(j, _)| Some(j) == z) {
@@ -813,7 +851,7 @@ fn matrix(text: &str, rename: &dyn Fn(&str) -> String) -> Entries {
 
 /// All entries of a matrix by the names of their rows and columns, right-hand sides among them.
 fn entries(
-    i: &check::Instance,
+    i: &Named,
     rename: &dyn Fn(&str) -> String,
 ) -> BTreeMap<(String, String, String, String), f64> {
     let mut out = BTreeMap::new();
@@ -863,33 +901,22 @@ fn the_kinematic_theorem_written_by_hand_is_the_dual_of_the_static_one() {
             generated(Some(model)),
             &mut |m, primal| {
                 if model == "kinematic" {
-                    let records = |b| check::records(&m.symbols, &m.store, b);
-                    let o = &primal.generated.origin;
-                    let (rows, columns) = (records(&o.rows), records(&o.columns));
-                    let generated = primal.generated;
-                    let i = check::Instance {
-                        generated,
-                        rows,
-                        columns,
-                    };
+                    let i = Named::new(m, primal.generated);
                     return entries(&i, &str::to_string);
                 }
                 let dual = dual::dual(&m.symbols, &m.store, &primal, true).expect("a dual");
                 assert!(dual.by_instance.is_empty());
                 let text = text::model(&m.symbols, &m.store, &dual, None, "", true, None);
-                entries(
-                    &check::generate(&text, Vec::new()).expect("generated"),
-                    &|n| {
-                        let names = [
-                            ("dual_alpha", "norm"),
-                            ("dual_x", "normal"),
-                            ("dual_objective_row", "work"),
-                            ("dual_objective", "rate"),
-                        ];
-                        let known = names.iter().find(|k| k.0 == n);
-                        known.map_or(n.to_string(), |k| k.1.to_string())
-                    },
-                )
+                entries(&Named::of(&text), &|n| {
+                    let names = [
+                        ("dual_alpha", "norm"),
+                        ("dual_x", "normal"),
+                        ("dual_objective_row", "work"),
+                        ("dual_objective", "rate"),
+                    ];
+                    let known = names.iter().find(|k| k.0 == n);
+                    known.map_or(n.to_string(), |k| k.1.to_string())
+                })
             },
         );
         found.push(all.expect("it is solved"));

@@ -13,6 +13,8 @@ pub struct Columns<'a> {
     block: Option<&'a Block>,
     lower: &'a [f64],
     upper: &'a [f64],
+    /// The bounds, where all have the same.
+    pub alike: Option<(f64, f64)>,
 }
 
 impl<'a> Columns<'a> {
@@ -26,16 +28,9 @@ impl<'a> Columns<'a> {
         self.lower.iter().copied().zip(self.upper.iter().copied())
     }
 
-    /// The bounds, where all have the same.
-    pub fn alike(&self) -> Option<(f64, f64)> {
-        let (lower, upper) = (*self.lower.first()?, *self.upper.first()?);
-        let same = |all: &[f64], one: f64| all.iter().all(|b| *b == one);
-        (same(self.lower, lower) && same(self.upper, upper)).then_some((lower, upper))
-    }
-
     /// The places of the columns with bounds of a kind.
     pub fn places(&self, test: impl Fn(f64, f64) -> bool) -> Vec<usize> {
-        if let Some((lower, upper)) = self.alike() {
+        if let Some((lower, upper)) = self.alike {
             let all = if test(lower, upper) { self.len() } else { 0 };
             return (0..all).collect();
         }
@@ -62,10 +57,19 @@ impl<'a> Derivation<'a> {
         let g = &self.primal.generated;
         let block = g.origin.columns.symbol(v);
         let of = block.map_or(0..0, |b| b.start as usize..(b.start + b.len) as usize);
+        let (lower, upper) = (
+            &g.instance.columns.lower[of.clone()],
+            &g.instance.columns.upper[of],
+        );
+        let same = |all: &[f64]| {
+            let one = *all.first()?;
+            all.iter().all(|b| *b == one).then_some(one)
+        };
         Columns {
             block,
-            lower: &g.instance.columns.lower[of.clone()],
-            upper: &g.instance.columns.upper[of],
+            lower,
+            upper,
+            alike: same(lower).zip(same(upper)),
         }
     }
 
@@ -84,8 +88,7 @@ impl<'a> Derivation<'a> {
 
     /// Whether the text says that all columns of a variable stand in rows: a column is there because a row has it.
     fn is_in_rows(&self, v: SymbolId) -> bool {
-        let all_bind = self.all_bind;
-        all_bind
+        self.all_bind
             && match (&self.eliminated, self.primal.objective) {
                 (Some(o), _) => !mentions(&o.function, v),
                 (None, Some((_, z))) => z != v || self.is_mentioned(Variable::Own(v)),

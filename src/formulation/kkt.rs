@@ -69,7 +69,7 @@ fn stationarity(d: &mut Derivation, v: SymbolId, keep: bool) -> Result<(), Strin
     let row = d.column_row(v)?;
     let columns = d.columns(v);
     let name = d.symbols.get(v).name.to_string();
-    let each = |test: &dyn Fn(f64, f64) -> bool| match columns.alike() {
+    let each = |test: &dyn Fn(f64, f64) -> bool| match columns.alike {
         Some((lower, upper)) => test(lower, upper),
         None => columns.bounds().all(|(lower, upper)| test(lower, upper)),
     };

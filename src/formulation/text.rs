@@ -3,7 +3,7 @@
 use super::data::{Data, Statements, number, quoted};
 use super::names::Names;
 use super::tree::*;
-use super::{Formulation, Row, Sign};
+use super::{Formulation, NewData, Row, Sign};
 use crate::check::functions::name_of;
 use crate::check::node::SymbolId;
 use crate::check::symbols::{Store, Symbols, attribute};
@@ -440,54 +440,21 @@ pub fn model(
         let (target, word, data) = (&a.target, a.attribute, &a.data.name);
         let _ = writeln!(start, "{target}.{word}{key}${data}{key} = {data}{key};");
     }
-    let mut data = Data::new(symbols, store);
-    for &(set, _) in &w.names.aliases {
-        data.set(set);
-    }
-    w.names.used.iter().for_each(|&s| data.set(s));
-    f.rows.iter().for_each(|r| data.row(r));
-    if let Some((_, e)) = &f.objective {
-        data.expr(e);
-    }
-    let new = || f.data.iter().chain(f.start.iter().map(|a| &a.data));
-    new().flat_map(|d| &d.domain).for_each(|s| data.set(*s));
-    for m in &f.multipliers {
-        m.domain.iter().for_each(|s| data.set(*s));
-    }
-    for v in &f.own {
-        data.domain_of(*v);
-    }
     let mut data_text = Statements::new(symbols, store, apart);
     data_text.text.push_str(head);
     match include {
         Some(file) => {
             let _ = writeln!(data_text.text, "$include {file}\n");
         }
-        None => data.statements(&mut data_text),
+        None => needed(symbols, store, f, &w).statements(&mut data_text),
     }
     for (set, name) in &w.names.aliases {
         let root = &symbols.get(*set).name;
         let _ = writeln!(data_text.text, "Alias ({root},{name});");
     }
-    new().for_each(|d| data_text.introduced(d));
+    introduced(f).for_each(|d| data_text.introduced(d));
     let mut out = data_text.text;
-    // The user's variables with the kind that they were declared with, discrete ones relaxed.
-    let own = |sign: Sign| {
-        let of = f.own.iter().filter(move |v| {
-            let kind = super::derive::kind(symbols, **v);
-            include.is_none() && sign_of(kind) == sign
-        });
-        of.map(|v| {
-            let s = symbols.get(*v);
-            let domain = super::derive::domain_of(symbols, *v);
-            declaration(symbols, &s.name, &domain, &s.text)
-        })
-    };
-    let list = |sign: Sign| {
-        let of = f.multipliers.iter().filter(move |m| m.sign == sign);
-        let new = of.map(|m| declaration(symbols, &m.name, &m.domain, ""));
-        own(sign).chain(new)
-    };
+    let list = |sign: Sign| variables(symbols, f, sign, include.is_none());
     free.extend(list(Sign::Free));
     let mut declare = |word: &str, list: Vec<String>| {
         if !list.is_empty() {
@@ -495,8 +462,8 @@ pub fn model(
         }
     };
     declare("Variables", free);
-    declare("Positive variables", list(Sign::Positive).collect());
-    declare("Negative variables", list(Sign::Negative).collect());
+    declare("Positive variables", list(Sign::Positive));
+    declare("Negative variables", list(Sign::Negative));
     declare("Equations", equations);
     out.push_str("* An index of a larger set stands for one of a smaller set under a condition that says so.\n$onUni\n\n");
     out.push_str(&rows);
@@ -513,23 +480,59 @@ pub fn model(
     }
     let _ = writeln!(out, "Model {} / {} /;\n", f.name, items.join(", "));
     out.push_str(&start);
-    if solve {
-        let _ = match &objective {
-            Some((sense, _)) => {
-                let word = match sense {
-                    Sense::Minimize => "minimizing",
-                    Sense::Maximize => "maximizing",
-                };
-                writeln!(
-                    out,
-                    "solve {} using {} {word} {};",
-                    f.name, f.using, f.objective_name
-                )
-            }
-            None => writeln!(out, "solve {} using {};", f.name, f.using),
-        };
+    let sense = objective.map(|o| o.0);
+    match sense {
+        _ if !solve => {}
+        Some(sense) => {
+            let word = match sense {
+                Sense::Minimize => "minimizing",
+                Sense::Maximize => "maximizing",
+            };
+            let (name, z) = (&f.name, &f.objective_name);
+            let _ = writeln!(out, "solve {name} using {} {word} {z};", f.using);
+        }
+        None => {
+            let _ = writeln!(out, "solve {} using {};", f.name, f.using);
+        }
     }
     out
+}
+
+/// The data that a formulation introduces.
+fn introduced(f: &Formulation) -> impl Iterator<Item = &NewData> {
+    f.data.iter().chain(f.start.iter().map(|a| &a.data))
+}
+
+/// What a formulation needs of the user's data.
+fn needed<'a>(symbols: &'a Symbols, store: &'a Store, f: &Formulation, w: &Writer) -> Data<'a> {
+    let mut data = Data::new(symbols, store);
+    for &(set, _) in &w.names.aliases {
+        data.set(set);
+    }
+    w.names.used.iter().for_each(|&s| data.set(s));
+    f.rows.iter().for_each(|r| data.row(r));
+    if let Some((_, e)) = &f.objective {
+        data.expr(e);
+    }
+    let domains = introduced(f).map(|d| &d.domain);
+    let domains = domains.chain(f.multipliers.iter().map(|m| &m.domain));
+    domains.flatten().for_each(|s| data.set(*s));
+    f.own.iter().for_each(|v| data.domain_of(*v));
+    data
+}
+
+/// Declarations of the variables of a sign; `own`: the user's among them, with the kind that they were declared with,
+/// discrete ones relaxed.
+fn variables(symbols: &Symbols, f: &Formulation, sign: Sign, own: bool) -> Vec<String> {
+    let is = |v: &&SymbolId| own && sign_of(super::derive::kind(symbols, **v)) == sign;
+    let mine = f.own.iter().filter(is).map(|v| {
+        let s = symbols.get(*v);
+        let domain = super::derive::domain_of(symbols, *v);
+        declaration(symbols, &s.name, &domain, &s.text)
+    });
+    let new = f.multipliers.iter().filter(|m| m.sign == sign);
+    let new = new.map(|m| declaration(symbols, &m.name, &m.domain, ""));
+    mine.chain(new).collect()
 }
 
 fn sign_of(kind: VariableKind) -> Sign {

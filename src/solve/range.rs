@@ -2,17 +2,19 @@
 //! point stays optimal.
 //!
 //! No basis is asked, so degenerate vertices give the right answer: the prices on either side of a right-hand side are the
-//! largest and the smallest multiplier of the optimal dual face; a price holds as far as the value of the program grows with
+//! largest and the smallest multiplier of the optimal dual face (two programs say whether that is one point, and no more are
+//! needed then); a price holds as far as the value of the program grows with
 //! it, which one more linear program says.
 
 use super::answer::answer_with;
 use super::backend::Task;
+use super::random::Random;
 use super::registry::BACKENDS;
 use super::{Budget, ModelStatus, Quiet, Settings};
 use crate::model::instance::{Instance, Objective, Relation, Sense};
 use crate::model::outcome::Basis;
 use crate::model::problem_type::ProblemType;
-use std::cell::RefCell;
+use std::cell::{OnceCell, RefCell};
 
 /// A row's right-hand side.
 #[derive(Clone, Debug)]
@@ -51,6 +53,8 @@ pub struct Ranges {
     pub unfinished: bool,
 }
 
+/// How far two multipliers of a row may be apart to be the same, relative.
+const SAME: f64 = 1e-9;
 /// How near to a bound is at it, relative.
 const NEAR: f64 = 1e-7;
 /// What the value may be off along a range, relative.
@@ -68,6 +72,9 @@ struct Reduced<'a> {
     x: &'a [f64],
     activity: &'a [f64],
     value: f64,
+    /// The optimal dual face, and the multipliers where it is one point, once they were asked for.
+    face: OnceCell<Instance>,
+    point: OnceCell<Option<Vec<f64>>>,
     /// On the optimal dual face; on that of a program with another cost; and along a right-hand side.
     prices: Family,
     costs: Family,
@@ -132,7 +139,12 @@ struct Family {
 
 impl Family {
     /// The least or the largest value of a column; infinite if there is none, None if nothing is feasible.
-    fn extreme(&self, mut p: Instance, column: usize, sense: Sense) -> Option<f64> {
+    fn extreme(&self, p: Instance, column: usize, sense: Sense) -> Option<f64> {
+        self.furthest(p, column, sense).map(|(value, _)| value)
+    }
+
+    /// The same with the point at which it is reached; no point where it is infinite.
+    fn furthest(&self, mut p: Instance, column: usize, sense: Sense) -> Option<(f64, Vec<f64>)> {
         p.objective = Some(Objective {
             column: column as u32,
             sense,
@@ -151,8 +163,8 @@ impl Family {
         let a = answer_with(BACKENDS, &task, &Settings::default(), &budget).ok()?;
         self.basis.replace(a.outcome.basis.or(basis));
         match a.status {
-            ModelStatus::Optimal => Some(a.outcome.level[column]),
-            ModelStatus::Unbounded | ModelStatus::UnboundedNoSolution => Some(far),
+            ModelStatus::Optimal => Some((a.outcome.level[column], a.outcome.level)),
+            ModelStatus::Unbounded | ModelStatus::UnboundedNoSolution => Some((far, Vec::new())),
             _ => None,
         }
     }
@@ -184,6 +196,8 @@ impl<'a> Reduced<'a> {
             x,
             activity,
             value,
+            face: OnceCell::new(),
+            point: OnceCell::new(),
             prices: Family::default(),
             costs: Family::default(),
             ways: Family::default(),
@@ -241,14 +255,35 @@ impl<'a> Reduced<'a> {
         d
     }
 
+    /// The point of which the optimal dual face consists, where it is one: a functional drawn at random has the same least and
+    /// largest value on it, and reaches them at the same point. On any larger face these differ (with probability one).
+    fn one_point(&self, mut face: Instance) -> Option<Vec<f64>> {
+        let mut stream = Random(1);
+        let rows = self.p.row_count();
+        let weight = |_| (1.0 + stream.uniform()) * if stream.uniform() < 0.5 { -1.0 } else { 1.0 };
+        let mut terms: Vec<(usize, f64)> = (0..rows).map(weight).enumerate().collect();
+        let value = face.columns.push(f64::NEG_INFINITY, f64::INFINITY);
+        terms.push((value, -1.0));
+        face.add_row(terms, Relation::Equal, 0.0);
+        let family = Family::default();
+        let (_, low) = family.furthest(face.clone(), value, Sense::Minimize)?;
+        let (_, high) = family.furthest(face, value, Sense::Maximize)?;
+        let alike = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME * (1.0 + a.abs().max(b.abs()));
+        let one = !low.is_empty() && !high.is_empty() && low[..rows].iter().zip(&high).all(alike);
+        one.then_some(low)
+    }
+
     fn row(&self, i: usize) -> RowRange {
         let p = self.p;
         let tight = p.rows.relation[i] == Relation::Equal || near(self.activity[i], p.rows.rhs[i]);
         let mut price = [0.0, 0.0];
         if tight {
-            let side = |sense| self.prices.extreme(self.dual_face(None), i, sense);
-            let side = |sense| side(sense).unwrap_or(f64::NAN);
-            price = [side(Sense::Minimize), side(Sense::Maximize)];
+            let face = || self.face.get_or_init(|| self.dual_face(None)).clone();
+            let side = |sense| self.prices.extreme(face(), i, sense).unwrap_or(f64::NAN);
+            price = match self.point.get_or_init(|| self.one_point(face())) {
+                Some(y) => [y[i]; 2],
+                None => [side(Sense::Minimize), side(Sense::Maximize)],
+            };
         }
         let value = p.rows.rhs[i];
         let far = |up: bool| match price[usize::from(up)].is_finite() {

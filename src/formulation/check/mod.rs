@@ -7,18 +7,16 @@ mod transposed;
 use super::derive::Primal;
 use super::tree::Variable;
 use super::{Formulation, dual, kkt, text};
+use crate::check::node::SymbolId;
 use crate::check::symbols::{Store, Symbols};
-use crate::data::input::Input;
-use crate::data::universe::Label;
+use crate::data::universe::{Label, Universe};
 use crate::host::{Host, HostError};
-use crate::model::origin::Blocks;
-use crate::run::{Generated, Options, StudyChoice};
+use crate::model::origin::{Block, Blocks};
+use crate::run::{Generated, Machine, Options, StudyChoice};
 use crate::session;
 use crate::source::PreprocessOptions;
 use rustc_hash::FxHashMap;
 use std::path::{Path, PathBuf};
-use std::rc::Rc;
-use std::sync::Arc;
 
 /// How far two numbers may be apart, relative to the larger.
 pub const TOLERANCE: f64 = 1e-10;
@@ -93,68 +91,69 @@ impl Host for Text<'_> {
     }
 }
 
-/// A record's name, and its labels in quotes with commas between them, in lower case.
-pub type Record = (Rc<str>, Rc<str>);
-
-/// The instance of a derived model with the names of its rows and columns as words.
-pub struct Instance {
-    /// The instance.
-    pub generated: Generated,
-    /// Names of rows.
-    pub rows: Vec<Record>,
-    /// Names of columns.
-    pub columns: Vec<Record>,
+/// The instance of a derived model, by the names of its symbols and the labels of the model it comes from.
+struct Instance {
+    generated: Generated,
+    /// Symbols with rows or columns, by name in lower case.
+    symbols: FxHashMap<String, SymbolId>,
+    /// By label of the model it comes from: the same label here.
+    labels: Vec<Option<Label>>,
 }
 
 impl Instance {
-    /// Numbers of columns by name.
-    pub fn columns_by_name(&self) -> FxHashMap<&Record, usize> {
-        self.columns
-            .iter()
-            .enumerate()
-            .map(|(j, r)| (r, j))
-            .collect()
+    fn new(m: &Machine, generated: Generated, universe: &Universe) -> Self {
+        let o = &generated.origin;
+        let blocks = o.rows.list.iter().chain(&o.columns.list);
+        let symbols = blocks.map(|b| (m.symbols.get(b.symbol).name.to_lowercase(), b.symbol));
+        let labels = 0..universe.len() as Label;
+        let labels = labels.map(|l| m.store.universe.get(universe.name(l)));
+        Self {
+            symbols: symbols.collect(),
+            labels: labels.collect(),
+            generated,
+        }
     }
 
-    /// Numbers of rows by name.
-    pub fn rows_by_name(&self) -> FxHashMap<&Record, usize> {
-        self.rows.iter().enumerate().map(|(i, r)| (r, i)).collect()
+    /// The rows or columns of a name.
+    fn block<'a>(&self, blocks: &'a Blocks, name: &str) -> Option<&'a Block> {
+        blocks.symbol(*self.symbols.get(&name.to_lowercase())?)
+    }
+
+    /// The rows of a name.
+    fn rows(&self, name: &str) -> Option<&Block> {
+        self.block(&self.generated.origin.rows, name)
+    }
+
+    /// The columns of a name.
+    fn columns(&self, name: &str) -> Option<&Block> {
+        self.block(&self.generated.origin.columns, name)
+    }
+
+    /// The row or column of a block with a key of the model that this comes from.
+    fn find(&self, block: &Block, key: &[Label]) -> Option<usize> {
+        let own: Option<Vec<Label>> = key.iter().map(|l| self.labels[*l as usize]).collect();
+        block.find(&own?).map(|i| i as usize)
+    }
+
+    /// The name of the block of a row or column.
+    fn name(&self, blocks: &Blocks, i: usize) -> &str {
+        let symbol = blocks.of(i as u32).symbol;
+        let name = self.symbols.iter().find(|s| *s.1 == symbol);
+        name.map_or("", |s| s.0)
     }
 }
 
-/// Names of all rows or columns as words.
-pub fn records(symbols: &Symbols, store: &Store, blocks: &Blocks) -> Vec<Record> {
-    let mut out = Vec::new();
-    for b in &blocks.list {
-        let name: Rc<str> = symbols.get(b.symbol).name.to_lowercase().into();
-        out.extend((b.start..b.start + b.len).map(|i| (name.clone(), words(store, b.key(i)))));
-    }
-    out
+/// A row or column of the model, as it is called.
+fn called(symbols: &Symbols, store: &Store, blocks: &Blocks, i: usize) -> String {
+    let b = blocks.of(i as u32);
+    text::record(store, &symbols.get(b.symbol).name, b.key(i as u32))
 }
 
-fn words(store: &Store, key: &[Label]) -> Rc<str> {
-    let mut out = String::new();
-    for l in key {
-        out.push_str(if out.is_empty() { "'" } else { ",'" });
-        out.push_str(store.universe.name(*l));
-        out.push('\'');
-    }
-    match out.bytes().any(|b| b.is_ascii_uppercase() || !b.is_ascii()) {
-        true => out.to_lowercase().into(),
-        false => out.into(),
-    }
-}
-
-/// Generates a derived model: its text is read, its data are handed over.
+/// Generates a derived model: its text is read, its data are handed over; the first complaint where it cannot be.
 fn generated(symbols: &Symbols, store: &Store, f: &Formulation) -> Result<Instance, String> {
-    let mut data = Vec::new();
-    let text = text::model(symbols, store, f, None, "", true, Some(&mut data));
-    generate(&text, data)
-}
-
-/// Generates the last model that a text solves, with data from outside the text; the first complaint where it cannot be.
-pub fn generate(text: &str, data: Vec<Arc<Input>>) -> Result<Instance, String> {
-    let mut host = Text { text };
+    let mut inputs = Vec::new();
+    let text = text::model(symbols, store, f, None, "", true, Some(&mut inputs));
+    let mut host = Text { text: &text };
     let options = Options {
         quiet: true,
         collect: false,
@@ -166,7 +165,7 @@ pub fn generate(text: &str, data: Vec<Arc<Input>>) -> Result<Instance, String> {
     };
     let preprocess = PreprocessOptions {
         slash_comments: true,
-        inputs: data,
+        inputs,
         ..PreprocessOptions::default()
     };
     let mut found = None;
@@ -178,11 +177,7 @@ pub fn generate(text: &str, data: Vec<Arc<Input>>) -> Result<Instance, String> {
         false,
         &mut |m| {
             if let Some((_, Some(g))) = m.take_study() {
-                found = Some(Instance {
-                    rows: records(&m.symbols, &m.store, &g.origin.rows),
-                    columns: records(&m.symbols, &m.store, &g.origin.columns),
-                    generated: g,
-                });
+                found = Some(Instance::new(m, g, &store.universe));
             }
         },
     );

@@ -1,14 +1,14 @@
 //! Optimality conditions against the automatic derivatives of the model they come from.
 
-use super::{Comparison, Instance, Record, eliminated, records};
+use super::{Comparison, Instance, called, eliminated};
 use crate::autodiff::Evaluator;
 use crate::check::symbols::{Store, Symbols};
 use crate::formulation::derive::Primal;
 use crate::formulation::tree::Variable;
 use crate::formulation::{Formulation, Origin};
 use crate::model::instance::{self, Relation, Sense};
+use crate::model::origin::Block;
 use crate::solve::random::Random;
-use std::rc::Rc;
 
 /// Compares the generated optimality conditions with `∇f − Jᵀλ` of the model's automatic derivatives, and its rows with the
 /// model's, at points around the answer drawn at random.
@@ -59,7 +59,6 @@ struct Places<'a> {
     columns: Vec<Option<(usize, Option<usize>)>>,
     /// By row of the model: its multiplier and its row.
     rows: Vec<Option<(usize, usize)>>,
-    names: Vec<Record>,
     missing: Option<String>,
     of_primal: Evaluator,
     of_derived: Evaluator,
@@ -83,36 +82,30 @@ impl<'a> Places<'a> {
         let p = &g.instance;
         let z = p.objective.map_or(0, |o| o.column as usize);
         let gone = eliminated(primal, f, Some(z));
-        let (row_names, column_names) = (
-            records(symbols, store, &g.origin.rows),
-            records(symbols, store, &g.origin.columns),
-        );
-        let by_column = d.columns_by_name();
-        let by_row = d.rows_by_name();
         let mut missing = None;
-        let row_of = |v: Variable| -> Option<Rc<str>> {
+        let row_of = |v: Variable| {
             let r = f.rows.iter().find(|r| r.pair == Some(v));
-            r.map(|r| Rc::from(r.name.to_lowercase()))
+            r.and_then(|r| d.rows(&r.name))
         };
+        let find = |b: Option<&Block>, key| b.and_then(|b| d.find(b, key));
         let mut columns = vec![None; p.column_count()];
         for b in &g.origin.columns.list {
             let row = row_of(Variable::Own(b.symbol));
-            for j in b.start as usize..(b.start + b.len) as usize {
+            let own = d.columns(&symbols.get(b.symbol).name);
+            for k in b.start..b.start + b.len {
+                let j = k as usize;
                 if gone.is_some() && j == z {
                     continue;
                 }
-                let Some(&at) = by_column.get(&column_names[j]) else {
-                    missing = Some(format!(
-                        "the column {:?} is not in the conditions",
-                        column_names[j]
-                    ));
+                let name = || called(symbols, store, &g.origin.columns, j);
+                let key = b.key(k);
+                let Some(at) = find(own, key) else {
+                    missing = Some(format!("the column {} is not in the conditions", name()));
                     continue;
                 };
-                let row = row
-                    .as_ref()
-                    .and_then(|r| by_row.get(&(r.clone(), column_names[j].1.clone())).copied());
+                let row = find(row, key);
                 if row.is_none() && p.columns.lower[j] < p.columns.upper[j] {
-                    missing = Some(format!("the column {:?} has no row", column_names[j]));
+                    missing = Some(format!("the column {} has no row", name()));
                 }
                 columns[j] = Some((at, row));
             }
@@ -123,20 +116,15 @@ impl<'a> Places<'a> {
             let Some(b) = g.origin.rows.symbol(e) else {
                 continue;
             };
-            let row: Rc<str> = row_of(Variable::Multiplier(n)).unwrap_or_default();
-            let multiplier: Rc<str> = m.name.to_lowercase().into();
-            for i in b.start as usize..(b.start + b.len) as usize {
-                let key = &row_names[i].1;
-                let column = by_column.get(&(multiplier.clone(), key.clone()));
-                let own = by_row.get(&(row.clone(), key.clone()));
-                match (column, own) {
-                    (Some(&y), Some(&r)) => rows[i] = Some((y, r)),
+            let (multiplier, row) = (d.columns(&m.name), row_of(Variable::Multiplier(n)));
+            for k in b.start..b.start + b.len {
+                let (i, key) = (k as usize, b.key(k));
+                match (find(multiplier, key), find(row, key)) {
+                    (Some(y), Some(r)) => rows[i] = Some((y, r)),
                     _ if p.rows.relation[i] == Relation::Free => {}
                     _ => {
-                        missing = Some(format!(
-                            "the row {:?} is not in the conditions",
-                            row_names[i]
-                        ))
+                        let name = called(symbols, store, &g.origin.rows, i);
+                        missing = Some(format!("the row {name} is not in the conditions"));
                     }
                 }
             }
@@ -149,7 +137,6 @@ impl<'a> Places<'a> {
             objective: gone.map_or(Aim::Column(z), |i| Aim::Row(i, z)),
             columns,
             rows,
-            names: column_names,
             missing,
             of_primal: Evaluator::new(p),
             of_derived: Evaluator::new(&d.generated.instance),
@@ -231,7 +218,7 @@ impl<'a> Places<'a> {
                 c.entries += 1;
                 let value = have[*r] - self.derived.rows.rhs[*r];
                 let (a, b) = (self.sign * want[j] / scale[j], value / scale[j]);
-                c.number(a, b, &|| format!("stationarity of {:?}", self.names[j]));
+                c.number(a, b, &|| format!("stationarity of column {j}"));
             }
         }
         for (i, place) in self.rows.iter().enumerate() {

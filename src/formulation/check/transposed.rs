@@ -1,6 +1,6 @@
 //! The matrix of a dual against the transposed matrix of the model it comes from.
 
-use super::{Comparison, Instance, Record, eliminated, records};
+use super::{Comparison, Instance, called, eliminated};
 use crate::autodiff::Evaluator;
 use crate::check::node::SymbolId;
 use crate::check::symbols::{Store, Symbols};
@@ -8,9 +8,9 @@ use crate::formulation::derive::Primal;
 use crate::formulation::tree::Variable;
 use crate::formulation::{Formulation, Origin};
 use crate::model::instance::{self, Relation};
+use crate::model::origin::Block;
 use crate::solve::random::Random;
 use rustc_hash::FxHashMap;
-use std::rc::Rc;
 
 /// Compares the generated dual with the transposed primal: matrix, right sides, costs, bounds and relations. Of quadratic
 /// programs the tangents are compared, at points drawn at random: there the one is the linear dual of the other.
@@ -26,7 +26,7 @@ pub(super) fn dual(
     let dual = &d.generated.instance;
     let names = Names::new(symbols, store, primal, f, d);
     if p.is_linear() {
-        compare(symbols, f, &names, p, dual, &mut c);
+        compare(f, &names, p, dual, &mut c);
         return c;
     }
     let columns = 0..p.column_count();
@@ -45,7 +45,7 @@ pub(super) fn dual(
             }
         }
         match (tangents(p, &x, &[]), tangents(dual, &y, &is_point)) {
-            (Some(p), Some(dual)) => compare(symbols, f, &names, &p, &dual, &mut c),
+            (Some(p), Some(dual)) => compare(f, &names, &p, &dual, &mut c),
             _ => c.differ("a function has no value".into()),
         }
     }
@@ -77,68 +77,86 @@ fn tangents(p: &instance::Instance, x: &[f64], without: &[bool]) -> Option<insta
     Some(out)
 }
 
-/// Names of the rows and columns of a model, and where they are in its dual.
+/// The rows and columns of a model, and where they are in its dual.
 struct Names<'a> {
+    symbols: &'a Symbols,
+    store: &'a Store,
     primal: &'a Primal,
     d: &'a Instance,
-    /// Names of the primal's rows and columns.
-    rows: Vec<Record>,
-    columns: Vec<Record>,
-    /// Names of multipliers.
-    multipliers: FxHashMap<Origin, Rc<str>>,
-    /// The dual's columns.
-    place: FxHashMap<&'a Record, usize>,
+    /// The dual's columns by what their multipliers belong to.
+    multipliers: FxHashMap<Origin, &'a Block>,
 }
 
 impl<'a> Names<'a> {
     fn new(
-        symbols: &Symbols,
-        store: &Store,
+        symbols: &'a Symbols,
+        store: &'a Store,
         primal: &'a Primal,
         f: &Formulation,
         d: &'a Instance,
     ) -> Self {
-        let o = &primal.generated.origin;
         let multipliers = f.multipliers.iter();
         Self {
+            symbols,
+            store,
             primal,
             d,
-            rows: records(symbols, store, &o.rows),
-            columns: records(symbols, store, &o.columns),
             multipliers: multipliers
-                .map(|m| (m.origin, m.name.to_lowercase().into()))
+                .filter_map(|m| Some((m.origin, d.columns(&m.name)?)))
                 .collect(),
-            place: d.columns_by_name(),
         }
     }
 
-    /// The column of a multiplier in the dual.
-    fn multiplier(&self, origin: Origin, key: &Rc<str>) -> Option<usize> {
-        let name = self.multipliers.get(&origin)?.clone();
-        self.place.get(&(name, key.clone())).copied()
+    fn row(&self, i: usize) -> String {
+        called(
+            self.symbols,
+            self.store,
+            &self.primal.generated.origin.rows,
+            i,
+        )
+    }
+
+    fn column(&self, j: usize) -> String {
+        called(
+            self.symbols,
+            self.store,
+            &self.primal.generated.origin.columns,
+            j,
+        )
+    }
+
+    /// The column in the dual that belongs to a row.
+    fn of_row(&self, i: usize) -> Option<usize> {
+        let b = self.primal.generated.origin.rows.of(i as u32);
+        let block = self.multipliers.get(&Origin::Row(b.symbol))?;
+        self.d.find(block, b.key(i as u32))
     }
 
     /// The column in the dual that belongs to a column.
     fn of_column(&self, origin: fn(SymbolId) -> Origin, j: usize) -> Option<usize> {
-        let symbol = self.primal.generated.origin.columns.of(j as u32).symbol;
-        self.multiplier(origin(symbol), &self.columns[j].1)
+        if self.multipliers.is_empty() {
+            return None;
+        }
+        let b = self.primal.generated.origin.columns.of(j as u32);
+        let block = self.multipliers.get(&origin(b.symbol))?;
+        self.d.find(block, b.key(j as u32))
     }
 }
 
 /// Compares two linear programs.
 fn compare(
-    symbols: &Symbols,
     f: &Formulation,
     names: &Names,
     p: &instance::Instance,
     dual: &instance::Instance,
     c: &mut Comparison,
 ) {
-    let objective: Record = (f.objective_name.to_lowercase().into(), "".into());
-    let objective_row: Record = (format!("{}_row", objective.0).into(), "".into());
-    let defining = names.d.rows.iter().position(|r| *r == objective_row);
-    let found = defining.zip(names.place.get(&objective));
-    let Some(d0) = found.and_then(|(i, &z)| Objective::of(dual, i, z)) else {
+    let first = |b: &Block| b.start as usize;
+    let z = names.d.columns(&f.objective_name).map(first);
+    let defining = names.d.rows(&format!("{}_row", f.objective_name));
+    let defining = defining.map(first);
+    let found = defining.zip(z);
+    let Some(d0) = found.and_then(|(i, z)| Objective::of(dual, i, z)) else {
         c.differ("the dual has no objective".into());
         return;
     };
@@ -167,7 +185,7 @@ fn compare(
         d0,
     };
     let matrix = t.rows();
-    t.columns(symbols, f, defining, matrix);
+    t.columns(f, defining, matrix);
 }
 
 /// A linear objective function.
@@ -212,21 +230,21 @@ impl Transposed<'_> {
             if self.gone.is_some_and(|g| g.0 == i) || relation == Relation::Free {
                 continue;
             }
-            let symbol = self.names.primal.generated.origin.rows.of(i as u32).symbol;
-            let name = &self.names.rows[i];
-            let Some(y) = self.names.multiplier(Origin::Row(symbol), &name.1) else {
+            let names = self.names;
+            let Some(y) = names.of_row(i) else {
                 // A row that holds nothing but an eliminated variable, or no number but zeros.
                 let z = self.gone.map(|g| g.1);
                 let mut entries = self.p.matrix.row(i);
                 let empty = entries.all(|(k, v)| v == 0.0 || Some(k) == z);
                 if !empty || rhs != 0.0 {
+                    let name = names.row(i);
                     self.c
-                        .differ(format!("the multiplier of {name:?} is not in the dual"));
+                        .differ(format!("the multiplier of {name} is not in the dual"));
                 }
                 continue;
             };
             self.c.number(rhs, self.d0.gradient[y], &|| {
-                format!("the right side of {name:?}")
+                format!("the right side of {}", names.row(i))
             });
             let bounds = match (relation, self.minimum) {
                 (Relation::Equal, _) => (f64::NEG_INFINITY, f64::INFINITY),
@@ -235,8 +253,9 @@ impl Transposed<'_> {
             };
             let columns = &self.dual.columns;
             if (columns.lower[y], columns.upper[y]) != bounds {
+                let name = names.row(i);
                 self.c
-                    .differ(format!("the sign of the multiplier of {name:?}"));
+                    .differ(format!("the sign of the multiplier of {name}"));
             }
             for (j, v) in self.p.matrix.row(i).filter(|t| t.1 != 0.0) {
                 transposed[j].push((y, v));
@@ -248,56 +267,52 @@ impl Transposed<'_> {
     /// The columns of the primal are rows of the dual.
     fn columns(
         &mut self,
-        symbols: &Symbols,
         f: &Formulation,
         defining: Option<usize>,
         mut transposed: Vec<Vec<(usize, f64)>>,
     ) {
-        let own = |v| match v {
-            Variable::Own(s) => Some(Rc::from(symbols.get(s).name.to_lowercase())),
-            Variable::Multiplier(_) => None,
-        };
-        let pairs = f.rows.iter();
-        let pairs = pairs.filter_map(|r| Some((r.name.to_lowercase().into(), own(r.pair?)?)));
-        let pairs: FxHashMap<Rc<str>, Rc<str>> = pairs.collect();
-        let mut row_of: FxHashMap<Record, usize> = FxHashMap::default();
-        for (i, (name, key)) in self.names.d.rows.iter().enumerate() {
-            let column = pairs.get(name).map(|c| (c.clone(), key.clone()));
-            if let Some(column) = column
-                && row_of.insert(column, i).is_some()
-            {
-                self.c
-                    .differ(format!("two rows of the dual belong to {key:?} of {name}"));
+        let names = self.names;
+        let columns = &names.primal.generated.origin.columns;
+        let mut row_of: Vec<Option<usize>> = vec![None; transposed.len()];
+        let mut is_known = vec![false; self.dual.row_count()];
+        for r in &f.rows {
+            let Some(Variable::Own(v)) = r.pair else {
+                continue;
+            };
+            let (Some(own), Some(b)) = (names.d.rows(&r.name), columns.symbol(v)) else {
+                continue;
+            };
+            for j in b.start..b.start + b.len {
+                let gone = self.gone.is_some_and(|g| g.1 == j as usize);
+                let Some(i) = names.d.find(own, b.key(j)).filter(|_| !gone) else {
+                    continue;
+                };
+                is_known[i] = true;
+                if row_of[j as usize].replace(i).is_some() {
+                    let name = names.column(j as usize);
+                    self.c
+                        .differ(format!("two rows of the dual belong to {name}"));
+                }
             }
         }
         for (j, want) in transposed.iter_mut().enumerate() {
             if self.gone.is_none_or(|g| g.1 != j) {
-                let row = row_of.remove(&self.names.columns[j]);
-                self.column(j, row, std::mem::take(want));
+                self.column(j, row_of[j], std::mem::take(want));
             }
         }
-        let unpaired =
-            |(i, r): &(usize, &Record)| !pairs.contains_key(&r.0) && Some(*i) != defining;
-        let others = self
-            .names
-            .d
-            .rows
-            .iter()
-            .enumerate()
-            .filter(unpaired)
-            .map(|r| r.0);
-        for i in row_of.into_values().chain(others) {
-            let name = &self.names.d.rows[i];
+        for i in (0..is_known.len()).filter(|&i| !is_known[i] && Some(i) != defining) {
+            let name = names.d.name(&names.d.generated.origin.rows, i);
             self.c
-                .differ(format!("the row {name:?} of the dual belongs to no column"));
+                .differ(format!("a row of {name} of the dual belongs to no column"));
         }
     }
 
     /// A column of the primal with its row in the dual, whose entries are to be `want` and the multipliers of bounds.
     fn column(&mut self, j: usize, row: Option<usize>, mut want: Vec<(usize, f64)>) {
-        let name = &self.names.columns[j];
+        let names = self.names;
+        let name = || names.column(j);
         let [lower, upper, fixed] = [Origin::Lower, Origin::Upper, Origin::Fixed]
-            .map(|o: fn(SymbolId) -> Origin| self.names.of_column(o, j));
+            .map(|o: fn(SymbolId) -> Origin| names.of_column(o, j));
         want.extend(
             [lower, upper, fixed]
                 .into_iter()
@@ -308,14 +323,14 @@ impl Transposed<'_> {
         let Some(i) = row else {
             // Without a multiplier it is a row of numbers, which holds, or the dual could not be generated.
             if !want.is_empty() {
-                c.differ(format!("the column {name:?} has no row in the dual"));
+                c.differ(format!("the column {} has no row in the dual", name()));
             }
             return;
         };
         let dual = self.dual;
         let entry = |c: &mut Comparison, y: usize, v: f64, w: f64| {
-            let columns = &self.names.d.columns;
-            c.number(v, w, &|| format!("{:?} in the row of {name:?}", columns[y]));
+            let of = |y| names.d.name(&names.d.generated.origin.columns, y);
+            c.number(v, w, &|| format!("{} in the row of {}", of(y), name()));
         };
         want.sort_unstable_by_key(|t| t.0);
         let mut have = dual.matrix.row(i).filter(|t| t.1 != 0.0).peekable();
@@ -330,7 +345,7 @@ impl Transposed<'_> {
             entry(c, other, 0.0, w);
         }
         c.number(self.f0.gradient[j], dual.rows.rhs[i], &|| {
-            format!("the cost of {name:?}")
+            format!("the cost of {}", name())
         });
         // The relation says what the multipliers of bounds do not.
         let (said_lower, said_upper) = match (dual.rows.relation[i], self.minimum) {
@@ -341,14 +356,14 @@ impl Transposed<'_> {
         let (lo, up) = (self.p.columns.lower[j], self.p.columns.upper[j]);
         let worth = &self.d0.gradient;
         if let Some(y) = fixed {
-            c.number(lo, worth[y], &|| format!("the value of {name:?}"));
+            c.number(lo, worth[y], &|| format!("the value of {}", name()));
         } else {
             let sides = [
                 (lo, lower, said_lower, "lower"),
                 (up, upper, said_upper, "upper"),
             ];
             for (b, y, said, what) in sides {
-                let words = || format!("the {what} bound of {name:?}");
+                let words = || format!("the {what} bound of {}", name());
                 match y {
                     Some(y) => c.number(b, worth[y], &words),
                     None if said => c.number(b, 0.0, &words),
@@ -358,7 +373,7 @@ impl Transposed<'_> {
             }
         }
         if said_lower && lo < 0.0 || said_upper && up > 0.0 {
-            c.differ(format!("the relation of the row of {name:?}"));
+            c.differ(format!("the relation of the row of {}", name()));
         }
     }
 }
