@@ -39,7 +39,7 @@ fn lasting(text: &str) -> String {
     let mut out: Vec<String> = Vec::new();
     for (k, word) in words.iter().enumerate() {
         let (first, rest) = word.split_once('\n').unwrap_or((word, ""));
-        let number = first.trim_end_matches(',').parse::<f64>();
+        let number = first.trim_end_matches([',', '.', ')']).parse::<f64>();
         let next = words.get(k + 1).copied().unwrap_or_default();
         let unit = next.lines().next().unwrap_or_default();
         let is_duration = number.is_ok() && matches!(unit, "ms" | "s");
