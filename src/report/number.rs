@@ -47,12 +47,11 @@ fn general(x: f64, room: usize) -> Option<String> {
     (1..=digits)
         .rev()
         .map(|n| format!("{:.*e}", n - 1, x.abs()))
-        .filter_map(|text| shorter(&text, x < 0.0))
-        .find(|text| text.len() <= room)
+        .find_map(|text| fitting(&text, x < 0.0, room))
 }
 
-/// `1.25e-4` without an exponent or with one, whichever is shorter.
-fn shorter(scientific: &str, negative: bool) -> Option<String> {
+/// `1.25e-4` without an exponent, from 0.001 up to 1e18, or with one: what fits.
+fn fitting(scientific: &str, negative: bool, room: usize) -> Option<String> {
     let (mantissa, exponent) = scientific.split_once('e')?;
     let exponent: i32 = exponent.parse().ok()?;
     let digits: String = mantissa.chars().filter(char::is_ascii_digit).collect();
@@ -64,8 +63,8 @@ fn shorter(scientific: &str, negative: bool) -> Option<String> {
     let (first, rest) = digits.split_at(1);
     let point = if rest.is_empty() { "" } else { "." };
     let with = format!("{sign}{first}{point}{rest}E{exponent}");
-    if exponent.abs() > 20 {
-        return Some(with);
+    if !(-3..18).contains(&exponent) {
+        return Some(with).filter(|t| t.len() <= room);
     }
     let n = digits.len() as i32;
     let without = if exponent < 0 {
@@ -76,11 +75,7 @@ fn shorter(scientific: &str, negative: bool) -> Option<String> {
         let (whole, decimals) = digits.split_at((exponent + 1) as usize);
         format!("{sign}{whole}.{decimals}")
     };
-    Some(if with.len() < without.len() {
-        with
-    } else {
-        without
-    })
+    [without, with].into_iter().find(|t| t.len() <= room)
 }
 
 /// A finite number in at most `width` characters (0: as many as it needs), not padded; asterisks where
