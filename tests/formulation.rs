@@ -337,7 +337,7 @@ fn an_explanation_says_where_nothing_is_feasible() {
     );
     for sentence in [
         "r('a') and r('b') bind; for each, more on its right side changes nothing, with less nothing is feasible.",
-        "s binds: each unit less on its right side changes z by −1 (from 0 to 6), with more nothing is feasible.",
+        "s binds: a unit less on its right side changes z by −1 (from 0 to 6), with more nothing is feasible.",
     ] {
         assert!(told.contains(sentence), "{told}");
     }
@@ -354,7 +354,7 @@ fn an_explanation_does_not_repeat_itself() {
         model m / all /;  solve m using lp minimizing z;",
     );
     for sentence in [
-        "8 of the 9 rows of r bind: each unit more on a right side changes z by between 1 (r('i1')) and 8 (r('i8')).",
+        "8 of the 9 rows of r bind: a unit more on a right side changes z by between 1 (r('i1')) and 8 (r('i8')).",
         "All 5 rows of s bind; for each, more on its right side changes nothing, with less nothing is feasible.",
     ] {
         assert!(told.contains(sentence), "{told}");

@@ -523,7 +523,7 @@ fn worth(
     };
     let on = format!(" on its right side changes {objective} by ");
     let many = format!(" on a right side changes {objective} by");
-    let [more, less] = ["each unit more", "each unit less"];
+    let [more, less] = ["a unit more", "a unit less"];
     match r.price.map(f64::is_finite) {
         [true, true] if below == 0.0 && above == 0.0 => {
             let words = "changing its right side a little changes nothing";
