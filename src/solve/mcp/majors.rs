@@ -24,7 +24,6 @@ use super::log;
 use super::merit::Phi;
 use super::path::{HARRIS, HARRIS_CLOSE, PathEnd, PathResult, Start, follow};
 use super::run::{End, Point, Run, StallCounter, Stop};
-use super::vertex::vertex;
 
 /// Armijo constant of the M test and of the line search.
 const ARMIJO: f64 = 1e-4;
@@ -40,8 +39,6 @@ const PROX_FIRST: f64 = 1e-7;
 const PROX_MIN: f64 = 1e-12;
 /// A ray is worth a step if t got this far.
 const RAY_MIN: f64 = 1e-2;
-/// Residual from which a singular basis is taken for that of a face of solutions.
-const VERTEX: f64 = 1e-2;
 /// Major iterations without a notable fall of the residual before the run is called stuck.
 const STAGNATION: usize = 30;
 /// Pivots without that, at least and times n: problems without a solution have many and long paths.
@@ -119,9 +116,6 @@ struct Majors {
     warm: Option<Vec<Kind>>,
     untested: usize,
     gradient_steps: usize,
-    /// A vertex of the face of solutions shall be looked for, and was.
-    to_vertex: bool,
-    at_vertex: bool,
     /// Steps in a row to solutions that may stand for rays.
     doubtful: usize,
     seed: u64,
@@ -141,8 +135,6 @@ impl Majors {
             warm: None,
             untested: 0,
             gradient_steps: 0,
-            to_vertex: false,
-            at_vertex: false,
             doubtful: 0,
             seed: 1,
         }
@@ -257,14 +249,7 @@ impl Majors {
         let (end, t, prox) = (candidate.end, candidate.t, candidate.prox);
         log::major_line(run, &next, pivots, end, t, prox, 1.0, kind, tries);
         if kind == '-' {
-            // The proximal term may be what keeps the digits away: at a vertex none is needed. The
-            // way there is long, and not gone for the last two digits.
-            let far = self.point.residual > 1e-2 * run.settings.convergence_tolerance;
-            let again = far && prox > 0.0 && !std::mem::replace(&mut self.at_vertex, true);
-            if again {
-                (self.prox, self.to_vertex) = (0.0, true);
-            }
-            return again;
+            return false;
         }
         (self.warm, self.point) = (candidate.kind, next);
         self.reduce_prox(prox);
@@ -311,15 +296,7 @@ impl Majors {
                     lower: &lower,
                     upper: &upper,
                 };
-                let mut result = follow(run, &linear, &start, limit, self.seed)?;
-                if result.end == PathEnd::Singular
-                    && level == 0
-                    && self.point.residual <= VERTEX
-                    && std::mem::take(&mut self.to_vertex)
-                    && let Some(at) = vertex(run, &linear, &start, limit)?
-                {
-                    result = follow(run, &linear, &at, limit, self.seed)?;
-                }
+                let result = follow(run, &linear, &start, limit, self.seed)?;
                 let PathResult {
                     end,
                     x,

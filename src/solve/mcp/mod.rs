@@ -47,7 +47,6 @@ mod presolve;
 mod random;
 mod run;
 mod smoothing;
-mod vertex;
 
 use super::Budget;
 use super::strategy::Strategies;
