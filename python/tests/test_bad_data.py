@@ -47,9 +47,9 @@ def draw(r):
         index = pd.MultiIndex.from_arrays([[label() for _ in keys], [label() for _ in keys]], names=r.choice([None, ["i", "j"], ["j", "i"], ["i", "i"]]))
         return pd.Series(values, index=index, dtype=object)
     if kind == 5:
-        return pd.DataFrame([[value() for _ in range(2)] for _ in keys], index=[label() for _ in keys], columns=[label(), label()])
+        return pd.DataFrame([[value() for _ in range(2)] for _ in keys], index=[label() for _ in keys], columns=[label(), label()], dtype=object)
     if kind == 6:
-        return pd.DataFrame({"i": [label() for _ in keys], "value": values})
+        return pd.DataFrame({"i": [label() for _ in keys], "value": pd.Series(values, dtype=object)})
     if kind == 7:
         return np.array(values, dtype=object)
     if kind == 8:
