@@ -289,7 +289,24 @@ impl Compiler {
     /// What the right side reads is searched by its first positions, up to the first that the loop does not
     /// control: of `loop(j, p(i) = q(j,i))` the turns are those for which q has a record with this j.
     pub(super) fn driver(&mut self, body: &[Code]) -> Option<Node> {
-        let (value, own) = self.driven(body)?;
+        let (value, own, target) = self.driven(body)?;
+        let (table, set) = match target {
+            Target::Set(t) => (t, true),
+            Target::Table(t) => (t, false),
+            _ => return None,
+        };
+        let mut reading = LateReading {
+            compiler: self,
+            table,
+            own,
+            inner: Vec::new(),
+            guarded: set,
+            early: false,
+        };
+        reading.node(value);
+        if reading.early {
+            return None;
+        }
         match self.resting(value, own)? {
             (0.0, unless) => unless.into_iter().reduce(either),
             _ => None,
@@ -441,8 +458,8 @@ impl Compiler {
         Some(Node::data(any, span))
     }
 
-    /// The right side of such an assignment and its own indices.
-    fn driven<'b>(&self, body: &'b [Code]) -> Option<(&'b Node, &'b [Slot])> {
+    /// The right side of such an assignment, its own indices, and what it writes to.
+    fn driven<'b>(&self, body: &'b [Code]) -> Option<(&'b Node, &'b [Slot], Target)> {
         let [only] = body else { return None };
         match &only.kind {
             CodeKind::If(arms, otherwise) if otherwise.is_empty() => match arms.as_slice() {
@@ -451,7 +468,7 @@ impl Compiler {
             },
             CodeKind::Assign {
                 domain,
-                target: Target::Table(t) | Target::Set(t),
+                target: target @ (Target::Table(t) | Target::Set(t)),
                 value,
                 nonzero: false,
                 covers: true,
@@ -459,8 +476,7 @@ impl Compiler {
             } if !domain.slots.is_empty() => {
                 let mut symbols = self.symbols.iter();
                 let whole = symbols.any(|(_, s)| s.table == *t && !s.has_attributes());
-                let read = value.any(|n| matches!(&n.kind, NodeKind::Data(r, _) if r == t));
-                (whole && !read && !value.has_random()).then_some((value, &domain.slots))
+                (whole && !value.has_random()).then_some((value, &domain.slots, *target))
             }
             _ => None,
         }
@@ -481,6 +497,73 @@ impl Compiler {
             | Target::Errors
             | Target::MostErrors
             | Target::Ignored => Vec::new(),
+        }
+    }
+}
+
+/// Whether a loop's assignment reads what it writes to so that no turn may be passed over: GAMS passes over turns
+/// where all such reading is by a lag or the index of a sum, and, of a parameter, under a `$` whose other side
+/// drives the loop: `p(i) = q(k)$p(i++1)`, but not `q(k)*p(i++1)`, `q(k)$p(i)`.
+struct LateReading<'c> {
+    compiler: &'c mut Compiler,
+    table: TableId,
+    own: &'c [Slot],
+    /// Indices of the sums around.
+    inner: Vec<Slot>,
+    guarded: bool,
+    early: bool,
+}
+
+impl LateReading<'_> {
+    /// Whether it is 0 where no record of the loop's index is.
+    fn drives(&mut self, n: &Node) -> bool {
+        let own = [self.own, &self.inner].concat();
+        let rests = self.compiler.resting(n, &own);
+        rests.is_some_and(|(rest, _)| rest == 0.0)
+    }
+
+    /// Both sides of a `$`.
+    fn sides(&mut self, a: &Node, b: &Node) {
+        for (n, other) in [(a, b), (b, a)] {
+            let before = self.guarded;
+            self.guarded |= self.drives(other);
+            self.node(n);
+            self.guarded = before;
+        }
+    }
+}
+
+impl<'a> Visitor<'a> for LateReading<'_> {
+    fn node(&mut self, n: &'a Node) {
+        match &n.kind {
+            NodeKind::Data(t, key) if *t == self.table => {
+                let runs = |p: &Part| match p {
+                    Part::Lag(_) => true,
+                    Part::Slot(s) => self.inner.contains(s),
+                    _ => false,
+                };
+                self.early |= !self.guarded || !key.parts.iter().any(runs);
+                n.walk(self);
+            }
+            NodeKind::Dollar(a, c) => self.sides(a, c),
+            NodeKind::Aggregate(_, d, body) => {
+                let outside = self.inner.len();
+                self.inner.extend(&d.slots);
+                let before = self.guarded;
+                self.guarded |= d.members.iter().any(|m| {
+                    let kind = NodeKind::Data(m.table, m.key.clone());
+                    self.drives(&Node::data(kind, n.span))
+                });
+                for c in &d.conditions {
+                    self.sides(body, c);
+                }
+                if d.conditions.is_empty() {
+                    self.node(body);
+                }
+                self.guarded = before;
+                self.inner.truncate(outside);
+            }
+            _ => n.walk(self),
         }
     }
 }

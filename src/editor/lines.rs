@@ -4,7 +4,7 @@
 //! This looks at one file as it stands. It knows the directives that change the marks of comments and those that take
 //! lines out; it follows no condition and reads no other file.
 
-use crate::source::quoted_end;
+use crate::source::past_text;
 
 /// What a line is.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -205,7 +205,7 @@ impl Lines {
                     i += marks.inline.0.len();
                     *in_comment = true;
                 } else {
-                    i = quoted_end(bytes, i).unwrap_or(i + 1);
+                    i = past_text(bytes, i, false);
                     continue;
                 }
             }

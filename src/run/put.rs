@@ -264,15 +264,15 @@ impl Machine<'_> {
             }
             NodeKind::SymbolText(s) => Item::Text(self.symbols.get(*s).text.to_string()),
             NodeKind::RecordName(s, key) => {
-                let mut k = [0; 20];
-                if !self.key(key, frame, &mut k) {
-                    return Some(Item::Text(String::new()));
-                }
-                let labels: Vec<String> = k[..key.parts.len()]
+                let labels: Vec<String> = key
+                    .parts
                     .iter()
-                    .map(|&l| {
-                        let name = self.store.universe.name(l);
-                        let quote = if name.contains('\'') { '"' } else { '\'' };
+                    .map(|p| {
+                        // A lag beyond the end: `x("")`.
+                        let name = self.part(p, frame).map(|l| self.store.universe.name(l));
+                        let name = name.unwrap_or_default();
+                        let plain = !name.is_empty() && !name.contains('\'');
+                        let quote = if plain { '\'' } else { '"' };
                         format!("{quote}{name}{quote}")
                     })
                     .collect();

@@ -25,7 +25,7 @@ pub(crate) use conditions::predefined;
 pub(crate) use evaluate::constant;
 pub use map::{FileId, Place, SourceFile, SourceMap};
 pub use modes::{Modes, Switches};
-pub(crate) use preprocess::{DELIMITED, Preprocessor, quoted_end};
+pub(crate) use preprocess::{DELIMITED, Preprocessor, past_text, quoted_end};
 pub use preprocess::{Ending, Known, NothingKnown, PreprocessOptions, SymbolKindName};
 pub(crate) use variables::constant as named_constant;
 

@@ -826,7 +826,7 @@ impl<'h> Preprocessor<'h> {
 
     /// The rest of a line from `from` on: comments and macros, then into the expanded text.
     pub(super) fn finish_text(&mut self, mut line: Line, from: usize) -> Outcome<()> {
-        let end = self.strip_comments(&mut line, from);
+        let end = self.strip_comments(&mut line, from, false);
         let (first, last) = self.marks.columns;
         let mut end = end;
         if (first, last) != (1, usize::MAX) {
@@ -868,14 +868,14 @@ impl<'h> Preprocessor<'h> {
     pub(super) fn without_comments(&mut self, mut line: Line) -> Line {
         let lower = line.text.to_ascii_lowercase();
         if !lower.contains("eolcom") && !lower.contains("inlinecom") {
-            let end = self.strip_comments(&mut line, 0);
+            let end = self.strip_comments(&mut line, 0, true);
             line.replace(&[(end, line.text.len(), String::new())]);
         }
         line
     }
 
     /// Blanks comments out; gives the end of what counts.
-    fn strip_comments(&mut self, line: &mut Line, from: usize) -> usize {
+    fn strip_comments(&mut self, line: &mut Line, from: usize, directive: bool) -> usize {
         let m = &self.marks;
         if !m.eol_on && !m.inline_on && !m.slashes && self.in_comment.is_none() {
             return line.text.len();
@@ -927,11 +927,7 @@ impl<'h> Preprocessor<'h> {
                 i += m.inline.0.len();
                 continue;
             }
-            if let Some(close) = quoted_end(bytes, i) {
-                i = close;
-                continue;
-            }
-            i += 1;
+            i = past_text(bytes, i, directive);
         }
         if let (Some(_), Some(at)) = (open, opened_at) {
             let (lo, hi) = line.origin(at, at + m.inline.0.len());
@@ -966,6 +962,27 @@ pub(crate) fn quoted_end(bytes: &[u8], i: usize) -> Option<usize> {
     let rest = &bytes[i + 1..];
     let n = memchr::memchr2(q, b'\n', rest)?;
     (rest[n] == q).then_some(i + n + 2)
+}
+
+/// Where to look for comments next. In quoted texts they are text, also directly behind a word (`i.tl'//'`, but not
+/// `don't`); on lines of directives every quote begins a text, and one without its partner reaches to the end.
+pub(crate) fn past_text(bytes: &[u8], i: usize, directive: bool) -> usize {
+    let q = bytes[i];
+    if q != b'\'' && q != b'"' {
+        return i + 1;
+    }
+    let word = |at: Option<usize>| {
+        let byte = at.and_then(|at| bytes.get(at));
+        byte.is_some_and(u8::is_ascii_alphanumeric)
+    };
+    if !directive && word(i.checked_sub(1)) && word(Some(i + 1)) {
+        return i + 1;
+    }
+    match memchr::memchr2(q, b'\n', &bytes[i + 1..]) {
+        Some(n) if bytes[i + 1 + n] == q => i + n + 2,
+        None if directive => bytes.len(),
+        _ => i + 1,
+    }
 }
 
 /// Whether a byte stands in a quoted text of a line that is no directive: there `%1` is text, such as `'%8.5f'`,

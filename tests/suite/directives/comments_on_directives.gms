@@ -27,3 +27,10 @@ scalar m;  m = twice(3);
 *= read 1
 *= k 2
 *= m 7
+* Every quote begins a text there, also directly behind a letter; one without its partner reaches to the end.
+$set h x'//'y // not in the value
+$set i don't // stop
+scalar quotes / 0 /;
+$if "%h%" == "x'//'y" quotes = quotes + 1;
+$if "%i%" == "don't // stop" quotes = quotes + 1;
+*= quotes 2
