@@ -209,7 +209,7 @@ impl Compiler {
         Ok(Some(Node::data(NodeKind::RecordName(s, key), value.span)))
     }
 
-    /// `put out (a + b)`, `put s (2*s)`, `put i.tl (p(i)*2)` read like a name with an index, but there is none to give:
+    /// `put out (a + b)`, `put s (2*s)`, `put i.tl (p(i)*2)`, `put na (s)` read like a name with an index, but there is none to give:
     /// they are two items.
     fn two_items(&self, value: &Expr) -> Option<(Expr, Expr)> {
         if let ExprKind::Dollar(value, condition) = &value.kind {
@@ -231,6 +231,10 @@ impl Compiler {
         };
         let is_text = |a: &Ident| matches!(&*a.name.to_lowercase(), "tl" | "ts");
         let symbol = self.symbols.find(&name.name).map(|s| self.symbols.get(s));
+        let special = match symbol {
+            None => ExprKind::special(&name.name, || false),
+            Some(_) => None,
+        };
         let without = match (attribute, symbol) {
             _ if is_system(name) => true,
             (Some(a), _) if is_text(a) => true,
@@ -241,14 +245,15 @@ impl Compiler {
                     && !self.is_index(last)
             }
             (None, Some(s)) => s.dim() == 0 && !s.is_set(),
+            (None, None) => special.is_some(),
             (_, None) => false,
         };
         let first = Expr {
-            kind: ExprKind::Apply {
+            kind: special.unwrap_or_else(|| ExprKind::Apply {
                 name: name.clone(),
                 attribute: attribute.clone(),
                 arguments: None,
-            },
+            }),
             span: name.span,
         };
         without.then(|| (first, last.clone()))

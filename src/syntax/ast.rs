@@ -3,6 +3,7 @@
 //! What the grammar cannot tell apart is kept as one node until names are known: `p(i+1)` is an
 //! [`Expr`] of kind [`ExprKind::Apply`] whether `p` is a parameter with a lead or a function of a sum.
 
+use crate::data::value;
 pub use crate::model::instance::{Relation, Sense};
 use crate::source::{Span, Switches};
 
@@ -609,4 +610,22 @@ pub struct FigureElement {
     pub arguments: Vec<(Option<Ident>, Expr)>,
     /// Whole place.
     pub span: Span,
+}
+
+impl ExprKind {
+    /// `inf`, `eps` …; `undf` where it may stand.
+    pub(crate) fn special(name: &str, undf: impl Fn() -> bool) -> Option<Self> {
+        if name.len() > 4 {
+            return None;
+        }
+        Some(Self::Number(match name.to_ascii_lowercase().as_str() {
+            "yes" => return Some(Self::Membership(true)),
+            "no" => return Some(Self::Membership(false)),
+            "inf" => f64::INFINITY,
+            "eps" => value::EPS,
+            "na" => value::NA,
+            "undf" if undf() => value::UNDF,
+            _ => return None,
+        }))
+    }
 }

@@ -382,7 +382,7 @@ impl Builder<'_> {
         }
         if attribute.is_none()
             && arguments.is_none()
-            && let Some(kind) = self.special(&name)?
+            && let Some(kind) = ExprKind::special(&name.name, || self.modes.at(name.span).undf)
         {
             return Ok(Node {
                 expr: Expr { kind, span },
@@ -402,25 +402,6 @@ impl Builder<'_> {
             depth: depth + 1,
             open: false,
         })
-    }
-
-    /// `inf`, `eps` …
-    fn special(&self, name: &Ident) -> Built<Option<ExprKind>> {
-        let n = &*name.name;
-        if n.len() > 4 {
-            return Ok(None);
-        }
-        Ok(Some(ExprKind::Number(
-            match n.to_ascii_lowercase().as_str() {
-                "yes" => return Ok(Some(ExprKind::Membership(true))),
-                "no" => return Ok(Some(ExprKind::Membership(false))),
-                "inf" => f64::INFINITY,
-                "eps" => value::EPS,
-                "na" => value::NA,
-                "undf" if self.modes.at(name.span).undf => value::UNDF,
-                _ => return Ok(None),
-            },
-        )))
     }
 
     fn aggregate(&self, pair: Pair<'_, Rule>) -> Built<Node> {
