@@ -13,7 +13,7 @@ use miette::{
 };
 
 use crate::diag::{self, Diagnostic, Severity as Serious};
-use crate::source::{FileId, SourceFile, SourceMap};
+use crate::source::{FileId, SourceFile, SourceMap, whole_characters};
 
 /// How diagnostics are drawn.
 #[derive(Clone, Copy, Debug)]
@@ -228,15 +228,7 @@ fn clip(text: &str, lo: usize, hi: usize, at: usize) -> (usize, usize) {
         return (lo, hi);
     }
     let start = at.saturating_sub(LINE / 4).max(lo);
-    let mut a = start;
-    let mut b = (start + LINE).min(hi);
-    while !text.is_char_boundary(a) {
-        a -= 1;
-    }
-    while !text.is_char_boundary(b) {
-        b += 1;
-    }
-    (a, b)
+    whole_characters(text, start, (start + LINE).min(hi))
 }
 
 impl SourceCode for Excerpt {

@@ -155,10 +155,12 @@ impl Machine<'_> {
             }
             page.text.push('\n');
         }
-        let domain = self.symbols.domain_names(self.symbols.get(root));
-        let records = (self.options.collect).then(|| self.records(&table));
+        let collected = (self.options.collect).then(|| {
+            let domain = self.symbols.domain_names(self.symbols.get(root));
+            (domain, self.records(&table))
+        });
         drop(table);
-        if let Some(records) = records {
+        if let Some((domain, records)) = collected {
             let display = Display::Indexed {
                 line: page.line,
                 symbol: short,

@@ -55,6 +55,17 @@ pub struct SourceMap {
     pub(crate) title: Option<String>,
 }
 
+/// The bytes `lo..hi` of a text, widened to whole characters.
+pub(crate) fn whole_characters(text: &str, mut lo: usize, mut hi: usize) -> (usize, usize) {
+    while !text.is_char_boundary(lo) {
+        lo -= 1;
+    }
+    while !text.is_char_boundary(hi) {
+        hi += 1;
+    }
+    (lo, hi)
+}
+
 impl SourceMap {
     /// The bytes of a file that the run has written.
     pub fn written(&self, name: &str) -> Option<&[u8]> {
@@ -185,16 +196,9 @@ impl SourceMap {
         } else {
             a.origin + a.origin_len
         };
-        // Whole characters.
         let text = &self.files[a.file.0 as usize].text;
-        let mut lo = text.len().min(lo as usize);
-        let mut hi = (hi as usize).clamp(lo, text.len());
-        while !text.is_char_boundary(lo) {
-            lo -= 1;
-        }
-        while !text.is_char_boundary(hi) {
-            hi += 1;
-        }
+        let lo = text.len().min(lo as usize);
+        let (lo, hi) = whole_characters(text, lo, (hi as usize).clamp(lo, text.len()));
         Some(Place {
             file: a.file,
             lo: lo as u32,

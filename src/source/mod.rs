@@ -23,6 +23,7 @@ mod variables;
 
 pub(crate) use conditions::predefined;
 pub(crate) use evaluate::constant;
+pub(crate) use map::whole_characters;
 pub use map::{FileId, Place, SourceFile, SourceMap};
 pub use modes::{Modes, Switches};
 pub(crate) use preprocess::{DELIMITED, Preprocessor, past_text, quoted_end};

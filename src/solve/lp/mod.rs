@@ -323,6 +323,11 @@ fn simplex_only(p: &Problem, accuracy: Accuracy, budget: &Budget) -> Gave {
     simplex.boxes = p.m() + p.n() > MAX_SMALL_SIZE;
     simplex.pivots = logged(p, budget);
     let ended = simplex.solve(&mut watch(budget, u64::MAX));
+    concluded(simplex, ended, accuracy, budget)
+}
+
+/// What the simplex method gave, a solution with the digits that are wanted.
+fn concluded(mut simplex: Simplex, ended: Ended, accuracy: Accuracy, budget: &Budget) -> Gave {
     if ended == Ended::Solved {
         tighten(&mut simplex, accuracy, budget);
     }
@@ -347,10 +352,7 @@ fn restarted(
         "simplex: {word} after {} iterations",
         simplex.iterations
     ));
-    if ended == Ended::Solved {
-        tighten(&mut simplex, accuracy, budget);
-    }
-    simplex_answer(simplex, ended)
+    concluded(simplex, ended, accuracy, budget)
 }
 
 /// The smaller program first; then on from its basis in the program as it was given.
@@ -532,10 +534,7 @@ fn auto(p: &Problem, accuracy: Accuracy, strategies: Strategies, budget: &Budget
     if stuck {
         return finished(p, accuracy, strategies, budget);
     }
-    if ended == Ended::Solved {
-        tighten(&mut simplex, accuracy, budget);
-    }
-    simplex_answer(simplex, ended)
+    concluded(simplex, ended, accuracy, budget)
 }
 
 /// Interior point, then a basis from it, then the simplex method.
@@ -599,10 +598,7 @@ fn finished(p: &Problem, accuracy: Accuracy, strategies: Strategies, budget: &Bu
         }
         return answer;
     }
-    if ended == Ended::Solved {
-        tighten(&mut simplex, accuracy, budget);
-    }
-    let mut done = simplex_answer(simplex, ended);
+    let mut done = concluded(simplex, ended, accuracy, budget);
     if done.ended == Ended::Failed {
         return answer;
     }

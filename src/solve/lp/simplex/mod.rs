@@ -569,10 +569,10 @@ impl Simplex {
             }
             let primal = self.violation() <= self.tolerance;
             // From the basis of all logicals flips alone may make the reduced costs right.
-            let by_flips = round == 0 && self.boxes && !self.is_endless_infeasible();
+            let by_flips = || round == 0 && self.boxes && !self.is_endless_infeasible();
             let end = if primal && self.dual_infeasibility() <= self.dual_tolerance {
                 return Ended::Solved;
-            } else if primal && !by_flips {
+            } else if primal && !by_flips() {
                 self.primal(stop)
             } else {
                 self.dual(stop)
