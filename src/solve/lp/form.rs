@@ -49,7 +49,7 @@ impl Sparse {
 
     /// Entries of a line.
     #[inline]
-    pub fn line(&self, k: usize) -> impl Iterator<Item = (usize, f64)> + Clone + '_ {
+    pub fn line(&self, k: usize) -> impl ExactSizeIterator<Item = (usize, f64)> + Clone + '_ {
         let r = self.start[k]..self.start[k + 1];
         self.index[r.clone()]
             .iter()

@@ -502,9 +502,9 @@ const MAX_SMALL_SIZE: usize = 600;
 /// there in most of Netlib.
 const MEDIUM: usize = 12_000;
 
-/// Where the columns of pivots have more entries than so many, or than this part of all nonzeros, an interior point is sooner there:
-/// a pivot costs the entries of its column, an iteration of the interior point costs nonzeros.
-const FULL: [f64; 2] = [400.0, 0.07];
+/// When the simplex method has touched so many numbers for each nonzero of the program, an interior point is sooner there (of 55 programs of
+/// Netlib the least time in the mean; half or twice of it costs a tenth).
+const WORK: f64 = 1000.0;
 
 /// Columns and rows together from which an interior point of many digits saves more pivots than it costs.
 const LARGE: usize = 3000;
@@ -513,19 +513,18 @@ const LARGE: usize = 3000;
 /// those that take it long.
 fn auto(p: &Problem, accuracy: Accuracy, strategies: Strategies, budget: &Budget) -> Gave {
     let size = p.m() + p.n();
-    let full = FULL[0].min(FULL[1] * p.rows.value.len() as f64);
-    let (effort, fullest) = match size {
-        ..=MAX_SMALL_SIZE => (1000 + 20 * size, f64::INFINITY),
-        // twice to thrice the rows is usual
-        ..=MEDIUM if strategies.run(Strategy::SimplexFirst) => (500 + 5 * p.m() / 2, full),
+    let work = WORK * p.rows.value.len() as f64;
+    let (effort, work) = match size {
+        ..=MAX_SMALL_SIZE => (1000 + 20 * size as u64, f64::INFINITY),
+        ..=MEDIUM if strategies.run(Strategy::SimplexFirst) => (u64::MAX, work),
         _ => return finished(p, accuracy, strategies, budget),
     };
     let mut simplex = Simplex::new(p);
-    (simplex.fullest, simplex.boxes) = (fullest, size > MAX_SMALL_SIZE);
+    (simplex.most_work, simplex.boxes) = (work, size > MAX_SMALL_SIZE);
     simplex.pivots = logged(p, budget);
     let left = budget.iterations_left();
-    let ended = simplex.solve(&mut watch(budget, effort as u64));
-    simplex.fullest = f64::INFINITY;
+    let ended = simplex.solve(&mut watch(budget, effort));
+    simplex.most_work = f64::INFINITY;
     let given_up = ended == Ended::Iterations && simplex.iterations < left;
     let stuck = ended == Ended::Failed || given_up;
     let word = if given_up { "given up" } else { ended.word() };

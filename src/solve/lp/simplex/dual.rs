@@ -94,7 +94,7 @@ impl Simplex {
             {
                 return Stop::Ended(why);
             }
-            if self.iterations >= self.limit || self.filled > self.fullest {
+            if self.is_spent() {
                 return Stop::Ended(Ended::Iterations);
             }
             if self.cutoff.is_finite() && self.iterations.is_multiple_of(4) {
@@ -274,7 +274,6 @@ impl Simplex {
         let Some(column) = factor.forward(&a_q).cloned() else {
             return Step::Broken;
         };
-        self.filled += 0.01 * (column.len() as f64 - self.filled);
         let alpha = column.iter().find(|e| e.0 == slot).map_or(0.0, |e| e.1);
         if (alpha - pivot).abs() > 1e-7 * (top + alpha.abs()) * if fresh { 100.0 } else { 1.0 } {
             return Step::Unsafe;
@@ -299,6 +298,7 @@ impl Simplex {
         self.x[entering] += step;
         self.x[leaving] = bound;
         self.update_weights(slot, alpha, weight, &column, &tau);
+        self.add_work(self.m, rho.len() + column.len() + tau.len());
         self.iterations += 1;
         let worn = self.exchange(slot, entering);
         if worn.is_none() {

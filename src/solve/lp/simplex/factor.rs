@@ -178,6 +178,13 @@ impl Factor {
         true
     }
 
+    /// Numbers that a solve with a full right-hand side touches.
+    pub(crate) fn nonzeros(&self) -> usize {
+        let lu = self.lu.borrow();
+        let etas: usize = self.etas.iter().map(|e| 1 + e.others.len()).sum();
+        etas + lu.eta_ops() + lu.factor_nnz()
+    }
+
     /// Number of updates since the factorisation.
     pub(crate) fn updates(&self) -> usize {
         self.lu.borrow().updates_since_refactor() + self.etas.len()
@@ -186,12 +193,11 @@ impl Factor {
     /// Whether a fresh factorisation is due.
     pub(crate) fn is_worn(&self) -> bool {
         let lu = self.lu.borrow();
-        let etas: usize = self.etas.iter().map(|e| 1 + e.others.len()).sum();
         // A factorisation costs hundreds of times what its nonzeros suggest, so the solves may grow
         // a good deal before a fresh one pays.
         lu.updates_since_refactor() + self.etas.len() >= MOST_UPDATES
             || lu.should_refactor_growth()
-            || etas + lu.eta_ops() + lu.factor_nnz() > 3 * self.fresh + 1000
+            || self.nonzeros() > 3 * self.fresh + 1000
     }
 }
 

@@ -117,11 +117,10 @@ pub struct Simplex {
     /// The dual method has a first phase in boxes; without it shifted costs, which the primal method mends, as soon in
     /// small programs and near a solution.
     pub boxes: bool,
-    /// The dual method gives up (as at an iteration limit) when the columns of its pivots have more entries than this, on
-    /// average: pivots are dear from there on.
-    pub fullest: f64,
-    /// That average, a moving one.
-    filled: f64,
+    /// Gives up, as at an iteration limit, when [`Simplex::work`] is more than this.
+    pub most_work: f64,
+    /// Numbers that the pivots have touched, about.
+    pub work: f64,
     /// A factor that was updated at most so often counts as fresh.
     pub trusted: usize,
     /// The pivots, where they are asked for.
@@ -168,8 +167,8 @@ impl Simplex {
             cutoff: f64::INFINITY,
             limit: u64::MAX,
             boxes: false,
-            fullest: f64::INFINITY,
-            filled: 0.0,
+            most_work: f64::INFINITY,
+            work: 0.0,
             trusted: 0,
             pivots: None,
             perturb: true,
@@ -671,6 +670,7 @@ impl Simplex {
         }
         self.row_index.clear();
         for &(i, r) in rho {
+            self.work += self.rows.line(i).len() as f64;
             for (j, a) in self.rows.line(i) {
                 if self.slot[j] == NONBASIC {
                     if !self.row_mark[j] {
@@ -686,6 +686,18 @@ impl Simplex {
                 self.row[logical] = -r;
             }
         }
+    }
+
+    /// Whether this is as far as it may go.
+    fn is_spent(&self) -> bool {
+        self.iterations >= self.limit || self.work > self.most_work
+    }
+
+    /// Adds the work of a pivot: `passed` numbers, and sparse solves whose solutions have so many `entries`.
+    fn add_work(&mut self, passed: usize, entries: usize) {
+        let factor = self.factor.as_ref().map_or(0, Factor::nonzeros) as f64;
+        let solves = entries as f64 * (1.0 + factor / self.m as f64);
+        self.work += (passed + self.row_index.len()) as f64 + solves;
     }
 
     /// Replaces the variable in a slot; `column` is the entering one's. Factorises afresh when that

@@ -27,7 +27,7 @@ impl Simplex {
             {
                 return Stop::Ended(why);
             }
-            if self.iterations >= self.limit {
+            if self.is_spent() {
                 return Stop::Ended(Ended::Iterations);
             }
             let fresh = self.is_fresh();
@@ -210,6 +210,7 @@ impl Simplex {
         if top > 1e7 {
             self.devex.fill(1.0);
         }
+        self.add_work(self.n + self.m, rho.len() + column.len());
         self.iterations += 1;
         self.exchange(slot, entering)
     }
