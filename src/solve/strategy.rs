@@ -60,8 +60,8 @@ strategies! {
             "the nonzeros, some thirty times at most",
             "Andersen & Andersen 1995";
         SimplexFirst "simplex_first",
-            "up to 12000 rows and columns: the simplex method is tried before the interior point, until its pivots fill up",
-            "500 pivots and 2.5 for each row",
+            "more than 600 rows and columns: the simplex method is tried before the interior point",
+            "the work of touching each nonzero 1000 times; 200 times beyond 12000 rows and columns",
             "Koberstein & Suhl 2007";
         FaceVertex "face_vertex",
             "an interior point in a face of 1500 dimensions: a second one, with a random objective, ends near a vertex of it",

@@ -11,7 +11,7 @@ pub const OPTIONS: OptionTable = OptionTable {
             "method",
             Kind::Words(&["auto", "interior", "crossover", "simplex"]),
             "auto",
-            "`auto` tries the simplex method first on small programs and takes `crossover` for others; `interior` ends with the interior point; `crossover` goes from there to a vertex; `simplex` is the simplex method alone",
+            "`auto` tries the simplex method first and takes `crossover` where that takes long; `interior` ends with the interior point; `crossover` goes from there to a vertex; `simplex` is the simplex method alone",
         ),
         row(
             "tolerance",
