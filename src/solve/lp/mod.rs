@@ -498,12 +498,9 @@ fn interior_only(p: &Problem, aim: Aim, budget: &Budget) -> Gave {
 /// Columns and rows together up to which the simplex method is all that is needed, as a rule.
 const MAX_SMALL_SIZE: usize = 600;
 
-/// Columns and rows together beyond which the interior point is likely to be the faster one.
-const MEDIUM: usize = 12_000;
-
-/// When the simplex method has touched so many numbers for each nonzero of the program, an interior point is sooner there: up to [`MEDIUM`] (of 55
-/// programs of Netlib the least time in the mean; half or twice of it costs a tenth), and beyond (a transport problem of 300 × 300 needs less).
-const WORK: [f64; 2] = [1000.0, 200.0];
+/// When the simplex method has touched so many numbers for each nonzero of the program, or is to do so in as many pivots as there are rows, an
+/// interior point is sooner there (of 55 programs of Netlib the least time in the mean; half or twice of it costs a tenth).
+const WORK: f64 = 1000.0;
 
 /// Columns and rows together from which an interior point of many digits saves more pivots than it costs.
 const LARGE: usize = 3000;
@@ -512,7 +509,7 @@ const LARGE: usize = 3000;
 /// those that take it long.
 fn auto(p: &Problem, accuracy: Accuracy, strategies: Strategies, budget: &Budget) -> Gave {
     let size = p.m() + p.n();
-    let work = WORK[usize::from(size > MEDIUM)] * p.rows.value.len() as f64;
+    let work = WORK * p.rows.value.len() as f64;
     let (effort, work) = match size {
         ..=MAX_SMALL_SIZE => (1000 + 20 * size as u64, f64::INFINITY),
         _ if strategies.run(Strategy::SimplexFirst) => (u64::MAX, work),

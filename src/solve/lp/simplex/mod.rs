@@ -117,7 +117,7 @@ pub struct Simplex {
     /// The dual method has a first phase in boxes; without it shifted costs, which the primal method mends, as soon in
     /// small programs and near a solution.
     pub boxes: bool,
-    /// Gives up, as at an iteration limit, when [`Simplex::work`] is more than this.
+    /// Gives up, as at an iteration limit, when [`Simplex::work`] is more than this, or would be after as many pivots as there are rows.
     pub most_work: f64,
     /// Numbers that the pivots have touched, about.
     pub work: f64,
@@ -690,7 +690,10 @@ impl Simplex {
 
     /// Whether this is as far as it may go.
     fn is_spent(&self) -> bool {
-        self.iterations >= self.limit || self.work > self.most_work
+        // The first pivots tell little.
+        let pivots = self.iterations.max(200) as f64;
+        let projected = self.work * (self.m as f64 / pivots).max(1.0);
+        self.iterations >= self.limit || projected > self.most_work
     }
 
     /// Adds the work of a pivot: `passed` numbers, and sparse solves whose solutions have so many `entries`.
