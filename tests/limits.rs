@@ -102,7 +102,7 @@ fn slow() -> Vec<(&'static str, String)> {
             format!(
                 "{}Positive variable x(i,j);  Variable z;  Equations cost, row(i), col(j);\n\
                  cost..  z =e= sum((i,j), round(5*a(i,j))*x(i,j));  row(i)..  sum(j, x(i,j)) =e= 1;\n\
-                 col(j)..  sum(i, x(i,j)) =e= 1;\nModel m / all /;  solve m using lp minimizing z;",
+                 col(j)..  sum(i, x(i,j)) =e= 1;\nModel m / all /;  option method = crossover;  solve m using lp minimizing z;",
                 square(300)
             ),
         ),
