@@ -327,38 +327,42 @@ fn explained(text: &str) -> String {
     told.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
+/// The explanation of a text has these sentences.
+fn says(text: &str, sentences: &[&str]) {
+    let told = explained(text);
+    for sentence in sentences {
+        assert!(told.contains(sentence), "{told}");
+    }
+}
+
 /// No price is told where a right-hand side cannot move.
 #[test]
 fn an_explanation_says_where_nothing_is_feasible() {
-    let told = explained(
+    says(
         "set i / a, b /;  variable z;  positive variable x(i);  equations o, r(i), s;
         o..  z =e= sum(i, x(i));  r(i)..  x(i) =l= 3;  s..  sum(i, x(i)) =g= 6;
         model m / all /;  solve m using lp minimizing z;",
+        &[
+            "r('a') and r('b') bind; for each, more on its right side changes nothing, with less nothing is feasible.",
+            "s binds: a unit less on its right side changes z by −1 (from 0 to 6), with more nothing is feasible.",
+        ],
     );
-    for sentence in [
-        "r('a') and r('b') bind; for each, more on its right side changes nothing, with less nothing is feasible.",
-        "s binds: a unit less on its right side changes z by −1 (from 0 to 6), with more nothing is feasible.",
-    ] {
-        assert!(told.contains(sentence), "{told}");
-    }
 }
 
 /// Records that say the same are one sentence; a block of which there is too much to say is summed up.
 #[test]
 fn an_explanation_does_not_repeat_itself() {
-    let told = explained(
+    says(
         "set i / i1*i9 /, j / j1*j5 /;  variable z;  positive variables x(i), y(j);
         equations o, r(i), s(j), c;
         o..  z =e= sum(i, ord(i)*x(i)) + sum(j, y(j));  r(i)..  x(i) =g= 1;  s(j)..  y(j) =l= 4;
         c..  sum(j, y(j)) =g= 20;  x.fx('i9') = 1;
         model m / all /;  solve m using lp minimizing z;",
+        &[
+            "8 of the 9 rows of r bind: a unit more on a right side changes z by between 1 (r('i1')) and 8 (r('i8')).",
+            "All 5 rows of s bind; for each, more on its right side changes nothing, with less nothing is feasible.",
+        ],
     );
-    for sentence in [
-        "8 of the 9 rows of r bind: a unit more on a right side changes z by between 1 (r('i1')) and 8 (r('i8')).",
-        "All 5 rows of s bind; for each, more on its right side changes nothing, with less nothing is feasible.",
-    ] {
-        assert!(told.contains(sentence), "{told}");
-    }
 }
 
 /// A model with discrete variables has no prices: none are told, and ranges are refused.

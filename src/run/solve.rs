@@ -12,7 +12,7 @@ use crate::diag::Diagnostic;
 use crate::model::instance::{ColumnKind, Instance, Relation};
 use crate::model::origin::{Blocks, Origin};
 use crate::model::outcome::{Basis, ModelStatus, SolverStatus};
-use crate::model::problem_type::{Discrete, ProblemType};
+use crate::model::problem_type::ProblemType;
 use crate::report::names::Names;
 use crate::report::why::{Explanation, explain};
 use crate::report::{json, levels, listing, solution, summary};
@@ -310,9 +310,9 @@ impl Machine<'_> {
         self.ranges.clear();
         let linear = g.instance.is_linear() && g.instance.objective.is_some();
         let wanted = self.options.number("ranging") == Some(1.0);
-        let chosen = s.using.discrete() == Discrete::Decided
-            && g.instance.columns.first_undecided().is_some();
-        if !wanted || !linear || chosen || s.using.has_pairs() || a.status != ModelStatus::Optimal {
+        let integers = Task::new(s.using, &g.instance).has_integers();
+        if !wanted || !linear || integers || s.using.has_pairs() || a.status != ModelStatus::Optimal
+        {
             return;
         }
         let end = self.elapsed() + self.limits(s.model).seconds;

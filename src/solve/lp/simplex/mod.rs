@@ -120,7 +120,7 @@ pub struct Simplex {
     /// Gives up, as at an iteration limit, when [`Simplex::work`] is more than this, or would be after as many pivots as there are rows.
     pub most_work: f64,
     /// Numbers that the pivots have touched, about.
-    pub work: f64,
+    work: f64,
     /// A factor that was updated at most so often counts as fresh.
     pub trusted: usize,
     /// The pivots, where they are asked for.
