@@ -525,11 +525,11 @@ pub fn function_value(f: Function, args: &[f64]) -> Result<f64, DomainError> {
             smoothed(f, x, place)
         }
         F::NcpCm if z <= 0.0 => return fail(2, Domain),
-        // As GAMS computes it: 1 + e^… loses what is far below 1.
-        F::NcpCm => {
-            let t = (x - y) / z;
-            x - z * (t.max(0.0) + (1.0 + (-t.abs()).exp()).ln())
-        }
+        // As GAMS computes it, to the last digit.
+        F::NcpCm => match ((x - y) / z).exp() {
+            f64::INFINITY => y,
+            e => x - z * (1.0 + e).ln(),
+        },
         F::NcpF if z < 0.0 => return fail(2, Domain),
         F::NcpF => {
             // √(x² + y² + 2μ) − x − y without cancellation where x + y > 0

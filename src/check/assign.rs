@@ -502,8 +502,8 @@ impl Compiler {
 }
 
 /// Whether a loop's assignment reads what it writes to so that no turn may be passed over: GAMS passes over turns
-/// where all such reading is by a lag or the index of a sum, and, of a parameter, under a `$` whose other side
-/// drives the loop: `p(i) = q(k)$p(i++1)`, but not `q(k)*p(i++1)`, `q(k)$p(i)`.
+/// where no such reading is at the record that is written or at labels alone, and, of a parameter, all is under a `$`
+/// whose other side drives the loop: `p(i,j) = q(k)$p(i++1,j)`, but not `q(k)*p(i++1,j)`, `q(k)$p(i,j)`, `q(k)$p('a','b')`.
 struct LateReading<'c> {
     compiler: &'c mut Compiler,
     table: TableId,
@@ -537,12 +537,10 @@ impl<'a> Visitor<'a> for LateReading<'_> {
     fn node(&mut self, n: &'a Node) {
         match &n.kind {
             NodeKind::Data(t, key) if *t == self.table => {
-                let runs = |p: &Part| match p {
-                    Part::Lag(_) => true,
-                    Part::Slot(s) => self.inner.contains(s),
-                    _ => false,
-                };
-                self.early |= !self.guarded || !key.parts.iter().any(runs);
+                let own = |p: (&Part, &Slot)| matches!(p.0, Part::Slot(s) if s == p.1);
+                let same = key.parts.iter().zip(self.own).all(own);
+                let fixed = key.parts.iter().all(|p| matches!(p, Part::Label(_)));
+                self.early |= !self.guarded || same || fixed;
                 n.walk(self);
             }
             NodeKind::Dollar(a, c) => self.sides(a, c),

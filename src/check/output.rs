@@ -232,7 +232,7 @@ impl Compiler {
         let is_text = |a: &Ident| matches!(&*a.name.to_lowercase(), "tl" | "ts");
         let symbol = self.symbols.find(&name.name).map(|s| self.symbols.get(s));
         let special = match symbol {
-            None => ExprKind::special(&name.name, || false),
+            None => ExprKind::special(&name.name, || self.modes.at(name.span).undf),
             Some(_) => None,
         };
         let without = match (attribute, symbol) {

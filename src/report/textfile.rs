@@ -358,11 +358,8 @@ impl TextFile {
             let place = self.get("nr") == 2.0 && !number.starts_with(['-', '*']);
             text = format!("{}{number}", if place { " " } else { "" });
         }
-        if let (Item::Special(_), Some(width)) = (item, format.width)
-            && width > 0
-            && pc != 8
-            && text.len() > width as usize
-        {
+        let width = format.width.unwrap_or_else(|| self.integer("nw"));
+        if matches!(item, Item::Special(_)) && pc != 8 && width > 0 && text.len() > width as usize {
             text = "*".repeat(width as usize);
         }
         if quoted {

@@ -202,8 +202,8 @@ pub struct PutFile {
     pub text: TextFile,
     /// Its name since `put_utility 'ren'`.
     pub name: Option<String>,
-    /// What was written and closed before.
-    pub closed: String,
+    /// What is written comes behind what the run has written into the file before (`.ap`).
+    pub appends: bool,
     /// Selected since it was last closed.
     pub open: bool,
     /// The last statement that wrote to it.

@@ -119,19 +119,9 @@ impl Machine<'_> {
     /// Makes a file the current one; one that was closed begins again.
     pub(super) fn open_put_file(&mut self, s: SymbolId) {
         self.put.current = Some(s);
-        let declared = match &self.symbols.get(s).kind {
-            SymbolKind::File(name) => name,
-            _ => "",
-        };
         let f = self.put.files.entry(s).or_default();
         if !f.open {
-            if f.text.get("ap") == 0.0 {
-                f.closed.clear();
-            } else if f.closed.is_empty() {
-                let name = f.name.as_deref().unwrap_or(declared);
-                f.closed
-                    .push_str(self.map.written_text(name).unwrap_or_default());
-            }
+            f.appends = f.text.get("ap") != 0.0;
             f.text.reopen();
             f.open = true;
         }
@@ -195,9 +185,9 @@ impl Machine<'_> {
         if f.text.is_empty() {
             return;
         }
-        f.closed.push_str(f.text.finish());
+        let before = f.appends.then(|| self.map.written_text(&name)).flatten();
+        let text = [before.unwrap_or_default(), f.text.finish()].concat();
         f.text.reopen();
-        let text = std::mem::take(&mut f.closed);
         if name.trim().is_empty() {
             // `file log / '' /` is the log.
             if !self.options.quiet {
@@ -206,9 +196,7 @@ impl Machine<'_> {
             return;
         }
         self.write_file(&name, text.as_bytes(), span);
-        if let Some(f) = self.put.files.get_mut(&s) {
-            f.closed = text;
-        }
+        self.map.remember(&name, text.into_bytes());
     }
 
     /// Writes what is still open, in the order of declaration.

@@ -52,7 +52,6 @@ pub(super) const SILENT: &[&str] = &[
     "use225",
     "use999",
     "showvariables",
-    "splitoption",
     "version",
     "warning",
     "compress",

@@ -79,9 +79,8 @@ fn behind_separators(rest: &str) -> &str {
 }
 
 impl Preprocessor<'_> {
-    /// A line that begins with `$`.
+    /// A line that begins with `$`, without its comments.
     pub(super) fn directive_line(&mut self, line: Line, known: &dyn Known) -> Outcome<()> {
-        let line = self.without_comments(line);
         let start = self.marks.directive(&line.text).unwrap_or(1);
         self.directives(&line, start, known)
     }
@@ -341,6 +340,20 @@ impl Preprocessor<'_> {
                     self.names.set(Reach::Scoped, name, value);
                 }
             }
+            "splitoption" => {
+                // `-key=value`, `/key value`: what begins otherwise is no option.
+                let (option, tail) = argument(rest);
+                let option = option.trim_start().strip_prefix(['-', '/']).unwrap_or("");
+                let end = option.find(['=', ' ']).unwrap_or(option.len());
+                let (key, value) = option.split_at(end);
+                let value = value.trim_start();
+                let value = value.strip_prefix('=').unwrap_or(value).trim();
+                let quoted = |q| value.strip_prefix(q)?.strip_suffix(q);
+                let value = quoted('\'').or(quoted('"')).unwrap_or(value);
+                for (name, value) in tail.split_whitespace().zip([key, value]) {
+                    self.names.set(Reach::Scoped, name, value.to_owned());
+                }
+            }
             "shift" => {
                 if let Some(args) = self.frames.last_mut().and_then(|f| f.arguments.as_mut())
                     && !args.is_empty()
@@ -352,6 +365,10 @@ impl Preprocessor<'_> {
                 let flavour = flavour(&word[2..]);
                 match self.condition(rest, flavour, known) {
                     Err(why) => return refuse(self.bad_condition(word, why, lo, hi)),
+                    Ok((false, len)) if rest[len..].trim().is_empty() => {
+                        // With nothing behind it, it speaks of the next line, whatever that is.
+                        self.take_line();
+                    }
                     Ok((false, _)) => {}
                     Ok((true, len)) => return self.action(line, at + len, known),
                 }
@@ -727,8 +744,8 @@ impl Preprocessor<'_> {
                 continue;
             }
             hi = next.origin(0, next.text.len()).1;
-            let next = self.substituted(next)?;
             let next = self.without_comments(next);
+            let next = self.substituted(next)?;
             text.push(' ');
             text.push_str(&next.text);
         }

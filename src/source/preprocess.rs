@@ -464,6 +464,7 @@ impl<'h> Preprocessor<'h> {
                         return Ok(true);
                     }
                     let line = self.take_line();
+                    let line = self.without_comments(line);
                     let outcome = self
                         .substituted(line)
                         .and_then(|l| self.directive_line(l, known));
@@ -495,6 +496,7 @@ impl<'h> Preprocessor<'h> {
                             self.advance(pos);
                             return Ok(true);
                         }
+                        let l = self.without_comments(l);
                         self.directive_line(l, known)
                     } else {
                         self.finish_text(l, 0)
@@ -864,7 +866,8 @@ impl<'h> Preprocessor<'h> {
         Ok(())
     }
 
-    /// A line of directives without its comments; where marks of comments are named, they stay.
+    /// A line of directives without its comments: a `//` in the value of a `%name%` is none. Where marks of comments
+    /// are named, they stay.
     pub(super) fn without_comments(&mut self, mut line: Line) -> Line {
         let lower = line.text.to_ascii_lowercase();
         if !lower.contains("eolcom") && !lower.contains("inlinecom") {

@@ -34,3 +34,12 @@ scalar quotes / 0 /;
 $if "%h%" == "x'//'y" quotes = quotes + 1;
 $if "%i%" == "don't // stop" quotes = quotes + 1;
 *= quotes 2
+* Marks in the value of a `%name%` begin no comment.
+$set j 'http://x'
+$set l %j% // c
+$setGlobal m a%l%b
+$log %j%
+scalar values / 0 /;
+$if "%l%|%m%" == "http://x|ahttp://xb" values = values + 1;
+$if not %j% == y values = values + 1;
+*= values 2
