@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds the playground into web/dist: bmod as WebAssembly, then the page. Installs what it needs (the Rust target by rustup, the
-# packages of package-lock.json by npm). Any file server can serve the folder, under any path.
+# packages of package-lock.json by npm). Any file server can serve the folder, under any path; every file is there compressed too.
 # usage: [DRAFT=1] web/build.sh
 set -euo pipefail
 cd "$(dirname "$0")"
@@ -30,4 +30,4 @@ cp target/cargo/wasm32-wasip1/release/bmod_wasm.wasm target/bmod.wasm
 
 node_modules/.bin/tsc
 node_modules/.bin/vite build --logLevel warn
-node sizes.mjs
+node compress.mjs

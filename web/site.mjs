@@ -73,6 +73,9 @@ function page(path, source, pages) {
     if (language !== 'blk' || !file?.endsWith('.blk')) return code;
     return `<div class="example" data-file="${escaped(file)}">${code}</div>`;
   };
+  // Code without a fence. What may be too wide for a phone can be reached, and moved, with the keyboard.
+  markdown.renderer.rules.code_block = (tokens, at) => `<pre tabindex="0"><code>${escaped(tokens[at].content)}</code></pre>`;
+  markdown.renderer.rules.table_open = () => '<table tabindex="0">';
   const rewrite = (href) => {
     if (/^[a-z]+:/.test(href)) return href;
     const [file, hash] = href.split('#');
@@ -88,8 +91,11 @@ function page(path, source, pages) {
       for (const t of [block, ...(block.children ?? [])]) {
         for (const a of t.attrs ?? []) if (a[0] === 'href' || a[0] === 'src') a[1] = rewrite(a[1]) ?? up;
       }
+      // A column without a name has no head.
+      const at = state.tokens.indexOf(block);
+      if (block.type === 'th_open' && state.tokens[at + 1].content === '') block.tag = state.tokens[at + 2].tag = 'td';
       if (block.type === 'heading_open') {
-        const words = state.tokens[state.tokens.indexOf(block) + 1].content;
+        const words = state.tokens[at + 1].content;
         block.attrSet('id', words.toLowerCase().replace(/[^\w\s-]/g, '').trim().replace(/\s+/g, '-'));
       }
     }

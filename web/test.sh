@@ -12,4 +12,4 @@ if [ -z "${BMOD:-}" ]; then
   (cd .. && cargo build --quiet)
   export BMOD=$PWD/../target/debug/bmod
 fi
-node --test --test-concurrency=1 "$@" tests/all.test.mjs
+node --test --test-concurrency=1 "$@" tests/*.test.mjs

@@ -16,7 +16,7 @@ function solveView(s: Solve): HTMLElement {
   const what = `${s.model} using ${s.using}${sense}`;
   const residuals = Object.entries(s.residual).filter(([, v]) => v !== null).map(([k, v]) => `${k} ${typeof v === 'number' && v !== 0 ? v.toExponential(0) : v}`);
   return h('section', { class: `solve ${tone(code)}` },
-    h('h3', {}, what.trim()),
+    h('h2', {}, what.trim()),
     h('p', { class: 'status' }, s.model_status.name, s.objective !== null && h('strong', {}, ` ${s.objective_name ?? 'objective'} = ${shownNumber(s.objective)}`)),
     h('p', {}, texts.modelStatus[code] ?? ''),
     s.message ? h('p', {}, s.message) : null,
@@ -73,16 +73,16 @@ export class AnswerView {
       parts.push(h('section', { 'aria-label': texts.messages }, ...report.diagnostics.map((d) => messageView(d, asked.go))));
     }
     parts.push(...report.solves.map(solveView));
-    if (answer.printed.trim()) parts.push(h('h3', {}, texts.printed), h('pre', { tabindex: 0 }, answer.printed));
+    if (answer.printed.trim()) parts.push(h('h2', {}, texts.printed), h('pre', { tabindex: 0 }, answer.printed));
     const groups = ['variable', 'equation', 'parameter', 'set'] as const;
-    if (answer.symbols.length) parts.push(h('h3', {}, texts.symbols));
+    if (answer.symbols.length) parts.push(h('h2', {}, texts.symbols));
     for (const kind of groups) {
       const of = answer.symbols.filter((s) => s.kind === kind && s.records > 0);
-      if (of.length) parts.push(h('section', {}, h('h4', {}, texts.kinds[kind] ?? kind), ...of.map((s) => symbolView(s, asked.records, this.open))));
+      if (of.length) parts.push(h('section', {}, h('h3', {}, texts.kinds[kind] ?? kind), ...of.map((s) => symbolView(s, asked.records, this.open))));
     }
     const others = Object.entries(answer.files).filter(([name]) => !/\.svg$/i.test(name));
     if (others.length) {
-      parts.push(h('h3', {}, texts.written), ...others.map(([name, text]) =>
+      parts.push(h('h2', {}, texts.written), ...others.map(([name, text]) =>
         h('details', {}, h('summary', {}, name), h('pre', { tabindex: 0 }, text), h('button', { onclick: () => download(name, text) }, texts.download))));
     }
     this.element.replaceChildren(...parts.filter((p) => p !== null));

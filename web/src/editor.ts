@@ -52,7 +52,7 @@ export class Editor {
         highlightSelectionMatches(),
         bmodLanguage(),
         this.options.extensions,
-        EditorView.contentAttributes.of({ 'aria-label': texts.editor, spellcheck: 'false', autocapitalize: 'off' }),
+        EditorView.contentAttributes.of({ 'aria-label': texts.editor, spellcheck: 'false', tabindex: '0', autocapitalize: 'off' }),
         this.writable.of(EditorState.readOnly.of(this.options.readOnly)),
         keymap.of([
           { key: 'Mod-Enter', run },

@@ -43,7 +43,7 @@ export class View {
     if (report.solves.length === 0) return [...nodes, h('p', { class: 'note' }, texts.noSolves)];
     for (const s of report.solves) {
       const text = s.why?.text ?? [];
-      nodes.push(h('section', {}, h('h3', {}, `${s.model} using ${s.using}: ${s.model_status.name}`),
+      nodes.push(h('section', {}, h('h2', {}, `${s.model} using ${s.using}: ${s.model_status.name}`),
         ...(text.length ? text.map((t) => h('pre', {}, t)) : [h('p', {}, texts.nothingWrong)])));
     }
     return nodes;

@@ -339,6 +339,11 @@ test('first visit: the shell in 1 s, the first answer in 3 s', async () => {
   const shell = await page.evaluate(() => performance.now());
   await page.waitForSelector('body[data-state=done]');
   const first = await page.evaluate(() => performance.now());
-  console.log(`first visit: shell ${shell.toFixed(0)} ms, first answer ${first.toFixed(0)} ms`);
+  const loaded = await page.evaluate(() => performance.getEntriesByType('resource').map((r) => [r.name, r.encodedBodySize, r.decodedBodySize]));
+  const wasm = loaded.find(([name]) => name.endsWith('.wasm'));
+  // The files are there compressed, and a server that knows it sends them so.
+  assert.ok(wasm[1] < 0.5 * wasm[2], String(wasm));
+  const kib = loaded.reduce((sum, [, bytes]) => sum + bytes, 0) / 1024;
+  console.log(`first visit: shell ${shell.toFixed(0)} ms, first answer ${first.toFixed(0)} ms, ${kib.toFixed(0)} KiB`);
   await page.context().close();
 });

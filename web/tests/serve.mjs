@@ -1,4 +1,4 @@
-// Serves the built site under a sub-path, as an intranet would; and files of a test beside it.
+// Serves the built site under a sub-path, as an intranet would, compressed where the browser takes it; and files of a test beside it.
 
 import { readFile } from 'node:fs/promises';
 import { createServer } from 'node:http';
@@ -19,9 +19,20 @@ export async function serve(extra = {}) {
     const type = TYPES[extname(path)] ?? 'text/plain';
     try {
       const inside = path.startsWith('/some/path/') ? normalize(path.slice('/some/path/'.length)) : '..';
-      const body = extra[path] ?? (inside.startsWith('..') ? undefined : await readFile(join(dist, inside)));
+      const taken = String(request.headers['accept-encoding'] ?? '');
+      const ways = [['br', '.br'], ['gzip', '.gz']].filter(([way]) => taken.includes(way));
+      let body = extra[path];
+      let encoding;
+      for (const [way, end] of [...ways, [undefined, '']]) {
+        if (body !== undefined || inside.startsWith('..')) break;
+        body = await readFile(join(dist, inside + end)).catch(() => undefined);
+        encoding = way;
+      }
       if (body === undefined) throw new Error('not here');
-      response.writeHead(200, { 'content-type': type.startsWith('text/') ? `${type}; charset=utf-8` : type });
+      response.writeHead(200, {
+        'content-type': type.startsWith('text/') ? `${type}; charset=utf-8` : type, 'content-length': Buffer.byteLength(body),
+        ...(encoding && { 'content-encoding': encoding, vary: 'accept-encoding' }),
+      });
       response.end(body);
     } catch {
       response.writeHead(404);
