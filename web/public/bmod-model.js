@@ -19,7 +19,8 @@ class BmodModel extends HTMLElement {
   }
 
   attributeChangedCallback() {
-    if (this.isConnected) this.draw();
+    // Attributes of the page come before the text inside is read.
+    if (this.text !== undefined) this.draw();
   }
 
   async draw() {

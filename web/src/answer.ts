@@ -12,12 +12,12 @@ function tone(code: number): string {
 
 function solveView(s: Solve): HTMLElement {
   const code = s.model_status.code;
-  const sense = s.sense ? ` ${s.sense === 'max' ? 'maximizing' : 'minimizing'} ${s.objective_name ?? ''}` : '';
+  const sense = s.sense ? `, ${s.sense === 'max' ? 'maximizing' : 'minimizing'}` : '';
   const what = `${s.model} using ${s.using}${sense}`;
   const residuals = Object.entries(s.residual).filter(([, v]) => v !== null).map(([k, v]) => `${k} ${typeof v === 'number' && v !== 0 ? v.toExponential(0) : v}`);
   return h('section', { class: `solve ${tone(code)}` },
-    h('h2', {}, what.trim()),
-    h('p', { class: 'status' }, s.model_status.name, s.objective !== null && h('strong', {}, ` ${s.objective_name ?? 'objective'} = ${shownNumber(s.objective)}`)),
+    h('h2', {}, what),
+    h('p', { class: 'status' }, s.model_status.name, s.objective !== null && h('strong', {}, ` objective = ${shownNumber(s.objective)}`)),
     h('p', {}, texts.modelStatus[code] ?? ''),
     s.message ? h('p', {}, s.message) : null,
     h('p', { class: 'note' }, [texts.size(s.rows, s.columns, s.nonzeros), s.solver, texts.iterations(s.iterations), texts.took(s.seconds.total)].join(' · ')),

@@ -19,9 +19,9 @@ export class Figure {
     this.element = h('figure', {},
       h('div', { class: 'paper', tabindex: 0, role: 'group', 'aria-label': texts.figureName(name) }, this.image),
       h('figcaption', { class: 'bar' }, h('span', {}, name),
-        button(texts.zoomOut, zoom(-1)), button(texts.zoomFit, zoom(0)), button(texts.zoomIn, zoom(1)),
-        button(texts.svg, () => download(name, new Blob([this.svg], { type: 'image/svg+xml' }))),
-        button(texts.png, () => this.png())));
+        h('div', { class: 'bar' }, button(texts.zoomOut, zoom(-1)), button(texts.zoomFit, zoom(0)), button(texts.zoomIn, zoom(1)),
+          button(texts.svg, () => download(name, new Blob([this.svg], { type: 'image/svg+xml' }))),
+          button(texts.png, () => this.png()))));
     this.show(svg);
   }
 

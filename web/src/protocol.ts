@@ -42,7 +42,6 @@ export type Solve = {
   model_status: { code: number; name: string };
   solver_status: { code: number; name: string };
   objective: Num | null;
-  objective_name?: string | null;
   rows: number;
   columns: number;
   nonzeros: number;

@@ -56,7 +56,8 @@ export const texts = {
     18: 'Unbounded.',
     19: 'Infeasible: no values satisfy all equations.',
   } as Record<number, string>,
-  size: (rows: number, columns: number, nonzeros: number) => `${rows} rows, ${columns} columns, ${nonzeros} nonzeros`,
+  size: (rows: number, columns: number, nonzeros: number) =>
+    `${rows} ${rows === 1 ? 'row' : 'rows'}, ${columns} ${columns === 1 ? 'column' : 'columns'}, ${nonzeros} ${nonzeros === 1 ? 'nonzero' : 'nonzeros'}`,
   iterations: (n: number) => (n === 1 ? '1 iteration' : `${n} iterations`),
   printed: 'Output',
   messages: 'Messages',

@@ -30,7 +30,7 @@ const steps: Step[] = [
   },
   {
     at: 'sliders',
-    text: 'Some models have sliders. Move the friction of this wall and watch the load factor and the picture follow. A line `* @slider NAME LOW HIGH STEP` makes one of any number.',
+    text: 'Some models have sliders. Move the friction of this wall and watch the load factor and the picture follow. A line that begins with * @slider makes one of any number (its page says how).',
     do: async (s) => {
       await s.choose('wall.blk');
       s.tab('figures');

@@ -16,7 +16,7 @@ const root = fileURLToPath(new URL('../../', import.meta.url));
 const bmod = process.env.BMOD ?? join(root, 'target/debug/bmod');
 const gallery = JSON.parse(readFileSync(join(dist, 'models/gallery.json'), 'utf8'));
 const lecture = `<!doctype html><h1>Lecture</h1><script type="module" src="/some/path/bmod-model.js"></script>
-<bmod-model src="three.blk" readonly></bmod-model>`;
+<bmod-model src="three.blk" readonly></bmod-model><bmod-model height="300"><pre>Scalar z; z = 4; display z;</pre></bmod-model>`;
 
 let site, browser;
 before(async () => {
@@ -293,9 +293,12 @@ test('an exercise says when it is right, and only then', async () => {
 
 test('a model in a page of a lecture', async () => {
   const page = await open(browser, `${site.origin}/lecture/`);
-  const frame = page.frameLocator('iframe');
+  const frame = page.frameLocator('iframe').first();
   await frame.locator('body[data-state=done]').waitFor();
-  assert.match(await frame.locator('#panel').textContent(), /y = 3|3/);
+  assert.match(await frame.locator('#panel pre').textContent(), /y +=? +3\.000/);
+  const second = page.frameLocator('iframe').last();
+  await second.locator('body[data-state=done]').waitFor();
+  assert.match(await second.locator('#panel pre').textContent(), /z +=? +4\.000/);
   assert.equal(await frame.locator('#examples').isVisible(), false);
   await page.context().close();
 });
