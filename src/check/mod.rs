@@ -15,6 +15,7 @@ mod assign;
 mod control;
 mod data;
 mod declare;
+mod driver;
 mod effects;
 pub(crate) mod expansion;
 mod expr;

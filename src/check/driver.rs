@@ -1,0 +1,337 @@
+//! What drives a loop around one assignment: turns that GAMS passes over.
+
+use super::Compiler;
+use super::node::*;
+use super::symbols::UNIVERSE;
+use super::visit::Visitor;
+use crate::model::instance::Function;
+use crate::source::Span;
+
+impl Compiler {
+    /// What drives a loop around a single assignment to a parameter or set, as GAMS runs it: turns in which the
+    /// right side is 0 whatever the assignment's own indices are passed over, and nothing is assigned in them. Only
+    /// where each turn assigns the whole symbol: `p(i)`, not `p(i,j)` with j of the loop, `p(i,'a')`, `p(i+1)`, a
+    /// subset, or `p(*)`.
+    /// What the right side reads is searched by its first positions, up to the first that the loop does not
+    /// control: of `loop(j, p(i) = q(j,i))` the turns are those for which q has a record with this j.
+    pub(super) fn driver(&mut self, body: &[Code]) -> Option<Node> {
+        let (value, own, target) = self.driven(body)?;
+        let (table, set) = match target {
+            Target::Set(t) => (t, true),
+            Target::Table(t) => (t, false),
+            _ => return None,
+        };
+        let mut reading = LateReading {
+            compiler: self,
+            table,
+            own,
+            inner: Vec::new(),
+            guarded: set,
+            early: false,
+        };
+        reading.node(value);
+        if reading.early {
+            return None;
+        }
+        self.resting(value, own)?.into_iter().reduce(either)
+    }
+
+    /// Where no record of the loop's indices is read an expression is 0, whatever its own indices are: the conditions of
+    /// which one holds elsewhere. None if it need not be 0 there, or if GAMS does not see it: it looks at the form,
+    /// `q(k)/2`, `q(k)/s`, not `q(k)/w(k)`.
+    fn resting(&mut self, n: &Node, own: &[Slot]) -> Option<Vec<Node>> {
+        match &n.kind {
+            NodeKind::Const(0.0) => Some(Vec::new()),
+            NodeKind::Data(table, key) => Some(vec![self.begins_with(*table, key, own, n.span)?]),
+            NodeKind::SameAs(a, b) if [a, b].iter().all(|p| is_fixed(p, own)) => {
+                let same = NodeKind::SameAs(a.clone(), b.clone());
+                Some(vec![Node::membership(same, n.span)])
+            }
+            NodeKind::Negate(a) => self.resting(a, own),
+            NodeKind::Sum(list) => self.together(list.iter().map(|(_, t)| t), own),
+            NodeKind::Product(list) => {
+                let special =
+                    |n: &Node| matches!(n.kind, NodeKind::Const(x) if !x.is_normal() && x != 0.0);
+                if list.iter().any(|(_, f)| special(f)) {
+                    return None;
+                }
+                let negative = |n: &Node| matches!(n.kind, NodeKind::Const(x) if x < 0.0);
+                let hides =
+                    |(divides, f): &(bool, Node)| *divides && (!self.is_number(f) || negative(f));
+                let from = list.iter().rposition(hides).map_or(0, |n| n + 1);
+                let factors = list[from..].iter().filter(|(divides, _)| !divides);
+                self.meeting(factors.map(|(_, f)| f), own)
+            }
+            NodeKind::Dollar(a, c) => self.meeting([&**a, c], own),
+            NodeKind::Binary(BinaryOp::And, a, b) => self.meeting([&**a, b], own),
+            NodeKind::Binary(BinaryOp::Or | BinaryOp::Xor, a, b) => self.together([&**a, b], own),
+            NodeKind::Binary(BinaryOp::Power, a, b) => {
+                let mut unless = self.resting(a, own)?;
+                unless.extend(self.compared(BinaryOp::Le, b, false)?);
+                Some(unless)
+            }
+            NodeKind::Binary(
+                op @ (BinaryOp::Lt | BinaryOp::Le | BinaryOp::Gt | BinaryOp::Ge | BinaryOp::Ne),
+                a,
+                b,
+            ) => {
+                let right = self.is_number(b);
+                let (side, number) = if right { (a, b) } else { (b, a) };
+                let mut unless = self.resting(side, own)?;
+                unless.extend(self.compared(*op, number, right)?);
+                Some(unless)
+            }
+            NodeKind::Call(Function::Max | Function::Min, list) => self.together(list, own),
+            NodeKind::Call(Function::Power, list) => {
+                let [base, exponent] = list.as_slice() else {
+                    return None;
+                };
+                let mut unless = self.resting(base, own)?;
+                unless.extend(self.compared(BinaryOp::Le, exponent, false)?);
+                Some(unless)
+            }
+            // Others do not count, though some are 0 at 0.
+            NodeKind::Call(
+                Function::Sqr
+                | Function::Sqrt
+                | Function::Abs
+                | Function::Sign
+                | Function::Round
+                | Function::Floor
+                | Function::Ceil
+                | Function::Trunc
+                | Function::Frac
+                | Function::Sin
+                | Function::Tan
+                | Function::ArcSin
+                | Function::ArcTan
+                | Function::Sinh
+                | Function::Tanh,
+                list,
+            ) => match list.as_slice() {
+                [argument] => self.resting(argument, own),
+                _ => None,
+            },
+            NodeKind::Aggregate(AggregateOp::Sum | AggregateOp::Sor, d, body) => {
+                let own: Vec<Slot> = own.iter().chain(&d.slots).copied().collect();
+                let members = d.members.iter().map(|m| {
+                    let kind = NodeKind::Data(m.table, m.key.clone());
+                    Node::data(kind, n.span)
+                });
+                let members: Vec<Node> = members.collect();
+                let parts = members.iter().chain(&d.conditions).chain([&**body]);
+                self.meeting(parts, &own)
+            }
+            _ => None,
+        }
+    }
+
+    /// A number of the text, or a scalar.
+    fn is_number(&self, n: &Node) -> bool {
+        match &n.kind {
+            NodeKind::Const(x) => x.is_normal() || *x == 0.0,
+            NodeKind::Data(t, key) if key.parts.is_empty() => {
+                let mut symbols = self.symbols.iter();
+                symbols.any(|(_, s)| s.table == *t && !s.has_attributes())
+            }
+            _ => false,
+        }
+    }
+
+    /// When a comparison of 0 with a number holds: never (no condition), or where a scalar says so. `zero_first`: the
+    /// 0 stands on the left. None if it always holds, or with what is no number.
+    fn compared(&self, op: BinaryOp, number: &Node, zero_first: bool) -> Option<Option<Node>> {
+        if !self.is_number(number) {
+            return None;
+        }
+        let zero = NodeKind::Const(0.0);
+        if let NodeKind::Const(x) = number.kind {
+            let (a, b) = if zero_first { (0.0, x) } else { (x, 0.0) };
+            let holds = match op {
+                BinaryOp::Lt => a < b,
+                BinaryOp::Le => a <= b,
+                BinaryOp::Gt => a > b,
+                BinaryOp::Ge => a >= b,
+                _ => a != b,
+            };
+            return (!holds).then_some(None);
+        }
+        let NodeKind::Data(t, key) = &number.kind else {
+            return None;
+        };
+        let zero = Box::new(Node::data(zero, number.span));
+        let scalar = NodeKind::Data(*t, key.clone());
+        let scalar = Box::new(Node::data(scalar, number.span));
+        let (a, b) = if zero_first {
+            (zero, scalar)
+        } else {
+            (scalar, zero)
+        };
+        let kind = NodeKind::Binary(op, a, b);
+        Some(Some(Node::data(kind, number.span)))
+    }
+
+    /// Of several expressions: 0 where all are.
+    fn together<'n>(
+        &mut self,
+        parts: impl IntoIterator<Item = &'n Node>,
+        own: &[Slot],
+    ) -> Option<Vec<Node>> {
+        let mut unless = Vec::new();
+        for n in parts {
+            unless.extend(self.resting(n, own)?);
+        }
+        Some(unless)
+    }
+
+    /// Of a product: 0 where any factor is.
+    fn meeting<'n>(
+        &mut self,
+        factors: impl IntoIterator<Item = &'n Node>,
+        own: &[Slot],
+    ) -> Option<Vec<Node>> {
+        let zero = factors.into_iter().filter_map(|f| self.resting(f, own));
+        let both = |a: Node, b: Node| {
+            let span = a.span;
+            Node::data(
+                NodeKind::Binary(BinaryOp::And, Box::new(a), Box::new(b)),
+                span,
+            )
+        };
+        let all = zero.filter_map(|unless| unless.into_iter().reduce(either));
+        Some(vec![all.reduce(both)?])
+    }
+
+    /// Whether there is a record with these first positions, up to the first that the loop does not control.
+    fn begins_with(&mut self, table: TableId, key: &Key, own: &[Slot], span: Span) -> Option<Node> {
+        let fixed = key.parts.iter().take_while(|p| is_fixed(p, own)).count();
+        let runs = |p: &Part| matches!(p, Part::Slot(_));
+        if !key.parts[..fixed].iter().any(runs) {
+            return None;
+        }
+        let mut parts = key.parts.clone();
+        if fixed == parts.len() {
+            let kind = NodeKind::Data(table, Key { parts });
+            return Some(Node::data(kind, span));
+        }
+        let mut domain = Domain::default();
+        for part in &mut parts[fixed..] {
+            let slot = self.new_slot();
+            *part = Part::Slot(slot);
+            domain.slots.push(slot);
+            domain.sets.push(self.symbols.get(UNIVERSE).table);
+            domain.names.push(UNIVERSE);
+        }
+        let key = Key { parts };
+        domain.members.push(Driver { table, key });
+        let one = Box::new(Node::data(NodeKind::Const(1.0), span));
+        let any = NodeKind::Aggregate(AggregateOp::Sor, Box::new(domain), one);
+        Some(Node::data(any, span))
+    }
+
+    /// The right side of such an assignment, its own indices, and what it writes to.
+    fn driven<'b>(&self, body: &'b [Code]) -> Option<(&'b Node, &'b [Slot], Target)> {
+        let [only] = body else { return None };
+        match &only.kind {
+            CodeKind::If(arms, otherwise) if otherwise.is_empty() => match arms.as_slice() {
+                [(_, body)] => self.driven(body),
+                _ => None,
+            },
+            CodeKind::Assign {
+                domain,
+                target: target @ (Target::Table(t) | Target::Set(t)),
+                value,
+                nonzero: false,
+                covers: true,
+                ..
+            } if !domain.slots.is_empty() => {
+                let mut symbols = self.symbols.iter();
+                let whole = symbols.any(|(_, s)| s.table == *t && !s.has_attributes());
+                (whole && !value.has_random()).then_some((value, &domain.slots, *target))
+            }
+            _ => None,
+        }
+    }
+}
+
+/// Whether a loop's assignment reads what it writes to so that no turn may be passed over: GAMS passes over turns
+/// where no such reading is at the record that is written or at labels alone, and, of a parameter, all is under a `$`
+/// whose other side drives the loop: `p(i,j) = q(k)$p(i++1,j)`, but not `q(k)*p(i++1,j)`, `q(k)$p(i,j)`, `q(k)$p('a','b')`.
+struct LateReading<'c> {
+    compiler: &'c mut Compiler,
+    table: TableId,
+    own: &'c [Slot],
+    /// Indices of the sums around.
+    inner: Vec<Slot>,
+    guarded: bool,
+    early: bool,
+}
+
+impl LateReading<'_> {
+    /// Whether it is 0 where no record of the loop's index is.
+    fn drives(&mut self, n: &Node) -> bool {
+        let own = [self.own, &self.inner].concat();
+        self.compiler.resting(n, &own).is_some()
+    }
+
+    /// Both sides of a `$`.
+    fn sides(&mut self, a: &Node, b: &Node) {
+        for (n, other) in [(a, b), (b, a)] {
+            let before = self.guarded;
+            self.guarded |= self.drives(other);
+            self.node(n);
+            self.guarded = before;
+        }
+    }
+}
+
+impl<'a> Visitor<'a> for LateReading<'_> {
+    fn node(&mut self, n: &'a Node) {
+        match &n.kind {
+            NodeKind::Data(t, key) if *t == self.table => {
+                let own = |p: (&Part, &Slot)| matches!(p.0, Part::Slot(s) if s == p.1);
+                let same = key.parts.iter().zip(self.own).all(own);
+                let fixed = key.parts.iter().all(|p| matches!(p, Part::Label(_)));
+                self.early |= !self.guarded || same || fixed;
+                n.walk(self);
+            }
+            NodeKind::Dollar(a, c) => self.sides(a, c),
+            NodeKind::Aggregate(_, d, body) => {
+                let outside = self.inner.len();
+                self.inner.extend(&d.slots);
+                let before = self.guarded;
+                self.guarded |= d.members.iter().any(|m| {
+                    let kind = NodeKind::Data(m.table, m.key.clone());
+                    self.drives(&Node::data(kind, n.span))
+                });
+                for c in &d.conditions {
+                    self.sides(body, c);
+                }
+                if d.conditions.is_empty() {
+                    self.node(body);
+                }
+                self.guarded = before;
+                self.inner.truncate(outside);
+            }
+            _ => n.walk(self),
+        }
+    }
+}
+
+/// Whether an index is a label or one that runs outside.
+fn is_fixed(p: &Part, own: &[Slot]) -> bool {
+    match p {
+        Part::Slot(s) => !own.contains(s),
+        Part::Label(_) => true,
+        Part::Lag(_) | Part::Singleton(..) => false,
+    }
+}
+
+/// `a or b`
+fn either(a: Node, b: Node) -> Node {
+    let span = a.span;
+    Node::data(
+        NodeKind::Binary(BinaryOp::Or, Box::new(a), Box::new(b)),
+        span,
+    )
+}
