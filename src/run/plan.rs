@@ -23,6 +23,8 @@ use std::sync::{Arc, PoisonError};
 pub struct Plan {
     /// The tuples of all branches count.
     branches: Vec<Branch>,
+    /// Conditions that draw random numbers, where tuples are gathered: evaluated in their order.
+    late: Box<[usize]>,
     /// What it takes for granted.
     premises: Vec<Premise>,
 }
@@ -114,7 +116,7 @@ impl Plan {
     /// Whether tuples can be used as they are found.
     fn direct(&self) -> Option<&Branch> {
         match self.branches.as_slice() {
-            [one] if !one.projects => Some(one),
+            [one] if !one.projects && self.late.is_empty() => Some(one),
             _ => None,
         }
     }
@@ -177,6 +179,15 @@ impl Machine<'_> {
                     let key = key.clone();
                     vec![Driver { table, key }]
                 }));
+                // Numbers are drawn where the value or what is stored can be other than 0.
+                let whole = |a: &Vec<Driver>| {
+                    let found: Vec<Slot> = a.iter().flat_map(|m| slots_of_key(&m.key)).collect();
+                    d.slots.iter().all(|s| found.contains(s))
+                };
+                s.forced |= d.conditions.iter().any(Node::has_random)
+                    && !v.has_random()
+                    && s.is_plain()
+                    && s.support.iter().all(whole);
                 supports.push(s);
             }
         }
@@ -216,10 +227,17 @@ impl Machine<'_> {
         } else {
             vec![(0..count).collect()]
         };
+        let random = |list: &[usize]| list.iter().any(|&i| d.conditions[i].has_random());
+        let (late, early): (Vec<_>, Vec<_>) = filters.iter().cloned().partition(|f| random(f));
+        let gathers = |list: &[Vec<Candidate>]| {
+            let mut all = list.iter().flatten();
+            list.len() > 1 || all.any(|c| slots_of_key(&c.key).iter().any(|&s| is_inner(s, d)))
+        };
         let make = |list: &[Vec<Candidate>]| -> Vec<Branch> {
+            let filters = if gathers(list) { &early } else { &filters };
             let branches = list.iter();
             branches
-                .map(|c| self.branch(d, &filters, c, pick, wanted.stored.map(|s| s.0)))
+                .map(|c| self.branch(d, filters, c, pick, wanted.stored.map(|s| s.0)))
                 .collect()
         };
         let mut premises = analysis.premises;
@@ -234,7 +252,7 @@ impl Machine<'_> {
                 .map(|&t| Premise::Size(t, self.store.table(t).len())),
         );
         let mut made = make(&branches);
-        open.retain(|_| pick == Pick::Cheapest);
+        open.retain(|(forced, _)| *forced || pick == Pick::Cheapest);
         open.sort_by_key(|(forced, _)| !forced);
         for (forced, alternatives) in open {
             let Some(wider) = product(&branches, &alternatives) else {
@@ -246,6 +264,10 @@ impl Machine<'_> {
             }
         }
         Plan {
+            late: match gathers(&branches) {
+                true => late.concat().into(),
+                false => Box::default(),
+            },
             branches: made,
             premises,
         }
@@ -491,7 +513,8 @@ impl Machine<'_> {
             for (&s, &l) in d.slots.iter().zip(t) {
                 frame[s as usize] = l;
             }
-            f(frame)
+            let late = plan.late.iter().map(|&i| &d.conditions[i]);
+            !self.all_hold(late, frame) || f(frame)
         })
     }
 
@@ -602,7 +625,15 @@ impl Machine<'_> {
     /// All tuples of a domain, flat, in label order.
     pub(super) fn tuples(&self, d: &Domain, frame: &mut Vec<Label>) -> Vec<Label> {
         let plan = self.plan(d, Wanted::default());
-        self.gather(d, &plan, frame)
+        if plan.late.is_empty() {
+            return self.gather(d, &plan, frame);
+        }
+        let mut out = Vec::new();
+        self.run_plan(d, &plan, frame, &mut |f| {
+            out.extend(d.slots.iter().map(|&s| f[s as usize]));
+            self.keep_going()
+        });
+        out
     }
 }
 

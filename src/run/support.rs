@@ -35,6 +35,13 @@ pub(super) struct Sparse {
     pub forced: bool,
 }
 
+impl Sparse {
+    /// Whether its records are found without lags.
+    pub(super) fn is_plain(&self) -> bool {
+        self.support.iter().flatten().all(|d| d.key.is_plain())
+    }
+}
+
 /// What a plan takes for granted.
 #[derive(Debug, PartialEq)]
 pub(super) enum Premise {
@@ -216,12 +223,12 @@ impl<'m, 'h> Analysis<'m, 'h> {
                 match (condition, value) {
                     (Some(c), Some(a)) => Some(meet(c, a)),
                     (Some(c), None) => Some(c),
-                    // Random numbers are drawn for every tuple.
-                    (None, Some(_)) if c.has_random() => None,
+                    // Random numbers are drawn where the value can be other than 0; with a lag there, for every tuple.
+                    (None, Some(a)) if c.has_random() && !a.is_plain() => None,
                     (None, Some(a)) => {
                         let care = self.care(c);
                         Some(Sparse {
-                            forced: a.forced || care != Some(Care::Total),
+                            forced: a.forced || c.has_random() || care != Some(Care::Total),
                             ..a
                         })
                     }
@@ -380,6 +387,7 @@ impl<'m, 'h> Analysis<'m, 'h> {
         if !matches!(op, AggregateOp::Sum | AggregateOp::Sor) {
             // Over nothing these are not 0.
             let whole = d.conditions.is_empty()
+                && !body.has_random()
                 && d.members.iter().all(|m| {
                     matches!(m.key.parts.as_slice(), [Part::Slot(s)] if d.slots.contains(s))
                         && !self.m.store.table(m.table).is_empty()
