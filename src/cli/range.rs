@@ -18,7 +18,7 @@ pub fn range(a: &RangeArgs) -> u8 {
         }
         if r.unfinished {
             eprintln!(
-                "bmod: the time for ranges is used up; name the rows and columns that you mean"
+                "bmod: some ranges are missing (their time is used up, or they are lost in rounding); name the rows and columns that you mean"
             );
             return Ok(EXECUTION);
         }

@@ -1,5 +1,7 @@
 //! A model and its answer in words.
 
+mod said;
+
 use super::convex::{Shape, shape};
 use super::derive::Primal;
 use super::math::explained;
@@ -12,13 +14,8 @@ use crate::model::instance::{ColumnKind, Relation, Sense};
 use crate::model::origin::Blocks;
 use crate::run::{Machine, Studied};
 use crate::solve::ModelStatus;
+use said::{MAX_NAMES, Said, counted, listed, worth};
 
-/// More records than this are not named; more sentences of one kind are not said.
-const MAX_NAMES: usize = 12;
-/// More sentences than this about one block are summed up in one.
-const MAX_SENTENCES: usize = 4;
-/// Of records that are said the same of, so many are named.
-const MAX_ALIKE: usize = 4;
 /// A reduced cost, or a way to another optimum, below this is 0, relative.
 const NONE: f64 = 1e-9;
 
@@ -37,7 +34,7 @@ pub struct Explained<'a> {
 }
 
 /// Rows and columns up to which ranges are found for an explanation.
-const MAX_RANGES: usize = 200;
+const MAX_RANGES: usize = 1000;
 
 /// A solve in words, and its ranges if it is a small linear program.
 pub fn of(m: &Machine, primal: &Primal, studied: &Studied) -> (Vec<String>, Option<Ranges>) {
@@ -75,21 +72,6 @@ pub fn explain(e: &Explained) -> Vec<String> {
     }
     out.retain(|p| !p.is_empty());
     out
-}
-
-/// What is said of a row or a column.
-struct Said {
-    /// Its number.
-    at: usize,
-    /// Its verb, of one and of many.
-    verb: [&'static str; 2],
-    /// What completes the verb.
-    place: String,
-    /// What follows.
-    words: String,
-    /// What is said in place of that where there are many different numbers, and the number.
-    lead: String,
-    number: f64,
 }
 
 impl Explained<'_> {
@@ -421,156 +403,6 @@ impl Explained<'_> {
         }
         out
     }
-
-    /// Sentences: one for the records of a block that say the same, and one for a block whose records say too much.
-    fn told(&self, blocks: &Blocks, kind: &str, all: Vec<Said>) -> Vec<String> {
-        let class = |s: &&Said| (blocks.of(s.at as u32).start, s.verb[0], s.lead.clone());
-        let words = |s: &&Said| (s.place.clone(), s.words.clone());
-        let mut sorted: Vec<&Said> = all.iter().collect();
-        sorted.sort_by_cached_key(|s| (class(s), words(s)));
-        let mut out: Vec<(String, usize)> = Vec::new();
-        for each in sorted.chunk_by(|a, b| class(a) == class(b)) {
-            let block = blocks.of(each[0].at as u32);
-            let (whole, name) = (block.len as usize, &self.symbols.get(block.symbol).name);
-            let mut alike: Vec<&[&Said]> = each.chunk_by(|a, b| words(a) == words(b)).collect();
-            alike.sort_by_key(|a| a[0].at);
-            if alike.len() > MAX_SENTENCES {
-                let by = |a: &&&Said, b: &&&Said| a.number.total_cmp(&b.number);
-                let end = |s: &Said| format!("{} ({})", short(s.number), self.name(blocks, s.at));
-                let numbers = match (each.iter().min_by(by), each.iter().max_by(by)) {
-                    (Some(a), Some(b)) if short(a.number) != short(b.number) => {
-                        format!("between {} and {}", end(a), end(b))
-                    }
-                    (a, _) => a.map_or(String::new(), |a| short(a.number)),
-                };
-                let of = match each.len() {
-                    n if n == whole => format!("All {n}"),
-                    n => format!("{n} of the {whole}"),
-                };
-                let Said { verb, lead, .. } = each[0];
-                let sentence = format!("{of} {kind}s of {name} {}: {lead} {numbers}.", verb[1]);
-                out.push((sentence, each.len()));
-                continue;
-            }
-            for alike in alike {
-                let s = alike[0];
-                let names = alike.iter().map(|s| self.name(blocks, s.at));
-                let (names, verb, each) = match alike.len() {
-                    1 => (self.name(blocks, s.at), s.verb[0], ": "),
-                    n if n == whole && n > 2 => (
-                        format!("All {n} {kind}s of {name}"),
-                        s.verb[1],
-                        "; for each, ",
-                    ),
-                    _ => (
-                        listed(&names.collect::<Vec<_>>(), MAX_ALIKE),
-                        s.verb[1],
-                        "; for each, ",
-                    ),
-                };
-                let each = if s.words.is_empty() { "" } else { each };
-                out.push((
-                    format!("{names} {verb}{}{each}{}.", s.place, s.words),
-                    alike.len(),
-                ));
-            }
-        }
-        let more: usize = out.iter().skip(MAX_NAMES).map(|s| s.1).sum();
-        out.truncate(MAX_NAMES);
-        let mut out: Vec<String> = out.into_iter().map(|s| s.0).collect();
-        if let Some(s) = all.first().filter(|_| more > 0) {
-            let (of, verb) = (
-                counted(more, &format!("more {kind}")),
-                s.verb[usize::from(more > 1)],
-            );
-            out.push(format!("{of} {verb}."));
-        }
-        out
-    }
-}
-
-/// What a row's right side is worth: what is said of many, the number of this one, and what is said of it.
-fn worth(
-    range: Option<&RowRange>,
-    marginal: f64,
-    objective: &str,
-    linear: bool,
-) -> (String, f64, String) {
-    let Some(r) = range else {
-        return match linear {
-            true => (
-                "their marginals are".into(),
-                marginal,
-                format!("its marginal is {}", short(marginal)),
-            ),
-            false => (
-                format!("a little more on a right side changes {objective}, per unit, by"),
-                marginal,
-                format!(
-                    "a little more on its right side changes {objective} by {} per unit",
-                    short(marginal)
-                ),
-            ),
-        };
-    };
-    let [below, above] = r.price;
-    let [from, to] = r.interval.map(short);
-    let limits = match r.interval.map(f64::is_finite) {
-        [true, true] => format!(" (from {from} to {to})"),
-        [true, false] => format!(" (down to {from})"),
-        [false, true] => format!(" (up to {to})"),
-        [false, false] => String::new(),
-    };
-    let on = format!(" on its right side changes {objective} by ");
-    let many = format!(" on a right side changes {objective} by");
-    let [more, less] = ["a unit more", "a unit less"];
-    match r.price.map(f64::is_finite) {
-        [true, true] if below == 0.0 && above == 0.0 => {
-            let words = "changing its right side a little changes nothing";
-            (String::new(), 0.0, words.into())
-        }
-        [true, true] => {
-            let other = match below == above {
-                true => String::new(),
-                false => format!(", {less} by {}", short(-below)),
-            };
-            let words = format!("{more}{on}{}{other}{limits}", short(above));
-            (format!("{more}{many}"), above, words)
-        }
-        [false, true] if above == 0.0 => {
-            let words = "more on its right side changes nothing, with less nothing is feasible";
-            (String::new(), 0.0, words.into())
-        }
-        [true, false] if below == 0.0 => {
-            let words = "less on its right side changes nothing, with more nothing is feasible";
-            (String::new(), 0.0, words.into())
-        }
-        [false, true] => (
-            format!("with less on a right side nothing is feasible, {more}{many}"),
-            above,
-            format!(
-                "{more}{on}{}{limits}, with less nothing is feasible",
-                short(above)
-            ),
-        ),
-        [true, false] => (
-            format!("with more on a right side nothing is feasible, {less}{many}"),
-            -below,
-            format!(
-                "{less}{on}{}{limits}, with more nothing is feasible",
-                short(-below)
-            ),
-        ),
-        [false, false] => {
-            let words = "with any other right side nothing is feasible";
-            (String::new(), 0.0, words.into())
-        }
-    }
-}
-
-/// `1 row`, `2 rows`.
-fn counted(n: usize, what: &str) -> String {
-    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
 fn discretely(n: usize) -> String {
@@ -578,17 +410,4 @@ fn discretely(n: usize) -> String {
         "{}, which are decided by a search",
         counted(n, "discrete column")
     )
-}
-
-/// Names with commas, the last after "and"; of more than `most` only the first and how many others there are.
-fn listed(names: &[String], most: usize) -> String {
-    match names {
-        [] => String::new(),
-        [one] => one.clone(),
-        [first @ .., last] if names.len() <= most => format!("{} and {last}", first.join(", ")),
-        _ => {
-            let (first, others) = names.split_at(most - 1);
-            format!("{} and {} others", first.join(", "), others.len())
-        }
-    }
 }

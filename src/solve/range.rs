@@ -1,20 +1,33 @@
 //! Sensitivity of a linear program: in which interval of a right-hand side a price holds, in which interval of a cost the
 //! point stays optimal.
 //!
-//! No basis is asked, so degenerate vertices give the right answer: the prices on either side of a right-hand side are the
-//! largest and the smallest multiplier of the optimal dual face (two programs say whether that is one point, and no more are
-//! needed then); a price holds as far as the value of the program grows with
-//! it, which one more linear program says.
+//! All is asked of one basis, factorised once. Around the optimal point x the program is the cone of the directions in which x
+//! can move,
+//!
+//! ```text
+//!     min cᵀΔ   subject to   A Δ − s = 0,   (Δ, s) ≥ 0 where x is at a lower bound, ≤ 0 where it is at an upper one,
+//! ```
+//!
+//! whose least value is 0, at 0. Given that one variable moves by 1 or −1 it is
+//!
+//! * for a row, what its right-hand side is worth on that side: the price, or that nothing is feasible there;
+//! * for a column, by how much its cost must change until moving it costs nothing: the interval of the cost.
+//!
+//! The basis of x is optimal for the cone too, and begins each of these programs: where x is no degenerate vertex nothing is
+//! left to do (the classical ratio tests: one solve with the factor for each), else the dual simplex method goes on from there, so
+//! prices are one-sided as they must be. A price holds as far as the row can go while what its multipliers hold at a bound stays
+//! there; that is one ratio test where the optimum is the only one, and a few primal pivots where it is not.
 
-use super::answer::answer_with;
+use super::answer::subproblem;
 use super::backend::Task;
-use super::random::Random;
-use super::registry::BACKENDS;
+use super::lp::Ended;
+use super::lp::form::{Form, Point};
+use super::lp::scale::Scaling;
+use super::lp::simplex::{Simplex, State};
 use super::{Budget, ModelStatus, Quiet, Settings};
-use crate::model::instance::{Instance, Objective, Relation, Sense};
+use crate::model::instance::{Instance, Relation};
 use crate::model::outcome::Basis;
 use crate::model::problem_type::ProblemType;
-use std::cell::{OnceCell, RefCell};
 
 /// A row's right-hand side.
 #[derive(Clone, Debug)]
@@ -49,37 +62,20 @@ pub struct Ranges {
     pub rows: Vec<RowRange>,
     /// By column, an eliminated objective variable left out.
     pub costs: Vec<CostRange>,
-    /// A limit of time was reached: the rest is missing.
+    /// Some are missing: a limit of time was reached, or numbers broke down.
     pub unfinished: bool,
 }
 
-/// How far two multipliers of a row may be apart to be the same, relative.
-const SAME: f64 = 1e-9;
 /// How near to a bound is at it, relative.
 const NEAR: f64 = 1e-7;
-/// What the value may be off along a range, relative.
-const VALUE_TOLERANCE: f64 = 1e-10;
-/// An end nearer to 0 than this, relative to the right-hand side and the way from it, is 0.
+/// A multiplier below this is 0, in the units of the scaled program.
+const NO_PRICE: f64 = 1e-9;
+/// An end nearer to 0 than this, relative to the number and the way from it, is 0.
 const END_TOLERANCE: f64 = 1e-8;
-
-/// The program as a minimum without its objective variable.
-struct Reduced<'a> {
-    p: &'a Instance,
-    sign: f64,
-    /// The row and the column that define the objective, where one does.
-    gone: Option<(usize, usize)>,
-    cost: Vec<f64>,
-    x: &'a [f64],
-    activity: &'a [f64],
-    value: f64,
-    /// The optimal dual face, and the multipliers where it is one point, once they were asked for.
-    face: OnceCell<Instance>,
-    point: OnceCell<Option<Vec<f64>>>,
-    /// On the optimal dual face; on that of a program with another cost; and along a right-hand side.
-    prices: Family,
-    costs: Family,
-    ways: Family,
-}
+/// A direction in which one variable moves this much farther than another is none, where that is in doubt.
+const STEEP: f64 = 1e9;
+/// Updates after which a factor still counts as fresh: what comes out is computed anew at the end.
+const TRUSTED: usize = 30;
 
 /// The ranges of an optimal point: its levels and the activities of its rows. `wanted`: rows and columns to look at;
 /// `in_time`: false once there is no time left.
@@ -91,39 +87,31 @@ pub fn ranges(
     wanted_column: &dyn Fn(usize) -> bool,
     in_time: &dyn Fn() -> bool,
 ) -> Ranges {
-    let Some(reduced) = Reduced::new(p, x, activity) else {
-        return Ranges::default();
-    };
     let mut out = Ranges::default();
-    for i in 0..p.row_count() {
-        let skip = reduced.is_gone_row(i) || p.rows.relation[i] == Relation::Free;
-        if skip || !wanted_row(i) {
-            continue;
-        }
-        if !in_time() {
-            out.unfinished = true;
-            return out;
-        }
-        out.rows.push(reduced.row(i));
+    let Some(cone) = Cone::new(p, x, activity, in_time) else {
+        out.unfinished = p.objective.is_some();
+        return out;
+    };
+    let rows = cone.form.rows.iter().enumerate();
+    for (k, &i) in rows.filter(|(_, i)| wanted_row(**i as usize)) {
+        let found = in_time().then(|| cone.row(k, i as usize)).flatten();
+        out.unfinished |= found.is_none();
+        out.rows.extend(found);
     }
-    for j in 0..p.column_count() {
-        if reduced.is_gone_column(j) || !wanted_column(j) {
-            continue;
-        }
-        if !in_time() {
-            out.unfinished = true;
-            return out;
-        }
-        out.costs.push(reduced.cost_of(j));
+    let columns = cone.form.columns.iter().enumerate();
+    for (k, &j) in columns.filter(|(_, j)| wanted_column(**j as usize)) {
+        let found = in_time().then(|| cone.column(k, j as usize)).flatten();
+        out.unfinished |= found.is_none();
+        out.costs.extend(found);
     }
     out
 }
 
 fn near(a: f64, b: f64) -> bool {
-    (a - b).abs() <= NEAR * (1.0 + a.abs().max(b.abs()))
+    b.is_finite() && (a - b).abs() <= NEAR * (1.0 + a.abs().max(b.abs()))
 }
 
-/// A number without the rounding of a linear program: the nearest with ten digits.
+/// A number without the rounding of a linear program: the nearest with nine digits.
 fn rounded(x: f64) -> f64 {
     match x.is_finite() && x != 0.0 {
         true => format!("{x:.8e}").parse().unwrap_or(x),
@@ -131,223 +119,242 @@ fn rounded(x: f64) -> f64 {
     }
 }
 
-/// Linear programs that differ little: each begins with the basis in which the last one ended.
-#[derive(Default)]
-struct Family {
-    basis: RefCell<Option<Basis>>,
+/// The end of a range that goes so far from a number. What is left of a difference of equal numbers is rounding.
+fn end(from: f64, by: f64) -> f64 {
+    let size = from.abs() + by.abs();
+    match (from + by).abs() <= END_TOLERANCE * size && size.is_finite() {
+        true => 0.0,
+        false => rounded(from + by),
+    }
 }
 
-impl Family {
-    /// The least or the largest value of a column; infinite if there is none, None if nothing is feasible.
-    fn extreme(&self, p: Instance, column: usize, sense: Sense) -> Option<f64> {
-        self.furthest(p, column, sense).map(|(value, _)| value)
-    }
+/// The cone of the directions in which an optimal point can move, in scaled units. Variables are counted as in [`Simplex`]:
+/// columns, then rows.
+struct Cone<'a> {
+    p: &'a Instance,
+    form: Form,
+    scaling: Scaling,
+    x: Vec<f64>,
+    activity: Vec<f64>,
+    in_time: &'a dyn Fn() -> bool,
+    /// How far each variable can go down and up to its bounds: 0 at a bound.
+    room: Vec<[f64; 2]>,
+    /// At an optimal basis of the cone, and its multipliers.
+    engine: Simplex,
+    at_rest: Point,
+}
 
-    /// The same with the point at which it is reached; no point where it is infinite.
-    fn furthest(&self, mut p: Instance, column: usize, sense: Sense) -> Option<(f64, Vec<f64>)> {
-        p.objective = Some(Objective {
-            column: column as u32,
-            sense,
-        });
-        let far = match sense {
-            Sense::Minimize => f64::NEG_INFINITY,
-            Sense::Maximize => f64::INFINITY,
+impl<'a> Cone<'a> {
+    /// The cone of a point, or where that is not optimal enough, of the one that the simplex method ends at from there.
+    fn new(
+        p: &'a Instance,
+        x: &[f64],
+        activity: &[f64],
+        in_time: &'a dyn Fn() -> bool,
+    ) -> Option<Self> {
+        p.objective?;
+        let inside = |v: f64, l: f64, u: f64| match (near(v, l), near(v, u)) {
+            (false, false) => State::Basic,
+            (true, _) => State::Lower,
+            _ => State::Upper,
         };
-        let basis = self.basis.take();
+        let columns = (0..x.len()).map(|j| inside(x[j], p.columns.lower[j], p.columns.upper[j]));
+        let rows = (0..p.row_count()).map(|i| match near(activity[i], p.rows.rhs[i]) {
+            false => State::Basic,
+            true if p.rows.relation[i] == Relation::Less => State::Upper,
+            true => State::Lower,
+        });
+        let start: Basis = columns.chain(rows).collect();
         let task = Task {
-            basis: basis.as_ref(),
-            ..Task::new(ProblemType::Lp, &p)
+            basis: Some(&start),
+            ..Task::new(ProblemType::Lp, p)
         };
         let mut quiet = Quiet::default();
         let budget = Budget::unlimited(&mut quiet);
-        let a = answer_with(BACKENDS, &task, &Settings::default(), &budget).ok()?;
-        self.basis.replace(a.outcome.basis.or(basis));
-        match a.status {
-            ModelStatus::Optimal => Some((a.outcome.level[column], a.outcome.level)),
-            ModelStatus::Unbounded | ModelStatus::UnboundedNoSolution => Some((far, Vec::new())),
-            _ => None,
-        }
+        let a = subproblem(&task, &Settings::default(), &budget).ok()?;
+        let basis = (a.status == ModelStatus::Optimal).then_some(a.outcome.basis)??;
+        let (level, reached) = (&a.outcome.level, &a.activity);
+        Self::at(p, x, activity, &basis, in_time)
+            .or_else(|| Self::at(p, level, reached, &basis, in_time))
     }
-}
 
-impl<'a> Reduced<'a> {
-    fn new(p: &'a Instance, x: &'a [f64], activity: &'a [f64]) -> Option<Self> {
-        let o = p.objective?;
-        let z = o.column as usize;
-        let row = p
-            .objective_row()
-            .filter(|&(i, _)| p.is_free(z) && p.rows.relation[i] == Relation::Equal);
-        let gone = row.map(|(i, _)| (i, z));
-        let sign = p.sign();
-        let mut cost = vec![0.0; p.column_count()];
-        match row {
-            Some((i, a)) => {
-                p.matrix.row(i).for_each(|(j, v)| cost[j] = -sign * v / a);
-                cost[z] = 0.0;
-            }
-            None => cost[z] = sign,
+    fn at(
+        p: &'a Instance,
+        x: &[f64],
+        activity: &[f64],
+        basis: &Basis,
+        in_time: &'a dyn Fn() -> bool,
+    ) -> Option<Self> {
+        let form = Form::new(p).ok()?;
+        let scaling = Scaling::new(&form.problem);
+        let room = |v: f64, l: f64, u: f64, unit: f64| {
+            let by = |bound: f64| {
+                if near(v, bound) {
+                    0.0
+                } else {
+                    (bound - v) / unit
+                }
+            };
+            [by(l).min(0.0), by(u).max(0.0)]
+        };
+        let q = &form.problem;
+        let columns = form.columns.iter().enumerate().map(|(k, &j)| {
+            let unit = scaling.column[k] * scaling.size;
+            room(x[j as usize], q.lower[k], q.upper[k], unit)
+        });
+        let rows = form.rows.iter().enumerate().map(|(k, &i)| {
+            let unit = scaling.size / scaling.row[k];
+            room(activity[i as usize], q.row_lower[k], q.row_upper[k], unit)
+        });
+        let room: Vec<[f64; 2]> = columns.chain(rows).collect();
+        let mut engine = Simplex::new(&scaling.apply(q));
+        for (v, room) in room.iter().enumerate() {
+            let [lower, upper] = room.map(|r| if r == 0.0 { 0.0 } else { r * f64::INFINITY });
+            engine.set_bounds(v, lower, upper);
         }
-        let value = cost.iter().zip(x).map(|(c, x)| c * x).sum();
+        let ended = engine.solve_from_basis(&form.basis(basis), &mut |_| None);
+        let at_rest = engine.point().filter(|_| ended == Ended::Solved)?;
+        engine.trusted = TRUSTED;
         Some(Self {
             p,
-            sign,
-            gone,
-            cost,
-            x,
-            activity,
-            value,
-            face: OnceCell::new(),
-            point: OnceCell::new(),
-            prices: Family::default(),
-            costs: Family::default(),
-            ways: Family::default(),
+            x: x.to_vec(),
+            activity: activity.to_vec(),
+            in_time,
+            room,
+            engine,
+            at_rest,
+            form,
+            scaling,
         })
     }
 
-    fn is_gone_row(&self, i: usize) -> bool {
-        self.gone.is_some_and(|g| g.0 == i)
+    /// Solves again after bounds or costs have changed.
+    fn solved(&self, mut s: Simplex) -> (Ended, Simplex) {
+        let in_time = self.in_time;
+        let ended = s.resolve(&mut |_| (!in_time()).then_some(Ended::Time));
+        (ended, s)
     }
 
-    fn is_gone_column(&self, j: usize) -> bool {
-        self.gone.is_some_and(|g| g.1 == j)
-    }
-
-    /// The optimal dual face: a column per row; `extra` columns behind them.
-    fn dual_face(&self, shifted: Option<usize>) -> Instance {
-        let p = self.p;
-        let mut d = Instance::default();
-        for i in 0..p.row_count() {
-            let tight = near(self.activity[i], p.rows.rhs[i]);
-            let (lo, up) = match p.rows.relation[i] {
-                _ if self.is_gone_row(i) => (0.0, 0.0),
-                Relation::Equal => (f64::NEG_INFINITY, f64::INFINITY),
-                Relation::Greater if tight => (0.0, f64::INFINITY),
-                Relation::Less if tight => (f64::NEG_INFINITY, 0.0),
-                _ => (0.0, 0.0),
-            };
-            d.columns.push(lo, up);
-        }
-        let shift = d.columns.push(f64::NEG_INFINITY, f64::INFINITY);
-        let mut transposed: Vec<Vec<(usize, f64)>> = vec![Vec::new(); p.column_count()];
-        for i in (0..p.row_count()).filter(|&i| !self.is_gone_row(i)) {
-            for (j, v) in p.matrix.row(i) {
-                transposed[j].push((i, v));
+    /// The cone's optimum with other bounds for a variable; inner None: no direction is like this.
+    #[allow(clippy::option_option)]
+    fn least(&self, v: usize, [lower, upper]: [f64; 2]) -> Option<Option<(Simplex, Point)>> {
+        let mut s = self.engine.clone();
+        s.set_bounds(v, lower, upper);
+        let (mut ended, mut s) = self.solved(s);
+        if ended == Ended::Failed {
+            // What cannot be proved with infinite bounds because of rounding can with these.
+            s = self.engine.clone();
+            for (k, room) in self.room.iter().enumerate() {
+                let [low, high] = room.map(|r| if r == 0.0 { 0.0 } else { STEEP.copysign(r) });
+                s.set_bounds(k, low, high);
+            }
+            s.set_bounds(v, lower.max(-STEEP), upper.min(STEEP));
+            (ended, s) = self.solved(s);
+            if s.values().iter().any(|x| x.abs() >= 0.5 * STEEP) {
+                return Some(None);
             }
         }
-        for (j, mut terms) in transposed.into_iter().enumerate() {
-            let (lo, up) = (p.columns.lower[j], p.columns.upper[j]);
-            if lo == up || self.is_gone_column(j) {
-                continue;
-            }
-            let relation = match (near(self.x[j], lo), near(self.x[j], up)) {
-                (true, _) if lo.is_finite() => Relation::Less,
-                (_, true) if up.is_finite() => Relation::Greater,
-                _ => Relation::Equal,
-            };
-            if shifted == Some(j) {
-                terms.push((shift, -1.0));
-            }
-            d.add_row(terms, relation, self.cost[j]);
+        match ended {
+            Ended::Solved => s.point().map(|point| Some((s, point))),
+            Ended::Infeasible(_) => Some(None),
+            _ => None,
         }
-        if shifted.is_none() {
-            (d.columns.lower[shift], d.columns.upper[shift]) = (0.0, 0.0);
-        }
-        d
     }
 
-    /// The point of which the optimal dual face consists, where it is one: a functional drawn at random has the same least and
-    /// largest value on it, and reaches them at the same point. On any larger face these differ (with probability one).
-    fn one_point(&self, mut face: Instance) -> Option<Vec<f64>> {
-        let mut stream = Random(1);
-        let rows = self.p.row_count();
-        let weight = |_| (1.0 + stream.uniform()) * if stream.uniform() < 0.5 { -1.0 } else { 1.0 };
-        let mut terms: Vec<(usize, f64)> = (0..rows).map(weight).enumerate().collect();
-        let value = face.columns.push(f64::NEG_INFINITY, f64::INFINITY);
-        terms.push((value, -1.0));
-        face.add_row(terms, Relation::Equal, 0.0);
-        let family = Family::default();
-        let (_, low) = family.furthest(face.clone(), value, Sense::Minimize)?;
-        let (_, high) = family.furthest(face, value, Sense::Maximize)?;
-        let alike = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME * (1.0 + a.abs().max(b.abs()));
-        let one = !low.is_empty() && !high.is_empty() && low[..rows].iter().zip(&high).all(alike);
-        one.then_some(low)
+    /// How far a variable goes in a direction while all stays at its bound that has a reduced cost.
+    fn furthest(&self, mut s: Simplex, v: usize, direction: f64) -> Option<f64> {
+        let held: Vec<bool> = s.reduced().iter().map(|d| d.abs() > NO_PRICE).collect();
+        for (k, &held) in held.iter().enumerate() {
+            let [lower, upper] = match held {
+                _ if k == v && direction > 0.0 => [0.0, f64::INFINITY],
+                _ if k == v => [f64::NEG_INFINITY, 0.0],
+                true => [0.0, 0.0],
+                false => self.room[k],
+            };
+            s.set_bounds(k, lower, upper);
+            s.set_cost(k, if k == v { -direction } else { 0.0 });
+        }
+        match self.solved(s) {
+            (Ended::Solved, mut s) => s.point().map(|_| s.values()[v].abs()),
+            (Ended::Unbounded(_), _) => Some(f64::INFINITY),
+            _ => None,
+        }
     }
 
-    fn row(&self, i: usize) -> RowRange {
-        let p = self.p;
-        let tight = p.rows.relation[i] == Relation::Equal || near(self.activity[i], p.rows.rhs[i]);
-        let mut price = [0.0, 0.0];
-        if tight {
-            let face = || self.face.get_or_init(|| self.dual_face(None)).clone();
-            let side = |sense| self.prices.extreme(face(), i, sense).unwrap_or(f64::NAN);
-            price = match self.point.get_or_init(|| self.one_point(face())) {
-                Some(y) => [y[i]; 2],
-                None => [side(Sense::Minimize), side(Sense::Maximize)],
+    fn row(&self, k: usize, i: usize) -> Option<RowRange> {
+        let v = self.form.columns.len() + k;
+        let (value, relation) = (self.p.rows.rhs[i], self.p.rows.relation[i]);
+        let tight = relation == Relation::Equal || near(self.activity[i], value);
+        let unit = self.scaling.size / self.scaling.row[k];
+        // The price and how far it holds when the right-hand side moves so.
+        let side = |direction: f64| {
+            let loosens = match relation {
+                Relation::Less => direction > 0.0,
+                Relation::Greater => direction < 0.0,
+                _ => false,
             };
-        }
-        let value = p.rows.rhs[i];
-        let far = |up: bool| match price[usize::from(up)].is_finite() {
-            true => self.as_far(i, price[usize::from(up)], if up { 1.0 } else { -1.0 }),
-            false => 0.0,
+            if !tight && loosens {
+                return Some((0.0, f64::INFINITY));
+            }
+            let bounds = match relation {
+                Relation::Less => [f64::NEG_INFINITY, direction],
+                Relation::Greater => [direction, f64::INFINITY],
+                _ => [direction; 2],
+            };
+            let at = match tight {
+                true => self.least(v, bounds)?,
+                false => Some((self.engine.clone(), self.at_rest.clone())),
+            };
+            let Some((engine, point)) = at else {
+                return Some((direction * f64::INFINITY, 0.0));
+            };
+            let y = point.y[k];
+            if engine.is_basic(v) || y.abs() <= NO_PRICE {
+                if loosens {
+                    return Some((0.0, f64::INFINITY));
+                }
+                let spare = if tight {
+                    0.0
+                } else {
+                    (self.activity[i] - value).abs()
+                };
+                return Some((0.0, spare + self.furthest(engine, v, direction)? * unit));
+            }
+            let price = y * self.scaling.price * self.scaling.row[k];
+            Some((price, self.furthest(engine, v, direction)? * unit))
         };
-        let end = |by: f64| {
-            let size = value.abs() + by.abs();
-            // What is left of a difference of equal numbers is rounding.
-            match (value + by).abs() <= END_TOLERANCE * size && size.is_finite() {
-                true => 0.0,
-                false => rounded(value + by),
-            }
-        };
-        let interval = [end(-far(false)), end(far(true))];
-        RowRange {
+        let (below, above) = (side(-1.0)?, side(1.0)?);
+        Some(RowRange {
             row: i,
             value,
-            price: price.map(|y| rounded(y * self.sign)),
-            interval,
-        }
+            price: [below.0, above.0].map(|y| rounded(y * self.form.sign)),
+            interval: [end(value, -below.1), end(value, above.1)],
+        })
     }
 
-    /// How far the right-hand side of a row goes in a direction before its price changes.
-    fn as_far(&self, i: usize, price: f64, direction: f64) -> f64 {
-        let mut d = Instance {
-            columns: self.p.columns.clone(),
-            ..Instance::default()
+    fn column(&self, k: usize, j: usize) -> Option<CostRange> {
+        let unit = self.scaling.price / self.scaling.column[k];
+        // By how much the cost may change until the column goes this way.
+        let side = |direction: f64| {
+            let [down, up] = self.room[k];
+            let stuck = if direction < 0.0 { down } else { up } == 0.0;
+            let at = match stuck {
+                true => None,
+                false => self.least(k, [direction; 2])?,
+            };
+            Some(at.map_or(f64::INFINITY, |(_, point)| {
+                (point.d[k] * direction).max(0.0) * unit
+            }))
         };
-        let t = d.columns.push(0.0, f64::INFINITY);
-        for k in (0..self.p.row_count()).filter(|&k| !self.is_gone_row(k)) {
-            let mut terms: Vec<(usize, f64)> = self.p.matrix.row(k).collect();
-            if k == i {
-                terms.push((t, -direction));
-            }
-            d.add_row(terms, self.p.rows.relation[k], self.p.rows.rhs[k]);
-        }
-        let mut terms: Vec<(usize, f64)> = self.cost.iter().copied().enumerate().collect();
-        terms.push((t, -direction * price));
-        let room = VALUE_TOLERANCE * (1.0 + self.value.abs());
-        d.add_row(terms, Relation::Less, self.value + room);
-        let furthest = self.ways.extreme(d, t, Sense::Maximize);
-        furthest.map_or(0.0, |t| t.max(0.0))
-    }
-
-    fn cost_of(&self, j: usize) -> CostRange {
-        let shift = self.p.row_count();
-        let side = |sense| self.costs.extreme(self.dual_face(Some(j)), shift, sense);
-        let (down, up) = (side(Sense::Minimize), side(Sense::Maximize));
-        let fixed = self.p.columns.lower[j] == self.p.columns.upper[j];
-        let c = self.cost[j];
-        let at = |s: Option<f64>, far: f64| match s {
-            _ if fixed => far,
-            Some(s) => c + s,
-            None => c,
-        };
-        let (low, high) = (at(down, f64::NEG_INFINITY), at(up, f64::INFINITY));
-        let mut interval = [low * self.sign, high * self.sign].map(rounded);
+        let c = self.form.problem.cost[k];
+        let (up, down) = (side(-1.0)?, side(1.0)?);
+        let mut interval = [end(c, -down), end(c, up)].map(|c| c * self.form.sign + 0.0);
         interval.sort_by(f64::total_cmp);
-        CostRange {
+        Some(CostRange {
             column: j,
-            value: c * self.sign + 0.0,
+            value: c * self.form.sign + 0.0,
             level: self.x[j],
             interval,
-        }
+        })
     }
 }

@@ -11,6 +11,7 @@ use crate::solve::answer::subproblem;
 use crate::solve::backend::Task;
 use crate::solve::certificate;
 use crate::solve::conformance::{Quiet, Row, linear};
+use crate::solve::range::{Ranges, ranges};
 use crate::solve::{Claim, ModelStatus, Outcome, Settings};
 
 /// What a random program is made of.
@@ -79,6 +80,25 @@ fn run(method: &str, instance: &Instance) -> (ModelStatus, Outcome) {
 
 fn value(o: &Outcome) -> f64 {
     *o.level.last().expect("an objective")
+}
+
+/// Ranges of an optimal program, if it is one, and its value.
+fn ranged(p: &Parts) -> Option<(Ranges, Outcome)> {
+    let instance = p.instance();
+    let (status, o) = run("simplex", &instance);
+    let dot = |i| instance.matrix.row(i).map(|(j, a)| a * o.level[j]).sum();
+    let activity: Vec<f64> = (0..instance.row_count()).map(dot).collect();
+    let found = || {
+        ranges(
+            &instance,
+            &o.level,
+            &activity,
+            &|_| true,
+            &|_| true,
+            &|| true,
+        )
+    };
+    (status == ModelStatus::Optimal).then(|| (found(), o.clone()))
 }
 
 proptest! {
@@ -150,6 +170,72 @@ proptest! {
             let shut = |p: &certify::Proof| if minimise { p.high == f64::INFINITY } else { p.low == f64::NEG_INFINITY };
             // Unbounded: no dual bound; infeasible: no point.
             prop_assert!(open(&wide) || shut(&wide), "{wide:?}");
+        }
+    }
+
+    /// A price holds to the end of its interval and no farther, on either side: the program is solved again there.
+    #[test]
+    fn prices_are_those_of_solving_again(p in parts()) {
+        let Some((r, o)) = ranged(&p) else { return Ok(()) };
+        prop_assert!(!r.unfinished);
+        // The objective's row is the last.
+        prop_assert_eq!(r.rows.iter().filter(|r| r.row < p.rows.len()).count(), r.rows.len());
+        for row in &r.rows {
+            let moved = |to: f64| {
+                let mut q = p.clone();
+                q.rows[row.row].2 = to;
+                let (status, o) = run("simplex", &q.instance());
+                (status == ModelStatus::Optimal).then(|| value(&o))
+            };
+            for (side, direction) in [-1.0, 1.0].into_iter().enumerate() {
+                let (price, end) = (row.price[side], row.interval[side]);
+                if price.is_infinite() {
+                    prop_assert_eq!(moved(row.value + direction / 16.0), None, "{:?}", row);
+                    continue;
+                }
+                let (near, far) = match end.is_finite() {
+                    true => ([(row.value + end) / 2.0, end - direction * 1e-8], Some(end + direction)),
+                    false => ([row.value + direction, row.value + 100.0 * direction], None),
+                };
+                let told = |to: f64| value(&o) + price * (to - row.value);
+                for to in near {
+                    let at = moved(to);
+                    prop_assert!(at.is_some_and(|v| (v - told(to)).abs() <= 1e-6), "{row:?} at {to}: {at:?} for {}", told(to));
+                }
+                if let Some(to) = far {
+                    let beyond = moved(to);
+                    prop_assert!(beyond.is_none_or(|v| (v - told(to)).abs() > 1e-6), "{row:?} at {to}: {beyond:?}");
+                }
+            }
+        }
+    }
+
+    /// The point stays optimal for costs in their intervals, and for none outside: the program is solved again there.
+    #[test]
+    fn costs_are_those_of_solving_again(p in parts()) {
+        let Some((r, o)) = ranged(&p) else { return Ok(()) };
+        prop_assert_eq!(r.costs.len(), p.cost.len());
+        for c in &r.costs {
+            // How much the program with another cost has over the point.
+            let over = |to: f64| {
+                let mut q = p.clone();
+                q.cost[c.column] = to;
+                let (status, best) = run("simplex", &q.instance());
+                let at = value(&o) + (to - p.cost[c.column]) * o.level[c.column];
+                (status == ModelStatus::Optimal).then(|| (value(&best) - at).abs())
+            };
+            for (end, direction) in c.interval.into_iter().zip([-1.0, 1.0]) {
+                let (inside, outside) = match end.is_finite() {
+                    true => (c.value + 0.999 * (end - c.value), Some(end + direction)),
+                    false => (c.value + 100.0 * direction, None),
+                };
+                let best = over(inside);
+                prop_assert!(best.is_some_and(|v| v <= 1e-5), "{c:?} at {inside}: {best:?}");
+                if let Some(to) = outside {
+                    let best = over(to);
+                    prop_assert!(best.is_none_or(|v| v > 1e-6), "{c:?} at {to}: {best:?}");
+                }
+            }
         }
     }
 }
