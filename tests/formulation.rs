@@ -636,6 +636,35 @@ const BOUNDS: &[&str] = &[
     "xt.up(t) = 0;",
     "xt.lo(t) = 1; xt.up(t) = 8;",
     "xij.fx(i,j)$(not arc(i,j)) = 0;",
+    "Positive variables xij, xt;",
+    "Negative variable xii;",
+];
+
+/// What smooth expressions drawn at random are made of, by what is under control.
+const ATOMS: [&[&str]; 4] = [
+    &[
+        "x0",
+        "xi('i2')",
+        "sum(i, a(i)*xi(i))",
+        "two",
+        "sum(t, xt(t++1)*xt(t))",
+    ],
+    &[
+        "xi(i)",
+        "xi(i+1)",
+        "x0",
+        "a(i)",
+        "xij(i,'j1')",
+        "sum(k$(ord(k) < ord(i)), xii(i,k))",
+    ],
+    &["xt(t)", "xt(t-1)", "xt(t++1)", "c(t)", "x0$(ord(t) > 2)"],
+    &[
+        "xij(i,j)",
+        "xi(i)",
+        "b(i,j)",
+        "xij(i,j+1)",
+        "xi(i)$arc(i,j)",
+    ],
 ];
 
 struct Dice(Random);
@@ -650,6 +679,38 @@ impl Dice {
     }
 }
 
+/// A smooth expression drawn at random, at most so deep.
+fn expression(d: &mut Dice, kind: usize, depth: usize) -> String {
+    if depth == 0 || d.below(5) == 0 {
+        return d.one(ATOMS[kind]).to_string();
+    }
+    let shape = d.one(&[
+        "(A + B)",
+        "(A - B)",
+        "A*B",
+        "(-A)*B",
+        "A/(2 + sqr(B))",
+        "A/(1.5 + cos(B))",
+        "sqr(A - B)",
+        "exp(0.1*sin(A))",
+        "log(1 + sqr(A))",
+        "sqrt(1 + sqr(A))",
+        "(1 + sqr(A))**0.7",
+        "arctan(A)*B",
+        "sin(A)",
+        "tanh(A + B)",
+        "power(cos(A),3)",
+    ]);
+    let mut out = String::new();
+    for c in shape.chars() {
+        match c {
+            'A' | 'B' => out.push_str(&expression(d, kind, depth - 1)),
+            c => out.push(c),
+        }
+    }
+    out
+}
+
 /// A model drawn at random.
 fn model(seed: u64, smooth: bool) -> String {
     let mut d = Dice(Random(seed.wrapping_mul(977).wrapping_add(13)));
@@ -660,26 +721,36 @@ fn model(seed: u64, smooth: bool) -> String {
     let mut names = Vec::new();
     let (mut declared, mut rows) = (String::new(), String::new());
     let heads = [
-        ("", &["", "$(card(i) > 3)"][..]),
+        ("", &[""][..], &["", "$(card(i) > 3)"][..]),
         (
             "(i)",
+            &["(i)", "(i)", "(s(i))"],
             &["", "$dyn(i)", "$(a(i) > 0)", "$(ord(i) > 1 and s(i))"],
         ),
-        ("(t)", &["", "$(ord(t) < card(t))", "$c(t)"]),
-        ("(i,j)", &["", "$arc(i,j)", "$(b(i,j) > 0)"]),
+        (
+            "(t)",
+            &["(t)", "(t)", "(t+1)"],
+            &["", "$(ord(t) < card(t))", "$c(t)"],
+        ),
+        (
+            "(i,j)",
+            &["(i,j)", "(i,j)", "(arc(i,j))"],
+            &["", "$arc(i,j)", "$(b(i,j) > 0)"],
+        ),
     ];
     for k in 0..3 + d.below(3) {
         let kind = if k == 0 { 1 } else { d.below(4) };
-        let (domain, conditions) = heads[kind];
+        let (domain, defined, conditions) = heads[kind];
+        let defined = d.one(defined);
         let mut body = String::new();
         for n in 0..2 + d.below(3) {
-            let list = if smooth && d.below(2) == 0 {
-                SMOOTH[kind]
-            } else {
-                LINEAR[kind]
+            let term = match if smooth { d.below(4) } else { 3 } {
+                0 => expression(&mut d, kind, 3),
+                1 => d.one(SMOOTH[kind]).to_string(),
+                _ => d.one(LINEAR[kind]).to_string(),
             };
             let sign = if d.below(3) == 0 { " - " } else { " + " };
-            let _ = write!(body, "{}{}", if n == 0 { "" } else { sign }, d.one(list));
+            let _ = write!(body, "{}{term}", if n == 0 { "" } else { sign });
         }
         let relation = d.one(&["=e=", "=l=", "=g=", "=g=", "=l=", "=n="]);
         let right = match kind {
@@ -692,7 +763,7 @@ fn model(seed: u64, smooth: bool) -> String {
         let _ = writeln!(declared, "Equation {name}{domain};");
         let _ = writeln!(
             rows,
-            "{name}{domain}{}.. {body} {relation} {right};",
+            "{name}{defined}{}.. {body} {relation} {right};",
             d.one(conditions)
         );
         names.push(name);

@@ -70,6 +70,22 @@ enum Aim {
     Column(usize),
 }
 
+/// By column: whether it stands in a row that asks for anything. No condition is about the others.
+fn constrained(p: &instance::Instance) -> Vec<bool> {
+    let mut out = vec![false; p.column_count()];
+    let asks = |i: usize| p.rows.relation[i] != Relation::Free;
+    for i in (0..p.row_count()).filter(|&i| asks(i)) {
+        p.matrix.row(i).for_each(|(j, _)| out[j] = true);
+    }
+    for k in &p.nonlinear {
+        let terms = k.columns.chunks(k.kernel.variables.max(1) as usize);
+        for (columns, _) in terms.zip(&k.row).filter(|(_, r)| asks(**r as usize)) {
+            columns.iter().for_each(|&j| out[j as usize] = true);
+        }
+    }
+    out
+}
+
 impl<'a> Places<'a> {
     fn new(
         symbols: &Symbols,
@@ -89,6 +105,7 @@ impl<'a> Places<'a> {
         };
         let find = |b: Option<&Block>, key| b.and_then(|b| d.find(b, key));
         let mut columns = vec![None; p.column_count()];
+        let matters = constrained(p);
         for b in &g.origin.columns.list {
             let row = row_of(Variable::Own(b.symbol));
             let own = d.columns(&symbols.get(b.symbol).name);
@@ -100,7 +117,9 @@ impl<'a> Places<'a> {
                 let name = || called(symbols, store, &g.origin.columns, j);
                 let key = b.key(k);
                 let Some(at) = find(own, key) else {
-                    missing = Some(format!("the column {} is not in the conditions", name()));
+                    if matters[j] {
+                        missing = Some(format!("the column {} is not in the conditions", name()));
+                    }
                     continue;
                 };
                 let row = find(row, key);
