@@ -181,51 +181,6 @@ impl Compiler {
         if depth > 50 {
             return Ok(());
         }
-        let add = |c: &mut Self,
-                   e: SymbolId,
-                   pair: Option<SymbolId>,
-                   at: Span,
-                   rows: &mut Vec<ModelRow>| {
-            let SymbolKind::Equation(defined) = c.symbols.get(e).kind else {
-                return Ok(());
-            };
-            let Some(definition) = defined else {
-                let (name, declared) = (c.symbols.get(e).name.clone(), c.symbols.get(e).declared);
-                if c.is_lost(&name) || c.lacks_equations() {
-                    return Err(Failed);
-                }
-                return c.fail(
-                    Diagnostic::error(
-                        "E0356",
-                        at,
-                        format!("the equation `{name}` is in the model but is not defined"),
-                    )
-                    .label("in this model")
-                    .other(declared, "declared here, and defined nowhere")
-                    .help(format!(
-                        "define it: `{name}.. left =e= right;`, or take it out of the model"
-                    )),
-                );
-            };
-            match rows
-                .iter()
-                .position(|r| r.definition == definition && r.pair == pair)
-            {
-                Some(_) => {}
-                None => match rows
-                    .iter_mut()
-                    .find(|r| r.definition == definition && (r.pair.is_none() || pair.is_none()))
-                {
-                    Some(r) => r.pair = r.pair.or(pair),
-                    None => rows.push(ModelRow {
-                        definition,
-                        pair,
-                        span: at,
-                    }),
-                },
-            }
-            Ok(())
-        };
         let mut failed = false;
         for item in items {
             match item {
@@ -247,7 +202,7 @@ impl Compiler {
                             let inner = m.items.clone().unwrap_or_default();
                             failed |= self.collect(&inner, rows, limits, depth + 1).is_err();
                         }
-                        _ => failed |= add(self, id, None, name.span, rows).is_err(),
+                        _ => failed |= self.add_row(id, None, name.span, rows).is_err(),
                     }
                 }
                 ModelItem::Remove(name) => {
@@ -270,12 +225,66 @@ impl Compiler {
                     let v = self.lookup(column)?;
                     for n in names {
                         let e = self.lookup(n)?;
-                        failed |= add(self, e, Some(v), n.span.to(column.span), rows).is_err();
+                        failed |= self
+                            .add_row(e, Some(v), n.span.to(column.span), rows)
+                            .is_err();
                     }
                 }
             }
         }
         if failed { Err(Failed) } else { Ok(()) }
+    }
+
+    /// Puts an equation into a list of rows; a pair of one that is there already becomes its.
+    fn add_row(
+        &mut self,
+        e: SymbolId,
+        pair: Option<SymbolId>,
+        at: Span,
+        rows: &mut Vec<ModelRow>,
+    ) -> Result<(), Failed> {
+        let SymbolKind::Equation(defined) = self.symbols.get(e).kind else {
+            return Ok(());
+        };
+        let Some(definition) = defined else {
+            let (name, declared) = (
+                self.symbols.get(e).name.clone(),
+                self.symbols.get(e).declared,
+            );
+            if self.is_lost(&name) || self.lacks_equations() {
+                return Err(Failed);
+            }
+            return self.fail(
+                Diagnostic::error(
+                    "E0356",
+                    at,
+                    format!("the equation `{name}` is in the model but is not defined"),
+                )
+                .label("in this model")
+                .other(declared, "declared here, and defined nowhere")
+                .help(format!(
+                    "define it: `{name}.. left =e= right;`, or take it out of the model"
+                )),
+            );
+        };
+        match rows
+            .iter()
+            .position(|r| r.definition == definition && r.pair == pair)
+        {
+            Some(_) => {}
+            None => match rows
+                .iter_mut()
+                .find(|r| r.definition == definition && (r.pair.is_none() || pair.is_none()))
+            {
+                Some(r) => r.pair = r.pair.or(pair),
+                None => rows.push(ModelRow {
+                    definition,
+                    pair,
+                    span: at,
+                }),
+            },
+        }
+        Ok(())
     }
 
     fn objective(
@@ -558,7 +567,8 @@ impl Compiler {
         }
         for r in rows {
             let e = &self.equations[r.definition];
-            let (eq, relation) = (self.symbols.get(e.symbol).clone(), e.relation);
+            let (symbol, relation) = (e.symbol, e.relation);
+            let eq = self.symbols.get(symbol).clone();
             let Some(v) = r.pair else {
                 if using == ProblemType::Mcp && relation != Relation::Equal {
                     failed |= self
@@ -572,48 +582,7 @@ impl Compiler {
                 }
                 continue;
             };
-            let var = self.symbols.get(v).clone();
-            if eq.dim() != var.dim() {
-                failed |= self
-                    .fail::<()>(
-                        Diagnostic::error(
-                            "E0365",
-                            r.span,
-                            format!(
-                                "`{}` has {} indices and `{}` has {}: they cannot be paired",
-                                eq.name,
-                                eq.dim(),
-                                var.name,
-                                var.dim()
-                            ),
-                        )
-                        .label("different dimensions")
-                        .other(eq.declared, "the equation")
-                        .other(var.declared, "the variable"),
-                    )
-                    .is_err();
-                continue;
-            }
-            let same = eq
-                .domain
-                .iter()
-                .zip(&var.domain)
-                .all(|(a, b)| match (a, b) {
-                    (DomainPosition::Set(a), DomainPosition::Set(b)) => {
-                        self.symbols.is_subset(*a, *b) || self.symbols.is_subset(*b, *a)
-                    }
-                    _ => true,
-                });
-            if !same {
-                failed |= self
-                    .fail::<()>(
-                        Diagnostic::error("E0366", r.span, format!("`{}` and `{}` run over different sets, or the same in another order", eq.name, var.name))
-                            .label("domains differ")
-                            .other(eq.declared, "the equation")
-                            .other(var.declared, "the variable"),
-                    )
-                    .is_err();
-            }
+            failed |= self.check_domains(symbol, v, r.span).is_err();
             if let Some(other) = rows
                 .iter()
                 .find(|o| o.definition == r.definition && o.pair.is_some() && o.pair != r.pair)
@@ -633,5 +602,54 @@ impl Compiler {
             }
         }
         if failed { Err(Failed) } else { Ok(()) }
+    }
+
+    /// An equation and its partner run over the same indices.
+    fn check_domains(&mut self, e: SymbolId, v: SymbolId, at: Span) -> Result<(), Failed> {
+        let (eq, var) = (self.symbols.get(e).clone(), self.symbols.get(v).clone());
+        if eq.dim() != var.dim() {
+            return self.fail(
+                Diagnostic::error(
+                    "E0365",
+                    at,
+                    format!(
+                        "`{}` has {} indices and `{}` has {}: they cannot be paired",
+                        eq.name,
+                        eq.dim(),
+                        var.name,
+                        var.dim()
+                    ),
+                )
+                .label("different dimensions")
+                .other(eq.declared, "the equation")
+                .other(var.declared, "the variable"),
+            );
+        }
+        let same = eq
+            .domain
+            .iter()
+            .zip(&var.domain)
+            .all(|(a, b)| match (a, b) {
+                (DomainPosition::Set(a), DomainPosition::Set(b)) => {
+                    self.symbols.is_subset(*a, *b) || self.symbols.is_subset(*b, *a)
+                }
+                _ => true,
+            });
+        if !same {
+            return self.fail(
+                Diagnostic::error(
+                    "E0366",
+                    at,
+                    format!(
+                        "`{}` and `{}` run over different sets, or the same in another order",
+                        eq.name, var.name
+                    ),
+                )
+                .label("domains differ")
+                .other(eq.declared, "the equation")
+                .other(var.declared, "the variable"),
+            );
+        }
+        Ok(())
     }
 }

@@ -199,34 +199,8 @@ impl<'a> Writer<'a> {
             }
             Expr::Negate(a) => (format!("-{}", self.at(a, PRODUCT)), SUM),
             Expr::Not(a) => (format!("not {}", self.at(a, RELATION)), NOT),
-            Expr::Sum(t) => {
-                let mut out = String::new();
-                for (n, (minus, e)) in t.iter().enumerate() {
-                    let text = self.at(e, PRODUCT);
-                    out.push_str(match (n, minus) {
-                        (0, false) => "",
-                        (0, true) => "-",
-                        (_, false) => " + ",
-                        (_, true) => " - ",
-                    });
-                    out.push_str(&text);
-                }
-                (out, SUM)
-            }
-            Expr::Product(t) => {
-                let mut out = String::new();
-                for (n, (divide, e)) in t.iter().enumerate() {
-                    let text = self.at(e, POWER);
-                    out.push_str(match (n, divide) {
-                        (0, false) => "",
-                        (0, true) => "1/",
-                        (_, false) => "*",
-                        (_, true) => "/",
-                    });
-                    out.push_str(&text);
-                }
-                (out, PRODUCT)
-            }
+            Expr::Sum(t) => (self.joined(t, PRODUCT, ["-", " + ", " - "]), SUM),
+            Expr::Product(t) => (self.joined(t, POWER, ["1/", "*", "/"]), PRODUCT),
             Expr::Binary(op, a, b) => {
                 let mine = match op {
                     BinaryOp::Power => POWER,
@@ -268,6 +242,22 @@ impl<'a> Writer<'a> {
             }
             Expr::Opaque(why) => (format!("[{why}]"), ATOM),
         }
+    }
+
+    /// Terms with what stands before each: before the first if it is inverse, before another, before another that is inverse.
+    fn joined(&mut self, terms: &[(bool, Expr)], inside: u8, signs: [&str; 3]) -> String {
+        let mut out = String::new();
+        for (n, (inverse, e)) in terms.iter().enumerate() {
+            out.push_str(match (n, inverse) {
+                (0, false) => "",
+                (0, true) => signs[0],
+                (_, false) => signs[1],
+                (_, true) => signs[2],
+            });
+            let text = self.at(e, inside);
+            out.push_str(&text);
+        }
+        out
     }
 
     /// `(i,j)$(…)`, `arc(i,j)$(…)`: what a sum runs over; its indices have names.

@@ -80,71 +80,55 @@ impl Explanation {
                 shown,
             } => self.irreducible(members, *excess, *shown, instance, names),
             Finding::Discrete(found) => {
-                let mut text = String::from(match found.shown {
-                    true => {
-                        "These rows contradict each other, with all bounds, because of the discrete variables named; \
-                             without any one of them there is a solution:"
-                    }
-                    false => {
-                        "These rows contradict each other, with all bounds, because of the discrete variables named; \
-                              it was not shown that all of them are needed:"
-                    }
-                });
-                for &i in &found.rows {
-                    let name = self.row(i, names);
-                    text.push_str(&format!("\n    row {name} {}", relation(instance, i)));
-                }
-                for &j in &found.columns {
-                    let name = self.column(j, names);
-                    text.push_str(&format!("\n    {name} is discrete"));
-                }
-                text
+                let rest = match found.shown {
+                    true => "without any one of them there is a solution",
+                    false => "it was not shown that all of them are needed",
+                };
+                let rows = found
+                    .rows
+                    .iter()
+                    .map(|&i| format!("row {} {}", self.row(i, names), relation(instance, i)));
+                let rows: Vec<String> = rows.collect();
+                let columns = found.columns.iter();
+                let columns = columns.map(|&j| format!("{} is discrete", self.column(j, names)));
+                let head = "These rows contradict each other, with all bounds, because of the discrete variables named";
+                over(format!("{head}; {rest}:"), rows.into_iter().chain(columns))
             }
             Finding::Ray(parts) => {
-                let mut text = String::from(
-                    "The objective improves without end: from any feasible point one may go on and \
+                let head = "The objective improves without end: from any feasible point one may go on and \
                      on in this direction (the largest steps are shown), and no row and no bound \
-                     stops it. A bound or a row that limits one of these is missing.",
-                );
-                for &(j, v) in parts {
-                    let name = self.column(j, names);
-                    text.push_str(&format!("\n    {name} changes by {}", short(v)));
-                }
-                text
+                     stops it. A bound or a row that limits one of these is missing.";
+                let one = |&(j, v): &(usize, f64)| {
+                    format!("{} changes by {}", self.column(j, names), short(v))
+                };
+                over(head, parts.iter().map(one))
             }
             Finding::Violated { rows, columns } => {
-                let mut text = String::from(
-                    "The last point violates these most, and nothing near it is better:",
-                );
-                for &(i, v) in rows {
+                let rows = rows.iter().map(|&(i, v)| {
                     let name = self.row(i, names);
-                    let side = relation(instance, i);
-                    text.push_str(&format!("\n    {name} {side}: by {}", short(v)));
-                }
-                for &(j, v) in columns {
-                    let name = self.column(j, names);
-                    text.push_str(&format!("\n    bounds of {name}: by {}", short(v)));
-                }
-                text
+                    format!("{name} {}: by {}", relation(instance, i), short(v))
+                });
+                let rows: Vec<String> = rows.collect();
+                let columns = columns
+                    .iter()
+                    .map(|&(j, v)| format!("bounds of {}: by {}", self.column(j, names), short(v)));
+                let head = "The last point violates these most, and nothing near it is better:";
+                over(head, rows.into_iter().chain(columns))
             }
             Finding::Inaccurate { rows, columns } => {
-                let mut text = String::from(
-                    "The point is not accurate. A residual changes the objective by itself times \
-                     its multiplier; these carry the error:",
-                );
-                for &(i, rest, share) in rows {
-                    let name = self.row(i, names);
-                    text.push_str(&format!(
-                        "\n    row {name}: off by {rest:.1e}, which is worth {share:.1e}"
-                    ));
-                }
-                for &(j, rest, share) in columns {
+                let worth =
+                    |rest: f64, share: f64| format!("{rest:.1e}, which is worth {share:.1e}");
+                let rows = rows.iter().map(|&(i, rest, share)| {
+                    format!("row {}: off by {}", self.row(i, names), worth(rest, share))
+                });
+                let rows: Vec<String> = rows.collect();
+                let columns = columns.iter().map(|&(j, rest, share)| {
                     let name = self.column(j, names);
-                    text.push_str(&format!(
-                        "\n    column {name}: reduced cost {rest:.1e}, which is worth {share:.1e}"
-                    ));
-                }
-                text
+                    format!("column {name}: reduced cost {}", worth(rest, share))
+                });
+                let head = "The point is not accurate. A residual changes the objective by itself times \
+                     its multiplier; these carry the error:";
+                over(head, rows.into_iter().chain(columns))
             }
             Finding::Scaling {
                 largest,
@@ -157,31 +141,29 @@ impl Explanation {
                     format!("{v:.1e} (of {column} in {row})")
                 };
                 let (high, low) = (at(largest), at(smallest));
-                let mut text = format!(
+                let head = format!(
                     "The coefficients lie far apart: from {low} to {high}. Other units for these \
                      variables or equations would bring them together."
                 );
-                for &(i, low, high) in rows {
-                    let name = self.row(i, names);
-                    text.push_str(&format!("\n    row {name}: {low:.1e} to {high:.1e}"));
-                }
-                for &(j, low, high) in columns {
-                    let name = self.column(j, names);
-                    text.push_str(&format!("\n    column {name}: {low:.1e} to {high:.1e}"));
-                }
-                text
+                let rows = rows.iter().map(|&(i, low, high)| {
+                    format!("row {}: {low:.1e} to {high:.1e}", self.row(i, names))
+                });
+                let rows: Vec<String> = rows.collect();
+                let columns = columns.iter().map(|&(j, low, high)| {
+                    format!("column {}: {low:.1e} to {high:.1e}", self.column(j, names))
+                });
+                over(head, rows.into_iter().chain(columns))
             }
             Finding::Pairs(pairs) => {
-                let mut text = String::from("These pairs are farthest from a solution:");
-                for &(i, j, r) in pairs {
+                let one = |&(i, j, r): &(Option<usize>, usize, f64)| {
                     let column = self.column(j, names);
-                    let pair = match i {
-                        Some(i) => format!("{} with {column}", self.row(i, names)),
-                        None => column,
-                    };
-                    text.push_str(&format!("\n    {pair}: residual {}", short(r)));
-                }
-                text
+                    let row = i.map_or(String::new(), |i| format!("{} with ", self.row(i, names)));
+                    format!("{row}{column}: residual {}", short(r))
+                };
+                over(
+                    "These pairs are farthest from a solution:",
+                    pairs.iter().map(one),
+                )
             }
             Finding::Structural { rows, columns } => {
                 let rows: Vec<String> = rows.iter().map(|&i| self.row(i, names)).collect();
@@ -207,18 +189,13 @@ impl Explanation {
                 )
             }
             Finding::WrongWay(pairs) => {
-                let mut text = String::from(
-                    "In these pairs the row falls where its own variable grows, so that moving the \
-                     variable off its bound makes matters worse; is the sign right, or the pair?",
-                );
-                for &(i, j, v) in pairs {
+                let head = "In these pairs the row falls where its own variable grows, so that moving the \
+                     variable off its bound makes matters worse; is the sign right, or the pair?";
+                let one = |&(i, j, v): &(usize, usize, f64)| {
                     let (row, column) = (self.row(i, names), self.column(j, names));
-                    text.push_str(&format!(
-                        "\n    {row} with {column}: derivative {}",
-                        short(v)
-                    ));
-                }
-                text
+                    format!("{row} with {column}: derivative {}", short(v))
+                };
+                over(head, pairs.iter().map(one))
             }
             Finding::NoValue { row, column, what } => {
                 let row = self.row(*row, names);
@@ -302,6 +279,11 @@ impl Explanation {
         }
         text
     }
+}
+
+/// A heading over indented lines.
+fn over(head: impl Into<String>, lines: impl Iterator<Item = String>) -> String {
+    lines.fold(head.into(), |text, line| text + "\n    " + &line)
 }
 
 /// `=g= 30`

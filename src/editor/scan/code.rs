@@ -84,22 +84,7 @@ impl Scanner<'_> {
                 end
             }
             b'%' => self.plain(i, Role::Name),
-            b'(' | b'[' | b'{' => {
-                let figure = b == b'{' && self.frames.is_empty() && self.word == "figure";
-                let block = self.control || figure;
-                let header = block && !figure && self.word_before(i) != "repeat";
-                let token = self.push(i, i + 1, Role::Open);
-                self.frames.push(Frame {
-                    token,
-                    block,
-                    header,
-                    by_word: false,
-                    outside: self.open.len(),
-                });
-                self.expects = block && !header;
-                self.control = false;
-                i + 1
-            }
+            b'(' | b'[' | b'{' => self.opening(i),
             b')' | b']' | b'}' => {
                 if self.frames.last().is_some_and(|f| f.block) {
                     self.end_inner();
@@ -117,19 +102,7 @@ impl Scanner<'_> {
                 }
                 i + 1
             }
-            b';' => {
-                self.push(i, i + 1, Role::Semicolon);
-                let block = self.frames.iter().rposition(|f| f.block);
-                let unclosed = self.frames.len() > block.map_or(0, |n| n + 1);
-                self.frames.truncate(block.map_or(0, |n| n + 1));
-                if block.is_none() {
-                    self.end(!unclosed);
-                } else {
-                    self.end_inner();
-                    self.expects = true;
-                }
-                i + 1
-            }
+            b';' => self.semicolon(i),
             b'.' if bytes.get(i + 1) == Some(&b'.') => {
                 self.defines();
                 self.push(i, i + 2, Role::Operator);
@@ -147,6 +120,40 @@ impl Scanner<'_> {
         };
         self.control = false;
         end
+    }
+
+    /// A parenthesis, a bracket or a brace opens; where code goes on behind it.
+    fn opening(&mut self, i: usize) -> usize {
+        let figure =
+            self.code.as_bytes()[i] == b'{' && self.frames.is_empty() && self.word == "figure";
+        let block = self.control || figure;
+        let header = block && !figure && self.word_before(i) != "repeat";
+        let token = self.push(i, i + 1, Role::Open);
+        self.frames.push(Frame {
+            token,
+            block,
+            header,
+            by_word: false,
+            outside: self.open.len(),
+        });
+        self.expects = block && !header;
+        self.control = false;
+        i + 1
+    }
+
+    /// A statement ends; where code goes on behind it.
+    fn semicolon(&mut self, i: usize) -> usize {
+        self.push(i, i + 1, Role::Semicolon);
+        let block = self.frames.iter().rposition(|f| f.block);
+        let unclosed = self.frames.len() > block.map_or(0, |n| n + 1);
+        self.frames.truncate(block.map_or(0, |n| n + 1));
+        if block.is_none() {
+            self.end(!unclosed);
+        } else {
+            self.end_inner();
+            self.expects = true;
+        }
+        i + 1
     }
 
     /// Whether a word has a meaning in this statement only. Behind one of them a name stands: `min minz`.

@@ -4,10 +4,10 @@ mod frame;
 
 use std::fmt::Write;
 
-use super::layout::{Axis, extent, rounded, text_width, visible};
+use super::layout::{Axis, extent, visible};
 use super::{Anchor, Element, Scene, Shape, Style};
 use crate::color::{self, Paint};
-use frame::{legend_names, legend_rows, rotated, tick_texts, y_ticks};
+use frame::{Margins, legend_names, legend_rows, plot_height, ranges, widen};
 
 /// Ink of axes, texts and lines that have no colour of their own.
 const INK: &str = "#2b3440";
@@ -214,33 +214,11 @@ fn plot(scene: &Scene, common: Common<'_>, with_legend: bool) -> String {
     let legend_top = headings_height(scene);
     let top = legend_top + legend_height(&legend);
     let [mut x_range, mut y_range] = ranges(scene, common.extent, axes, equal);
-    let y_labels = y_ticks(scene, y_range);
-    let left_labels = y_labels.iter().map(|(_, t)| text_width(t, 11.5));
-    let mut left = MARGIN;
-    let mut bottom = MARGIN;
-    let mut right = MARGIN;
-    if axes {
-        left += left_labels.fold(0.0, f64::max) + 8.0;
-        left += if scene.y_label.is_some() { 20.0 } else { 0.0 };
-        bottom += 20.0 + if scene.x_label.is_some() { 20.0 } else { 0.0 };
-    }
-    if let Some([lo, hi]) = colors {
-        let texts = tick_texts([lo, hi], false, 5.0);
-        let widest = texts
-            .iter()
-            .map(|(_, t)| text_width(t, 11.0))
-            .fold(0.0, f64::max);
-        right += 34.0 + widest;
-    }
-    let plot_width = (width - left - right).max(20.0);
-    let rotate = axes && rotated(scene, plot_width);
-    if rotate {
-        let widest = scene.categories.iter().map(|c| text_width(c, 11.5));
-        bottom += (widest.fold(0.0, f64::max) * 0.71).min(110.0) - 8.0;
-    }
+    let m = Margins::new(scene, axes, y_range, colors, width);
 
     // The plot itself.
-    let around = top + bottom;
+    let (left, plot_width) = (m.left, m.plot_width);
+    let around = top + m.bottom;
     let plot_height = plot_height(scene, around, plot_width, [x_range, y_range], equal);
     if equal {
         let per_unit =
@@ -268,7 +246,7 @@ fn plot(scene: &Scene, common: Common<'_>, with_legend: bool) -> String {
     };
     d.head(width, height);
     if axes {
-        d.axes(rotate);
+        d.axes(m.rotate);
     }
     let is_cut = scene
         .x_limits
@@ -293,82 +271,9 @@ fn plot(scene: &Scene, common: Common<'_>, with_legend: bool) -> String {
         d.out.push_str("  </g>\n");
     }
     d.legend(&legend, legend_top);
-    d.color_legend(width - right + 14.0);
+    d.color_legend(width - m.right + 14.0);
     d.out.push_str("</svg>\n");
     d.out
-}
-
-/// What the axes reach over: the data with some room, the foot of the bars, and what the author said, which is not rounded.
-fn ranges(scene: &Scene, [x, y]: [[f64; 2]; 2], axes: bool, equal: bool) -> [[f64; 2]; 2] {
-    let bars = has_bars(scene).is_some();
-    let mut x = match scene.categories.is_empty() {
-        true => pad(x, scene.x_log, axes && !bars, equal),
-        false => x,
-    };
-    let mut y = match scene.y_categories.is_empty() {
-        true => pad(y, scene.y_log, axes, equal),
-        false => y,
-    };
-    if bars {
-        y = [y[0].min(0.0), y[1].max(0.0)];
-    }
-    for (range, limits) in [(&mut x, scene.x_limits), (&mut y, scene.y_limits)] {
-        let [low, high] = limits;
-        let asked = [low.unwrap_or(range[0]), high.unwrap_or(range[1])];
-        if asked[0] < asked[1] {
-            *range = asked;
-        }
-    }
-    [x, y]
-}
-
-/// Height of the plot without what is around it: as asked, as equal units want it, or as is usual.
-fn plot_height(scene: &Scene, around: f64, width: f64, [x, y]: [[f64; 2]; 2], equal: bool) -> f64 {
-    let wanted = scene.height.filter(|h| h.is_finite());
-    match wanted {
-        Some(h) => (h - around).clamp(20.0, 10_000.0),
-        None if equal => {
-            let ratio = (y[1] - y[0]) / (x[1] - x[0]);
-            (width * ratio).clamp(60.0, width.max(560.0))
-        }
-        None if !scene.y_categories.is_empty() => {
-            (26.0 * scene.y_categories.len() as f64).clamp(90.0, 900.0)
-        }
-        None => (width * 0.6).clamp(60.0, 420.0),
-    }
-}
-
-fn has_bars(scene: &Scene) -> Option<()> {
-    let bars = |e: &Element| matches!(e.shape, Shape::Bars(_));
-    scene.elements.iter().any(bars).then_some(())
-}
-
-/// A range with room at its ends and a positive width.
-fn pad(range: [f64; 2], log: bool, axes: bool, equal: bool) -> [f64; 2] {
-    let [lo, hi] = range;
-    if log {
-        let pad = |k: f64| 10f64.powf(k);
-        return [
-            pad((lo.log10() - 0.02).floor()),
-            pad((hi.log10() + 0.02).ceil()),
-        ];
-    }
-    if axes && !equal {
-        return rounded(range, 6.0);
-    }
-    let width = hi - lo;
-    if width <= 0.0 {
-        let room = if lo == 0.0 { 1.0 } else { lo.abs() * 0.1 };
-        return [lo - room, hi + room];
-    }
-    let room = if equal { 0.02 } else { 0.04 };
-    [lo - room * width, hi + room * width]
-}
-
-/// Widens a range about its middle.
-fn widen(range: &mut [f64; 2], width: f64) {
-    let middle = (range[0] + range[1]) / 2.0;
-    *range = [middle - width / 2.0, middle + width / 2.0];
 }
 
 impl Drawing<'_> {

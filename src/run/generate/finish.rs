@@ -55,36 +55,7 @@ impl Builder<'_, '_> {
         if solve.objective.is_some() {
             used[0] = true;
         }
-        self.maps.sort_by_key(|m| m.symbol);
-        let mut new_number = vec![u32::MAX; self.columns as usize];
-        let mut columns = Blocks::default();
-        let mut next = 0u32;
-        for m in &self.maps {
-            let d = m.dim;
-            let mut order: Vec<u32> = (0..m.numbers.len() as u32)
-                .filter(|&i| used[m.numbers[i as usize] as usize])
-                .collect();
-            let key = |i: u32| &m.keys[i as usize * d..(i as usize + 1) * d];
-            if d > 0 {
-                sort_records(&mut order, &m.keys, d, &(0..d).collect::<Vec<_>>());
-            }
-            let mut block = Block {
-                symbol: m.symbol,
-                start: next,
-                len: order.len() as u32,
-                dim: d,
-                keys: Vec::with_capacity(order.len() * d),
-            };
-            for &i in &order {
-                new_number[m.numbers[i as usize] as usize] = next;
-                next += 1;
-                block.keys.extend_from_slice(key(i));
-            }
-            if block.len > 0 {
-                columns.list.push(block);
-            }
-        }
-        self.maps.clear();
+        let (columns, new_number) = self.numbered(&used);
         for c in &mut self.instance.matrix.column {
             *c = new_number[*c as usize];
         }
@@ -122,6 +93,41 @@ impl Builder<'_, '_> {
                 .map(|c| new_number[c as usize])
                 .collect(),
         }
+    }
+
+    /// The columns that are used, in label order, and the new number of each old one.
+    fn numbered(&mut self, used: &[bool]) -> (Blocks, Vec<u32>) {
+        self.maps.sort_by_key(|m| m.symbol);
+        let mut new_number = vec![u32::MAX; self.columns as usize];
+        let mut columns = Blocks::default();
+        let mut next = 0u32;
+        for m in &self.maps {
+            let d = m.dim;
+            let mut order: Vec<u32> = (0..m.numbers.len() as u32)
+                .filter(|&i| used[m.numbers[i as usize] as usize])
+                .collect();
+            let key = |i: u32| &m.keys[i as usize * d..(i as usize + 1) * d];
+            if d > 0 {
+                sort_records(&mut order, &m.keys, d, &(0..d).collect::<Vec<_>>());
+            }
+            let mut block = Block {
+                symbol: m.symbol,
+                start: next,
+                len: order.len() as u32,
+                dim: d,
+                keys: Vec::with_capacity(order.len() * d),
+            };
+            for &i in &order {
+                new_number[m.numbers[i as usize] as usize] = next;
+                next += 1;
+                block.keys.extend_from_slice(key(i));
+            }
+            if block.len > 0 {
+                columns.list.push(block);
+            }
+        }
+        self.maps.clear();
+        (columns, new_number)
     }
 
     /// The row of each column that has one; an error where there are two.
@@ -254,6 +260,7 @@ impl Builder<'_, '_> {
         }
     }
 
+    /// Bounds, levels, marginals and scales of the columns, and what makes them discrete.
     fn fill_columns(&mut self, blocks: &Blocks) {
         let n: usize = blocks.list.iter().map(|b| b.len as usize).sum();
         let c = &mut self.instance.columns;
@@ -340,7 +347,12 @@ impl Builder<'_, '_> {
                 }
             }
         }
-        for i in 0..n {
+        self.check_columns(blocks);
+    }
+
+    /// Bounds and levels that no solver can take are errors.
+    fn check_columns(&mut self, blocks: &Blocks) {
+        for i in 0..self.instance.columns.kind.len() {
             let (lo, up) = (
                 self.instance.columns.lower[i],
                 self.instance.columns.upper[i],

@@ -342,28 +342,7 @@ impl Builder<'_, '_> {
             return;
         }
         if empty && pair.is_none() {
-            let violated = match relation {
-                Relation::Equal => rhs.abs() > 1e-9,
-                Relation::Greater => rhs > 1e-9,
-                Relation::Less => rhs < -1e-9,
-                Relation::Free => false,
-            };
-            if violated {
-                let name = self.m.record_name(e.symbol, key);
-                let sign = match relation {
-                    Relation::Equal => "=e=",
-                    Relation::Greater => "=g=",
-                    _ => "=l=",
-                };
-                self.m.note(
-                    Diagnostic::execution("E0410", e.span, format!("the row {name} has no variables and cannot hold: 0 {sign} {rhs}"))
-                        .label("empty and infeasible")
-                        .help("its coefficients are all zero, or its sums are empty: check the data, or add a `$` condition to the equation"),
-                );
-                self.failed = true;
-            }
-            self.leave_out(e, key, rhs);
-            return;
+            return self.empty_row(e, relation, key, rhs);
         }
         let kept = || row.terms.iter().filter(|t| t.1 != 0.0);
         // `x =l= inf` never binds.
@@ -413,6 +392,31 @@ impl Builder<'_, '_> {
         rows.scale.push(scale);
         block.keys.extend_from_slice(key);
         self.row += 1;
+    }
+
+    /// A row without variables and without a partner: left out if it holds, else an error.
+    fn empty_row(&mut self, e: &EquationDef, relation: Relation, key: &[Label], rhs: f64) {
+        let violated = match relation {
+            Relation::Equal => rhs.abs() > 1e-9,
+            Relation::Greater => rhs > 1e-9,
+            Relation::Less => rhs < -1e-9,
+            Relation::Free => false,
+        };
+        if violated {
+            let name = self.m.record_name(e.symbol, key);
+            let sign = match relation {
+                Relation::Equal => "=e=",
+                Relation::Greater => "=g=",
+                _ => "=l=",
+            };
+            self.m.note(
+                Diagnostic::execution("E0410", e.span, format!("the row {name} has no variables and cannot hold: 0 {sign} {rhs}"))
+                    .label("empty and infeasible")
+                    .help("its coefficients are all zero, or its sums are empty: check the data, or add a `$` condition to the equation"),
+            );
+            self.failed = true;
+        }
+        self.leave_out(e, key, rhs);
     }
 
     /// A row without variables.

@@ -4,8 +4,10 @@ use std::fmt::Write;
 
 use super::{Drawing, FONT, GRID, INK, MARGIN, Px, QUIET, escape};
 use crate::color;
-use crate::report::figure::layout::{Axis, log_ticks, power_label, text_width, tick_labels, ticks};
-use crate::report::figure::{Scene, Shape};
+use crate::report::figure::layout::{
+    Axis, log_ticks, power_label, rounded, text_width, tick_labels, ticks,
+};
+use crate::report::figure::{Element, Scene, Shape};
 
 /// Ticks of an axis that is to have about so many, with their labels.
 pub(super) fn tick_texts(range: [f64; 2], log: bool, wanted: f64) -> Vec<(f64, String)> {
@@ -29,6 +31,139 @@ pub(super) fn y_ticks(scene: &Scene, range: [f64; 2]) -> Vec<(f64, String)> {
     numbered
         .map(|(k, c)| (-(k as f64) - 1.0, c.clone()))
         .collect()
+}
+
+/// What stands beside and below a plot, in pixels.
+pub(super) struct Margins {
+    pub(super) left: f64,
+    pub(super) right: f64,
+    pub(super) bottom: f64,
+    /// What is left between them.
+    pub(super) plot_width: f64,
+    /// The categories stand at an angle.
+    pub(super) rotate: bool,
+}
+
+impl Margins {
+    /// Around a plot in a picture of this width, with these ticks and these ends of a scale of colours.
+    pub(super) fn new(
+        scene: &Scene,
+        axes: bool,
+        y: [f64; 2],
+        colors: Option<[f64; 2]>,
+        width: f64,
+    ) -> Self {
+        let widest = |texts: &[(f64, String)], size| {
+            let widths = texts.iter().map(|(_, t)| text_width(t, size));
+            widths.fold(0.0, f64::max)
+        };
+        let [mut left, mut bottom, mut right] = [MARGIN; 3];
+        if axes {
+            left += widest(&y_ticks(scene, y), 11.5) + 8.0;
+            left += if scene.y_label.is_some() { 20.0 } else { 0.0 };
+            bottom += 20.0 + if scene.x_label.is_some() { 20.0 } else { 0.0 };
+        }
+        if let Some(ends) = colors {
+            right += 34.0 + widest(&tick_texts(ends, false, 5.0), 11.0);
+        }
+        let plot_width = (width - left - right).max(20.0);
+        let rotate = axes && rotated(scene, plot_width);
+        if rotate {
+            let widest = scene.categories.iter().map(|c| text_width(c, 11.5));
+            bottom += (widest.fold(0.0, f64::max) * 0.71).min(110.0) - 8.0;
+        }
+        Self {
+            left,
+            right,
+            bottom,
+            plot_width,
+            rotate,
+        }
+    }
+}
+
+/// What the axes reach over: the data with some room, the foot of the bars, and what the author said, which is not rounded.
+pub(super) fn ranges(
+    scene: &Scene,
+    [x, y]: [[f64; 2]; 2],
+    axes: bool,
+    equal: bool,
+) -> [[f64; 2]; 2] {
+    let bars = has_bars(scene).is_some();
+    let mut x = match scene.categories.is_empty() {
+        true => pad(x, scene.x_log, axes && !bars, equal),
+        false => x,
+    };
+    let mut y = match scene.y_categories.is_empty() {
+        true => pad(y, scene.y_log, axes, equal),
+        false => y,
+    };
+    if bars {
+        y = [y[0].min(0.0), y[1].max(0.0)];
+    }
+    for (range, limits) in [(&mut x, scene.x_limits), (&mut y, scene.y_limits)] {
+        let [low, high] = limits;
+        let asked = [low.unwrap_or(range[0]), high.unwrap_or(range[1])];
+        if asked[0] < asked[1] {
+            *range = asked;
+        }
+    }
+    [x, y]
+}
+
+/// Height of the plot without what is around it: as asked, as equal units want it, or as is usual.
+pub(super) fn plot_height(
+    scene: &Scene,
+    around: f64,
+    width: f64,
+    [x, y]: [[f64; 2]; 2],
+    equal: bool,
+) -> f64 {
+    let wanted = scene.height.filter(|h| h.is_finite());
+    match wanted {
+        Some(h) => (h - around).clamp(20.0, 10_000.0),
+        None if equal => {
+            let ratio = (y[1] - y[0]) / (x[1] - x[0]);
+            (width * ratio).clamp(60.0, width.max(560.0))
+        }
+        None if !scene.y_categories.is_empty() => {
+            (26.0 * scene.y_categories.len() as f64).clamp(90.0, 900.0)
+        }
+        None => (width * 0.6).clamp(60.0, 420.0),
+    }
+}
+
+fn has_bars(scene: &Scene) -> Option<()> {
+    let bars = |e: &Element| matches!(e.shape, Shape::Bars(_));
+    scene.elements.iter().any(bars).then_some(())
+}
+
+/// A range with room at its ends and a positive width.
+fn pad(range: [f64; 2], log: bool, axes: bool, equal: bool) -> [f64; 2] {
+    let [lo, hi] = range;
+    if log {
+        let pad = |k: f64| 10f64.powf(k);
+        return [
+            pad((lo.log10() - 0.02).floor()),
+            pad((hi.log10() + 0.02).ceil()),
+        ];
+    }
+    if axes && !equal {
+        return rounded(range, 6.0);
+    }
+    let width = hi - lo;
+    if width <= 0.0 {
+        let room = if lo == 0.0 { 1.0 } else { lo.abs() * 0.1 };
+        return [lo - room, hi + room];
+    }
+    let room = if equal { 0.02 } else { 0.04 };
+    [lo - room * width, hi + room * width]
+}
+
+/// Widens a range about its middle.
+pub(super) fn widen(range: &mut [f64; 2], width: f64) {
+    let middle = (range[0] + range[1]) / 2.0;
+    *range = [middle - width / 2.0, middle + width / 2.0];
 }
 
 /// Whether the labels of the categories are too wide to stand side by side.
