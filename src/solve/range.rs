@@ -21,7 +21,7 @@
 use super::answer::subproblem;
 use super::backend::Task;
 use super::lp::Ended;
-use super::lp::form::{Form, Point};
+use super::lp::form::{Form, Point, Sparse};
 use super::lp::scale::Scaling;
 use super::lp::simplex::{Simplex, State};
 use super::{Budget, ModelStatus, Quiet, Settings};
@@ -72,6 +72,8 @@ const NEAR: f64 = 1e-7;
 const NO_PRICE: f64 = 1e-9;
 /// An end nearer to 0 than this, relative to the number and the way from it, is 0.
 const END_TOLERANCE: f64 = 1e-8;
+/// A sum below this is rounding, relative to its terms.
+const ROUNDING: f64 = 1e-12;
 /// A direction in which one variable moves this much farther than another is none, where that is in doubt.
 const STEEP: f64 = 1e9;
 /// Updates after which a factor still counts as fresh: what comes out is computed anew at the end.
@@ -139,6 +141,8 @@ struct Cone<'a> {
     in_time: &'a dyn Fn() -> bool,
     /// How far each variable can go down and up to its bounds: 0 at a bound.
     room: Vec<[f64; 2]>,
+    /// The matrix in scaled units, by columns.
+    columns: Sparse,
     /// At an optimal basis of the cone, and its multipliers.
     engine: Simplex,
     at_rest: Point,
@@ -207,7 +211,8 @@ impl<'a> Cone<'a> {
             room(activity[i as usize], q.row_lower[k], q.row_upper[k], unit)
         });
         let room: Vec<[f64; 2]> = columns.chain(rows).collect();
-        let mut engine = Simplex::new(&scaling.apply(q));
+        let scaled = scaling.apply(q);
+        let mut engine = Simplex::new(&scaled);
         for (v, room) in room.iter().enumerate() {
             let [lower, upper] = room.map(|r| if r == 0.0 { 0.0 } else { r * f64::INFINITY });
             engine.set_bounds(v, lower, upper);
@@ -221,6 +226,7 @@ impl<'a> Cone<'a> {
             activity: activity.to_vec(),
             in_time,
             room,
+            columns: scaled.columns,
             engine,
             at_rest,
             form,
@@ -334,7 +340,8 @@ impl<'a> Cone<'a> {
 
     fn column(&self, k: usize, j: usize) -> Option<CostRange> {
         let unit = self.scaling.price / self.scaling.column[k];
-        // By how much the cost may change until the column goes this way.
+        let cost = self.form.problem.cost[k];
+        // The cost with which the column would go this way: what the multipliers say that it is worth.
         let side = |direction: f64| {
             let [down, up] = self.room[k];
             let stuck = if direction < 0.0 { down } else { up } == 0.0;
@@ -342,17 +349,27 @@ impl<'a> Cone<'a> {
                 true => None,
                 false => self.least(k, [direction; 2])?,
             };
-            Some(at.map_or(f64::INFINITY, |(_, point)| {
-                (point.d[k] * direction).max(0.0) * unit
-            }))
+            let Some((_, point)) = at else {
+                return Some(-direction * f64::INFINITY);
+            };
+            let terms = self.columns.line(k).map(|(i, a)| a * point.y[i]);
+            let (worth, size) = terms.fold((0.0, 0.0), |(w, s), t: f64| (w + t, s + t.abs()));
+            let worth = if worth.abs() <= ROUNDING * size {
+                0.0
+            } else {
+                worth * unit
+            };
+            Some(if point.d[k] * direction > 0.0 {
+                rounded(worth)
+            } else {
+                cost
+            })
         };
-        let c = self.form.problem.cost[k];
-        let (up, down) = (side(-1.0)?, side(1.0)?);
-        let mut interval = [end(c, -down), end(c, up)].map(|c| c * self.form.sign + 0.0);
+        let mut interval = [side(1.0)?, side(-1.0)?].map(|c| c * self.form.sign + 0.0);
         interval.sort_by(f64::total_cmp);
         Some(CostRange {
             column: j,
-            value: c * self.form.sign + 0.0,
+            value: cost * self.form.sign + 0.0,
             level: self.x[j],
             interval,
         })
