@@ -1,5 +1,5 @@
 //! Highlighting for editors is made from the tables of the language: the grammar of TextMate (Visual Studio Code), the syntax
-//! of Vim, the words of Emacs. `BMOD_WRITE=1 cargo test --test all highlighting::` writes the files; without it they are
+//! of Vim, the words of Emacs and of tree-sitter. `BMOD_WRITE=1 cargo test --test all highlighting::` writes the files; without it they are
 //! compared.
 
 use bmod::check::functions;
@@ -30,6 +30,33 @@ const DECLARATIONS: &[&str] = &[
     "acronym",
     "file",
     "figure",
+];
+/// Words that belong to the `variable` behind them.
+const KINDS: &[&str] = &[
+    "positive",
+    "nonnegative",
+    "negative",
+    "free",
+    "binary",
+    "integer",
+    "semicont",
+    "semiint",
+    "sos1",
+    "sos2",
+];
+/// Words inside of a statement that are not names there.
+const INSIDE: &[&str] = &[
+    "using",
+    "minimizing",
+    "maximizing",
+    "minimize",
+    "maximize",
+    "scenario",
+    "do",
+    "then",
+    "to",
+    "downto",
+    "by",
 ];
 const CONSTANTS: &[&str] = &["inf", "eps", "na", "undf", "yes", "no", "all"];
 
@@ -74,28 +101,14 @@ fn all() -> Words {
     let mut statements = named(words::STATEMENTS);
     statements.retain(|w| !DECLARATIONS.contains(w));
     statements.extend([
-        "puttl",
-        "puthd",
-        "putpage",
-        "using",
-        "minimizing",
-        "minimizing",
-        "maximizing",
-        "minimize",
-        "maximize",
-        "min",
-        "max",
-        "scenario",
+        "puttl", "puthd", "putpage", "options", "endif", "endloop", "endwhile", "endfor",
     ]);
-    statements.extend([
-        "options", "do", "then", "to", "downto", "by", "endif", "endloop", "endwhile", "endfor",
-    ]);
+    // `min` and `max` are functions too: only a parenthesis tells.
+    statements.extend(INSIDE);
     let mut operators = named(words::INNER);
     operators.retain(|w| !CONSTANTS.contains(w) && !statements.contains(w));
     operators.extend(["eq", "ne", "lt", "le", "gt", "ge"]);
     let mut functions: Vec<&str> = functions::names().collect();
-    // Between `minimizing` and a function the parenthesis decides.
-    statements.retain(|w| !matches!(*w, "min" | "max"));
     let mut attributes: Vec<&str> = [
         words::RECORD_ATTRIBUTES,
         words::LABEL_ATTRIBUTES,
@@ -261,6 +274,64 @@ fn emacs(w: &Words) -> String {
     )
 }
 
+/// The words that tree-sitter's grammar is made with: they begin statements.
+fn tree_sitter_words(w: &Words) -> String {
+    let types = w.declarations.iter().map(|d| d.replace("?:", ""));
+    let (tables, types): (Vec<_>, Vec<_>) = types
+        .filter(|d| d != "singleton" && !KINDS.contains(&d.as_str()))
+        .partition(|d| d.starts_with("table"));
+    let keywords: Vec<_> = w
+        .statements
+        .iter()
+        .filter(|s| !INSIDE.contains(s))
+        .collect();
+    let words = json!({
+        "comment": "Made from the tables of the language by `BMOD_WRITE=1 cargo test --test all highlighting::`.",
+        "types": types, "kinds": KINDS, "tables": tables, "keywords": keywords,
+    });
+    serde_json::to_string_pretty(&words).expect("JSON") + "\n"
+}
+
+/// What tree-sitter's nodes are coloured as; of two patterns the second counts.
+fn tree_sitter_query(w: &Words) -> String {
+    let words = |pattern: &str, name: &str, list: &[&str]| {
+        format!(
+            "({pattern}\n  (#match? @{name} \"^(?i:{})$\"))\n",
+            list.join("|")
+        )
+    };
+    let constants = [CONSTANTS, &["pi"]].concat();
+    [
+        "; Made from the tables of the language by `BMOD_WRITE=1 cargo test --test all highlighting::`.
+(comment) @comment
+((comment) @comment.doc
+  (#match? @comment.doc \"^[*][=>#!]\"))
+(directive_word) @preproc
+(directive_text) @string.special
+[(type) (table_word)] @type
+(keyword) @keyword
+(string) @string
+(text) @string
+(number) @number
+(percent) @constant
+[(relation) (operator) \"..\"] @operator
+[\"(\" \")\" \"[\" \"]\" \"{\" \"}\"] @punctuation.bracket
+[\";\" \",\"] @punctuation.delimiter
+(declared name: (name) @variable)
+(definition . (name) @function)
+(definition . (call function: (name) @function))
+"
+        .into(),
+        words("(call function: (name) @function.builtin)", "function.builtin", &w.functions),
+        words("(name) @keyword.operator", "keyword.operator", &w.operators),
+        words("(name) @constant.builtin", "constant.builtin", &constants),
+        words("(label) @constant.builtin", "constant.builtin", &constants),
+        words("(statement (name) @keyword)", "keyword", INSIDE),
+        words("(attribute name: (name) @property)", "property", &w.attributes),
+    ]
+    .concat()
+}
+
 #[test]
 fn files_for_editors() {
     let w = all();
@@ -269,6 +340,11 @@ fn files_for_editors() {
         ("vscode/syntaxes/bmod.tmLanguage.json", text_mate(&w)),
         ("vim/syntax/bmod.vim", vim(&w)),
         ("emacs/bmod-words.el", emacs(&w)),
+        ("tree-sitter-bmod/words.json", tree_sitter_words(&w)),
+        (
+            "tree-sitter-bmod/queries/highlights.scm",
+            tree_sitter_query(&w),
+        ),
     ] {
         let file = folder.join(file);
         if std::env::var_os("BMOD_WRITE").is_some() {

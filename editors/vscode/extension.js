@@ -26,7 +26,7 @@ async function start() {
   try {
     await client.start();
   } catch (e) {
-    vscode.window.showErrorMessage(`bmod cannot be started (${program()}): ${e.message}. Install it, or set "bmod.path".`);
+    vscode.window.showErrorMessage(`bmod cannot be started (${program()}): ${e?.message ?? "no connection"}. Install it, or set "bmod.path".`);
   }
 }
 

@@ -1,0 +1,4 @@
+(group "(" ")" @end) @indent
+(group "[" "]" @end) @indent
+(group "{" "}" @end) @indent
+(declaration) @indent
