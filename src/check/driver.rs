@@ -204,7 +204,16 @@ impl Compiler {
 
     /// Whether there is a record with these first positions, up to the first that the loop does not control.
     fn begins_with(&mut self, table: TableId, key: &Key, own: &[Slot], span: Span) -> Option<Node> {
-        let fixed = key.parts.iter().take_while(|p| is_fixed(p, own)).count();
+        // An index that comes again is not searched for.
+        let mut seen: Vec<Slot> = Vec::new();
+        let searched = |p: &&Part| {
+            let again = matches!(p, Part::Slot(s) if seen.contains(s));
+            if let Part::Slot(s) = p {
+                seen.push(*s);
+            }
+            !again && is_fixed(p, own)
+        };
+        let fixed = key.parts.iter().take_while(searched).count();
         let runs = |p: &Part| matches!(p, Part::Slot(_));
         if !key.parts[..fixed].iter().any(runs) {
             return None;

@@ -1,5 +1,6 @@
 * A loop around one assignment passes over turns without data by the form of the right side: a quotient must have a number
-* or a scalar below, a sum no number beside, a power and a comparison a number or a scalar behind.
+* or a scalar below, a sum no number beside, a power and a comparison a number or a scalar behind; an index that
+* comes twice is looked for once.
 set i / a, b /, j / x, y /;
 parameter q(i,j), w(i), p(j), got(*);
 scalar s / 2 /;
@@ -22,6 +23,10 @@ p(j) = 9;  loop(i, p(j) = w(i)$(q(i,j) > s));     got('more than a scalar') = p(
 p(j) = 9;  loop(i, p(j) = w(i)$(q(i,j) > -s));    got('more than a term') = p('x');
 p(j) = 9;  loop(i, p(j) = w(i)$(q(i,j) = 3));     got('equal') = p('x');
 p(j) = 9;  loop(i, p(j) = q(i,j)*eps);            got('eps') = p('x');
+parameter g(i,i), h(j,i);  g('a','b') = 4;  g('b','a') = 3;  h('x','b') = 0;  h('y','a') = 6;
+p(j) = 9;  loop(i, p(j) = g(i,i));                got('an index twice') = p('x');
+p(j) = 9;  loop(i, p(j) = g(i,'a'));              got('a label behind') = p('x');
+p(j) = 9;  loop(i, p(j) = h('x',i));              got('a label ahead') = p('x');
 s = -2;
 p(j) = 9;  loop(i, p(j) = w(i)$(q(i,j) > s));     got('more than a negative scalar') = p('x');
 *= got('by a number') 9
@@ -41,4 +46,7 @@ p(j) = 9;  loop(i, p(j) = w(i)$(q(i,j) > s));     got('more than a negative scal
 *= got('more than a scalar') 9
 *= got('more than a term') 1
 *= got('equal') 0
+*= got('an index twice') 0
+*= got('a label behind') 3
+*= got('a label ahead') 9
 *= got('more than a negative scalar') 1
