@@ -12,6 +12,15 @@ use crate::model::instance::{Instance, Kernel, KernelTerms, Op};
 use rustc_hash::{FxHashMap, FxHasher};
 use std::hash::{Hash, Hasher};
 
+/// How kernels are compiled.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Wanted {
+    /// δ, as in [`Graph::new`].
+    pub smoothing: f64,
+    /// Whether second derivatives are asked for.
+    pub second: bool,
+}
+
 /// A compiled kernel and its terms.
 #[derive(Debug)]
 pub(super) struct Block {
@@ -67,7 +76,7 @@ impl Block {
         self.constants[slot as usize * self.terms() + term]
     }
 
-    fn new(kernel: &Kernel, parts: &[KernelTerms], smoothing: f64) -> Self {
+    fn new(kernel: &Kernel, parts: &[KernelTerms], wanted: Wanted) -> Self {
         let (v, c) = (kernel.variables as usize, kernel.constants as usize);
         let terms: usize = parts.iter().map(|p| p.row.len()).sum();
         let mut row = Vec::with_capacity(terms);
@@ -97,11 +106,14 @@ impl Block {
                     .then_some(first)
             })
             .collect();
-        let graph = Graph::new(kernel, &uniform, smoothing);
+        let graph = Graph::new(kernel, &uniform, wanted.smoothing);
         let (value, gradient, hessian) = (
             derive::value(&graph),
             derive::gradient(&graph),
-            derive::hessian(&graph),
+            match wanted.second {
+                true => derive::hessian(&graph),
+                false => derive::Code::default(),
+            },
         );
         let constant = |code: &derive::Code| {
             let inactive = |o: &derive::Output| !code.steps.list[o.step as usize].active;
@@ -113,7 +125,7 @@ impl Block {
             hessian: Program::new(&hessian),
             gradient_slots: gradient.outputs.iter().map(|o| o.slots[0]).collect(),
             hessian_slots: hessian.outputs.iter().map(|o| o.slots).collect(),
-            quadratic: constant(&hessian),
+            quadratic: wanted.second && constant(&hessian),
             linear: constant(&gradient),
             graph,
             row,
@@ -124,8 +136,8 @@ impl Block {
     }
 }
 
-/// Compiles the nonlinear part of an instance; `smoothing` as in [`Graph::new`].
-pub(super) fn compile(instance: &Instance, smoothing: f64) -> Vec<Block> {
+/// Compiles the nonlinear part of an instance.
+pub(super) fn compile(instance: &Instance, wanted: Wanted) -> Vec<Block> {
     let mut groups: Vec<(Kernel, Vec<KernelTerms>)> = Vec::new();
     let mut known: FxHashMap<u64, Vec<usize>> = FxHashMap::default();
     for terms in instance.nonlinear.iter().filter(|t| !t.row.is_empty()) {
@@ -142,7 +154,7 @@ pub(super) fn compile(instance: &Instance, smoothing: f64) -> Vec<Block> {
     }
     groups
         .into_iter()
-        .map(|(kernel, parts)| Block::new(&kernel, &parts, smoothing))
+        .map(|(kernel, parts)| Block::new(&kernel, &parts, wanted))
         .collect()
 }
 

@@ -28,6 +28,7 @@ pub(super) struct Output {
 }
 
 /// Straight-line code with its outputs.
+#[derive(Default)]
 pub(super) struct Code {
     /// The steps.
     pub steps: Steps,

@@ -7,7 +7,7 @@
 //!
 //! Invariant: a pattern depends on the instance alone, never on the point.
 
-use super::blocks::{Block, compile};
+use super::blocks::{Block, Wanted, compile};
 use super::fixed::without_fixed;
 use super::functions::{DomainError, ErrorKind, Operation};
 use super::program::{Sink, Workspace};
@@ -99,8 +99,8 @@ pub struct Evaluator {
 enum Unfixed {
     /// Not needed: there are none.
     None,
-    /// Not compiled yet, and how kinks are rounded.
-    Terms(Box<Instance>, f64),
+    /// Not compiled yet, and how they are to be.
+    Terms(Box<Instance>, Wanted),
     /// Ready.
     Ready(Box<Part>),
 }
@@ -120,19 +120,41 @@ impl Evaluator {
         Self::smoothed(instance, 0.0)
     }
 
+    /// The same without second derivatives: its Hessian has no entries, and [`Self::degrees`] knows linear rows only.
+    pub fn first_order(instance: &Instance) -> Self {
+        Self::smoothed_first_order(instance, 0.0)
+    }
+
+    /// [`Self::smoothed`] without second derivatives.
+    pub fn smoothed_first_order(instance: &Instance, delta: f64) -> Self {
+        let wanted = Wanted {
+            smoothing: delta,
+            second: false,
+        };
+        Self::made(instance, wanted)
+    }
+
     /// The same with √(a² + δ²) for |a|, and min and max made from it: differentiable everywhere.
     pub fn smoothed(instance: &Instance, delta: f64) -> Self {
-        let mut e = Self::plain(instance, delta);
+        let wanted = Wanted {
+            smoothing: delta,
+            second: true,
+        };
+        Self::made(instance, wanted)
+    }
+
+    fn made(instance: &Instance, wanted: Wanted) -> Self {
+        let mut e = Self::plain(instance, wanted);
         if let Some(i) = without_fixed(instance) {
-            e.unfixed = Unfixed::Terms(Box::new(i), delta);
+            e.unfixed = Unfixed::Terms(Box::new(i), wanted);
         }
         e
     }
 
     /// The part without fixed columns.
     fn part(&mut self) -> Option<&mut Part> {
-        if let Unfixed::Terms(instance, delta) = &self.unfixed {
-            let part = Part::new(self, Self::plain(instance, *delta));
+        if let Unfixed::Terms(instance, wanted) = &self.unfixed {
+            let part = Part::new(self, Self::plain(instance, *wanted));
             self.unfixed = Unfixed::Ready(Box::new(part));
         }
         match &mut self.unfixed {
@@ -141,8 +163,8 @@ impl Evaluator {
         }
     }
 
-    fn plain(instance: &Instance, delta: f64) -> Self {
-        let blocks = compile(instance, delta);
+    fn plain(instance: &Instance, wanted: Wanted) -> Self {
+        let blocks = compile(instance, wanted);
         let mut e = Self {
             columns: instance.column_count(),
             blocks,

@@ -770,7 +770,7 @@ impl Machine<'_> {
 
     pub(super) fn print_listing(&mut self, model: &str, g: &Generated, list: &ListOptions) {
         let mut activity = vec![0.0; g.instance.row_count()];
-        if crate::autodiff::Evaluator::new(&g.instance)
+        if crate::autodiff::Evaluator::first_order(&g.instance)
             .rows(&g.instance.columns.level, &mut activity)
             .is_err()
         {

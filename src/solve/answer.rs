@@ -93,7 +93,6 @@ fn solve(
     settings: &Settings,
     budget: &Budget,
 ) -> Result<Answer, SolveError> {
-    affords_hessian(task, budget)?;
     for build in bridge::BEFORE {
         if let Some(bridge) = build(backends, task, settings)
             && let Some(answer) = across(backends, &*bridge, task, settings, budget)
@@ -101,6 +100,7 @@ fn solve(
             return Ok(answer);
         }
     }
+    affords_hessian(task, budget)?;
     let backend = choose(backends, task).ok_or_else(|| missing(task))?;
     let reply = backend.solve(task, settings, budget)?;
     Ok(certified(task, reply, None))
@@ -215,7 +215,7 @@ fn point(instance: &Instance, outcome: &Outcome) -> (Residuals, certificate::Lin
     let (level, marginal) = (&outcome.level, &outcome.row_marginal);
     nonlinear::measure(
         instance,
-        &mut Evaluator::new(instance),
+        &mut Evaluator::first_order(instance),
         &mut smoothed,
         level,
         marginal,
@@ -273,7 +273,7 @@ fn status(task: &Task, outcome: &Outcome, residuals: &Residuals, activity: &[f64
 }
 
 fn is_locally_infeasible(instance: &Instance, outcome: &Outcome) -> bool {
-    let (mut evaluator, ray) = (Evaluator::new(instance), &outcome.ray);
+    let (mut evaluator, ray) = (Evaluator::first_order(instance), &outcome.ray);
     ray.len() == instance.row_count()
         && nonlinear::is_locally_infeasible(instance, &mut evaluator, &outcome.level, ray, 1e-4)
 }
@@ -426,7 +426,7 @@ fn moved(instance: &Instance, activity: &[f64]) -> Instance {
 /// Levels of the rows; not a number where a function has no value.
 fn activity(instance: &Instance, x: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; instance.row_count()];
-    if Evaluator::new(instance).rows(x, &mut out).is_err() {
+    if Evaluator::first_order(instance).rows(x, &mut out).is_err() {
         out.fill(f64::NAN);
     }
     out

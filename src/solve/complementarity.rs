@@ -38,7 +38,7 @@ impl<'a> Square<'a> {
     fn new(instance: &'a Instance, square: bool) -> Result<Self, SolveError> {
         let row_of = match_rows(instance, square)?;
         let n = instance.column_count();
-        let evaluator = Evaluator::new(instance);
+        let evaluator = Evaluator::first_order(instance);
         let columns = &instance.columns;
         // A square system's bounds do not act; they are checked at the solution.
         let bounds = |b: &[f64], infinite: f64| -> Vec<f64> {
@@ -239,7 +239,12 @@ impl Backend for Bmcp {
 /// Whether rows and bounds hold.
 fn is_solved(instance: &Instance, level: &[f64]) -> bool {
     let none = vec![0.0; instance.row_count()];
-    let at = linearise(instance, &mut Evaluator::new(instance), level, &none);
+    let at = linearise(
+        instance,
+        &mut Evaluator::first_order(instance),
+        level,
+        &none,
+    );
     at.is_ok_and(|at| {
         let residuals = certificate::primal(instance, level, &at.activity, &at.row_size);
         residuals.is_feasible(TOLERANCE)

@@ -91,6 +91,10 @@ strategies! {
             "kinks on the side where they are convex are replaced by a column and a row for each argument",
             "one solve of the larger program",
             "Boyd & Vandenberghe 2004, 4.1.3";
+        InnerSums "inner_sums",
+            "linear sums of 500 variables and more inside functions, others of 1000, become columns, so that second derivatives stay sparse",
+            "a row and a column for each",
+            "Griewank & Toint 1982";
         ConvexQuadratic "convex_quadratic",
             "linear rows and a positive semidefinite Hessian of the objective: Clarabel solves it",
             "a Cholesky factorisation and one conic solve",

@@ -68,7 +68,7 @@ pub fn examine(instance: &Instance, row_of: &[Option<u32>], square: bool) -> Vec
             && (square
                 || columns.lower[j] == f64::NEG_INFINITY && columns.upper[j] == f64::INFINITY)
     };
-    let evaluator = Evaluator::new(instance);
+    let evaluator = Evaluator::first_order(instance);
     let (start, index) = evaluator.jacobian_pattern();
     let by_row = Graph {
         start: start.to_vec(),

@@ -2,12 +2,16 @@
 //!
 //! * [`elastic`]: rows that may be violated at a price;
 //! * [`epigraph`]: max, min and abs where they stand convexly, as columns and rows;
+//! * [`inner_sums`]: long sums inside functions, as columns and rows;
 //! * [`kkt`]: the optimality conditions of a linear program as a complementarity problem;
 //! * [`products`]: pairs as nonlinear rows, for programs with equilibrium constraints.
 
+mod builder;
 pub mod elastic;
 pub mod epigraph;
+mod inner_sums;
 pub mod kkt;
+mod parts;
 pub mod products;
 
 use super::Settings;
@@ -37,4 +41,8 @@ pub(super) trait Bridge {
 type Build = fn(&[&dyn Backend], &Task, &Settings) -> Option<Box<dyn Bridge>>;
 
 /// What is tried before a task is given to a backend as it is.
-pub(super) const BEFORE: [Build; 2] = [kkt::Kkt::bridge, epigraph::Epigraph::bridge];
+pub(super) const BEFORE: [Build; 3] = [
+    kkt::Kkt::bridge,
+    epigraph::Epigraph::bridge,
+    inner_sums::InnerSums::bridge,
+];

@@ -178,7 +178,7 @@ pub fn residuals(
 
 /// For instances with kinks: derivatives beside them, for [`measure`].
 pub fn beside_kinks(instance: &Instance) -> Option<Evaluator> {
-    kinks(instance).map(|_| Evaluator::smoothed(instance, KINK_WIDTH))
+    kinks(instance).map(|_| Evaluator::smoothed_first_order(instance, KINK_WIDTH))
 }
 
 /// Residuals at a point with marginals of the rows, and the instance there; infinite residuals where a function has no value

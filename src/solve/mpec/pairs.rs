@@ -174,7 +174,10 @@ impl<'a> Program<'a> {
             return (0..m).map(line).collect();
         }
         let mut out = vec![0.0; m];
-        if Evaluator::new(self.instance).rows(level, &mut out).is_err() {
+        if Evaluator::first_order(self.instance)
+            .rows(level, &mut out)
+            .is_err()
+        {
             out.fill(f64::NAN);
         }
         out

@@ -236,7 +236,7 @@ fn linearise(program: &Program, level: &[f64]) -> Option<(Problem, Vec<Pair>, Ve
     let instance = program.instance;
     let (m, n) = (instance.row_count(), instance.column_count());
     let activity = program.activity(level);
-    let mut evaluator = Evaluator::new(instance);
+    let mut evaluator = Evaluator::first_order(instance);
     let (start, column) = evaluator.jacobian_pattern();
     let (start, column) = (start.to_vec(), column.to_vec());
     let mut value = vec![0.0; column.len()];

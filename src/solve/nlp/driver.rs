@@ -452,7 +452,7 @@ impl Driver<'_, '_> {
 
     pub(super) fn consistent(&self) -> Option<Vec<f64>> {
         let problem = lock(&*self.problem);
-        let mut evaluator = Evaluator::new(self.instance);
+        let mut evaluator = Evaluator::first_order(self.instance);
         consistent_start(self.instance, &problem, &mut evaluator, &self.start)
     }
 

@@ -22,7 +22,7 @@ pub(super) fn findings(instance: &Instance, square: bool, x: &[f64]) -> Vec<Find
     let Ok(row_of) = match_rows(instance, square) else {
         return Vec::new();
     };
-    let mut evaluator = Evaluator::new(instance);
+    let mut evaluator = Evaluator::first_order(instance);
     let mut activity = vec![0.0; instance.row_count()];
     let (start, column) = evaluator.jacobian_pattern();
     let (start, column) = (start.to_vec(), column.to_vec());

@@ -39,7 +39,7 @@ pub(super) fn ray(instance: &Instance, ray: &[f64]) -> Option<Finding> {
 
 /// Coefficients (derivatives, at the point) that are more than [`WIDE`] apart.
 pub(super) fn scaling(instance: &Instance, x: &[f64]) -> Option<Finding> {
-    let mut evaluator = Evaluator::new(instance);
+    let mut evaluator = Evaluator::first_order(instance);
     let (start, column) = evaluator.jacobian_pattern();
     let (start, column) = (start.to_vec(), column.to_vec());
     let mut values = vec![0.0; column.len()];
@@ -143,7 +143,7 @@ pub(super) fn inaccurate(instance: &Instance, answer: &Answer) -> Option<Finding
 
 /// Whether some function has no value or derivative at the point.
 pub(super) fn no_value(instance: &Instance, x: &[f64]) -> Option<Finding> {
-    let mut evaluator = Evaluator::new(instance);
+    let mut evaluator = Evaluator::first_order(instance);
     let mut rows = vec![0.0; instance.row_count()];
     let mut values = vec![0.0; evaluator.jacobian_pattern().1.len()];
     let failure = evaluator

@@ -3,8 +3,8 @@
 //! In `y =e= abs(x)`, with y only in `y =l= z` and z minimised, `y =g= abs(x)` will do: whoever has a solution of this may
 //! lower y until the equation holds.
 
-use super::parts::Expression;
 use crate::model::instance::{Function, Instance, Op, Relation};
+use crate::solve::bridge::parts::{Expression, expressions};
 use std::collections::BTreeMap;
 
 /// How far the chain of variables that make up for each other is followed.
@@ -78,7 +78,7 @@ impl<'i> Directions<'i> {
                 out.linear[j].push((i, a));
             }
         }
-        for (row, coefficient, term) in super::expressions(instance) {
+        for (row, coefficient, term) in expressions(instance) {
             let mut columns = term.columns.clone();
             columns.sort_unstable();
             columns.dedup();

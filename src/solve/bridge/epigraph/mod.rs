@@ -14,29 +14,22 @@
 //! program itself, to the same value of the objective.
 
 mod direction;
-mod parts;
 
 use super::Bridge;
+use super::builder::Builder;
+use super::parts::{Expression, Parts, expressions, has_kink};
 use crate::autodiff::Evaluator;
-use crate::model::instance::{
-    Columns, Function, Instance, Kernel, KernelTerms, Relation, Rows, SparseRows,
-};
+use crate::model::instance::{Function, Instance, KernelTerms, Relation};
 use crate::model::problem_type::ProblemType;
 use crate::solve::answer::Answer;
 use crate::solve::backend::{Backend, Reply, Task};
 use crate::solve::certificate::{TOLERANCE, nonlinear::linearise, primal};
 use crate::solve::{Claim, ModelStatus, Outcome, Settings, Strategy};
 use direction::Directions;
-use parts::{Expression, Parts, has_kink};
-use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
-use std::ops::Range;
 
 /// Times that variables make up for each other, at most.
 const SWEEPS: usize = 20;
-
-/// Depth to which one stands in another and the start is still exact.
-const NESTED: usize = 4;
 
 /// A program without kinks in place of one with some.
 pub(super) struct Epigraph {
@@ -44,21 +37,6 @@ pub(super) struct Epigraph {
     instance: Instance,
     /// By equation: the column that makes it hold.
     makes_up: BTreeMap<usize, usize>,
-}
-
-/// All nonlinear terms: row, coefficient, expression.
-fn expressions(instance: &Instance) -> impl Iterator<Item = (usize, f64, Expression)> {
-    instance.nonlinear.iter().flat_map(|t| {
-        let (v, c) = (t.kernel.variables as usize, t.kernel.constants as usize);
-        (0..t.row.len()).map(move |k| {
-            let expression = Expression {
-                kernel: t.kernel.clone(),
-                columns: t.columns[k * v..(k + 1) * v].to_vec(),
-                constants: t.constants[k * c..(k + 1) * c].to_vec(),
-            };
-            (t.row[k] as usize, t.coef[k], expression)
-        })
-    })
 }
 
 impl Epigraph {
@@ -143,7 +121,7 @@ impl Bridge for Epigraph {
         let value = outcome.level[objective];
         let mut level = outcome.level;
         level.truncate(n);
-        let mut evaluator = Evaluator::new(instance);
+        let mut evaluator = Evaluator::first_order(instance);
         let mut activity = vec![0.0; m];
         evaluator.rows(&level, &mut activity).ok()?;
         for _ in 0..SWEEPS {
@@ -195,53 +173,10 @@ fn is_convex(f: Function) -> bool {
     f != Function::Min
 }
 
-/// The program in the making.
-struct Builder {
-    columns: Columns,
-    rows: Rows,
-    entries: Vec<(usize, u32, f64)>,
-    nonlinear: Vec<KernelTerms>,
-    known: FxHashMap<Kernel, usize>,
-    /// What was put in place of kinks: column, its rows, whether it is above them.
-    lifted: Vec<(usize, Range<usize>, bool)>,
-}
-
 impl Builder {
-    fn new(instance: &Instance) -> Self {
-        let linear = (0..instance.row_count())
-            .flat_map(|i| instance.matrix.row(i).map(move |(j, a)| (i, j as u32, a)));
-        Self {
-            columns: instance.columns.clone(),
-            rows: instance.rows.clone(),
-            entries: linear.collect(),
-            nonlinear: Vec::new(),
-            known: FxHashMap::default(),
-            lifted: Vec::new(),
-        }
-    }
-
-    fn push_term(&mut self, row: usize, coefficient: f64, e: Expression) {
-        let next = self.nonlinear.len();
-        let place = *self.known.entry(e.kernel.clone()).or_insert(next);
-        if place == next {
-            self.nonlinear.push(KernelTerms {
-                kernel: e.kernel,
-                ..KernelTerms::default()
-            });
-        }
-        let terms = &mut self.nonlinear[place];
-        terms.row.push(row as u32);
-        terms.coef.push(coefficient);
-        terms.columns.extend(e.columns);
-        terms.constants.extend(e.constants);
-    }
-
     /// Puts parts into the left side of a row.
     fn place(&mut self, row: usize, parts: Parts) -> Option<()> {
-        self.rows.rhs[row] -= parts.constant;
-        let linear = parts.linear.into_iter().map(|(j, a)| (row, j, a));
-        self.entries.extend(linear);
-        for (weight, part) in parts.nonlinear {
+        for (weight, part) in self.place_linear(row, parts) {
             match part.kink() {
                 Some((f, arguments)) => self.lift(row, weight, f, arguments)?,
                 None if part.has_kink() => return None,
@@ -286,10 +221,7 @@ impl Builder {
             Relation::Greater
         };
         for _ in &sides {
-            self.rows.relation.push(relation);
-            self.rows.rhs.push(0.0);
-            self.rows.marginal.push(0.0);
-            self.rows.scale.push(1.0);
+            self.push_row(relation);
         }
         self.lifted
             .push((v, first..first + sides.len(), is_convex(f)));
@@ -298,55 +230,5 @@ impl Builder {
             self.place(first + i, side)?;
         }
         Some(())
-    }
-
-    fn finish(mut self, original: &Instance) -> Instance {
-        self.entries.sort_by_key(|e| (e.0, e.1));
-        let mut matrix = SparseRows {
-            start: vec![0],
-            ..SparseRows::default()
-        };
-        let mut entries = self
-            .entries
-            .chunk_by(|a, b| (a.0, a.1) == (b.0, b.1))
-            .peekable();
-        for i in 0..self.rows.rhs.len() {
-            while let Some(same) = entries.next_if(|e| e[0].0 == i) {
-                let sum: f64 = same.iter().map(|e| e.2).sum();
-                if sum != 0.0 {
-                    matrix.column.push(same[0].1);
-                    matrix.value.push(sum);
-                }
-            }
-            matrix.start.push(matrix.column.len());
-        }
-        let mut instance = Instance {
-            columns: self.columns,
-            rows: self.rows,
-            matrix,
-            nonlinear: self.nonlinear,
-            objective: original.objective,
-            matched: None,
-            discrete: Default::default(),
-        };
-        // the start of an outer one depends on that of an inner one
-        let mut evaluator = Evaluator::new(&instance);
-        let mut activity = vec![0.0; instance.row_count()];
-        for _ in 0..NESTED {
-            let level = &mut instance.columns.level;
-            if evaluator.rows(level, &mut activity).is_err() {
-                break;
-            }
-            for (v, rows, above) in &self.lifted {
-                let values = rows
-                    .clone()
-                    .map(|i| activity[i] - instance.rows.rhs[i] + level[*v]);
-                level[*v] = match above {
-                    true => values.fold(f64::NEG_INFINITY, f64::max),
-                    false => values.fold(f64::INFINITY, f64::min),
-                };
-            }
-        }
-        instance
     }
 }

@@ -21,6 +21,8 @@ impl Simplex {
     /// Pivots until no reduced cost has the wrong sign.
     pub(super) fn primal(&mut self, stop: &mut dyn FnMut(u64) -> Option<Ended>) -> Stop {
         let mut refused: Vec<u32> = Vec::new();
+        // After a flip the reduced costs are what they were: those who come next in their order.
+        let mut next: Vec<u32> = Vec::new();
         loop {
             if self.iterations.is_multiple_of(32)
                 && let Some(why) = stop(self.iterations)
@@ -31,7 +33,8 @@ impl Simplex {
                 return Stop::Ended(Ended::Iterations);
             }
             let fresh = self.is_fresh();
-            let Some(entering) = self.priced(&refused) else {
+            let entering = next.pop().map(|j| j as usize);
+            let Some(entering) = entering.or_else(|| self.priced(&refused)) else {
                 if self.is_trusted() {
                     return Stop::Done;
                 }
@@ -47,6 +50,7 @@ impl Simplex {
                 if fresh || self.refactor().is_none() {
                     return Stop::Ended(Ended::Failed);
                 }
+                next.clear();
                 continue;
             };
             let up = self.d[entering] < 0.0;
@@ -66,8 +70,12 @@ impl Simplex {
                     self.x[entering] = bound;
                     self.iterations += 1;
                     refused.clear();
+                    if next.is_empty() {
+                        next = self.all_priced();
+                    }
                 }
                 Some(Block::Slot(slot, bound)) => {
+                    next.clear();
                     if self
                         .primal_pivot(entering, sigma, &column, slot, bound)
                         .is_none()
@@ -79,6 +87,7 @@ impl Simplex {
                 }
                 // The pivots are not to be trusted.
                 Some(Block::Never) | None => {
+                    next.clear();
                     if fresh {
                         refused.push(entering as u32);
                         if refused.len() > 50 {
@@ -96,16 +105,31 @@ impl Simplex {
     fn priced(&self, refused: &[u32]) -> Option<usize> {
         let mut best = (0.0, None);
         for j in 0..self.n + self.m {
-            if self.slot[j] != NONBASIC || self.d[j].abs() <= self.dual_tolerance {
-                continue;
-            }
-            let violation = self.dual_violation(j);
-            let score = violation * violation / self.devex[j];
-            if violation > self.dual_tolerance && score > best.0 && !refused.contains(&(j as u32)) {
+            let score = self.score(j);
+            if score > best.0 && !refused.contains(&(j as u32)) {
                 best = (score, Some(j));
             }
         }
         best.1
+    }
+
+    /// All that may enter, the best last.
+    fn all_priced(&self) -> Vec<u32> {
+        let scores = (0..self.n + self.m).map(|j| (self.score(j), j as u32));
+        let mut scores: Vec<(f64, u32)> = scores.filter(|s| s.0 > 0.0).collect();
+        scores.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
+        scores.into_iter().map(|s| s.1).collect()
+    }
+
+    /// What a variable is worth as the entering one; 0 for one that may not enter.
+    fn score(&self, j: usize) -> f64 {
+        if self.slot[j] != NONBASIC || self.d[j].abs() <= self.dual_tolerance {
+            return 0.0;
+        }
+        match self.dual_violation(j) {
+            v if v > self.dual_tolerance => v * v / self.devex[j],
+            _ => 0.0,
+        }
     }
 
     /// Harris's ratio test. None: the best pivot is too small to be trusted.

@@ -1,6 +1,6 @@
 //! Terms taken apart: a kernel as a weighted sum of constants, variables and what cannot be split further.
 
-use crate::model::instance::{Function, Kernel, Op};
+use crate::model::instance::{Function, Instance, Kernel, Op};
 
 /// An expression: a program, the columns and constants in its slots.
 #[derive(Clone, Debug, PartialEq)]
@@ -8,6 +8,21 @@ pub(super) struct Expression {
     pub(super) kernel: Kernel,
     pub(super) columns: Vec<u32>,
     pub(super) constants: Vec<f64>,
+}
+
+/// All nonlinear terms: row, coefficient, expression.
+pub(super) fn expressions(instance: &Instance) -> impl Iterator<Item = (usize, f64, Expression)> {
+    instance.nonlinear.iter().flat_map(|t| {
+        let (v, c) = (t.kernel.variables as usize, t.kernel.constants as usize);
+        (0..t.row.len()).map(move |k| {
+            let expression = Expression {
+                kernel: t.kernel.clone(),
+                columns: t.columns[k * v..(k + 1) * v].to_vec(),
+                constants: t.constants[k * c..(k + 1) * c].to_vec(),
+            };
+            (t.row[k] as usize, t.coef[k], expression)
+        })
+    })
 }
 
 /// A weighted sum.
@@ -26,6 +41,25 @@ impl Expression {
         let tree = Tree::new(self);
         tree.split(self.kernel.ops.len() - 1, weight, &mut parts);
         parts
+    }
+
+    /// The expression with a column in place of each sum of `least` or more entries that stands in it, none of them inside
+    /// another; `make` gives the column, or refuses.
+    pub(super) fn without_sums(
+        &self,
+        least: usize,
+        make: &mut dyn FnMut(Parts) -> Option<u32>,
+    ) -> Self {
+        let mut out = Self {
+            kernel: Kernel::default(),
+            columns: Vec::new(),
+            constants: Vec::new(),
+        };
+        let tree = Tree::new(self);
+        tree.rewrite(self.kernel.ops.len() - 1, least, make, &mut out);
+        out.kernel.variables = out.columns.len() as u32;
+        out.kernel.constants = out.constants.len() as u32;
+        out
     }
 
     /// Function and arguments, if a function with kinks comes last.
@@ -140,46 +174,77 @@ impl<'e> Tree<'e> {
 
     /// The subexpression that ends at p, with slots of its own.
     fn cut(&self, p: usize) -> Expression {
-        let (mut columns, mut constants) = (Vec::new(), Vec::new());
-        let mut ops = Vec::with_capacity(p + 1 - self.begin[p]);
+        let mut out = Expression {
+            kernel: Kernel::default(),
+            columns: Vec::new(),
+            constants: Vec::new(),
+        };
+        for q in self.begin[p]..=p {
+            self.copy(q, &mut out);
+        }
+        out.kernel.variables = out.columns.len() as u32;
+        out.kernel.constants = out.constants.len() as u32;
+        out
+    }
+
+    /// Appends the operation at p, with slots of its own.
+    fn copy(&self, p: usize, out: &mut Expression) {
         let column = |k: u32| self.whole.columns[k as usize];
         let number = |k: u32| self.whole.constants[k as usize];
-        for &op in &self.whole.kernel.ops[self.begin[p]..=p] {
-            ops.push(match op {
-                Op::Var(k) => {
-                    columns.push(column(k));
-                    Op::Var(columns.len() as u32 - 1)
-                }
-                Op::Const(k) => {
-                    constants.push(number(k));
-                    Op::Const(constants.len() as u32 - 1)
-                }
+        let at = (out.constants.len() as u32, out.columns.len() as u32);
+        out.kernel.ops.push(match self.whole.kernel.ops[p] {
+            Op::Var(k) => {
+                out.columns.push(column(k));
+                Op::Var(at.1)
+            }
+            Op::Const(k) => {
+                out.constants.push(number(k));
+                Op::Const(at.0)
+            }
+            Op::Affine {
+                constant,
+                variable,
+                terms,
+            } => {
+                out.constants
+                    .extend((constant..=constant + terms).map(number));
+                out.columns.extend((variable..variable + terms).map(column));
                 Op::Affine {
-                    constant,
-                    variable,
+                    constant: at.0,
+                    variable: at.1,
                     terms,
-                } => {
-                    let at = (constants.len() as u32, columns.len() as u32);
-                    constants.extend((constant..=constant + terms).map(number));
-                    columns.extend((variable..variable + terms).map(column));
-                    Op::Affine {
-                        constant: at.0,
-                        variable: at.1,
-                        terms,
-                    }
                 }
-                other => other,
-            });
-        }
-        let kernel = Kernel {
-            ops,
-            variables: columns.len() as u32,
-            constants: constants.len() as u32,
+            }
+            other => other,
+        });
+    }
+
+    /// See [`Expression::without_sums`].
+    fn rewrite(
+        &self,
+        p: usize,
+        least: usize,
+        make: &mut dyn FnMut(Parts) -> Option<u32>,
+        out: &mut Expression,
+    ) {
+        let op = self.whole.kernel.ops[p];
+        let size = match op {
+            Op::Affine { terms, .. } => terms as usize,
+            Op::Add | Op::AddN(_) | Op::Subtract => p + 1 - self.begin[p],
+            _ => 0,
         };
-        Expression {
-            kernel,
-            columns,
-            constants,
+        if size >= least {
+            let mut parts = Parts::default();
+            self.split(p, 1.0, &mut parts);
+            if let Some(column) = make(parts) {
+                out.kernel.ops.push(Op::Var(out.columns.len() as u32));
+                out.columns.push(column);
+                return;
+            }
         }
+        for argument in self.arguments(p) {
+            self.rewrite(argument, least, make, out);
+        }
+        self.copy(p, out);
     }
 }

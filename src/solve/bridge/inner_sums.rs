@@ -1,0 +1,132 @@
+//! Long sums inside a function: a column and a row in their place.
+//!
+//! ```text
+//!     f(Σᵢ gᵢ(x))      ⟺      f(s),   Σᵢ gᵢ(x) − s = 0
+//! ```
+//!
+//! The second derivatives of f(Σᵢ gᵢ(x)) fill a square as large as the sum is long, f″ ∇g ∇gᵀ; those of f(s) and of the gᵢ are
+//! few (Griewank & Toint 1982: partial separability). Levels and marginals of the program itself come first, and are its own:
+//! the multiplier of the new row is what f′ is in the chain rule.
+
+use super::Bridge;
+use super::builder::Builder;
+use super::parts::{Parts, expressions};
+use crate::model::instance::{Instance, KernelTerms, Relation};
+use crate::model::problem_type::ProblemType;
+use crate::solve::answer::Answer;
+use crate::solve::backend::{Backend, Reply, Task};
+use crate::solve::{Claim, Outcome, Settings, Strategy};
+use rustc_hash::FxHashSet;
+
+/// Variables of a linear sum from which on it is replaced: a factor of its square would take 4·10⁷ operations. The new row
+/// stays satisfied, so that nothing else changes.
+const LEAST: usize = 500;
+
+/// The same of other sums: behind a curved row a method may make shorter steps, so there must be more to gain.
+const LEAST_CURVED: usize = 1000;
+
+/// How many times fewer second derivatives there must be.
+const GAIN: usize = 4;
+
+/// A program without long sums inside functions in place of one with some.
+pub(super) struct InnerSums {
+    instance: Instance,
+}
+
+impl InnerSums {
+    /// None where there is nothing to replace.
+    fn new(instance: &Instance) -> Option<Self> {
+        let is_long = |t: &KernelTerms| t.kernel.variables as usize >= LEAST;
+        if !instance.nonlinear.iter().any(is_long) {
+            return None;
+        }
+        let mut builder = Builder::new(instance);
+        for (row, coefficient, term) in expressions(instance) {
+            match term.columns.len() >= LEAST {
+                true => place(&mut builder, row, term.parts(coefficient)),
+                false => builder.push_term(row, coefficient, term),
+            }
+        }
+        let replaced = !builder.lifted.is_empty();
+        replaced.then(|| Self {
+            instance: builder.finish(instance),
+        })
+    }
+
+    /// For nonlinear programs in continuous columns.
+    pub(super) fn bridge(
+        _: &[&dyn Backend],
+        task: &Task,
+        settings: &Settings,
+    ) -> Option<Box<dyn Bridge>> {
+        let instance = task.instance;
+        let other = instance.objective.is_none() || task.has_pairs() || task.has_integers();
+        if other || !settings.runs(Strategy::InnerSums) {
+            return None;
+        }
+        Some(Box::new(Self::new(instance)?))
+    }
+}
+
+/// Puts parts into the left side of a row, and the long sums inside them into rows of their own.
+fn place(builder: &mut Builder, row: usize, parts: Parts) {
+    for (weight, part) in builder.place_linear(row, parts) {
+        let part = part.without_sums(LEAST, &mut |sum| {
+            if !pays(&sum) {
+                return None;
+            }
+            let column = builder.columns.push(f64::NEG_INFINITY, f64::INFINITY) as u32;
+            let row = builder.push_row(Relation::Equal);
+            builder.entries.push((row, column, -1.0));
+            builder.lifted.push((column as usize, row..row + 1, true));
+            place(builder, row, sum);
+            Some(column)
+        });
+        builder.push_term(row, weight, part);
+    }
+}
+
+/// Whether the terms of a sum have few second derivatives beside the square of its variables.
+fn pays(sum: &Parts) -> bool {
+    let distinct = |columns: &mut dyn Iterator<Item = u32>| {
+        let columns: FxHashSet<u32> = columns.collect();
+        columns.len()
+    };
+    let inside = sum.nonlinear.iter().map(|(_, part)| &part.columns);
+    let sizes = inside.clone().map(|c| distinct(&mut c.iter().copied()));
+    let after: usize = sizes.map(|size| size * size).sum();
+    let linear = sum.linear.iter().map(|l| l.0);
+    let all = distinct(&mut inside.flatten().copied().chain(linear));
+    let least = match sum.nonlinear[..] {
+        [] => LEAST,
+        _ => LEAST_CURVED,
+    };
+    all >= least && GAIN * after <= all * all
+}
+
+impl Bridge for InnerSums {
+    fn instance(&self) -> &Instance {
+        &self.instance
+    }
+
+    fn using(&self) -> ProblemType {
+        ProblemType::Nlp
+    }
+
+    fn restore(&self, instance: &Instance, answer: &Answer) -> Option<Reply> {
+        let (n, m) = (instance.column_count(), instance.row_count());
+        let mut outcome = answer.outcome.clone();
+        outcome.level.truncate(n);
+        outcome.column_marginal.truncate(n);
+        outcome.row_marginal.truncate(m);
+        match outcome.claim {
+            Claim::LocallyInfeasible => outcome.ray.truncate(m),
+            _ => outcome.ray.clear(),
+        }
+        let outcome = Outcome {
+            basis: None,
+            ..outcome
+        };
+        Some(outcome.into())
+    }
+}
