@@ -3,7 +3,7 @@
 use super::functions;
 use super::node::*;
 use super::symbols::{DomainPosition, SymbolKind, attribute};
-use super::visit::Visitor;
+use super::visit::{Reading, Visitor};
 use super::{Compiler, Failed};
 use crate::diag::Diagnostic;
 use crate::source::Span;
@@ -90,9 +90,9 @@ impl Compiler {
         };
         domain.conditions.iter().for_each(|c| reading.node(c));
         reading.node(&value);
-        // GAMS empties what is assigned anew before it counts it.
+        // GAMS empties what is assigned anew and only counted, before it counts it.
         let whole = symbol.dim() > 0 && !symbol.has_attributes();
-        if covers && whole && reading.counted && reading.keys.is_empty() {
+        if covers && whole && reading.counted && !reading.read {
             out.push(Code::new(CodeKind::Clear(root, None), span));
         }
         let recurrence = reading.is_recurrence(&key);
@@ -305,16 +305,26 @@ struct SelfReading<'a> {
     tables: Vec<TableId>,
     keys: Vec<&'a Key>,
     counted: bool,
+    /// Other than by its number of records, sums over it included.
+    read: bool,
 }
 
 impl<'a> Visitor<'a> for SelfReading<'a> {
     fn node(&mut self, n: &'a Node) {
-        match &n.kind {
-            NodeKind::Data(t, key) if self.tables.contains(t) => self.keys.push(key),
-            NodeKind::Card(t) => self.counted |= self.tables.contains(t),
-            _ => {}
+        if let NodeKind::Data(t, key) = &n.kind
+            && self.tables.contains(t)
+        {
+            self.keys.push(key);
         }
         n.walk(self);
+    }
+
+    fn table(&mut self, t: TableId, how: Reading) {
+        let own = self.tables.contains(&t);
+        match how {
+            Reading::Count => self.counted |= own,
+            Reading::Record | Reading::Order => self.read |= own,
+        }
     }
 }
 

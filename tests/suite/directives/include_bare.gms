@@ -1,1 +1,1 @@
-a = 4;
+$setGlobal bare 4

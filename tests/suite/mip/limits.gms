@@ -12,9 +12,10 @@ room(k)..  sum(i, w(k,i)*x(i)) =l= b(k);
 model m / all /;
 m.optCR = 0;
 solve m using mip maximizing z;
-scalar best;
+scalar best, first;
 best = z.l;
-*= m.modelstat 1
+first = m.modelstat;
+*= first 1
 m.cutoff = best + 1;
 solve m using mip maximizing z;
 scalar none;

@@ -11,4 +11,4 @@ putclose;
 *|two.txt|         1.00        3.00a                   1.50
 *|two.txt|         2.00        4.00b                   2.00
 *|two.txt|           NA        1.50        +INF  5         YES        0.00
-*|two.txt|        UNDF  1.5
+*|two.txt|         UNDF  1.5

@@ -2,5 +2,5 @@
 file f / yes.txt /;  set i / a /;
 put f yes no 'x' / yes:5 no:5 '|' i('a') /;
 putclose f;
-*|yes.txt|         YES          NOx
-*|yes.txt|  YES   NO|         YES
+*|yes.txt|          YES          NOx
+*|yes.txt|   YES   NO|         YES
