@@ -217,6 +217,8 @@ def test_ctrl_c_returns_what_was_found():
     code = (
         "import bmod, os, signal, threading, warnings\n"
         "warnings.simplefilter('ignore')\n"
+        # ignored where the tests run in the background of a script
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         "threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT)).start()\n"
         "r = bmod.Model.from_text('scalar n / 0 /; while(1, n = n + 1);').run()\n"
         "print(r.stopped, r.interrupted, r['n'] > 0)\n"
