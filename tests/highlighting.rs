@@ -7,6 +7,7 @@ use bmod::editor::vocabulary::{self as words, Entry};
 use serde_json::{Value, json};
 use std::path::Path;
 
+/// Words that declare, beside the kinds of variables.
 const DECLARATIONS: &[&str] = &[
     "set",
     "singleton",
@@ -15,16 +16,6 @@ const DECLARATIONS: &[&str] = &[
     "scalar",
     "table",
     "variable",
-    "positive",
-    "nonnegative",
-    "negative",
-    "free",
-    "binary",
-    "integer",
-    "semicont",
-    "semiint",
-    "sos1",
-    "sos2",
     "equation",
     "model",
     "acronym",
@@ -99,7 +90,7 @@ fn all() -> Words {
         w => w.to_owned(),
     };
     let mut statements = named(words::STATEMENTS);
-    statements.retain(|w| !DECLARATIONS.contains(w));
+    statements.retain(|w| !DECLARATIONS.contains(w) && !KINDS.contains(w));
     statements.extend([
         "puttl", "puthd", "putpage", "options", "endif", "endloop", "endwhile", "endfor",
     ]);
@@ -129,7 +120,7 @@ fn all() -> Words {
         list.dedup();
     }
     Words {
-        declarations: DECLARATIONS.iter().map(plural).collect(),
+        declarations: DECLARATIONS.iter().chain(KINDS).map(plural).collect(),
         statements,
         operators,
         functions,

@@ -2,7 +2,7 @@
 ;; Made from the tables of the language by `BMOD_WRITE=1 cargo test --test all highlighting::`.
 
 (defconst bmod-declarations
-  '("sets" "set" "singleton" "aliass" "alias" "parameters" "parameter" "scalars" "scalar" "tables" "table" "variables" "variable" "positive" "nonnegative" "negative" "free" "binary" "integer" "semicont" "semiint" "sos1" "sos2" "equations" "equation" "models" "model" "acronyms" "acronym" "files" "file" "figure"))
+  '("sets" "set" "singleton" "aliass" "alias" "parameters" "parameter" "scalars" "scalar" "tables" "table" "variables" "variable" "equations" "equation" "models" "model" "acronyms" "acronym" "files" "file" "figure" "positive" "nonnegative" "negative" "free" "binary" "integer" "semicont" "semiint" "sos1" "sos2"))
 
 (defconst bmod-statements
   '("abort" "break" "by" "continue" "display" "do" "downto" "draw" "else" "elseif" "endfor" "endif" "endloop" "endwhile" "execute_load" "execute_loadpoint" "execute_unload" "for" "if" "loop" "maximize" "maximizing" "minimize" "minimizing" "option" "options" "put" "putclose" "puthd" "putpage" "puttl" "repeat" "scenario" "solve" "then" "to" "until" "using" "while"))

@@ -65,11 +65,7 @@ impl Compiler {
             NodeKind::Dollar(a, c) => self.meeting([&**a, c], own),
             NodeKind::Binary(BinaryOp::And, a, b) => self.meeting([&**a, b], own),
             NodeKind::Binary(BinaryOp::Or | BinaryOp::Xor, a, b) => self.together([&**a, b], own),
-            NodeKind::Binary(BinaryOp::Power, a, b) => {
-                let mut unless = self.resting(a, own)?;
-                unless.extend(self.compared(BinaryOp::Le, b, false)?);
-                Some(unless)
-            }
+            NodeKind::Binary(BinaryOp::Power, a, b) => self.power(a, b, own),
             NodeKind::Binary(
                 op @ (BinaryOp::Lt | BinaryOp::Le | BinaryOp::Gt | BinaryOp::Ge | BinaryOp::Ne),
                 a,
@@ -82,14 +78,10 @@ impl Compiler {
                 Some(unless)
             }
             NodeKind::Call(Function::Max | Function::Min, list) => self.together(list, own),
-            NodeKind::Call(Function::Power, list) => {
-                let [base, exponent] = list.as_slice() else {
-                    return None;
-                };
-                let mut unless = self.resting(base, own)?;
-                unless.extend(self.compared(BinaryOp::Le, exponent, false)?);
-                Some(unless)
-            }
+            NodeKind::Call(Function::Power, list) => match list.as_slice() {
+                [base, exponent] => self.power(base, exponent, own),
+                _ => None,
+            },
             // Others do not count, though some are 0 at 0.
             NodeKind::Call(
                 Function::Sqr
@@ -126,16 +118,26 @@ impl Compiler {
         }
     }
 
+    /// A power is 0 with its base, if the exponent is positive.
+    fn power(&mut self, base: &Node, exponent: &Node, own: &[Slot]) -> Option<Vec<Node>> {
+        let mut unless = self.resting(base, own)?;
+        unless.extend(self.compared(BinaryOp::Le, exponent, false)?);
+        Some(unless)
+    }
+
     /// A number of the text, or a scalar.
     fn is_number(&self, n: &Node) -> bool {
         match &n.kind {
             NodeKind::Const(x) => x.is_normal() || *x == 0.0,
-            NodeKind::Data(t, key) if key.parts.is_empty() => {
-                let mut symbols = self.symbols.iter();
-                symbols.any(|(_, s)| s.table == *t && !s.has_attributes())
-            }
+            NodeKind::Data(t, key) => key.parts.is_empty() && self.is_data(*t),
             _ => false,
         }
+    }
+
+    /// Whether a table holds the values of a parameter or the members of a set, not an attribute.
+    fn is_data(&self, table: TableId) -> bool {
+        let mut symbols = self.symbols.iter();
+        symbols.any(|(_, s)| s.table == table && !s.has_attributes())
     }
 
     /// When a comparison of 0 with a number holds: never (no condition), or where a scalar says so. `zero_first`: the
@@ -144,7 +146,6 @@ impl Compiler {
         if !self.is_number(number) {
             return None;
         }
-        let zero = NodeKind::Const(0.0);
         if let NodeKind::Const(x) = number.kind {
             let (a, b) = if zero_first { (0.0, x) } else { (x, 0.0) };
             let holds = match op {
@@ -159,7 +160,7 @@ impl Compiler {
         let NodeKind::Data(t, key) = &number.kind else {
             return None;
         };
-        let zero = Box::new(Node::data(zero, number.span));
+        let zero = Box::new(Node::data(NodeKind::Const(0.0), number.span));
         let scalar = NodeKind::Data(*t, key.clone());
         let scalar = Box::new(Node::data(scalar, number.span));
         let (a, b) = if zero_first {
@@ -254,9 +255,8 @@ impl Compiler {
                 covers: true,
                 ..
             } if !domain.slots.is_empty() => {
-                let mut symbols = self.symbols.iter();
-                let whole = symbols.any(|(_, s)| s.table == *t && !s.has_attributes());
-                (whole && !value.has_random()).then_some((value, &domain.slots, *target))
+                let driven = self.is_data(*t) && !value.has_random();
+                driven.then_some((value, &domain.slots, *target))
             }
             _ => None,
         }

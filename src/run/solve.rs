@@ -18,6 +18,7 @@ use crate::report::why::{Explanation, explain};
 use crate::report::{json, levels, listing, solution, summary};
 use crate::solve::answer::{Answer, answer_with, certify};
 use crate::solve::backend::Task;
+use crate::solve::certificate::nonlinear::activity;
 use crate::solve::mip::{self, Aim};
 use crate::solve::registry::BACKENDS;
 use crate::solve::why;
@@ -769,13 +770,7 @@ impl Machine<'_> {
     }
 
     pub(super) fn print_listing(&mut self, model: &str, g: &Generated, list: &ListOptions) {
-        let mut activity = vec![0.0; g.instance.row_count()];
-        if crate::autodiff::Evaluator::first_order(&g.instance)
-            .rows(&g.instance.columns.level, &mut activity)
-            .is_err()
-        {
-            activity.fill(f64::NAN);
-        }
+        let activity = activity(&g.instance, &g.instance.columns.level);
         let selection = listing::Selection {
             names: list.only.clone(),
             limit: list.limit,

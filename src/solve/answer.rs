@@ -185,7 +185,9 @@ fn measured(task: &Task, outcome: &Outcome, search: Option<&mip::Report>) -> (Re
     let instance = task.instance;
     let level = &outcome.level;
     match (task.using, search) {
-        (_, Some(search)) if !search.solution => (Residuals::default(), activity(instance, level)),
+        (_, Some(search)) if !search.solution => {
+            (Residuals::default(), nonlinear::activity(instance, level))
+        }
         (_, Some(_)) if task.has_pairs() => branch(&mip::fixed(instance, level), outcome),
         (_, Some(_)) => program(&mip::fixed(instance, level), outcome),
         (ProblemType::Mcp, _) => {
@@ -421,13 +423,4 @@ fn moved(instance: &Instance, activity: &[f64]) -> Instance {
         };
     }
     near
-}
-
-/// Levels of the rows; not a number where a function has no value.
-fn activity(instance: &Instance, x: &[f64]) -> Vec<f64> {
-    let mut out = vec![0.0; instance.row_count()];
-    if Evaluator::first_order(instance).rows(x, &mut out).is_err() {
-        out.fill(f64::NAN);
-    }
-    out
 }

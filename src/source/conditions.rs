@@ -236,8 +236,7 @@ impl Preprocessor<'_> {
                     }
                     // Let the directive itself decide.
                     let line = self.take_line();
-                    let line = self.without_comments(line);
-                    let line = self.substituted(line)?;
+                    let line = self.directive_text(line)?;
                     self.set_listed(listed);
                     if self.branch(&line, known)? {
                         return Ok(());

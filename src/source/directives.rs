@@ -744,8 +744,7 @@ impl Preprocessor<'_> {
                 continue;
             }
             hi = next.origin(0, next.text.len()).1;
-            let next = self.without_comments(next);
-            let next = self.substituted(next)?;
+            let next = self.directive_text(next)?;
             text.push(' ');
             text.push_str(&next.text);
         }

@@ -464,9 +464,8 @@ impl<'h> Preprocessor<'h> {
                         return Ok(true);
                     }
                     let line = self.take_line();
-                    let line = self.without_comments(line);
                     let outcome = self
-                        .substituted(line)
+                        .directive_text(line)
                         .and_then(|l| self.directive_line(l, known));
                     if let Err(d) = outcome {
                         return Err(vec![*d]);
@@ -864,6 +863,12 @@ impl<'h> Preprocessor<'h> {
         let file = self.frames.last().map_or(FileId(0), |f| f.file);
         self.map.push_substitute("\n", file, hi, hi);
         Ok(())
+    }
+
+    /// A line of directives with its names filled in, and without its comments.
+    pub(super) fn directive_text(&mut self, line: Line) -> Outcome<Line> {
+        let line = self.without_comments(line);
+        self.substituted(line)
     }
 
     /// A line of directives without its comments: a `//` in the value of a `%name%` is none. Where marks of comments

@@ -3,7 +3,7 @@ if exists('b:current_syntax')
   finish
 endif
 syntax case ignore
-syntax keyword bmodType set[s] singleton alias parameter[s] scalar[s] table[s] variable[s] positive nonnegative negative free binary integer semicont semiint sos1 sos2 equation[s] model[s] acronym[s] file[s] figure
+syntax keyword bmodType set[s] singleton alias parameter[s] scalar[s] table[s] variable[s] equation[s] model[s] acronym[s] file[s] figure positive nonnegative negative free binary integer semicont semiint sos1 sos2
 syntax keyword bmodStatement abort break by continue display do downto draw else elseif endfor endif endloop endwhile execute_load execute_loadpoint execute_unload for if loop maximize maximizing minimize minimizing option options put putclose puthd putpage puttl repeat scenario solve then to until using while
 syntax keyword bmodOperator and eq eqv ge gt imp le lt ne not or prod sand smax smin sor sum xor
 syntax keyword bmodConstant inf eps na undf yes no all pi

@@ -15,7 +15,7 @@ use crate::model::instance::{Instance, KernelTerms, Relation};
 use crate::model::problem_type::ProblemType;
 use crate::solve::answer::Answer;
 use crate::solve::backend::{Backend, Reply, Task};
-use crate::solve::{Claim, Outcome, Settings, Strategy};
+use crate::solve::{Claim, Settings, Strategy};
 use rustc_hash::FxHashSet;
 
 /// Variables of a linear sum from which on it is replaced: a factor of its square would take 4·10⁷ operations. The new row
@@ -88,15 +88,14 @@ fn place(builder: &mut Builder, row: usize, parts: Parts) {
 
 /// Whether the terms of a sum have few second derivatives beside the square of its variables.
 fn pays(sum: &Parts) -> bool {
-    let distinct = |columns: &mut dyn Iterator<Item = u32>| {
-        let columns: FxHashSet<u32> = columns.collect();
-        columns.len()
-    };
-    let inside = sum.nonlinear.iter().map(|(_, part)| &part.columns);
-    let sizes = inside.clone().map(|c| distinct(&mut c.iter().copied()));
-    let after: usize = sizes.map(|size| size * size).sum();
-    let linear = sum.linear.iter().map(|l| l.0);
-    let all = distinct(&mut inside.flatten().copied().chain(linear));
+    let mut all: FxHashSet<u32> = sum.linear.iter().map(|l| l.0).collect();
+    let mut after = 0;
+    for (_, part) in &sum.nonlinear {
+        let inside: FxHashSet<u32> = part.columns.iter().copied().collect();
+        after += inside.len() * inside.len();
+        all.extend(inside);
+    }
+    let all = all.len();
     let least = match sum.nonlinear[..] {
         [] => LEAST,
         _ => LEAST_CURVED,
@@ -123,10 +122,7 @@ impl Bridge for InnerSums {
             Claim::LocallyInfeasible => outcome.ray.truncate(m),
             _ => outcome.ray.clear(),
         }
-        let outcome = Outcome {
-            basis: None,
-            ..outcome
-        };
+        outcome.basis = None;
         Some(outcome.into())
     }
 }

@@ -3,7 +3,7 @@
 use crate::model::instance::{Function, Instance, Kernel, Op};
 
 /// An expression: a program, the columns and constants in its slots.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Expression {
     pub(super) kernel: Kernel,
     pub(super) columns: Vec<u32>,
@@ -50,16 +50,17 @@ impl Expression {
         least: usize,
         make: &mut dyn FnMut(Parts) -> Option<u32>,
     ) -> Self {
-        let mut out = Self {
-            kernel: Kernel::default(),
-            columns: Vec::new(),
-            constants: Vec::new(),
-        };
+        let mut out = Self::default();
         let tree = Tree::new(self);
         tree.rewrite(self.kernel.ops.len() - 1, least, make, &mut out);
-        out.kernel.variables = out.columns.len() as u32;
-        out.kernel.constants = out.constants.len() as u32;
-        out
+        out.counted()
+    }
+
+    /// With the number of its slots.
+    fn counted(mut self) -> Self {
+        self.kernel.variables = self.columns.len() as u32;
+        self.kernel.constants = self.constants.len() as u32;
+        self
     }
 
     /// Function and arguments, if a function with kinks comes last.
@@ -174,17 +175,11 @@ impl<'e> Tree<'e> {
 
     /// The subexpression that ends at p, with slots of its own.
     fn cut(&self, p: usize) -> Expression {
-        let mut out = Expression {
-            kernel: Kernel::default(),
-            columns: Vec::new(),
-            constants: Vec::new(),
-        };
+        let mut out = Expression::default();
         for q in self.begin[p]..=p {
             self.copy(q, &mut out);
         }
-        out.kernel.variables = out.columns.len() as u32;
-        out.kernel.constants = out.constants.len() as u32;
-        out
+        out.counted()
     }
 
     /// Appends the operation at p, with slots of its own.

@@ -176,6 +176,16 @@ pub fn residuals(
     out
 }
 
+/// Levels of the rows; not a number where a function has no value.
+pub fn activity(instance: &Instance, level: &[f64]) -> Vec<f64> {
+    let mut out = vec![0.0; instance.row_count()];
+    let known = Evaluator::first_order(instance).rows(level, &mut out);
+    if known.is_err() {
+        out.fill(f64::NAN);
+    }
+    out
+}
+
 /// For instances with kinks: derivatives beside them, for [`measure`].
 pub fn beside_kinks(instance: &Instance) -> Option<Evaluator> {
     kinks(instance).map(|_| Evaluator::smoothed_first_order(instance, KINK_WIDTH))

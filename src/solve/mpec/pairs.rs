@@ -12,10 +12,10 @@
 //! keeping what the signs of F must be in every piece (F ≥ 0 where there is no upper bound, F ≤ 0
 //! where there is no lower one) gives the *envelope*, the relaxation that contains all branches.
 
-use crate::autodiff::Evaluator;
 use crate::model::instance::{Instance, Relation};
 use crate::model::sum::Sum;
 use crate::solve::SolveError;
+use crate::solve::certificate::nonlinear::activity;
 use crate::solve::certificate::{self, Residuals, TOLERANCE};
 use crate::solve::pairing::refuse_relation;
 
@@ -173,14 +173,7 @@ impl<'a> Program<'a> {
             };
             return (0..m).map(line).collect();
         }
-        let mut out = vec![0.0; m];
-        if Evaluator::first_order(self.instance)
-            .rows(level, &mut out)
-            .is_err()
-        {
-            out.fill(f64::NAN);
-        }
-        out
+        activity(self.instance, level)
     }
 
     /// F of a pair.
