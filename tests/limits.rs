@@ -12,6 +12,7 @@ const FACTOR: f64 = 1.2;
 
 /// How a run ended.
 struct Ended {
+    /// Elapsed, without those in which the machine had no processor free for it.
     seconds: f64,
     /// The largest resident memory that was seen, in MB.
     megabytes: f64,
@@ -23,6 +24,16 @@ fn resident(process: u32) -> Option<f64> {
     let statm = std::fs::read_to_string(format!("/proc/{process}/statm")).ok()?;
     let pages: f64 = statm.split(' ').nth(1)?.parse().ok()?;
     Some(pages * 4096.0 / 1048576.0)
+}
+
+/// Seconds in which a process was ready and other processes had the processor; of its thread that waited longest.
+fn waited(process: u32) -> Option<f64> {
+    let threads = std::fs::read_dir(format!("/proc/{process}/task")).ok()?;
+    let times = threads.flatten().filter_map(|thread| {
+        let text = std::fs::read_to_string(thread.path().join("schedstat")).ok()?;
+        text.split(' ').nth(1)?.parse::<f64>().ok()
+    });
+    times.reduce(f64::max).map(|nanoseconds| nanoseconds / 1e9)
 }
 
 fn run(text: &str, limits: &[&str]) -> Ended {
@@ -38,15 +49,16 @@ fn run(text: &str, limits: &[&str]) -> Ended {
         .stderr(Stdio::null())
         .spawn()
         .expect("bmod runs");
-    let mut megabytes: f64 = 0.0;
+    let (mut megabytes, mut delay): (f64, f64) = (0.0, 0.0);
     let status = loop {
         if let Some(status) = child.try_wait().expect("it is a child") {
             break status;
         }
         megabytes = megabytes.max(resident(child.id()).unwrap_or(0.0));
+        delay = delay.max(waited(child.id()).unwrap_or(0.0));
         std::thread::sleep(Duration::from_millis(5));
     };
-    let seconds = start.elapsed().as_secs_f64();
+    let seconds = start.elapsed().as_secs_f64() - delay;
     let text = std::fs::read_to_string(path.join("out.json")).unwrap_or_default();
     let left = std::fs::read_dir(path).expect("listed").flatten();
     let left = left.filter(|f| f.file_name().to_string_lossy().starts_with(".bmod-"));

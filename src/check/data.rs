@@ -171,6 +171,10 @@ impl Compiler {
         let dim = self.symbols.get(s).dim();
         let undf = self.modes.at(body).undf;
         let reader = DataReader::new(text, body.lo, kind, undf).with_arity(dim);
+        // Mostly a record stands on a line.
+        let lines = memchr::memchr_iter(b'\n', text.as_bytes()).count();
+        let table = self.symbols.get(s).table;
+        self.store.table_mut(table).reserve(lines);
         let reader = match kind {
             DataKind::Set => reader,
             DataKind::Values => reader.with_constants(self),

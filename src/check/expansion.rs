@@ -155,11 +155,14 @@ pub(crate) enum NoRange {
     TooLong(u64),
 }
 
+/// The labels of a range, one at a time: there may be millions.
+type Labels<'a> = Box<dyn ExactSizeIterator<Item = String> + 'a>;
+
 /// `i1*i10`: labels that differ in one number, up or down, so many at most; leading zeros are kept.
-pub(crate) fn range(from: &str, to: &str, most: usize) -> Result<Vec<String>, NoRange> {
+pub(crate) fn range<'a>(from: &'a str, to: &str, most: usize) -> Result<Labels<'a>, NoRange> {
     let (a, b) = (from.as_bytes(), to.as_bytes());
     if from.eq_ignore_ascii_case(to) {
-        return Ok(vec![from.to_string()]);
+        return Ok(Box::new(std::iter::once(from.to_string())));
     }
     let mut prefix = a
         .iter()
@@ -200,16 +203,16 @@ pub(crate) fn range(from: &str, to: &str, most: usize) -> Result<Vec<String>, No
         0
     };
     let (head, tail) = (&from[..prefix], &from[prefix + da..]);
-    let label = |k: u64| format!("{head}{k:0width$}{tail}");
-    Ok(if lo <= hi {
-        (lo..=hi).map(label).collect()
-    } else {
-        (hi..=lo).rev().map(label).collect()
-    })
+    let number = move |n: usize| match lo <= hi {
+        true => lo + n as u64,
+        false => lo - n as u64,
+    };
+    let label = move |n| format!("{head}{:0width$}{tail}", number(n));
+    Ok(Box::new((0..lo.abs_diff(hi) as usize + 1).map(label)))
 }
 
 /// `a*e`, `x*ab`: labels of letters count like the columns of a spreadsheet.
-fn letters(from: &str, to: &str) -> Option<Vec<String>> {
+fn letters<'a>(from: &str, to: &str) -> Option<Labels<'a>> {
     let value = |s: &str| {
         s.bytes().try_fold(0u64, |v, c| {
             v.checked_mul(26)?
@@ -224,7 +227,8 @@ fn letters(from: &str, to: &str) -> Option<Vec<String>> {
         c if c.is_ascii_uppercase() => b'A',
         _ => b'a',
     };
-    let spell = |mut k: u64| {
+    let spell = move |n: usize| {
+        let mut k = lo + n as u64;
         let mut s = Vec::new();
         while k > 0 {
             s.push(first + ((k - 1) % 26) as u8);
@@ -233,7 +237,7 @@ fn letters(from: &str, to: &str) -> Option<Vec<String>> {
         s.reverse();
         s.into_iter().map(char::from).collect()
     };
-    Some((lo..=hi).map(spell).collect())
+    Some(Box::new((0..(hi - lo) as usize + 1).map(spell)))
 }
 
 impl Compiler {
@@ -363,9 +367,7 @@ impl Compiler {
                     }
                 };
                 self.take(labels.len(), LABEL_BYTES, *span)?;
-                let labels = labels
-                    .iter()
-                    .map(|l| self.data_label(s, position, l, *span, defines));
+                let labels = labels.map(|l| self.data_label(s, position, &l, *span, defines));
                 Ok(Tuples::single(labels.collect::<Result<_, _>>()?))
             }
             KeyPart::AllOf { set, .. } if *set == NO_ELEMENTS => Ok(Tuples::single(Vec::new())),
@@ -494,20 +496,15 @@ mod tests {
 
     #[test]
     fn ranges_keep_prefix_suffix_and_zeros() {
-        assert_eq!(range("a9", "a11", 100).unwrap(), ["a9", "a10", "a11"]);
-        assert_eq!(range("c09", "c11", 100).unwrap(), ["c09", "c10", "c11"]);
-        assert_eq!(
-            range("s02s", "s04s", 100).unwrap(),
-            ["s02s", "s03s", "s04s"]
-        );
-        assert_eq!(
-            range("1990", "1992", 100).unwrap(),
-            ["1990", "1991", "1992"]
-        );
-        assert_eq!(range("a1", "b3", 100), Err(NoRange::Unlike));
-        assert_eq!(range("a3", "a1", 100).unwrap(), ["a3", "a2", "a1"]);
-        assert_eq!(range("b", "d", 100).unwrap(), ["b", "c", "d"]);
-        assert_eq!(range("y", "ab", 100).unwrap(), ["y", "z", "aa", "ab"]);
-        assert_eq!(range("d", "a", 100), Err(NoRange::Unlike));
+        let all = |from, to, most| range(from, to, most).map(|labels| labels.collect::<Vec<_>>());
+        assert_eq!(all("a9", "a11", 100).unwrap(), ["a9", "a10", "a11"]);
+        assert_eq!(all("c09", "c11", 100).unwrap(), ["c09", "c10", "c11"]);
+        assert_eq!(all("s02s", "s04s", 100).unwrap(), ["s02s", "s03s", "s04s"]);
+        assert_eq!(all("1990", "1992", 100).unwrap(), ["1990", "1991", "1992"]);
+        assert_eq!(all("a1", "b3", 100), Err(NoRange::Unlike));
+        assert_eq!(all("a3", "a1", 100).unwrap(), ["a3", "a2", "a1"]);
+        assert_eq!(all("b", "d", 100).unwrap(), ["b", "c", "d"]);
+        assert_eq!(all("y", "ab", 100).unwrap(), ["y", "z", "aa", "ab"]);
+        assert_eq!(all("d", "a", 100), Err(NoRange::Unlike));
     }
 }

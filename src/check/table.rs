@@ -120,12 +120,17 @@ impl Compiler {
             familiar: Familiar::new(&self.symbols, s),
         };
         let mut keys = Tuples::default();
+        let text = map.text(body);
+        let height = memchr::memchr_iter(b'\n', text.as_bytes()).count();
         while let Some(item) = reader.next() {
             let cell = match item {
                 Ok(TableItem::Cell(c)) => c,
                 // Labels count even where nothing stands under or behind them: they are checked, and
                 // take their place in the universe.
                 Ok(TableItem::Headings) => {
+                    // A value and the blank before it take two characters at least.
+                    let cells = (height * reader.columns().count()).min(text.len() / 2);
+                    self.store.table_mut(symbol.table).reserve(cells);
                     lines.columns.clear();
                     lines.rows = Seen::default();
                     for (key, span) in reader.columns() {

@@ -268,6 +268,12 @@ impl Table {
         })
     }
 
+    /// Takes room for so many records more at once; pages that none comes to stay untouched.
+    pub fn reserve(&mut self, records: usize) {
+        self.keys.reserve(records * self.dim);
+        self.values.reserve(records);
+    }
+
     fn moved(&mut self) {
         self.orders.get_mut().clear();
         self.distinct.take();

@@ -5,11 +5,13 @@
 //! `Σ (⌊a_j⌋ + max(0, f_j − f)/(1 − f)) t_j + Σ min(0, g_k)/(1 − f) s_k ≤ ⌊b⌋`. A row of the optimal tableau gives
 //! Gomory's mixed-integer cut (1960); single rows, and rows added so that continuous columns between their bounds cancel,
 //! with variable bounds `x ≤ u·y` put in, give those that lot sizing and fixed charges need. Knapsack rows give extended
-//! covers besides.
+//! covers besides; rows of integers alone, added so that what is odd cancels, cuts of halves.
 
 use super::linear::{Cut, Linear};
 use super::model::Mip;
 use crate::solve::lp::simplex::factor::Entries;
+
+mod parity;
 
 /// Fractions nearer to 0 or 1 give nothing but numerical trouble.
 const FRACTION: f64 = 0.01;
@@ -25,7 +27,7 @@ pub struct Separator<'a> {
     mip: &'a Mip,
     /// Upper bounds of continuous columns by integer ones: column y and u in x ≤ u·y.
     variable_upper: Vec<Option<(usize, f64)>>,
-    /// The step of a row's activities, where it has integer columns only; 0 for others.
+    /// The step of a row's activities, where it has integer columns only; 0 for others. Of the cuts so far, too.
     step: Vec<f64>,
     lower: &'a [f64],
     upper: &'a [f64],
@@ -114,12 +116,7 @@ impl<'a> Separator<'a> {
         let mut step = vec![0.0; p.m()];
         for (i, step) in step.iter_mut().enumerate() {
             let entries: Vec<(usize, f64)> = p.rows.line(i).collect();
-            if entries.iter().all(|e| mip.integer[e.0]) {
-                *step = [1.0, 0.5, 0.25, 0.125, 0.0625, 0.1, 0.01]
-                    .into_iter()
-                    .find(|s| entries.iter().all(|e| near_whole(e.1 / s)))
-                    .unwrap_or(0.0);
-            }
+            *step = step_of(mip, &entries);
             if let [first, second] = entries[..] {
                 let (x, y) = if mip.integer[first.0] {
                     (second, first)
@@ -155,9 +152,14 @@ impl<'a> Separator<'a> {
     }
 
     /// Violated cuts at the relaxation's solution, the best first.
-    pub fn separate(&self, linear: &mut Linear) -> Vec<Cut> {
+    pub fn separate(&mut self, linear: &mut Linear) -> Vec<Cut> {
         let values = linear.simplex.values().to_vec();
         let (n, m) = (self.n(), linear.problem.m());
+        self.step.truncate(self.mip.problem.m());
+        for i in self.step.len()..m {
+            let entries: Vec<(usize, f64)> = linear.problem.rows.line(i).collect();
+            self.step.push(step_of(self.mip, &entries));
+        }
         let mut found: Vec<(f64, Cut)> = Vec::new();
         let mut add = |made: Option<(f64, Cut)>| found.extend(made);
         // Gomory
@@ -176,10 +178,15 @@ impl<'a> Separator<'a> {
             }
         }
         // single and aggregated rows
-        let rows = m.min(self.mip.problem.m());
-        for i in (0..rows).take(3000) {
+        for i in (0..self.mip.problem.m()).take(3000) {
             self.path(linear, i, &values, &mut add);
             add(self.cover(i, &values));
+        }
+        for weights in parity::odd_sums(self, linear, &values) {
+            let row = self.aggregate(linear, &weights);
+            for sign in [1.0, -1.0] {
+                add(self.round(linear, &row, sign, &values, &[2.0]));
+            }
         }
         found.sort_by(|a, b| b.0.total_cmp(&a.0));
         let mut kept: Vec<Cut> = Vec::new();
@@ -279,7 +286,7 @@ impl<'a> Separator<'a> {
     fn unit(&self, v: usize) -> f64 {
         match v.checked_sub(self.n()) {
             None => f64::from(u8::from(self.mip.integer[v])),
-            Some(i) => self.step.get(i).copied().unwrap_or(0.0),
+            Some(i) => self.step[i],
         }
     }
 
@@ -443,6 +450,10 @@ impl<'a> Separator<'a> {
         }
         let most = 100 + self.n() / 3;
         side += 1e-9 * side.abs().max(1.0);
+        let step = step_of(self.mip, &terms);
+        if step > 0.0 {
+            side = step * (side / step + 1e-6).floor();
+        }
         let efficacy = (activity - side) / f64::max(norm, 1e-12).sqrt();
         (efficacy > 1e-4 && terms.len() <= most && !terms.is_empty())
             .then_some((efficacy, Cut { terms, side }))
@@ -509,6 +520,16 @@ impl<'a> Separator<'a> {
             side -= f64::from(u8::from(e.3));
         }
         self.clean(out, side, values)
+    }
+}
+
+/// The number that all coefficients are multiples of, where all columns are integers; 0 for none.
+fn step_of(mip: &Mip, entries: &[(usize, f64)]) -> f64 {
+    let steps = [1.0, 0.5, 0.25, 0.125, 0.0625, 0.1, 0.01];
+    let divides = |s: &f64| entries.iter().all(|e| near_whole(e.1 / s));
+    match entries.iter().all(|e| mip.integer[e.0]) {
+        true => steps.into_iter().find(divides).unwrap_or(0.0),
+        false => 0.0,
     }
 }
 

@@ -142,7 +142,7 @@ fn strengthen(mip: &Mip, linear: &mut Linear, rounds: usize, control: &mut Contr
         return solved;
     };
     let (mut value, mut idle) = (start, 0);
-    let separator = Separator::new(mip, &mip.problem.lower, &mip.problem.upper);
+    let mut separator = Separator::new(mip, &mip.problem.lower, &mip.problem.upper);
     for _ in 0..rounds {
         let x = linear.x().to_vec();
         if mip.is_discrete(&x) || control.stop(control.iterations).is_some() || idle >= 3 {
