@@ -29,7 +29,8 @@
 
 pub use crate::autodiff::{EvalFailure, Evaluator};
 pub use crate::model::builder::Term;
-pub use crate::model::instance::{ColumnKind, Function, Instance, Relation, Sense};
+pub use crate::model::function::Function;
+pub use crate::model::instance::{ColumnKind, Instance, Relation, Sense};
 pub use crate::model::option::{Kind, OptionTable, row};
 pub use crate::model::outcome::{Claim, Outcome};
 pub use crate::model::problem_type::ProblemType;

@@ -7,85 +7,8 @@ use bmod::model::instance::Function;
 
 /// Every function with its name.
 fn by_name(name: &str) -> Function {
-    ALL.iter().copied().find(|f| f.name() == name).expect(name)
+    Function::named(name).expect(name)
 }
-
-const ALL: [Function; 74] = [
-    F::Exp,
-    F::Log,
-    F::Log2,
-    F::Log10,
-    F::Sqrt,
-    F::Sqr,
-    F::Power,
-    F::CvPower,
-    F::VcPower,
-    F::RPower,
-    F::SignPower,
-    F::Sin,
-    F::Cos,
-    F::Tan,
-    F::ArcSin,
-    F::ArcCos,
-    F::ArcTan,
-    F::ArcTan2,
-    F::Sinh,
-    F::Cosh,
-    F::Tanh,
-    F::ErrorF,
-    F::Gamma,
-    F::LogGamma,
-    F::Beta,
-    F::LogBeta,
-    F::BetaReg,
-    F::GammaReg,
-    F::Binomial,
-    F::Centropy,
-    F::Entropy,
-    F::Sigmoid,
-    F::Logit,
-    F::Poly,
-    F::SlExp,
-    F::SlLog10,
-    F::SlRec,
-    F::SqExp,
-    F::SqLog10,
-    F::SqRec,
-    F::NcpCm,
-    F::NcpF,
-    F::NcpVuSin,
-    F::NcpVuPow,
-    F::EDist,
-    F::Div,
-    F::Div0,
-    F::LseMax,
-    F::LseMin,
-    F::LseMaxSc,
-    F::LseMinSc,
-    F::Abs,
-    F::Sign,
-    F::Min,
-    F::Max,
-    F::Floor,
-    F::Ceil,
-    F::Round,
-    F::Trunc,
-    F::Frac,
-    F::Mod,
-    F::IfThen,
-    F::BoolAnd,
-    F::BoolOr,
-    F::BoolNot,
-    F::BoolXor,
-    F::BoolEqv,
-    F::BoolImp,
-    F::RelEq,
-    F::RelNe,
-    F::RelLt,
-    F::RelLe,
-    F::RelGt,
-    F::RelGe,
-];
 
 #[test]
 fn values_and_derivatives_agree_with_high_precision() {
@@ -272,7 +195,7 @@ fn nothing_panics() {
         -170.5,
         1e6,
     ];
-    for f in ALL {
+    for f in Function::all() {
         for &a in &wild {
             for &b in &wild {
                 for &c in &wild[..7] {

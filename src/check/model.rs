@@ -1,6 +1,5 @@
 //! The `solve` statement: which equations, paired with what, of which class.
 
-use super::functions::{self, is_nonsmooth};
 use super::node::*;
 use super::symbols::{DomainPosition, SymbolKind};
 use super::{Compiler, Failed};
@@ -403,7 +402,7 @@ impl Compiler {
                         }
                         NodeKind::Binary(..) => "a variable is raised to a power here".to_string(),
                         NodeKind::Call(f, _) => {
-                            format!("`{}` of a variable is not linear", functions::name_of(*f))
+                            format!("`{}` of a variable is not linear", f.name())
                         }
                         _ => "this is not linear in the variables".to_string(),
                     };
@@ -412,7 +411,7 @@ impl Compiler {
                         what,
                         "E0361",
                         match &n.kind {
-                            NodeKind::Call(f, _) if is_nonsmooth(*f) => "solve it `using dnlp`, or write it with inequalities: `y =g= x; y =g= -x` for `y = abs(x)`".to_string(),
+                            NodeKind::Call(f, _) if f.is_nonsmooth() => "solve it `using dnlp`, or write it with inequalities: `y =g= x; y =g= -x` for `y = abs(x)`".to_string(),
                             _ => format!(
                             "solve it `using nlp`, or reformulate the equation `{name}`; a level (`x.l`) is data and may be multiplied"
                         ),
@@ -420,8 +419,8 @@ impl Compiler {
                     ));
                 } else if smooth_only {
                     match &n.kind {
-                        NodeKind::Call(f, _) if is_nonsmooth(*f) => {
-                            found = Some((n.span, format!("`{}` of a variable is not smooth", functions::name_of(*f)), "E0362", "solve it `using dnlp`, or reformulate with additional variables and inequalities".into()));
+                        NodeKind::Call(f, _) if f.is_nonsmooth() => {
+                            found = Some((n.span, format!("`{}` of a variable is not smooth", f.name()), "E0362", "solve it `using dnlp`, or reformulate with additional variables and inequalities".into()));
                         }
                         NodeKind::Aggregate(AggregateOp::Smin | AggregateOp::Smax, ..) => {
                             found = Some((n.span, "`smin` and `smax` of variables are not smooth".into(), "E0362", "solve it `using dnlp`, or use a variable with one inequality per member".into()));

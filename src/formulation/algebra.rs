@@ -8,7 +8,6 @@ use super::text::{
 };
 use super::tree::{Binder, Expr, IndexId, Part, Sense, Source, Variable};
 use super::{Formulation, Origin, Row, Sign};
-use crate::check::functions::name_of;
 use crate::check::node::SymbolId;
 use crate::check::symbols::{Store, Symbols};
 use crate::report::json::Number;
@@ -376,7 +375,7 @@ impl Naming<'_> {
             Expr::Binary(op, a, b) => {
                 Expression::Binary(binary_word(*op), self.boxed(a), self.boxed(b))
             }
-            Expr::Call(f, args) => Expression::Call(name_of(*f), self.all(args)),
+            Expr::Call(f, args) => Expression::Call(f.name(), self.all(args)),
             Expr::DataCall(f, args) => Expression::Call(data_function_word(*f), self.all(args)),
             Expr::Dollar(a, c) => Expression::Dollar(self.boxed(a), self.boxed(c)),
             Expr::Aggregate(op, d, e) => {

@@ -7,7 +7,6 @@ use super::math::{Math, name};
 use super::page::{Block, Formula, Page, Setter, formulas};
 use super::tree::{Expr, Variable, sum, sum_over, times};
 use super::{Formulation, dual, kkt, side, text};
-use crate::check::functions::{is_nonsmooth, name_of};
 use crate::check::node::{AggregateOp, EquationDef, Node, NodeKind, SymbolId};
 use crate::check::visit::Visitor;
 use crate::diag::Diagnostic;
@@ -332,7 +331,7 @@ fn kink(e: &EquationDef) -> Option<Span> {
         fn node(&mut self, n: &'a Node) {
             let kink = match &n.kind {
                 NodeKind::Call(f, _) => {
-                    is_nonsmooth(*f) || matches!(name_of(*f), "gamma" | "loggamma")
+                    f.is_nonsmooth() || matches!(f.name(), "gamma" | "loggamma")
                 }
                 NodeKind::Aggregate(op, ..) => matches!(op, AggregateOp::Smin | AggregateOp::Smax),
                 _ => false,

@@ -4,7 +4,6 @@
 //! the part at hand (reverse mode), and what runs around it.
 
 use super::tree::*;
-use crate::check::functions::{is_nonsmooth, name_of};
 
 /// `± Σ_binder factors · v(key)`; of a nonlinear expression the factors are the derivative by `v(key)`.
 #[derive(Clone, Debug)]
@@ -200,15 +199,15 @@ impl Gradient<'_> {
             let no = guarded(args[2].clone(), vec![Expr::Not(Box::new(truth.clone()))]);
             return [yes, no].iter().try_for_each(|e| self.walk(e, negative));
         }
-        if is_nonsmooth(f) {
-            return Err(format!("`{}` of a variable has kinks or jumps", name_of(f)));
+        if f.is_nonsmooth() {
+            return Err(format!("`{}` of a variable has kinks or jumps", f.name()));
         }
         for (k, a) in args.iter().enumerate() {
             if !a.has_variable() {
                 continue;
             }
             let Some(factors) = derivative(f, args, k) else {
-                let name = name_of(f);
+                let name = f.name();
                 return Err(format!(
                     "the derivative of `{name}` is no function of the language"
                 ));

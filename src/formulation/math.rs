@@ -6,7 +6,6 @@ use super::names::Names;
 use super::text::attribute_word;
 use super::tree::*;
 use super::{Formulation, Row};
-use crate::check::functions::name_of;
 use crate::check::node::SymbolId;
 use crate::check::symbols::{Store, Symbols, attribute};
 use rustc_hash::FxHashSet;
@@ -63,43 +62,14 @@ pub struct Name {
     pub latex: Option<String>,
 }
 
+#[rustfmt::skip]
 const GREEK: [(&str, &str); 36] = [
-    ("alpha", "α"),
-    ("beta", "β"),
-    ("gamma", "γ"),
-    ("delta", "δ"),
-    ("epsilon", "ε"),
-    ("zeta", "ζ"),
-    ("eta", "η"),
-    ("theta", "θ"),
-    ("iota", "ι"),
-    ("kappa", "κ"),
-    ("lambda", "λ"),
-    ("mu", "μ"),
-    ("nu", "ν"),
-    ("xi", "ξ"),
-    ("pi", "π"),
-    ("rho", "ρ"),
-    ("sigma", "σ"),
-    ("tau", "τ"),
-    ("upsilon", "υ"),
-    ("phi", "φ"),
-    ("chi", "χ"),
-    ("psi", "ψ"),
-    ("omega", "ω"),
-    ("varepsilon", "ε"),
-    ("Gamma", "Γ"),
-    ("Delta", "Δ"),
-    ("Theta", "Θ"),
-    ("Lambda", "Λ"),
-    ("Xi", "Ξ"),
-    ("Pi", "Π"),
-    ("Sigma", "Σ"),
-    ("Phi", "Φ"),
-    ("Psi", "Ψ"),
-    ("Omega", "Ω"),
-    ("varphi", "φ"),
-    ("ell", "ℓ"),
+    ("alpha", "α"), ("beta", "β"), ("gamma", "γ"), ("delta", "δ"), ("epsilon", "ε"), ("zeta", "ζ"),
+    ("eta", "η"), ("theta", "θ"), ("iota", "ι"), ("kappa", "κ"), ("lambda", "λ"), ("mu", "μ"), ("nu", "ν"),
+    ("xi", "ξ"), ("pi", "π"), ("rho", "ρ"), ("sigma", "σ"), ("tau", "τ"), ("upsilon", "υ"), ("phi", "φ"),
+    ("chi", "χ"), ("psi", "ψ"), ("omega", "ω"), ("varepsilon", "ε"), ("Gamma", "Γ"), ("Delta", "Δ"),
+    ("Theta", "Θ"), ("Lambda", "Λ"), ("Xi", "Ξ"), ("Pi", "Π"), ("Sigma", "Σ"), ("Phi", "Φ"), ("Psi", "Ψ"),
+    ("Omega", "Ω"), ("varphi", "φ"), ("ell", "ℓ"),
 ];
 
 /// The Greek letter of this name.
@@ -464,7 +434,7 @@ impl<'a> Setter<'a> {
                 let word = match f {
                     Function::Log => "ln",
                     Function::ErrorF => "Φ",
-                    f => name_of(f),
+                    f => f.name(),
                 };
                 let args = args.iter().map(|a| self.expr(a)).collect();
                 (Math::Function(word, args), ATOM)

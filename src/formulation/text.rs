@@ -4,7 +4,6 @@ use super::data::{Data, Statements, number, quoted};
 use super::names::Names;
 use super::tree::*;
 use super::{Formulation, NewData, Row, Sign};
-use crate::check::functions::name_of;
 use crate::check::node::SymbolId;
 use crate::check::symbols::{Store, Symbols, attribute};
 use crate::data::input::Input;
@@ -217,7 +216,7 @@ impl<'a> Writer<'a> {
             }
             Expr::Call(f, args) => {
                 let args: Vec<String> = args.iter().map(|a| self.expr(a)).collect();
-                (format!("{}({})", name_of(*f), args.join(",")), ATOM)
+                (format!("{}({})", f.name(), args.join(",")), ATOM)
             }
             Expr::DataCall(f, args) => {
                 let args: Vec<String> = args.iter().map(|a| self.expr(a)).collect();

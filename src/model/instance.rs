@@ -9,6 +9,7 @@
 //! Invariants: column indices in a matrix row are strictly increasing and no stored coefficient is
 //! 0; all coefficients and right-hand sides are finite; solvers see no names.
 
+pub use super::function::Function;
 /// −∞ as used in bounds.
 pub const NEG_INF: f64 = f64::NEG_INFINITY;
 /// +∞ as used in bounds.
@@ -236,86 +237,6 @@ impl Op {
             Self::AddN(n) | Self::MultiplyN(n) | Self::Call(_, n) => n as usize,
         }
     }
-}
-
-/// Functions that may stand in an equation with a variable argument.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-#[allow(missing_docs)]
-pub enum Function {
-    Exp,
-    Log,
-    Log2,
-    Log10,
-    Sqrt,
-    Sqr,
-    Power,
-    CvPower,
-    VcPower,
-    RPower,
-    SignPower,
-    Sin,
-    Cos,
-    Tan,
-    ArcSin,
-    ArcCos,
-    ArcTan,
-    ArcTan2,
-    Sinh,
-    Cosh,
-    Tanh,
-    ErrorF,
-    Gamma,
-    LogGamma,
-    Beta,
-    LogBeta,
-    BetaReg,
-    GammaReg,
-    Binomial,
-    Centropy,
-    Entropy,
-    Sigmoid,
-    Logit,
-    Poly,
-    SlExp,
-    SlLog10,
-    SlRec,
-    SqExp,
-    SqLog10,
-    SqRec,
-    NcpCm,
-    NcpF,
-    NcpVuSin,
-    NcpVuPow,
-    EDist,
-    Div,
-    Div0,
-    LseMax,
-    LseMin,
-    LseMaxSc,
-    LseMinSc,
-    Abs,
-    Sign,
-    Min,
-    Max,
-    Floor,
-    Ceil,
-    Round,
-    Trunc,
-    Frac,
-    Mod,
-    IfThen,
-    BoolAnd,
-    BoolOr,
-    BoolNot,
-    BoolXor,
-    BoolEqv,
-    BoolImp,
-    RelEq,
-    RelNe,
-    RelLt,
-    RelLe,
-    RelGt,
-    RelGe,
 }
 
 /// One expression with slots.

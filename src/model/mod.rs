@@ -1,5 +1,6 @@
 //! The sparse model IR.
 pub mod builder;
+pub mod function;
 pub mod instance;
 pub mod option;
 pub mod origin;

@@ -7,7 +7,7 @@ use std::fmt::Write;
 
 use super::names::Names;
 use super::summary::digits;
-use crate::model::instance::{Function, Instance, Kernel, KernelTerms, Op, Relation};
+use crate::model::instance::{Instance, Kernel, KernelTerms, Op, Relation};
 use crate::solve::certificate::row_violation;
 
 /// What to list.
@@ -357,7 +357,7 @@ fn algebra(terms: &KernelTerms, t: usize, names: &dyn Names) -> String {
             Op::Call(f, n) => {
                 let mut parts: Vec<String> = (0..n).map(|_| pop().0).collect();
                 parts.reverse();
-                (format!("{}({})", function(f), parts.join(",")), 4)
+                (format!("{}({})", f.name(), parts.join(",")), 4)
             }
         };
         stack.push(made);
@@ -366,28 +366,10 @@ fn algebra(terms: &KernelTerms, t: usize, names: &dyn Names) -> String {
     wrap(whole, 2)
 }
 
-fn function(f: Function) -> String {
-    match f {
-        Function::BoolAnd => "bool_and".into(),
-        Function::BoolOr => "bool_or".into(),
-        Function::BoolNot => "bool_not".into(),
-        Function::BoolXor => "bool_xor".into(),
-        Function::BoolEqv => "bool_eqv".into(),
-        Function::BoolImp => "bool_imp".into(),
-        Function::RelEq => "rel_eq".into(),
-        Function::RelNe => "rel_ne".into(),
-        Function::RelLt => "rel_lt".into(),
-        Function::RelLe => "rel_le".into(),
-        Function::RelGt => "rel_gt".into(),
-        Function::RelGe => "rel_ge".into(),
-        // The names of the others are GAMS's, but for case.
-        f => format!("{f:?}").to_lowercase(),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::function::Function;
     use crate::model::instance::Sense;
     use crate::solve::conformance;
 

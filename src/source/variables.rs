@@ -88,41 +88,18 @@ impl Variables {
 
 /// The number behind a named constant such as `%modelStat.optimal%`.
 pub(crate) fn constant(name: &str) -> Option<&'static str> {
+    #[rustfmt::skip]
     const MODEL_STATUS: &[&str] = &[
-        "optimal",
-        "locallyoptimal",
-        "unbounded",
-        "infeasible",
-        "locallyinfeasible",
-        "intermediateinfeasible",
-        "feasiblesolution",
-        "integersolution",
-        "intermediatenoninteger",
-        "integerinfeasible",
-        "licensingproblem",
-        "errorunknown",
-        "errornosolution",
-        "nosolutionreturned",
-        "solvedunique",
-        "solved",
-        "solvedsingular",
-        "unboundednosolution",
-        "infeasiblenosolution",
+        "optimal", "locallyoptimal", "unbounded", "infeasible", "locallyinfeasible", "intermediateinfeasible",
+        "feasiblesolution", "integersolution", "intermediatenoninteger", "integerinfeasible",
+        "licensingproblem", "errorunknown", "errornosolution", "nosolutionreturned", "solvedunique", "solved",
+        "solvedsingular", "unboundednosolution", "infeasiblenosolution",
     ];
+    #[rustfmt::skip]
     const SOLVE_STATUS: &[&str] = &[
-        "normalcompletion",
-        "iterationinterrupt",
-        "resourceinterrupt",
-        "terminatedbysolver",
-        "evaluationinterrupt",
-        "capabilityproblems",
-        "licensingproblems",
-        "userinterrupt",
-        "setuperr",
-        "solvererr",
-        "internalerr",
-        "skipped",
-        "systemerr",
+        "normalcompletion", "iterationinterrupt", "resourceinterrupt", "terminatedbysolver",
+        "evaluationinterrupt", "capabilityproblems", "licensingproblems", "userinterrupt", "setuperr",
+        "solvererr", "internalerr", "skipped", "systemerr",
     ];
     const SOLVE_PRINT: &[&str] = &["summary", "report", "quiet"];
     const SOLVE_LINK: &[&str] = &[

@@ -23,40 +23,16 @@ use highs_sys::{
 pub const NAME: &str = "highs";
 
 /// Its options.
+#[rustfmt::skip]
 pub const OPTIONS: OptionTable = OptionTable {
     backend: NAME,
     title: "mip; lp, rmip and convex quadratic programs where it is named: HiGHS",
     rows: &[
-        row(
-            "highs_threads",
-            Kind::Whole(0.0, 1024.0),
-            "0",
-            "threads; 0: as many as HiGHS thinks right",
-        ),
-        row(
-            "highs_seed",
-            Kind::Whole(0.0, 2147483647.0),
-            "0",
-            "start of HiGHS's random numbers",
-        ),
-        row(
-            "highs_presolve",
-            Kind::Switch,
-            "yes",
-            "makes the program smaller first",
-        ),
-        row(
-            "highs_method",
-            Kind::Words(&["choose", "simplex", "ipm"]),
-            "choose",
-            "of linear programs: simplex method, or interior point with crossover",
-        ),
-        row(
-            "highs_heuristics",
-            Kind::Real(0.0, 1.0),
-            "0.05",
-            "share of a search's effort that heuristics get",
-        ),
+        row("highs_threads", Kind::Whole(0.0, 1024.0), "0", "threads; 0: as many as HiGHS thinks right"),
+        row("highs_seed", Kind::Whole(0.0, 2147483647.0), "0", "start of HiGHS's random numbers"),
+        row("highs_presolve", Kind::Switch, "yes", "makes the program smaller first"),
+        row("highs_method", Kind::Words(&["choose", "simplex", "ipm"]), "choose", "of linear programs: simplex method, or interior point with crossover"),
+        row("highs_heuristics", Kind::Real(0.0, 1.0), "0.05", "share of a search's effort that heuristics get"),
     ],
     more: None,
     ignored: &[],

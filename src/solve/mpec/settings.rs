@@ -98,54 +98,20 @@ impl Options {
 const LIMITLESS: Kind = Kind::Real(0.0, f64::INFINITY);
 
 /// What `mpec` and `rmpec` take.
+#[rustfmt::skip]
 pub const OPTIONS: OptionTable = OptionTable {
     backend: "bmpec",
     title: "mpec, rmpec: bmod's own, on the linear, nonlinear and complementarity solvers",
     rows: &[
-        row(
-            "mpec_method",
-            Kind::Words(&["auto", "relaxation", "pieces", "check"]),
-            "auto",
-            "what leads to the branch: `pieces` where it applies, otherwise `relaxation`; `check` judges the levels as they are",
-        ),
-        row(
-            "mpec_relaxation",
-            Kind::Words(&["scholtes", "aggregate"]),
-            "scholtes",
-            "every product at most μ, or their sum",
-        ),
+        row("mpec_method", Kind::Words(&["auto", "relaxation", "pieces", "check"]), "auto", "what leads to the branch: `pieces` where it applies, otherwise `relaxation`; `check` judges the levels as they are"),
+        row("mpec_relaxation", Kind::Words(&["scholtes", "aggregate"]), "scholtes", "every product at most μ, or their sum"),
         row("mpec_mu", LIMITLESS, "1e-2", "first μ"),
-        row(
-            "mpec_factor",
-            Kind::Inside(0.0, 1.0),
-            "0.1",
-            "what μ is multiplied by from one program to the next",
-        ),
+        row("mpec_factor", Kind::Inside(0.0, 1.0), "0.1", "what μ is multiplied by from one program to the next"),
         row("mpec_mu_end", LIMITLESS, "1e-8", "last μ"),
-        row(
-            "mpec_starts",
-            Kind::Whole(0.0, 1e9),
-            "4",
-            "random starts after the first local solution",
-        ),
-        row(
-            "mpec_swaps",
-            Kind::Switch,
-            "no",
-            "whether anything better than the first local solution is looked for",
-        ),
-        row(
-            "mpec_nodes",
-            Kind::Whole(0.0, 1e9),
-            "300",
-            "nodes of a search for a descent direction",
-        ),
-        row(
-            "mpec_bound",
-            Kind::WordsOrReal(&["none", "no", "quick", "yes"], 0.0, f64::INFINITY),
-            "none",
-            "how long a lower bound is looked for: `quick` is a thousand nodes, a number is seconds",
-        ),
+        row("mpec_starts", Kind::Whole(0.0, 1e9), "4", "random starts after the first local solution"),
+        row("mpec_swaps", Kind::Switch, "no", "whether anything better than the first local solution is looked for"),
+        row("mpec_nodes", Kind::Whole(0.0, 1e9), "300", "nodes of a search for a descent direction"),
+        row("mpec_bound", Kind::WordsOrReal(&["none", "no", "quick", "yes"], 0.0, f64::INFINITY), "none", "how long a lower bound is looked for: `quick` is a thousand nodes, a number is seconds"),
     ],
     more: None,
     ignored: &[],

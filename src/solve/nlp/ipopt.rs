@@ -31,33 +31,15 @@ struct State<'a, 'c> {
 }
 
 /// Integer options; other numbers are real.
+#[rustfmt::skip]
 const INTEGERS: [&str; 26] = [
-    "max_iter",
-    "print_level",
-    "print_frequency_iter",
-    "acceptable_iter",
-    "max_soc",
-    "accept_after_max_steps",
-    "filter_reset_trigger",
-    "max_filter_resets",
-    "watchdog_trial_iter_max",
-    "watchdog_shortened_iter_trigger",
-    "max_resto_iter",
-    "limited_memory_max_history",
-    "limited_memory_max_skipping",
-    "limited_memory_init_val_max",
-    "max_refinement_steps",
-    "min_refinement_steps",
-    "mumps_pivot_order",
-    "mumps_permuting_scaling",
-    "mumps_scaling",
-    "mumps_mem_percent",
-    "quality_function_max_section_steps",
-    "adaptive_mu_kkterror_red_iters",
-    "soft_resto_pderror_reduction_iters",
-    "num_linear_variables",
-    "derivative_test_first_index",
-    "max_hessian_perturbation_iters",
+    "max_iter", "print_level", "print_frequency_iter", "acceptable_iter", "max_soc", "accept_after_max_steps",
+    "filter_reset_trigger", "max_filter_resets", "watchdog_trial_iter_max", "watchdog_shortened_iter_trigger",
+    "max_resto_iter", "limited_memory_max_history", "limited_memory_max_skipping",
+    "limited_memory_init_val_max", "max_refinement_steps", "min_refinement_steps", "mumps_pivot_order",
+    "mumps_permuting_scaling", "mumps_scaling", "mumps_mem_percent", "quality_function_max_section_steps",
+    "adaptive_mu_kkterror_red_iters", "soft_resto_pderror_reduction_iters", "num_linear_variables",
+    "derivative_test_first_index", "max_hessian_perturbation_iters",
 ];
 
 /// MUMPS, Ipopt's linear solver, has global state: one solve at a time.
