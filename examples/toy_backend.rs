@@ -6,9 +6,9 @@
 
 use bmod::SolverStatus;
 use bmod::solver::{
-    BACKENDS, Backend, Budget, Claim, Evaluator, Instance, Kind, OptionTable, Outcome, ProblemType,
-    Quiet, Relation, Reply, Sense, Settings, SolveError, Stop, Supports, Task, Term, Terms,
-    answer_with, row,
+    About, BACKENDS, Backend, Budget, Claim, Evaluator, Instance, Kind, OptionTable, Outcome,
+    ProblemType, Quiet, Relation, Replied, Sense, Settings, SolveError, Stop, Supports, Task, Term,
+    Terms, answer_with, row,
 };
 
 const OPTIONS: OptionTable = OptionTable {
@@ -28,33 +28,22 @@ const OPTIONS: OptionTable = OptionTable {
 struct Compass;
 
 impl Backend for Compass {
-    fn name(&self) -> &'static str {
-        "compass"
-    }
-
-    fn version(&self) -> &'static str {
-        "nlp, dnlp: an example"
-    }
-
-    fn supports(&self) -> Supports {
-        Supports {
-            linear: false,
-            largest: 50,
-            only_by_name: true,
-            ..Supports::new(&[ProblemType::Nlp, ProblemType::Dnlp], Terms::Kinks)
+    fn about(&self) -> About {
+        About {
+            name: "compass",
+            aliases: &[],
+            version: "nlp, dnlp: an example",
+            supports: Supports {
+                linear: false,
+                largest: 50,
+                only_by_name: true,
+                ..Supports::new(&[ProblemType::Nlp, ProblemType::Dnlp], Terms::Kinks)
+            },
+            options: &OPTIONS,
         }
     }
 
-    fn options(&self) -> &'static OptionTable {
-        &OPTIONS
-    }
-
-    fn solve(
-        &self,
-        task: &Task,
-        settings: &Settings,
-        budget: &Budget,
-    ) -> Result<Reply, SolveError> {
+    fn solve(&self, task: &Task, settings: &Settings, budget: &Budget) -> Replied {
         let instance = task.instance;
         let Some(objective) = instance.objective.filter(|_| instance.row_count() == 1) else {
             return Err(SolveError::new(

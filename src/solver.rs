@@ -35,7 +35,7 @@ pub use crate::model::option::{Kind, OptionTable, row};
 pub use crate::model::outcome::{Claim, Outcome};
 pub use crate::model::problem_type::ProblemType;
 pub use crate::solve::answer::{Answer, answer, answer_with};
-pub use crate::solve::backend::{Backend, Reply, Supports, Task, Terms};
+pub use crate::solve::backend::{About, Backend, Replied, Reply, Supports, Task, Terms};
 pub use crate::solve::certificate::Residuals;
 pub use crate::solve::registry::BACKENDS;
 pub use crate::solve::{Budget, Limits, Monitor, Quiet, Settings, SolveError, Stop};

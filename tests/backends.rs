@@ -142,8 +142,8 @@ fn each(check: &mut Check) {
             for &backend in BACKENDS {
                 if backend.takes(&task) {
                     taken += 1;
-                    let what = format!("{} on model {k} using {using}", backend.name());
-                    let named = task.by(Some(backend.name()));
+                    let what = format!("{} on model {k} using {using}", backend.about().name);
+                    let named = task.by(Some(backend.about().name));
                     check(backend, &named, *value, &what);
                 }
             }

@@ -148,23 +148,37 @@ pub fn record_attribute(name: &str) -> Option<RecordAttribute> {
     })
 }
 
+/// Attributes of set elements.
+const LABEL_ATTRIBUTES: &[(&str, LabelAttribute)] = &[
+    ("val", LabelAttribute::Val),
+    ("pos", LabelAttribute::Pos),
+    ("ord", LabelAttribute::Ord),
+    ("off", LabelAttribute::Off),
+    ("rev", LabelAttribute::Rev),
+    ("uel", LabelAttribute::Uel),
+    ("len", LabelAttribute::Len),
+    ("tlen", LabelAttribute::TextLen),
+    ("tval", LabelAttribute::TextVal),
+    ("first", LabelAttribute::First),
+    ("last", LabelAttribute::Last),
+];
+
 /// The attribute of a set element with this lower-case name.
 pub fn label_attribute(name: &str) -> Option<LabelAttribute> {
-    use LabelAttribute as A;
-    Some(match name {
-        "val" => A::Val,
-        "pos" => A::Pos,
-        "ord" => A::Ord,
-        "off" => A::Off,
-        "rev" => A::Rev,
-        "uel" => A::Uel,
-        "len" => A::Len,
-        "tlen" => A::TextLen,
-        "tval" => A::TextVal,
-        "first" => A::First,
-        "last" => A::Last,
-        _ => return None,
-    })
+    let row = LABEL_ATTRIBUTES.iter().find(|a| a.0 == name);
+    row.map(|a| a.1)
+}
+
+/// The name of an attribute of set elements.
+pub fn label_word(attribute: LabelAttribute) -> &'static str {
+    let row = LABEL_ATTRIBUTES.iter().find(|a| a.1 == attribute);
+    row.map_or("", |a| a.0)
+}
+
+/// The name of a function of data.
+pub fn data_word(f: DataFunction) -> &'static str {
+    let row = FUNCTIONS.iter().find(|row| row.1 == Callee::Data(f));
+    row.map_or("", |row| row.0)
 }
 
 /// Attributes of models, lower case.

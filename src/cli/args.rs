@@ -547,7 +547,7 @@ static LONG_VERSION: LazyLock<String> = LazyLock::new(|| {
     let mut text = env!("CARGO_PKG_VERSION").to_string();
     text.push_str("\nsolvers:");
     for backend in BACKENDS {
-        let (name, what) = (backend.name(), backend.version());
+        let (name, what) = (backend.about().name, backend.about().version);
         text.push_str(&format!("\n  {name:<10} {what}"));
     }
     text
@@ -746,7 +746,7 @@ mod tests {
     fn versions_are_those_of_the_lock_file() {
         let lock = include_str!("../../Cargo.lock").to_lowercase();
         let mut count = 0;
-        for what in BACKENDS.iter().map(|b| b.version()) {
+        for what in BACKENDS.iter().map(|b| b.about().version) {
             let words: Vec<String> = what.split([' ', ',']).map(str::to_lowercase).collect();
             let numbered = |w: &&[String]| w[1].starts_with(|c: char| c.is_ascii_digit());
             for w in words.windows(2).filter(numbered) {

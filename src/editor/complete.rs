@@ -295,7 +295,7 @@ fn propose(list: &mut List, d: &Document, word: usize, at: usize) {
                 && PROBLEM_TYPES.contains(&d.word(n - 2).to_lowercase().as_str()) =>
         {
             for b in BACKENDS {
-                list.add(b.name(), CompletionKind::Option, "solver", "");
+                list.add(b.about().name, CompletionKind::Option, "solver", "");
             }
             return;
         }

@@ -2,12 +2,10 @@
 
 use super::gradient::gradient;
 use super::names::Names;
-use super::text::{
-    aggregate_word, attribute_word, binary_word, data_function_word, label_word, relation_word,
-    taken,
-};
+use super::text::{aggregate_word, attribute_word, binary_word, taken};
 use super::tree::{Binder, Expr, IndexId, Part, Sense, Source, Variable};
 use super::{Formulation, Origin, Row, Sign};
+use crate::check::functions::{data_word, label_word};
 use crate::check::node::SymbolId;
 use crate::check::symbols::{Store, Symbols};
 use crate::report::json::Number;
@@ -288,7 +286,7 @@ impl Naming<'_> {
             over,
             key: self.key(&r.key),
             left: self.expression(&r.left),
-            relation: relation_word(r.relation),
+            relation: r.relation.sign(),
             right: self.expression(&r.right),
             terms: Vec::new(),
             pair: r.pair.map(|v| self.variable(v)),
@@ -376,7 +374,7 @@ impl Naming<'_> {
                 Expression::Binary(binary_word(*op), self.boxed(a), self.boxed(b))
             }
             Expr::Call(f, args) => Expression::Call(f.name(), self.all(args)),
-            Expr::DataCall(f, args) => Expression::Call(data_function_word(*f), self.all(args)),
+            Expr::DataCall(f, args) => Expression::Call(data_word(*f), self.all(args)),
             Expr::Dollar(a, c) => Expression::Dollar(self.boxed(a), self.boxed(c)),
             Expr::Aggregate(op, d, e) => {
                 let (over, before) = self.over(d);

@@ -6,6 +6,7 @@ use super::names::Names;
 use super::text::attribute_word;
 use super::tree::*;
 use super::{Formulation, Row};
+use crate::check::functions::data_word;
 use crate::check::node::SymbolId;
 use crate::check::symbols::{Store, Symbols, attribute};
 use rustc_hash::FxHashSet;
@@ -330,12 +331,7 @@ impl<'a> Setter<'a> {
             Expr::DataCall(DataFunction::Pi, _) => (Math::Name(name("pi")), ATOM),
             Expr::DataCall(f, args) => {
                 let args = args.iter().map(|a| self.expr(a)).collect();
-                let word = if *f == DataFunction::Fact {
-                    "fact"
-                } else {
-                    "mapval"
-                };
-                (Math::Function(word, args), ATOM)
+                (Math::Function(data_word(*f), args), ATOM)
             }
             Expr::Dollar(a, c) => {
                 let c = Math::Bracket(Box::new(self.expr(c)));

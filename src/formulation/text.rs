@@ -4,6 +4,7 @@ use super::data::{Data, Statements, number, quoted};
 use super::names::Names;
 use super::tree::*;
 use super::{Formulation, NewData, Row, Sign};
+use crate::check::functions::{data_word, label_word};
 use crate::check::node::SymbolId;
 use crate::check::symbols::{Store, Symbols, attribute};
 use crate::data::input::Input;
@@ -220,7 +221,7 @@ impl<'a> Writer<'a> {
             }
             Expr::DataCall(f, args) => {
                 let args: Vec<String> = args.iter().map(|a| self.expr(a)).collect();
-                let word = data_function_word(*f);
+                let word = data_word(*f);
                 match args.is_empty() {
                     true => (word.to_string(), ATOM),
                     false => (format!("{word}({})", args.join(",")), ATOM),
@@ -314,7 +315,7 @@ impl<'a> Writer<'a> {
         let condition = condition.map(|c| format!("${}", self.condition(&c)));
         let (left, right) = (self.expr(&r.left), self.expr(&r.right));
         self.names.leave(before);
-        let relation = relation_word(r.relation);
+        let relation = r.relation.sign();
         let condition = condition.unwrap_or_default();
         format!(
             "{}{key}{condition}..\n   {left} {relation} {right};\n",
@@ -351,43 +352,6 @@ pub fn aggregate_word(op: AggregateOp) -> &'static str {
         AggregateOp::Smax => "smax",
         AggregateOp::Sand => "sand",
         AggregateOp::Sor => "sor",
-    }
-}
-
-/// `fact`, `mapval`, `pi`
-pub fn data_function_word(f: DataFunction) -> &'static str {
-    match f {
-        DataFunction::Fact => "fact",
-        DataFunction::Mapval => "mapval",
-        _ => "pi",
-    }
-}
-
-/// `=e=` …
-pub fn relation_word(r: Relation) -> &'static str {
-    match r {
-        Relation::Equal => "=e=",
-        Relation::Greater => "=g=",
-        Relation::Less => "=l=",
-        Relation::Free => "=n=",
-    }
-}
-
-/// `val`, `pos` …
-pub fn label_word(a: LabelAttribute) -> &'static str {
-    use LabelAttribute as A;
-    match a {
-        A::Val => "val",
-        A::Pos => "pos",
-        A::Ord => "ord",
-        A::Off => "off",
-        A::Rev => "rev",
-        A::Uel => "uel",
-        A::Len => "len",
-        A::TextLen => "tlen",
-        A::TextVal => "tval",
-        A::First => "first",
-        A::Last => "last",
     }
 }
 

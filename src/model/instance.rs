@@ -29,6 +29,16 @@ pub enum Relation {
 }
 
 impl Relation {
+    /// `=e=`, `=g=`, `=l=`, `=n=`
+    pub fn sign(self) -> &'static str {
+        match self {
+            Self::Equal => "=e=",
+            Self::Greater => "=g=",
+            Self::Less => "=l=",
+            Self::Free => "=n=",
+        }
+    }
+
     /// Lower and upper bound of a left side whose right side is this.
     pub fn bounds(self, rhs: f64) -> [f64; 2] {
         match self {

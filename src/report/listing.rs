@@ -7,7 +7,7 @@ use std::fmt::Write;
 
 use super::names::Names;
 use super::summary::digits;
-use crate::model::instance::{Instance, Kernel, KernelTerms, Op, Relation};
+use crate::model::instance::{Instance, Kernel, KernelTerms, Op};
 use crate::solve::certificate::row_violation;
 
 /// What to list.
@@ -181,12 +181,7 @@ fn row(
         pieces.push("0".into());
     }
     let rhs = instance.rows.rhs[i];
-    let relation = match instance.rows.relation[i] {
-        Relation::Equal => "=E=",
-        Relation::Greater => "=G=",
-        Relation::Less => "=L=",
-        Relation::Free => "=N=",
-    };
+    let relation = instance.rows.relation[i].sign().to_uppercase();
     pieces.push(format!("{relation} {} ;", digits(rhs)));
     if let Some(&a) = activity.get(i) {
         let violation = row_violation(instance.rows.relation[i], a, rhs);

@@ -9,7 +9,7 @@ use serde::{Serialize, Serializer, ser::SerializeSeq};
 
 use super::json::{FORMAT, Number};
 use super::names::Names;
-use crate::model::instance::{Instance, Relation, Sense};
+use crate::model::instance::{Instance, Sense};
 use crate::model::outcome::Outcome;
 use crate::model::problem_type::ProblemType;
 
@@ -75,16 +75,11 @@ impl Serialize for Rows<'_> {
         let mut list = s.serialize_seq(Some(rows.rhs.len()))?;
         for (i, &rhs) in rows.rhs.iter().enumerate() {
             let (symbol, labels) = self.0.names.row_parts(i);
-            let (relation, lower, upper) = match rows.relation[i] {
-                Relation::Equal => ("=e=", rhs, rhs),
-                Relation::Greater => ("=g=", rhs, f64::INFINITY),
-                Relation::Less => ("=l=", f64::NEG_INFINITY, rhs),
-                Relation::Free => ("=n=", f64::NEG_INFINITY, f64::INFINITY),
-            };
+            let [lower, upper] = rows.relation[i].bounds(rhs);
             list.serialize_element(&Line {
                 symbol,
                 labels,
-                relation: Some(relation),
+                relation: Some(rows.relation[i].sign()),
                 lower: Number(lower),
                 level: Number(self.0.activity[i]),
                 upper: Number(upper),

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::names::Names;
 use super::summary::digits;
-use crate::model::instance::{Instance, Relation};
+use crate::model::instance::Instance;
 use crate::solve::why::{Finding, Member};
 
 /// What explains how a solve ended.
@@ -288,11 +288,6 @@ fn over(head: impl Into<String>, lines: impl Iterator<Item = String>) -> String 
 
 /// `=g= 30`
 fn relation(instance: &Instance, i: usize) -> String {
-    let sign = match instance.rows.relation[i] {
-        Relation::Equal => "=e=",
-        Relation::Greater => "=g=",
-        Relation::Less => "=l=",
-        Relation::Free => "=n=",
-    };
+    let sign = instance.rows.relation[i].sign();
     format!("{sign} {}", digits(instance.rows.rhs[i]))
 }

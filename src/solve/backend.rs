@@ -144,35 +144,43 @@ impl From<Outcome> for Reply {
     }
 }
 
+/// What a backend says of itself.
+#[derive(Clone, Copy, Debug)]
+pub struct About {
+    /// Lower-case name, as in `option lp = name`.
+    pub name: &'static str,
+    /// Other names that the user may call it by.
+    pub aliases: &'static [&'static str],
+    /// What it is made of, with versions, for `bmod --version`.
+    pub version: &'static str,
+    /// What it takes.
+    pub supports: Supports,
+    /// Its options.
+    pub options: &'static OptionTable,
+}
+
+/// What came of a solve. Err: the instance cannot be solved as it is, with the row or column to blame.
+pub type Replied = Result<Reply, SolveError>;
+
 /// A solver.
 pub trait Backend: Sync {
-    /// Lower-case name, as in `option lp = name`.
-    fn name(&self) -> &'static str;
-    /// Other names that the user may call it by.
-    fn aliases(&self) -> &'static [&'static str] {
-        &[]
-    }
-    /// What it is made of, with versions, for `bmod --version`.
-    fn version(&self) -> &'static str;
-    /// What it takes.
-    fn supports(&self) -> Supports;
+    /// What it is and what it takes.
+    fn about(&self) -> About;
     /// Whether it takes a task, where there is more to say than [`Supports`] does.
     fn takes(&self, task: &Task) -> bool {
-        self.supports().takes(task)
+        self.about().supports.takes(task)
     }
-    /// Its options.
-    fn options(&self) -> &'static OptionTable;
-    /// Solves a task that it takes. Err: the instance cannot be solved as it is, with the row or column to blame.
-    fn solve(&self, task: &Task, settings: &Settings, budget: &Budget)
-    -> Result<Reply, SolveError>;
+    /// Solves a task that it takes.
+    fn solve(&self, task: &Task, settings: &Settings, budget: &Budget) -> Replied;
 }
 
 /// Whether a backend has this name.
 pub fn is_called(backend: &dyn Backend, name: &str) -> bool {
-    let names = [backend.name()]
-        .into_iter()
-        .chain(backend.aliases().iter().copied());
-    names.into_iter().any(|n| n.eq_ignore_ascii_case(name))
+    let About {
+        name: own, aliases, ..
+    } = backend.about();
+    let mut names = aliases.iter().chain([&own]);
+    names.any(|n| n.eq_ignore_ascii_case(name))
 }
 
 /// The backend for a task: the one that the user named if it takes the task, else the first in the list that does.
@@ -181,5 +189,5 @@ pub fn choose<'b>(backends: &[&'b dyn Backend], task: &Task) -> Option<&'b dyn B
     let named = |name: &str| able().find(|b| is_called(*b, name));
     task.choice
         .and_then(named)
-        .or_else(|| able().find(|b| !b.supports().only_by_name))
+        .or_else(|| able().find(|b| !b.about().supports.only_by_name))
 }

@@ -2,7 +2,7 @@
 //!
 //! What happens at a solution is decided by the bounds: F is left minus right whatever the relation.
 
-use super::backend::{Backend, Reply, Supports, Task, Terms};
+use super::backend::{About, Backend, Replied, Supports, Task, Terms};
 use super::certificate::{self, TOLERANCE, nonlinear::linearise};
 use super::mcp;
 use super::mpec::pairs::Program;
@@ -11,7 +11,6 @@ use super::pairing::{match_rows, refuse};
 use super::{Budget, Claim, Outcome, Settings, SolveError, SolverStatus};
 use crate::autodiff::Evaluator;
 use crate::model::instance::{Instance, Relation};
-use crate::model::option::OptionTable;
 use crate::model::problem_type::ProblemType;
 use crate::solve::noise;
 use std::cell::OnceCell;
@@ -182,35 +181,20 @@ impl mcp::Problem for Square<'_> {
 pub struct Bmcp;
 
 impl Backend for Bmcp {
-    fn name(&self) -> &'static str {
-        "bmcp"
-    }
-
-    fn aliases(&self) -> &'static [&'static str] {
-        &["path", "mcp"]
-    }
-
-    fn version(&self) -> &'static str {
-        "mcp, cns: bmod's own, on feral 0.22.0 and faer 0.24"
-    }
-
-    fn supports(&self) -> Supports {
-        Supports {
-            pairs: true,
-            ..Supports::new(&[ProblemType::Mcp, ProblemType::Cns], Terms::Kinks)
+    fn about(&self) -> About {
+        About {
+            name: "bmcp",
+            aliases: &["path", "mcp"],
+            version: "mcp, cns: bmod's own, on feral 0.22.0 and faer 0.24",
+            supports: Supports {
+                pairs: true,
+                ..Supports::new(&[ProblemType::Mcp, ProblemType::Cns], Terms::Kinks)
+            },
+            options: &mcp::OPTIONS,
         }
     }
 
-    fn options(&self) -> &'static OptionTable {
-        &mcp::OPTIONS
-    }
-
-    fn solve(
-        &self,
-        task: &Task,
-        settings: &Settings,
-        budget: &Budget,
-    ) -> Result<Reply, SolveError> {
+    fn solve(&self, task: &Task, settings: &Settings, budget: &Budget) -> Replied {
         let instance = task.instance;
         let known = OnceCell::new();
         let infeasible = |budget: &Budget| {

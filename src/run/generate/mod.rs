@@ -404,11 +404,7 @@ impl Builder<'_, '_> {
         };
         if violated {
             let name = self.m.record_name(e.symbol, key);
-            let sign = match relation {
-                Relation::Equal => "=e=",
-                Relation::Greater => "=g=",
-                _ => "=l=",
-            };
+            let sign = relation.sign();
             self.m.note(
                 Diagnostic::execution("E0410", e.span, format!("the row {name} has no variables and cannot hold: 0 {sign} {rhs}"))
                     .label("empty and infeasible")

@@ -32,7 +32,7 @@ impl Kkt {
             return None;
         }
         named().find(|b| {
-            let supports = b.supports();
+            let supports = b.about().supports;
             supports.pairs && supports.types.contains(&ProblemType::Mcp)
         })?;
         Some(Box::new(Self(conditions(program))))

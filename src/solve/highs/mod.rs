@@ -6,7 +6,7 @@
 
 mod engine;
 
-use super::backend::{Backend, Reply, Supports, Task, Terms};
+use super::backend::{About, Backend, Replied, Supports, Task, Terms};
 use super::lp::form::{Form, Point, Problem, Sparse};
 use super::lp::{self, Ended, interior};
 use super::mip::{self, Aim, End, Found, Mip};
@@ -43,18 +43,16 @@ pub const OPTIONS: OptionTable = OptionTable {
 pub struct Highs;
 
 impl Backend for Highs {
-    fn name(&self) -> &'static str {
-        NAME
-    }
-
-    fn version(&self) -> &'static str {
-        "mip: HiGHS, by highs-sys 1.15.0"
-    }
-
-    fn supports(&self) -> Supports {
-        Supports {
-            integers: true,
-            ..Supports::new(&[ProblemType::Mip], Terms::Linear)
+    fn about(&self) -> About {
+        About {
+            name: NAME,
+            aliases: &[],
+            version: "mip: HiGHS, by highs-sys 1.15.0",
+            supports: Supports {
+                integers: true,
+                ..Supports::new(&[ProblemType::Mip], Terms::Linear)
+            },
+            options: &OPTIONS,
         }
     }
 
@@ -62,22 +60,13 @@ impl Backend for Highs {
     fn takes(&self, task: &Task) -> bool {
         let columns = &task.instance.columns;
         let within = |&(j, _): &(u32, f64)| columns.upper[j as usize] <= MOST_SEMICONTINUOUS;
-        self.supports().takes(task)
+        self.about().supports.takes(task)
             && task.has_integers()
             && task.instance.discrete.sets.is_empty()
             && task.instance.discrete.thresholds.iter().all(within)
     }
 
-    fn options(&self) -> &'static OptionTable {
-        &OPTIONS
-    }
-
-    fn solve(
-        &self,
-        task: &Task,
-        settings: &Settings,
-        budget: &Budget,
-    ) -> Result<Reply, SolveError> {
+    fn solve(&self, task: &Task, settings: &Settings, budget: &Budget) -> Replied {
         let instance = task.instance;
         let aim = settings.search.minimizing(instance.sign());
         let form = Form::new(instance)?;
@@ -242,31 +231,20 @@ fn found(mip: &Mip, cutoff: Option<f64>, run: Run) -> Found {
 pub struct Continuous;
 
 impl Backend for Continuous {
-    fn name(&self) -> &'static str {
-        NAME
-    }
-
-    fn version(&self) -> &'static str {
-        "lp, rmip, convex qcp where it is named"
-    }
-
-    fn supports(&self) -> Supports {
-        Supports {
-            only_by_name: true,
-            ..Supports::new(lp::TYPES, Terms::Smooth)
+    fn about(&self) -> About {
+        About {
+            name: NAME,
+            aliases: &[],
+            version: "lp, rmip, convex qcp where it is named",
+            supports: Supports {
+                only_by_name: true,
+                ..Supports::new(lp::TYPES, Terms::Smooth)
+            },
+            options: &OPTIONS,
         }
     }
 
-    fn options(&self) -> &'static OptionTable {
-        &OPTIONS
-    }
-
-    fn solve(
-        &self,
-        task: &Task,
-        settings: &Settings,
-        budget: &Budget,
-    ) -> Result<Reply, SolveError> {
+    fn solve(&self, task: &Task, settings: &Settings, budget: &Budget) -> Replied {
         match (
             task.instance.is_linear(),
             nlp::interior_point_solvers().first(),

@@ -12,12 +12,11 @@ mod presolve;
 pub mod scale;
 pub mod simplex;
 
-use super::backend::{Backend, Reply, Supports, Task, Terms};
+use super::backend::{About, Backend, Replied, Supports, Task, Terms};
 use super::noise;
 use super::strategy::{Strategies, Strategy};
 use super::{Budget, Claim, Outcome, Settings, SolveError, SolverStatus, Stop};
 use crate::model::instance::Instance;
-use crate::model::option::OptionTable;
 use crate::model::problem_type::ProblemType;
 use form::{Form, Point, Problem};
 use interior::Aim;
@@ -106,28 +105,17 @@ enum Method<'a> {
 }
 
 impl Backend for Clarabel {
-    fn name(&self) -> &'static str {
-        "clarabel"
+    fn about(&self) -> About {
+        About {
+            name: "clarabel",
+            aliases: &[],
+            version: "lp: interior point, Clarabel 0.11.1, with a simplex finish on feral 0.22.0",
+            supports: SUPPORTS,
+            options: &OPTIONS,
+        }
     }
 
-    fn version(&self) -> &'static str {
-        "lp: interior point, Clarabel 0.11.1, with a simplex finish on feral 0.22.0"
-    }
-
-    fn supports(&self) -> Supports {
-        SUPPORTS
-    }
-
-    fn options(&self) -> &'static OptionTable {
-        &OPTIONS
-    }
-
-    fn solve(
-        &self,
-        task: &Task,
-        settings: &Settings,
-        budget: &Budget,
-    ) -> Result<Reply, SolveError> {
+    fn solve(&self, task: &Task, settings: &Settings, budget: &Budget) -> Replied {
         let method = match (settings.option("method").as_deref(), task.basis) {
             (_, Some(basis)) => Method::Restart(basis),
             (Some("interior"), _) => Method::Interior,
@@ -144,31 +132,20 @@ impl Backend for Clarabel {
 pub struct SimplexAlone;
 
 impl Backend for SimplexAlone {
-    fn name(&self) -> &'static str {
-        "simplex"
-    }
-
-    fn version(&self) -> &'static str {
-        "lp: the simplex method alone, bmod's own, on feral 0.22.0"
-    }
-
-    fn supports(&self) -> Supports {
-        Supports {
-            only_by_name: true,
-            ..SUPPORTS
+    fn about(&self) -> About {
+        About {
+            name: "simplex",
+            aliases: &[],
+            version: "lp: the simplex method alone, bmod's own, on feral 0.22.0",
+            supports: Supports {
+                only_by_name: true,
+                ..SUPPORTS
+            },
+            options: &OPTIONS,
         }
     }
 
-    fn options(&self) -> &'static OptionTable {
-        &OPTIONS
-    }
-
-    fn solve(
-        &self,
-        task: &Task,
-        settings: &Settings,
-        budget: &Budget,
-    ) -> Result<Reply, SolveError> {
+    fn solve(&self, task: &Task, settings: &Settings, budget: &Budget) -> Replied {
         Ok(solve(task.instance, settings, budget, Method::Simplex)?.into())
     }
 }

@@ -23,7 +23,7 @@ pub mod tree;
 pub use tree::{Aim, Record};
 
 use super::answer::subproblem;
-use super::backend::{Backend, Reply, Supports, Task, Terms};
+use super::backend::{About, Backend, Replied, Reply, Supports, Task, Terms};
 use super::lp::form::Form;
 use super::lp::{self, Ended};
 use super::{Budget, Claim, Outcome, Settings, SolveError, SolverStatus};
@@ -77,36 +77,26 @@ const TYPES: &[ProblemType] = &[
 pub struct Bmip;
 
 impl Backend for Bmip {
-    fn name(&self) -> &'static str {
-        NAME
-    }
-
-    fn version(&self) -> &'static str {
-        "mip, miqcp, minlp, mpec with discrete variables: bmod's own, on the simplex method and the nonlinear solver"
-    }
-
-    fn supports(&self) -> Supports {
-        Supports {
-            integers: true,
-            pairs: true,
-            ..Supports::new(TYPES, Terms::Kinks)
+    fn about(&self) -> About {
+        About {
+            name: NAME,
+            aliases: &[],
+            version: "mip, miqcp, minlp, mpec with discrete variables: bmod's own, on the simplex method and the nonlinear solver",
+            supports: Supports {
+                integers: true,
+                pairs: true,
+                ..Supports::new(TYPES, Terms::Kinks)
+            },
+            options: &OPTIONS,
         }
     }
 
     fn takes(&self, task: &Task) -> bool {
-        self.supports().takes(task) && (task.using != ProblemType::Mpec || task.has_integers())
+        self.about().supports.takes(task)
+            && (task.using != ProblemType::Mpec || task.has_integers())
     }
 
-    fn options(&self) -> &'static OptionTable {
-        &OPTIONS
-    }
-
-    fn solve(
-        &self,
-        task: &Task,
-        settings: &Settings,
-        budget: &Budget,
-    ) -> Result<Reply, SolveError> {
+    fn solve(&self, task: &Task, settings: &Settings, budget: &Budget) -> Replied {
         search(task, settings, budget)
     }
 }

@@ -28,7 +28,7 @@ mod swaps;
 mod tree;
 
 use super::answer::{Answer, answer_with, subproblem};
-use super::backend::{Backend, Reply, Seen, Supports, Task, Terms};
+use super::backend::{About, Backend, Replied, Reply, Seen, Supports, Task, Terms};
 use super::bridge::products::{Exact, Kind, Relaxed};
 use super::certificate::TOLERANCE;
 use super::lp::Ended;
@@ -37,7 +37,6 @@ use super::{
     Budget, Claim, ModelStatus, Outcome, Settings, SolveError, SolverStatus, Stop, Strategy,
 };
 use crate::model::instance::Instance;
-use crate::model::option::OptionTable;
 use crate::model::outcome::Basis;
 use crate::model::problem_type::ProblemType;
 use pairs::{Judged, Piece, Program};
@@ -74,31 +73,20 @@ impl Stationarity {
 pub struct Bmpec;
 
 impl Backend for Bmpec {
-    fn name(&self) -> &'static str {
-        "bmpec"
-    }
-
-    fn version(&self) -> &'static str {
-        "mpec, rmpec: bmod's own, on the nonlinear solver and the simplex method"
-    }
-
-    fn supports(&self) -> Supports {
-        Supports {
-            pairs: true,
-            ..Supports::new(&[ProblemType::Mpec, ProblemType::Rmpec], Terms::Smooth)
+    fn about(&self) -> About {
+        About {
+            name: "bmpec",
+            aliases: &[],
+            version: "mpec, rmpec: bmod's own, on the nonlinear solver and the simplex method",
+            supports: Supports {
+                pairs: true,
+                ..Supports::new(&[ProblemType::Mpec, ProblemType::Rmpec], Terms::Smooth)
+            },
+            options: &OPTIONS,
         }
     }
 
-    fn options(&self) -> &'static OptionTable {
-        &OPTIONS
-    }
-
-    fn solve(
-        &self,
-        task: &Task,
-        settings: &Settings,
-        budget: &Budget,
-    ) -> Result<Reply, SolveError> {
+    fn solve(&self, task: &Task, settings: &Settings, budget: &Budget) -> Replied {
         let program = Program::new(task.instance)?;
         super::lp::form::validate(&program.envelope)?;
         let mut search = Search {
@@ -516,7 +504,7 @@ impl Search<'_, '_> {
         if self.size() > LARGEST_SEQUENTIAL && self.settings.runs(Strategy::InteriorRelaxation) {
             interior = interior.or(super::nlp::interior_point_solvers()
                 .first()
-                .map(|p| p.name()));
+                .map(|p| p.about().name));
         }
         loop {
             relaxed.tighten(self.program, mu, &x);

@@ -82,7 +82,7 @@ pub fn solve(
     if let (Convexity::Asked(engine), None) = (convexity, &quadratic) {
         driver.message = Some(format!(
             "not a convex quadratic program with linear rows: solved by {}, not by {}",
-            interior_point.name(),
+            interior_point.about().name,
             engine.name()
         ));
     }
@@ -190,7 +190,7 @@ impl<'a, 'm> Driver<'a, 'm> {
             budget,
             convex: None,
             named: false,
-            solver: interior_point.name(),
+            solver: interior_point.about().name,
             message: None,
             start: problem.start().to_vec(),
             problem: Arc::new(Mutex::new(problem)),

@@ -1,7 +1,7 @@
 //! What the driver and the solvers of nonlinear programs say to each other.
 
 use super::problem::Nlp;
-use crate::model::option::OptionTable;
+use crate::solve::backend::About;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// How an interior-point solver says it ended, in Ipopt's distinctions.
@@ -103,13 +103,8 @@ pub fn lock<T: ?Sized>(nlp: &Mutex<T>) -> MutexGuard<'_, T> {
 
 /// A solver of nonlinear programs.
 pub trait InteriorPoint: Sync {
-    /// Lower-case name.
-    fn name(&self) -> &'static str;
-    /// What it is made of.
-    fn version(&self) -> &'static str;
-    /// The options that it takes.
-    fn options(&self) -> &'static OptionTable;
-
+    /// What it is and what it takes.
+    fn about(&self) -> About;
     /// Solves. Err: an option that the interior-point solver does not take, in words.
     fn solve(&self, nlp: Shared, control: &mut Control<'_>) -> Result<Solution, String>;
 }

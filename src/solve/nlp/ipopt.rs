@@ -10,9 +10,10 @@
 // the only module that talks to C
 #![allow(unsafe_code)]
 
+use super::super::backend::About;
+use super::SUPPORTS;
 use super::interior_point::{Control, Ended, InteriorPoint, Progress, Shared, Solution, lock};
 use super::options::IPOPT_OPTIONS;
-use crate::model::option::OptionTable;
 use ipopt_sys as c;
 use std::ffi::{CString, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -49,16 +50,14 @@ static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
 const OPTIONAL: [&str; 1] = ["acceptable_dual_inf_tol"];
 
 impl InteriorPoint for Ipopt {
-    fn name(&self) -> &'static str {
-        "ipopt"
-    }
-
-    fn version(&self) -> &'static str {
-        "nlp, dnlp, qcp: Ipopt of the system, through ipopt-sys 0.6"
-    }
-
-    fn options(&self) -> &'static OptionTable {
-        &IPOPT_OPTIONS
+    fn about(&self) -> About {
+        About {
+            name: "ipopt",
+            aliases: &[],
+            version: "nlp, dnlp, qcp: Ipopt of the system, through ipopt-sys 0.6",
+            supports: SUPPORTS,
+            options: &IPOPT_OPTIONS,
+        }
     }
 
     fn solve(&self, nlp: Shared, control: &mut Control<'_>) -> Result<Solution, String> {

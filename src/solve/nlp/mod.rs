@@ -30,9 +30,8 @@ mod symmetric;
 mod trial;
 mod verdict;
 
-use super::backend::{Backend, Reply, Supports, Task, Terms, is_called};
-use super::{Budget, Settings, SolveError, lp};
-use crate::model::option::OptionTable;
+use super::backend::{About, Backend, Replied, Supports, Task, Terms, is_called};
+use super::{Budget, Settings, lp};
 use interior_point::InteriorPoint;
 #[cfg(feature = "ipopt")]
 pub use options::IPOPT_OPTIONS;
@@ -65,36 +64,22 @@ pub enum Convexity {
     Asked(Engine),
 }
 
+/// What interior-point solvers take.
+const SUPPORTS: Supports = Supports {
+    linear: false,
+    ..Supports::new(lp::TYPES, Terms::Kinks)
+};
+
 /// A nonlinear solver as a backend.
 #[derive(Clone, Copy)]
 pub struct Nonlinear(pub &'static dyn InteriorPoint);
 
 impl Backend for Nonlinear {
-    fn name(&self) -> &'static str {
-        self.0.name()
+    fn about(&self) -> About {
+        self.0.about()
     }
 
-    fn version(&self) -> &'static str {
-        self.0.version()
-    }
-
-    fn supports(&self) -> Supports {
-        Supports {
-            linear: false,
-            ..Supports::new(lp::TYPES, Terms::Kinks)
-        }
-    }
-
-    fn options(&self) -> &'static OptionTable {
-        self.0.options()
-    }
-
-    fn solve(
-        &self,
-        task: &Task,
-        settings: &Settings,
-        budget: &Budget,
-    ) -> Result<Reply, SolveError> {
+    fn solve(&self, task: &Task, settings: &Settings, budget: &Budget) -> Replied {
         let convexity = match task.choice {
             Some("clarabel") => Convexity::Asked(Engine::Clarabel),
             #[cfg(feature = "highs")]

@@ -7,9 +7,11 @@
 //! shared, progress comes back through a channel, and a panic ends the thread, not the program.
 //! Without its restoration phase wired in, every hard case ends `RestorationFailed`.
 
+use super::super::backend::About;
+use super::SUPPORTS;
 use super::interior_point::{Control, Ended, InteriorPoint, Progress, Shared, Solution, lock};
 use super::options::{INSTALLATION, POUNCE_OPTIONS, is_described};
-use crate::model::option::{Kind, OptionRow, OptionTable, row};
+use crate::model::option::{Kind, OptionRow, row};
 use pounce_algorithm::application::{
     IpoptApplication, Ma57Config, default_backend_factory, feral_config_from_options,
 };
@@ -36,16 +38,14 @@ use std::sync::mpsc::channel;
 pub struct Pounce;
 
 impl InteriorPoint for Pounce {
-    fn name(&self) -> &'static str {
-        "pounce"
-    }
-
-    fn version(&self) -> &'static str {
-        "nlp, dnlp, qcp: Ipopt's algorithm in Rust, pounce 0.14.0"
-    }
-
-    fn options(&self) -> &'static OptionTable {
-        &POUNCE_OPTIONS
+    fn about(&self) -> About {
+        About {
+            name: "pounce",
+            aliases: &[],
+            version: "nlp, dnlp, qcp: Ipopt's algorithm in Rust, pounce 0.14.0",
+            supports: SUPPORTS,
+            options: &POUNCE_OPTIONS,
+        }
     }
 
     fn solve(&self, nlp: Shared, control: &mut Control<'_>) -> Result<Solution, String> {

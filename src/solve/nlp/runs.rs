@@ -93,7 +93,7 @@ impl Driver<'_, '_> {
         for (k, v) in BASE.iter().chain(extra) {
             put(k, v);
         }
-        for (k, v) in self.settings.of(self.interior_point.options()) {
+        for (k, v) in self.settings.of(self.interior_point.about().options) {
             put(k, v);
         }
         let left = self.budget.iterations_left();
@@ -105,7 +105,7 @@ impl Driver<'_, '_> {
             self.attempt_iterations.min(affordable.max(100.0) as u64)
         };
         let (budget, log) = (self.budget, self.budget.wants_log());
-        let name = self.interior_point.name();
+        let name = self.interior_point.about().name;
         if log {
             let extra: Vec<String> = extra.iter().map(|(k, v)| format!(", {k} {v}")).collect();
             budget.log(format!("{name}{}", extra.concat()));
@@ -163,7 +163,7 @@ impl Driver<'_, '_> {
         if let Ended::InvalidOption = solution.ended {
             return Err(SolveError::new(format!(
                 "{} does not take one of the options",
-                self.interior_point.name()
+                self.interior_point.about().name
             )));
         }
         Ok(solution)
