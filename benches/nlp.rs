@@ -44,7 +44,7 @@ fn main() {
     };
     let names: Vec<&str> = bmod::solve::nlp::interior_point_solvers()
         .iter()
-        .map(|p| p.name())
+        .map(|p| p.about().name)
         .collect();
     let heads: Vec<String> = names
         .iter()

@@ -113,14 +113,21 @@ fn run(solver: &str, instance: &Instance) -> Result<Answer, SolveError> {
 fn expect(m: &Model, status: ModelStatus, objective: Option<f64>) -> Vec<Answer> {
     let mut all = Vec::new();
     for p in interior_point_solvers() {
-        let a = run(p.name(), &m.0).unwrap_or_else(|e| panic!("{}: {}", p.name(), e.message));
+        let a = run(p.about().name, &m.0)
+            .unwrap_or_else(|e| panic!("{}: {}", p.about().name, e.message));
         let z = a.outcome.level[0];
-        assert_eq!(a.status, status, "{}: z = {z}, {:?}", p.name(), a.residuals);
+        assert_eq!(
+            a.status,
+            status,
+            "{}: z = {z}, {:?}",
+            p.about().name,
+            a.residuals
+        );
         if let Some(want) = objective {
             assert!(
                 (z - want).abs() <= 1e-7 * want.abs().max(1.0),
                 "{}: {z} instead of {want}",
-                p.name()
+                p.about().name
             );
         }
         if matches!(status, Optimal | LocallyOptimal) {
@@ -314,7 +321,7 @@ fn crossed_bounds_are_refused() {
     let x = m.var((2.0, 1.0), 0.0);
     m.objective(&[], &[(1.0, &[Var(x), PowerInt(2)])], 0.0);
     for p in interior_point_solvers() {
-        let e = run(p.name(), &m.0).unwrap_err();
+        let e = run(p.about().name, &m.0).unwrap_err();
         assert_eq!(e.column, Some(x as usize));
     }
 }
@@ -424,7 +431,7 @@ fn degenerate_constraints() {
         0.0,
     );
     for p in interior_point_solvers() {
-        let a = run(p.name(), &m.0).unwrap();
+        let a = run(p.about().name, &m.0).unwrap();
         assert!(
             matches!(a.status, LocallyOptimal | Feasible),
             "{:?}",
@@ -450,7 +457,7 @@ fn a_start_without_value_is_explained() {
         0.0,
     );
     for p in interior_point_solvers() {
-        let e = run(p.name(), &m.0).unwrap_err();
+        let e = run(p.about().name, &m.0).unwrap_err();
         assert_eq!(
             e.message,
             "a function cannot be evaluated at the start point: log of -1"
@@ -520,7 +527,7 @@ fn options_and_limits() {
         let budget = Budget::new(&mut quiet, limits, false);
         let a = answer(
             ProblemType::Nlp,
-            Some(p.name()),
+            Some(p.about().name),
             &hs71().0,
             &settings,
             &budget,
@@ -534,7 +541,7 @@ fn options_and_limits() {
         ];
         let a = answer(
             ProblemType::Nlp,
-            Some(p.name()),
+            Some(p.about().name),
             &hs71().0,
             &settings,
             &Budget::unlimited(&mut Quiet::default()),
@@ -559,7 +566,7 @@ fn warm_start() {
         let cold = options(&[("nlp_search", "no")]);
         let first = answer(
             ProblemType::Nlp,
-            Some(p.name()),
+            Some(p.about().name),
             &m,
             &cold,
             &Budget::unlimited(&mut Quiet::default()),
@@ -577,7 +584,7 @@ fn warm_start() {
         ]);
         let second = answer(
             ProblemType::Nlp,
-            Some(p.name()),
+            Some(p.about().name),
             &m,
             &warm,
             &Budget::unlimited(&mut Quiet::default()),
@@ -585,7 +592,7 @@ fn warm_start() {
         .unwrap();
         assert_eq!(second.status, LocallyOptimal);
         let (a, b) = (first.outcome.iterations, second.outcome.iterations);
-        assert!(b < a, "{}: {a}, then {b} iterations", p.name());
+        assert!(b < a, "{}: {a}, then {b} iterations", p.about().name);
     }
 }
 
@@ -600,7 +607,7 @@ fn limit_of_time() {
         let budget = Budget::new(&mut quiet, limits, false);
         let a = answer(
             ProblemType::Nlp,
-            Some(p.name()),
+            Some(p.about().name),
             &hs71().0,
             &Settings::default(),
             &budget,
@@ -652,7 +659,7 @@ fn interruption_and_log() {
         let budget = Budget::new(&mut monitor, Limits::default(), true);
         let a = answer(
             ProblemType::Nlp,
-            Some(p.name()),
+            Some(p.about().name),
             &m.0,
             &Settings::default(),
             &budget,
@@ -662,9 +669,9 @@ fn interruption_and_log() {
             a.outcome.status,
             SolverStatus::UserInterrupt,
             "{}",
-            p.name()
+            p.about().name
         );
-        assert_eq!(monitor.1[0], p.name());
+        assert_eq!(monitor.1[0], p.about().name);
         assert!(monitor.1[1].contains("objective"));
         assert!(
             monitor
@@ -693,7 +700,7 @@ fn kinks() {
         0.0,
     );
     for p in interior_point_solvers() {
-        let a = run(p.name(), &m.0).unwrap();
+        let a = run(p.about().name, &m.0).unwrap();
         assert!(
             (a.outcome.level[0] - 1.0).abs() < 1e-4,
             "{}",

@@ -11,11 +11,14 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// let (x, y) = (Term::column(0), Term::column(1));
 /// let rosenbrock = (1.0 - x.clone()).powi(2) + 100.0 * (y - x.powi(2)).powi(2);
 /// ```
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Term {
-    ops: Vec<Op>,
-    columns: Vec<u32>,
-    constants: Vec<f64>,
+    /// The program, in postfix form.
+    pub(crate) ops: Vec<Op>,
+    /// Column of each variable slot.
+    pub(crate) columns: Vec<u32>,
+    /// Value of each constant slot.
+    pub(crate) constants: Vec<f64>,
 }
 
 impl Term {
@@ -47,30 +50,65 @@ impl Term {
     pub fn call(function: Function, arguments: impl IntoIterator<Item = Term>) -> Self {
         let (mut out, mut count) = (Self::default(), 0);
         for argument in arguments {
-            out = out.followed_by(argument);
+            out.append(argument);
             count += 1;
         }
         out.ops.push(Op::Call(function, count));
         out
     }
 
-    /// The programs one after the other; the slots of the second come after those of the first.
-    fn followed_by(mut self, other: Self) -> Self {
+    /// Appends a program; its slots come after those that are there.
+    pub(crate) fn append(&mut self, other: Self) {
         let (v, c) = (self.columns.len() as u32, self.constants.len() as u32);
-        self.ops.extend(other.ops.into_iter().map(|op| match op {
-            Op::Var(k) => Op::Var(k + v),
-            Op::Const(k) => Op::Const(k + c),
-            op => op,
-        }));
+        let ops = other.ops.into_iter().map(|op| op.moved(v, c));
+        self.ops.extend(ops);
         self.columns.extend(other.columns);
         self.constants.extend(other.constants);
-        self
     }
 
-    fn then(self, other: impl Into<Self>, op: Op) -> Self {
-        let mut out = self.followed_by(other.into());
-        out.ops.push(op);
-        out
+    /// Appends an operation of another program, with slots of its own.
+    pub(crate) fn copy(&mut self, whole: &Self, op: Op) {
+        let (v, c) = (self.columns.len() as u32, self.constants.len() as u32);
+        self.ops.push(match op {
+            Op::Var(k) => {
+                self.columns.push(whole.columns[k as usize]);
+                Op::Var(v)
+            }
+            Op::Const(k) => {
+                self.constants.push(whole.constants[k as usize]);
+                Op::Const(c)
+            }
+            Op::Affine {
+                constant,
+                variable,
+                terms,
+            } => {
+                let (first, x, n) = (constant as usize, variable as usize, terms as usize);
+                self.constants.extend(&whole.constants[first..=first + n]);
+                self.columns.extend(&whole.columns[x..x + n]);
+                Op::Affine {
+                    constant: c,
+                    variable: v,
+                    terms,
+                }
+            }
+            op => op,
+        });
+    }
+
+    /// The expression with slots.
+    pub(crate) fn kernel(&self) -> Kernel {
+        Kernel {
+            ops: self.ops.clone(),
+            variables: self.columns.len() as u32,
+            constants: self.constants.len() as u32,
+        }
+    }
+
+    fn then(mut self, other: impl Into<Self>, op: Op) -> Self {
+        self.append(other.into());
+        self.ops.push(op);
+        self
     }
 }
 
@@ -163,24 +201,13 @@ impl Instance {
 
     /// Adds a coefficient times an expression to the left side of a row.
     pub fn add_term(&mut self, row: usize, coefficient: f64, term: Term) {
-        let kernel = Kernel {
-            ops: term.ops,
-            variables: term.columns.len() as u32,
-            constants: term.constants.len() as u32,
-        };
+        let kernel = term.kernel();
         let place = self.nonlinear.iter().position(|t| t.kernel == kernel);
         let place = place.unwrap_or_else(|| {
-            self.nonlinear.push(KernelTerms {
-                kernel,
-                ..KernelTerms::default()
-            });
+            self.nonlinear.push(KernelTerms::new(kernel));
             self.nonlinear.len() - 1
         });
-        let terms = &mut self.nonlinear[place];
-        terms.row.push(row as u32);
-        terms.coef.push(coefficient);
-        terms.columns.extend(term.columns);
-        terms.constants.extend(term.constants);
+        self.nonlinear[place].push(row as u32, coefficient, &term.columns, &term.constants);
     }
 
     /// What is minimised or maximised: the level of a column, which a row may define.

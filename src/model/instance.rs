@@ -247,6 +247,24 @@ impl Op {
             Self::AddN(n) | Self::MultiplyN(n) | Self::Call(_, n) => n as usize,
         }
     }
+
+    /// The same with slots that many further on.
+    pub(crate) fn moved(self, variables: u32, constants: u32) -> Self {
+        match self {
+            Self::Var(k) => Self::Var(k + variables),
+            Self::Const(k) => Self::Const(k + constants),
+            Self::Affine {
+                constant,
+                variable,
+                terms,
+            } => Self::Affine {
+                constant: constant + constants,
+                variable: variable + variables,
+                terms,
+            },
+            op => op,
+        }
+    }
 }
 
 /// One expression with slots.
@@ -273,6 +291,24 @@ pub struct KernelTerms {
     pub columns: Vec<u32>,
     /// Constants, `kernel.constants` per term.
     pub constants: Vec<f64>,
+}
+
+impl KernelTerms {
+    /// No terms with this expression yet.
+    pub(crate) fn new(kernel: Kernel) -> Self {
+        Self {
+            kernel,
+            ..Self::default()
+        }
+    }
+
+    /// Adds a term.
+    pub(crate) fn push(&mut self, row: u32, coef: f64, columns: &[u32], constants: &[f64]) {
+        self.row.push(row);
+        self.coef.push(coef);
+        self.columns.extend_from_slice(columns);
+        self.constants.extend_from_slice(constants);
+    }
 }
 
 /// What is minimised or maximised: the level of one column.

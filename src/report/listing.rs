@@ -365,7 +365,7 @@ fn algebra(terms: &KernelTerms, t: usize, names: &dyn Names) -> String {
 mod tests {
     use super::*;
     use crate::model::function::Function;
-    use crate::model::instance::Sense;
+    use crate::model::instance::{Relation, Sense};
     use crate::solve::conformance;
 
     struct Plants;

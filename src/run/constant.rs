@@ -3,26 +3,16 @@
 //! are held fixed).
 
 use crate::autodiff::functions::{self, DomainError, function_value};
+use crate::model::builder::Term;
 use crate::model::instance::Op;
 
-/// A nonlinear term in the making.
-#[derive(Default)]
-pub(super) struct Tape {
-    /// The program, in postfix form.
-    pub ops: Vec<Op>,
-    /// Column of each variable slot.
-    pub columns: Vec<u32>,
-    /// Value of each constant slot.
-    pub constants: Vec<f64>,
-}
-
-/// A value on the stack of [`Tape::folded`].
+/// A value on the stack of [`Term::folded`].
 enum Part {
     Number(f64),
-    Code(Tape),
+    Code(Term),
 }
 
-impl Tape {
+impl Term {
     /// Appends a number.
     pub(super) fn number(&mut self, x: f64) {
         self.ops.push(Op::Const(self.constants.len() as u32));
@@ -35,29 +25,12 @@ impl Tape {
         self.ops.iter().any(zero)
     }
 
-    /// Appends a program with slots of its own.
-    fn append(&mut self, part: Part) {
-        let part = match part {
-            Part::Number(x) => return self.number(x),
-            Part::Code(part) => part,
-        };
-        let (c, v) = (self.constants.len() as u32, self.columns.len() as u32);
-        self.ops.extend(part.ops.into_iter().map(|op| match op {
-            Op::Const(k) => Op::Const(k + c),
-            Op::Var(k) => Op::Var(k + v),
-            Op::Affine {
-                constant,
-                variable,
-                terms,
-            } => Op::Affine {
-                constant: constant + c,
-                variable: variable + v,
-                terms,
-            },
-            op => op,
-        }));
-        self.constants.extend(part.constants);
-        self.columns.extend(part.columns);
+    /// Appends a number or a program.
+    fn append_part(&mut self, part: Part) {
+        match part {
+            Part::Number(x) => self.number(x),
+            Part::Code(part) => self.append(part),
+        }
     }
 
     /// The same with functions of numbers computed, and without products with 0 and 0 divided by something: such
@@ -76,34 +49,15 @@ impl Tape {
                 (Op::Const(k), _) => Part::Number(self.constants[k as usize]),
                 (Op::Multiply | Op::MultiplyN(_), _) if args.iter().any(zero) => Part::Number(0.0),
                 (Op::Divide, None) if zero(&args[0]) => Part::Number(0.0),
-                (Op::Var(k), _) => Part::Code(Self {
-                    ops: vec![Op::Var(0)],
-                    columns: vec![self.columns[k as usize]],
-                    constants: Vec::new(),
-                }),
-                (
-                    Op::Affine {
-                        constant,
-                        variable,
-                        terms,
-                    },
-                    _,
-                ) => {
-                    let (c, v, n) = (constant as usize, variable as usize, terms as usize);
-                    Part::Code(Self {
-                        ops: vec![Op::Affine {
-                            constant: 0,
-                            variable: 0,
-                            terms,
-                        }],
-                        columns: self.columns[v..v + n].to_vec(),
-                        constants: self.constants[c..=c + n].to_vec(),
-                    })
+                (Op::Var(_) | Op::Affine { .. }, _) => {
+                    let mut code = Self::default();
+                    code.copy(self, op);
+                    Part::Code(code)
                 }
                 (op, Some(numbers)) => Part::Number(value(op, &numbers)?),
                 (op, None) => {
                     let mut code = Self::default();
-                    args.into_iter().for_each(|a| code.append(a));
+                    args.into_iter().for_each(|a| code.append_part(a));
                     code.ops.push(op);
                     Part::Code(code)
                 }
@@ -111,7 +65,7 @@ impl Tape {
             stack.push(value);
         }
         let mut out = Self::default();
-        stack.into_iter().for_each(|p| out.append(p));
+        stack.into_iter().for_each(|p| out.append_part(p));
         Ok(out)
     }
 }

@@ -7,9 +7,10 @@ use super::{Builder, EPS_COEFFICIENT, Row};
 use crate::autodiff::functions::DomainError;
 use crate::check::node::*;
 use crate::data::value::{is_eps, truth};
+use crate::model::builder::Term;
 use crate::model::instance::*;
 use crate::run::Frame;
-use crate::run::constant::{self, Affine, Tape};
+use crate::run::constant::{self, Affine};
 use crate::run::plan::Wanted;
 
 impl Builder<'_, '_> {
@@ -125,7 +126,7 @@ impl Builder<'_, '_> {
         if coef == 0.0 {
             return;
         }
-        let mut tape = Tape::default();
+        let mut tape = Term::default();
         self.build(n, frame, &mut tape);
         // With zeros in it, or with variables held fixed, it may be a number or linear after all. A
         // kernel that is there already is neither.
@@ -159,30 +160,20 @@ impl Builder<'_, '_> {
             Some(k) => k,
             None => {
                 let k = self.instance.nonlinear.len();
-                self.kernels.insert(tape.ops.clone(), k);
-                self.instance.nonlinear.push(KernelTerms {
-                    kernel: Kernel {
-                        variables: tape.columns.len() as u32,
-                        constants: tape.constants.len() as u32,
-                        ops: tape.ops,
-                    },
-                    ..KernelTerms::default()
-                });
+                let kernel = tape.kernel();
+                self.kernels.insert(tape.ops, k);
+                self.instance.nonlinear.push(KernelTerms::new(kernel));
                 k
             }
         };
         self.nonlinear_terms += 1;
         let mut numbers = tape.constants.iter().chain([&coef]);
         self.not_a_number |= numbers.any(|c| c.is_nan());
-        let terms = &mut self.instance.nonlinear[k];
-        terms.row.push(self.row);
-        terms.coef.push(coef);
-        terms.columns.extend_from_slice(&tape.columns);
-        terms.constants.extend_from_slice(&tape.constants);
+        self.instance.nonlinear[k].push(self.row, coef, &tape.columns, &tape.constants);
     }
 
     /// Appends an affine expression.
-    fn affine(&mut self, part: Row, tape: &mut Tape) {
+    fn affine(&mut self, part: Row, tape: &mut Term) {
         let terms: Vec<(u32, f64)> = part.terms.iter().copied().filter(|t| t.1 != 0.0).collect();
         match terms.as_slice() {
             [] => tape.number(part.constant),
@@ -205,7 +196,7 @@ impl Builder<'_, '_> {
         }
     }
 
-    fn linear(&mut self, n: &Node, frame: &mut Frame, tape: &mut Tape) {
+    fn linear(&mut self, n: &Node, frame: &mut Frame, tape: &mut Term) {
         let mut part = Row::part();
         self.emit(n, 1.0, frame, &mut part);
         merge_terms(&mut part.terms);
@@ -213,7 +204,7 @@ impl Builder<'_, '_> {
     }
 
     /// Appends the program of an expression: leaves one value.
-    fn build(&mut self, n: &Node, frame: &mut Frame, tape: &mut Tape) {
+    fn build(&mut self, n: &Node, frame: &mut Frame, tape: &mut Term) {
         if !n.has_var {
             let v = self.value(n, frame);
             tape.number(v);
@@ -291,7 +282,7 @@ impl Builder<'_, '_> {
         }
     }
 
-    fn build_product(&mut self, factors: &[(bool, Node)], frame: &mut Frame, tape: &mut Tape) {
+    fn build_product(&mut self, factors: &[(bool, Node)], frame: &mut Frame, tape: &mut Term) {
         let Some((c, _)) = self.split(factors, frame) else {
             tape.number(0.0);
             return;
@@ -327,7 +318,7 @@ impl Builder<'_, '_> {
         a: &Node,
         b: &Node,
         frame: &mut Frame,
-        tape: &mut Tape,
+        tape: &mut Term,
     ) {
         self.build(a, frame, tape);
         self.build(b, frame, tape);
@@ -354,7 +345,7 @@ impl Builder<'_, '_> {
         d: &Domain,
         body: &Node,
         frame: &mut Frame,
-        tape: &mut Tape,
+        tape: &mut Term,
     ) {
         let m = self.m;
         let sum = op == AggregateOp::Sum;
@@ -408,12 +399,12 @@ impl Builder<'_, '_> {
 }
 
 /// The tape, folded if there is a zero in it, and its affine form if it has one.
-fn simplified(tape: Tape, zero: bool) -> Result<(Option<Affine>, Tape), DomainError> {
+fn simplified(tape: Term, zero: bool) -> Result<(Option<Affine>, Term), DomainError> {
     let tape = if zero { tape.folded()? } else { tape };
     Ok((constant::affine(&tape.ops, &tape.constants)?, tape))
 }
 
-fn add_n(n: u32, tape: &mut Tape) {
+fn add_n(n: u32, tape: &mut Term) {
     match n {
         0 | 1 => {}
         2 => tape.ops.push(Op::Add),
@@ -421,7 +412,7 @@ fn add_n(n: u32, tape: &mut Tape) {
     }
 }
 
-fn multiply_n(n: u32, tape: &mut Tape) {
+fn multiply_n(n: u32, tape: &mut Term) {
     match n {
         0 | 1 => {}
         2 => tape.ops.push(Op::Multiply),

@@ -1,7 +1,8 @@
 //! An instance in the making: the rows and columns of another, and those that take the place of what stood in its terms.
 
-use super::parts::{Expression, Parts};
+use super::parts::Parts;
 use crate::autodiff::Evaluator;
+use crate::model::builder::Term;
 use crate::model::instance::{Columns, Instance, Kernel, KernelTerms, Relation, Rows, SparseRows};
 use rustc_hash::FxHashMap;
 use std::ops::Range;
@@ -34,20 +35,13 @@ impl Builder {
         }
     }
 
-    pub(super) fn push_term(&mut self, row: usize, coefficient: f64, e: Expression) {
-        let next = self.nonlinear.len();
-        let place = *self.known.entry(e.kernel.clone()).or_insert(next);
-        if place == next {
-            self.nonlinear.push(KernelTerms {
-                kernel: e.kernel,
-                ..KernelTerms::default()
-            });
-        }
-        let terms = &mut self.nonlinear[place];
-        terms.row.push(row as u32);
-        terms.coef.push(coefficient);
-        terms.columns.extend(e.columns);
-        terms.constants.extend(e.constants);
+    pub(super) fn push_term(&mut self, row: usize, coefficient: f64, e: Term) {
+        let (next, kernel) = (self.nonlinear.len(), e.kernel());
+        let place = *self.known.entry(kernel).or_insert_with_key(|kernel| {
+            self.nonlinear.push(KernelTerms::new(kernel.clone()));
+            next
+        });
+        self.nonlinear[place].push(row as u32, coefficient, &e.columns, &e.constants);
     }
 
     /// Appends an empty row with right-hand side 0; its number.
@@ -60,7 +54,7 @@ impl Builder {
     }
 
     /// Puts what is constant or linear into the left side of a row; the rest.
-    pub(super) fn place_linear(&mut self, row: usize, parts: Parts) -> Vec<(f64, Expression)> {
+    pub(super) fn place_linear(&mut self, row: usize, parts: Parts) -> Vec<(f64, Term)> {
         self.rows.rhs[row] -= parts.constant;
         let linear = parts.linear.into_iter().map(|(j, a)| (row, j, a));
         self.entries.extend(linear);

@@ -1,22 +1,15 @@
 //! Terms taken apart: a kernel as a weighted sum of constants, variables and what cannot be split further.
 
-use crate::model::instance::{Function, Instance, Kernel, Op};
-
-/// An expression: a program, the columns and constants in its slots.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Expression {
-    pub(super) kernel: Kernel,
-    pub(super) columns: Vec<u32>,
-    pub(super) constants: Vec<f64>,
-}
+use crate::model::builder::Term;
+use crate::model::instance::{Function, Instance, Op};
 
 /// All nonlinear terms: row, coefficient, expression.
-pub(super) fn expressions(instance: &Instance) -> impl Iterator<Item = (usize, f64, Expression)> {
+pub(super) fn expressions(instance: &Instance) -> impl Iterator<Item = (usize, f64, Term)> {
     instance.nonlinear.iter().flat_map(|t| {
         let (v, c) = (t.kernel.variables as usize, t.kernel.constants as usize);
         (0..t.row.len()).map(move |k| {
-            let expression = Expression {
-                kernel: t.kernel.clone(),
+            let expression = Term {
+                ops: t.kernel.ops.clone(),
                 columns: t.columns[k * v..(k + 1) * v].to_vec(),
                 constants: t.constants[k * c..(k + 1) * c].to_vec(),
             };
@@ -31,15 +24,15 @@ pub(super) struct Parts {
     pub(super) constant: f64,
     pub(super) linear: Vec<(u32, f64)>,
     /// Anything else, with its weight.
-    pub(super) nonlinear: Vec<(f64, Expression)>,
+    pub(super) nonlinear: Vec<(f64, Term)>,
 }
 
-impl Expression {
+impl Term {
     /// `weight` times the expression, split.
     pub(super) fn parts(&self, weight: f64) -> Parts {
         let mut parts = Parts::default();
         let tree = Tree::new(self);
-        tree.split(self.kernel.ops.len() - 1, weight, &mut parts);
+        tree.split(self.ops.len() - 1, weight, &mut parts);
         parts
     }
 
@@ -52,21 +45,14 @@ impl Expression {
     ) -> Self {
         let mut out = Self::default();
         let tree = Tree::new(self);
-        tree.rewrite(self.kernel.ops.len() - 1, least, make, &mut out);
-        out.counted()
-    }
-
-    /// With the number of its slots.
-    fn counted(mut self) -> Self {
-        self.kernel.variables = self.columns.len() as u32;
-        self.kernel.constants = self.constants.len() as u32;
-        self
+        tree.rewrite(self.ops.len() - 1, least, make, &mut out);
+        out
     }
 
     /// Function and arguments, if a function with kinks comes last.
-    pub(super) fn kink(&self) -> Option<(Function, Vec<Expression>)> {
-        let last = self.kernel.ops.len() - 1;
-        match self.kernel.ops[last] {
+    pub(super) fn kink(&self) -> Option<(Function, Vec<Term>)> {
+        let last = self.ops.len() - 1;
+        match self.ops[last] {
             Op::Call(f @ (Function::Max | Function::Min | Function::Abs), _) => {
                 let tree = Tree::new(self);
                 let arguments = tree.arguments(last).into_iter();
@@ -78,30 +64,30 @@ impl Expression {
 
     /// Whether a function with kinks stands anywhere in it.
     pub(super) fn has_kink(&self) -> bool {
-        has_kink(&self.kernel)
+        has_kink(&self.ops)
     }
 }
 
-pub(super) fn has_kink(kernel: &Kernel) -> bool {
+pub(super) fn has_kink(ops: &[Op]) -> bool {
     let kink = |op: &Op| {
         matches!(
             op,
             Op::Call(Function::Max | Function::Min | Function::Abs, _)
         )
     };
-    kernel.ops.iter().any(kink)
+    ops.iter().any(kink)
 }
 
 /// Where the subexpression that ends at each operation begins.
 struct Tree<'e> {
-    whole: &'e Expression,
+    whole: &'e Term,
     begin: Vec<usize>,
 }
 
 impl<'e> Tree<'e> {
-    fn new(whole: &'e Expression) -> Self {
-        let mut begin: Vec<usize> = Vec::with_capacity(whole.kernel.ops.len());
-        for (p, op) in whole.kernel.ops.iter().enumerate() {
+    fn new(whole: &'e Term) -> Self {
+        let mut begin: Vec<usize> = Vec::with_capacity(whole.ops.len());
+        for (p, op) in whole.ops.iter().enumerate() {
             let first = (0..op.arguments()).fold(p, |end, _| begin[end - 1]);
             begin.push(first);
         }
@@ -112,7 +98,7 @@ impl<'e> Tree<'e> {
     fn arguments(&self, p: usize) -> Vec<usize> {
         let mut ends = Vec::new();
         let mut next = p;
-        for _ in 0..self.whole.kernel.ops[p].arguments() {
+        for _ in 0..self.whole.ops[p].arguments() {
             ends.push(next - 1);
             next = self.begin[next - 1];
         }
@@ -122,7 +108,7 @@ impl<'e> Tree<'e> {
 
     /// The number that the subexpression ending at p is, if it is one.
     fn number(&self, p: usize) -> Option<f64> {
-        match self.whole.kernel.ops[p] {
+        match self.whole.ops[p] {
             Op::Const(k) => Some(self.whole.constants[k as usize]),
             Op::Negate => Some(-self.number(p - 1)?),
             _ => None,
@@ -132,7 +118,7 @@ impl<'e> Tree<'e> {
     fn split(&self, p: usize, weight: f64, out: &mut Parts) {
         let (columns, constants) = (&self.whole.columns, &self.whole.constants);
         let arguments = self.arguments(p);
-        match (self.whole.kernel.ops[p], &arguments[..]) {
+        match (self.whole.ops[p], &arguments[..]) {
             (Op::Const(k), _) => out.constant += weight * constants[k as usize],
             (Op::Var(k), _) => out.linear.push((columns[k as usize], weight)),
             (
@@ -174,55 +160,23 @@ impl<'e> Tree<'e> {
     }
 
     /// The subexpression that ends at p, with slots of its own.
-    fn cut(&self, p: usize) -> Expression {
-        let mut out = Expression::default();
+    fn cut(&self, p: usize) -> Term {
+        let mut out = Term::default();
         for q in self.begin[p]..=p {
-            self.copy(q, &mut out);
+            out.copy(self.whole, self.whole.ops[q]);
         }
-        out.counted()
+        out
     }
 
-    /// Appends the operation at p, with slots of its own.
-    fn copy(&self, p: usize, out: &mut Expression) {
-        let column = |k: u32| self.whole.columns[k as usize];
-        let number = |k: u32| self.whole.constants[k as usize];
-        let at = (out.constants.len() as u32, out.columns.len() as u32);
-        out.kernel.ops.push(match self.whole.kernel.ops[p] {
-            Op::Var(k) => {
-                out.columns.push(column(k));
-                Op::Var(at.1)
-            }
-            Op::Const(k) => {
-                out.constants.push(number(k));
-                Op::Const(at.0)
-            }
-            Op::Affine {
-                constant,
-                variable,
-                terms,
-            } => {
-                out.constants
-                    .extend((constant..=constant + terms).map(number));
-                out.columns.extend((variable..variable + terms).map(column));
-                Op::Affine {
-                    constant: at.0,
-                    variable: at.1,
-                    terms,
-                }
-            }
-            other => other,
-        });
-    }
-
-    /// See [`Expression::without_sums`].
+    /// See [`Term::without_sums`].
     fn rewrite(
         &self,
         p: usize,
         least: usize,
         make: &mut dyn FnMut(Parts) -> Option<u32>,
-        out: &mut Expression,
+        out: &mut Term,
     ) {
-        let op = self.whole.kernel.ops[p];
+        let op = self.whole.ops[p];
         let size = match op {
             Op::Affine { terms, .. } => terms as usize,
             Op::Add | Op::AddN(_) | Op::Subtract => p + 1 - self.begin[p],
@@ -232,7 +186,7 @@ impl<'e> Tree<'e> {
             let mut parts = Parts::default();
             self.split(p, 1.0, &mut parts);
             if let Some(column) = make(parts) {
-                out.kernel.ops.push(Op::Var(out.columns.len() as u32));
+                out.ops.push(Op::Var(out.columns.len() as u32));
                 out.columns.push(column);
                 return;
             }
@@ -240,6 +194,6 @@ impl<'e> Tree<'e> {
         for argument in self.arguments(p) {
             self.rewrite(argument, least, make, out);
         }
-        self.copy(p, out);
+        out.copy(self.whole, op);
     }
 }

@@ -3,8 +3,9 @@
 //! In `y =e= abs(x)`, with y only in `y =l= z` and z minimised, `y =g= abs(x)` will do: whoever has a solution of this may
 //! lower y until the equation holds.
 
+use crate::model::builder::Term;
 use crate::model::instance::{Function, Instance, Op, Relation};
-use crate::solve::bridge::parts::{Expression, expressions};
+use crate::solve::bridge::parts::expressions;
 use std::collections::BTreeMap;
 
 /// How far the chain of variables that make up for each other is followed.
@@ -55,7 +56,7 @@ pub(super) struct Directions<'i> {
     linear: Vec<Vec<(usize, f64)>>,
     /// By column: nonlinear terms (row, coefficient, number).
     nonlinear: Vec<Vec<(usize, f64, usize)>>,
-    terms: Vec<Expression>,
+    terms: Vec<Term>,
     /// By row: columns in its nonlinear terms.
     inside: Vec<Vec<u32>>,
     /// By equation: the column that makes it hold.
@@ -154,10 +155,10 @@ impl<'i> Directions<'i> {
 }
 
 /// How an expression depends on a column.
-fn slope(e: &Expression, column: u32) -> Slope {
+fn slope(e: &Term, column: u32) -> Slope {
     // with the number that a value is, if it is one
     let mut stack: Vec<(Slope, Option<f64>)> = Vec::new();
-    for &op in &e.kernel.ops {
+    for &op in &e.ops {
         let a = stack.split_off(stack.len().saturating_sub(op.arguments()));
         let all = a.iter().fold(Slope::None, |s, a| s.and(a.0));
         let of_variable = |k: u32| match e.columns[k as usize] == column {

@@ -17,8 +17,9 @@ mod direction;
 
 use super::Bridge;
 use super::builder::Builder;
-use super::parts::{Expression, Parts, expressions, has_kink};
+use super::parts::{Parts, expressions, has_kink};
 use crate::autodiff::Evaluator;
+use crate::model::builder::Term;
 use crate::model::instance::{Function, Instance, KernelTerms, Relation};
 use crate::model::problem_type::ProblemType;
 use crate::solve::answer::Answer;
@@ -45,7 +46,7 @@ impl Epigraph {
         instance.objective?;
         let columns = &instance.columns;
         let varies = |&j: &u32| columns.lower[j as usize] != columns.upper[j as usize];
-        let has_kinks = |t: &KernelTerms| has_kink(&t.kernel) && t.columns.iter().any(varies);
+        let has_kinks = |t: &KernelTerms| has_kink(&t.kernel.ops) && t.columns.iter().any(varies);
         if !instance.nonlinear.iter().any(has_kinks) {
             return None;
         }
@@ -186,13 +187,7 @@ impl Builder {
         Some(())
     }
 
-    fn lift(
-        &mut self,
-        row: usize,
-        weight: f64,
-        f: Function,
-        arguments: Vec<Expression>,
-    ) -> Option<()> {
+    fn lift(&mut self, row: usize, weight: f64, f: Function, arguments: Vec<Term>) -> Option<()> {
         if weight == 0.0 {
             return Some(());
         }
