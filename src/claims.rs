@@ -1,7 +1,8 @@
 //! Claims about a run that stand in the model's own comments, `*= x.l('a') 4`: for a lecturer's exercises, a user's regression
 //! tests (`bmod test`), and the language suite of the project.
 
-use crate::check::symbols::{SymbolKind, attribute};
+use crate::check::functions::stored_attribute;
+use crate::check::symbols::SymbolKind;
 use crate::data::value;
 use crate::run::Machine;
 
@@ -91,13 +92,7 @@ pub fn value_of(m: &mut Machine, what: &str) -> Option<f64> {
     }
     let offset = match attr.as_deref() {
         None => 0,
-        Some("l") => attribute::L,
-        Some("m") => attribute::M,
-        Some("lo") => attribute::LO,
-        Some("up") => attribute::UP,
-        Some("scale") => attribute::SCALE,
-        Some("prior") => attribute::PRIOR,
-        Some(_) => return None,
+        Some(name) => stored_attribute(name)?,
     };
     let table = symbol.table + offset;
     let keys: Option<Vec<u32>> = labels(key)

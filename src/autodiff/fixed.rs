@@ -21,14 +21,13 @@ pub(super) fn without_fixed(instance: &Instance) -> Option<Instance> {
     }
     let mut nonlinear = Vec::new();
     for terms in &instance.nonlinear {
-        let v = terms.kernel.variables as usize;
         // terms by which of their variables are fixed, in order of appearance
         let mut groups: Vec<(Vec<bool>, Vec<usize>)> = Vec::new();
         let mut known: FxHashMap<Vec<bool>, usize> = FxHashMap::default();
-        let mut mask = Vec::with_capacity(v);
-        for t in 0..terms.row.len() {
+        let mut mask = Vec::new();
+        for (t, slots) in terms.terms().enumerate() {
             mask.clear();
-            mask.extend(terms.columns[t * v..(t + 1) * v].iter().map(|&j| fixed(j)));
+            mask.extend(slots.columns.iter().map(|&j| fixed(j)));
             match known.get(&mask) {
                 Some(&g) => groups[g].1.push(t),
                 None => {
@@ -55,10 +54,7 @@ pub(super) fn without_fixed(instance: &Instance) -> Option<Instance> {
 
 /// Some of the terms, with values in place of the masked variables.
 fn put_in(terms: &KernelTerms, mask: &[bool], members: &[usize], value: &[f64]) -> KernelTerms {
-    let (v, c) = (
-        terms.kernel.variables as usize,
-        terms.kernel.constants as usize,
-    );
+    let c = terms.kernel.constants as usize;
     // slots of variables keep their order, so that affine forms without fixed ones stay together
     let (mut masked, mut free) = (0, 0);
     let place: Vec<u32> = mask
@@ -114,11 +110,9 @@ fn put_in(terms: &KernelTerms, mask: &[bool], members: &[usize], value: &[f64]) 
         ..KernelTerms::default()
     };
     for &t in members {
-        let columns = &terms.columns[t * v..(t + 1) * v];
-        out.row.push(terms.row[t]);
-        out.coef.push(terms.coef[t]);
-        out.constants.extend(&terms.constants[t * c..(t + 1) * c]);
-        for (&j, &masked) in columns.iter().zip(mask) {
+        let slots = terms.term(t);
+        out.push(terms.row[t], slots.coef, &[], slots.constants);
+        for (&j, &masked) in slots.columns.iter().zip(mask) {
             match masked {
                 true => out.constants.push(value[j as usize]),
                 false => out.columns.push(j),

@@ -1,6 +1,7 @@
 //! Data statements: elements of sets, numbers of parameters, attributes of variables.
 
 use super::expansion::{Tuples, record_bytes, set_prefix, together};
+use super::functions::{self, RecordAttribute};
 use super::node::{SymbolId, TableId};
 use super::symbols::{DomainPosition, Store, Symbol, SymbolKind, Symbols, attribute};
 use super::{Compiler, Failed};
@@ -558,14 +559,9 @@ impl Compiler {
         if symbol.dim() > 0 {
             self.expand(s, key, span, &[], &mut keys)?;
         }
-        let offsets: &[u32] = match text.to_lowercase().as_str() {
-            "l" => &[attribute::L],
-            "m" => &[attribute::M],
-            "lo" => &[attribute::LO],
-            "up" => &[attribute::UP],
-            "fx" => &[attribute::L, attribute::LO, attribute::UP],
-            "scale" => &[attribute::SCALE],
-            "prior" => &[attribute::PRIOR],
+        let offsets = match functions::record_attribute(text) {
+            Some(RecordAttribute::Fix) => vec![attribute::L, attribute::LO, attribute::UP],
+            Some(RecordAttribute::Stored(o)) if o != attribute::STAGE => vec![o],
             _ => {
                 let attr = Ident {
                     name: text.into(),
@@ -575,7 +571,7 @@ impl Compiler {
                 return self.unknown_attribute(&attr, &symbol.name, symbol.kind_name(), known);
             }
         };
-        for &o in offsets {
+        for o in offsets {
             let t = self.store.table_mut(symbol.table + o);
             if symbol.dim() == 0 {
                 t.set(&[], v);

@@ -114,6 +114,7 @@ pub fn first_argument_must_be_data(f: Function) -> bool {
 }
 
 /// An attribute of variables and equations.
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub enum RecordAttribute {
     /// Stored in the table with this offset.
     Stored(u32),
@@ -123,29 +124,59 @@ pub enum RecordAttribute {
     Fix,
 }
 
+/// Attributes of variables and equations: name, and as `display` shows it.
+const RECORD_ATTRIBUTES: &[(&str, &str, RecordAttribute)] = {
+    use RecordAttribute::{Derived as D, Fix, Stored};
+    &[
+        ("l", "L", Stored(attribute::L)),
+        ("m", "M", Stored(attribute::M)),
+        ("lo", "Lo", Stored(attribute::LO)),
+        ("up", "Up", Stored(attribute::UP)),
+        ("scale", "Scale", Stored(attribute::SCALE)),
+        ("prior", "Prior", Stored(attribute::PRIOR)),
+        ("stage", "Stage", Stored(attribute::STAGE)),
+        ("fx", "Fx", Fix),
+        ("slack", "Slack", D(Derived::Slack)),
+        ("slacklo", "SlackLo", D(Derived::SlackLo)),
+        ("slackup", "SlackUp", D(Derived::SlackUp)),
+        ("infeas", "Infeas", D(Derived::Infeas)),
+        ("range", "Range", D(Derived::Range)),
+        ("rangelo", "RangeLo", D(Derived::RangeLo)),
+        ("rangeup", "RangeUp", D(Derived::RangeUp)),
+        ("pricelo", "PriceLo", D(Derived::PriceLo)),
+        ("priceup", "PriceUp", D(Derived::PriceUp)),
+    ]
+};
+
+/// Name, name in displays, and meaning of the attribute with this name.
+fn attribute_row(name: &str) -> Option<&'static (&'static str, &'static str, RecordAttribute)> {
+    let mut rows = RECORD_ATTRIBUTES.iter();
+    rows.find(|a| a.0.eq_ignore_ascii_case(name))
+}
+
 /// The attribute with this name.
 pub fn record_attribute(name: &str) -> Option<RecordAttribute> {
-    use RecordAttribute::{Derived as D, Fix, Stored};
-    Some(match name.to_lowercase().as_str() {
-        "l" => Stored(attribute::L),
-        "m" => Stored(attribute::M),
-        "lo" => Stored(attribute::LO),
-        "up" => Stored(attribute::UP),
-        "scale" => Stored(attribute::SCALE),
-        "prior" => Stored(attribute::PRIOR),
-        "stage" => Stored(attribute::STAGE),
-        "fx" => Fix,
-        "slack" => D(Derived::Slack),
-        "slacklo" => D(Derived::SlackLo),
-        "slackup" => D(Derived::SlackUp),
-        "infeas" => D(Derived::Infeas),
-        "range" => D(Derived::Range),
-        "rangelo" => D(Derived::RangeLo),
-        "rangeup" => D(Derived::RangeUp),
-        "pricelo" => D(Derived::PriceLo),
-        "priceup" => D(Derived::PriceUp),
-        _ => return None,
-    })
+    attribute_row(name).map(|a| a.2)
+}
+
+/// The attribute with this name as `display` shows it.
+pub fn display_attribute(name: &str) -> Option<&'static str> {
+    let shown = attribute_row(name).filter(|a| a.2 != RecordAttribute::Fix);
+    shown.map(|a| a.1)
+}
+
+/// Offset of the table of a stored attribute, by its name.
+pub fn stored_attribute(name: &str) -> Option<u32> {
+    match record_attribute(name)? {
+        RecordAttribute::Stored(offset) => Some(offset),
+        _ => None,
+    }
+}
+
+/// The name of a stored attribute, by the offset of its table.
+pub fn attribute_word(offset: u32) -> &'static str {
+    let is = |a: &&(&str, &str, RecordAttribute)| a.2 == RecordAttribute::Stored(offset);
+    RECORD_ATTRIBUTES.iter().find(is).map_or("", |a| a.0)
 }
 
 /// Attributes of set elements.

@@ -2,7 +2,6 @@
 
 use super::functions;
 use super::node::*;
-use super::output::{display_attribute, shown_offset};
 use super::symbols::SymbolKind;
 use super::{Compiler, Failed};
 use crate::diag::{Diagnostic, nearest};
@@ -70,7 +69,7 @@ impl Compiler {
                 })?;
                 let offset = match attribute {
                     None => None,
-                    Some(a) => match display_attribute(a).and_then(shown_offset) {
+                    Some(a) => match functions::stored_attribute(a) {
                         Some(o) if self.symbols.get(s).has_attributes() => Some(o),
                         _ => {
                             let symbol = self.symbols.get(s);

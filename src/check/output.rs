@@ -1,7 +1,7 @@
 //! What `display` and `put` write.
 
 use super::node::*;
-use super::symbols::{SymbolKind, attribute};
+use super::symbols::SymbolKind;
 use super::{Compiler, Failed, functions};
 use crate::diag::Diagnostic;
 use crate::source::Span;
@@ -39,7 +39,7 @@ impl Compiler {
                     }
                     let attr = match (&symbol.kind, &r.attribute) {
                         (SymbolKind::Variable(_) | SymbolKind::Equation(_), Some(a)) => {
-                            match display_attribute(&a.name) {
+                            match functions::display_attribute(&a.name) {
                                 Some(a) => Some(a),
                                 None => {
                                     return self.unknown_attribute(
@@ -277,43 +277,6 @@ impl Compiler {
         let s = self.symbols.find(&name.name)?;
         matches!(self.symbols.get(s).kind, SymbolKind::File(_)).then_some(s)
     }
-}
-
-/// Attribute as `display` shows it.
-pub(super) fn display_attribute(name: &str) -> Option<&'static str> {
-    Some(match name.to_lowercase().as_str() {
-        "l" => "L",
-        "m" => "M",
-        "lo" => "Lo",
-        "up" => "Up",
-        "scale" => "Scale",
-        "prior" => "Prior",
-        "stage" => "Stage",
-        "slack" => "Slack",
-        "slacklo" => "SlackLo",
-        "slackup" => "SlackUp",
-        "infeas" => "Infeas",
-        "range" => "Range",
-        "rangelo" => "RangeLo",
-        "rangeup" => "RangeUp",
-        "pricelo" => "PriceLo",
-        "priceup" => "PriceUp",
-        _ => return None,
-    })
-}
-
-/// Offset of an attribute table by the name that `display` shows.
-pub(crate) fn shown_offset(attr: &str) -> Option<u32> {
-    Some(match attr {
-        "L" => attribute::L,
-        "M" => attribute::M,
-        "Lo" => attribute::LO,
-        "Up" => attribute::UP,
-        "Scale" => attribute::SCALE,
-        "Prior" => attribute::PRIOR,
-        "Stage" => attribute::STAGE,
-        _ => return None,
-    })
 }
 
 /// `system.date` and the like.

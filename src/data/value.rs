@@ -57,3 +57,18 @@ pub fn acronym(n: u32) -> f64 {
 pub fn as_acronym(x: f64) -> Option<u32> {
     (x.to_bits() & 0xffff_ffff_0000_0000 == ACRONYM_BITS).then_some(x.to_bits() as u32)
 }
+
+/// How a value that is no number is written, an acronym by its name; none for numbers.
+pub fn special_text(x: f64, acronyms: &[Box<str>]) -> Option<&str> {
+    Some(match x {
+        x if x.is_finite() => return None,
+        f64::INFINITY => "+INF",
+        f64::NEG_INFINITY => "-INF",
+        x if is_eps(x) => "EPS",
+        x if is_na(x) => "NA",
+        x => match as_acronym(x).and_then(|n| acronyms.get(n as usize)) {
+            Some(name) => name,
+            None => "UNDF",
+        },
+    })
+}

@@ -2,10 +2,10 @@
 
 use super::gradient::gradient;
 use super::names::Names;
-use super::text::{aggregate_word, attribute_word, binary_word, taken};
+use super::text::{aggregate_word, binary_word, taken};
 use super::tree::{Binder, Expr, IndexId, Part, Sense, Source, Variable};
 use super::{Formulation, Origin, Row, Sign};
-use crate::check::functions::{data_word, label_word};
+use crate::check::functions::{attribute_word, data_word, label_word};
 use crate::check::node::SymbolId;
 use crate::check::symbols::{Store, Symbols};
 use crate::report::json::Number;

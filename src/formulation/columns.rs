@@ -4,7 +4,7 @@ use super::derive::{Derivation, mentions};
 use super::tree::Variable;
 use crate::check::node::SymbolId;
 use crate::data::universe::Label;
-use crate::model::instance::Relation;
+use crate::model::instance::{KernelTerm, Relation};
 use crate::model::origin::Block;
 
 /// The columns of a variable, by their places in its block.
@@ -110,14 +110,9 @@ impl<'a> Derivation<'a> {
         for i in (0..relation.len()).filter(|&i| Some(i) != gone && relation[i] != Relation::Free) {
             m.row(i).for_each(|(j, _)| out[j] = true);
         }
-        for k in &g.instance.nonlinear {
-            let width = k.kernel.variables as usize;
-            for (t, &i) in k.row.iter().enumerate() {
-                if relation[i as usize] != Relation::Free {
-                    let columns = &k.columns[t * width..(t + 1) * width];
-                    columns.iter().for_each(|j| out[*j as usize] = true);
-                }
-            }
+        let bound = |t: &KernelTerm<'_>| relation[t.row] != Relation::Free;
+        for t in g.instance.terms().filter(bound) {
+            t.columns.iter().for_each(|j| out[*j as usize] = true);
         }
         out
     }

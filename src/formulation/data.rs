@@ -152,7 +152,7 @@ impl<'a> Data<'a> {
             let text = format!(
                 "{}.{} at the solve",
                 symbol.name,
-                super::text::attribute_word(offset)
+                crate::check::functions::attribute_word(offset)
             );
             let default = table.default_value();
             if default == 0.0 {

@@ -3,10 +3,9 @@
 
 use super::data::number as shortest;
 use super::names::Names;
-use super::text::attribute_word;
 use super::tree::*;
 use super::{Formulation, Row};
-use crate::check::functions::data_word;
+use crate::check::functions::{attribute_word, data_word};
 use crate::check::node::SymbolId;
 use crate::check::symbols::{Store, Symbols, attribute};
 use rustc_hash::FxHashSet;

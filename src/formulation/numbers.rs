@@ -6,7 +6,7 @@ use super::side::short;
 use super::text::record;
 use super::tree::*;
 use super::{Formulation, Row};
-use crate::model::instance::{Instance, KernelTerms, Op};
+use crate::model::instance::{Instance, Kernel, KernelTerm, Op};
 use crate::model::origin::Blocks;
 use crate::run::{Generated, Machine};
 
@@ -59,20 +59,19 @@ pub fn left_side(g: &Generated, i: usize, number: &dyn Fn(f64) -> Expr) -> Expr 
         terms.push((false, times(number(a), column(g, j))));
     }
     for k in &p.nonlinear {
-        for t in (0..k.row.len()).filter(|&t| k.row[t] as usize == i) {
-            terms.push((false, times(number(k.coef[t]), term(g, k, t, number))));
+        for t in k.terms().filter(|t| t.row == i) {
+            terms.push((false, times(number(t.coef), term(g, &k.kernel, t, number))));
         }
     }
     sum(terms)
 }
 
 /// A nonlinear term as a formula.
-fn term(g: &Generated, k: &KernelTerms, t: usize, number: &dyn Fn(f64) -> Expr) -> Expr {
-    let (v, c) = (k.kernel.variables as usize, k.kernel.constants as usize);
-    let variable = |n: u32| column(g, k.columns[t * v + n as usize] as usize);
-    let constant = |n: u32| number(k.constants[t * c + n as usize]);
+fn term(g: &Generated, k: &Kernel, t: KernelTerm, number: &dyn Fn(f64) -> Expr) -> Expr {
+    let variable = |n: u32| column(g, t.columns[n as usize] as usize);
+    let constant = |n: u32| number(t.constants[n as usize]);
     let mut stack: Vec<Expr> = Vec::new();
-    for op in &k.kernel.ops {
+    for op in &k.ops {
         let mut args = stack.split_off(stack.len().saturating_sub(op.arguments()));
         let made = match *op {
             Op::Var(n) => variable(n),
@@ -132,12 +131,8 @@ fn table(m: &Machine, g: &Generated) -> Option<[Block; 2]> {
         for (j, a) in p.matrix.row(i).filter(|t| t.1 != 0.0) {
             cells[j] = short(a);
         }
-        for k in &p.nonlinear {
-            let v = k.kernel.variables as usize;
-            for t in (0..k.row.len()).filter(|&t| k.row[t] as usize == i) {
-                let touched = &k.columns[t * v..(t + 1) * v];
-                touched.iter().for_each(|&j| cells[j as usize] = "f".into());
-            }
+        for j in p.terms().filter(|t| t.row == i).flat_map(|t| t.columns) {
+            cells[*j as usize] = "f".into();
         }
         cells.insert(0, name(&g.origin.rows, i));
         cells.extend([

@@ -4,9 +4,9 @@ use super::data::{Data, Statements, number, quoted};
 use super::names::Names;
 use super::tree::*;
 use super::{Formulation, NewData, Row, Sign};
-use crate::check::functions::{data_word, label_word};
+use crate::check::functions::{attribute_word, data_word, label_word};
 use crate::check::node::SymbolId;
-use crate::check::symbols::{Store, Symbols, attribute};
+use crate::check::symbols::{Store, Symbols};
 use crate::data::input::Input;
 use crate::report::names::join;
 use crate::syntax::ast::VariableKind;
@@ -52,19 +52,6 @@ mod level {
 /// The name of an attribute's parameter in a model that stands alone.
 pub fn attribute_name(symbols: &Symbols, s: SymbolId, offset: u32) -> String {
     format!("{}_{}", symbols.get(s).name, attribute_word(offset))
-}
-
-/// `l`, `m`, `lo` …
-pub fn attribute_word(offset: u32) -> &'static str {
-    match offset {
-        attribute::L => "l",
-        attribute::M => "m",
-        attribute::LO => "lo",
-        attribute::UP => "up",
-        attribute::SCALE => "scale",
-        attribute::PRIOR => "prior",
-        _ => "stage",
-    }
 }
 
 impl<'a> Writer<'a> {

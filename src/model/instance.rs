@@ -309,6 +309,38 @@ impl KernelTerms {
         self.columns.extend_from_slice(columns);
         self.constants.extend_from_slice(constants);
     }
+
+    /// A term by its number.
+    pub fn term(&self, t: usize) -> KernelTerm<'_> {
+        let (v, c) = (
+            self.kernel.variables as usize,
+            self.kernel.constants as usize,
+        );
+        KernelTerm {
+            row: self.row[t] as usize,
+            coef: self.coef[t],
+            columns: &self.columns[t * v..(t + 1) * v],
+            constants: &self.constants[t * c..(t + 1) * c],
+        }
+    }
+
+    /// All terms in order.
+    pub fn terms(&self) -> impl Iterator<Item = KernelTerm<'_>> {
+        (0..self.row.len()).map(|t| self.term(t))
+    }
+}
+
+/// What fills the slots of a kernel, and where it stands.
+#[derive(Clone, Copy, Debug)]
+pub struct KernelTerm<'a> {
+    /// Its row.
+    pub row: usize,
+    /// Its coefficient.
+    pub coef: f64,
+    /// Column of each variable slot.
+    pub columns: &'a [u32],
+    /// Value of each constant slot.
+    pub constants: &'a [f64],
 }
 
 /// What is minimised or maximised: the level of one column.
@@ -348,6 +380,22 @@ impl Instance {
     /// Number of rows.
     pub fn row_count(&self) -> usize {
         self.rows.rhs.len()
+    }
+
+    /// All nonlinear terms.
+    pub fn terms(&self) -> impl Iterator<Item = KernelTerm<'_>> {
+        self.nonlinear.iter().flat_map(KernelTerms::terms)
+    }
+
+    /// Row and column of the places where nonlinear terms stand, each once, in order.
+    pub fn nonlinear_places(&self) -> Vec<(u32, u32)> {
+        let mut places = Vec::new();
+        for t in self.terms() {
+            places.extend(t.columns.iter().map(|&j| (t.row as u32, j)));
+        }
+        places.sort_unstable();
+        places.dedup();
+        places
     }
 
     /// By row: whether a nonlinear term stands in it.

@@ -54,27 +54,36 @@ impl ModelStatus {
         self.is_solution() || matches!(self, Self::Feasible | Self::IntegerSolution)
     }
 
+    /// GAMS's words for them, lower case.
+    const NAMES: &[(Self, &str)] = &[
+        (Self::Optimal, "optimal"),
+        (Self::LocallyOptimal, "locally optimal"),
+        (Self::Unbounded, "unbounded"),
+        (Self::Infeasible, "infeasible"),
+        (Self::LocallyInfeasible, "locally infeasible"),
+        (Self::IntermediateInfeasible, "intermediate infeasible"),
+        (Self::Feasible, "feasible solution"),
+        (Self::IntegerSolution, "integer solution"),
+        (Self::IntermediateNonInteger, "intermediate non-integer"),
+        (Self::IntegerInfeasible, "integer infeasible"),
+        (Self::ErrorUnknown, "error unknown"),
+        (Self::ErrorNoSolution, "error no solution"),
+        (Self::NoSolution, "no solution returned"),
+        (Self::SolvedUnique, "solved unique"),
+        (Self::Solved, "solved"),
+        (Self::UnboundedNoSolution, "unbounded - no solution"),
+        (Self::InfeasibleNoSolution, "infeasible - no solution"),
+    ];
+
     /// GAMS's words for it, lower case.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Optimal => "optimal",
-            Self::LocallyOptimal => "locally optimal",
-            Self::Unbounded => "unbounded",
-            Self::Infeasible => "infeasible",
-            Self::LocallyInfeasible => "locally infeasible",
-            Self::IntermediateInfeasible => "intermediate infeasible",
-            Self::Feasible => "feasible solution",
-            Self::IntegerSolution => "integer solution",
-            Self::IntermediateNonInteger => "intermediate non-integer",
-            Self::IntegerInfeasible => "integer infeasible",
-            Self::ErrorUnknown => "error unknown",
-            Self::ErrorNoSolution => "error no solution",
-            Self::NoSolution => "no solution returned",
-            Self::SolvedUnique => "solved unique",
-            Self::Solved => "solved",
-            Self::UnboundedNoSolution => "unbounded - no solution",
-            Self::InfeasibleNoSolution => "infeasible - no solution",
-        }
+        Self::name_of(f64::from(self as u8)).unwrap_or_default()
+    }
+
+    /// The words for a code, if it is one.
+    pub fn name_of(code: f64) -> Option<&'static str> {
+        let mut rows = Self::NAMES.iter();
+        rows.find(|r| f64::from(r.0 as u8) == code).map(|r| r.1)
     }
 }
 
@@ -103,19 +112,28 @@ pub enum SolverStatus {
 }
 
 impl SolverStatus {
+    /// GAMS's words for them, lower case.
+    const NAMES: &[(Self, &str)] = &[
+        (Self::NormalCompletion, "normal completion"),
+        (Self::IterationInterrupt, "iteration interrupt"),
+        (Self::ResourceInterrupt, "resource interrupt"),
+        (Self::TerminatedBySolver, "terminated by solver"),
+        (Self::EvaluationInterrupt, "evaluation interrupt"),
+        (Self::CapabilityProblems, "capability problems"),
+        (Self::UserInterrupt, "user interrupt"),
+        (Self::InternalSolverFailure, "internal solver failure"),
+        (Self::ProcessingSkipped, "solve processing skipped"),
+    ];
+
     /// GAMS's words for it, lower case.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::NormalCompletion => "normal completion",
-            Self::IterationInterrupt => "iteration interrupt",
-            Self::ResourceInterrupt => "resource interrupt",
-            Self::TerminatedBySolver => "terminated by solver",
-            Self::EvaluationInterrupt => "evaluation interrupt",
-            Self::CapabilityProblems => "capability problems",
-            Self::UserInterrupt => "user interrupt",
-            Self::InternalSolverFailure => "internal solver failure",
-            Self::ProcessingSkipped => "solve processing skipped",
-        }
+        Self::name_of(f64::from(self as u8)).unwrap_or_default()
+    }
+
+    /// The words for a code, if it is one.
+    pub fn name_of(code: f64) -> Option<&'static str> {
+        let mut rows = Self::NAMES.iter();
+        rows.find(|r| f64::from(r.0 as u8) == code).map(|r| r.1)
     }
 }
 

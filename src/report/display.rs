@@ -10,7 +10,7 @@
 
 use crate::data::table::Table;
 use crate::data::universe::{Label, Universe};
-use crate::data::value::{as_acronym, is_eps, is_na};
+use crate::data::value::special_text;
 use rustc_hash::FxHashMap;
 use std::fmt::Write;
 
@@ -109,17 +109,8 @@ impl<'a> Numbers<'a> {
 
     /// A number as wide as one may be (acronyms: as long as they are), not padded.
     pub fn text(&self, x: f64) -> String {
-        if !x.is_finite() {
-            return match x {
-                f64::INFINITY => "+INF".into(),
-                f64::NEG_INFINITY => "-INF".into(),
-                x if is_eps(x) => "EPS".into(),
-                x if is_na(x) => "NA".into(),
-                x => match as_acronym(x).and_then(|n| self.acronyms.get(n as usize)) {
-                    Some(name) => name.to_string(),
-                    None => "UNDF".into(),
-                },
-            };
+        if let Some(name) = special_text(x, self.acronyms) {
+            return name.to_string();
         }
         // Longer than this it cannot fit; formatting 300 digits would only take time.
         if x.abs() < 1e32 {

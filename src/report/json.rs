@@ -23,19 +23,9 @@ pub struct Number(pub f64);
 
 impl Serialize for Number {
     fn serialize<S: Serializer>(&self, s: S) -> Result<S::Ok, S::Error> {
-        let v = self.0;
-        if v.is_finite() {
-            s.serialize_f64(v + 0.0)
-        } else if v == f64::INFINITY {
-            s.serialize_str("+INF")
-        } else if v == f64::NEG_INFINITY {
-            s.serialize_str("-INF")
-        } else if value::is_eps(v) {
-            s.serialize_str("EPS")
-        } else if value::is_na(v) {
-            s.serialize_str("NA")
-        } else {
-            s.serialize_str("UNDF")
+        match value::special_text(self.0, &[]) {
+            Some(name) => s.serialize_str(name),
+            None => s.serialize_f64(self.0 + 0.0),
         }
     }
 }

@@ -7,7 +7,7 @@ use std::fmt::Write;
 
 use super::names::Names;
 use super::summary::digits;
-use crate::model::instance::{Instance, Kernel, KernelTerms, Op};
+use crate::model::instance::{Instance, KernelTerms, Op};
 use crate::solve::certificate::row_violation;
 
 /// What to list.
@@ -221,13 +221,9 @@ fn columns_of(instance: &Instance, blocks: &[Block]) -> Vec<(usize, usize, Optio
         let linear = instance.matrix.row(i).filter(|&(j, _)| shown[j]);
         entries.extend(linear.map(|(j, a)| (j, i, Some(a))));
     }
-    for kernel in &instance.nonlinear {
-        let v = kernel.kernel.variables as usize;
-        for (t, &i) in kernel.row.iter().enumerate() {
-            let columns = &kernel.columns[t * v..(t + 1) * v];
-            let columns = columns.iter().map(|&j| j as usize).filter(|&j| shown[j]);
-            entries.extend(columns.map(|j| (j, i as usize, None)));
-        }
+    for t in instance.terms() {
+        let columns = t.columns.iter().map(|&j| j as usize);
+        entries.extend(columns.filter(|&j| shown[j]).map(|j| (j, t.row, None)));
     }
     entries.sort_by_key(|e| (e.0, e.1, e.2.is_none()));
     // A nonlinear entry says all; a column is named once per row.
@@ -267,19 +263,9 @@ fn column(
 
 /// A kernel's term as one writes it.
 fn algebra(terms: &KernelTerms, t: usize, names: &dyn Names) -> String {
-    let kernel: &Kernel = &terms.kernel;
-    let (v, c) = (kernel.variables as usize, kernel.constants as usize);
-    let variable = |k: u32| {
-        let at = terms.columns.get(t * v + k as usize);
-        at.map_or("?".into(), |&j| names.column(j as usize))
-    };
-    let constant = |k: u32| {
-        terms
-            .constants
-            .get(t * c + k as usize)
-            .copied()
-            .unwrap_or(f64::NAN)
-    };
+    let slots = terms.term(t);
+    let variable = |k: u32| names.column(slots.columns[k as usize] as usize);
+    let constant = |k: u32| slots.constants[k as usize];
     // Text and how tightly it binds: 1 sum, 2 product, 3 power, 4 atom.
     let mut stack: Vec<(String, u8)> = Vec::new();
     let wrap = |(text, binds): (String, u8), needed: u8| {
@@ -289,7 +275,7 @@ fn algebra(terms: &KernelTerms, t: usize, names: &dyn Names) -> String {
             text
         }
     };
-    for op in &kernel.ops {
+    for op in &terms.kernel.ops {
         let mut pop = || stack.pop().unwrap_or(("?".into(), 4));
         let made = match *op {
             Op::Var(k) => (variable(k), 4),
@@ -365,7 +351,7 @@ fn algebra(terms: &KernelTerms, t: usize, names: &dyn Names) -> String {
 mod tests {
     use super::*;
     use crate::model::function::Function;
-    use crate::model::instance::{Relation, Sense};
+    use crate::model::instance::{Kernel, Relation, Sense};
     use crate::solve::conformance;
 
     struct Plants;

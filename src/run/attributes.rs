@@ -55,48 +55,10 @@ impl Machine<'_> {
 
     /// `m.tmodstat`, `m.tsolstat`: the status with its name.
     pub(super) fn status_text(&self, s: SymbolId, a: &str) -> String {
-        let (code, name) = if a == "tmodstat" {
-            let code = self.object_attribute(s, "modelstat");
-            let all = [
-                ModelStatus::Optimal,
-                ModelStatus::LocallyOptimal,
-                ModelStatus::Unbounded,
-                ModelStatus::Infeasible,
-                ModelStatus::LocallyInfeasible,
-                ModelStatus::IntermediateInfeasible,
-                ModelStatus::Feasible,
-                ModelStatus::ErrorUnknown,
-                ModelStatus::ErrorNoSolution,
-                ModelStatus::NoSolution,
-                ModelStatus::SolvedUnique,
-                ModelStatus::Solved,
-                ModelStatus::UnboundedNoSolution,
-                ModelStatus::InfeasibleNoSolution,
-            ];
-            (
-                code,
-                all.iter()
-                    .find(|m| f64::from(**m as u8) == code)
-                    .map(|m| m.name()),
-            )
-        } else {
-            let code = self.object_attribute(s, "solvestat");
-            let all = [
-                SolverStatus::NormalCompletion,
-                SolverStatus::IterationInterrupt,
-                SolverStatus::ResourceInterrupt,
-                SolverStatus::TerminatedBySolver,
-                SolverStatus::EvaluationInterrupt,
-                SolverStatus::CapabilityProblems,
-                SolverStatus::UserInterrupt,
-                SolverStatus::InternalSolverFailure,
-            ];
-            (
-                code,
-                all.iter()
-                    .find(|m| f64::from(**m as u8) == code)
-                    .map(|m| m.name()),
-            )
+        let code = |a| self.object_attribute(s, a);
+        let (code, name) = match a {
+            "tmodstat" => (code("modelstat"), ModelStatus::name_of(code("modelstat"))),
+            _ => (code("solvestat"), SolverStatus::name_of(code("solvestat"))),
         };
         match name {
             Some(name) => format!("{code} {}", capitals(name)),

@@ -8,7 +8,7 @@ use super::{Frame, Machine};
 use crate::check::calendar;
 use crate::check::node::{DataFunction, Node, NodeKind, PutCode, SymbolId};
 use crate::check::symbols::SymbolKind;
-use crate::data::value::{as_acronym, is_eps, is_na, number, truth};
+use crate::data::value::{is_eps, number, special_text, truth};
 use crate::diag::Diagnostic;
 use crate::report::textfile::{Format, Item, Overflow, Part, WIDEST};
 use crate::source::Span;
@@ -291,16 +291,10 @@ impl Machine<'_> {
             }
             _ => {
                 let v = self.eval(n, frame);
-                match v {
-                    v if is_eps(v) => Item::Eps,
-                    v if v.is_finite() => Item::Number(v),
-                    f64::INFINITY => Item::Special("+INF".into()),
-                    f64::NEG_INFINITY => Item::Special("-INF".into()),
-                    v if is_na(v) => Item::Special("NA".into()),
-                    v => match as_acronym(v).and_then(|a| self.store.acronyms.get(a as usize)) {
-                        Some(name) => Item::Special(name.to_string()),
-                        None => Item::Special("UNDF".into()),
-                    },
+                match special_text(v, &self.store.acronyms) {
+                    _ if is_eps(v) => Item::Eps,
+                    Some(name) => Item::Special(name.to_string()),
+                    None => Item::Number(v),
                 }
             }
         })

@@ -2,8 +2,8 @@
 
 use super::Machine;
 use super::eval::derived_value;
+use crate::check::functions::stored_attribute;
 use crate::check::node::{Derived, Shown, SymbolId};
-use crate::check::output::shown_offset;
 use crate::check::symbols::{SymbolKind, attribute};
 use crate::data::table::Table;
 use crate::report::display::{self, Cells, Layout, Numbers, Sheet};
@@ -225,7 +225,7 @@ impl Machine<'_> {
     fn tidy_shown(&mut self, s: SymbolId, attr: Option<&str>) {
         let symbol = self.symbols.get(s);
         let table = symbol.table;
-        let offsets: Vec<u32> = match (&symbol.kind, attr.map(shown_offset)) {
+        let offsets: Vec<u32> = match (&symbol.kind, attr.map(stored_attribute)) {
             (SymbolKind::Acronym(_) | SymbolKind::Figure(_), _) => vec![],
             (_, None) => vec![0],
             (_, Some(Some(o))) => vec![o],
@@ -246,7 +246,7 @@ impl Machine<'_> {
         let Some(attr) = attr else {
             return Some(Cow::Borrowed(self.store.table(table)));
         };
-        if let Some(o) = shown_offset(attr) {
+        if let Some(o) = stored_attribute(attr) {
             return Some(Cow::Borrowed(self.store.table(table + o)));
         }
         let which = match attr {

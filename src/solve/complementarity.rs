@@ -63,19 +63,7 @@ impl<'a> Square<'a> {
         }
         let (row_start, row_column) = evaluator.jacobian_pattern();
         let (row_start, row_column) = (row_start.to_vec(), row_column.to_vec());
-        let mut nonlinear: Vec<u64> = Vec::new();
-        for k in &instance.nonlinear {
-            let v = k.kernel.variables as usize;
-            for (t, &r) in k.row.iter().enumerate() {
-                nonlinear.extend(
-                    k.columns[t * v..(t + 1) * v]
-                        .iter()
-                        .map(|&c| u64::from(r) << 32 | u64::from(c)),
-                );
-            }
-        }
-        nonlinear.sort_unstable();
-        nonlinear.dedup();
+        let nonlinear = instance.nonlinear_places();
         let mut entries: Vec<(u32, u32, usize)> = Vec::with_capacity(row_column.len());
         for i in 0..instance.row_count() {
             if at[i] != usize::MAX {
@@ -96,9 +84,7 @@ impl<'a> Square<'a> {
             .iter()
             .map(|e| {
                 let row = row_of[e.1 as usize].expect("an entry's row has a column");
-                nonlinear
-                    .binary_search(&(u64::from(row) << 32 | u64::from(e.0)))
-                    .is_err()
+                nonlinear.binary_search(&(row, e.0)).is_err()
             })
             .collect();
         Ok(Self {

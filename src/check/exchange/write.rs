@@ -3,7 +3,7 @@
 use super::{ATTRIBUTES, Wanted};
 use crate::check::symbols::{Store, Symbol, SymbolKind, Symbols, attribute};
 use crate::data::universe::Label;
-use crate::data::value::{as_acronym, is_eps, is_na};
+use crate::data::value::special_text;
 use serde_json::{Map, Value, json};
 
 /// Makes the tables of symbols ready for reading in order.
@@ -145,10 +145,9 @@ impl Writer<'_> {
     }
 
     fn json_number(&self, v: f64) -> Value {
-        match special_name(v) {
+        match special_text(v, &self.store.acronyms) {
             Some(name) => Value::from(name),
-            None if v.is_finite() => Value::from(v),
-            None => Value::from(self.value_text(v)),
+            None => Value::from(v),
         }
     }
 
@@ -199,26 +198,10 @@ impl Writer<'_> {
 
     /// A value as files hold it.
     fn value_text(&self, v: f64) -> String {
-        match special_name(v) {
+        match special_text(v, &self.store.acronyms) {
             Some(name) => name.to_string(),
-            None => match as_acronym(v).and_then(|a| self.store.acronyms.get(a as usize)) {
-                Some(name) => name.to_string(),
-                None if v == 0.0 || (1e-5..1e15).contains(&v.abs()) => v.to_string(),
-                None => format!("{v:e}"),
-            },
+            None if v == 0.0 || (1e-5..1e15).contains(&v.abs()) => v.to_string(),
+            None => format!("{v:e}"),
         }
-    }
-}
-
-/// The name of a special value.
-fn special_name(v: f64) -> Option<&'static str> {
-    match v {
-        v if v.is_finite() => None,
-        f64::INFINITY => Some("+INF"),
-        f64::NEG_INFINITY => Some("-INF"),
-        v if is_eps(v) => Some("EPS"),
-        v if is_na(v) => Some("NA"),
-        v if as_acronym(v).is_some() => None,
-        _ => Some("UNDF"),
     }
 }

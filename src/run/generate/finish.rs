@@ -396,29 +396,13 @@ impl Builder<'_, '_> {
     /// Nonzeros, and nonlinear ones, as pairs of row and column.
     fn count(&self) -> (usize, usize) {
         let m = &self.instance.matrix;
-        let mut pairs: Vec<u64> = Vec::new();
-        for k in &self.instance.nonlinear {
-            let v = k.kernel.variables as usize;
-            for (t, &r) in k.row.iter().enumerate() {
-                pairs.extend(
-                    k.columns[t * v..(t + 1) * v]
-                        .iter()
-                        .map(|&c| u64::from(r) << 32 | u64::from(c)),
-                );
-            }
-        }
-        pairs.sort_unstable();
-        pairs.dedup();
-        let both = pairs
-            .iter()
-            .filter(|&&p| {
-                let (r, c) = ((p >> 32) as usize, p as u32);
-                m.column[m.start[r]..m.start[r + 1]]
-                    .binary_search(&c)
-                    .is_ok()
-            })
-            .count();
-        (m.column.len() + pairs.len() - both, pairs.len())
+        let places = self.instance.nonlinear_places();
+        let is_linear_too = |&&(r, c): &&(u32, u32)| {
+            let row = m.start[r as usize]..m.start[r as usize + 1];
+            m.column[row].binary_search(&c).is_ok()
+        };
+        let both = places.iter().filter(is_linear_too).count();
+        (m.column.len() + places.len() - both, places.len())
     }
 }
 

@@ -6,14 +6,13 @@ use crate::model::instance::{Function, Instance, Op};
 /// All nonlinear terms: row, coefficient, expression.
 pub(super) fn expressions(instance: &Instance) -> impl Iterator<Item = (usize, f64, Term)> {
     instance.nonlinear.iter().flat_map(|t| {
-        let (v, c) = (t.kernel.variables as usize, t.kernel.constants as usize);
-        (0..t.row.len()).map(move |k| {
+        t.terms().map(|slots| {
             let expression = Term {
                 ops: t.kernel.ops.clone(),
-                columns: t.columns[k * v..(k + 1) * v].to_vec(),
-                constants: t.constants[k * c..(k + 1) * c].to_vec(),
+                columns: slots.columns.to_vec(),
+                constants: slots.constants.to_vec(),
             };
-            (t.row[k] as usize, t.coef[k], expression)
+            (slots.row, slots.coef, expression)
         })
     })
 }

@@ -31,19 +31,14 @@ fn relax(instance: &Instance) -> Instance {
     let columns = &instance.columns;
     let mut sums: Vec<Option<Interval>> = vec![None; instance.row_count()];
     for terms in &instance.nonlinear {
-        let v = terms.kernel.variables as usize;
-        let c = terms.kernel.constants as usize;
-        for (t, &i) in terms.row.iter().enumerate() {
+        for t in terms.terms() {
             let place = |&j: &u32| Interval {
                 low: columns.lower[j as usize],
                 high: columns.upper[j as usize],
             };
-            let at: Vec<Interval> = terms.columns[t * v..(t + 1) * v]
-                .iter()
-                .map(place)
-                .collect();
-            let value = range(terms, &at, &terms.constants[t * c..(t + 1) * c]) * terms.coef[t];
-            let sum = &mut sums[i as usize];
+            let at: Vec<Interval> = t.columns.iter().map(place).collect();
+            let value = range(terms, &at, t.constants) * t.coef;
+            let sum = &mut sums[t.row];
             *sum = Some(sum.map_or(value, |s| s + value));
         }
     }

@@ -131,11 +131,8 @@ fn is_affine(instance: &Instance, evaluator: &mut Evaluator, level: &[f64]) -> b
     let degrees = evaluator.degrees();
     let polynomial = |i: usize| degrees[i] <= Degree::Quadratic;
     let mut inside: Vec<Vec<u32>> = vec![Vec::new(); m];
-    for terms in &instance.nonlinear {
-        let v = terms.kernel.variables as usize;
-        for (k, &i) in terms.row.iter().enumerate() {
-            inside[i as usize].extend(&terms.columns[k * v..(k + 1) * v]);
-        }
+    for t in instance.terms() {
+        inside[t.row].extend(t.columns);
     }
     let (first, second) = evaluator.hessian_pattern();
     let pairs: Vec<(u32, u32)> = first.iter().copied().zip(second.iter().copied()).collect();
