@@ -65,6 +65,7 @@ pub enum Convexity {
 }
 
 /// What interior-point solvers take.
+#[cfg_attr(not(any(feature = "pounce", feature = "ipopt")), allow(dead_code))]
 const SUPPORTS: Supports = Supports {
     linear: false,
     ..Supports::new(lp::TYPES, Terms::Kinks)
