@@ -311,7 +311,7 @@ impl KernelTerms {
     }
 
     /// A term by its number.
-    pub fn term(&self, t: usize) -> KernelTerm<'_> {
+    pub(crate) fn term(&self, t: usize) -> KernelTerm<'_> {
         let (v, c) = (
             self.kernel.variables as usize,
             self.kernel.constants as usize,
@@ -325,14 +325,14 @@ impl KernelTerms {
     }
 
     /// All terms in order.
-    pub fn terms(&self) -> impl Iterator<Item = KernelTerm<'_>> {
+    pub(crate) fn terms(&self) -> impl Iterator<Item = KernelTerm<'_>> {
         (0..self.row.len()).map(|t| self.term(t))
     }
 }
 
 /// What fills the slots of a kernel, and where it stands.
 #[derive(Clone, Copy, Debug)]
-pub struct KernelTerm<'a> {
+pub(crate) struct KernelTerm<'a> {
     /// Its row.
     pub row: usize,
     /// Its coefficient.
@@ -383,12 +383,12 @@ impl Instance {
     }
 
     /// All nonlinear terms.
-    pub fn terms(&self) -> impl Iterator<Item = KernelTerm<'_>> {
+    pub(crate) fn terms(&self) -> impl Iterator<Item = KernelTerm<'_>> {
         self.nonlinear.iter().flat_map(KernelTerms::terms)
     }
 
     /// Row and column of the places where nonlinear terms stand, each once, in order.
-    pub fn nonlinear_places(&self) -> Vec<(u32, u32)> {
+    pub(crate) fn nonlinear_places(&self) -> Vec<(u32, u32)> {
         let mut places = Vec::new();
         for t in self.terms() {
             places.extend(t.columns.iter().map(|&j| (t.row as u32, j)));

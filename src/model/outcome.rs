@@ -81,7 +81,7 @@ impl ModelStatus {
     }
 
     /// The words for a code, if it is one.
-    pub fn name_of(code: f64) -> Option<&'static str> {
+    pub(crate) fn name_of(code: f64) -> Option<&'static str> {
         let mut rows = Self::NAMES.iter();
         rows.find(|r| f64::from(r.0 as u8) == code).map(|r| r.1)
     }
@@ -131,7 +131,7 @@ impl SolverStatus {
     }
 
     /// The words for a code, if it is one.
-    pub fn name_of(code: f64) -> Option<&'static str> {
+    pub(crate) fn name_of(code: f64) -> Option<&'static str> {
         let mut rows = Self::NAMES.iter();
         rows.find(|r| f64::from(r.0 as u8) == code).map(|r| r.1)
     }
