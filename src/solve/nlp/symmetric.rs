@@ -32,13 +32,21 @@ impl Lower {
 impl Symmetric {
     /// Factors a matrix of order n; None if it is singular or not finite.
     pub(super) fn new(n: usize, lower: &Lower) -> Option<Self> {
+        // One thread: the same digits on every machine.
+        Self::with(Solver::new().with_parallel(false), n, lower)
+    }
+
+    /// The same for other values, in the order that was found if the places are the same.
+    pub(super) fn again(self, n: usize, lower: &Lower) -> Option<Self> {
+        Self::with(self.solver, n, lower)
+    }
+
+    fn with(mut solver: Solver, n: usize, lower: &Lower) -> Option<Self> {
         if !lower.values.iter().all(|v| v.is_finite()) {
             return None;
         }
         let entries = (&lower.rows, &lower.columns, &lower.values);
         let matrix = CscMatrix::from_triplets(n, entries.0, entries.1, entries.2).ok()?;
-        // One thread: the same digits on every machine.
-        let mut solver = Solver::new().with_parallel(false);
         match solver.factor(&matrix, None) {
             FactorStatus::Success => Some(Self { matrix, solver }),
             _ => None,

@@ -13,7 +13,7 @@ use crate::solve::nlp::problem::Entry;
 use crate::solve::nlp::symmetric::{Lower, Symmetric};
 
 /// What is held: bounds of variables and sides of rows.
-#[derive(Clone)]
+#[derive(Clone, PartialEq)]
 pub(super) struct Working {
     /// Bound that a variable stays at.
     pub(super) column: Vec<Option<f64>>,
@@ -25,13 +25,24 @@ pub(super) struct Working {
 
 /// Shifts of the diagonal, relative to the largest entry of H, until the solution is a minimum.
 const SHIFTS: [f64; 10] = [0.0, 1e-8, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0];
+/// The number of the last one.
+pub(super) const ANY: usize = SHIFTS.len() - 1;
+
+/// What one program leaves to the next.
+#[derive(Default)]
+pub(super) struct Memory {
+    /// The number of the shift that was enough.
+    pub(super) shift: usize,
+    /// Factors whose order may serve again.
+    pub(super) factors: Option<Symmetric>,
+}
 
 /// A solution, and the factors for a correction of it.
 pub(super) struct Equality {
     pub(super) d: Vec<f64>,
     /// Multipliers of all rows.
     pub(super) lambda: Vec<f64>,
-    factors: Option<Symmetric>,
+    pub(super) factors: Option<Symmetric>,
     column: Vec<Option<usize>>,
     row: Vec<Option<usize>>,
     free: usize,
@@ -41,13 +52,14 @@ pub(super) struct Equality {
 }
 
 impl Equality {
-    /// `shift` is the number of the shift that was enough before. None where the matrix is singular with every one.
+    /// None where the matrix is singular with every shift up to the number `most`.
     pub(super) fn new(
         frame: &Frame,
         at: &Point,
         hessian: &[Entry],
         working: &Working,
-        shift: &mut usize,
+        most: usize,
+        memory: &mut Memory,
     ) -> Option<Self> {
         let (column, free) = number(|j| working.column[j].is_none(), frame.n);
         let (row, held) = number(|i| working.row[i].is_some(), frame.m);
@@ -103,8 +115,8 @@ impl Equality {
             return (held == 0).then_some(out);
         }
         let largest = if largest > 0.0 { largest } else { 1.0 };
-        let before = shift.saturating_sub(1).max(1);
-        for k in std::iter::once(0).chain(before..SHIFTS.len()) {
+        let before = memory.shift.saturating_sub(1).max(1);
+        for k in std::iter::once(0).chain(before..=most) {
             let tau = SHIFTS[k] * largest;
             let mut matrix = base.clone();
             for (j, p) in out.column.iter().enumerate() {
@@ -115,11 +127,14 @@ impl Equality {
             for k in free..free + held {
                 matrix.push(k, k, 0.0);
             }
-            let factors = Symmetric::new(free + held, &matrix);
-            let Some(factors) = factors.filter(|f| f.inertia() == Some((free, held))) else {
-                continue;
+            let factors = match memory.factors.take() {
+                Some(last) => last.again(free + held, &matrix),
+                None => Symmetric::new(free + held, &matrix),
             };
-            let Some(s) = factors.solve(&right) else {
+            let Some(factors) = factors else { continue };
+            let minimum = factors.inertia() == Some((free, held));
+            let Some(s) = minimum.then(|| factors.solve(&right)).flatten() else {
+                memory.factors = Some(factors);
                 continue;
             };
             for (d, p) in out.d.iter_mut().zip(&out.column) {
@@ -131,7 +146,7 @@ impl Equality {
             out.factors = Some(factors);
             out.shifted = k > 0;
             if k > 0 {
-                *shift = k;
+                memory.shift = k;
             }
             return Some(out);
         }

@@ -17,10 +17,10 @@ mod linear;
 mod model;
 mod point;
 
-use super::problem::Nlp;
+use super::problem::{Entry, Nlp};
 use crate::solve::Budget;
 use crate::solve::strategy::{Strategies, Strategy};
-use equality::{Equality, Working};
+use equality::{ANY, Equality, Memory, Working};
 use linear::{Aim, Linear, Step};
 use model::{Course, Model, sum};
 use point::{Frame, Point, Values};
@@ -143,7 +143,8 @@ pub(super) fn solve(nlp: &mut dyn Nlp, request: Request<'_>, budget: &Budget) ->
         linear_radius: 1.0,
         budget,
         lowered: 0,
-        shift: 1,
+        memory: Memory::default(),
+        refused: None,
         strategies: request.strategies,
     };
     let working = lambda.and_then(|l| method.named_by(&l));
@@ -178,10 +179,19 @@ struct Method<'a, 'm> {
     linear_radius: f64,
     /// How often the weight was lowered.
     lowered: u32,
-    /// Which shift of the Hessian was enough.
-    shift: usize,
+    memory: Memory,
+    /// What a step that was refused was made of: the next is made of the same if its working set is.
+    refused: Option<Refused>,
     strategies: Strategies,
     budget: &'a Budget<'m>,
+}
+
+/// What a refused step was made of.
+struct Refused {
+    working: Working,
+    lambda: Vec<f64>,
+    hessian: Vec<Entry>,
+    quadratic: Equality,
 }
 
 /// What the linear program says about going on.
@@ -295,7 +305,8 @@ impl Method<'_, '_> {
     /// that needs another set.
     fn newton(&mut self, working: Working) -> Option<Working> {
         let hessian = self.at.hessian(self.nlp, &self.frame, &self.lambda);
-        let quadratic = Equality::new(&self.frame, &self.at, &hessian, &working, &mut self.shift)?;
+        let (frame, memory) = (&self.frame, &mut self.memory);
+        let quadratic = Equality::new(frame, &self.at, &hessian, &working, 0, memory)?;
         let zero = vec![0.0; self.frame.n];
         let model = Model {
             frame: &self.frame,
@@ -303,7 +314,9 @@ impl Method<'_, '_> {
             hessian: &hessian,
             weight: self.weight,
         };
-        if quadratic.shifted || model.longest(&zero, &quadratic.d, &working, self.radius) < 1.0 {
+        let reaches = model.longest(&zero, &quadratic.d, &working, self.radius) >= 1.0;
+        self.memory.factors = quadratic.factors;
+        if !reaches {
             return None;
         }
         let mut next = sum(&self.at.x, 1.0, &quadratic.d);
@@ -411,8 +424,18 @@ impl Method<'_, '_> {
                 (Some(_), l) => l,
             })
             .collect();
-        let hessian = self.at.hessian(self.nlp, &self.frame, &lambda);
-        let quadratic = Equality::new(&self.frame, &self.at, &hessian, &working, &mut self.shift);
+        let (hessian, quadratic) = match self.refused.take() {
+            Some(r) if r.working == working && r.lambda == lambda => (r.hessian, Some(r.quadratic)),
+            refused => {
+                if let Some(refused) = refused {
+                    self.memory.factors = refused.quadratic.factors;
+                }
+                let hessian = self.at.hessian(self.nlp, &self.frame, &lambda);
+                let (frame, memory) = (&self.frame, &mut self.memory);
+                let new = Equality::new(frame, &self.at, &hessian, &working, ANY, memory);
+                (hessian, new)
+            }
+        };
         if let Some(q) = &quadratic
             && !q.shifted
         {
@@ -433,7 +456,7 @@ impl Method<'_, '_> {
             full,
             working,
             quadratic,
-        } = model.course(&cauchy, quadratic, working, self.radius, &mut self.shift);
+        } = model.course(&cauchy, quadratic, working, self.radius, &mut self.memory);
         let promised = -model.change(&d);
         let small = promised <= ROUNDING * now.abs().max(1.0);
         let mut next = sum(&self.at.x, 1.0, &d);
@@ -463,6 +486,12 @@ impl Method<'_, '_> {
         let first = self.at.length(&self.frame, &cauchy);
         self.resize(gain, length, first, part >= 1.0);
         if gain < TAKEN {
+            self.refused = quadratic.map(|quadratic| Refused {
+                working,
+                lambda,
+                hessian,
+                quadratic,
+            });
             return Ok(None);
         }
         let lambda = match (&quadratic, full) {
@@ -485,13 +514,15 @@ impl Method<'_, '_> {
                 return Ok(None);
             }
             self.at = point;
-            let again = Equality::new(&self.frame, &self.at, &hessian, &working, &mut self.shift);
+            let (frame, memory) = (&self.frame, &mut self.memory);
+            let again = Equality::new(frame, &self.at, &hessian, &working, ANY, memory);
             let last = [again, quadratic].into_iter().flatten().map(|q| q.lambda);
             self.choose(last.chain([lambda]));
             return Err(End::Solved);
         }
         self.at = point;
         self.lambda = lambda;
+        self.memory.factors = quadratic.and_then(|q| q.factors);
         let stays = full
             && self.signs_are_right(&working)
             && self.strategies.run(Strategy::ActiveSetNewton);

@@ -1,6 +1,6 @@
 //! The quadratic model of φ, and how far it is worth going.
 
-use super::equality::{Equality, Working};
+use super::equality::{ANY, Equality, Memory, Working};
 use super::point::{Frame, Point};
 use crate::solve::nlp::problem::Entry;
 
@@ -76,7 +76,7 @@ impl Model<'_> {
         quadratic: Option<Equality>,
         working: Working,
         radius: f64,
-        shift: &mut usize,
+        memory: &mut Memory,
     ) -> Course {
         let (d, full) = match &quadratic {
             Some(q) => self.onwards(cauchy, q, &working, radius),
@@ -100,7 +100,7 @@ impl Model<'_> {
                 Some(Met::Row(i, side)) => working.row[i] = Some(side),
                 None => break,
             }
-            let next = Equality::new(self.frame, self.at, self.hessian, &working, shift);
+            let next = Equality::new(self.frame, self.at, self.hessian, &working, ANY, memory);
             let Some(q) = next else { break };
             let (d, full) = self.onwards(&course.d, &q, &working, radius);
             if self.change(&d) > self.change(&course.d) {
