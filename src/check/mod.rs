@@ -34,7 +34,9 @@ pub(crate) use figure::kinds as figure_kinds;
 use crate::diag::{Diagnostic, Severity};
 use crate::host::Host;
 use crate::model::option::OptionTable;
-use crate::source::{Ending, Known, PreprocessOptions, SourceMap, Span, Switches, predefined};
+use crate::source::{
+    Ending, Known, PreprocessOptions, ReadData, SourceMap, Span, Switches, predefined,
+};
 use crate::syntax::Parser;
 use crate::syntax::ast::StmtKind;
 use node::{Code, DataFunction, EquationDef, Part, Slot, SymbolId};
@@ -376,6 +378,21 @@ impl Known for Compiler {
             }
             _ => None,
         }
+    }
+
+    fn in_data_file(
+        &self,
+        name: &str,
+        read: ReadData<'_>,
+    ) -> Result<Option<(&str, usize)>, String> {
+        let (file, at) = self
+            .input
+            .as_ref()
+            .ok_or("no file is open; write `$gdxIn data.gdx` before")?;
+        let bytes = read(file, *at).map_err(|d| d.message.to_string())?;
+        let gdx = crate::gdx::File::open(&bytes).map_err(|e| e.to_string())?;
+        let symbol = gdx.find(name).map(|s| &gdx.symbols[s]);
+        Ok(symbol.map(|s| (s.kind.name(), s.domain.len())))
     }
 
     fn put_open(&self) -> bool {

@@ -166,8 +166,41 @@ impl Preprocessor<'_> {
             }
             "putopen" => Some(Ok((known.put_open(), len))),
             "uelexist" | "solver" => Some(Ok((false, len + term(after, false).1))),
-            _ => None,
+            _ => {
+                let found = self.of_data_file(word.strip_prefix("gdx")?, after, known)?;
+                Some(found.map(|(truth, n)| (truth, len + n)))
+            }
         }
+    }
+
+    /// `gdxSetType name`, `gdxDimension n name` …: asked of the file that `$gdxIn` opened.
+    fn of_data_file(
+        &mut self,
+        asked: &str,
+        after: &str,
+        known: &dyn Known,
+    ) -> Option<Result<(bool, usize), String>> {
+        let kinds: &[&str] = match asked {
+            "settype" => &["set", "singleton set", "alias"],
+            "partype" => &["parameter"],
+            "vartype" => &["variable"],
+            "equtype" => &["equation"],
+            "dimension" => &[],
+            _ => return None,
+        };
+        let (number, n) = match kinds {
+            [] => term(after, false),
+            _ => ("", 0),
+        };
+        let (name, m) = term(&after[n..], false);
+        let found = known.in_data_file(name, &mut |file, at| self.read(file, at));
+        Some(found.map(|symbol| {
+            let fits = |(kind, dimension)| match kinds {
+                [] => number.parse() == Ok(dimension),
+                _ => kinds.contains(&kind),
+            };
+            (symbol.is_some_and(fits), n + m)
+        }))
     }
 
     /// `$ifThen`: opens a branch or leaves it out.

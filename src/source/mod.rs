@@ -27,7 +27,7 @@ pub(crate) use map::whole_characters;
 pub use map::{FileId, Place, SourceFile, SourceMap};
 pub use modes::{Modes, Switches};
 pub(crate) use preprocess::{DELIMITED, Preprocessor, past_text, quoted_end};
-pub use preprocess::{Ending, Known, NothingKnown, PreprocessOptions, SymbolKindName};
+pub use preprocess::{Ending, Known, NothingKnown, PreprocessOptions, ReadData, SymbolKindName};
 pub(crate) use variables::constant as named_constant;
 
 /// What reading a line gives; a diagnostic is boxed because it is large and rare.

@@ -50,6 +50,9 @@ pub struct PreprocessOptions {
     pub inputs: Vec<Arc<Input>>,
 }
 
+/// Brings the bytes of a data file for the place that asks for it.
+pub type ReadData<'a> = &'a mut dyn FnMut(&str, Span) -> Result<Vec<u8>, Box<Diagnostic>>;
+
 /// What a directive may ask about the symbols known so far.
 pub trait Known {
     /// The kind of a declared symbol.
@@ -77,6 +80,14 @@ pub trait Known {
     /// Errors reported so far, cleared or not.
     fn errors(&self) -> usize {
         0
+    }
+    /// Kind and number of indices of a symbol in the file that `$gdxIn` opened, which `read` brings.
+    fn in_data_file(
+        &self,
+        _name: &str,
+        _read: ReadData<'_>,
+    ) -> Result<Option<(&str, usize)>, String> {
+        Err("no file is open".into())
     }
     /// What `$eval.set` asks of a set: the label (`tl`) or the text (`te`) of its first or last element,
     /// its own text (`ts`).
