@@ -96,7 +96,7 @@ impl Compiler {
             out.push(Code::new(CodeKind::Clear(root, None), span));
         }
         let recurrence = reading.is_recurrence(&key);
-        let code = |domain| {
+        let assigned = |domain, key, value| {
             let kind = CodeKind::Assign {
                 domain,
                 target,
@@ -107,22 +107,31 @@ impl Compiler {
             };
             Code::new(kind, span)
         };
-        out.push(if recurrence {
-            let (conditions, outer) = (
-                domain.conditions,
-                Domain {
-                    conditions: Vec::new(),
-                    ..domain
-                },
-            );
-            let inner = Domain {
-                conditions,
-                ..Domain::default()
-            };
-            Code::new(CodeKind::Loop(outer, vec![code(inner)]), span)
-        } else {
-            code(domain)
-        });
+        if !recurrence {
+            out.push(assigned(domain, key, value));
+            return Ok(());
+        }
+        // A symbol without any record is read as it was; one with records, element by element.
+        let at_once = assigned(domain.clone(), key.clone(), value.clone());
+        let inner = Domain {
+            conditions: domain.conditions,
+            ..Domain::default()
+        };
+        let outer = Domain {
+            conditions: Vec::new(),
+            ..domain
+        };
+        let turns = CodeKind::Loop(outer, vec![assigned(inner, key, value)]);
+        let tables = match symbol.has_attributes() {
+            true => symbol.table..symbol.table + attribute::COUNT,
+            false => symbol.table..symbol.table + 1,
+        };
+        let records = tables.map(|t| Node::data(NodeKind::Card(t), span));
+        let or = |a, b| NodeKind::Binary(ast::BinaryOp::Or, Box::new(a), Box::new(b));
+        let records = records.reduce(|a, b| Node::data(or(a, b), span));
+        let turns = vec![Code::new(turns, span)];
+        let arms = records.into_iter().zip([turns]).collect();
+        out.push(Code::new(CodeKind::If(arms, vec![at_once]), span));
         Ok(())
     }
 

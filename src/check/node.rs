@@ -32,7 +32,7 @@ pub enum Part {
 }
 
 /// `i+1`, `i--k`.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Lag {
     /// Where to start: a slot, a label or a singleton.
     pub base: Part,
@@ -61,7 +61,7 @@ impl Key {
 }
 
 /// An expression.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Node {
     /// What it is.
     pub kind: NodeKind,
@@ -89,7 +89,7 @@ impl NodeKind {
 }
 
 /// The kinds of expressions.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub enum NodeKind {
     /// A number.
     Const(f64),
@@ -226,7 +226,7 @@ pub struct Driver {
 }
 
 /// What runs over tuples.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Domain {
     /// Slots that this domain sets, in the order written.
     pub slots: Vec<Slot>,
@@ -239,7 +239,17 @@ pub struct Domain {
     /// Conjuncts of the condition.
     pub conditions: Vec<Node>,
     /// How to enumerate: what the run makes of it at first use, and only the run knows.
-    pub plan: Mutex<Option<Arc<dyn Any + Send + Sync>>>,
+    pub plan: Memo,
+}
+
+/// Kept at first use; a copy begins without.
+#[derive(Debug, Default)]
+pub struct Memo(pub Mutex<Option<Arc<dyn Any + Send + Sync>>>);
+
+impl Clone for Memo {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
 }
 
 /// The definition of an equation.

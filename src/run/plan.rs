@@ -145,7 +145,7 @@ fn cost(branches: &[Branch]) -> f64 {
 impl Machine<'_> {
     /// The plan of a domain.
     pub(super) fn plan(&self, d: &Domain, wanted: Wanted) -> Arc<Plan> {
-        let known = || d.plan.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = || d.plan.0.lock().unwrap_or_else(PoisonError::into_inner);
         let last = known().clone();
         if let Some(Ok(p)) = last.map(Arc::downcast::<Plan>)
             && p.premises.iter().all(|p| self.holds_still(p))
