@@ -523,7 +523,9 @@ impl Machine<'_> {
             D::TimeElapsed => self.elapsed(),
             D::ExecError => self.statements_failed() as f64,
             D::MaxExecError => self.most_errors as f64,
-            D::ErrorLevel | D::Zero | D::Sleep => 0.0,
+            // Nobody waits: the seconds that would have passed.
+            D::Sleep => a[0],
+            D::ErrorLevel | D::Zero => 0.0,
             D::One => 1.0,
             D::GamsVersion => 546.0,
             D::GamsRelease => 54.6,

@@ -30,13 +30,12 @@ impl Machine<'_> {
         {
             f.text.end_page();
         }
-        let lines: Vec<&str> = lines.finish().lines().collect();
-        for pair in lines.chunks(2) {
-            let command = pair[0].trim().to_lowercase();
-            let argument = pair.get(1).copied().unwrap_or("");
-            if !command.is_empty() {
-                self.utility(&command, argument, span);
-            }
+        let text = lines.finish();
+        // Blank lines count for nothing, wherever they stand.
+        let mut lines = text.lines().filter(|line| !line.trim().is_empty());
+        while let Some(command) = lines.next() {
+            let command = command.trim().to_lowercase();
+            self.utility(&command, lines.next().unwrap_or(""), span);
         }
     }
 

@@ -1,6 +1,6 @@
 //! Directives that concern several lines: comments, `$goto`, `$onEcho`, `$onPut`.
 
-use super::directives::unquoted;
+use super::directives::{file_name, tag_of};
 use super::line::Line;
 use super::preprocess::Preprocessor;
 use super::{FileId, Outcome, refuse};
@@ -9,7 +9,7 @@ use crate::diag::Diagnostic;
 impl Preprocessor<'_> {
     /// `$onText … $offText`: what stands between is not read.
     pub(super) fn comment_block(&mut self, line: &Line) -> Outcome<()> {
-        if self.skip_to("offtext") {
+        if self.collect_to("offtext", "", &mut |_, _| {}) {
             return Ok(());
         }
         let (lo, hi) = line.origin(0, line.text.len());
@@ -21,13 +21,13 @@ impl Preprocessor<'_> {
         )
     }
 
-    /// Passes over lines up to and with the one that begins with this directive.
-    pub(super) fn skip_to(&mut self, word: &str) -> bool {
-        self.collect_to(word, &mut |_, _| {})
-    }
-
-    /// Passes over lines up to the one that begins with a directive, and shows each.
-    pub(super) fn collect_to(&mut self, word: &str, each: &mut dyn FnMut(&str, u32)) -> bool {
+    /// Passes over lines up to the one that begins with a directive and its tag, and shows each.
+    pub(super) fn collect_to(
+        &mut self,
+        word: &str,
+        tag: &str,
+        each: &mut dyn FnMut(&str, u32),
+    ) -> bool {
         loop {
             let Some(frame) = self.frames.last() else {
                 return false;
@@ -39,7 +39,9 @@ impl Preprocessor<'_> {
             let end = self.line_end(pos);
             let raw = self.raw(pos, end);
             let name = self.marks.directive_name(raw);
-            let found = name.is_some_and(|(name, _)| name.eq_ignore_ascii_case(word));
+            let found = name.is_some_and(|(name, at)| {
+                name.eq_ignore_ascii_case(word) && tag_of(raw, at).0.eq_ignore_ascii_case(tag)
+            });
             if !found {
                 each(raw.trim_end_matches(['\n', '\r']), pos as u32);
             }
@@ -126,14 +128,15 @@ impl Preprocessor<'_> {
         &mut self,
         line: &Line,
         word: &str,
+        tag: &str,
         rest: &str,
         lo: u32,
         hi: u32,
     ) -> Outcome<()> {
         let append = rest.trim_start().starts_with(">>");
-        let file = unquoted(rest.trim_start().trim_start_matches('>')).to_owned();
+        let file = file_name(rest.trim_start().trim_start_matches('>')).to_owned();
         let mut lines: Vec<(String, u32)> = Vec::new();
-        let closed = self.collect_to("offecho", &mut |t, at| lines.push((t.to_owned(), at)));
+        let closed = self.collect_to("offecho", tag, &mut |t, at| lines.push((t.to_owned(), at)));
         let mut text = String::new();
         for (t, at) in lines {
             if word == "onechov" {
@@ -148,17 +151,13 @@ impl Preprocessor<'_> {
         if closed {
             return Ok(());
         }
-        let span = self.place(lo, hi);
-        refuse(
-            Diagnostic::error("E0101", span, format!("`${word}` without its `$offEcho`"))
-                .help("close it with `$offEcho` in the first column"),
-        )
+        self.unclosed(word, "$offEcho", tag, (lo, hi))
     }
 
     /// `$onPut … $offPut`: each line becomes a `put` of its text.
-    pub(super) fn put_block(&mut self, word: &str, lo: u32, hi: u32) -> Outcome<()> {
+    pub(super) fn put_block(&mut self, word: &str, tag: &str, lo: u32, hi: u32) -> Outcome<()> {
         let mut lines: Vec<(String, u32)> = Vec::new();
-        let closed = self.collect_to("offput", &mut |t, at| lines.push((t.to_owned(), at)));
+        let closed = self.collect_to("offput", tag, &mut |t, at| lines.push((t.to_owned(), at)));
         let file = self.frames.last().map_or(FileId(0), |f| f.file);
         for (t, at) in lines {
             let len = t.len() as u32;
@@ -186,10 +185,18 @@ impl Preprocessor<'_> {
         if closed {
             return Ok(());
         }
-        let span = self.place(lo, hi);
+        self.unclosed(word, "$offPut", tag, (lo, hi))
+    }
+
+    fn unclosed(&mut self, word: &str, end: &str, tag: &str, at: (u32, u32)) -> Outcome<()> {
+        let span = self.place(at.0, at.1);
+        let end = match tag {
+            "" => end.to_owned(),
+            _ => format!("{end}.{tag}"),
+        };
         refuse(
-            Diagnostic::error("E0101", span, format!("`${word}` without its `$offPut`"))
-                .help("close it with `$offPut` in the first column"),
+            Diagnostic::error("E0101", span, format!("`${word}` without its `{end}`"))
+                .help(format!("close it with `{end}` in the first column")),
         )
     }
 }

@@ -21,6 +21,17 @@ pub(super) fn word_len(text: &str) -> usize {
         .unwrap_or(text.len())
 }
 
+/// The tag of a directive whose name ends at `at` (`$ifThen.tag`), in lower case, and its length with the dot.
+pub(super) fn tag_of(text: &str, at: usize) -> (String, usize) {
+    match text[at..].strip_prefix('.') {
+        Some(tag) => {
+            let len = word_len(tag);
+            (tag[..len].to_ascii_lowercase(), len + 1)
+        }
+        None => (String::new(), 0),
+    }
+}
+
 /// The quotes that a text begins with: what stands inside, and what follows them.
 pub(super) fn quoted(text: &str) -> Option<(&str, &str)> {
     let q = text.chars().next().filter(|c| matches!(c, '\'' | '"'))?;
@@ -45,6 +56,15 @@ pub(super) fn unquoted(text: &str) -> &str {
         }
     }
     t
+}
+
+/// The name of a file: in quotes, a semicolon may follow.
+pub(super) fn file_name(text: &str) -> &str {
+    let text = text.trim();
+    match quoted(text) {
+        Some((name, tail)) if tail.trim_matches([';', ' ', '\t']).is_empty() => name,
+        _ => text,
+    }
 }
 
 /// `11/21/26` from days since 1899-12-31.
@@ -215,12 +235,8 @@ impl Preprocessor<'_> {
     ) -> Outcome<()> {
         let text = line.text.as_str();
         // `$ifThen.tag`, `$abort.noError`
-        let mut suffix = String::new();
-        if text[at..].starts_with('.') {
-            let len = word_len(&text[at + 1..]);
-            suffix = text[at + 1..at + 1 + len].to_ascii_lowercase();
-            at += 1 + len;
-        }
+        let (suffix, len) = tag_of(text, at);
+        at += len;
         let (lo, hi) = line.origin(from.saturating_sub(1), text.trim_end().len().max(from));
         let rest = &text[at..];
         match word {
@@ -228,7 +244,7 @@ impl Preprocessor<'_> {
             "log" => self.host.print(&format!("{}\n", rest.trim())),
             "ontext" => return self.comment_block(line),
             "include" => {
-                let name = unquoted(rest).to_owned();
+                let name = file_name(rest).to_owned();
                 return self.include(&name, None, lo, hi);
             }
             "batinclude" | "libinclude" | "sysinclude" => {
@@ -459,10 +475,12 @@ impl Preprocessor<'_> {
                 let text = unquoted(body.trim_end_matches('>')).to_owned()
                     + if word == "echo" { "\n" } else { "" };
                 let append = body.ends_with('>');
-                self.echo(unquoted(file), &text, append);
+                self.echo(file_name(file), &text, append);
             }
-            "onecho" | "onechos" | "onechov" => return self.echo_block(line, word, rest, lo, hi),
-            "onput" | "onputs" | "onputv" => return self.put_block(word, lo, hi),
+            "onecho" | "onechos" | "onechov" => {
+                return self.echo_block(line, word, &suffix, rest, lo, hi);
+            }
+            "onput" | "onputs" | "onputv" => return self.put_block(word, &suffix, lo, hi),
             "call" | "hiddencall" | "execute" => {
                 let span = self.place(lo, hi);
                 return refuse(Diagnostic::error("E0113", span, format!("`${word}` would start another program, which is refused"))
@@ -472,7 +490,7 @@ impl Preprocessor<'_> {
             "onembeddedcode" | "onembeddedcodes" | "onembeddedcodev" => {
                 let span = self.place(lo, hi);
                 let mut gives_back = !rest.trim_start().to_lowercase().starts_with("connect");
-                self.collect_to("offembeddedcode", &mut |line, _| {
+                self.collect_to("offembeddedcode", &suffix, &mut |line, _| {
                     gives_back |= line.to_lowercase().contains("gamswriter");
                 });
                 let d = embedded_code(span, gives_back);
@@ -569,12 +587,8 @@ impl Preprocessor<'_> {
         let text = line.text.as_str();
         let (word, mut at) = self.marks.directive_name(text).unwrap_or_default();
         let word = word.to_ascii_lowercase();
-        let mut tag = String::new();
-        if text[at..].starts_with('.') {
-            let n = word_len(&text[at + 1..]);
-            tag = text[at + 1..at + 1 + n].to_ascii_lowercase();
-            at += n + 1;
-        }
+        let (tag, len) = tag_of(text, at);
+        at += len;
         let (lo, hi) = line.origin(0, text.trim_end().len().max(1));
         let Some(open) = self.frames.last_mut().and_then(|f| f.ifs.last_mut()) else {
             let span = self.place(lo, hi);
