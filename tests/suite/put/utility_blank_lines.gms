@@ -7,5 +7,6 @@ putClose;
 scalar a;
 a = sleep(0.25);
 *|utility_one.txt| one
+*|utility_one.txt|
 *|utility_two.txt| two
 *= a 0.25
