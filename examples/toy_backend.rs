@@ -40,6 +40,7 @@ impl Backend for Compass {
                 ..Supports::new(&[ProblemType::Nlp, ProblemType::Dnlp], Terms::Kinks)
             },
             options: &OPTIONS,
+            option_files: &["compass"],
         }
     }
 

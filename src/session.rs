@@ -5,7 +5,7 @@ use crate::diag::{Diagnostic, Severity};
 use crate::host::Host;
 use crate::report::json::{Report, RunStatus};
 use crate::run::{Machine, Options};
-use crate::solve::registry::OPTION_TABLES;
+use crate::solve::registry::SOLVERS;
 use crate::source::{PreprocessOptions, SourceMap, Span};
 
 /// What is left of a run.
@@ -29,7 +29,7 @@ pub fn run(
     check_only: bool,
     inspect: &mut dyn FnMut(&mut Machine),
 ) -> Finished {
-    match check::compile(host, path, preprocess, OPTION_TABLES) {
+    match check::compile(host, path, preprocess, &SOLVERS) {
         Ok(mut p) if check_only && !p.has_errors() => {
             ended(RunStatus::Ok, std::mem::take(&mut p.diagnostics), p.map)
         }

@@ -3,7 +3,7 @@
 use crate::common::{Memory, files, shared};
 use bmod::check::{Program, compile};
 use bmod::editor::{Editor, Location, Position, Range, format};
-use bmod::solve::registry::OPTION_TABLES;
+use bmod::solve::registry::SOLVERS;
 use bmod::source::PreprocessOptions;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -27,7 +27,7 @@ fn program(text: &str, file: &Path) -> Option<String> {
         max_memory: Some(64 << 20),
         ..PreprocessOptions::default()
     };
-    let p: Program = compile(&mut host, &name, options, OPTION_TABLES).ok()?;
+    let p: Program = compile(&mut host, &name, options, &SOLVERS).ok()?;
     let codes: Vec<&str> = p.diagnostics.iter().map(|d| d.code).collect();
     let all = format!(
         "{:?}\n{:?}\n{:?}\n{:?}\n{codes:?}",

@@ -3,7 +3,7 @@
 use super::{Model, Options, host};
 use crate::check;
 use crate::data::input::{Input, InputData};
-use crate::solve::registry::OPTION_TABLES;
+use crate::solve::registry::SOLVERS;
 
 /// FNV-1a in 128 bits (Fowler, Noll, Vo): the same everywhere and always.
 struct Digest(u128);
@@ -88,7 +88,7 @@ impl Model {
                 kept.answers(self).or_else(|| host.answers())
             }
             None => {
-                let _ = check::compile(&mut host, &self.name, preprocess, OPTION_TABLES);
+                let _ = check::compile(&mut host, &self.name, preprocess, &SOLVERS);
                 host.answers()
             }
         }

@@ -14,7 +14,7 @@ use crate::report::diagnostic::Diagnostic;
 use crate::report::diagnostics::{self, Look};
 use crate::run::{self, Machine, Studied, StudyChoice};
 use crate::session;
-use crate::solve::registry::OPTION_TABLES;
+use crate::solve::registry::SOLVERS;
 use crate::source::SourceMap;
 
 /// Which model of a text is meant, and what is made of it besides formulas. The default is the model that is solved last.
@@ -242,7 +242,7 @@ impl Model {
         let options = Options::default();
         let mut host = RunHost::new(self, &options);
         let preprocess = self.preprocess(&options);
-        let program = check::compile(&mut host, &self.name, preprocess, OPTION_TABLES)
+        let program = check::compile(&mut host, &self.name, preprocess, &SOLVERS)
             .map_err(|e| refused(&[e.0], &e.1))?;
         if program.has_errors() {
             return Err(refused(&program.diagnostics, &program.map));

@@ -6,7 +6,7 @@ use crate::check::{self, Program};
 use crate::data::input::Input;
 use crate::diag::Diagnostic;
 use crate::run::Bases;
-use crate::solve::registry::OPTION_TABLES;
+use crate::solve::registry::SOLVERS;
 use crate::source::{PreprocessOptions, SourceMap};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -47,7 +47,7 @@ impl Kept {
                 }
             }
         }
-        let program = check::compile(host, &model.name, preprocess, OPTION_TABLES)?;
+        let program = check::compile(host, &model.name, preprocess, &SOLVERS)?;
         if let (false, Some(questions)) = (program.has_errors(), host.questions()) {
             *self.lock() = Some(Compiled {
                 version: model.version,

@@ -26,7 +26,7 @@ use crate::data::input::{Input, InputData, Keys};
 use crate::host::Host;
 use crate::run::{Bases, Machine, Options as Settings};
 use crate::session::{self, Finished};
-use crate::solve::registry::OPTION_TABLES;
+use crate::solve::registry::SOLVERS;
 use crate::source::PreprocessOptions;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -363,7 +363,7 @@ impl Model {
     fn carry_out_on(&self, host: &mut dyn Host, options: &Options, check_only: bool) -> Run {
         let preprocess = self.preprocess(options);
         if check_only {
-            return match check::compile(host, &self.name, preprocess, OPTION_TABLES) {
+            return match check::compile(host, &self.name, preprocess, &SOLVERS) {
                 Ok(program) => Run::checked(&self.name, program),
                 Err(e) => Run::unreadable(&self.name, e.0, e.1),
             };

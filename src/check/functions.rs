@@ -237,34 +237,6 @@ pub const FILE_ATTRIBUTES: &[&str] = &[
     "time",
 ];
 
-/// Solver names of bmod that an option may give.
-pub const OWN_SOLVERS: &[&str] = &[
-    "default",
-    "clarabel",
-    "simplex",
-    "pounce",
-    "ipopt",
-    "bmcp",
-    "mcp",
-    "bmpec",
-    "bmip",
-    #[cfg(feature = "highs")]
-    "highs",
-];
-
-/// Solver names that an option may give: bmod's own, and those of GAMS (for which bmod's own stands in).
-#[rustfmt::skip]
-pub const SOLVERS: &[&str] = &[
-    "clarabel", "simplex", "bmcp", "pounce", "ipopt", "mcp", "default", "alphaecp", "ampl", "antigone",
-    "baron", "bdmlp", "bench", "bonmin", "cbc", "conopt", "conopt2", "conopt3", "conopt4", "convert",
-    "convertd", "copt", "couenne", "cplex", "cplexd", "de", "decisc", "decism", "dicopt", "examiner",
-    "examiner2", "gamschk", "glpk", "gurobi", "guss", "highs", "ipopth", "jams", "kestrel", "knitro", "lgo",
-    "lindo", "lindoglobal", "lingo", "localsolver", "miles", "minos", "minos5", "minos55", "mosek", "mps2gms",
-    "mpsge", "msnlp", "nlpec", "odhcplex", "octeract", "oqnlp", "osicplex", "osigurobi", "osimosek",
-    "osixpress", "osl", "path", "pathc", "pathnlp", "quadminos", "sbb", "scensolver", "scip", "selkie",
-    "shot", "snopt", "soplex", "xa", "xpress", "zoom",
-];
-
 /// Words that `option` takes a solver for: the problem types, and `emp`.
 pub const PROBLEM_TYPES: &[&str] = &[
     "lp", "rmip", "mip", "nlp", "dnlp", "rminlp", "minlp", "qcp", "rmiqcp", "miqcp", "cns", "mcp",

@@ -33,7 +33,7 @@ pub(crate) use figure::kinds as figure_kinds;
 
 use crate::diag::{Diagnostic, Severity};
 use crate::host::Host;
-use crate::model::option::OptionTable;
+use crate::model::option::Solvers;
 use crate::source::{
     Ending, Known, PreprocessOptions, ReadData, SourceMap, Span, Switches, predefined,
 };
@@ -122,19 +122,21 @@ pub(crate) struct Compiler {
     inputs: input::Inputs,
     /// [`Program::asked_for_data`]
     asked_for_data: Cell<bool>,
-    /// What solvers take.
-    solver_options: &'static [&'static OptionTable],
+    /// What options are there.
+    solvers: &'static Solvers,
+    /// Options that mean nothing here, and that were said to.
+    passed_over: rustc_hash::FxHashSet<String>,
     modes: Switches,
     lost: follow::Lost,
 }
 
 /// Compiles a file: parses, checks and carries out its data statements. The `option` statement takes the options of
-/// these tables besides its own.
+/// these solvers besides the language's.
 pub fn compile(
     host: &mut dyn Host,
     path: &str,
     mut options: PreprocessOptions,
-    solver_options: &'static [&'static OptionTable],
+    solvers: &'static Solvers,
 ) -> Result<Program, Box<(Diagnostic, SourceMap)>> {
     let max_memory = options.max_memory;
     let inputs = std::mem::take(&mut options.inputs);
@@ -143,7 +145,7 @@ pub fn compile(
     let mut c = Compiler::new();
     c.max_memory = max_memory;
     c.inputs = input::Inputs::new(inputs);
-    c.solver_options = solver_options;
+    c.solvers = solvers;
     let mut code = Vec::new();
     loop {
         let next = parser.next(&c);
@@ -249,7 +251,8 @@ impl Compiler {
             taken: 0,
             inputs: input::Inputs::default(),
             asked_for_data: Cell::new(false),
-            solver_options: &[],
+            solvers: &Solvers::NONE,
+            passed_over: rustc_hash::FxHashSet::default(),
             modes: Switches::default(),
             lost: follow::Lost::default(),
         }

@@ -460,7 +460,7 @@ pub enum CodeKind {
     /// `solve`
     Solve(Box<SolveCode>),
     /// `option name = value`
-    Option(Box<str>, OptionCode),
+    Option(Box<str>, Box<str>),
     /// `option clear = p`, `option clear = x.lo`: the offset of the attribute
     Clear(SymbolId, Option<u32>),
     /// `option p:d:r:c`
@@ -482,17 +482,6 @@ pub enum CodeKind {
     Exchange(crate::syntax::ast::Exchange),
     /// `draw`
     Draw(SymbolId, Option<Box<str>>),
-}
-
-/// Value of an option.
-#[derive(Clone, Debug, PartialEq)]
-pub enum OptionCode {
-    /// None.
-    Flag,
-    /// A number.
-    Number(f64),
-    /// A text.
-    Text(Box<str>),
 }
 
 impl Node {

@@ -4,42 +4,17 @@ use super::functions;
 use super::node::*;
 use super::symbols::SymbolKind;
 use super::{Compiler, Failed};
-use crate::diag::{Diagnostic, nearest};
-use crate::model::option::{Accepted, OptionRow, Refused, check};
+use crate::diag::Diagnostic;
+use crate::model::language;
+use crate::model::option::{Accepted, Refused};
 use crate::source::Span;
 use crate::syntax::ast::{Ident, OptionForm, OptionItem, OptionValue};
-
-/// Options of the `option` statement that are numbers or switches, besides solver choices.
-#[rustfmt::skip]
-pub(crate) const OPTIONS: &[&str] = &[
-    "limrow", "limcol", "iterlim", "reslim", "decimals", "optcr", "optca", "domlim", "bratio", "seed",
-    "sysout", "solprint", "solveopt", "solvelink", "savepoint", "threads", "profile", "profiletol", "eject",
-    "dispwidth", "forcework", "measure", "memorystat", "strictsingleton", "intvarup", "sys10", "sys11",
-    "sys12", "dmpsym", "dmpopt", "dualcheck", "real1", "real2", "real3", "real4", "real5", "integer1",
-    "integer2", "integer3", "integer4", "integer5", "subsystems", "sparserun", "sparseval", "on115",
-    "zerores", "zeroresrep", "solslack", "cheat", "cutoff", "work", "oldname", "solver", "asyncsollst",
-    "fddelta", "fdopt", "threadsasync", "ejectx", "mcprholdfx", "gdxuels", "shuffle", "certify", "ranging",
-    "gams_power", "checkerrorlevel", "dmpusersym", "holdfixedasync", "prefixloadpath", "debugtask",
-    "validation", "format", "hessscale", "ecimplicitload", "eclogline", "epstozero", "filtered", "replace",
-    "zerotoeps", "forlim", "idcprotect", "maxgenericfiles", "reform", "requestmarginals", "sys15", "sys16",
-    "sys17", "sys18", "sys19",
-];
 
 /// Options without a value.
 #[rustfmt::skip]
 const FLAGS: &[&str] = &[
     "dmpopt", "dmpsym", "dmpusersym", "eject", "measure", "memorystat", "shut", "stat", "subsystems",
 ];
-
-/// Options whose value is a whole number.
-const WHOLE: &[&str] = &["decimals", "domlim", "iterlim", "limcol", "limrow", "seed"];
-
-/// Whether an option is the language's and not a solver's: a problem type (`nlp = ipopt`), a limit, a
-/// switch.
-pub(crate) fn is_statement_option(name: &str) -> bool {
-    let mut known = [OPTIONS, functions::PROBLEM_TYPES].into_iter().flatten();
-    known.any(|o| o.eq_ignore_ascii_case(name))
-}
 
 impl Compiler {
     pub(super) fn option(&mut self, item: &OptionItem) -> Result<Option<CodeKind>, Failed> {
@@ -94,33 +69,13 @@ impl Compiler {
                 self.symbols.get_mut(root).assigned = true;
                 Ok(Some(CodeKind::Clear(s, offset)))
             }
-            OptionForm::Assign(v) => {
-                if !is_statement_option(&lower) {
-                    return self.solver_option(item, lower, v);
-                }
-                if let OptionValue::Text(t, span) = v
-                    && functions::PROBLEM_TYPES.contains(&lower.as_str())
-                    && !functions::OWN_SOLVERS
-                        .iter()
-                        .any(|s| s.eq_ignore_ascii_case(t))
-                {
-                    self.other_solver(t, *span);
-                    let own = OptionCode::Text("default".into());
-                    return Ok(Some(CodeKind::Option(lower.into(), own)));
-                }
-                self.fitting_value(item, &lower, v)?;
-                let value = match v {
-                    OptionValue::Number(x) => OptionCode::Number(*x),
-                    OptionValue::Text(t, _) => OptionCode::Text(t.clone()),
-                };
-                Ok(Some(CodeKind::Option(lower.into(), value)))
-            }
+            OptionForm::Assign(v) => self.value(item, lower, v),
             OptionForm::Flag => {
                 if FLAGS.contains(&lower.as_str()) {
                     return Ok(None);
                 }
-                if !is_statement_option(&lower) {
-                    return self.unknown_option(item);
+                if let Err(refused @ Refused::Unknown(_)) = self.solvers.check(&lower, "") {
+                    return self.refused_option(item, &lower, "", item.name.span, &refused);
                 }
                 let message = format!("the option `{}` needs a value", item.name.name);
                 self.fail(
@@ -132,65 +87,73 @@ impl Compiler {
         }
     }
 
-    /// An option that a solver takes.
-    fn solver_option(
+    /// `option name = value`
+    fn value(
         &mut self,
         item: &OptionItem,
         name: String,
         value: &OptionValue,
     ) -> Result<Option<CodeKind>, Failed> {
-        let (text, code, span) = match value {
-            OptionValue::Number(x) => (x.to_string(), OptionCode::Number(*x), item.name.span),
-            OptionValue::Text(t, span) => (t.to_string(), OptionCode::Text(t.clone()), *span),
+        let (text, span) = match value {
+            OptionValue::Number(x) => (x.to_string(), item.name.span),
+            OptionValue::Text(t, span) => (t.to_string(), *span),
         };
-        if text.eq_ignore_ascii_case("default") && self.solver_row(&name).is_some() {
-            return Ok(Some(CodeKind::Option(name.into(), code)));
-        }
-        match check(self.solver_options, &name, &text) {
-            Ok(Accepted::Taken) => Ok(Some(CodeKind::Option(name.into(), code))),
-            Ok(Accepted::Ignored) => {
-                self.report(
-                    Diagnostic::warning(
-                        "E0329",
-                        item.name.span,
-                        format!("the option `{name}` means nothing here"),
-                    )
-                    .label("passed over"),
-                );
+        match self.solvers.check(&name, &text) {
+            Ok(Accepted::Taken) => Ok(Some(CodeKind::Option(name.into(), text.into()))),
+            Ok(Accepted::Ignored) if !language::chooses_solver(&name) => {
+                let message = format!("the option `{name}` means nothing here");
+                if self.passed_over.insert(name) {
+                    let d = Diagnostic::warning("E0329", item.name.span, message);
+                    self.report(d.label("passed over"));
+                }
                 Ok(None)
             }
-            Err(Refused::Unknown(_)) => self.unknown_option(item),
-            Err(refused) => {
-                let (message, help) = refused.words(&name, &text);
-                let refusal = Diagnostic::error("E0329", span, message).label("not such a value");
-                self.fail(match help {
-                    Some(help) => refusal.help(help),
-                    None => refusal,
-                })
+            Ok(Accepted::Ignored) => {
+                let message = format!("the solver `{text}` is not in bmod, which takes its own");
+                let own = self.solvers.all_names();
+                let d = Diagnostic::warning("E0349", span, message).label("passed over");
+                self.report(d.help(format!("there are: {own}")));
+                Ok(Some(CodeKind::Option(name.into(), "default".into())))
             }
+            Err(refused) => self.refused_option(item, &name, &text, span, &refused),
         }
     }
 
-    fn solver_row(&self, name: &str) -> Option<&'static OptionRow> {
-        self.solver_options.iter().find_map(|t| t.find(name))
-    }
-
-    /// A warning for a solver that is not there: bmod takes its own.
-    fn other_solver(&mut self, name: &str, span: Span) {
-        let known = functions::SOLVERS
-            .iter()
-            .any(|s| s.eq_ignore_ascii_case(name));
-        let near = nearest(name, functions::OWN_SOLVERS.iter().copied()).filter(|_| !known);
-        let own = functions::OWN_SOLVERS.join(", ");
-        let message = match known {
-            true => format!("the solver `{name}` is not in bmod, which takes its own"),
-            false => format!("there is no solver `{name}`; bmod takes its own"),
+    /// An error, or a warning where GAMS takes the statement and its solve fails or has a meaning for any number.
+    fn refused_option(
+        &mut self,
+        item: &OptionItem,
+        name: &str,
+        value: &str,
+        span: Span,
+        refused: &Refused,
+    ) -> Result<Option<CodeKind>, Failed> {
+        let (code, span, label) = match refused {
+            Refused::Unknown(_) => ("E0329", item.name.span, "unknown option"),
+            Refused::Solver(..) | Refused::Unsuited(_) => ("E0349", span, "passed over"),
+            _ => ("E0329", span, "not such a value"),
         };
-        let d = Diagnostic::warning("E0349", span, message).label("passed over");
-        self.report(match near {
-            Some(n) => d.help(format!("did you mean `{n}`?")),
-            None => d.help(format!("there are: {own}")),
-        });
+        let (message, help) = refused.words(name, value);
+        let lenient = match refused {
+            Refused::Range(_) => language::is_option(name) && name != "decimals",
+            _ => code == "E0349",
+        };
+        let d = match lenient {
+            true => Diagnostic::warning(code, span, message).label("passed over"),
+            false => Diagnostic::error(code, span, message).label(label),
+        };
+        let d = match help {
+            Some(help) => d.help(help),
+            None => d,
+        };
+        if !lenient {
+            return self.fail(d);
+        }
+        self.report(d);
+        Ok(match code {
+            "E0349" => Some(CodeKind::Option(name.into(), "default".into())),
+            _ => None,
+        })
     }
 
     /// An error for decimals, row indices or column indices that a display cannot have.
@@ -214,48 +177,6 @@ impl Compiler {
                 .label(format!("has {dim} indices"))
                 .help("r = 0 displays a list, c records to a line"),
         )
-    }
-
-    /// An error for a value that the option cannot have.
-    fn fitting_value(
-        &mut self,
-        item: &OptionItem,
-        option: &str,
-        value: &OptionValue,
-    ) -> Result<(), Failed> {
-        let expected = match (option, value) {
-            ("decimals", OptionValue::Number(x)) if !(0.0..=8.0).contains(x) => {
-                "a whole number from 0 to 8"
-            }
-            (o, OptionValue::Number(x)) if WHOLE.contains(&o) && x.fract() != 0.0 => {
-                "a whole number"
-            }
-            (o, OptionValue::Text(..)) if WHOLE.contains(&o) => "a whole number",
-            _ => return Ok(()),
-        };
-        let span = match value {
-            OptionValue::Text(_, span) => *span,
-            OptionValue::Number(_) => item.name.span,
-        };
-        let message = format!("the value of `option {option}` is {expected}");
-        self.fail(Diagnostic::error("E0329", span, message).label("not such a value"))
-    }
-
-    fn unknown_option<T>(&mut self, item: &OptionItem) -> Result<T, Failed> {
-        let statement = [OPTIONS, functions::PROBLEM_TYPES].into_iter().flatten();
-        let solver = self.solver_options.iter().flat_map(|t| t.all());
-        let known = statement.copied().chain(solver.map(|r| r.name));
-        let near = nearest(&item.name.name, known).map(str::to_string);
-        let d = Diagnostic::error(
-            "E0329",
-            item.name.span,
-            format!("there is no option `{}`", item.name.name),
-        )
-        .label("unknown option");
-        self.fail(match near {
-            Some(n) => d.help(format!("did you mean `{n}`?")),
-            None => d,
-        })
     }
 
     fn matching(

@@ -637,7 +637,7 @@ fn gams_argument(text: &str) -> Option<Option<[OsString; 2]>> {
     if GAMS_KEYS.contains(&key.as_str()) {
         return Some(None);
     }
-    let is_option = crate::check::option::is_statement_option(&key);
+    let is_option = crate::model::language::is_option(&key);
     let pair = OsString::from(format!("{key}={value}"));
     is_option.then(|| Some(["--option".into(), pair]))
 }

@@ -15,7 +15,7 @@ use crate::report::diagnostics::{self, Look};
 use crate::report::json::{Report, RunStatus};
 use crate::run::{ListOptions, Machine, Options};
 use crate::session::{self, Finished};
-use crate::solve::registry::OPTION_TABLES;
+use crate::solve::registry::SOLVERS;
 use crate::source::PreprocessOptions;
 
 /// Carries out a command; its exit status.
@@ -176,7 +176,7 @@ pub(super) fn compiled(
         ..PreprocessOptions::default()
     };
     let (diagnostics, map, program) =
-        match crate::check::compile(&mut host, &name(model), preprocess, OPTION_TABLES) {
+        match crate::check::compile(&mut host, &name(model), preprocess, &SOLVERS) {
             Err(e) => (vec![e.0], e.1, None),
             Ok(mut p) => {
                 let found = std::mem::take(&mut p.diagnostics);

@@ -215,6 +215,7 @@ pub const CODES: &[Code] = &[
     row("E0417", Warning, "too many equations", "equations stand in fewer variables than there are equations"),
     row("E0418", Warning, "too many variables", "free variables stand in fewer rows than there are variables"),
     row("E0422", Execution, "model cannot be solved", "rows and columns do not match, or functions have no value at the start"),
+    row("E0423", Execution, "option of a model", "`m.optcr` and its kind have the ranges that `bmod help options language` lists"),
     row("E0424", Execution, "scenarios", "the dictionary of the scenarios cannot be used"),
     row("E0426", Execution, "option file", "an option file, or a line of it, is not used"),
     row("E0430", Execution, "no solve to derive from", "the model that is meant is not solved, or there is no solve with this number"),

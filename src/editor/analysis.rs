@@ -6,7 +6,7 @@ use super::place::{LineIndex, Location, Range};
 use super::project::{Document, ProjectHost, has_slashes};
 use crate::check::{self, Program};
 use crate::diag::{self, Severity};
-use crate::solve::registry::OPTION_TABLES;
+use crate::solve::registry::SOLVERS;
 use crate::source::{PreprocessOptions, SourceMap, Span};
 use serde::Serialize;
 
@@ -107,7 +107,7 @@ impl Editor {
             max_memory: Some(MAX_MEMORY),
             ..PreprocessOptions::default()
         };
-        let compiled = check::compile(&mut host, &main, options, OPTION_TABLES);
+        let compiled = check::compile(&mut host, &main, options, &SOLVERS);
         let known = host.known;
         let before = self.analyses.remove(&main);
         let (told_before, last, good) = match before {

@@ -8,7 +8,6 @@ use super::scan::{INNER_WORDS, Role};
 use super::vocabulary::{self as words, Entry};
 use crate::check::Program;
 use crate::check::functions::{self, PROBLEM_TYPES};
-use crate::check::option::OPTIONS;
 use crate::check::symbols::{DomainPosition, Symbol, SymbolKind};
 use crate::solve::registry::{BACKENDS, OPTION_TABLES};
 use crate::syntax::words::Class;
@@ -276,8 +275,8 @@ fn propose(list: &mut List, d: &Document, word: usize, at: usize) {
     match first.as_str() {
         "solve" => return in_solve(list, &previous),
         "option" | "options" if matches!(previous.as_str(), "option" | "options" | ",") => {
-            for o in OPTIONS.iter().chain(PROBLEM_TYPES) {
-                list.add(*o, CompletionKind::Option, "option", "");
+            for t in PROBLEM_TYPES {
+                list.add(*t, CompletionKind::Option, "option", "solver of the type");
             }
             for row in OPTION_TABLES.iter().flat_map(|t| t.all()) {
                 list.add(

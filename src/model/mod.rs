@@ -2,6 +2,7 @@
 pub mod builder;
 pub mod function;
 pub mod instance;
+pub mod language;
 pub mod option;
 pub mod origin;
 pub mod outcome;

@@ -1,8 +1,9 @@
-//! Options of solvers, declared as tables: what each backend takes, and what it means.
+//! Options, declared as tables: what the language and each backend take, and what it means.
 //!
 //! The tables are what the checker, the command line, option files, `bmod help options` and `docs/options.md` know about
-//! options; a value that has passed [`check`] is one that the backend takes.
+//! options; a value that has passed [`check`] is one that the backend takes. Those of the language are in [`super::language`].
 
+use super::problem_type::ProblemType;
 use crate::diag::nearest;
 use std::fmt::Write;
 
@@ -25,6 +26,8 @@ pub enum Kind {
     Names(&'static [&'static str]),
     /// Any text.
     Text,
+    /// A word of these words, which whoever asks looks up.
+    Word(&'static str),
 }
 
 /// An option.
@@ -89,13 +92,36 @@ impl OptionTable {
     }
 }
 
+/// What is known of the backends where options are checked.
+#[derive(Clone, Copy, Debug)]
+pub struct Solvers {
+    /// Their options, and those that they share.
+    pub tables: &'static [&'static OptionTable],
+    /// Their names, and what each is chosen for.
+    pub names: &'static [(&'static str, Vec<ProblemType>)],
+}
+
+impl Solvers {
+    /// None at all.
+    pub const NONE: Self = Self {
+        tables: &[&super::language::LANGUAGE],
+        names: &[],
+    };
+}
+
 /// Why an option is refused.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Refused {
     /// No table has it; the nearest name.
     Unknown(Option<String>),
-    /// The value is not one that it takes; what it takes.
+    /// The value is not of the kind that it takes; what it takes.
     Value(String),
+    /// The number is too small or too large; what it takes.
+    Range(String),
+    /// There is no such solver: the nearest name, and all of them.
+    Solver(Option<String>, String),
+    /// The solver does not solve this type.
+    Unsuited(ProblemType),
     /// A name in a list is not one of those that it takes; the nearest.
     Name(String, Option<String>),
 }
@@ -108,8 +134,19 @@ impl Refused {
                 format!("there is no option `{name}`"),
                 near.as_ref().map(|n| format!("did you mean `{n}`?")),
             ),
-            Self::Value(takes) => (
+            Self::Value(takes) | Self::Range(takes) => (
                 format!("the option `{name}` takes {takes}, not `{value}`"),
+                None,
+            ),
+            Self::Solver(near, all) => (
+                format!("there is no solver `{value}`"),
+                Some(match near {
+                    Some(n) => format!("did you mean `{n}`?"),
+                    None => format!("there are: {all}"),
+                }),
+            ),
+            Self::Unsuited(using) => (
+                format!("the solver `{value}` does not solve {}", using.name()),
                 None,
             ),
             Self::Name(unknown, near) => (
@@ -146,7 +183,10 @@ pub fn check(tables: &[&OptionTable], name: &str, value: &str) -> Result<Accepte
             let near = nearest(unknown, names.iter().copied()).map(str::to_string);
             Err(Refused::Name(unknown.to_string(), near))
         }
-        Some(kind) => Err(Refused::Value(kind.words())),
+        Some(kind) => Err(match kind.has_range_for(value) {
+            true => Refused::Range(kind.words()),
+            false => Refused::Value(kind.words()),
+        }),
         None => Ok(Accepted::Taken),
     }
 }
@@ -180,7 +220,28 @@ impl Kind {
             Self::Inside(low, high) => number.is_some_and(|v| low < v && v < high),
             Self::WordsOrReal(words, low, high) => word(words) || within(low, high),
             Self::Names(names) => value.split(',').all(|v| is_one_of(v.trim(), names)),
-            Self::Text => true,
+            Self::Text | Self::Word(_) => true,
+        }
+    }
+
+    /// Whether a value is a number of this kind, were it not for the range.
+    fn has_range_for(&self, value: &str) -> bool {
+        let number = value.parse::<f64>().ok().filter(|v| !v.is_nan());
+        match self {
+            Self::Whole(..) => number.is_some_and(|v| v.fract() == 0.0),
+            Self::Real(..) | Self::Inside(..) | Self::WordsOrReal(..) => number.is_some(),
+            _ => false,
+        }
+    }
+
+    /// Least and greatest number of this kind.
+    pub fn range(&self) -> (f64, f64) {
+        match *self {
+            Self::Whole(low, high)
+            | Self::Real(low, high)
+            | Self::Inside(low, high)
+            | Self::WordsOrReal(_, low, high) => (low, high),
+            _ => (f64::NEG_INFINITY, f64::INFINITY),
         }
     }
 
@@ -219,6 +280,7 @@ impl Kind {
             }
             Self::Names(_) => "names separated by commas".into(),
             Self::Text => "a text".into(),
+            Self::Word(words) => words.into(),
         }
     }
 }
@@ -228,7 +290,9 @@ pub fn page(tables: &[&OptionTable]) -> String {
     let mut out = String::new();
     for table in tables {
         let _ = writeln!(out, "## {}\n\n{}\n", table.backend, table.title);
-        out.push_str("| option | values | default | meaning |\n| --- | --- | --- | --- |\n");
+        if !table.rows.is_empty() {
+            out.push_str("| option | values | default | meaning |\n| --- | --- | --- | --- |\n");
+        }
         for r in table.rows {
             let values = r.kind.words().replace('|', "\\|");
             let _ = writeln!(
@@ -334,7 +398,8 @@ mod tests {
             ("loud", "maybe"),
         ] {
             let refused = taken(name, value);
-            assert!(matches!(refused, Err(Refused::Value(_))), "{name}={value}");
+            let value_or_range = matches!(refused, Err(Refused::Value(_) | Refused::Range(_)));
+            assert!(value_or_range, "{name}={value}");
         }
         assert_eq!(
             taken("acuracy", "high"),

@@ -518,11 +518,11 @@ impl Machine<'_> {
         Flow::Stop
     }
 
-    fn set_option(&mut self, name: &str, value: &OptionCode) {
-        if let ("seed", OptionCode::Number(x)) = (name, value) {
-            *self.random.borrow_mut() = Random::new(*x as i64);
-        }
+    fn set_option(&mut self, name: &str, value: &str) {
         self.options.assign(name, value);
+        if name == "seed" {
+            *self.random.borrow_mut() = self.options.random();
+        }
     }
 
     /// `option m(i:j,k)`

@@ -140,6 +140,7 @@ impl<'h> Machine<'h> {
             }
         }
         let started = host.now();
+        let random = options.random();
         let machine = Self {
             symbols: program.symbols,
             store: program.store,
@@ -157,7 +158,7 @@ impl<'h> Machine<'h> {
             put: options::PutState::default(),
             transfer: exchange::ExchangeState::default(),
             host: RefCell::new(host),
-            random: RefCell::new(Random::default()),
+            random: RefCell::new(random),
             diagnostics: RefCell::new(Vec::new()),
             errors: Cell::new(0),
             failed_statements: Cell::new(0),

@@ -1,13 +1,12 @@
 //! Option files of solvers: `m.optfile = 1` reads `ipopt.opt` or `path.opt`, `2` reads `ipopt.op2` and so on.
 //!
-//! A line holds a name and a value, with blanks or `=` between; `*` and `#` begin a comment. The file of
-//! a solver that is not in here is not read, and a warning says so.
+//! A line holds a name and a value, with blanks or `=` between; `*` and `#` begin a comment.
 
 use super::Machine;
 use crate::check::node::SymbolId;
 use crate::diag::Diagnostic;
 use crate::model::option::{Accepted, OptionTable, check};
-use crate::model::problem_type::ProblemType;
+use crate::solve::backend::Task;
 use crate::solve::registry;
 use crate::source::Span;
 
@@ -47,15 +46,14 @@ impl Machine<'_> {
     pub(super) fn option_file(
         &mut self,
         model: SymbolId,
-        using: ProblemType,
+        task: &Task,
         span: Span,
     ) -> Option<Vec<(String, String)>> {
         let number = self.model_option(model, "optfile", 0.0);
         if !(1.0..1000.0).contains(&number) {
             return Some(Vec::new());
         }
-        let choice = self.options.texts.get(using.name()).cloned();
-        let (names, tables) = registry::option_file(using, choice.as_deref());
+        let (names, tables) = registry::option_file(task);
         let extension = extension(number as u32);
         let files: Vec<String> = names.iter().map(|s| format!("{s}.{extension}")).collect();
         let warn = |message: String, help: &str| {
@@ -63,14 +61,6 @@ impl Machine<'_> {
                 .label("at this solve")
                 .help(help)
         };
-        if files.is_empty() {
-            let name = choice.as_deref().unwrap_or(using.name()).to_string();
-            self.note(warn(
-                format!("the options of `{name}` are not read: another solver runs here"),
-                "options of the solvers inside stand in `ipopt.opt` and `path.opt`",
-            ));
-            return Some(Vec::new());
-        }
         for file in &files {
             if !self.file_exists(file, span) {
                 continue;

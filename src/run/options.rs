@@ -1,12 +1,13 @@
 //! Options of a run, and what models and files remember.
 
-use crate::check::node::{OptionCode, SymbolId};
-use crate::check::option::is_statement_option;
-use crate::model::option::{Accepted, Refused, check, switch};
+use super::random::Random;
+use crate::check::node::SymbolId;
+use crate::model::language::is_option;
+use crate::model::option::{Accepted, Refused, switch};
 use crate::model::outcome::Basis;
 use crate::report::json::SharedReport;
 use crate::report::textfile::TextFile;
-use crate::solve::registry::OPTION_TABLES;
+use crate::solve::registry::SOLVERS;
 use crate::source::{Span, named_constant};
 use rustc_hash::FxHashMap;
 use std::cell::Cell;
@@ -94,25 +95,15 @@ impl Default for Options {
 }
 
 impl Options {
-    /// `--option K=V`, as the statement `option K = V` before the first statement would set it. Gives the names that
-    /// mean nothing here; Err: what is wrong with one of them, in a sentence.
+    /// `--option K=V`, as the statement `option K = V` before the first statement would set it. Gives those that mean
+    /// nothing here; Err: what is wrong with one of them, in a sentence.
     pub fn set(&mut self, pairs: &[(String, String)]) -> Result<Vec<String>, String> {
         let mut ignored = Vec::new();
         for (name, value) in pairs {
             let name = name.to_lowercase();
-            if name == "log" {
-                self.log = switch(value).unwrap_or(true);
-                continue;
-            }
-            let number = value.parse().map(OptionCode::Number);
-            let code = number.unwrap_or_else(|_| OptionCode::Text(value.as_str().into()));
-            if is_statement_option(&name) {
-                self.assign(&name, &code);
-                continue;
-            }
-            match check(OPTION_TABLES, &name, value) {
-                Ok(Accepted::Taken) => self.solver_options.push((name, value.clone())),
-                Ok(Accepted::Ignored) => ignored.push(name),
+            match SOLVERS.check(&name, value) {
+                Ok(Accepted::Taken) => self.assign(&name, value),
+                Ok(Accepted::Ignored) => ignored.push(format!("{name}={value}")),
                 Err(refused) => {
                     let (message, help) = refused.words(&name, value);
                     return Err(match (help, refused) {
@@ -129,36 +120,36 @@ impl Options {
     }
 
     /// What an `option` statement does; `name` in lower case.
-    pub fn assign(&mut self, name: &str, value: &OptionCode) {
-        if !is_statement_option(name) {
-            let text = match value {
-                OptionCode::Flag => return,
-                OptionCode::Number(x) => x.to_string(),
-                OptionCode::Text(t) => t.to_string(),
-            };
-            self.solver_options.retain(|(k, _)| k != name);
-            if !text.eq_ignore_ascii_case("default") {
-                self.solver_options.push((name.to_string(), text));
-            }
-            return;
-        }
-        let (number, text) = match value {
-            OptionCode::Flag => return,
-            OptionCode::Number(x) => (Some(*x), None),
-            OptionCode::Text(t) => match t.to_lowercase() {
-                t if t == "on" || t == "yes" => (Some(1.0), Some(t)),
-                t if t == "off" || t == "no" => (Some(0.0), Some(t)),
-                t if t == "default" => (None, None),
-                t => {
-                    let code = named_constant(&format!("{name}.{t}"));
-                    (code.and_then(|c| c.parse().ok()), Some(t))
-                }
-            },
-        };
+    pub fn assign(&mut self, name: &str, value: &str) {
         self.numbers.remove(name);
         self.texts.remove(name);
+        self.solver_options.retain(|(k, _)| k != name);
+        let is_default = value.eq_ignore_ascii_case("default");
+        if name == "log" {
+            self.log = switch(value).unwrap_or(false);
+        }
+        if is_default {
+            return;
+        }
+        if !is_option(name) {
+            self.solver_options
+                .push((name.to_string(), value.to_string()));
+            return;
+        }
+        let value = value.to_lowercase();
+        let code = || named_constant(&format!("{name}.{value}"))?.parse().ok();
+        let number = value.parse().ok().or_else(|| match value.as_str() {
+            "silent" => Some(2.0),
+            word => switch(word).map(f64::from).or_else(code),
+        });
         self.numbers.extend(number.map(|x| (name.to_string(), x)));
-        self.texts.extend(text.map(|t| (name.to_string(), t)));
+        self.texts.insert(name.to_string(), value);
+    }
+
+    /// Where random numbers begin.
+    pub(super) fn random(&self) -> Random {
+        self.number("seed")
+            .map_or_else(Random::default, |s| Random::new(s as i64))
     }
 
     /// `option gams_power = on`: `x**y` is exp(y·log x), with its rounding, as GAMS computes it.

@@ -7,9 +7,11 @@ use crate::check::node::*;
 use crate::check::symbols::attribute;
 use crate::data::table::Table;
 use crate::data::universe::Label;
-use crate::data::value::{EPS, NA};
+use crate::data::value::{EPS, NA, number};
 use crate::diag::Diagnostic;
 use crate::model::instance::{ColumnKind, Instance, Relation};
+use crate::model::language::LANGUAGE;
+use crate::model::option::Kind;
 use crate::model::origin::{Blocks, Origin};
 use crate::model::outcome::{Basis, ModelStatus, SolverStatus};
 use crate::model::problem_type::ProblemType;
@@ -92,6 +94,30 @@ impl Machine<'_> {
             .unwrap_or(default)
     }
 
+    /// Whether the model's own options lie in their ranges; what does not is said. GAMS lets pass what may be words.
+    fn has_valid_attributes(&mut self, model: SymbolId, span: Span) -> bool {
+        let Some(state) = self.models.get(&model) else {
+            return true;
+        };
+        let outside = LANGUAGE.rows.iter().filter_map(|row| {
+            let value = state.get(row.name).map(number).filter(|v| !v.is_nan())?;
+            let (low, high) = row.kind.range();
+            (!(low..=high).contains(&value)).then_some((row, value))
+        });
+        let mut valid = true;
+        for (row, value) in outside.collect::<Vec<_>>() {
+            let name = format!("{}.{}", self.symbols.get(model).name, row.name);
+            let message = format!("`{name}` takes {}, not {value}", row.kind.words());
+            if !matches!(row.kind, Kind::WordsOrReal(..)) {
+                valid = false;
+                self.note(Diagnostic::execution("E0423", span, message).label("at this solve"));
+            } else if self.passed_over.insert(name) {
+                self.note(Diagnostic::warning("E0423", span, message).label("at this solve"));
+            }
+        }
+        valid
+    }
+
     pub(super) fn solve(&mut self, s: &SolveCode, span: Span, frame: &mut Frame) -> Flow {
         let flow = match s.scenario {
             Some(dict) => self.scenarios(dict, s, span, frame),
@@ -108,6 +134,9 @@ impl Machine<'_> {
         }
         if self.failed() {
             self.consequence(span, "so this is not solved, and the run ends here");
+            return Flow::Stop;
+        }
+        if !self.has_valid_attributes(s.model, span) {
             return Flow::Stop;
         }
         let begin = self.elapsed();
@@ -139,7 +168,9 @@ impl Machine<'_> {
             self.report().solves.push(self.not_solved(s, &generated));
             return Flow::Next;
         }
-        let Some(mut options) = self.option_file(s.model, s.using, span) else {
+        let choice = self.options.texts.get(s.using.name()).cloned();
+        let task = Task::new(s.using, &generated.instance).by(choice.as_deref());
+        let Some(mut options) = self.option_file(s.model, &task, span) else {
             return Flow::Stop;
         };
         // The command line and the `option` statement have the last word.
@@ -158,7 +189,6 @@ impl Machine<'_> {
             let square = s.using == ProblemType::Cns;
             self.examine(&generated.instance, &generated.origin, square, span);
         }
-        let choice = self.options.texts.get(s.using.name()).cloned();
         let mut monitor = RunMonitor {
             machine: self,
             origin: &generated.origin,
@@ -168,7 +198,7 @@ impl Machine<'_> {
         let start = self.start(s.model, instance, &settings);
         let task = Task {
             basis: start.as_deref(),
-            ..Task::new(s.using, instance).by(choice.as_deref())
+            ..task
         };
         let result = answer_with(BACKENDS, &task, &settings, &budget);
         match result {

@@ -4,6 +4,8 @@
 //! [`Instance`] of numbers, asks the [`Budget`] in every loop, and returns the best point that it has seen, with a claim. What
 //! that point is worth is measured on the instance as it was given ([`super::answer`]), whatever the backend claims.
 
+use super::lp::form::{Problem, Sparse};
+use super::lp::interior::Run;
 use super::mip::Report;
 use super::mpec::Stationarity;
 use super::{Budget, Settings, SolveError};
@@ -157,10 +159,21 @@ pub struct About {
     pub supports: Supports,
     /// Its options.
     pub options: &'static OptionTable,
+    /// Option files that `m.optfile = 1` reads for it, the first that is there: `path` for `path.opt`.
+    pub option_files: &'static [&'static str],
 }
 
 /// What came of a solve. Err: the instance cannot be solved as it is, with the row or column to blame.
 pub type Replied = Result<Reply, SolveError>;
+
+/// What solves convex quadratic programs for a backend.
+#[derive(Clone, Copy, Debug)]
+pub struct QuadraticEngine {
+    /// Its name.
+    pub name: &'static str,
+    /// Takes linear rows, and the Hessian's upper triangle by columns.
+    pub solve: fn(&Problem, &Sparse, &Budget) -> Run,
+}
 
 /// A solver.
 pub trait Backend: Sync {
@@ -169,6 +182,10 @@ pub trait Backend: Sync {
     /// Whether it takes a task, where there is more to say than [`Supports`] does.
     fn takes(&self, task: &Task) -> bool {
         self.about().supports.takes(task)
+    }
+    /// What solves convex quadratic programs where the user names this backend for them.
+    fn quadratic(&self) -> Option<QuadraticEngine> {
+        None
     }
     /// Solves a task that it takes.
     fn solve(&self, task: &Task, settings: &Settings, budget: &Budget) -> Replied;

@@ -177,6 +177,7 @@ impl Backend for Bmcp {
                 ..Supports::new(&[ProblemType::Mcp, ProblemType::Cns], Terms::Kinks)
             },
             options: &mcp::OPTIONS,
+            option_files: &["path", "bmcp"],
         }
     }
 
@@ -369,9 +370,9 @@ fn running_away(problem: &mut Square, x: &[f64]) -> Option<usize> {
     let (lower, upper) = (problem.lower.clone(), problem.upper.clone());
     let endless = |j: usize| {
         if x[j] > 0.0 {
-            upper[j] > 1e20
+            upper[j] >= mcp::INFINITY
         } else {
-            lower[j] < -1e20
+            lower[j] <= -mcp::INFINITY
         }
     };
     let far = (0..x.len()).filter(|&j| x[j].abs() > FAR && endless(j));

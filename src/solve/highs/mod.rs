@@ -53,6 +53,7 @@ impl Backend for Highs {
                 ..Supports::new(&[ProblemType::Mip], Terms::Linear)
             },
             options: &OPTIONS,
+            option_files: &[NAME],
         }
     }
 
@@ -241,7 +242,15 @@ impl Backend for Continuous {
                 ..Supports::new(lp::TYPES, Terms::Smooth)
             },
             options: &OPTIONS,
+            option_files: &[NAME],
         }
+    }
+
+    fn quadratic(&self) -> Option<QuadraticEngine> {
+        Some(QuadraticEngine {
+            name: NAME,
+            solve: quadratic,
+        })
     }
 
     fn solve(&self, task: &Task, settings: &Settings, budget: &Budget) -> Replied {
@@ -305,7 +314,7 @@ fn linear(
 }
 
 /// A convex quadratic program; of its Hessian the upper triangle by columns.
-pub(super) fn quadratic(problem: &Problem, hessian: &Sparse, budget: &Budget) -> interior::Run {
+fn quadratic(problem: &Problem, hessian: &Sparse, budget: &Budget) -> interior::Run {
     let engine = Engine::new(problem, &[], Some(hessian));
     let run = engine.map(|engine| engine.run(budget, false, &|v| v));
     let ended = match run.as_ref().map_or(Status::Failed, |run| run.status) {

@@ -12,7 +12,7 @@ mod presolve;
 pub mod scale;
 pub mod simplex;
 
-use super::backend::{About, Backend, Replied, Supports, Task, Terms};
+use super::backend::{About, Backend, QuadraticEngine, Replied, Supports, Task, Terms};
 use super::noise;
 use super::strategy::{Strategies, Strategy};
 use super::{Budget, Claim, Outcome, Settings, SolveError, SolverStatus, Stop};
@@ -23,6 +23,14 @@ use interior::Aim;
 pub use options::OPTIONS;
 use scale::Scaling;
 use simplex::{Basis, Pivot, Simplex, State};
+
+/// Clarabel's interior-point method for convex quadratic programs; the active set found there is solved for afterwards.
+pub(super) const QUADRATIC: QuadraticEngine = QuadraticEngine {
+    name: "clarabel",
+    solve: |linear, hessian, budget| {
+        interior::solve(linear, Some(hessian), Aim::Tolerance(1e-9), budget)
+    },
+};
 
 /// How a method ended, in the units of the problem it was given.
 #[derive(Clone, Debug, PartialEq)]
@@ -112,7 +120,12 @@ impl Backend for Clarabel {
             version: "lp: interior point, Clarabel 0.11.1, with a simplex finish on feral 0.22.0",
             supports: SUPPORTS,
             options: &OPTIONS,
+            option_files: &["clarabel"],
         }
+    }
+
+    fn quadratic(&self) -> Option<QuadraticEngine> {
+        Some(QUADRATIC)
     }
 
     fn solve(&self, task: &Task, settings: &Settings, budget: &Budget) -> Replied {
@@ -142,6 +155,7 @@ impl Backend for SimplexAlone {
                 ..SUPPORTS
             },
             options: &OPTIONS,
+            option_files: &["clarabel"],
         }
     }
 

@@ -234,7 +234,7 @@ pub struct NoHelp;
 impl Help for NoHelp {}
 
 /// Bounds beyond this count as infinite, as in PATH and GAMS.
-const INFINITY: f64 = 1e20;
+pub const INFINITY: f64 = 1e20;
 
 /// Solves a mixed complementarity problem.
 ///

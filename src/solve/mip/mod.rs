@@ -88,6 +88,7 @@ impl Backend for Bmip {
                 ..Supports::new(TYPES, Terms::Kinks)
             },
             options: &OPTIONS,
+            option_files: &[NAME],
         }
     }
 

@@ -83,6 +83,7 @@ impl Backend for Bmpec {
                 ..Supports::new(&[ProblemType::Mpec, ProblemType::Rmpec], Terms::Smooth)
             },
             options: &OPTIONS,
+            option_files: &["bmpec"],
         }
     }
 

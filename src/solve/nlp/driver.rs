@@ -14,6 +14,7 @@
 //! The first certified point wins. Where there is none, the best point that was seen is returned, and
 //! called what it is.
 
+use super::Convexity;
 use super::consistent::consistent_start;
 use super::growth::Growth;
 use super::interior_point::{Ended, InteriorPoint, lock};
@@ -25,7 +26,6 @@ use super::schedule::{
 };
 use super::slqp::Effort;
 use super::trial::{Trial, clean, polished, residuals_at, tidy, without_noise};
-use super::{Convexity, Engine};
 use crate::autodiff::{Degree, ErrorKind, EvalFailure, Evaluator, kinks};
 use crate::model::instance::Instance;
 use crate::solve::backend::Task;
@@ -33,7 +33,7 @@ use crate::solve::budget::{Budget, Size};
 use crate::solve::certificate::nonlinear::beside_kinks;
 use crate::solve::factor_size::symmetric_size;
 use crate::solve::random::Random;
-use crate::solve::{Outcome, Settings, SolveError, Strategy};
+use crate::solve::{Outcome, Settings, SolveError, Strategy, lp};
 use std::cell::OnceCell;
 use std::sync::{Arc, Mutex};
 
@@ -74,7 +74,7 @@ pub fn solve(
     check_start(instance, &mut problem, &start)?;
     let quadratic = match convexity {
         Convexity::Ignored => None,
-        Convexity::Used => Quadratic::new(&mut problem, Engine::Clarabel, budget),
+        Convexity::Used => Quadratic::new(&mut problem, lp::QUADRATIC, budget),
         Convexity::Asked(engine) => Quadratic::new(&mut problem, engine, budget),
     };
     let quadratic = quadratic.filter(|_| settings.runs(Strategy::ConvexQuadratic));
@@ -83,11 +83,11 @@ pub fn solve(
         driver.message = Some(format!(
             "not a convex quadratic program with linear rows: solved by {}, not by {}",
             interior_point.about().name,
-            engine.name()
+            engine.name
         ));
     }
     driver.convex = quadratic.is_some().then_some(convexity);
-    driver.named = convexity == Convexity::Ignored;
+    driver.named = matches!(convexity, Convexity::Ignored);
     driver.run(quadratic)
 }
 

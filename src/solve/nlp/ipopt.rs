@@ -53,10 +53,11 @@ impl InteriorPoint for Ipopt {
     fn about(&self) -> About {
         About {
             name: "ipopt",
-            aliases: &[],
+            aliases: &["ipopth"],
             version: "nlp, dnlp, qcp: Ipopt of the system, through ipopt-sys 0.6",
             supports: SUPPORTS,
             options: &IPOPT_OPTIONS,
+            option_files: &["ipopt"],
         }
     }
 

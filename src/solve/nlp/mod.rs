@@ -30,7 +30,8 @@ mod symmetric;
 mod trial;
 mod verdict;
 
-use super::backend::{About, Backend, Replied, Supports, Task, Terms, is_called};
+use super::backend::{About, Backend, QuadraticEngine, Replied, Supports, Task, Terms, is_called};
+use super::registry::BACKENDS;
 use super::{Budget, Settings, lp};
 use interior_point::InteriorPoint;
 #[cfg(feature = "ipopt")]
@@ -38,7 +39,6 @@ pub use options::IPOPT_OPTIONS;
 #[cfg(feature = "pounce")]
 pub use options::POUNCE_OPTIONS;
 pub use options::SHARED_OPTIONS;
-pub use quadratic::Engine;
 
 /// Name of the threads on which interior-point solvers run that may panic.
 pub const THREAD: &str = "nonlinear solver";
@@ -54,14 +54,14 @@ pub fn interior_point_solvers() -> &'static [&'static dyn InteriorPoint] {
 }
 
 /// What is made of a convex quadratic program.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub enum Convexity {
     /// Nothing: the interior-point solver was chosen by name.
     Ignored,
     /// Clarabel solves it.
     Used,
     /// This solves it, the status is `optimal`, and the user hears if it is not convex.
-    Asked(Engine),
+    Asked(QuadraticEngine),
 }
 
 /// What interior-point solvers take.
@@ -81,13 +81,14 @@ impl Backend for Nonlinear {
     }
 
     fn solve(&self, task: &Task, settings: &Settings, budget: &Budget) -> Replied {
+        let named = |name| BACKENDS.iter().filter(move |b| is_called(**b, name));
         let convexity = match task.choice {
-            Some("clarabel") => Convexity::Asked(Engine::Clarabel),
-            #[cfg(feature = "highs")]
-            Some("highs") => Convexity::Asked(Engine::Highs),
             Some(name) if is_called(self, name) => Convexity::Ignored,
-            // a name that no solver of ours bears is some other solver of the same model type in GAMS
-            _ => Convexity::Used,
+            Some(name) => match named(name).find_map(|b| b.quadratic()) {
+                Some(engine) => Convexity::Asked(engine),
+                None => Convexity::Used,
+            },
+            None => Convexity::Used,
         };
         let outcome = driver::solve(task, self.0, convexity, settings, budget)?;
         Ok(outcome.into())

@@ -41,10 +41,15 @@ impl InteriorPoint for Pounce {
     fn about(&self) -> About {
         About {
             name: "pounce",
-            aliases: &[],
+            // It is Ipopt's algorithm.
+            aliases: match cfg!(feature = "ipopt") {
+                true => &[],
+                false => &["ipopt", "ipopth"],
+            },
             version: "nlp, dnlp, qcp: Ipopt's algorithm in Rust, pounce 0.14.0",
             supports: SUPPORTS,
             options: &POUNCE_OPTIONS,
+            option_files: &["pounce", "ipopt"],
         }
     }
 

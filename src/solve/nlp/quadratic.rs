@@ -14,44 +14,21 @@ use super::interior_point::{Ended, Solution};
 use super::problem::{Entry, Nlp, ObjectiveForm, Problem};
 use crate::autodiff::Degree;
 use crate::solve::Budget;
+use crate::solve::backend::QuadraticEngine;
 use crate::solve::factor_size::symmetric_size;
 use crate::solve::lp;
 use crate::solve::lp::form::{self, Sparse};
-use crate::solve::lp::interior::{self, Aim};
 use faer::Side;
 use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
 use faer::sparse::{SparseColMat, Triplet};
 
 /// What the shift of the diagonal is to the largest entry of H.
 const SHIFT: f64 = 1e-12;
-/// Clarabel's tolerance; the active set found there is solved for afterwards.
-const TOLERANCE: f64 = 1e-9;
-
-/// What solves a convex quadratic program.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Engine {
-    /// Clarabel's interior-point method.
-    Clarabel,
-    /// HiGHS's active-set method.
-    #[cfg(feature = "highs")]
-    Highs,
-}
-
-impl Engine {
-    /// Name of the solver.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Clarabel => "clarabel",
-            #[cfg(feature = "highs")]
-            Self::Highs => "highs",
-        }
-    }
-}
 
 /// A convex quadratic program.
 #[derive(Debug)]
 pub struct Quadratic {
-    engine: Engine,
+    engine: QuadraticEngine,
     linear: form::Problem,
     /// Upper triangle of H by columns.
     hessian: Sparse,
@@ -59,7 +36,7 @@ pub struct Quadratic {
 
 impl Quadratic {
     /// Takes a problem apart; None where it is none of the kind.
-    pub fn new(problem: &mut Problem, engine: Engine, budget: &Budget) -> Option<Self> {
+    pub fn new(problem: &mut Problem, engine: QuadraticEngine, budget: &Budget) -> Option<Self> {
         let ObjectiveForm::Row { row, .. } = problem.form() else {
             return None;
         };
@@ -106,19 +83,13 @@ impl Quadratic {
 
     /// Name of the engine.
     pub fn name(&self) -> &'static str {
-        self.engine.name()
+        self.engine.name
     }
 
     /// Runs the engine. Multipliers λ as in L = f + λᵀg.
     pub fn solve(&self, budget: &Budget) -> Solution {
         let (linear, hessian) = (&self.linear, &self.hessian);
-        let run = match self.engine {
-            Engine::Clarabel => {
-                interior::solve(linear, Some(hessian), Aim::Tolerance(TOLERANCE), budget)
-            }
-            #[cfg(feature = "highs")]
-            Engine::Highs => crate::solve::highs::quadratic(linear, hessian, budget),
-        };
+        let run = (self.engine.solve)(linear, hessian, budget);
         Solution {
             ended: match run.ended {
                 lp::Ended::Solved => Ended::Solved,
