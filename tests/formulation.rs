@@ -5,7 +5,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::common::{Memory, files, shared};
+use crate::common::{self, Memory, files, shared};
 use bmod::cli::host::{Output, SystemHost};
 use bmod::formulation::check::{self, Comparison};
 use bmod::formulation::convex::{Shape, shape};
@@ -220,7 +220,7 @@ fn models_of_many_kinds_are_derived_and_run() {
 #[test]
 fn latex_is_compiled() {
     if Command::new("pdflatex").arg("--version").output().is_err() {
-        println!("SKIPPED: pdflatex is not there (apt-get install texlive-latex-base)");
+        common::skipped("pdflatex is not there (apt-get install texlive-latex-base)");
         return;
     }
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));

@@ -69,7 +69,7 @@ fn loops_without_end() {
 #[test]
 fn too_much() {
     if !Path::new("/proc/self/statm").exists() {
-        println!("SKIPPED: this system does not tell how much memory is used");
+        common::skipped("this system does not tell how much memory is used");
         return;
     }
     let square = "set i / 1*40000 /;  alias(i,j);\n";
