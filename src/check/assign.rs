@@ -2,7 +2,7 @@
 
 use super::functions;
 use super::node::*;
-use super::symbols::{DomainPosition, SymbolKind, attribute};
+use super::symbols::{DomainPosition, Symbol, SymbolKind, attribute};
 use super::visit::{Reading, Visitor};
 use super::{Compiler, Failed};
 use crate::diag::Diagnostic;
@@ -57,7 +57,8 @@ impl Compiler {
             if let Some(cond) = &a.condition {
                 c.condition(cond, &mut domain)?;
             }
-            c.texts_allowed = matches!(target, Target::Object(..));
+            let is_file = matches!(symbol.kind, SymbolKind::File(_));
+            c.texts_allowed = is_file && matches!(target, Target::Object(..));
             let value = c.expr(&a.value);
             c.texts_allowed = false;
             let value = value?;
@@ -65,18 +66,7 @@ impl Compiler {
                 c.index_as_number(&value);
                 c.loose_condition(&a.value);
             }
-            let covers = domain.conditions.is_empty()
-                && !a.nonzero
-                && domain.slots.len() == symbol.dim()
-                && domain.members.len() == symbol.dim()
-                && parts.iter().enumerate().all(|(p, part)| {
-                    let Part::Slot(slot) = part else { return false };
-                    domain.slots.get(p) == Some(slot)
-                        && match symbol.domain[p] {
-                            DomainPosition::Set(d) => domain.sets[p] == c.symbols.get(d).table,
-                            _ => false,
-                        }
-                });
+            let covers = !a.nonzero && c.covers(&symbol, &domain, &parts);
             Ok((domain, Key { parts }, value, covers))
         })?;
         let sym = self.symbols.get_mut(root);
@@ -111,28 +101,32 @@ impl Compiler {
             out.push(assigned(domain, key, value));
             return Ok(());
         }
-        // A symbol without any record is read as it was; one with records, element by element.
-        let at_once = assigned(domain.clone(), key.clone(), value.clone());
-        let inner = Domain {
-            conditions: domain.conditions,
-            ..Domain::default()
-        };
-        let outer = Domain {
-            conditions: Vec::new(),
-            ..domain
-        };
-        let turns = CodeKind::Loop(outer, vec![assigned(inner, key, value)]);
         let tables = match symbol.has_attributes() {
             true => symbol.table..symbol.table + attribute::COUNT,
             false => symbol.table..symbol.table + 1,
         };
-        let records = tables.map(|t| Node::data(NodeKind::Card(t), span));
-        let or = |a, b| NodeKind::Binary(ast::BinaryOp::Or, Box::new(a), Box::new(b));
-        let records = records.reduce(|a, b| Node::data(or(a, b), span));
-        let turns = vec![Code::new(turns, span)];
-        let arms = records.into_iter().zip([turns]).collect();
-        out.push(Code::new(CodeKind::If(arms, vec![at_once]), span));
+        out.push(in_turn(
+            tables,
+            domain,
+            |d| assigned(d, key.clone(), value.clone()),
+            span,
+        ));
         Ok(())
+    }
+
+    /// Whether a domain runs over all records of a symbol.
+    fn covers(&self, symbol: &Symbol, domain: &Domain, parts: &[Part]) -> bool {
+        domain.conditions.is_empty()
+            && domain.slots.len() == symbol.dim()
+            && domain.members.len() == symbol.dim()
+            && parts.iter().enumerate().all(|(p, part)| {
+                let Part::Slot(slot) = part else { return false };
+                domain.slots.get(p) == Some(slot)
+                    && match symbol.domain[p] {
+                        DomainPosition::Set(d) => domain.sets[p] == self.symbols.get(d).table,
+                        _ => false,
+                    }
+            })
     }
 
     /// `s(t) = s(t-1) + 1 $ t > 1`: `$` takes `t` alone.
@@ -306,6 +300,31 @@ impl Compiler {
             | Target::Ignored => Vec::new(),
         }
     }
+}
+
+/// An assignment that reads what it writes: at once where the symbol has no record, which is read as it was, else element
+/// by element.
+fn in_turn(
+    tables: std::ops::Range<TableId>,
+    domain: Domain,
+    assigned: impl Fn(Domain) -> Code,
+    span: Span,
+) -> Code {
+    let at_once = assigned(domain.clone());
+    let inner = Domain {
+        conditions: domain.conditions,
+        ..Domain::default()
+    };
+    let outer = Domain {
+        conditions: Vec::new(),
+        ..domain
+    };
+    let turns = Code::new(CodeKind::Loop(outer, vec![assigned(inner)]), span);
+    let records = tables.map(|t| Node::data(NodeKind::Card(t), span));
+    let or = |a, b| NodeKind::Binary(ast::BinaryOp::Or, Box::new(a), Box::new(b));
+    let records = records.reduce(|a, b| Node::data(or(a, b), span));
+    let arms = records.into_iter().zip([vec![turns]]).collect();
+    Code::new(CodeKind::If(arms, vec![at_once]), span)
 }
 
 /// How an assignment reads what it writes to.

@@ -96,58 +96,7 @@ impl Compiler {
         }
         let domain = self.positions(&names)?;
         if let Some(s) = self.symbols.find(&d.name.name) {
-            let old = self.symbols.get(s).clone();
-            if std::mem::discriminant(&old.kind) != std::mem::discriminant(&kind) || s == UNIVERSE {
-                return self.fail(
-                    Diagnostic::error(
-                        "E0333",
-                        d.name.span,
-                        format!("`{}` is declared already, as {}", d.name.name, old.a_kind()),
-                    )
-                    .label("declared again")
-                    .other(old.declared, "first declared here")
-                    .help(match *old.name == *d.name.name {
-                        true => "choose another name",
-                        false => "choose another name: capitals do not distinguish names",
-                    }),
-                );
-            }
-            if old.open && d.domain.is_some() && domain.len() <= 20 {
-                self.reshape(s, domain.len());
-                let symbol = self.symbols.get_mut(s);
-                symbol.domain = domain;
-                symbol.open = false;
-            } else if d.domain.is_some() && domain.len() != old.dim() {
-                return self.wrong_dimension(s, d.name.span, domain.len());
-            } else if d.domain.is_some()
-                && domain != old.domain
-                && !matches!(old.kind, SymbolKind::Equation(Some(_)))
-            {
-                let compatible = domain.iter().zip(&old.domain).all(|(a, b)| match (a, b) {
-                    (DomainPosition::Set(a), DomainPosition::Set(b)) => {
-                        self.symbols.root(*a) == self.symbols.root(*b)
-                    }
-                    _ => true,
-                });
-                if !compatible {
-                    return self.fail(
-                        Diagnostic::error(
-                            "E0335",
-                            d.name.span,
-                            format!("`{}` is declared already over other sets", d.name.name),
-                        )
-                        .label("declared again")
-                        .other(old.declared, "first declared here"),
-                    );
-                }
-            }
-            let symbol = self.symbols.get_mut(s);
-            if let Some(t) = &d.text
-                && symbol.text.is_empty()
-            {
-                symbol.text = t.clone();
-            }
-            return Ok(s);
+            return self.declare_again(s, d, &kind, domain);
         }
         let dim = domain.len();
         if dim > 20 {
@@ -192,6 +141,68 @@ impl Compiler {
             self.defining.insert(new, defines);
         }
         Ok(new)
+    }
+
+    /// A further declaration of a symbol, which may give it its indices and its text.
+    fn declare_again(
+        &mut self,
+        s: SymbolId,
+        d: &SymbolDecl,
+        kind: &SymbolKind,
+        domain: Vec<DomainPosition>,
+    ) -> Result<SymbolId, Failed> {
+        let old = self.symbols.get(s).clone();
+        if std::mem::discriminant(&old.kind) != std::mem::discriminant(kind) || s == UNIVERSE {
+            return self.fail(
+                Diagnostic::error(
+                    "E0333",
+                    d.name.span,
+                    format!("`{}` is declared already, as {}", d.name.name, old.a_kind()),
+                )
+                .label("declared again")
+                .other(old.declared, "first declared here")
+                .help(match *old.name == *d.name.name {
+                    true => "choose another name",
+                    false => "choose another name: capitals do not distinguish names",
+                }),
+            );
+        }
+        if old.open && d.domain.is_some() && domain.len() <= 20 {
+            self.reshape(s, domain.len());
+            let symbol = self.symbols.get_mut(s);
+            symbol.domain = domain;
+            symbol.open = false;
+        } else if d.domain.is_some() && domain.len() != old.dim() {
+            return self.wrong_dimension(s, d.name.span, domain.len());
+        } else if d.domain.is_some()
+            && domain != old.domain
+            && !matches!(old.kind, SymbolKind::Equation(Some(_)))
+        {
+            let compatible = domain.iter().zip(&old.domain).all(|(a, b)| match (a, b) {
+                (DomainPosition::Set(a), DomainPosition::Set(b)) => {
+                    self.symbols.root(*a) == self.symbols.root(*b)
+                }
+                _ => true,
+            });
+            if !compatible {
+                return self.fail(
+                    Diagnostic::error(
+                        "E0335",
+                        d.name.span,
+                        format!("`{}` is declared already over other sets", d.name.name),
+                    )
+                    .label("declared again")
+                    .other(old.declared, "first declared here"),
+                );
+            }
+        }
+        let symbol = self.symbols.get_mut(s);
+        if let Some(t) = &d.text
+            && symbol.text.is_empty()
+        {
+            symbol.text = t.clone();
+        }
+        Ok(s)
     }
 
     pub(super) fn declare_plain(

@@ -5,6 +5,7 @@ use super::symbols::SymbolKind;
 use super::{Compiler, Failed};
 use crate::color::Paint;
 use crate::diag::{Diagnostic, nearest};
+use crate::source::Span;
 use crate::syntax::ast::{ExprKind, Figure, FigureElement};
 use std::sync::Arc;
 
@@ -172,37 +173,7 @@ impl Compiler {
                     None => d.help(format!("there are: {}", known.join(", "))),
                 });
             }
-            if matches!(name, "x" | "y") && kind == "axes" {
-                continue;
-            }
-            if matches!(
-                name,
-                "x" | "y" | "dx" | "dy" | "width" | "height" | "opacity" | "size" | "low" | "high"
-                    | "from" | "to" | "z" | "value" | "levels" | "min" | "max"
-            ) && is_text(value)
-                // A chart stands against labels as well.
-                && !(name == "x" && matches!(kind, "line" | "bar" | "errorbar"))
-            {
-                return self.fail(
-                    Diagnostic::error(
-                        "E0371",
-                        value.span,
-                        format!("`{name}` of `{kind}` is a number"),
-                    )
-                    .label("this is a text")
-                    .help(format!("give an expression, for instance `{name} = p(i)`")),
-                );
-            }
-            if let ("fill" | "stroke", NodeKind::Text(t)) = (name, &value.kind)
-                && Paint::parse(t).is_none()
-            {
-                let d = Diagnostic::error("E0372", value.span, format!("`{t}` is not a colour"))
-                    .label("unknown colour");
-                return self.fail(match nearest(t, Paint::names().iter().copied()) {
-                    Some(n) => d.help(format!("did you mean `'{n}'`?")),
-                    None => d.help("colours are CSS names (`'steelblue'`), `'#rrggbb'`, `none`, or a number for the colour scale"),
-                });
-            }
+            self.fits_argument(kind, name, value)?;
         }
         for r in required {
             if !code.arguments.iter().any(|(n, _)| n.as_deref() == Some(r)) {
@@ -220,6 +191,52 @@ impl Compiler {
                 );
             }
         }
+        self.has_indices(kind, e.kind.span, code)
+    }
+
+    /// An error for a text where a number belongs, and for what is no colour.
+    fn fits_argument(&mut self, kind: &str, name: &str, value: &Node) -> Result<(), Failed> {
+        if matches!(name, "x" | "y") && kind == "axes" {
+            return Ok(());
+        }
+        if matches!(
+            name,
+            "x" | "y" | "dx" | "dy" | "width" | "height" | "opacity" | "size" | "low" | "high"
+                | "from" | "to" | "z" | "value" | "levels" | "min" | "max"
+        ) && is_text(value)
+            // A chart stands against labels as well.
+            && !(name == "x" && matches!(kind, "line" | "bar" | "errorbar"))
+        {
+            return self.fail(
+                Diagnostic::error(
+                    "E0371",
+                    value.span,
+                    format!("`{name}` of `{kind}` is a number"),
+                )
+                .label("this is a text")
+                .help(format!("give an expression, for instance `{name} = p(i)`")),
+            );
+        }
+        if let ("fill" | "stroke", NodeKind::Text(t)) = (name, &value.kind)
+            && Paint::parse(t).is_none()
+        {
+            let d = Diagnostic::error("E0372", value.span, format!("`{t}` is not a colour"))
+                .label("unknown colour");
+            return self.fail(match nearest(t, Paint::names().iter().copied()) {
+                Some(n) => d.help(format!("did you mean `'{n}'`?")),
+                None => d.help("colours are CSS names (`'steelblue'`), `'#rrggbb'`, `none`, or a number for the colour scale"),
+            });
+        }
+        Ok(())
+    }
+
+    /// An error for an element without the indices that it runs over.
+    fn has_indices(
+        &mut self,
+        kind: &str,
+        span: Span,
+        code: &FigureElementCode,
+    ) -> Result<(), Failed> {
         let slots = code.domain.as_ref().map_or(0, |d| d.slots.len());
         if matches!(kind, "heat" | "contour" | "arc" | "gantt") && slots < 2 {
             let example = match kind {
@@ -228,7 +245,7 @@ impl Compiler {
                 _ => "of two indices, the first runs along x, the last along y",
             };
             return self.fail(
-                Diagnostic::error("E0373", e.kind.span, format!("`{kind}` needs two indices"))
+                Diagnostic::error("E0373", span, format!("`{kind}` needs two indices"))
                     .label(format!("{slots} here"))
                     .help(format!("write {example}")),
             );
@@ -239,7 +256,7 @@ impl Compiler {
         ) && slots == 0
         {
             return self.fail(
-                Diagnostic::error("E0373", e.kind.span, format!("`{kind}` needs an index that runs over its points"))
+                Diagnostic::error("E0373", span, format!("`{kind}` needs an index that runs over its points"))
                     .label("no index here")
                     .help(format!("write `{kind}(i)`; of several indices the last runs along, the others give one {kind} each")),
             );

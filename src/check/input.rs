@@ -2,7 +2,7 @@
 //! statements say about it is passed over.
 
 use super::node::SymbolId;
-use super::symbols::{DomainPosition, SymbolKind, UNIVERSE};
+use super::symbols::{DomainPosition, Symbol, SymbolKind, UNIVERSE};
 use super::{Compiler, Failed, Program};
 use crate::data::input::{Input, InputData, Keys};
 use crate::data::table::Table;
@@ -67,14 +67,8 @@ impl Compiler {
         true
     }
 
-    fn fill_from_input(
-        &mut self,
-        s: SymbolId,
-        input: &Input,
-        defines: &[bool],
-        span: Span,
-    ) -> Result<(), Failed> {
-        let symbol = self.symbols.get(s).clone();
+    /// An error for data that a symbol of this kind and shape cannot have.
+    fn fits_symbol(&mut self, symbol: &Symbol, input: &Input, span: Span) -> Result<(), Failed> {
         let wrong_kind = match (&symbol.kind, &input.data) {
             (SymbolKind::Set { .. }, InputData::Values(..)) => Some("numbers"),
             (SymbolKind::Parameter { .. }, InputData::Members(..)) => Some("members"),
@@ -126,6 +120,19 @@ impl Compiler {
                 .label("declared here"),
             );
         }
+        Ok(())
+    }
+
+    fn fill_from_input(
+        &mut self,
+        s: SymbolId,
+        input: &Input,
+        defines: &[bool],
+        span: Span,
+    ) -> Result<(), Failed> {
+        let symbol = self.symbols.get(s).clone();
+        self.fits_symbol(&symbol, input, span)?;
+        let (dim, given) = (symbol.dim(), input.data.keys());
         // Labels are looked up when a record first has them: the universe keeps the order of the records.
         let unknown = |p: usize| vec![None; given.labels(p).len()];
         let mut known: Vec<Vec<Option<Label>>> = (0..dim).map(unknown).collect();

@@ -1,6 +1,6 @@
 //! `table` declarations.
 
-use super::data::{Familiar, Seen};
+use super::data::{Familiar, Filling, Seen};
 use super::expansion::{Tuples, record_bytes, set_prefix};
 use super::node::SymbolId;
 use super::symbols::SymbolKind;
@@ -11,7 +11,7 @@ use crate::diag::Diagnostic;
 use crate::source::{Known, SourceMap, Span};
 use crate::syntax::ast::{ParameterDecl, SetDecl, SymbolDecl, TableDecl, TableOf, VariableKind};
 use crate::syntax::data::{KeyPart, Tail, width};
-use crate::syntax::table::{TableItem, TableReader};
+use crate::syntax::table::{Cell, TableItem, TableReader};
 
 /// What the label of a row or column stands for.
 #[derive(Default)]
@@ -36,6 +36,13 @@ struct Lines {
     rows: Seen,
     key: Vec<Label>,
     familiar: Familiar,
+    /// The positions whose sets the table defines.
+    defines: Vec<bool>,
+    filling: Filling,
+    /// Where the symbol is named.
+    name: Span,
+    /// Room for the records of a cell.
+    keys: Tuples,
 }
 
 impl Compiler {
@@ -83,7 +90,7 @@ impl Compiler {
             return Ok(());
         }
         let open = self.symbols.get(s).open;
-        let mut filling = self.open_data(s, name)?;
+        let filling = self.open_data(s, name)?;
         self.open_domains(s, &defines, name)?;
         if open {
             let mut reader = self.table_reader(body, 1, map);
@@ -97,113 +104,122 @@ impl Compiler {
         let symbol = self.symbols.get(s).clone();
         let dim = symbol.dim();
         if dim < 2 {
+            let of = &symbol.name;
+            let message = format!("a table has rows and columns; `{of}` has {dim} index");
             return self.fail(
-                Diagnostic::error(
-                    "E0346",
-                    name,
-                    format!(
-                        "a table has rows and columns; `{}` has {dim} index",
-                        symbol.name
-                    ),
-                )
-                .label("at least two index positions are needed")
-                .help("use a `parameter` with a list instead"),
+                Diagnostic::error("E0346", name, message)
+                    .label("at least two index positions are needed")
+                    .help("use a `parameter` with a list instead"),
             );
         }
-        let mut reader = self.table_reader(body, dim, map);
-        let mut lines = Lines {
+        let lines = Lines {
             columns: Vec::new(),
             row: Line::Open,
             headings: Seen::default(),
             rows: Seen::default(),
             key: Vec::new(),
             familiar: Familiar::new(&self.symbols, s),
+            defines,
+            filling,
+            name,
+            keys: Tuples::default(),
         };
-        let mut keys = Tuples::default();
+        self.fill_table(s, lines, body, map)?;
+        self.store.table_mut(symbol.table).tidy();
+        Ok(())
+    }
+
+    fn fill_table(
+        &mut self,
+        s: SymbolId,
+        mut lines: Lines,
+        body: Span,
+        map: &SourceMap,
+    ) -> Result<(), Failed> {
+        let symbol = self.symbols.get(s);
+        let (dim, table) = (symbol.dim(), symbol.table);
+        let mut reader = self.table_reader(body, dim, map);
         let text = map.text(body);
         let height = memchr::memchr_iter(b'\n', text.as_bytes()).count();
         while let Some(item) = reader.next() {
-            let cell = match item {
-                Ok(TableItem::Cell(c)) => c,
+            match item {
+                Ok(TableItem::Cell(cell)) => self.fill_cell(s, &mut lines, &cell)?,
                 // Labels count even where nothing stands under or behind them: they are checked, and
                 // take their place in the universe.
                 Ok(TableItem::Headings) => {
                     // A value and the blank before it take two characters at least.
                     let cells = (height * reader.columns().count()).min(text.len() / 2);
-                    self.store.table_mut(symbol.table).reserve(cells);
+                    self.store.table_mut(table).reserve(cells);
                     lines.columns.clear();
                     lines.rows = Seen::default();
                     for (key, span) in reader.columns() {
                         let at = dim.saturating_sub(width(key));
-                        let line = self.table_line(s, at, key, &defines, name);
+                        let line = self.table_line(s, at, key, &lines.defines, lines.name);
                         let line = self.not_again(line, &mut lines.headings, span, "column");
                         lines.columns.push(line);
                     }
-                    continue;
                 }
                 Ok(TableItem::EmptyRow(key, span)) => {
-                    let line = self.table_line(s, 0, key, &defines, name);
+                    let line = self.table_line(s, 0, key, &lines.defines, lines.name);
                     self.not_again(line, &mut lines.rows, span, "row");
-                    continue;
                 }
                 Err(d) => {
                     self.report(*d);
                     if self.errors() >= MAX_ERRORS {
                         break;
                     }
-                    continue;
-                }
-            };
-            if cell.first {
-                let row = match self.familiar_line(&mut lines.familiar, cell.row, &defines) {
-                    Some(labels) => Line::Labels(labels),
-                    None => self.table_line(s, 0, cell.row, &defines, name),
-                };
-                lines.row = self.not_again(row, &mut lines.rows, cell.row_span, "row");
-            }
-            let value = match cell.value {
-                Tail::Number(v, _) => v,
-                Tail::Name(n, at) => match self.acronym(n, at) {
-                    Ok(v) => v,
-                    Err(_) => continue,
-                },
-                _ => continue,
-            };
-            let value = match symbol.is_set() {
-                true => f64::from(u8::from(truth(value))),
-                false => self.stored(value, cell.span),
-            };
-            match (&lines.row, lines.columns.get(cell.place)) {
-                (Line::Refused, _) | (_, Some(Line::Refused)) => continue,
-                (Line::Labels(row), Some(Line::Labels(column)))
-                    if row.len() + column.len() == dim =>
-                {
-                    self.take(1, record_bytes(dim), cell.span)?;
-                    lines.key.clear();
-                    lines.key.extend_from_slice(row);
-                    lines.key.extend_from_slice(column);
-                    // Neither its row nor its column comes twice, so it does not.
-                    self.store.tables[symbol.table as usize].set(&lines.key, value);
-                    continue;
-                }
-                _ => {}
-            }
-            let parts = [cell.row, cell.column].concat();
-            if self
-                .expand(s, &parts, cell.span, &defines, &mut keys)
-                .is_err()
-            {
-                continue;
-            }
-            for k in keys.rows().map(|r| r.labels) {
-                if symbol.is_set() {
-                    self.store.table_mut(symbol.table).set(k, value);
-                } else {
-                    self.put_value(&mut filling, k, value, cell.span);
                 }
             }
         }
-        self.store.table_mut(symbol.table).tidy();
+        Ok(())
+    }
+
+    fn fill_cell(&mut self, s: SymbolId, lines: &mut Lines, cell: &Cell) -> Result<(), Failed> {
+        if cell.first {
+            let row = match self.familiar_line(&mut lines.familiar, cell.row, &lines.defines) {
+                Some(labels) => Line::Labels(labels),
+                None => self.table_line(s, 0, cell.row, &lines.defines, lines.name),
+            };
+            lines.row = self.not_again(row, &mut lines.rows, cell.row_span, "row");
+        }
+        let value = match cell.value {
+            Tail::Number(v, _) => Some(v),
+            Tail::Name(n, at) => self.acronym(n, at).ok(),
+            _ => None,
+        };
+        let Some(value) = value else { return Ok(()) };
+        let symbol = self.symbols.get(s);
+        let (dim, table, is_set) = (symbol.dim(), symbol.table, symbol.is_set());
+        let value = match is_set {
+            true => f64::from(u8::from(truth(value))),
+            false => self.stored(value, cell.span),
+        };
+        match (&lines.row, lines.columns.get(cell.place)) {
+            (Line::Refused, _) | (_, Some(Line::Refused)) => return Ok(()),
+            (Line::Labels(row), Some(Line::Labels(column))) if row.len() + column.len() == dim => {
+                self.take(1, record_bytes(dim), cell.span)?;
+                lines.key.clear();
+                lines.key.extend_from_slice(row);
+                lines.key.extend_from_slice(column);
+                // Neither its row nor its column comes twice, so it does not.
+                self.store.tables[table as usize].set(&lines.key, value);
+                return Ok(());
+            }
+            _ => {}
+        }
+        let parts = [cell.row, cell.column].concat();
+        let found = self.expand(s, &parts, cell.span, &lines.defines, &mut lines.keys);
+        for k in lines
+            .keys
+            .rows()
+            .filter(|_| found.is_ok())
+            .map(|r| r.labels)
+        {
+            match is_set {
+                true => self.store.table_mut(table).set(k, value),
+                false => self.put_value(&mut lines.filling, k, value, cell.span),
+            }
+        }
         Ok(())
     }
 

@@ -142,6 +142,259 @@ fn cost(branches: &[Branch]) -> f64 {
     }
 }
 
+/// Records that the conditions and what is wanted need.
+fn supports(d: &Domain, wanted: Wanted, analysis: &mut Analysis) -> Vec<Sparse> {
+    let mut supports: Vec<Sparse> = Vec::new();
+    if !d.slots.is_empty() {
+        supports.extend(analysis.conjuncts(&d.conditions));
+        if let Some(v) = wanted.value
+            && let Some(mut s) = analysis.resting_at(wanted.rest, v, v.has_var)
+        {
+            s.support.extend(wanted.stored.map(|(table, key)| {
+                let key = key.clone();
+                vec![Driver { table, key }]
+            }));
+            // Numbers are drawn where the value or what is stored can be other than 0.
+            let whole = |a: &Vec<Driver>| {
+                let found: Vec<Slot> = a.iter().flat_map(|m| slots_of_key(&m.key)).collect();
+                d.slots.iter().all(|s| found.contains(s))
+            };
+            s.forced |= d.conditions.iter().any(Node::has_random)
+                && !v.has_random()
+                && s.is_plain()
+                && s.support.iter().all(whole);
+            supports.push(s);
+        }
+    }
+    supports
+}
+
+/// Records that every tuple needs, which drive the first branch, and the alternatives that replace it where that is
+/// less work; those that must be are marked.
+fn drivers(d: &Domain, supports: Vec<Sparse>) -> (Vec<Vec<Candidate>>, Vec<Alternatives>) {
+    let mut open: Vec<Alternatives> = Vec::new();
+    let mut first: Vec<Candidate> = Vec::new();
+    for s in supports {
+        let inner = |c: &Candidate| slots_of_key(&c.key).iter().any(|&s| is_inner(s, d));
+        let candidate = |m: Driver| {
+            let mut c = Candidate {
+                table: m.table,
+                key: m.key,
+                required: false,
+                done: false,
+            };
+            c.required = s.forced && !inner(&c);
+            c
+        };
+        let alternatives: Vec<Vec<Candidate>> = s
+            .support
+            .into_iter()
+            .map(|a| a.into_iter().map(candidate).collect())
+            .collect();
+        if let [one] = alternatives.as_slice() {
+            first.extend(one.iter().filter(|c| !inner(c)).cloned());
+            if !one.iter().any(inner) {
+                continue;
+            }
+        }
+        open.push((s.forced, alternatives));
+    }
+    (vec![first], open)
+}
+
+/// Whether they must be taken, and what drives each branch.
+type Alternatives = (bool, Vec<Vec<Candidate>>);
+
+/// A nest of scans in the making.
+struct Nest<'a, 'h> {
+    machine: &'a Machine<'h>,
+    domain: &'a Domain,
+    /// Slots that are run over, and those of them that are not bound yet.
+    indices: Vec<Slot>,
+    free: Vec<Slot>,
+    candidates: Vec<Candidate>,
+    /// Conjuncts, with the slots that they read.
+    filters: Vec<(&'a [usize], Vec<Slot>)>,
+    /// What a slot's label is known to be a member of, by the tables that bound it.
+    known: Vec<(Slot, TableId)>,
+    steps: Vec<Step>,
+    /// Slots as they were bound.
+    order: Vec<Slot>,
+    in_order: bool,
+}
+
+impl<'a, 'h> Nest<'a, 'h> {
+    fn new(
+        machine: &'a Machine<'h>,
+        d: &'a Domain,
+        filters: &'a [Box<[usize]>],
+        drivers: &[Candidate],
+    ) -> Self {
+        let members = d.members.iter().map(|m| Candidate {
+            table: m.table,
+            key: m.key.clone(),
+            required: true,
+            done: false,
+        });
+        let free = run_over(d, drivers);
+        let filters = filters.iter().map(|list| {
+            let conditions = || list.iter().map(|&i| &d.conditions[i]);
+            let mut used: Vec<Slot> = conditions().flat_map(slots_of).collect();
+            used.retain(|s| free.contains(s));
+            if conditions().any(Node::has_random) {
+                // Drawn once per tuple.
+                used = free.clone();
+            }
+            (&**list, used)
+        });
+        Self {
+            machine,
+            domain: d,
+            filters: filters.collect(),
+            candidates: members.chain(drivers.iter().cloned()).collect(),
+            known: Vec::new(),
+            steps: Vec::new(),
+            order: Vec::new(),
+            in_order: true,
+            indices: free.clone(),
+            free,
+        }
+    }
+
+    /// Tests what can be tested with the slots that are bound.
+    fn settle(&mut self) {
+        let Self {
+            machine,
+            domain: d,
+            free,
+            steps,
+            ..
+        } = self;
+        for c in self.candidates.iter_mut().filter(|c| !c.done && c.required) {
+            if slots_of_key(&c.key).iter().any(|s| free.contains(s)) {
+                continue;
+            }
+            c.done = true;
+            let implied = match c.key.parts.as_slice() {
+                [Part::Slot(s)] => {
+                    let mut sets = self.known.iter().filter(|(k, _)| k == s);
+                    sets.any(|&(_, t)| machine.within(t, c.table))
+                }
+                _ => false,
+            };
+            if !implied {
+                steps.push(Step::Member(c.table, c.key.clone()));
+            }
+        }
+        self.filters.retain(|(list, used)| {
+            if used.iter().any(|s| free.contains(s)) {
+                return true;
+            }
+            let conditions = || list.iter().map(|&i| &d.conditions[i]);
+            if !conditions().all(|c| machine.scanned_by(c, steps)) {
+                let changed = conditions().flat_map(slots_of);
+                let changed = changed.filter(|s| is_inner(*s, d) && self.indices.contains(s));
+                steps.push(Step::Filter((*list).into(), changed.collect()));
+            }
+            false
+        });
+    }
+
+    /// The table to be scanned next, with its fan-out.
+    fn next(&self, pick: Pick, changing: Option<TableId>) -> Option<(f64, usize)> {
+        let mut best: Option<(f64, f64, usize)> = None;
+        let candidates = self.candidates.iter().enumerate();
+        for (i, c) in candidates.filter(|(_, c)| !c.done) {
+            let Some(new) = binds(&c.key, &self.free) else {
+                continue;
+            };
+            let plain = c.key.is_plain();
+            if pick == Pick::InOrder && (new != self.free[..new.len()] || !plain) {
+                continue;
+            }
+            let t = self.machine.store.table(c.table);
+            let rows = t.len() as f64;
+            let mut groups = 1.0;
+            if t.is_tidy() && changing != Some(c.table) {
+                for (p, part) in c.key.parts.iter().enumerate() {
+                    if !mentions(part, &self.free) {
+                        groups *= f64::from(t.distinct()[p]);
+                    }
+                }
+            }
+            // Fan-out per slot that it binds.
+            let fan = (rows / groups.clamp(1.0, rows.max(1.0))).max(1e-3);
+            let each = fan.powf(1.0 / new.len() as f64);
+            if best.is_none_or(|(b, ..)| each < b * 0.999) {
+                best = Some((each, fan, i));
+            }
+        }
+        best.map(|(_, fan, i)| (fan, i))
+    }
+
+    /// Scans a candidate's table, which binds its free slots.
+    fn scan(&mut self, i: usize) {
+        let c = &mut self.candidates[i];
+        c.done = true;
+        let (mut mask, mut bind, mut unlag, mut equal) = (0u32, Vec::new(), Vec::new(), Vec::new());
+        for lagged in [false, true] {
+            for (p, part) in c.key.parts.iter().enumerate() {
+                if matches!(part, Part::Lag(_)) != lagged {
+                    continue;
+                }
+                let list = if lagged { &mut unlag } else { &mut bind };
+                match base_slot(part).filter(|s| self.free.contains(s)) {
+                    Some(s) if self.order.contains(&s) => equal.push(p as u8),
+                    Some(s) => {
+                        list.push((p as u8, s));
+                        self.order.push(s);
+                    }
+                    None => mask |= 1 << p,
+                }
+            }
+        }
+        self.free.retain(|s| !self.order.contains(s));
+        self.in_order &= unlag.is_empty();
+        for &(p, s) in &bind {
+            if self.machine.store.table(c.table).dim() == 1 {
+                self.known.push((s, c.table));
+            }
+            if let Some(t) = self.machine.position_set(c.table, p as usize) {
+                self.known.push((s, t));
+            }
+        }
+        self.steps.push(Step::Scan {
+            table: c.table,
+            key: c.key.parts.clone().into(),
+            mask,
+            bind: bind.into(),
+            unlag: unlag.into(),
+            equal: equal.into(),
+        });
+    }
+}
+
+/// The slots of a domain, and those of inner sums where drivers lead from them to one of the domain.
+fn run_over(d: &Domain, drivers: &[Candidate]) -> Vec<Slot> {
+    let mut free: Vec<Slot> = d.slots.clone();
+    let used: Vec<Vec<Slot>> = drivers.iter().map(|c| slots_of_key(&c.key)).collect();
+    loop {
+        let before = free.len();
+        for slots in &used {
+            if slots.iter().any(|s| free.contains(s)) {
+                for &s in slots {
+                    if is_inner(s, d) && !free.contains(&s) {
+                        free.push(s);
+                    }
+                }
+            }
+        }
+        if free.len() == before {
+            return free;
+        }
+    }
+}
+
 impl Machine<'_> {
     /// The plan of a domain.
     pub(super) fn plan(&self, d: &Domain, wanted: Wanted) -> Arc<Plan> {
@@ -169,57 +422,8 @@ impl Machine<'_> {
             Pick::Cheapest
         };
         let mut analysis = Analysis::new(self, &d.slots);
-        let mut supports: Vec<Sparse> = Vec::new();
-        if !d.slots.is_empty() {
-            supports.extend(analysis.conjuncts(&d.conditions));
-            if let Some(v) = wanted.value
-                && let Some(mut s) = analysis.resting_at(wanted.rest, v, v.has_var)
-            {
-                s.support.extend(wanted.stored.map(|(table, key)| {
-                    let key = key.clone();
-                    vec![Driver { table, key }]
-                }));
-                // Numbers are drawn where the value or what is stored can be other than 0.
-                let whole = |a: &Vec<Driver>| {
-                    let found: Vec<Slot> = a.iter().flat_map(|m| slots_of_key(&m.key)).collect();
-                    d.slots.iter().all(|s| found.contains(s))
-                };
-                s.forced |= d.conditions.iter().any(Node::has_random)
-                    && !v.has_random()
-                    && s.is_plain()
-                    && s.support.iter().all(whole);
-                supports.push(s);
-            }
-        }
-        // Records that every tuple needs drive the first branch; the alternatives replace it where that is
-        // less work.
-        let mut open: Vec<(bool, Vec<Vec<Candidate>>)> = Vec::new();
-        let mut branches: Vec<Vec<Candidate>> = vec![Vec::new()];
-        for s in supports {
-            let inner = |c: &Candidate| slots_of_key(&c.key).iter().any(|&s| is_inner(s, d));
-            let candidate = |m: Driver| {
-                let mut c = Candidate {
-                    table: m.table,
-                    key: m.key,
-                    required: false,
-                    done: false,
-                };
-                c.required = s.forced && !inner(&c);
-                c
-            };
-            let alternatives: Vec<Vec<Candidate>> = s
-                .support
-                .into_iter()
-                .map(|a| a.into_iter().map(candidate).collect())
-                .collect();
-            if let [one] = alternatives.as_slice() {
-                branches[0].extend(one.iter().filter(|c| !inner(c)).cloned());
-                if !one.iter().any(inner) {
-                    continue;
-                }
-            }
-            open.push((s.forced, alternatives));
-        }
+        let supports = supports(d, wanted, &mut analysis);
+        let (mut branches, mut open) = drivers(d, supports);
         // As in GAMS one condition is evaluated where another is false: an error in it is reported.
         let count = d.conditions.len();
         let filters: Vec<Box<[usize]>> = if d.conditions.iter().all(|c| analysis.is_safe(c)) {
@@ -283,168 +487,27 @@ impl Machine<'_> {
         pick: Pick,
         changing: Option<TableId>,
     ) -> Branch {
-        let mut free: Vec<Slot> = d.slots.clone();
-        let mut candidates: Vec<Candidate> = d
-            .members
-            .iter()
-            .map(|m| Candidate {
-                table: m.table,
-                key: m.key.clone(),
-                required: true,
-                done: false,
-            })
-            .collect();
-        candidates.extend_from_slice(drivers);
-        // Indices of inner sums are run over too where they lead to one of the domain.
-        let used: Vec<Vec<Slot>> = drivers.iter().map(|c| slots_of_key(&c.key)).collect();
-        loop {
-            let before = free.len();
-            for slots in &used {
-                if slots.iter().any(|s| free.contains(s)) {
-                    for &s in slots {
-                        if is_inner(s, d) && !free.contains(&s) {
-                            free.push(s);
-                        }
-                    }
-                }
-            }
-            if free.len() == before {
-                break;
-            }
-        }
-        let mut steps = Vec::new();
-        let mut order: Vec<Slot> = Vec::new();
-        let (mut in_order, mut rows_so_far, mut work) = (true, 1.0, 1.0);
-        // What a slot's label is known to be a member of, by the tables that bound it.
-        let mut known: Vec<(Slot, TableId)> = Vec::new();
-        let indices = free.clone();
-        let mut filters: Vec<(&[usize], Vec<Slot>)> = filters
-            .iter()
-            .map(|list| {
-                let conditions = || list.iter().map(|&i| &d.conditions[i]);
-                let mut used: Vec<Slot> = conditions().flat_map(slots_of).collect();
-                used.retain(|s| free.contains(s));
-                if conditions().any(Node::has_random) {
-                    // Drawn once per tuple.
-                    used = free.clone();
-                }
-                (&**list, used)
-            })
-            .collect();
-        let settle = |free: &[Slot],
-                      candidates: &mut Vec<Candidate>,
-                      filters: &mut Vec<(&[usize], Vec<Slot>)>,
-                      known: &[(Slot, TableId)],
-                      steps: &mut Vec<Step>| {
-            for c in candidates.iter_mut().filter(|c| !c.done && c.required) {
-                if slots_of_key(&c.key).iter().any(|s| free.contains(s)) {
-                    continue;
-                }
-                c.done = true;
-                let implied = match c.key.parts.as_slice() {
-                    [Part::Slot(s)] => known
-                        .iter()
-                        .any(|&(k, t)| k == *s && self.within(t, c.table)),
-                    _ => false,
-                };
-                if !implied {
-                    steps.push(Step::Member(c.table, c.key.clone()));
-                }
-            }
-            filters.retain(|(list, used)| {
-                if used.iter().any(|s| free.contains(s)) {
-                    return true;
-                }
-                let conditions = || list.iter().map(|&i| &d.conditions[i]);
-                if !conditions().all(|c| self.scanned_by(c, steps)) {
-                    let changed = conditions().flat_map(slots_of);
-                    let changed = changed.filter(|s| is_inner(*s, d) && indices.contains(s));
-                    steps.push(Step::Filter((*list).into(), changed.collect()));
-                }
-                false
-            });
-        };
-        settle(&free, &mut candidates, &mut filters, &known, &mut steps);
-        while d.slots.iter().any(|s| free.contains(s)) {
-            let mut best: Option<(f64, f64, usize)> = None;
-            for (i, c) in candidates.iter().enumerate().filter(|(_, c)| !c.done) {
-                let Some(new) = binds(&c.key, &free) else {
-                    continue;
-                };
-                let plain = c.key.is_plain();
-                if pick == Pick::InOrder && (new != free[..new.len()] || !plain) {
-                    continue;
-                }
-                let t = self.store.table(c.table);
-                let rows = t.len() as f64;
-                let mut groups = 1.0;
-                if t.is_tidy() && changing != Some(c.table) {
-                    for (p, part) in c.key.parts.iter().enumerate() {
-                        if !mentions(part, &free) {
-                            groups *= f64::from(t.distinct()[p]);
-                        }
-                    }
-                }
-                // Fan-out per slot that it binds.
-                let fan = (rows / groups.clamp(1.0, rows.max(1.0))).max(1e-3);
-                let each = fan.powf(1.0 / new.len() as f64);
-                if best.is_none_or(|(b, ..)| each < b * 0.999) {
-                    best = Some((each, fan, i));
-                }
-            }
-            let Some((_, fan, i)) = best else {
+        let mut nest = Nest::new(self, d, filters, drivers);
+        let (mut rows_so_far, mut work) = (1.0, 1.0);
+        nest.settle();
+        while d.slots.iter().any(|s| nest.free.contains(s)) {
+            let Some((fan, next)) = nest.next(pick, changing) else {
                 // A slot that no table binds: cannot happen, since every controlled index has its set.
                 debug_assert!(false, "a slot without a driver");
                 break;
             };
             rows_so_far *= fan;
             work += rows_so_far;
-            let c = &mut candidates[i];
-            c.done = true;
-            let (mut mask, mut bind, mut unlag, mut equal) =
-                (0u32, Vec::new(), Vec::new(), Vec::new());
-            for lagged in [false, true] {
-                for (p, part) in c.key.parts.iter().enumerate() {
-                    if matches!(part, Part::Lag(_)) != lagged {
-                        continue;
-                    }
-                    let list = if lagged { &mut unlag } else { &mut bind };
-                    match base_slot(part).filter(|s| free.contains(s)) {
-                        Some(s) if order.contains(&s) => equal.push(p as u8),
-                        Some(s) => {
-                            list.push((p as u8, s));
-                            order.push(s);
-                        }
-                        None => mask |= 1 << p,
-                    }
-                }
-            }
-            free.retain(|s| !order.contains(s));
-            in_order &= unlag.is_empty();
-            for &(p, s) in &bind {
-                if self.store.table(c.table).dim() == 1 {
-                    known.push((s, c.table));
-                }
-                if let Some(t) = self.position_set(c.table, p as usize) {
-                    known.push((s, t));
-                }
-            }
-            steps.push(Step::Scan {
-                table: c.table,
-                key: c.key.parts.clone().into(),
-                mask,
-                bind: bind.into(),
-                unlag: unlag.into(),
-                equal: equal.into(),
-            });
-            settle(&free, &mut candidates, &mut filters, &known, &mut steps);
+            nest.scan(next);
+            nest.settle();
         }
         // Inner indices that are left are for the filters to run over.
-        settle(&[], &mut candidates, &mut filters, &known, &mut steps);
+        nest.free.clear();
+        nest.settle();
         Branch {
-            steps,
-            ordered: in_order && order == d.slots,
-            projects: order.len() > d.slots.len(),
+            ordered: nest.in_order && nest.order == d.slots,
+            projects: nest.order.len() > d.slots.len(),
+            steps: nest.steps,
             work,
         }
     }

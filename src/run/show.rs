@@ -106,54 +106,7 @@ impl Machine<'_> {
             return;
         }
         if !self.options.quiet {
-            let default = table.default_value();
-            if root != s {
-                let of = &self.symbols.get(root).name;
-                page.header(&format!("{kind} {shown_name}  Aliased with {of}"));
-            } else if default == 0.0 {
-                page.header(&format!("{kind} {shown_name}  {}", symbol.text));
-                page.text.push('\n');
-            } else {
-                let default = if default.is_finite() {
-                    default.to_string()
-                } else {
-                    numbers.text(default)
-                };
-                page.header(&format!("{kind} {shown_name} ({default}) {}", symbol.text));
-                page.text.push('\n');
-            }
-            if table.is_empty() {
-                if symbol.is_set() {
-                    page.text.push_str(&display::empty_set());
-                } else {
-                    page.text.push_str(&numbers.all_default(default));
-                }
-                page.text.push('\n');
-            } else {
-                let set = self.symbols.get(root).table;
-                let cells = if symbol.is_set() {
-                    Cells::Members(self.store.texts.get(&set))
-                } else {
-                    Cells::Numbers
-                };
-                let layout = match self.formats.get(&s).map(Vec::as_slice) {
-                    Some([_, rows, columns, ..]) => Some(Layout {
-                        rows: (*rows).max(0) as usize,
-                        columns: (*columns).max(1) as usize,
-                    }),
-                    _ => None,
-                };
-                let sheet = Sheet {
-                    table: &table,
-                    universe: &self.store.universe,
-                    cells,
-                    numbers,
-                    layout,
-                    page: display::PAGE,
-                };
-                sheet.write(&mut page.text);
-            }
-            page.text.push('\n');
+            self.show_table(s, &table, &format!("{kind} {shown_name}"), page);
         }
         let collected = (self.options.collect).then(|| {
             let domain = self.symbols.domain_names(self.symbols.get(root));
@@ -169,6 +122,60 @@ impl Machine<'_> {
             };
             self.report().displays.push(display);
         }
+    }
+
+    /// A table that is not a single number on the page, under its name.
+    fn show_table(&self, s: SymbolId, table: &Table, name: &str, page: &mut Page) {
+        let (symbol, root) = (self.symbols.get(s), self.symbols.root(s));
+        let numbers = self.numbers(s);
+        let default = table.default_value();
+        if root != s {
+            let of = &self.symbols.get(root).name;
+            page.header(&format!("{name}  Aliased with {of}"));
+        } else if default == 0.0 {
+            page.header(&format!("{name}  {}", symbol.text));
+            page.text.push('\n');
+        } else {
+            let default = if default.is_finite() {
+                default.to_string()
+            } else {
+                numbers.text(default)
+            };
+            page.header(&format!("{name} ({default}) {}", symbol.text));
+            page.text.push('\n');
+        }
+        if table.is_empty() {
+            if symbol.is_set() {
+                page.text.push_str(&display::empty_set());
+            } else {
+                page.text.push_str(&numbers.all_default(default));
+            }
+            page.text.push('\n');
+        } else {
+            let set = self.symbols.get(root).table;
+            let cells = if symbol.is_set() {
+                Cells::Members(self.store.texts.get(&set))
+            } else {
+                Cells::Numbers
+            };
+            let layout = match self.formats.get(&s).map(Vec::as_slice) {
+                Some([_, rows, columns, ..]) => Some(Layout {
+                    rows: (*rows).max(0) as usize,
+                    columns: (*columns).max(1) as usize,
+                }),
+                _ => None,
+            };
+            let sheet = Sheet {
+                table,
+                universe: &self.store.universe,
+                cells,
+                numbers,
+                layout,
+                page: display::PAGE,
+            };
+            sheet.write(&mut page.text);
+        }
+        page.text.push('\n');
     }
 
     /// Labels and values of a table's records.

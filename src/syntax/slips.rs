@@ -93,17 +93,25 @@ const OPERATORS: &[(&str, &str)] = &[
 
 /// Operators of other languages.
 pub(super) fn at_token(f: &Failure<'_>) -> Option<Diagnostic> {
+    let known = [
+        sum, display, solve, control, no_name, operand, operator, sign,
+    ];
+    known.iter().find_map(|slip| slip(f))
+}
+
+/// Whether a text stands where parsing stopped.
+fn is_here(f: &Failure<'_>, op: &str) -> bool {
+    f.text.as_bytes().get(f.at..f.at + op.len()) == Some(op.as_bytes())
+}
+
+fn not_an_operator(f: &Failure<'_>, at: usize, op: &str, help: impl Into<String>) -> Diagnostic {
+    f.error("E0232", at, op.len(), format!("`{op}` is not an operator"))
+        .help(help)
+}
+
+/// `==`, `&&`, `//`
+fn operator(f: &Failure<'_>) -> Option<Diagnostic> {
     let bytes = f.text.as_bytes();
-    if let Some(d) = sum(f)
-        .or_else(|| display(f))
-        .or_else(|| solve(f))
-        .or_else(|| control(f))
-        .or_else(|| no_name(f))
-        .or_else(|| operand(f))
-    {
-        return Some(d);
-    }
-    let here = |op: &str| bytes.get(f.at..f.at + op.len()) == Some(op.as_bytes());
     // pest may stop at the second sign of an operator.
     let found = |op: &str| {
         let starts = [f.at, f.at.saturating_sub(1)];
@@ -111,21 +119,18 @@ pub(super) fn at_token(f: &Failure<'_>) -> Option<Diagnostic> {
             .into_iter()
             .find(|&i| bytes.get(i..i + op.len()) == Some(op.as_bytes()))
     };
-    let say = |at: usize, op: &str, help: String| {
-        f.error("E0232", at, op.len(), format!("`{op}` is not an operator"))
-            .help(help)
-    };
     if let Some(at) = found("==") {
         return Some(
-            say(
+            not_an_operator(
+                f,
                 at,
                 "==",
-                "write `=` in assignments and conditions, `=e=` in equations".into(),
+                "write `=` in assignments and conditions, `=e=` in equations",
             )
             .label("write `=`"),
         );
     }
-    if here("...") {
+    if is_here(f, "...") {
         return Some(
             f.error(
                 "E0232",
@@ -146,13 +151,23 @@ pub(super) fn at_token(f: &Failure<'_>) -> Option<Diagnostic> {
         let at = if op.len() == 2 {
             found(op)
         } else {
-            here(op).then_some(f.at)
+            is_here(f, op).then_some(f.at)
         };
         if let Some(at) = at {
-            return Some(say(at, op, format!("write `{write}`")).label(format!("write `{write}`")));
+            return Some(
+                not_an_operator(f, at, op, format!("write `{write}`"))
+                    .label(format!("write `{write}`")),
+            );
         }
     }
-    if here("%") && !f.text[f.at + 1..].contains('%') {
+    None
+}
+
+/// `5 %`, `+=`, `#`, `? :`, two operators in a row, none where one is missing.
+fn sign(f: &Failure<'_>) -> Option<Diagnostic> {
+    let bytes = f.text.as_bytes();
+    let say = |op: &str, help: &str| not_an_operator(f, f.at, op, help);
+    if is_here(f, "%") && !f.text[f.at + 1..].contains('%') {
         let number = f.text[..f.at]
             .trim_end()
             .ends_with(|c: char| c.is_ascii_digit());
@@ -161,8 +176,11 @@ pub(super) fn at_token(f: &Failure<'_>) -> Option<Diagnostic> {
             .starts_with(|c: char| !c.is_ascii_alphanumeric() && c != '(')
             || f.text[f.at + 1..].trim().is_empty();
         return Some(match number && ends {
-            true => say(f.at, "%", "write 5 percent as `0.05`".into()),
-            false => say(f.at, "%", "write `mod(x, y)` for the remainder; a comment is a line with `*` in its first column".into()),
+            true => say("%", "write 5 percent as `0.05`"),
+            false => say(
+                "%",
+                "write `mod(x, y)` for the remainder; a comment is a line with `*` in its first column",
+            ),
         });
     }
     if bytes.get(f.at + 1) == Some(&b'=')
@@ -170,30 +188,25 @@ pub(super) fn at_token(f: &Failure<'_>) -> Option<Diagnostic> {
     {
         let op = &f.text[f.at..f.at + 2];
         return Some(say(
-            f.at,
             op,
-            format!("write the left side again: `a = a {} b`", &op[..1]),
+            &format!("write the left side again: `a = a {} b`", &op[..1]),
         ));
     }
-    if here("#") {
+    if is_here(f, "#") {
         return Some(
             f.error("E0230", f.at, 1, "`#` does not begin a comment")
                 .help("a comment is a line with `*` in its first column; in a `.blk` file also `//`; `$onEolCom` allows `!!` to the end of the line"),
         );
     }
-    if here(":") && f.raw.class == Class::Algebra {
+    if is_here(f, ":") && f.raw.class == Class::Algebra {
         return Some(
             f.error("E0221", f.at, 1, "`:` does not begin an equation")
                 .label("write `..`")
                 .help("an equation is defined as `e(i).. left =e= right;`"),
         );
     }
-    if here("?") {
-        return Some(say(
-            f.at,
-            "?",
-            "write `ifThen(c, a, b)`, or `a$c + b$(not c)`".into(),
-        ));
+    if is_here(f, "?") {
+        return Some(say("?", "write `ifThen(c, a, b)`, or `a$c + b$(not c)`"));
     }
     let unary = matches!(bytes.get(f.at), Some(b'-' | b'+' | b'*' | b'/'));
     if unary
