@@ -25,7 +25,7 @@
 
 pub mod nonlinear;
 
-use crate::model::instance::{Instance, Relation, Sense};
+use crate::model::instance::{INFINITE, Instance, Relation, Sense};
 use crate::model::outcome::{Claim, ModelStatus, Outcome};
 use crate::model::sum::Sum;
 
@@ -422,7 +422,7 @@ pub fn proves_infeasible(instance: &Instance, y: &[f64]) -> bool {
         } else {
             instance.columns.lower[j]
         };
-        if r.abs() <= 1e-9 * reach_size[j] && bound.abs() >= 1e30 {
+        if r.abs() <= 1e-9 * reach_size[j] && bound.abs() >= INFINITE {
             continue;
         }
         if r != 0.0 {
@@ -453,7 +453,7 @@ pub fn proves_unbounded(instance: &Instance, d: &[f64]) -> bool {
     }
     let bounded = d.iter().enumerate().any(|(j, &d)| {
         let (l, u) = (instance.columns.lower[j], instance.columns.upper[j]);
-        (d > 1e-9 * unit && u < 1e30) || (d < -1e-9 * unit && l > -1e30)
+        (d > 1e-9 * unit && u < INFINITE) || (d < -1e-9 * unit && l > -INFINITE)
     });
     if bounded {
         return false;

@@ -12,7 +12,7 @@
 //! keeping what the signs of F must be in every piece (F ≥ 0 where there is no upper bound, F ≤ 0
 //! where there is no lower one) gives the *envelope*, the relaxation that contains all branches.
 
-use crate::model::instance::{Instance, Relation};
+use crate::model::instance::{INFINITE, Instance, Relation};
 use crate::model::sum::Sum;
 use crate::solve::SolveError;
 use crate::solve::certificate::nonlinear::activity;
@@ -118,7 +118,7 @@ impl<'a> Program<'a> {
         let matched = instance.matched.iter().flatten().enumerate();
         for (column, row) in matched.filter_map(|(j, r)| r.map(|r| (j, r as usize))) {
             let finite = |b: f64| {
-                if b.abs() >= 1e30 {
+                if b.abs() >= INFINITE {
                     f64::INFINITY * b.signum()
                 } else {
                     b

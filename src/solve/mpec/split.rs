@@ -15,7 +15,6 @@
 //! one linear program and its multipliers, with no enumeration of the biactive pairs.
 
 use super::pairs::{Piece, Program};
-use crate::model::instance::Relation;
 use crate::solve::lp::Ended;
 use crate::solve::lp::form::{Problem, Sparse};
 use crate::solve::lp::simplex::{Basis, Simplex};
@@ -255,12 +254,7 @@ impl Side {
             }
             problem.rows.push(entries);
             let b = instance.rows.rhs[i] - constant;
-            let (lo, hi) = match instance.rows.relation[i] {
-                Relation::Equal => (b, b),
-                Relation::Greater => (b, f64::INFINITY),
-                Relation::Less => (f64::NEG_INFINITY, b),
-                Relation::Free => (f64::NEG_INFINITY, f64::INFINITY),
-            };
+            let [lo, hi] = instance.rows.relation[i].bounds(b);
             problem.row_lower.push(lo);
             problem.row_upper.push(hi);
         }

@@ -12,7 +12,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use super::super::pairs::Program;
 use super::super::split::sides;
-use crate::model::instance::Relation;
+use crate::model::instance::{INFINITE, Relation};
 use crate::solve::lp::form::{Problem, Sparse};
 
 /// Σ terms + constant, over the columns of one side.
@@ -125,13 +125,13 @@ impl Half {
                 out.equations.push(f);
                 continue;
             }
-            if u < 1e30 {
+            if u < INFINITE {
                 let mut f = Factor::column(k).times(-1.0);
                 f.constant = u;
                 of_column[j] = Some(out.inequalities.len());
                 out.inequalities.push(f);
             }
-            if l > -1e30 {
+            if l > -INFINITE {
                 let mut f = Factor::column(k);
                 f.constant = -l;
                 out.signed[k] = l >= 0.0;
@@ -165,7 +165,7 @@ fn opposites(program: &Program, place: &[usize], half: &mut Half) {
     const SIGN: u64 = 1 << 63;
     let mut known: HashMap<Vec<(usize, u64)>, usize> = HashMap::new();
     for (j, list) in entries {
-        let ray = instance.columns.lower[j] == 0.0 && instance.columns.upper[j] >= 1e30;
+        let ray = instance.columns.lower[j] == 0.0 && instance.columns.upper[j] >= INFINITE;
         if !ray {
             continue;
         }
