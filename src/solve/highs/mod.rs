@@ -6,7 +6,7 @@
 
 mod engine;
 
-use super::backend::{About, Backend, Replied, Supports, Task, Terms};
+use super::backend::{About, Backend, QuadraticEngine, Replied, Supports, Task, Terms};
 use super::lp::form::{Form, Point, Problem, Sparse};
 use super::lp::{self, Ended, interior};
 use super::mip::{self, Aim, End, Found, Mip};
