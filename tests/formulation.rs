@@ -45,7 +45,7 @@ fn look<T>(
     let options = Options {
         quiet: true,
         collect: false,
-        time_limit: 60.0,
+        time_limit: 600.0,
         study: Some(choice),
         ..Options::default()
     };

@@ -21,7 +21,7 @@ fn run(
     let files = scene.into_iter().collect();
     let mut desk = Memory::new(files, Some(root.join("models").join(folder)));
     let options = Options {
-        time_limit: 60.0,
+        time_limit: 600.0,
         ..Options::default()
     };
     let finished = session::run(&mut desk, file, common::blk(), options, false, after);

@@ -47,6 +47,44 @@ fn argument(text: &str) -> (&str, &str) {
     })
 }
 
+/// The GDX file that a command makes of a spreadsheet or CSV file: `gdxxrw in.xlsx o=out.gdx par=p`.
+/// Where it is not named it has its source's name, and stands in the current folder.
+fn conversion(command: &str) -> Option<String> {
+    let spaced = command.replace(" =", "=").replace("= ", "=");
+    let (program, mut rest) = argument(spaced.trim_start_matches('='));
+    let program = program.rsplit(['/', '\\']).next()?.to_ascii_lowercase();
+    if !matches!(program.trim_end_matches(".exe"), "gdxxrw" | "csv2gdx") {
+        return None;
+    }
+    let (mut source, mut made) = (None, None);
+    while !rest.trim().is_empty() {
+        let (word, behind) = argument(rest);
+        rest = behind;
+        let (name, value) = word.split_once('=').unwrap_or(("i", word));
+        // The value alone may stand in quotes, with blanks in it.
+        let value = match value.strip_prefix(['"', '\'']) {
+            Some(begun) => match begun.strip_suffix(['"', '\'']) {
+                Some(whole) => whole.to_owned(),
+                None => {
+                    let (more, behind) = rest.split_once(['"', '\''])?;
+                    rest = behind;
+                    format!("{begun}{more}")
+                }
+            },
+            None => value.to_owned(),
+        };
+        match name.to_ascii_lowercase().as_str() {
+            "i" | "input" if !value.starts_with('@') => _ = source.get_or_insert(value),
+            "o" | "output" => made = Some(value),
+            _ => {}
+        }
+    }
+    made.or_else(|| {
+        let file = source?.rsplit(['/', '\\']).next()?.to_owned();
+        Some(format!("{}.gdx", file.rsplit_once('.').map_or(file.as_str(), |f| f.0)))
+    })
+}
+
 /// A text without the quotes around it.
 pub(super) fn unquoted(text: &str) -> &str {
     let t = text.trim();
@@ -483,6 +521,17 @@ impl Preprocessor<'_> {
             "onput" | "onputs" | "onputv" => return self.put_block(word, &suffix, lo, hi),
             "call" | "hiddencall" | "execute" => {
                 let span = self.place(lo, hi);
+                let from = self.frames.last().map(|f| f.path.clone());
+                if let Some(made) = conversion(rest)
+                    && self.host.exists(&made, from.as_deref())
+                {
+                    self.warnings.push(
+                        Diagnostic::warning("E0113", span, format!("`${word}` starts no program: `{made}` is read as it is there"))
+                            .label("not run")
+                            .help("run the program again yourself where its source has changed"),
+                    );
+                    return Ok(());
+                }
                 return refuse(Diagnostic::error("E0113", span, format!("`${word}` would start another program, which is refused"))
                     .label("not run")
                     .help("run it yourself before the model, and read what it writes with `$include` or `$load`"));
