@@ -177,7 +177,12 @@ impl Compiler {
         let table = self.symbols.get(s).table;
         self.store.table_mut(table).reserve(lines);
         let reader = match kind {
-            DataKind::Set => reader,
+            DataKind::Set => {
+                if dim == 1 {
+                    self.store.universe.reserve(lines);
+                }
+                reader
+            }
             DataKind::Values => reader.with_constants(self),
         };
         Ok((filling, reader))

@@ -207,7 +207,11 @@ pub(crate) fn range<'a>(from: &'a str, to: &str, most: usize) -> Result<Labels<'
         true => lo + n as u64,
         false => lo - n as u64,
     };
-    let label = move |n| format!("{head}{:0width$}{tail}", number(n));
+    let label = move |n| {
+        let digits = number(n).to_string();
+        let zeros = width.saturating_sub(digits.len());
+        [head, &"0".repeat(zeros), &digits, tail].concat()
+    };
     Ok(Box::new((0..lo.abs_diff(hi) as usize + 1).map(label)))
 }
 
@@ -367,6 +371,7 @@ impl Compiler {
                     }
                 };
                 self.take(labels.len(), LABEL_BYTES, *span)?;
+                self.store.universe.reserve(labels.len());
                 let labels = labels.map(|l| self.data_label(s, position, &l, *span, defines));
                 Ok(Tuples::single(labels.collect::<Result<_, _>>()?))
             }

@@ -4,6 +4,7 @@
 //! Labels are compared without regard to case; the first spelling is kept.
 
 use hashbrown::HashTable;
+use hashbrown::hash_table::Entry;
 use std::hash::Hasher;
 
 /// Number of a label: its place in the universe.
@@ -57,18 +58,13 @@ impl Universe {
 
     /// First spelling of a label.
     pub fn name(&self, label: Label) -> &str {
-        let i = label as usize;
-        let lo = if i == 0 { 0 } else { self.ends[i - 1] as usize };
-        &self.text[lo..self.ends[i] as usize]
+        spelling(&self.text, &self.ends, label)
     }
 
     /// The label with this spelling, if there is one.
     pub fn get(&self, label: &str) -> Option<Label> {
         let label = label.trim_end();
-        self.find(label, hash(label))
-    }
-
-    fn find(&self, label: &str, hash: u32) -> Option<Label> {
+        let hash = hash(label);
         let is =
             |l: Label| self.hashes[l as usize] == hash && self.name(l).eq_ignore_ascii_case(label);
         self.index.find(spread(hash), |&l| is(l)).copied()
@@ -78,18 +74,42 @@ impl Universe {
     pub fn intern(&mut self, label: &str) -> Label {
         let label = label.trim_end();
         let hash = hash(label);
-        if let Some(l) = self.find(label, hash) {
-            return l;
+        let Self {
+            text,
+            ends,
+            hashes,
+            index,
+        } = self;
+        let is = |&l: &Label| {
+            hashes[l as usize] == hash && spelling(text, ends, l).eq_ignore_ascii_case(label)
+        };
+        match index.entry(spread(hash), is, |&l| spread(hashes[l as usize])) {
+            Entry::Occupied(e) => *e.get(),
+            Entry::Vacant(e) => {
+                let new = ends.len() as Label;
+                e.insert(new);
+                text.push_str(label);
+                ends.push(text.len() as u32);
+                hashes.push(hash);
+                new
+            }
         }
-        let new = self.ends.len() as Label;
-        self.text.push_str(label);
-        self.ends.push(self.text.len() as u32);
-        self.hashes.push(hash);
-        let hashes = &self.hashes;
-        self.index
-            .insert_unique(spread(hash), new, |&l| spread(hashes[l as usize]));
-        new
     }
+
+    /// Takes room for so many labels more at once.
+    pub fn reserve(&mut self, labels: usize) {
+        let hashes = &self.hashes;
+        self.index.reserve(labels, |&l| spread(hashes[l as usize]));
+        self.ends.reserve(labels);
+        self.hashes.reserve(labels);
+    }
+}
+
+/// First spelling of a label.
+fn spelling<'t>(text: &'t str, ends: &[u32], label: Label) -> &'t str {
+    let i = label as usize;
+    let lo = if i == 0 { 0 } else { ends[i - 1] as usize };
+    &text[lo..ends[i] as usize]
 }
 
 #[cfg(test)]

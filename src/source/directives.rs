@@ -81,7 +81,10 @@ fn conversion(command: &str) -> Option<String> {
     }
     made.or_else(|| {
         let file = source?.rsplit(['/', '\\']).next()?.to_owned();
-        Some(format!("{}.gdx", file.rsplit_once('.').map_or(file.as_str(), |f| f.0)))
+        Some(format!(
+            "{}.gdx",
+            file.rsplit_once('.').map_or(file.as_str(), |f| f.0)
+        ))
     })
 }
 
@@ -526,9 +529,13 @@ impl Preprocessor<'_> {
                     && self.host.exists(&made, from.as_deref())
                 {
                     self.warnings.push(
-                        Diagnostic::warning("E0113", span, format!("`${word}` starts no program: `{made}` is read as it is there"))
-                            .label("not run")
-                            .help("run the program again yourself where its source has changed"),
+                        Diagnostic::warning(
+                            "E0113",
+                            span,
+                            format!("`${word}` starts no program: `{made}` is read as it is there"),
+                        )
+                        .label("not run")
+                        .help("run the program again yourself where its source has changed"),
                     );
                     return Ok(());
                 }
