@@ -314,12 +314,12 @@ impl Compiler {
     /// The labels of a row or column, refused if they came before.
     fn not_again(&mut self, line: Line, before: &mut Seen, at: Span, what: &str) -> Line {
         let mut again = None;
-        let tuples: Box<dyn Iterator<Item = &[Label]>> = match &line {
-            Line::Labels(l) => Box::new(std::iter::once(l.as_slice())),
-            Line::Many(t) => Box::new(t.rows().map(|r| r.labels)),
+        let (labels, width) = match &line {
+            Line::Labels(l) => (l, l.len()),
+            Line::Many(t) => (&t.labels, t.width),
             Line::Open | Line::Refused => return line,
         };
-        for key in tuples {
+        for key in labels.chunks_exact(width.max(1)) {
             if before.again(key) {
                 again = Some(self.key_text(key));
             }
