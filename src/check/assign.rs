@@ -18,14 +18,7 @@ impl Compiler {
         out: &mut Vec<Code>,
     ) -> Result<(), Failed> {
         let t = &a.target;
-        let counter = match t.name.name.to_lowercase().as_str() {
-            "execseed" => Some(Target::Seed),
-            "execerror" => Some(Target::Errors),
-            "maxexecerror" => Some(Target::MostErrors),
-            "heaplimit" => Some(Target::Ignored),
-            _ => None,
-        };
-        if let Some(target) = counter
+        if let Some(target) = of_the_run(&t.name.name)
             && self.symbols.find(&t.name.name).is_none()
         {
             let value = self.expr(&a.value)?;
@@ -300,6 +293,17 @@ impl Compiler {
             | Target::Ignored => Vec::new(),
         }
     }
+}
+
+/// What is assigned under a name that belongs to the run.
+fn of_the_run(name: &str) -> Option<Target> {
+    Some(match name.to_lowercase().as_str() {
+        "execseed" => Target::Seed,
+        "execerror" => Target::Errors,
+        "maxexecerror" => Target::MostErrors,
+        "heaplimit" => Target::Ignored,
+        _ => return None,
+    })
 }
 
 /// An assignment that reads what it writes: at once where the symbol has no record, which is read as it was, else element
