@@ -68,6 +68,64 @@ impl Filling {
     }
 }
 
+/// `i1-i5`, `1 to 5`, `t1 - t5`: what it is meant to run from and to.
+pub(super) fn meant_range<'a>(label: &'a str, text: &'a str) -> Option<(&'a str, &'a str)> {
+    let (from, to) = match text.strip_prefix("to ").or_else(|| text.strip_prefix("- ")) {
+        Some(to) => (label, to.trim()),
+        None if text.is_empty() => label.split_once('-')?,
+        None => return None,
+    };
+    let parts = |l: &str| {
+        let prefix = l.trim_end_matches(|c: char| c.is_ascii_digit()).len();
+        Some((l[..prefix].to_lowercase(), l[prefix..].parse::<u32>().ok()?))
+    };
+    let ((p, lo), (q, hi)) = (parts(from)?, parts(to)?);
+    (p == q && lo < hi).then_some((from, to))
+}
+
+/// What is hardly meant as one element, `a b c` without commas, where all words are alike, or `i1-i5`: the fix, and
+/// how many words stand in its text.
+fn looks_like_list(
+    key: &[KeyPart<'_>],
+    value: &Tail<'_>,
+    map: &SourceMap,
+) -> Option<(String, usize)> {
+    let [KeyPart::Label { text: label, .. }] = key else {
+        return None;
+    };
+    // `i1` is like `i2`, `a` like `b`.
+    let kind = |w: &str| {
+        let prefix = w.trim_end_matches(|c: char| c.is_ascii_digit());
+        (prefix.len() < w.len() || w.len() == 1).then(|| {
+            (w.len() == 1)
+                .then_some(prefix.is_empty())
+                .ok_or(prefix.to_lowercase())
+        })
+    };
+    let text = match value {
+        Tail::Text(text, _) => text,
+        _ => "",
+    };
+    if let Some((from, to)) = meant_range(label, text) {
+        return Some((format!("a range is written with `*`: `/ {from}*{to} /`"), 0));
+    }
+    match value {
+        Tail::Text(text, at) if map.text(*at) == text => {
+            let like = kind(label)?;
+            let words: Vec<&str> = text.split_whitespace().collect();
+            let list = words.join(", ");
+            let help = format!(
+                "a blank begins the text of an element, a comma the next element: `/ {label}, {list} /`"
+            );
+            words
+                .iter()
+                .all(|w| kind(w) == Some(like.clone()))
+                .then_some((help, words.len()))
+        }
+        _ => None,
+    }
+}
+
 impl Compiler {
     /// The sets that data define, `p(i<)`, get theirs with them.
     pub(super) fn open_domains(
@@ -206,6 +264,7 @@ impl Compiler {
         };
         let mut keys = Tuples::default();
         let mut familiar = Familiar::new(&self.symbols, s);
+        let (mut lists, mut plain) = (Vec::new(), false);
         loop {
             while let Some((_, span)) =
                 reader.plain(|p, text| familiar.find(&mut self.store, p, text))
@@ -216,6 +275,7 @@ impl Compiler {
                 {
                     break;
                 }
+                plain = true;
                 self.put_element(&mut elements, &familiar.key, None, span);
             }
             let Some(record) = reader.next() else { break };
@@ -223,6 +283,8 @@ impl Compiler {
                 Ok(r) => r,
                 Err(d) => {
                     self.report(d);
+                    // Which elements it has is not known.
+                    self.lost.elements.insert(s);
                     continue;
                 }
             };
@@ -243,6 +305,10 @@ impl Compiler {
                 Tail::Name(n, _) => Some(*n),
             };
             let span = record.span;
+            match looks_like_list(record.key, &record.value, map) {
+                Some((help, words)) if !plain => lists.push((span, help, words)),
+                _ => plain = true,
+            }
             if self
                 .expand(s, record.key, span, defines, &mut keys)
                 .is_err()
@@ -258,6 +324,16 @@ impl Compiler {
         }
         self.store.table_mut(elements.symbol.table).tidy();
         self.symbols.get_mut(s).unordered = elements.unordered;
+        let listed = !plain && (lists.len() == 1 || lists.iter().all(|l| l.2 > 1));
+        if let Some((span, help, _)) = lists.into_iter().next().filter(|_| listed) {
+            let name = &self.symbols.get(s).name;
+            let message = format!(
+                "`{}` is one element of the set `{name}`",
+                map.text(span).trim_end()
+            );
+            let d = Diagnostic::warning("E0234", span, message).help(help);
+            self.doubtful.push((s, d));
+        }
         Ok(())
     }
 
@@ -352,10 +428,12 @@ impl Compiler {
             };
             let v = match (&record.value, record.key) {
                 (Tail::Number(v, _), _) => *v,
-                (Tail::Name(n, at), _) => match self.acronym(n, *at) {
-                    Ok(v) => v,
-                    Err(Failed) => continue,
-                },
+                (Tail::Name(n, at), key) if dim <= width(key) || self.symbols.find(n).is_some() => {
+                    match self.acronym(n, *at) {
+                        Ok(v) => v,
+                        Err(Failed) => continue,
+                    }
+                }
                 // `/ 5 /` of a scalar comes as a lone label.
                 (Tail::None, [KeyPart::Label { text, span, .. }]) if dim == 0 => match number(text)
                 {
@@ -376,11 +454,12 @@ impl Compiler {
                     },
                 },
                 (tail, _) => {
-                    let at = if let Tail::Text(..) = tail {
-                        "a text stands where a number is expected"
-                    } else {
-                        "no number follows the label"
+                    let at = match tail {
+                        Tail::Text(..) => "a text stands where a number is expected",
+                        Tail::Name(..) => "dots stand between the labels of a record",
+                        _ => "no number follows the label",
                     };
+                    let example = self.example(s).join(".");
                     self.report(
                         Diagnostic::error(
                             "E0345",
@@ -395,8 +474,8 @@ impl Compiler {
                             true => "decimals stand behind a point: `1.5`".to_owned(),
                             false if dim == 0 => "write `/ 5 /`".to_owned(),
                             false => format!(
-                                "write each label and its number, with no comma between them: `/ {} 1, … /`",
-                                vec!["a"; dim].join(".")
+                                "write {}its number, with no comma between them: `/ {example} 1, … /`",
+                                match dim { 1 => "each label and ", _ => "the labels of a record with dots between them, then " }
                             ),
                         }),
                     );
@@ -428,6 +507,22 @@ impl Compiler {
         }
         self.store.table_mut(filling.table).tidy();
         Ok(())
+    }
+
+    /// The first label of each position, for messages.
+    pub(super) fn example(&self, s: SymbolId) -> Vec<&str> {
+        let first = |d: &DomainPosition| match d {
+            DomainPosition::Set(d) => {
+                let set = self.symbols.get(self.symbols.root(*d));
+                let table = self.store.table(set.table);
+                match table.is_empty() {
+                    true => "a",
+                    false => self.store.universe.name(table.key(0)[0]),
+                }
+            }
+            _ => "a",
+        };
+        self.symbols.get(s).domain.iter().map(first).collect()
     }
 
     pub(super) fn acronym(&mut self, name: &str, span: Span) -> Result<f64, Failed> {

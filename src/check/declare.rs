@@ -34,7 +34,8 @@ impl Compiler {
                         ),
                     )
                     .label("not one-dimensional")
-                    .other(declared, "declared here"),
+                    .other(declared, "declared here")
+                    .help("name a set for each index; in the data of a set a range is written `1*5`, and `1:5` or `1.5` is a pair"),
                 );
             }
             if root == UNIVERSE {

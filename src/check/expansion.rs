@@ -5,7 +5,7 @@ use super::symbols::{DomainPosition, UNIVERSE};
 use super::{Compiler, Failed};
 use crate::data::table::Table;
 use crate::data::universe::Label;
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Severity};
 use crate::source::Span;
 use crate::syntax::ast::Ident;
 use crate::syntax::data::KeyPart;
@@ -265,7 +265,7 @@ impl Compiler {
         // One label per position is what data mostly are.
         if parts.iter().all(|p| matches!(p, KeyPart::Label { .. })) {
             if parts.len() != dim {
-                return self.wrong_dimension(s, span, parts.len());
+                return self.wrong_record(s, span, parts.len());
             }
             self.take(1, record_bytes(dim), span)?;
             for (p, part) in parts.iter().enumerate() {
@@ -280,10 +280,26 @@ impl Compiler {
         let rows = self.products(s, 0, parts, span, defines)?;
         self.take(rows.len(), record_bytes(dim), span)?;
         if rows.len() > 0 && rows.width != dim {
-            return self.wrong_dimension(s, span, rows.width);
+            return self.wrong_record(s, span, rows.width);
         }
         *out = Tuples { width: dim, ..rows };
         Ok(())
+    }
+
+    fn wrong_record(&mut self, s: SymbolId, span: Span, given: usize) -> Result<(), Failed> {
+        let at = self.diagnostics.len();
+        let failed = self.wrong_dimension(s, span, given);
+        let example = self.example(s).join(".");
+        if let Some(d) = self
+            .diagnostics
+            .get_mut(at)
+            .filter(|_| example.contains('.'))
+        {
+            d.help = Some(format!(
+                "dots stand between the labels of a record: `/ {example} /`"
+            ));
+        }
+        failed
     }
 
     /// All combinations of the parts of a key that begins at a position.
@@ -366,11 +382,12 @@ impl Compiler {
                                 format!("`{from}*{to}` is not a range"),
                             )
                             .label("the labels must differ in one number")
-                            .help("for instance `i1*i10` or `1990*2000`"),
+                            .help("for instance `i1*i10` or `1990*2000`; other labels are listed, with commas between them"),
                         );
                     }
                 };
                 self.take(labels.len(), LABEL_BYTES, *span)?;
+                self.range_of_words(from, to, s, position, *span, defines)?;
                 self.store.universe.reserve(labels.len());
                 let labels = labels.map(|l| self.data_label(s, position, &l, *span, defines));
                 Ok(Tuples::single(labels.collect::<Result<_, _>>()?))
@@ -432,6 +449,47 @@ impl Compiler {
                 Ok(rows.beside(&behind))
             }
         }
+    }
+
+    /// `jan*mar` counts letters, `jan`, `jao` …, as in GAMS; hardly anybody means it.
+    fn range_of_words(
+        &mut self,
+        from: &str,
+        to: &str,
+        s: SymbolId,
+        position: usize,
+        span: Span,
+        defines: &[bool],
+    ) -> Result<(), Failed> {
+        let is_word = |l: &str| l.len() > 2 && l.bytes().all(|b| b.is_ascii_alphabetic());
+        let head = |l: &str| l[..l.len() - 1].to_ascii_lowercase();
+        if !is_word(from) || !is_word(to) || head(from) == head(to) {
+            return Ok(());
+        }
+        let Some(mut labels) = letters(from, to) else {
+            return Ok(());
+        };
+        let (count, second) = (labels.len(), labels.nth(1).unwrap_or_default());
+        let mut d = Diagnostic::warning(
+            "E0344",
+            span,
+            format!("`{from}*{to}` counts letters: it stands for {count} labels"),
+        )
+        .label(format!("`{from}`, `{second}`, …"))
+        .help("list the labels, with commas between them");
+        if let Some(DomainPosition::Set(set)) = self.symbols.get(s).domain.get(position)
+            && defines.get(position) != Some(&true)
+            && !self.modes.at(span).warnings
+        {
+            let table = self.symbols.get(self.symbols.root(*set)).table;
+            let known = self.store.universe.get(&second);
+            if known.is_none_or(|l| self.store.table(table).find(&[l]).is_none()) {
+                d.severity = Severity::Error;
+                return self.fail(d);
+            }
+        }
+        self.report(d);
+        Ok(())
     }
 
     /// A label in data at a position of a symbol; checked against the domain.

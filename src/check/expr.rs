@@ -180,6 +180,9 @@ impl Compiler {
                 self.product(vec![(false, x), divisor(right, y)], span)
             }
             ExprKind::Binary(op, a, b) => {
+                if matches!(op, BinaryOp::Eq | BinaryOp::Ne) {
+                    self.labels_compared(a, b, span)?;
+                }
                 let (a, b) = match (self.expr(a), self.expr(b)) {
                     (Ok(a), Ok(b)) => (a, b),
                     _ => return Err(Failed),
@@ -241,6 +244,32 @@ impl Compiler {
                 Ok(Node { member, ..node })
             }),
         }
+    }
+
+    /// `t = '2023'`, `i = j`: an index is no number.
+    fn labels_compared(&mut self, a: &Expr, b: &Expr, span: Span) -> Result<(), Failed> {
+        let set = |e: &Expr| {
+            let s = self.symbols.find(&bare(e)?.name)?;
+            self.symbols
+                .get(s)
+                .is_set()
+                .then(|| bare(e).map(|n| n.name.to_string()))?
+        };
+        let side = |e: &Expr| match &e.kind {
+            ExprKind::Text(t) => Some(format!("'{t}'")),
+            _ => set(e),
+        };
+        let (Some(left), Some(right)) = (side(a), side(b)) else {
+            return Ok(());
+        };
+        if self.texts_allowed || set(a).is_none() && set(b).is_none() {
+            return Ok(());
+        }
+        self.fail(
+            Diagnostic::error("E0312", span, "labels are not compared as numbers are")
+                .label("no numbers")
+                .help(format!("write `sameas({left},{right})`; `ord` is the position of an element, `.val` its label as a number")),
+        )
     }
 
     /// An error if a membership stands where a number must.
@@ -539,7 +568,14 @@ impl Compiler {
             format!("the {kind} `{name}` has no attribute `.{}`", a.name),
         )
         .label("not an attribute");
+        const KINDS: [&str; 7] = [
+            "type", "kind", "binary", "integer", "positive", "free", "bin",
+        ];
+        let is_kind = kind == "variable" && KINDS.iter().any(|k| a.name.eq_ignore_ascii_case(k));
         self.fail(match near {
+            _ if is_kind => d.help(format!(
+                "the kind stands in the declaration: `binary variable {name};`"
+            )),
             Some(n) => d.help(format!("did you mean `.{n}`?")),
             None => d.help(format!("there are: {known}")),
         })
@@ -626,7 +662,7 @@ impl Compiler {
         let lower = name.name.to_lowercase();
         let args = arguments.unwrap_or(&[]);
         let Some((callee, low, high)) = functions::callee(&lower).filter(|_| attr.is_none()) else {
-            return self.unknown_name(name, arguments.is_some());
+            return self.unknown_name(name, arguments);
         };
         if args.len() < low || args.len() > high {
             let count = |n: usize| {
@@ -648,15 +684,7 @@ impl Compiler {
                     format!("`{lower}` takes {wanted}, not {}", args.len()),
                 )
                 .label("wrong number of arguments")
-                .help(match callee {
-                    Callee::Ord | Callee::Card => {
-                        format!("write `{lower}(i)` with the name of a set")
-                    }
-                    _ => format!(
-                        "write `{lower}({})`",
-                        ["x", "y", "z"][..low.min(3)].join(", ")
-                    ),
-                }),
+                .help(self.arguments_help(callee, &lower, low, args)),
             );
         }
         match callee {
@@ -809,7 +837,37 @@ impl Compiler {
         text.map(Some)
     }
 
-    fn unknown_name<T>(&mut self, name: &Ident, called: bool) -> Result<T, Failed> {
+    /// What a function is given, for one with too few or too many arguments.
+    fn arguments_help(&self, callee: Callee, lower: &str, low: usize, args: &[Expr]) -> String {
+        // `max(p)`: over which sets `p` runs.
+        let over = args.first().and_then(|e| {
+            let ExprKind::Apply { name: n, .. } = &e.kind else {
+                return None;
+            };
+            let s = self.symbols.get(self.symbols.find(&n.name)?);
+            let sets = self.symbols.domain_names(s).join(",");
+            let index = match s.dim() {
+                0 => return None,
+                1 => sets.clone(),
+                _ => format!("({sets})"),
+            };
+            (!s.is_set()).then(|| format!("{index}, {}({sets})", n.name))
+        });
+        match (callee, over) {
+            (Callee::Math(Function::Min | Function::Max), Some(over)) => {
+                format!("over the elements of a set, write `s{lower}({over})`")
+            }
+            (Callee::Ord | Callee::Card, _) => {
+                format!("write `{lower}(i)` with the name of a set")
+            }
+            _ => format!(
+                "write `{lower}({})`",
+                ["x", "y", "z"][..low.min(3)].join(", ")
+            ),
+        }
+    }
+
+    fn unknown_name<T>(&mut self, name: &Ident, arguments: Option<&[Expr]>) -> Result<T, Failed> {
         let instead = match name.name.to_lowercase().as_str() {
             "asin" => Some("arcsin"),
             "acos" => Some("arccos"),
@@ -830,16 +888,39 @@ impl Compiler {
             "average" | "mean" => Some("sum(i, p(i))/card(i)"),
             "sumproduct" | "dot" => Some("sum(i, p(i)*q(i))"),
             "pos" | "index" => Some("ord"),
+            "last" | "end" => Some("card(t)"),
+            "rand" | "random" | "rnd" => Some("uniform(0,1)"),
+            "randn" => Some("normal(0,1)"),
+            "square" => Some("sqr"),
+            "sgn" => Some("sign"),
+            "fabs" => Some("abs"),
+            "roundup" => Some("ceil"),
+            "rounddown" => Some("floor"),
             _ => None,
         };
-        let near = instead.map(str::to_string).or_else(|| {
+        let indexed = name.name.rsplit_once('_').filter(|(symbol, set)| {
+            let set = self.symbols.find(set).map(|s| self.symbols.get(s));
+            set.is_some_and(Symbol::is_set) && self.symbols.find(symbol).is_some()
+        });
+        let indexed = indexed.map(|(symbol, set)| format!("{symbol}({set})"));
+        let near = instead.map(str::to_string).or(indexed).or_else(|| {
             let mut known: Vec<&str> = self.symbols.iter().skip(1).map(|(_, s)| &*s.name).collect();
-            for n in functions::names() {
-                known.push(n);
+            // A function is meant only where numbers are its arguments.
+            let index = |e: &Expr| {
+                bare(e).is_some_and(|n| {
+                    self.symbols
+                        .find(&n.name)
+                        .is_some_and(|s| self.symbols.get(s).is_set())
+                })
+            };
+            if arguments.is_some_and(|list| !list.iter().any(index)) {
+                for n in functions::names() {
+                    known.push(n);
+                }
             }
             nearest(&name.name, known).map(str::to_string)
         });
-        let what = if called {
+        let what = if arguments.is_some() {
             "symbol or function"
         } else {
             "symbol"
@@ -847,6 +928,9 @@ impl Compiler {
         let mut d = Diagnostic::error("E0301", name.span, format!("`{}` is not known", name.name))
             .label(format!("unknown {what}"));
         d = match near {
+            Some(n) if n == "ifThen" => d.help(
+                "write `ifThen(c, a, b)`; a condition on data stands behind `$`: `x(i)$(c(i) > 1)`",
+            ),
             Some(n) => d.help(format!("did you mean `{n}`?")),
             None if self.store.universe.get(&name.name).is_some() => {
                 d.help(format!("`{0}` is a label: quote it, `'{0}'`", name.name))
@@ -857,16 +941,21 @@ impl Compiler {
     }
 }
 
-/// `(i,j)`, if that is what stands there.
-fn named_indices(indices: &[Expr]) -> String {
-    let name = |e: &Expr| match &e.kind {
+/// A name and nothing else.
+fn bare(e: &Expr) -> Option<&Ident> {
+    match &e.kind {
         ExprKind::Apply {
             name,
             attribute: None,
             arguments: None,
-        } => Some(name.name.to_string()),
+        } => Some(name),
         _ => None,
-    };
+    }
+}
+
+/// `(i,j)`, if that is what stands there.
+fn named_indices(indices: &[Expr]) -> String {
+    let name = |e: &Expr| bare(e).map(|n| n.name.to_string());
     match indices.iter().map(name).collect::<Option<Vec<_>>>() {
         Some(names) if !names.is_empty() => format!("({})", names.join(",")),
         _ => String::new(),

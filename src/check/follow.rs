@@ -1,11 +1,11 @@
 //! One mistake, one message. What a mistake leads to is not reported: names whose declaration or definition failed are
 //! *lost*, and statements that use them fail without a word; the same about a symbol is said once, with the other places.
 
-use super::symbols::SymbolKind;
+use super::symbols::{Symbol, SymbolKind};
 use super::{Compiler, Failed};
 use crate::check::node::SymbolId;
 use crate::diag::{Diagnostic, Label, Severity};
-use crate::source::Span;
+use crate::source::{SourceMap, Span};
 use crate::syntax::ast::Ident;
 use rustc_hash::FxHashSet;
 
@@ -39,6 +39,8 @@ pub(super) struct Lost {
     statements: bool,
     /// Symbols that are declared in two ways.
     symbols: FxHashSet<SymbolId>,
+    /// Sets whose data could not be read.
+    pub(super) elements: FxHashSet<SymbolId>,
     /// Definitions of equations with errors, by their number.
     pub(super) definitions: FxHashSet<usize>,
     /// Number of diagnostics before the statement at hand.
@@ -61,7 +63,7 @@ impl Compiler {
         let from = self.lost.statement.min(self.diagnostics.len());
         let here = &mut self.diagnostics[from..];
         let said = |group: &&[&str]| {
-            let unreadable = group[0] == "E0241" && (d.code == "E0308" || d.code == "E0341");
+            let unreadable = group[0] == "E0241" && matches!(d.code, "E0304" | "E0308" | "E0341");
             let label = |e: &Diagnostic| e.code == "E0308" && d.code.starts_with("E025");
             (group.contains(&d.code) || unreadable)
                 && here.iter().any(|e| group.contains(&e.code) || label(e))
@@ -210,12 +212,47 @@ impl Compiler {
         Err(Failed)
     }
 
+    /// The symbol in whose text, written without quotes, a name stands: `variables x y z`.
+    fn in_text(&self, name: &str, map: &SourceMap) -> Option<SymbolId> {
+        let word = |w: &str| {
+            w.split('(')
+                .next()
+                .is_some_and(|w| w.eq_ignore_ascii_case(name))
+        };
+        let mut symbols = self
+            .symbols
+            .iter()
+            .filter(|(_, s)| s.text.split_whitespace().any(word));
+        let unquoted = |s: &Symbol| {
+            let behind = map.expanded().get(s.declared.hi as usize..);
+            let before = behind.and_then(|b| b.split(&*s.text).next());
+            before.is_some_and(|b| !b.contains(['\'', '"', ';', '/']))
+        };
+        symbols.find(|(_, s)| unquoted(s)).map(|(id, _)| id)
+    }
+
     /// At the end of the text: names that were not known where they stand and are declared further down.
-    pub(super) fn declared_below(&mut self) {
+    pub(super) fn declared_below(&mut self, map: &SourceMap) {
         let mut gone = Vec::new();
         let mut said = false;
+        let mut texts = Vec::new();
         for (at, name) in std::mem::take(&mut self.lost.unknown) {
             let Some(s) = self.symbols.find(&name) else {
+                let (said, s) = (texts.len(), self.in_text(&name, map));
+                texts.extend(s.filter(|s| !texts.contains(s)));
+                match s {
+                    Some(_) if said == texts.len() => gone.push(at),
+                    Some(s) => {
+                        let symbol = self.symbols.get(s);
+                        let d = &mut self.diagnostics[at];
+                        d.others.push(Label {
+                            span: symbol.declared,
+                            text: format!("`{}` is read as the text of this", symbol.text),
+                        });
+                        d.help = Some("commas stand between names that are declared".into());
+                    }
+                    None => {}
+                }
                 continue;
             };
             let symbol = self.symbols.get(s);

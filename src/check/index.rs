@@ -1,5 +1,7 @@
 //! Index expressions: from what stands between the parentheses of a symbol to the parts of its key.
 
+use super::data::meant_range;
+use super::expansion::range;
 use super::node::*;
 use super::symbols::{DomainPosition, SymbolKind, UNIVERSE, attribute};
 use super::{Compiler, Failed};
@@ -408,14 +410,14 @@ impl Compiler {
         span: Span,
     ) -> Result<u32, Failed> {
         let symbol = self.symbols.get(of);
-        let set = match symbol.domain.get(position) {
+        let set_id = match symbol.domain.get(position) {
             Some(DomainPosition::Set(d)) => self.symbols.root(*d),
             _ => UNIVERSE,
         };
-        if self.is_torn(set) {
+        if self.is_torn(set_id) || self.lost.elements.contains(&set_id) {
             return Err(Failed);
         }
-        let set = self.symbols.get(set);
+        let set = self.symbols.get(set_id);
         let table = self.store.table(set.table);
         if table.is_empty() && !set.has_data && !set.assigned {
             let (name, declared) = (set.name.clone(), set.declared);
@@ -432,8 +434,12 @@ impl Compiler {
         let known =
             (0..table.len().min(10_000) as u32).map(|r| self.store.universe.name(table.key(r)[0]));
         let (name, set_name) = (&symbol.name, &set.name);
-        let help = match nearest(text, known) {
-            Some(n) => format!("did you mean `{quote}{n}{quote}`?"),
+        let near = nearest(text, known);
+        let help = match self.misread(set.table, text) {
+            Some(help) => help,
+            None if near.is_some() => {
+                format!("did you mean `{quote}{}{quote}`?", near.unwrap_or_default())
+            }
             None if quote.is_empty() => format!(
                 "add `{text}` to `{set_name}`, or correct the label; a label with a blank stands in quotes"
             ),
@@ -450,12 +456,32 @@ impl Compiler {
         ))
         .other(set.declared, format!("`{set_name}` is declared here"))
         .help(help);
+        self.doubtful.retain(|(s, _)| *s != set_id);
         if self.modes.at(span).warnings {
             d.severity = Severity::Warning;
             self.report(d);
             return Ok(self.store.universe.intern(text));
         }
         self.fail(d)
+    }
+
+    /// Where a label went that a set lacks: into the text of an element, or a range with a hyphen.
+    fn misread(&self, set: TableId, label: &str) -> Option<String> {
+        let table = self.store.table(set);
+        let texts = self.store.texts.get(&set);
+        (0..table.len().min(10_000) as u32).find_map(|row| {
+            let key = table.key(row);
+            let element = self.store.universe.name(*key.first()?);
+            let text = texts.and_then(|t| t.get(key)).map_or("", |t| t);
+            if let Some((from, to)) = meant_range(element, text)
+                && range(from, to, 1000).is_ok_and(|mut all| all.any(|l| l.eq_ignore_ascii_case(label)))
+            {
+                return Some(format!("`{}` is one element; a range is written `{from}*{to}`", [element, text].join(" ").trim_end()));
+            }
+            text.split_whitespace().any(|w| w.eq_ignore_ascii_case(label)).then(|| {
+                format!("`{text}` is the explanatory text of `{element}`: commas stand between elements, `{element}, {}`", text.split_whitespace().collect::<Vec<_>>().join(", "))
+            })
+        })
     }
 
     pub(super) fn lag_base(

@@ -111,6 +111,8 @@ pub(crate) struct Compiler {
     /// Labels that are new may stand here.
     new_labels: bool,
     texts_allowed: bool,
+    /// Sets whose elements look like something else: said, unless an error about the set does.
+    doubtful: Vec<(SymbolId, Diagnostic)>,
     /// Depth of loops and ifs.
     nesting: usize,
     /// The file that a `put` above names last.
@@ -187,7 +189,9 @@ pub fn compile(
     }
     c.unused_inputs();
     c.clear_errors(parser.cleared_errors());
-    c.declared_below();
+    c.declared_below(parser.map());
+    let doubtful = std::mem::take(&mut c.doubtful);
+    c.diagnostics.extend(doubtful.into_iter().map(|(_, d)| d));
     c.store.refresh_universe();
     // `$terminate`: nothing is run, which is no failure.
     if parser.ending() != Ending::Regular {
@@ -245,6 +249,7 @@ impl Compiler {
             running: Vec::new(),
             new_labels: false,
             texts_allowed: false,
+            doubtful: Vec::new(),
             nesting: 0,
             put_named: None,
             max_memory: None,
@@ -311,6 +316,13 @@ impl Compiler {
             return;
         }
         let (name, kind, declared) = (s.name.clone(), s.kind_name(), s.declared);
+        // `p(i) price, in EUR / a 1 /`: the rest of the text is taken for the next name.
+        let next = self.symbols.iter().nth(root as usize + 1).map(|(_, n)| n);
+        let next = next.filter(|n| {
+            let anywhere = |d: &DomainPosition| matches!(d, DomainPosition::Universe);
+            !s.text.is_empty() && n.has_data && n.domain.iter().all(anywhere)
+        });
+        let next = next.map(|n| n.name.clone());
         let d = match s.kind {
             SymbolKind::Variable(_) | SymbolKind::Equation(_) => Diagnostic::error(
                 "E0319",
@@ -336,7 +348,12 @@ impl Compiler {
                 SymbolKind::Set { .. } => {
                     format!("give it elements: `{name} / a, b /`, or `{name}(…) = yes;`")
                 }
-                _ => format!("give it data: `{name} / … /`, or assign it before"),
+                _ => match next {
+                    Some(next) => format!(
+                        "the data stand behind `{next}`: a comma ends a text without quotes; quote the text"
+                    ),
+                    None => format!("give it data: `{name} / … /`, or assign it before"),
+                },
             }),
         };
         self.report(d);

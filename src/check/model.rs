@@ -4,13 +4,14 @@ use super::node::*;
 use super::symbols::{DomainPosition, SymbolKind};
 use super::{Compiler, Failed};
 use crate::diag::{Diagnostic, nearest};
+use crate::model::instance::Function;
 use crate::model::problem_type::{Discrete, ProblemType};
 use crate::source::{Known, Span};
 use crate::syntax::ast::{Ident, ModelItem, Solve, VariableKind};
 
 impl Compiler {
     pub(super) fn solve(&mut self, s: &Solve, span: Span) -> Result<CodeKind, Failed> {
-        let model = self.lookup(&s.model)?;
+        let model = self.lookup_model(&s.model)?;
         let symbol = self.symbols.get(model).clone();
         let SymbolKind::Model(info) = &symbol.kind else {
             return self.fail(
@@ -107,6 +108,17 @@ impl Compiler {
         })))
     }
 
+    fn lookup_model(&mut self, name: &Ident) -> Result<SymbolId, Failed> {
+        if !name.name.eq_ignore_ascii_case("all") {
+            return self.lookup(name);
+        }
+        self.fail(
+            Diagnostic::error("E0350", name.span, "`all` stands in the list of a model")
+                .label("a model is expected")
+                .help("write `model m / all /; solve m using lp minimizing z;`"),
+        )
+    }
+
     fn no_problem_type<T>(&mut self, name: &Ident) -> Result<T, Failed> {
         if name.name.eq_ignore_ascii_case("emp") {
             return self.fail(
@@ -116,7 +128,14 @@ impl Compiler {
             );
         }
         let names = ProblemType::ALL.map(ProblemType::name);
-        let near = nearest(&name.name, names).unwrap_or("lp");
+        let near = match name.name.to_lowercase().as_str() {
+            "qp" | "quadratic" | "socp" | "qcqp" => "qcp",
+            "milp" | "ip" | "ilp" | "bip" | "integer" => "mip",
+            "miqp" | "miqcqp" => "miqcp",
+            "nonlinear" | "convex" => "nlp",
+            "lcp" | "ncp" | "vi" => "mcp",
+            lower => nearest(lower, names).unwrap_or("lp"),
+        };
         let there_are = names.join(", ");
         self.fail(
             Diagnostic::error(
@@ -411,6 +430,7 @@ impl Compiler {
                         what,
                         "E0361",
                         match &n.kind {
+                            NodeKind::Call(Function::IfThen, a) if !a[0].has_var => "a condition on data stands behind `$`: `x$c + y$(not c)` is linear".into(),
                             NodeKind::Call(f, _) if f.is_nonsmooth() => "solve it `using dnlp`, or write it with inequalities: `y =g= x; y =g= -x` for `y = abs(x)`".to_string(),
                             _ => format!(
                             "solve it `using nlp`, or reformulate the equation `{name}`; a level (`x.l`) is data and may be multiplied"

@@ -19,7 +19,33 @@ impl Compiler {
         let slot = self.next_slot;
         let r = self.one_statement(stmt, map, out);
         self.next_slot = slot;
+        if r.is_err() {
+            self.meant(stmt);
+        }
         r
+    }
+
+    /// What a statement with an error is meant to give values to: no second message where it is used.
+    fn meant(&mut self, stmt: &Stmt) {
+        let mut bodies: Vec<&[Stmt]> = Vec::new();
+        match &stmt.kind {
+            StmtKind::Assign(a) => {
+                if let Some(s) = self.symbols.find(&a.target.name.name) {
+                    let root = self.symbols.root(s);
+                    self.symbols.get_mut(root).assigned = true;
+                }
+            }
+            StmtKind::Loop(_, body)
+            | StmtKind::While(_, body)
+            | StmtKind::Repeat(body, _)
+            | StmtKind::For { body, .. } => bodies.push(body),
+            StmtKind::If(arms, otherwise) => {
+                bodies.extend(arms.iter().map(|(_, body)| &body[..]));
+                bodies.push(otherwise);
+            }
+            _ => {}
+        }
+        bodies.into_iter().flatten().for_each(|s| self.meant(s));
     }
 
     fn one_statement(
@@ -47,17 +73,7 @@ impl Compiler {
             StmtKind::Figure(f) => return self.declare_figure(f),
             StmtKind::Clear { kill, names } => return self.forget(*kill, names),
             StmtKind::Empty => return Ok(()),
-            StmtKind::Assign(a) => {
-                let done = self.assign(a, span, out);
-                if done.is_err()
-                    && let Some(s) = self.symbols.find(&a.target.name.name)
-                {
-                    // It is meant to get values: no second message where it is used.
-                    let root = self.symbols.root(s);
-                    self.symbols.get_mut(root).assigned = true;
-                }
-                return done;
-            }
+            StmtKind::Assign(a) => return self.assign(a, span, out),
             StmtKind::Equate(e) => return self.equate(e, span),
             StmtKind::Solve(s) => self.solve(s, span)?,
             StmtKind::Loop(d, body) => self.scoped(|c| {

@@ -93,7 +93,7 @@ pub const CODES: &[Code] = &[
     row("E0231", Error, "statement of another language", "the message says how it is written here"),
     row("E0232", Error, "operator of another language", "the message says how it is written here"),
     row("E0233", Error, "`end` of a block", "blocks end with `);`"),
-    row("E0234", Warning, "bound read as a text", "`variable x >= 0` declares a text, not a bound"),
+    row("E0234", Warning, "read as a text", "`variable x >= 0` and `x binary` declare a text, not a bound or kind; `/ a b c /` is one element with a text"),
     row("E0235", Error, "sum of another language", "`sum(i, term)`, `sum((i,j), term)`"),
     row("E0236", Error, "head of a block", "`loop(i, … );`, `for(k = 1 to 5, … );`, `if(c, … );`, `while(c, … );`"),
 

@@ -617,11 +617,9 @@ impl<'a> DataReader<'a> {
                         self.at = start + n + 2;
                         Ok((&self.text[start + 1..start + 1 + n], true))
                     }
-                    _ => Err(self.error(
-                        "E0242",
-                        start,
-                        start + 1,
-                        "this quote is not closed on its line",
+                    _ => Err(Box::new(
+                        self.error("E0242", start, start + 1, "this quote is not closed on its line")
+                            .help("a label or text stands between two quotes of one kind; no sign parts thousands"),
                     )),
                 }
             }

@@ -340,6 +340,12 @@ fn slip(f: &Failure<'_>) -> Option<Diagnostic> {
                 }
                 '\u{2212}' | '\u{2013}' | '\u{2014}' => "write the plain minus sign `-`",
                 '\u{d7}' => "write `*`",
+                '\u{f7}' => "write `/`",
+                '\u{221e}' => "write `inf`",
+                '\u{2211}' | '\u{3a3}' => "write `sum(i, …)`",
+                '\u{221a}' => "write `sqrt(x)`",
+                '\u{3c0}' => "write `pi`",
+                '\u{b2}' => "write `sqr(x)`",
                 '\u{2264}' => "write `=l=` in an equation, `<=` in a condition",
                 '\u{2265}' => "write `=g=` in an equation, `>=` in a condition",
                 '\u{2260}' => "write `<>`",
@@ -416,6 +422,9 @@ fn in_declaration(f: &Failure<'_>, token: &str) -> Option<Diagnostic> {
             )),
         );
     }
+    if let Some(d) = declared_attribute(f, token, name) {
+        return Some(d);
+    }
     if matches!(token, "-" | ".") && before_is_name(f.text, f.at) {
         return Some(
             f.error(
@@ -479,6 +488,17 @@ fn in_declaration(f: &Failure<'_>, token: &str) -> Option<Diagnostic> {
         );
     }
     None
+}
+
+/// `variable x.lo = 3;`
+fn declared_attribute(f: &Failure<'_>, token: &str, name: &str) -> Option<Diagnostic> {
+    let attribute = f.token(f.at + 1).to_ascii_lowercase();
+    let is_one = matches!(&*attribute, "l" | "lo" | "up" | "fx");
+    (token == "." && f.raw.class == Class::Variable && is_one).then(|| {
+        f.error("E0220", f.at, 1 + attribute.len(), "a declaration gives no bounds").help(format!(
+            "declare `variable {name};` and write `{name}.{attribute} = …;` in a statement of its own"
+        ))
+    })
 }
 
 fn before_is_name(text: &str, at: usize) -> bool {

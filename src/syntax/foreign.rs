@@ -61,20 +61,20 @@ const IDIOMS: &[Idiom] = &[
     Idiom { words: &["int", "float", "bool", "array"], stands: Stands::Alone, language: Language::MiniZinc,
         message: "this is a declaration of MiniZinc",
         help: "numbers are declared with `scalar n / 4 /;` or `parameter p(i) / a 1, b 2 /;`, unknowns with `variable x(i);`" },
-    Idiom { words: &["double", "string", "const", "auto"], stands: Stands::Alone, language: Language::Any,
+    Idiom { words: &["double", "string", "const", "auto", "real", "number", "constant", "constants", "index", "indices", "vector", "matrix"], stands: Stands::Alone, language: Language::Any,
         message: "this is not a declaration of this language",
         help: "numbers are declared with `scalar` or `parameter`, sets with `set`, unknowns with `variable`" },
     Idiom { words: &["var"], stands: Stands::Typed, language: Language::MiniZinc,
         message: "variables are declared with `variable`",
         help: "write `variable x;`; bounds are assigned afterwards: `x.lo = 0; x.up = 10;`" },
-    Idiom { words: &["var", "dvar"], stands: Stands::Alone, language: Language::Ampl,
+    Idiom { words: &["var", "vars", "dvar"], stands: Stands::Alone, language: Language::Ampl,
         message: "variables are declared with `variable`",
         help: "write `positive variable x(i);`; bounds are assigned afterwards: `x.up(i) = 5;`" },
     Idiom { words: &["subject", "such"], stands: Stands::Alone, language: Language::Ampl,
         message: "constraints are equations here", help: CONSTRAINT },
-    Idiom { words: &["constraint"], stands: Stands::Alone, language: Language::MiniZinc,
+    Idiom { words: &["constraint", "constraints", "restriction", "restrictions"], stands: Stands::Alone, language: Language::MiniZinc,
         message: "constraints are equations here", help: CONSTRAINT },
-    Idiom { words: &["minimize", "minimise", "maximize", "maximise", "min", "max", "minimizing", "maximizing"],
+    Idiom { words: &["minimize", "minimise", "maximize", "maximise", "min", "max", "minimizing", "maximizing", "objective"],
         stands: Stands::Alone, language: Language::Ampl,
         message: "the objective is a variable that an equation defines", help: OBJECTIVE },
     Idiom { words: &["minimize", "maximize"], stands: Stands::Call, language: Language::Any,
@@ -102,6 +102,12 @@ const IDIOMS: &[Idiom] = &[
         message: "`include` is a directive: it begins with `$` in the first column", help: "write `$include data.inc`" },
     Idiom { words: &["print", "println", "printf", "show", "echo", "writeln", "disp", "fprintf"], stands: Stands::Call, language: Language::Any,
         message: "values are shown with `display`", help: SHOW },
+    Idiom { words: &["export", "save", "write", "dump"], stands: Stands::Call, language: Language::Any,
+        message: "values are written to files with `execute_unload`",
+        help: "write `execute_unload 'results.csv', x;`; formatted text is written with `put`" },
+    Idiom { words: &["load", "read"], stands: Stands::Call, language: Language::Any,
+        message: "data are read by directives",
+        help: "write `$include data.inc` for statements; `$gdxIn data.csv` and `$load p` for the values of `p`" },
     Idiom { words: &["output"], stands: Stands::Alone, language: Language::MiniZinc,
         message: "values are shown with `display`", help: SHOW },
     Idiom { words: &["plot", "scatter", "chart"], stands: Stands::Call, language: Language::Any,
@@ -121,7 +127,11 @@ const IDIOMS: &[Idiom] = &[
     Idiom { words: &["forall"], stands: Stands::Call, language: Language::Any,
         message: "an equation holds for all elements of the index behind its name",
         help: "write `e(i).. x(i) =l= 4;`; statements are repeated by `loop(i, … );`" },
-    Idiom { words: &["positive", "negative", "nonnegative", "free", "binary", "integer"], stands: Stands::Alone, language: Language::Any,
+    Idiom { words: &["stop", "quit", "exit"], stands: Stands::Call, language: Language::Any,
+        message: "a model ends where its text ends", help: "leave it out; `$exit` ends the text here, `abort 'why';` the run" },
+    Idiom { words: &["do", "begin"], stands: Stands::Alone, language: Language::Blocks,
+        message: "blocks begin with `loop`, `for`, `while`, `repeat` or `if`", help: "write `while(a < 5, … );` or `repeat … until a >= 5;`" },
+    Idiom { words: &["positive", "negative", "nonnegative", "free", "binary", "integer"], stands: Stands::Call, language: Language::Any,
         message: "the word `variable` is missing", help: "write `positive variable x;`, `free variable z;` …" },
     Idiom { words: &["endif", "endfor", "endwhile", "endloop", "done", "fi"], stands: Stands::Alone, language: Language::Blocks,
         message: "blocks end with `);`", help: "write `if(c, … );`; `$onEnd` allows `if c then … endif;`" },
@@ -169,7 +179,11 @@ pub(super) fn statement(f: &Failure<'_>) -> Option<Explanation> {
         .find(|i| i.words.contains(&lower.as_str()) && i.stands.fits(rest));
     if let Some(i) = found {
         let d = f.error("E0231", lead, word.len(), i.message).help(i.help);
-        return Some(said(d, i.language));
+        let mut found = said(d, i.language);
+        if lower == "do" {
+            found.go_on = line_end(f, lead);
+        }
+        return Some(found);
     }
     misspelled(f, word, rest, lead)
 }
@@ -365,6 +379,11 @@ fn blocks(f: &Failure<'_>, word: &str, rest: &str, lead: usize) -> Option<Explan
             "statements are not grouped by braces".into(),
             "they stand inside of the parentheses, after a comma: `if(c, … );`, `while(c, … );`",
         ),
+        // `p(i) = 1 if a(i) > 0;`: the splitter has cut before the word.
+        ("for" | "if" | "while", _) if !rest.starts_with('(') && behind_code(f, lead) => Some(Explanation::of(
+            f.error("E0232", lead, word.len(), format!("`{word}` cannot stand behind an expression"))
+                .help("a condition stands behind `$`: `p(i)$(a(i) > 0) = …;`; an equation holds for all elements of the index behind its name, `e(i).. …`"),
+        )),
         ("for" | "while" | "if" | "loop" | "elseif" | "else", _)
             if !rest.starts_with(['(', '[', '{']) =>
         {
@@ -403,6 +422,13 @@ fn blocks(f: &Failure<'_>, word: &str, rest: &str, lead: usize) -> Option<Explan
         }
         _ => None,
     }
+}
+
+/// Whether something other than a statement's end stands before a word on its line.
+fn behind_code(f: &Failure<'_>, lead: usize) -> bool {
+    let before = &f.expanded[..f.span(lead, lead).lo as usize];
+    let line = before.rsplit('\n').next().unwrap_or("").trim_end();
+    line.ends_with(|c: char| c.is_ascii_alphanumeric() || matches!(c, ')' | ']' | '}' | '\''))
 }
 
 fn text_goes_on(f: &Failure<'_>, lead: usize) -> bool {
@@ -452,6 +478,19 @@ fn trace(line: &str, place: &dyn Fn(usize, usize) -> Span) -> Option<Explanation
     )
     .help(PROGRAM);
     Some(said(d, language))
+}
+
+/// The kind of variables that a word of other languages means.
+pub(super) fn variable_kind(word: &str) -> Option<&'static str> {
+    Some(match word.to_ascii_lowercase().as_str() {
+        "binary" | "bin" | "boolean" | "bool" => "binary",
+        "integer" | "int" => "integer",
+        "positive" | "nonnegative" | "nonneg" => "positive",
+        "negative" => "negative",
+        "semicont" => "semicont",
+        "semiint" => "semiint",
+        _ => return None,
+    })
 }
 
 /// `paramter a(i) / … /;`

@@ -187,7 +187,7 @@ impl<'h> Parser<'h> {
         let word = self.text.map.text(d.span).to_ascii_lowercase();
         match d.code {
             "E0205" => self.reserved.push(word),
-            "E0210" if self.reserved.contains(&word) => return Vec::new(),
+            "E0210" | "E0235" if self.reserved.contains(&word) => return Vec::new(),
             _ => {}
         }
         vec![d]
@@ -212,22 +212,52 @@ impl<'h> Parser<'h> {
                     .warn(Diagnostic::warning("E0234", name.span, message).help(help));
             }
         }
-        let ast::StmtKind::Variable(_, list) = &stmt.kind else {
+        let ast::StmtKind::Variable(stated, list) = &stmt.kind else {
             return;
         };
         for d in list {
-            let Some(text) = d.text.as_deref().filter(|t| t.starts_with(['<', '>'])) else {
+            let Some(text) = d.text.as_deref() else {
                 continue;
             };
             let name = &d.name.name;
-            let message =
-                format!("`{text}` behind `{name}` is read as an explanatory text, not as a bound");
-            let help = match text.starts_with('<') {
-                true => format!("assign the bound after the declaration: `{name}.up = …;`"),
-                false => format!(
-                    "declare `positive variable {name};`, or assign `{name}.lo = …;` after the declaration"
+            let word = &text[..words::word_end(text.as_bytes(), 0)];
+            let behind = text[word.len()..].trim_start();
+            let number = behind.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '-' | '='));
+            let bound =
+                text.starts_with(['<', '>']) || number && matches!(word, "lo" | "up" | "fx");
+            let quoted = || {
+                let written = self.text.map.text(stmt.span);
+                ["'", "\""]
+                    .iter()
+                    .any(|q| written.contains(&format!("{q}{text}{q}")))
+            };
+            let kind = foreign::variable_kind(word)
+                .filter(|_| behind.is_empty() || behind.starts_with(['<', '>']))
+                .filter(|_| *stated == ast::VariableKind::Unstated && !quoted());
+            let (what, help) = match kind {
+                Some(kind) => {
+                    let sets: Vec<&str> =
+                        d.domain.iter().flatten().map(|s| &*s.name.name).collect();
+                    let over = match sets.is_empty() {
+                        true => String::new(),
+                        false => format!("({})", sets.join(",")),
+                    };
+                    ("kind", format!("write `{kind} variable {name}{over};`"))
+                }
+                None if !bound => continue,
+                None if text.starts_with('>') => (
+                    "bound",
+                    format!(
+                        "declare `positive variable {name};`, or assign `{name}.lo = …;` after the declaration"
+                    ),
+                ),
+                None => (
+                    "bound",
+                    format!("assign the bound after the declaration: `{name}.up = …;`"),
                 ),
             };
+            let message =
+                format!("`{text}` behind `{name}` is read as an explanatory text, not as a {what}");
             self.text
                 .warn(Diagnostic::warning("E0234", d.name.span, message).help(help));
         }

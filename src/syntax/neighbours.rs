@@ -140,7 +140,10 @@ fn bound(f: &Failure<'_>, lead: usize) -> Option<Diagnostic> {
         _ => ("=e=", "fx"),
     };
     let word = words::word_end(left.as_bytes(), 0);
-    let indices = left[word..].trim();
+    let attribute = left[word..]
+        .strip_prefix('.')
+        .map_or(0, |r| 1 + words::word_end(r.as_bytes(), 0));
+    let indices = left[word + attribute..].trim();
     let simple = word > 0
         && (indices.is_empty()
             || indices.starts_with('(')

@@ -6,6 +6,7 @@ use super::explain::{Failure, closing, is_relation};
 use super::neighbours::{is_sum, top_level};
 use super::words::{self, Class};
 use crate::diag::Diagnostic;
+use crate::model::problem_type::ProblemType;
 
 /// The innermost open parenthesis before a byte, and the word before it.
 fn enclosing(text: &str, at: usize) -> Option<(usize, &str)> {
@@ -20,11 +21,13 @@ fn enclosing(text: &str, at: usize) -> Option<(usize, &str)> {
         }
         false
     })?;
-    let before = text[..open].trim_end();
-    let start = before
-        .rfind(|c: char| !c.is_ascii_alphanumeric() && c != '_')
-        .map_or(0, |n| n + 1);
-    Some((open, &before[start..]))
+    Some((open, last_word(text[..open].trim_end())))
+}
+
+/// The word that a text ends with.
+fn last_word(text: &str) -> &str {
+    let between = |c: char| !c.is_ascii_alphanumeric() && c != '_';
+    text.rsplit(between).next().unwrap_or("")
 }
 
 /// Slips inside of sums: `sum(i, j, …)`, `sum(i in I, …)`, `sum(c(i)*x(i))`.
@@ -78,6 +81,34 @@ fn sum(f: &Failure<'_>) -> Option<Diagnostic> {
     }
 }
 
+/// `sum(i$a(i)>1, …)`
+fn sum_condition(f: &Failure<'_>) -> Option<Diagnostic> {
+    let (mut open, mut word) = enclosing(f.text, f.at)?;
+    while !is_sum(word) {
+        (open, word) = enclosing(f.text, open)?;
+    }
+    let close = closing(f.text.as_bytes(), open).unwrap_or(f.text.len());
+    let inside = &f.text.as_bytes()[..close];
+    let dollar = top_level(inside, open + 1, |b| b[0] == b'$')?;
+    let end = top_level(inside, dollar, |b| b[0] == b',')?;
+    top_level(&inside[..end], dollar, |b| {
+        matches!(b[0], b'<' | b'>' | b'=')
+    })?;
+    let (index, condition) = (
+        f.text[open + 1..dollar].trim(),
+        f.text[dollar + 1..end].trim(),
+    );
+    Some(
+        f.error(
+            "E0235",
+            dollar,
+            end - dollar,
+            "a condition with an operator stands in parentheses",
+        )
+        .help(format!("write `{word}({index}$({condition}), …)`")),
+    )
+}
+
 /// Whether a comma stands outside of parentheses.
 fn top_comma(text: &str) -> bool {
     top_level(text.as_bytes(), 0, |b| b[0] == b',').is_some()
@@ -88,13 +119,23 @@ fn top_comma(text: &str) -> bool {
 const OPERATORS: &[(&str, &str)] = &[
     ("!=", "<>"), ("&&", "and"), ("||", "or"), ("/\\", "and"), ("\\/", "or"), (".*", "*"), (".^", "**"), ("./", "/"), (".+", "+"),
     ("^", "**"), ("=<", "<="), ("=>", "->"), ("~=", "<>"), ("∈", "sum(i, …)"), ("&", "and"), ("|", "or"),
-    ("!", "not"), ("~", "not"), ("·", "*"),
+    ("!", "not"), ("~", "not"), ("·", "*"), ("\\", "sum(i, …)"),
 ];
 
 /// Operators of other languages.
 pub(super) fn at_token(f: &Failure<'_>) -> Option<Diagnostic> {
     let known = [
-        sum, display, solve, control, no_name, operand, operator, sign,
+        sum_condition,
+        sum,
+        display,
+        solve,
+        control,
+        parts,
+        no_name,
+        operand,
+        bars,
+        operator,
+        sign,
     ];
     known.iter().find_map(|slip| slip(f))
 }
@@ -223,6 +264,21 @@ fn sign(f: &Failure<'_>) -> Option<Diagnostic> {
     missing_operator(f)
 }
 
+/// `|x|`, `5!`
+fn bars(f: &Failure<'_>) -> Option<Diagnostic> {
+    let behind_operand = f.text[..f.at]
+        .trim_end()
+        .ends_with(|c: char| c.is_ascii_alphanumeric() || c == ')');
+    let next = f.token(f.at + 1);
+    let write = match f.token(f.at) {
+        "|" if !behind_operand && next != "|" => "write `abs(x)`",
+        "!" if behind_operand && next != "=" => "write `fact(n)`",
+        _ => return None,
+    };
+    let message = format!("`{}` is not an operator", f.token(f.at));
+    Some(f.error("E0232", f.at, 1, message).help(write))
+}
+
 /// `2 x`, `f d(i,j)`, `3(x + y)`, `1,5`, `a where b`.
 fn missing_operator(f: &Failure<'_>) -> Option<Diagnostic> {
     let token = f.token(f.at);
@@ -231,6 +287,9 @@ fn missing_operator(f: &Failure<'_>) -> Option<Diagnostic> {
         before.ends_with(|c: char| c.is_ascii_alphanumeric() || matches!(c, ')' | ']' | '}' | '_'));
     if f.raw.class != Class::Algebra || !operand {
         return None;
+    }
+    if let Some(d) = direction(f, before) {
+        return Some(d);
     }
     match token.to_ascii_lowercase().as_str() {
         "where" | "if" | "for" | "when" => Some(
@@ -241,6 +300,10 @@ fn missing_operator(f: &Failure<'_>) -> Option<Diagnostic> {
                 format!("`{token}` is not an operator"),
             )
             .help("a condition stands behind `$`: `e(i)$(a(i) > 0).. …`, `x$(a > 0)`"),
+        ),
+        "in" => Some(
+            f.error("E0232", f.at, 2, "`in` is not an operator")
+                .help("write `a >= 0 and a <= 2`; whether an element is in a set says `s(i)`"),
         ),
         "div" | "mod" => Some(
             f.error(
@@ -262,16 +325,8 @@ fn missing_operator(f: &Failure<'_>) -> Option<Diagnostic> {
                     .label("write `.`"),
             )
         }
-        t if t != "("
-            && is_function(
-                &before[before
-                    .rfind(|c: char| !c.is_ascii_alphanumeric())
-                    .map_or(0, |n| n + 1)..],
-            ) =>
-        {
-            let name = &before[before
-                .rfind(|c: char| !c.is_ascii_alphanumeric())
-                .map_or(0, |n| n + 1)..];
+        t if t != "(" && is_function(last_word(before)) => {
+            let name = last_word(before);
             Some(
                 f.error(
                     "E0212",
@@ -299,6 +354,24 @@ fn missing_operator(f: &Failure<'_>) -> Option<Diagnostic> {
     }
 }
 
+/// `o.. min z =e= …`
+fn direction(f: &Failure<'_>, before: &str) -> Option<Diagnostic> {
+    let word = last_word(before);
+    let at = before.len() - word.len();
+    let directs = ["min", "max", "minimize", "maximize", "minimise", "maximise"]
+        .iter()
+        .any(|w| word.eq_ignore_ascii_case(w));
+    (directs && before[..at].trim_end().ends_with("..")).then(|| {
+        f.error(
+            "E0231",
+            at,
+            word.len(),
+            "the direction stands in the `solve`",
+        )
+        .help("write `o.. z =e= …;` and `solve m using lp minimizing z;`")
+    })
+}
+
 fn is_function(word: &str) -> bool {
     const WORDS: [&str; 10] = [
         "ord", "card", "sqrt", "exp", "log", "abs", "sqr", "sin", "cos", "floor",
@@ -324,6 +397,111 @@ fn no_name(f: &Failure<'_>) -> Option<Diagnostic> {
     })
 }
 
+/// Parts in the wrong order or without their sign: attributes, conditions, declarations behind a `;`.
+fn parts(f: &Failure<'_>) -> Option<Diagnostic> {
+    let bytes = f.text.as_bytes();
+    let token = f.token(f.at);
+    let before = f.text[..f.at].trim_end();
+    let lead = f.text.len() - f.text.trim_start().len();
+    let algebra = f.raw.class == Class::Algebra;
+    let say =
+        |at, len, message: &str, help: String| Some(f.error("E0210", at, len, message).help(help));
+    // Behind the name and indices that the statement begins with.
+    let word = words::word_end(bytes, lead);
+    let named = match bytes.get(word) {
+        Some(b'(' | b'[' | b'{') => closing(bytes, word).map_or(word, |c| c + 1),
+        _ => word,
+    };
+    match token {
+        "." if before.ends_with([')', ']', '}']) && bytes.get(f.at + 1).is_some_and(u8::is_ascii_alphabetic) => {
+            let open = (0..f.at).rev().find(|&o| closing(bytes, o) == Some(before.len() - 1))?;
+            let name = last_word(f.text[..open].trim_end());
+            let attribute = &f.text[f.at + 1..words::word_end(bytes, f.at + 1)];
+            let help = match f.text[lead..word].eq_ignore_ascii_case("display") {
+                true => format!("`display` takes whole symbols: write `display {name}.{attribute};`"),
+                false => format!("write `{name}.{attribute}{}`", &before[open..]),
+            };
+            say(f.at, attribute.len() + 1, "an attribute stands before the indices", help)
+        }
+        "/" | "'" | "\"" if algebra && word > lead && before.len() == named => say(
+            lead,
+            word - lead,
+            "a declaration begins with its keyword",
+            format!("the `;` before it has ended the declaration above: write `,` there, or `set {} / … /;`", &f.text[lead..named]),
+        ),
+        "in" if algebra && enclosing(f.text, f.at).is_some_and(|(open, _)| open == word) => say(
+            f.at,
+            2,
+            "an index stands alone, without `in`",
+            format!("for some elements of a set write a condition, `{}(i)$s(i)`, with a subset, `set s(i) / a, b /;`", &f.text[lead..word]),
+        ),
+        "+" | "-" if algebra && before.len() == named && bytes.get(f.at + 1) == bytes.get(f.at) => Some(
+            f.error("E0232", f.at, 2, format!("nothing stands behind `{token}{token}`"))
+                .help(format!("write `a = a {token} 1;`")),
+        ),
+        "" | ")" | "]" | "}" if before.ends_with("++") || before.ends_with("--") => {
+            let (sign, index) = (&before[before.len() - 2..], enclosing(f.text, f.at).map(|(open, _)| &f.text[open + 1..before.len() - 2]));
+            Some(
+                f.error("E0232", before.len() - 2, 2, format!("nothing stands behind `{sign}`"))
+                    .help(match index {
+                        Some(index) => format!("a circular lead or lag needs its number: `{index}{sign}1`"),
+                        None => format!("write `a = a {} 1;`", &sign[..1]),
+                    }),
+            )
+        }
+        "," if algebra && enclosing(f.text, f.at).is_none() && (before.contains('=') || before.contains("..")) && !before.ends_with(|c: char| c.is_ascii_digit()) | (bytes.get(f.at + 1) == Some(&b' ')) => say(
+            f.at,
+            1,
+            "a statement ends with `;`, not with `,`",
+            "write `;` between two statements; an equation holds for all elements of the index behind its name, `e(i).. …`".into(),
+        ),
+        _ if is_sum(token) && !f.text[f.at + token.len()..].trim_start().starts_with(['(', '[', '{']) => Some(
+            f.error("E0235", f.at, token.len(), format!("`{token}` takes its index and its term in parentheses"))
+                .help(format!("write `{token}(i, …)`, or `{token}((i,j), …)` for several indices")),
+        ),
+        _ if matches!(token.to_ascii_lowercase().as_str(), "else" | "elseif") && before.ends_with(',') => say(
+            before.len() - 1,
+            1,
+            "`;` ends the statement before `else`, not `,`",
+            "write `if(c, … ; else … );`".into(),
+        ),
+        _ if algebra => condition(f, lead, token),
+        _ => None,
+    }
+}
+
+/// `e(i)$a(i)>1..`, `p(i)$a(i)>1 = 2`: a condition of several parts without parentheses.
+fn condition(f: &Failure<'_>, lead: usize, token: &str) -> Option<Diagnostic> {
+    let bytes = f.text.as_bytes();
+    let dollar = top_level(bytes, lead, |b| b[0] == b'$').filter(|d| *d < f.at)?;
+    let ends = |b: &[u8]| b.starts_with(b"..") || b[0] == b'=' && !is_relation(b);
+    let operator = matches!(token, "<" | ">" | "+" | "-" | "*" | "/" | "=")
+        || ["and", "or", "xor", "eq", "ne", "lt", "gt", "le", "ge"]
+            .iter()
+            .any(|w| token.eq_ignore_ascii_case(w));
+    let early = top_level(bytes, dollar, ends).filter(|e| *e < f.at);
+    let dots = top_level(bytes, f.at, |b| b.starts_with(b".."));
+    let end = match (operator, early) {
+        (true, None) => dots.or_else(|| top_level(bytes, f.at + 1, ends))?,
+        // `$a = 1..`
+        (_, Some(_)) if dots == Some(f.at) => f.at,
+        _ => return None,
+    };
+    let condition = f.text[dollar + 1..end].trim();
+    Some(
+        f.error(
+            "E0210",
+            dollar,
+            end - dollar,
+            "a condition with an operator stands in parentheses",
+        )
+        .help(format!(
+            "write `{}$({condition})`",
+            f.text[lead..dollar].trim_end()
+        )),
+    )
+}
+
 /// What stands where an operand should, or where one is missing.
 fn operand(f: &Failure<'_>) -> Option<Diagnostic> {
     let bytes = f.text.as_bytes();
@@ -331,7 +509,7 @@ fn operand(f: &Failure<'_>) -> Option<Diagnostic> {
     let before = f.text[..f.at].trim_end();
     let enclosing = enclosing(f.text, f.at);
     let open = enclosing.map(|(at, _)| bytes[at]);
-    let list = enclosing.is_some_and(|(at, word)| bytes[at] == b'[' && word.is_empty());
+    let list = enclosing.is_some_and(|(at, word)| bytes[at] != b'(' && word.is_empty());
     let say = |code, at, len, message: String, help: &str| {
         Some(f.error(code, at, len, message).help(help))
     };
@@ -416,18 +594,35 @@ fn operand(f: &Failure<'_>) -> Option<Diagnostic> {
             "the right side of the equation is missing".into(),
             "write an expression behind the relation, at least `0`",
         ),
-        "" if f.raw.class == Class::Algebra && !before.contains(['=', '.']) => {
+        "" if f.raw.class == Class::Algebra && !before.contains('=') && !before.contains("..") => {
             let lead = f.text.len() - f.text.trim_start().len();
+            if !before.contains('.') && behind_declaration(f, lead) {
+                return say(
+                    "E0210",
+                    lead,
+                    before.len() - lead,
+                    "a declaration begins with its keyword".into(),
+                    "the `;` before it has ended the declaration above: write `,` there, or repeat the keyword",
+                );
+            }
             say(
                 "E0210",
                 lead,
                 before.len() - lead,
                 "this is not a statement".into(),
-                "values are shown with `display x.l;`, assigned with `p = …;`, related in equations with `e.. … =e= …;`",
+                "values are shown with `display x.l;`, assigned with `p = …;`, related in equations with `e.. … =e= …;`; models are solved with `solve m using lp minimizing z;`",
             )
         }
         _ => None,
     }
+}
+
+/// Whether the statement above is a declaration.
+fn behind_declaration(f: &Failure<'_>, lead: usize) -> bool {
+    let above = &f.expanded[..f.span(lead, lead).lo as usize];
+    let above = above.trim_end().trim_end_matches(';');
+    let above = above[above.rfind(';').map_or(0, |n| n + 1)..].trim_start();
+    !above.is_empty() && words::classify(above, 0).0.declares()
 }
 
 /// Slips in the heads of `loop`, `for`, `if` and `while`.
@@ -449,7 +644,31 @@ fn control(f: &Failure<'_>) -> Option<Diagnostic> {
                 .help(help),
         )
     };
+    let lower = f.text[..f.at].to_ascii_lowercase();
+    let split = ["else if ", "elif ", "elsif "]
+        .iter()
+        .find_map(|w| Some((lower.rfind(w)?, w.trim_end())));
+    if let Some((at, written)) = split.filter(|(at, _)| word == "if" && !lower[*at..].contains(';'))
+    {
+        return Some(
+            f.error(
+                "E0236",
+                at,
+                written.len(),
+                format!("`elseif` is written for `{written}`"),
+            )
+            .help("write `if(a > 0, … ; elseif a < 0, … ; else … );`"),
+        );
+    }
     match word.as_str() {
+        "loop" if head.contains('=') && !top_comma(head) => say(
+            "`loop` runs over the elements of a set",
+            "write `for(k = 1 to 3, … );` to count with a scalar, `loop(i, … );` to run over a set",
+        ),
+        "loop" if token.eq_ignore_ascii_case("in") => say(
+            "a loop names its set alone, without `in`",
+            "write `loop(i, … );`",
+        ),
         // Further on the head is not to blame.
         _ if top_comma(head) && word != "for" => None,
         "for"
@@ -524,6 +743,30 @@ fn solve(f: &Failure<'_>) -> Option<Diagnostic> {
         return None;
     }
     let lower = f.text.to_ascii_lowercase();
+    let token = f.token(f.at);
+    let said =
+        |message: &str, help: &str| Some(f.error("E0218", f.at, token.len(), message).help(help));
+    if ProblemType::from_name(token).is_some() {
+        return said(
+            "`using` stands before the type of the model",
+            &format!("write `solve m using {token} minimizing z;`"),
+        );
+    }
+    if token.eq_ignore_ascii_case("with") {
+        return said(
+            "the solver is chosen by an option",
+            "write `option lp = simplex;` before the `solve`",
+        );
+    }
+    if ["subject", "st", "such", "where"]
+        .iter()
+        .any(|w| token.eq_ignore_ascii_case(w))
+    {
+        return said(
+            "the equations are listed where the model is declared",
+            "write `model m / o, r /;` or `model m / all /;`",
+        );
+    }
     let at = ["minimi", "maximi"].iter().find_map(|w| lower.find(w))?;
     let from = words::word_end(f.text.as_bytes(), at);
     let rest = f.text[from..].trim();

@@ -107,12 +107,17 @@ impl Splitter {
                 },
                 _ if self.declare == Declare::AfterName && !text_cannot_start(bytes, i) => {
                     if i == self.last_end {
-                        self.stray(
-                            i,
-                            i + 1,
-                            "a blank is missing before the text",
-                            "or is this a sign too many?",
-                        );
+                        let (message, help) = match b {
+                            b'(' | b'[' | b'{' => (
+                                "all indices stand in one pair of parentheses",
+                                "write `p(i,j)`",
+                            ),
+                            _ => (
+                                "a blank is missing before the text",
+                                "or is this a sign too many?",
+                            ),
+                        };
+                        self.stray(i, i + 1, message, help);
                     }
                     self.unquoted_text(text, i)
                 }
@@ -520,9 +525,16 @@ fn separates_records(text: &str) -> bool {
     };
     let between = &text[..slash];
     let word = words::word_end(line.as_bytes(), 0);
+    // `a=1; b=2 /;`
+    let records = between.split(';').all(|r| {
+        r.split_once('=')
+            .is_some_and(|(_, x)| x.trim().parse::<f64>().is_ok())
+    }) && text[slash + 1..]
+        .trim_start_matches([' ', '\t'])
+        .starts_with([';', ',', '\n']);
     !line.is_empty()
         && !line.starts_with('/')
-        && !between.contains(['=', '\'', '"'])
+        && (records || !between.contains(['=', '\'', '"']))
         && words::statement_word(line, 0, word).is_none()
         && between.lines().all(|l| {
             let l = l.trim_start();
