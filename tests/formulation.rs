@@ -395,6 +395,10 @@ equation obj, e(i); e(i).. x(i) =g= ord(i);
             "obj.. z =e= sum(i, x(i) + u(i)); model m / all /; solve m using mip minimizing z;",
         ),
         (
+            "quadratic integers",
+            "obj.. z =e= sum(i, sqr(x(i)) + u(i)); model m / all /; solve m using miqcp minimizing z;",
+        ),
+        (
             "nonlinear",
             "obj.. z =e= sum(i, exp(x(i))); model m / all /; solve m using nlp minimizing z;",
         ),

@@ -179,3 +179,49 @@ mod highs {
         }
     }
 }
+
+/// Of every node of a search that came to its end one knows what became of it.
+#[test]
+fn a_finished_tree_leaves_no_node_open() {
+    let text = "set i /1*20/, k /1*5/; parameter w(k,i), c(i), b(k);
+        w(k,i) = uniformint(5,100); c(i) = sum(k, w(k,i))/5 + uniformint(0,20); b(k) = floor(sum(i, w(k,i))/2);
+        binary variable x(i); variable z; equations v, r(k); v.. z =e= sum(i, c(i)*x(i)); r(k).. sum(i, w(k,i)*x(i)) =l= b(k);
+        model m /all/; m.optcr = 0; option mip = bmip; solve m using mip maximizing z;";
+    let collected = || Options {
+        collect: true,
+        ..common::quiet()
+    };
+    let s = solved(text, collected());
+    let search = s.search.expect("a search");
+    let tree = &search.tree;
+    assert!(search.nodes > 20 && search.left_out == 0, "{search:?}");
+    assert!(tree.iter().all(|n| n.fate != "open"), "{search:?}");
+    let children = |k: usize| tree.iter().filter(|n| n.parent == Some(k as u32)).count();
+    let divided = |k: usize| 2 * usize::from(tree[k].fate == "branched");
+    assert!(
+        (0..tree.len()).all(|k| children(k) == divided(k)),
+        "{search:?}"
+    );
+    let found = tree.iter().filter_map(|n| n.solution.map(number));
+    assert_eq!(found.reduce(f64::max), Some(number(s.objective)));
+    // and a search that ends at a limit says what may do better
+    let s = solved(
+        &text.replace("m.optcr", "m.nodlim = 3; m.optcr"),
+        collected(),
+    );
+    let search = s.search.expect("a search");
+    assert!(search.tree.iter().any(|n| n.fate == "open"), "{search:?}");
+    assert!(s.hint.is_some_and(|h| h.contains("small models")));
+}
+
+/// Where a proof was asked for and there is none, the answer says so.
+#[test]
+fn a_proof_that_is_not_made_is_missed() {
+    let text = "integer variable x; variable z; equation o; o.. z =e= sqr(x - 1.3); model m /all/; solve m using miqcp minimizing z;";
+    let certify = Options {
+        certify: true,
+        ..common::quiet()
+    };
+    let s = solved(text, certify);
+    assert!(s.bounds.is_none() && s.message.is_some_and(|m| m.contains("no bound is proved")));
+}

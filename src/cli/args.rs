@@ -209,7 +209,7 @@ pub struct RunArgs {
     /// Memory that the run may take.
     #[arg(long, value_name = "MB", value_parser = positive)]
     pub max_memory: Option<f64>,
-    /// Proves an interval for the objective of every lp.
+    /// Proves an interval for the objective of every lp and mip.
     #[arg(long)]
     pub certify: bool,
 }

@@ -1,7 +1,6 @@
 //! The dual and the optimality conditions of a solve: the page, the model, the comparison; or a refusal with its place.
 
 use super::check::{self, Comparison};
-use super::convex::{Shape, shape};
 use super::derive::{Derivation, Primal};
 use super::math::{Math, name};
 use super::page::{Block, Formula, Page, Setter, formulas};
@@ -10,8 +9,10 @@ use super::{Formulation, dual, kkt, side, text};
 use crate::check::node::{AggregateOp, EquationDef, Node, NodeKind, SymbolId};
 use crate::check::visit::Visitor;
 use crate::diag::Diagnostic;
+use crate::model::problem_type::ProblemType;
 use crate::run::{Machine, Studied};
 use crate::solve::ModelStatus;
+use crate::solve::nlp::convex::{Shape, shape};
 use crate::source::Span;
 
 /// What is derived from a model.
@@ -193,6 +194,13 @@ pub fn discrete(m: &Machine, primal: &Primal) -> Option<(SymbolId, String)> {
     Some((b.symbol, m.record_name(b.symbol, b.key(j as u32))))
 }
 
+/// Where a model that has discrete choices leaves what only one without them has.
+pub fn of_relaxation(primal: &Primal) -> String {
+    let using = ProblemType::from_name(&primal.using).unwrap_or(ProblemType::Mip);
+    let relaxation = using.relaxation();
+    format!("its relaxation has them: `solve … using {relaxation}`")
+}
+
 /// A model with discrete variables has neither a linear dual nor optimality conditions; its relaxation has.
 fn refuse_discrete(
     m: &Machine,
@@ -208,7 +216,7 @@ fn refuse_discrete(
     let declared = m.symbols.get(symbol).declared;
     Err(no(message)
         .other(declared, "declared here")
-        .help("its relaxation has them: `solve … using rmip`")
+        .help(of_relaxation(primal))
         .into())
 }
 

@@ -2,7 +2,6 @@
 
 mod said;
 
-use super::convex::{Shape, shape};
 use super::derive::Primal;
 use super::math::explained;
 use super::range::{self, Ranges, RowRange};
@@ -14,6 +13,7 @@ use crate::model::instance::{ColumnKind, Relation, Sense};
 use crate::model::origin::Blocks;
 use crate::run::{Machine, Studied};
 use crate::solve::ModelStatus;
+use crate::solve::nlp::convex::{Shape, shape};
 use said::{MAX_NAMES, Said, counted, listed, worth};
 
 /// A reduced cost, or a way to another optimum, below this is 0, relative.

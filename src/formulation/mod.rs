@@ -8,7 +8,6 @@
 pub mod algebra;
 pub mod check;
 mod columns;
-pub mod convex;
 pub mod data;
 pub mod derive;
 pub mod derived;

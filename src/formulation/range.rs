@@ -1,7 +1,7 @@
 //! Ranges of a solve, as a page.
 
 use super::derive::Primal;
-use super::derived::discrete;
+use super::derived::{discrete, of_relaxation};
 use super::page::{Block, Page};
 use super::side::short;
 use super::text::record;
@@ -34,8 +34,7 @@ pub fn of(
     }
     if let Some((_, name)) = discrete(m, primal) {
         let message = format!("ranges belong to a linear program, and {name} is discrete");
-        let help = "its relaxation has them: `solve … using rmip`";
-        return Err(no(&message).help(help).into());
+        return Err(no(&message).help(of_relaxation(primal)).into());
     }
     let solved = studied.answer.as_ref().map(|(_, a)| a.status);
     let answer = primal.answer.as_ref();

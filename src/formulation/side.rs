@@ -1,6 +1,5 @@
 //! A model and its dual side by side, and complementary slackness in numbers.
 
-use super::convex::{Shape, shape};
 use super::derive::{Derivation, Primal};
 use super::math::{Math, name, relation_sign, symbol_name};
 use super::page::{Block, Formula, Page, Setter, formulas, over_domain, signed};
@@ -8,6 +7,7 @@ use super::tree::*;
 use super::{Formulation, Origin, Row, Sign};
 use crate::check::node::SymbolId;
 use crate::check::symbols::{Store, Symbols};
+use crate::solve::nlp::convex::{Shape, shape};
 
 /// More lines of numbers than this are not shown.
 const MAX_LINES: usize = 40;

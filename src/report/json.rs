@@ -126,14 +126,16 @@ impl From<SolverStatus> for Status<SolverStatus> {
 /// A search over discrete columns.
 #[derive(Clone, Debug, Serialize)]
 pub struct Search {
-    /// No solution is better than this.
-    pub bound: Number,
-    /// Distance of objective and bound, relative to the objective; null without a solution.
+    /// No solution is better than this; null where nothing of the kind is known.
+    pub bound: Option<Number>,
+    /// Distance of objective and bound, relative to the objective; null without both.
     pub gap: Option<Number>,
     /// Nodes solved.
     pub nodes: u64,
     /// The tree: node 0 is the root.
     pub tree: Vec<TreeNode>,
+    /// How many nodes the list leaves out: it ends after 100 000.
+    pub left_out: usize,
 }
 
 /// A node of a search tree.
@@ -149,6 +151,8 @@ pub struct TreeNode {
     pub value: Number,
     /// `branched`, `infeasible`, `bound`, `solution` or `open`.
     pub fate: &'static str,
+    /// Value of the best solution that was found here, by the relaxation or a heuristic; null where none was.
+    pub solution: Option<Number>,
 }
 
 /// One solve.

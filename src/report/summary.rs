@@ -48,12 +48,11 @@ pub fn solve(s: &SolveReport, color: bool) -> String {
         out.push('\n');
     }
     if let Some(search) = &s.search {
-        let Number(bound) = search.bound;
         let mut parts = Vec::new();
-        if bound.is_finite() {
+        if let Some(Number(bound)) = search.bound {
             parts.push(format!("bound {}", digits(bound)));
         }
-        if let Some(Number(gap)) = search.gap.filter(|g| g.0.is_finite()) {
+        if let Some(Number(gap)) = search.gap {
             parts.push(format!("gap {} %", digits((gap * 1e5).round() / 1e3)));
         }
         let plural = if search.nodes == 1 { "" } else { "s" };

@@ -14,12 +14,12 @@ use crate::model::language::LANGUAGE;
 use crate::model::option::Kind;
 use crate::model::origin::{Blocks, Origin};
 use crate::model::outcome::{Basis, ModelStatus, SolverStatus};
-use crate::model::problem_type::ProblemType;
+use crate::model::problem_type::{Discrete, ProblemType};
 use crate::report::names::Names;
 use crate::report::why::{Explanation, explain};
 use crate::report::{json, levels, listing, solution, summary};
 use crate::solve::answer::{Answer, answer_with, certify};
-use crate::solve::backend::Task;
+use crate::solve::backend::{Backend, Task};
 use crate::solve::certificate::nonlinear::activity;
 use crate::solve::mip::{self, Aim};
 use crate::solve::registry::BACKENDS;
@@ -383,12 +383,15 @@ impl Machine<'_> {
         self.ranges.values_mut().for_each(Table::tidy);
     }
 
-    /// A proved interval for the objective of a linear program, where `certify` asks for one. Why
+    /// A proved interval for the objective of a linear program, with discrete columns or without, where `certify` asks for one. Why
     /// there is none, or one side only, goes to the answer's message.
     fn certified(&self, s: &SolveCode, g: &Generated, a: &mut Answer) {
         let wanted = self.options.certify || self.options.number("certify") == Some(1.0);
-        let linear = g.instance.is_linear() && g.instance.objective.is_some();
-        if !wanted || !linear || s.using.has_pairs() {
+        if !wanted || g.instance.objective.is_none() || a.bounds.is_some() {
+            return;
+        }
+        if !g.instance.is_linear() || s.using.has_pairs() {
+            add_message(a, "no bound is proved: the model is not linear".into());
             return;
         }
         self.host()
@@ -405,7 +408,6 @@ impl Machine<'_> {
         let Ok(proof) = certify(&g.instance, a, &budget) else {
             return;
         };
-        let mut parts: Vec<String> = a.outcome.message.take().into_iter().collect();
         let mut missing = vec![("lower ", proof.no_low), ("upper ", proof.no_high)];
         if missing[0].1 == missing[1].1 {
             missing.truncate(1);
@@ -418,9 +420,8 @@ impl Machine<'_> {
                 (_, Some(j)) => format!(": {}", self.origin_name(&g.origin.columns, j)),
                 _ => String::new(),
             };
-            parts.push(format!("no {side}bound is proved: {}{place}", u.why));
+            add_message(a, format!("no {side}bound is proved: {}{place}", u.why));
         }
-        a.outcome.message = (!parts.is_empty()).then(|| parts.join("; "));
         let bounds = [proof.low, proof.high];
         a.bounds = bounds.iter().any(|b| b.is_finite()).then_some(bounds);
     }
@@ -532,6 +533,14 @@ impl Machine<'_> {
             Some(o) => a.outcome.level[o.column as usize],
             None => r.pairs.unwrap_or(0.0),
         };
+        // A program that leaves no discrete choice needs no search: its optimum is its bound.
+        let discrete = s.using.discrete() == Discrete::Decided && !s.using.has_pairs();
+        let (bound, nodes) = match &a.search {
+            Some(search) => (search.bound.unwrap_or(NA), search.nodes as f64),
+            None if discrete && a.status == ModelStatus::Optimal => (objective, 0.0),
+            None if discrete => (NA, 0.0),
+            None => (NA, NA),
+        };
         let infeasible = !r.is_feasible(crate::solve::certificate::TOLERANCE);
         let count = if infeasible {
             r.infeasible_count as f64
@@ -547,8 +556,8 @@ impl Machine<'_> {
             ("modelstat", f64::from(a.status as u8)),
             ("solvestat", f64::from(a.outcome.status as u8)),
             ("objval", objective),
-            ("objest", a.search.as_ref().map_or(NA, |s| s.bound)),
-            ("nodusd", a.search.as_ref().map_or(NA, |s| s.nodes as f64)),
+            ("objest", bound),
+            ("nodusd", nodes),
             ("iterusd", a.outcome.iterations as f64),
             ("resusd", seconds.solve),
             ("etsolve", seconds.total),
@@ -629,7 +638,7 @@ impl Machine<'_> {
             bounds: a.bounds.map(|b| b.map(json::Number)),
             stationarity: a.stationarity.map(|s| s.name()),
             message: self.solve_message(g, a),
-            hint: self.hint(g, a),
+            hint: self.hint(s.using, g, a),
             why: self.options.why.then(|| self.explanation(s, g, a)),
         };
         if !self.options.quiet {
@@ -712,7 +721,7 @@ impl Machine<'_> {
             .objective
             .map(|o| a.outcome.level[o.column as usize]);
         let value = value.filter(|_| !a.is_without_point());
-        let gap = |v: f64| json::Number((v - found.bound).abs() / v.abs().max(1e-10));
+        let gap = |(v, b): (f64, f64)| json::Number((v - b).abs() / v.abs().max(1e-10));
         let node = |r: &mip::Record| json::TreeNode {
             parent: r.parent,
             column: r
@@ -723,12 +732,14 @@ impl Machine<'_> {
                 .map(|c| [json::Number(c.lower), json::Number(c.upper)]),
             value: json::Number(g.instance.sign() * r.value),
             fate: r.fate,
+            solution: r.solution.map(|v| json::Number(g.instance.sign() * v)),
         };
         json::Search {
-            bound: json::Number(found.bound),
-            gap: value.map(gap),
+            bound: found.bound.map(json::Number),
+            gap: value.zip(found.bound).map(gap),
             nodes: found.nodes,
             tree: found.records.iter().map(node).collect(),
+            left_out: found.left_out,
         }
     }
 
@@ -749,7 +760,7 @@ impl Machine<'_> {
 
     /// Where a reader finds out why there is no solution. The multipliers that prove an infeasible linear program so tell how
     /// many rows and bounds it takes.
-    fn hint(&self, g: &Generated, a: &Answer) -> Option<String> {
+    fn hint(&self, using: ProblemType, g: &Generated, a: &Answer) -> Option<String> {
         if self.options.why {
             return None;
         }
@@ -772,6 +783,11 @@ impl Machine<'_> {
             }
             ModelStatus::Unbounded | ModelStatus::UnboundedNoSolution => {
                 Some(format!("`bmod why {file}` shows what grows without limit"))
+            }
+            _ if a.outcome.solver == mip::NAME
+                && a.outcome.status != SolverStatus::NormalCompletion =>
+            {
+                larger_models(&Task::new(using, &g.instance))
             }
             _ => None,
         }
@@ -865,6 +881,26 @@ impl Machine<'_> {
             .collect();
         solution::to_json(file, &solved)
     }
+}
+
+/// What may do better than the own search, which is made for small models and came to a limit.
+fn larger_models(task: &Task) -> Option<String> {
+    let own = "the own search is made for small models";
+    let other = |b: &&&dyn Backend| b.about().name != mip::NAME && b.takes(task);
+    if let Some(backend) = BACKENDS.iter().find(other) {
+        let (using, name) = (task.using, backend.about().name);
+        return Some(format!("{own}: `option {using} = {name};` may do better"));
+    }
+    let i = task.instance;
+    let for_highs = i.is_linear() && !task.has_pairs() && i.discrete.sets.is_empty();
+    let highs = "HiGHS (bmod with the cargo feature `highs`) may do better";
+    (for_highs && !cfg!(feature = "highs")).then(|| format!("{own}: {highs}"))
+}
+
+/// Says something more of an answer.
+fn add_message(a: &mut Answer, more: String) {
+    let message = a.outcome.message.take();
+    a.outcome.message = Some(message.map_or(more.clone(), |m| format!("{m}; {more}")));
 }
 
 /// Names of the equations and variables of a model, for a message.

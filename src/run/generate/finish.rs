@@ -353,10 +353,14 @@ impl Builder<'_, '_> {
     /// Bounds and levels that no solver can take are errors.
     fn check_columns(&mut self, blocks: &Blocks) {
         for i in 0..self.instance.columns.kind.len() {
-            let (lo, up) = (
+            let (stored, up) = (
                 self.instance.columns.lower[i],
                 self.instance.columns.upper[i],
             );
+            // that of a semicontinuous column stands elsewhere
+            let thresholds = &self.instance.discrete.thresholds;
+            let threshold = thresholds.binary_search_by_key(&(i as u32), |t| t.0);
+            let lo = threshold.map_or(stored, |k| thresholds[k].1);
             let level = self.instance.columns.level[i];
             let block = || blocks.of(i as u32);
             let name = || self.m.record_name(block().symbol, block().key(i as u32));

@@ -48,21 +48,22 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
 impl Scaling {
     /// Chooses factors for a problem.
     pub fn new(p: &Problem) -> Self {
-        Self::choose(p, &vec![false; p.n()])
+        Self::choose(p, &vec![None; p.n()])
     }
 
-    /// The same with the unit 1 for the columns that `keep` marks, and for all bounds.
-    pub fn keeping(p: &Problem, keep: &[bool]) -> Self {
+    /// The same with these units for columns, where they are given, and the unit 1 for all bounds.
+    pub fn with_units(p: &Problem, units: &[Option<f64>]) -> Self {
         Self {
             size: 1.0,
-            ..Self::choose(p, keep)
+            ..Self::choose(p, units)
         }
     }
 
-    fn choose(p: &Problem, keep: &[bool]) -> Self {
+    fn choose(p: &Problem, units: &[Option<f64>]) -> Self {
         let mut row = vec![1.0; p.m()];
-        let mut column = vec![1.0; p.n()];
-        let free = |j: &usize| !keep[*j];
+        let unit = |u: &Option<f64>| u.map_or(1.0, power_of_two);
+        let mut column: Vec<f64> = units.iter().map(unit).collect();
+        let free = |j: &usize| units[*j].is_none();
         for _ in 0..4 {
             for (i, r) in row.iter_mut().enumerate() {
                 *r = 1.0 / extremes(p.rows.line(i).map(|(j, v)| v * column[j]));

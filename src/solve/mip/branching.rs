@@ -138,6 +138,7 @@ impl<R: Relaxation> Search<'_, R> {
     /// Columns whose values they must not have, with how far they are from one they may.
     pub(super) fn candidates(&self, x: &[f64]) -> Vec<(usize, f64)> {
         (0..x.len())
+            .filter(|&j| self.lower[j] < self.upper[j])
             .map(|j| (j, self.mip.distance(j, x[j], self.lower[j])))
             .filter(|c| c.1 > INTEGRAL)
             .collect()

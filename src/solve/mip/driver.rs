@@ -25,6 +25,8 @@ pub(crate) struct Found {
     pub exact: bool,
     /// What became of the nodes.
     pub records: Vec<Record>,
+    /// Nodes made.
+    pub made: u32,
 }
 
 impl Found {
@@ -39,6 +41,7 @@ impl Found {
             incomplete: false,
             exact: true,
             records: Vec::new(),
+            made: 0,
         }
     }
 }
@@ -110,6 +113,7 @@ pub(super) fn search_linear(
     let mut records = std::mem::take(&mut search.records);
     for r in &mut records {
         r.value = units.shown(r.value);
+        r.solution = r.solution.map(|v| units.shown(v));
         if let Some(c) = &mut r.change {
             let factor = scaling.column[c.column];
             *c = Change {
@@ -131,6 +135,7 @@ pub(super) fn search_linear(
         exact: true,
         end,
         records,
+        made: search.made,
     }
 }
 

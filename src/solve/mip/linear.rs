@@ -109,7 +109,14 @@ impl Relaxation for Linear {
             true => Some(Ended::Iterations),
             false => control.stop(spent + k - before),
         };
-        let ended = self.simplex.resolve(&mut stop);
+        let mut ended = self.simplex.resolve(&mut stop);
+        if ended == Ended::Failed {
+            // Numbers broke down: once more from nothing.
+            let mut fresh = Self::engine(&self.problem);
+            fresh.copy_data(&self.simplex);
+            self.simplex = fresh;
+            ended = self.simplex.solve(&mut stop);
+        }
         control.iterations = spent + self.simplex.iterations - before;
         match ended {
             Ended::Solved => Solved::Value(self.value()),

@@ -37,7 +37,7 @@ use model::Units;
 use nonlinear::Nonlinear;
 use relaxation::Control;
 pub(super) use tree::End;
-use tree::Search;
+use tree::{PROVED, Search};
 
 /// Name of this solver.
 pub const NAME: &str = "bmip";
@@ -47,12 +47,14 @@ pub const NAME: &str = "bmip";
 pub struct Report {
     /// Whether the point is a solution; without one levels and marginals are as before.
     pub solution: bool,
-    /// No solution is better than this.
-    pub bound: f64,
+    /// No solution is better than this, if that is known.
+    pub bound: Option<f64>,
     /// Nodes solved.
     pub nodes: u64,
     /// What became of the nodes, where that was asked for; columns are the instance's.
     pub records: Vec<Record>,
+    /// Nodes that are not among them.
+    pub left_out: usize,
 }
 
 /// Its options: none but those of the `option` statement (`optcr`, `nodlim` …).
@@ -142,8 +144,8 @@ pub(super) fn concluded(task: &Task, found: Found, settings: &Settings, budget: 
         found.bound
     };
     let proved = match found.end {
-        End::Complete => !found.incomplete,
-        _ => value - bound <= 1e-9 * value.abs().max(1e-9),
+        End::Complete => !found.incomplete && value - found.value <= SAME * value.abs().max(1.0),
+        _ => value - bound <= PROVED * value.abs().max(1e-9),
     };
     outcome.claim = match (complete, &found.end) {
         (_, End::Unbounded) => Claim::Unbounded,
@@ -153,6 +155,7 @@ pub(super) fn concluded(task: &Task, found: Found, settings: &Settings, budget: 
         (false, End::Complete) => Claim::LocallyInfeasible,
         _ => Claim::Unfinished,
     };
+    let empty = !complete && found.end == End::Complete;
     let endless = matches!(found.end, End::Stopped(_)) && !found.incomplete;
     for values in [
         &mut outcome.level,
@@ -174,7 +177,7 @@ pub(super) fn concluded(task: &Task, found: Found, settings: &Settings, budget: 
         () if found.incomplete => {
             Some("parts of the tree were given up: the numbers broke down there".into())
         }
-        () if complete && !found.exact && found.end == End::Complete => {
+        () if complete && !found.exact && matches!(found.end, End::Complete | End::Gap) => {
             Some("not shown to be convex: a better solution is possible".into())
         }
         () if endless && is_unlimited(instance) => Some(
@@ -197,8 +200,9 @@ pub(super) fn concluded(task: &Task, found: Found, settings: &Settings, budget: 
     };
     let report = Report {
         solution: complete,
-        bound: shown,
+        bound: Some(shown).filter(|b| b.is_finite() && found.exact && !empty),
         nodes: found.nodes,
+        left_out: (found.made as usize).saturating_sub(found.records.len()),
         records: found.records,
     };
     Reply {
@@ -295,6 +299,7 @@ fn nonlinear_search(
         incomplete: search.incomplete,
         exact: search.relaxation.convex,
         end,
+        made: search.made,
         records: std::mem::take(&mut search.records),
     })
 }
@@ -354,6 +359,9 @@ fn solution(task: &Task, x: &[f64], settings: &Settings, budget: &Budget) -> Out
     // The point of the search, without marginals.
     Outcome::unfinished(NAME, x.to_vec(), rows)
 }
+
+/// The value of a solution with its integers rounded may differ from the search's by this, relative.
+const SAME: f64 = 1e-6;
 
 /// Seconds for the marginals of a solution when the time is used up.
 const GRACE: f64 = 1.5;

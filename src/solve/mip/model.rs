@@ -11,6 +11,9 @@ pub const INTEGRAL: f64 = 1e-6;
 /// A violation of a row up to this, relative to the row's largest term, is none.
 pub const FEASIBLE: f64 = 1e-7;
 
+/// A least value of a semicontinuous column below this is its unit.
+const SMALL: f64 = 1e-3;
+
 /// New bounds of a column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Change {
@@ -50,6 +53,13 @@ impl Units {
     /// A value in the units of the instance, of a minimisation.
     pub fn shown(&self, value: f64) -> f64 {
         value * self.price + self.offset
+    }
+
+    /// The gap between a solution's value and a bound, absolute and relative to the value.
+    pub fn gap(&self, value: f64, bound: f64) -> [f64; 2] {
+        let value = self.shown(value);
+        let gap = value - self.shown(bound);
+        [gap, gap / value.abs().max(1e-10)]
     }
 
     /// The other way.
@@ -104,13 +114,21 @@ impl Mip {
         }
     }
 
-    /// In units in which coefficients are near 1; integer columns and members of sets stay as they are.
+    /// In units in which coefficients are near 1; integer columns and members of sets stay as they are, and semicontinuous
+    /// columns whose least value would be lost in the tolerances are counted in it.
     pub fn scaled(&self) -> (Self, Scaling) {
-        let mut keep = self.integer.clone();
+        let columns = self.integer.iter().zip(&self.threshold);
+        let unit = |(&integer, &t): (&bool, &f64)| match integer {
+            true => Some(1.0),
+            false => (t > 0.0 && t < SMALL).then_some(t),
+        };
+        let mut units: Vec<Option<f64>> = columns.map(unit).collect();
         for set in &self.sets {
-            set.columns.iter().for_each(|&j| keep[j as usize] = true);
+            set.columns
+                .iter()
+                .for_each(|&j| units[j as usize] = Some(1.0));
         }
-        let scaling = Scaling::keeping(&self.problem, &keep);
+        let scaling = Scaling::with_units(&self.problem, &units);
         let mut scaled = self.clone();
         scaled.problem = scaling.apply(&self.problem);
         for (t, c) in scaled.threshold.iter_mut().zip(&scaling.column) {
@@ -144,7 +162,7 @@ impl Mip {
             far = (x - x.round()).abs();
         }
         let t = self.threshold[j];
-        if t > 0.0 && lower < t && x < t - INTEGRAL * t.max(1.0) && x > INTEGRAL {
+        if t > 0.0 && lower < t {
             far = far.max((x / t).min(1.0 - x / t));
         }
         far

@@ -1,6 +1,6 @@
 //! The relaxation of a nonlinear program with discrete columns: a nonlinear solver at every node, from the parent's point.
 //!
-//! Where the relaxation is convex its values are bounds, and the search proves its answer. Elsewhere they are local optima:
+//! Where the relaxation is known to be convex its values are bounds, and the search proves its answer. Elsewhere they are local optima:
 //! the search is then a good guess, as any of this kind.
 
 use super::model::Change;
@@ -10,6 +10,7 @@ use crate::model::problem_type::ProblemType;
 use crate::solve::answer::{Answer, subproblem};
 use crate::solve::backend::Task;
 use crate::solve::lp::Ended;
+use crate::solve::nlp::convex::{Shape, shape};
 use crate::solve::{ModelStatus, Settings, SolverStatus};
 use std::rc::Rc;
 
@@ -22,6 +23,8 @@ pub struct Nonlinear {
     settings: Settings,
     first: Vec<f64>,
     point: Rc<Vec<f64>>,
+    /// The program is convex: a local optimum is a global one.
+    known: bool,
     /// Every value so far was a global one.
     pub convex: bool,
     /// The root is solved: below it, what is infeasible is tried from elsewhere only so often.
@@ -57,6 +60,7 @@ impl Nonlinear {
             settings,
             first: level.clone(),
             point: Rc::new(level.clone()),
+            known: matches!(shape(instance), Shape::ConvexQuadratic { .. }),
             convex: true,
             rooted: false,
             again: 0,
@@ -105,8 +109,12 @@ impl Relaxation for Nonlinear {
                 return Solved::Stopped(why);
             }
             use ModelStatus as S;
-            self.convex &=
-                !self.using.has_pairs() && matches!(answer.status, S::Optimal | S::Infeasible);
+            let global = match answer.status {
+                S::Optimal | S::Infeasible => true,
+                S::Feasible => false,
+                _ => self.known,
+            };
+            self.convex &= global && !self.using.has_pairs();
             match answer.status {
                 S::Optimal | S::LocallyOptimal | S::Feasible => {
                     let value = self.instance.objective.map_or(0.0, |o| {

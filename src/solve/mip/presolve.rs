@@ -142,21 +142,22 @@ fn rows(mip: &mut Mip, idle: &mut [bool]) -> bool {
             continue;
         }
         // rows as borrowed by Activity
-        let (mut low, mut high, mut size) = (0.0, 0.0, 0.0f64);
+        let (mut low, mut high) = (0.0, 0.0);
+        // The rounding of either end is that of its own terms: the other may be far off.
+        let mut size = [p.row_lower[i].abs(), p.row_upper[i].abs()];
         for (j, a) in p.rows.line(i) {
             let ends = [a * p.lower[j], a * p.upper[j]];
-            low += ends[0].min(ends[1]);
-            high += ends[0].max(ends[1]);
-            for e in ends.iter().filter(|e| e.is_finite()) {
-                size = size.max(e.abs());
-            }
+            let (least, most) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+            low += least;
+            high += most;
+            size = [size[0].max(least.abs()), size[1].max(most.abs())];
         }
-        let slack = 1e-9 * size.max(1.0);
-        if p.row_lower[i].is_finite() && low >= p.row_lower[i] - slack {
+        let slack = size.map(|s| 1e-9 * s);
+        if p.row_lower[i].is_finite() && low >= p.row_lower[i] - slack[0] {
             p.row_lower[i] = f64::NEG_INFINITY;
             changed = true;
         }
-        if p.row_upper[i].is_finite() && high <= p.row_upper[i] + slack {
+        if p.row_upper[i].is_finite() && high <= p.row_upper[i] + slack[1] {
             p.row_upper[i] = f64::INFINITY;
             changed = true;
         }
@@ -183,6 +184,7 @@ fn rows(mip: &mut Mip, idle: &mut [bool]) -> bool {
             }
             // How much is left where the column does not use its share.
             let spare = side - (most - a.abs());
+            let slack = slack[usize::from(sign > 0.0)];
             if spare <= slack || spare >= a.abs() - slack {
                 continue;
             }

@@ -10,7 +10,7 @@
 //! first (Achterberg, Koch & Martin 2005).
 
 use super::branching::{Branch, Pseudo};
-use super::model::{Change, Mip, Units};
+use super::model::{Change, INTEGRAL, Mip, Units};
 use super::propagate::Propagator;
 use super::relaxation::{Control, Relaxation, Solved};
 use crate::solve::Progress;
@@ -88,7 +88,15 @@ pub struct Record {
     pub value: f64,
     /// `branched`, `infeasible`, `bound`, `solution`, `open`.
     pub fate: &'static str,
+    /// Value of the best solution that was found here, by the relaxation or by a heuristic.
+    pub solution: Option<f64>,
 }
+
+/// A gap, relative to the solution, that is none.
+pub(super) const PROVED: f64 = 1e-9;
+
+/// How many nodes are recorded.
+const RECORDS: usize = 100_000;
 
 /// Bounds on the way to a node.
 struct Path {
@@ -176,7 +184,9 @@ pub struct Search<'a, R: Relaxation> {
     pub(super) dives: Dives,
     next_log: f64,
     /// Nodes made.
-    made: u32,
+    pub made: u32,
+    /// Number of the present node.
+    at: u32,
     /// Nodes whose relaxation was not solved.
     failures: u32,
     /// Nodes of a plunge: more than it takes to decide all columns once, for bounds may be infinite.
@@ -207,8 +217,8 @@ enum Fixed {
     Empty,
 }
 
-/// How many nodes may be divided without a value of their relaxation.
-const FAILURES: u32 = 200;
+/// How many nodes may be divided without a value of their relaxation, besides a fourth of all.
+const FAILURES: u64 = 200;
 
 /// What heuristics have cost.
 #[derive(Default)]
@@ -250,6 +260,7 @@ impl<'a, R: Relaxation> Search<'a, R> {
             dives: Dives::default(),
             next_log: 0.0,
             made: 0,
+            at: 0,
             failures: 0,
             longest: 100 + 2 * mip.integer.iter().filter(|i| **i).count() as u32,
         }
@@ -264,18 +275,49 @@ impl<'a, R: Relaxation> Search<'a, R> {
         let Some((v, _)) = &self.best else {
             return asked;
         };
-        let cheat = self.aim.cheat / self.units.price;
-        let better = match self.step > 0.0 && self.relaxation.is_exact() {
+        (v - self.better(*v).max(self.cheat())).min(asked)
+    }
+
+    /// By how much a solution is better than one of this value, if it is.
+    fn better(&self, v: f64) -> f64 {
+        match self.step > 0.0 && self.relaxation.is_exact() {
             true => self.step * (1.0 - 1e-6),
             false if self.relaxation.is_linear() => 1e-9 * v.abs().max(1e-3),
             // what a nonlinear solver leaves of digits
             false => 1e-7 * v.abs().max(0.1),
-        };
-        (v - better.max(cheat)).min(asked)
+        }
+    }
+
+    fn cheat(&self) -> f64 {
+        self.aim.cheat / self.units.price
     }
 
     /// Runs from the root.
     pub fn run(&mut self, control: &mut Control) -> End {
+        let mut end = self.search(control);
+        if let Some((v, _)) = self.best {
+            if end == End::Complete && !self.incomplete {
+                self.bound = v;
+            }
+            // Solutions that are better by less than `cheat` were passed over.
+            if self.cheat() > self.better(v) {
+                self.bound = self.bound.min(v - self.cheat());
+                end = if end == End::Complete { End::Gap } else { end };
+            }
+        }
+        // What is no better than the solution is open no longer.
+        let gap = self.best.as_ref().map(|b| self.units.gap(b.0, self.bound));
+        let all = gap.is_some_and(|[_, relative]| relative <= PROVED);
+        let cutoff = self.cutoff();
+        let nodes = std::mem::take(&mut self.open).into_iter();
+        let (done, open): (Vec<_>, Vec<_>) = nodes.partition(|n| all || n.bound >= cutoff);
+        self.open = open.into();
+        done.iter().for_each(|n| self.fate(n.number, "bound"));
+        self.log(control, true);
+        end
+    }
+
+    fn search(&mut self, control: &mut Control) -> End {
         let root = Node {
             bound: f64::NEG_INFINITY,
             depth: 0,
@@ -285,11 +327,13 @@ impl<'a, R: Relaxation> Search<'a, R> {
             from: None,
         };
         self.open.push(root);
+        if let (Some((v, _)), Some(r)) = (&self.best, self.records.first_mut()) {
+            r.solution = Some(*v);
+        }
         while let Some(node) = self.open.pop() {
             let cutoff = self.cutoff();
             if node.bound >= cutoff {
-                self.fate(node.number, "bound");
-                self.open.drain().for_each(drop);
+                self.open.push(node);
                 break;
             }
             self.bound = self.bound.max(node.bound);
@@ -306,12 +350,6 @@ impl<'a, R: Relaxation> Search<'a, R> {
                 return end;
             }
         }
-        if let Some((v, _)) = &self.best
-            && !self.incomplete
-        {
-            self.bound = *v;
-        }
-        self.log(control, true);
         End::Complete
     }
 
@@ -320,23 +358,23 @@ impl<'a, R: Relaxation> Search<'a, R> {
         let Some((v, _)) = &self.best else {
             return false;
         };
-        let (v, b) = (self.units.shown(*v), self.units.shown(self.bound));
-        let gap = v - b;
+        let [gap, relative] = self.units.gap(*v, self.bound);
         let least = if self.relaxation.is_linear() {
             1e-9
         } else {
             1e-8
         };
-        gap <= self.aim.absolute_gap.max(least) || gap <= self.aim.relative_gap * v.abs().max(1e-10)
+        gap <= self.aim.absolute_gap.max(least) || relative <= self.aim.relative_gap
     }
 
     fn note(&mut self, parent: Option<u32>, change: Option<Change>, value: f64) -> u32 {
-        if self.aim.record && self.records.len() < 100_000 {
+        if self.aim.record && self.records.len() < RECORDS {
             self.records.push(Record {
                 parent,
                 change,
                 value,
                 fate: "open",
+                solution: None,
             });
         }
         self.made += 1;
@@ -428,6 +466,7 @@ impl<'a, R: Relaxation> Search<'a, R> {
         let deepest = node.depth + self.longest;
         loop {
             self.nodes += 1;
+            self.at = node.number;
             let branch = match self.evaluate(&mut node, control) {
                 Evaluated::Divided(branch) => branch,
                 Evaluated::Leaf(fate) => {
@@ -523,7 +562,7 @@ impl<'a, R: Relaxation> Search<'a, R> {
             }
             if failed {
                 self.failures += 1;
-                if self.failures > FAILURES {
+                if u64::from(self.failures) > FAILURES + self.nodes / 4 {
                     self.incomplete = true;
                     return Evaluated::GivenUp;
                 }
@@ -701,20 +740,17 @@ impl<'a, R: Relaxation> Search<'a, R> {
         let mut y = x.to_vec();
         for (j, y) in y.iter_mut().enumerate() {
             let t = self.mip.threshold[j];
-            if self.mip.integer[j] || y.abs() <= super::model::INTEGRAL {
-                *y = if self.mip.integer[j] || t > 0.0 {
-                    y.round()
-                } else {
-                    *y
-                };
-            }
-            if t > 0.0 && (*y - t).abs() <= super::model::INTEGRAL * t.max(1.0) {
+            if self.mip.integer[j] {
+                *y = y.round();
+            } else if t > 0.0 && (self.upper[j] <= 0.0 || y.abs() <= INTEGRAL * t) {
+                *y = 0.0;
+            } else if t > 0.0 && (self.lower[j] >= t || *y >= t * (1.0 - INTEGRAL)) {
                 *y = y.max(t);
             }
         }
         for set in &self.mip.sets {
             for j in self.mip.outside(set, x) {
-                if y[j].abs() <= super::model::INTEGRAL {
+                if y[j].abs() <= INTEGRAL {
                     y[j] = 0.0;
                 }
             }
@@ -791,6 +827,9 @@ impl<'a, R: Relaxation> Search<'a, R> {
             .map_or(f64::INFINITY, |c| self.units.inner(c));
         if value <= asked && self.best.as_ref().is_none_or(|b| value < b.0) {
             self.best = Some((value, x));
+            if let Some(r) = self.records.get_mut(self.at as usize) {
+                r.solution = Some(value);
+            }
             self.next_log = 0.0;
             self.log(control, false);
         }
@@ -803,37 +842,27 @@ impl<'a, R: Relaxation> Search<'a, R> {
             return;
         }
         self.next_log = seconds + 2.0;
-        let shown = |v: f64| {
-            if v.is_finite() {
-                format!("{:.10}", self.units.shown(v))
-            } else {
-                "-".into()
-            }
-        };
-        let gap = match &self.best {
-            Some((v, _)) => {
-                let (v, b) = (self.units.shown(*v), self.units.shown(self.bound));
-                format!("{:.3} %", 100.0 * (v - b) / v.abs().max(1e-10))
-            }
-            None => "-".into(),
-        };
+        // Where a node's value is no bound there is none.
+        let bound = Some(self.bound).filter(|b| b.is_finite() && self.relaxation.is_exact());
+        let best = self.best.as_ref().map(|b| b.0);
+        let gap = best.zip(bound).map(|(v, b)| self.units.gap(v, b)[1]);
+        let shown = |v: Option<f64>| v.map(|v| self.units.shown(v));
+        let text = |v: Option<f64>| v.map_or("-".into(), |v| format!("{v:.10}"));
         let line = format!(
-            "{} nodes, {} open, bound {}, solution {}, gap {gap}, {} iterations, {seconds:.1} s",
+            "{} nodes, {} open, bound {}, solution {}, gap {}, {} iterations, {seconds:.1} s",
             self.nodes,
             self.open.len(),
-            shown(self.bound),
-            shown(self.best.as_ref().map_or(f64::INFINITY, |b| b.0)),
+            text(shown(bound)),
+            text(shown(best)),
+            gap.map_or("-".into(), |g| format!("{:.3} %", 100.0 * g)),
             control.iterations,
         );
         control.budget.log(&line);
-        let shown = |v: f64| Some(self.units.shown(v)).filter(|v| v.is_finite());
-        let best = self.best.as_ref().and_then(|b| shown(b.0));
-        let bound = shown(self.bound);
         control.budget.progress(Progress {
             method: "branch and bound",
             iteration: self.nodes,
-            objective: best,
-            gap: best.zip(bound).map(|(v, b)| (v - b) / v.abs().max(1e-10)),
+            objective: shown(best),
+            gap,
             ..Progress::default()
         });
     }

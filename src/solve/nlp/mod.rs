@@ -7,6 +7,7 @@
 
 mod attempts;
 pub mod consistent;
+pub mod convex;
 pub mod curvature;
 pub mod driver;
 mod growth;

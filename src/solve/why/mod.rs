@@ -8,6 +8,7 @@ mod pairs;
 mod point;
 
 use super::answer::Answer;
+use super::mip::conflict::{Conflict, conflict};
 use super::{Budget, ModelStatus};
 use crate::model::instance::Instance;
 use crate::model::problem_type::ProblemType;
@@ -28,7 +29,7 @@ pub enum Finding {
         shown: bool,
     },
     /// Rows that contradict each other because these columns must be discrete.
-    Discrete(crate::solve::mip::conflict::Conflict),
+    Discrete(Conflict),
     /// A direction of columns along which the objective improves without end.
     Ray(Vec<(usize, f64)>),
     /// The rows and columns with the largest violations: index, violation, level asked for.
@@ -104,11 +105,14 @@ pub fn findings(
         ModelStatus::Infeasible | ModelStatus::InfeasibleNoSolution if linear => {
             out.extend(irreducible(instance, &answer.outcome.ray, budget));
         }
-        ModelStatus::IntegerInfeasible if linear => {
+        ModelStatus::IntegerInfeasible => {
             // The relaxation may be infeasible already.
-            let relaxed = irreducible(instance, &[], budget);
-            let discrete = || crate::solve::mip::conflict::conflict(instance, budget);
-            out.extend(relaxed.or_else(|| discrete().map(Finding::Discrete)));
+            let relaxed = linear.then(|| irreducible(instance, &[], budget));
+            let discrete = || conflict(using, instance, budget).map(Finding::Discrete);
+            out.extend(relaxed.flatten().or_else(discrete));
+            if out.is_empty() && !linear {
+                out.extend(point::violated(instance, answer));
+            }
         }
         ModelStatus::Unbounded | ModelStatus::UnboundedNoSolution => {
             out.extend(point::ray(instance, &answer.outcome.ray));

@@ -15,3 +15,20 @@ first = z.l;
 *= first 0.13
 solve not_convex using minlp minimizing z;
 *= not_convex.modelstat 8
+
+* a convex quadratic row: with another right side no integers satisfy it
+scalar room / 0.6 /;
+equations s, near;
+s..  z =e= x + y;
+near..  sqr(x - 1.5) + sqr(y - 1.5) =l= room;
+model disc / s, near /;
+solve disc using miqcp minimizing z;
+scalar second;
+second = disc.modelstat;
+*= second 1
+*= disc.objest na
+room = 0.4;
+solve disc using miqcp minimizing z;
+*= disc.modelstat 10
+*? why near
+*? why x is discrete

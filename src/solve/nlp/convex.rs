@@ -1,8 +1,8 @@
 //! What the shape of a program says: linear, quadratic and convex, or neither.
 
+use super::quadratic::is_semidefinite;
 use crate::autodiff::{Degree, Evaluator};
 use crate::model::instance::{Instance, Relation};
-use crate::solve::nlp::quadratic::is_semidefinite;
 
 /// The shape of a program.
 #[derive(Clone, Debug, PartialEq)]
