@@ -176,6 +176,12 @@ fn each(check: &mut Check) {
     }
 }
 
+/// Whether this is an end: of integers with pairs or curves the best found is all there is.
+fn is_solved(task: &Task, a: &Answer) -> bool {
+    let local = task.has_integers() && (task.has_pairs() || !task.instance.is_linear());
+    a.status.is_solution() || local && a.status == ModelStatus::IntegerSolution
+}
+
 #[test]
 fn every_backend_solves_what_it_supports() {
     each(&mut |backend, task, value, what| {
@@ -184,10 +190,7 @@ fn every_backend_solves_what_it_supports() {
         let a = answer_with(&[backend], task, &Settings::default(), &budget);
         let a = a.unwrap_or_else(|e| panic!("{what}: {}", e.message));
         well_formed(task.using, task.instance, &a, what);
-        // of integers with pairs or curves the best found is all there is
-        let local = task.has_integers() && (task.has_pairs() || !task.instance.is_linear());
-        let solved = a.status.is_solution() || local && a.status == ModelStatus::IntegerSolution;
-        assert!(solved, "{what}: {:?}", a.status);
+        assert!(is_solved(task, &a), "{what}: {:?}", a.status);
         assert_eq!(a.outcome.status, SolverStatus::NormalCompletion, "{what}");
         if let (Some(v), Some(o)) = (value, task.instance.objective) {
             let z = a.outcome.level[o.column as usize];
@@ -254,7 +257,7 @@ fn stopped_everywhere(wanted: &dyn Fn(ProblemType) -> bool) {
             let stopped = budget.stopped().is_some();
             let what = format!("{what}, stopped at question {n}");
             well_formed(task.using, task.instance, &a, &what);
-            if stopped && !a.status.is_solution() {
+            if stopped && !is_solved(task, &a) {
                 assert_eq!(a.outcome.status, SolverStatus::UserInterrupt, "{what}");
             }
             let now = worth(task, &a);

@@ -144,13 +144,14 @@ fn rows(mip: &mut Mip, idle: &mut [bool]) -> bool {
         // rows as borrowed by Activity
         let (mut low, mut high) = (0.0, 0.0);
         // The rounding of either end is that of its own terms: the other may be far off.
-        let mut size = [p.row_lower[i].abs(), p.row_upper[i].abs()];
+        let finite = |v: f64| if v.is_finite() { v.abs() } else { 0.0 };
+        let mut size = [finite(p.row_lower[i]), finite(p.row_upper[i])];
         for (j, a) in p.rows.line(i) {
             let ends = [a * p.lower[j], a * p.upper[j]];
             let (least, most) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
             low += least;
             high += most;
-            size = [size[0].max(least.abs()), size[1].max(most.abs())];
+            size = [size[0].max(finite(least)), size[1].max(finite(most))];
         }
         let slack = size.map(|s| 1e-9 * s);
         if p.row_lower[i].is_finite() && low >= p.row_lower[i] - slack[0] {
