@@ -217,8 +217,8 @@ enum Fixed {
     Empty,
 }
 
-/// How many nodes may be divided without a value of their relaxation, besides a fourth of all.
-const FAILURES: u64 = 200;
+/// How many nodes may be divided without a value of their relaxation.
+const FAILURES: u32 = 200;
 
 /// What heuristics have cost.
 #[derive(Default)]
@@ -562,7 +562,7 @@ impl<'a, R: Relaxation> Search<'a, R> {
             }
             if failed {
                 self.failures += 1;
-                if u64::from(self.failures) > FAILURES + self.nodes / 4 {
+                if self.failures > FAILURES {
                     self.incomplete = true;
                     return Evaluated::GivenUp;
                 }
