@@ -482,6 +482,58 @@ impl Random {
 
 /// Random edits of models, as many as `EDITS` says: nothing crashes, and what was asked is answered. With `EDITS` the slowest
 /// answer is told; `cargo test --release` measures.
+/// A file that its main file does not include after all is checked by itself; data are no text of a model.
+#[test]
+fn a_file_that_is_not_included() {
+    let mut e = Editor::new(None);
+    e.open("main.blk", "$ifThen set other\n$include opt.blk\n$endIf\n");
+    e.open("opt.blk", "Scalar y;\ny = q;\n");
+    e.open("data.csv", "i,value\n");
+    for file in ["opt.blk", "data.csv"] {
+        e.set_main(file, "main.blk");
+    }
+    let wrong = |e: &mut Editor, file: &str| -> usize {
+        let all = e.check(file);
+        all.iter()
+            .filter(|f| f.file == file)
+            .map(|f| f.diagnostics.len())
+            .sum()
+    };
+    assert_eq!(wrong(&mut e, "opt.blk"), 1);
+    assert_eq!(wrong(&mut e, "data.csv"), 0);
+    e.open("main.blk", "Scalar q / 1 /;\n$include opt.blk\n");
+    e.check("main.blk");
+    assert_eq!(wrong(&mut e, "opt.blk"), 0);
+}
+
+/// Names that double with each `$set`, and jumps without end: an error while there is time and memory.
+#[test]
+fn directives_that_grow() {
+    let mut text = String::from("$set a xxxxxxxxxx\n");
+    text += &"$set a %a%%a%\n".repeat(40);
+    for (text, code) in [
+        (text.as_str(), "E0108"),
+        ("$maxGoto 1000000000\n$label x\n$goto x\n", "E0116"),
+    ] {
+        let mut e = open(text);
+        let found = e.check("blend.blk");
+        assert_eq!(found[0].diagnostics[0].code, code);
+        assert!(!found[0].diagnostics[0].message.contains("1000000 times"));
+    }
+}
+
+/// A blank of Unicode is no separator: it is cut nowhere.
+#[test]
+fn blanks_of_unicode() {
+    for text in [
+        "Scalar rate\u{a0};\nrate = 1;\n",
+        "Set f\u{2028};\n",
+        "Set i / a \u{a0}, b \u{2028} /;\n",
+    ] {
+        format(text, true);
+    }
+}
+
 #[test]
 fn random_edits() {
     let edits: usize = std::env::var("EDITS")
@@ -510,6 +562,8 @@ fn random_edits() {
         "\n$include x.gms\n",
         "é",
         "😀",
+        "\u{a0}",
+        "\u{2028}",
         "sum(i, ",
         "Set q / a*",
         "Table t(i,j)\n",

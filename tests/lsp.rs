@@ -284,6 +284,10 @@ fn a_part_of_a_model() {
     c.tell("textDocument/didChange", json!({ "textDocument": { "uri": uri, "version": 2 }, "contentChanges": [{ "text": "Parameter p(i) / a 1, c 2 /;\n" }] }));
     let wrong = c.diagnostics(&uri, 2);
     assert_eq!(wrong.len(), 1, "{wrong:?}");
+    // Its name only ends like that of the file that is included.
+    std::fs::write(folder.join("t.blk"), "Scalar y;\ny = q;\n").expect("written");
+    let uri = c.open(&folder.join("t.blk"));
+    assert_eq!(c.diagnostics(&uri, 1).len(), 1);
     c.end();
 }
 

@@ -380,6 +380,7 @@ impl Model {
             slash_comments: self.slash_comments,
             max_memory: options.memory_limit(),
             inputs: self.inputs.clone(),
+            ..PreprocessOptions::default()
         }
     }
 

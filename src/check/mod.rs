@@ -72,6 +72,8 @@ pub struct Program {
     pub diagnostics: Vec<Diagnostic>,
     /// The text asked for data while it was read (`$eval card(i)`): with other data it may be another program.
     pub asked_for_data: bool,
+    /// Names that `-D` defined and the text never asks for.
+    pub unused_defines: Vec<String>,
 }
 
 impl Program {
@@ -204,6 +206,7 @@ pub fn compile(
         code: Arc::new(code),
         shows_numbers: c.shows_numbers,
         slots: c.slots,
+        unused_defines: parser.unused_defines(),
         map: parser.into_map(),
         diagnostics: c.diagnostics,
         asked_for_data: c.asked_for_data.get(),

@@ -509,7 +509,10 @@ fn find_main(file: &Path, text: &str) -> Option<String> {
         let text = String::from_utf8_lossy(&text).into_owned();
         text.lines().any(|l| {
             let small = l.trim_start().to_ascii_lowercase();
-            small.starts_with("$include") && l.trim().trim_end_matches(['\'', '"']).ends_with(name)
+            let named = l.trim().trim_end_matches(['\'', '"', ';']);
+            let before = named.strip_suffix(name);
+            let whole = before.is_some_and(|b| b.ends_with([' ', '\t', '\'', '"', '/', '\\']));
+            small.starts_with("$include") && whole
         })
     };
     let main = files.into_iter().find(includes)?;

@@ -56,7 +56,7 @@ pub const CODES: &[Code] = &[
     row("E0105", Error, "endless include", "a file includes itself, or files are included too deeply"),
     row("E0106", Error, "unbalanced `$ifThen`", "`$ifThen`, `$elseIf`, `$else` and `$endIf` do not fit together"),
     row("E0107", Error, "unknown directive", "there is no such directive, or its arguments are missing"),
-    row("E0108", Error, "text too long", "the text is longer than 3 GB with all its includes"),
+    row("E0108", Error, "text too long", "the text is longer than 3 GB with all its includes, or a line longer than 4 MB with its `%name%` filled in"),
     row("E0109", Warning, "empty file", "nothing is declared and nothing is solved"),
     row("E0110", Error, "`$abort` or `$error`", "the message of the directive"),
     row("E0111", Error, "macro", "a macro cannot be defined or expanded"),

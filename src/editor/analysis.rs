@@ -13,6 +13,9 @@ use serde::Serialize;
 /// What data in a text may take while it is being written: a slip of the pen must not fill the memory.
 const MAX_MEMORY: usize = 512 << 20;
 
+/// What `$maxGoto` may allow there: a tenth of what it may in a run.
+const MOST_JUMPS: usize = 100_000;
+
 /// What is known about a main file.
 pub(super) struct Analysis {
     /// The files that it consists of, in the order in which they were read; itself first.
@@ -105,6 +108,7 @@ impl Editor {
         let options = PreprocessOptions {
             slash_comments: has_slashes(&main),
             max_memory: Some(MAX_MEMORY),
+            most_jumps: Some(MOST_JUMPS),
             ..PreprocessOptions::default()
         };
         let compiled = check::compile(&mut host, &main, options, &SOLVERS);
@@ -175,7 +179,16 @@ impl Editor {
             false => None,
         };
         analysis.program = program;
-        self.analyses.insert(main, analysis);
+        self.analyses.insert(main.clone(), analysis);
+        // A file that this model does not include after all is checked with another one, or alone.
+        if self.main_of(file) != main {
+            for f in self.check(file) {
+                match out.iter_mut().find(|o| o.file == f.file) {
+                    Some(o) => o.diagnostics.extend(f.diagnostics),
+                    None => out.push(f),
+                }
+            }
+        }
         out
     }
 }
@@ -218,6 +231,16 @@ impl Analysis {
             fixes: self.fix(d, map).into_iter().collect(),
         };
         (location.file, out)
+    }
+
+    /// Whether a file may belong to this model: it is one of its files, or not known to be none (data are no text of the model,
+    /// and a text that could not be read to its end says nothing).
+    pub(super) fn may_include(&self, file: &str) -> bool {
+        let is_text = ["blk", "gms", "inc"].iter().any(|e| {
+            let extension = std::path::Path::new(file).extension();
+            extension.is_some_and(|f| f.eq_ignore_ascii_case(e))
+        });
+        !is_text || self.program.is_none() || self.files.iter().any(|f| f == file)
     }
 
     /// What the help of a message says, as a change of the text.

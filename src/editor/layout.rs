@@ -261,7 +261,7 @@ impl<'a> Layout<'a> {
                 }
             }
             Role::Operator if word.len() == 3 && word.starts_with('=') => word.to_ascii_lowercase(),
-            Role::Comment | Role::Text => word.trim_end().to_owned(),
+            Role::Comment | Role::Text => word.trim_end_matches([' ', '\t', '\r']).to_owned(),
             _ => word.to_owned(),
         }
     }

@@ -94,7 +94,7 @@ impl Editor {
         self.analyses.remove(file);
     }
 
-    /// A file is only ever included, and checked as part of this one.
+    /// A file is checked as part of this one, which includes it; should it turn out not to, the file is checked by itself.
     pub fn set_main(&mut self, file: &str, main: &str) {
         self.mains.insert(file.to_owned(), main.to_owned());
     }
@@ -112,7 +112,10 @@ impl Editor {
     /// The main file that a file is checked with: itself, or one that includes it.
     pub fn main_of(&self, file: &str) -> String {
         if let Some(main) = self.mains.get(file) {
-            return main.clone();
+            let known = self.analyses.get(main);
+            if known.is_none_or(|a| a.may_include(file)) {
+                return main.clone();
+            }
         }
         let mut mains: Vec<_> = self
             .analyses

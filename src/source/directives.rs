@@ -509,7 +509,8 @@ impl Preprocessor<'_> {
                 return self.further_directive(line, behind, known);
             }
             "maxgoto" => {
-                self.max_jumps = rest.trim().parse().unwrap_or(self.max_jumps).min(1_000_000)
+                let jumps = rest.trim().parse().unwrap_or(self.max_jumps);
+                self.max_jumps = jumps.min(self.most_jumps);
             }
             "echo" | "echon" => {
                 let (body, file) = rest.rsplit_once('>').unwrap_or((rest, ""));

@@ -30,6 +30,8 @@ use std::sync::Arc;
 const DEEPEST_INCLUDE: usize = 40;
 /// Bytes of expanded text: places are 32-bit numbers.
 const LONGEST: usize = 3 << 30;
+/// Bytes of a line that `%name%` is filled in.
+const LONGEST_LINE: usize = 4 << 20;
 /// Bytes copied before the parser is asked to look.
 const CHUNK: usize = 4 << 20;
 
@@ -48,6 +50,8 @@ pub struct PreprocessOptions {
     pub max_memory: Option<usize>,
     /// Data from outside the text.
     pub inputs: Vec<Arc<Input>>,
+    /// What `$maxGoto` may allow.
+    pub most_jumps: Option<usize>,
 }
 
 /// Brings the bytes of a data file for the place that asks for it.
@@ -224,6 +228,8 @@ pub(crate) struct Preprocessor<'h> {
     pub(super) warnings: Vec<Diagnostic>,
     pub(super) ending: Ending,
     pub(super) max_jumps: usize,
+    /// What `$maxGoto` may allow.
+    pub(super) most_jumps: usize,
     /// How many of the errors so far `$clearError` made warnings.
     pub(super) cleared_errors: usize,
     /// `$if`s followed in the present line.
@@ -264,12 +270,13 @@ impl<'h> Preprocessor<'h> {
             warnings: Vec::new(),
             ending: Ending::Regular,
             max_jumps: 100,
+            most_jumps: options.most_jumps.unwrap_or(1_000_000),
             cleared_errors: 0,
             conditions_on_line: 0,
         };
         p.names.set(variables::Reach::Global, "bmod", "1".into());
         for (name, value) in &options.defines {
-            p.names.set(variables::Reach::Global, name, value.clone());
+            p.names.define(name, value.clone());
         }
         match p.host.read(path, None) {
             Ok((known_as, text)) => {
@@ -537,6 +544,11 @@ impl<'h> Preprocessor<'h> {
         self.cleared_errors
     }
 
+    /// Names that `-D` defined and the text never asked for.
+    pub(crate) fn unused_defines(&self) -> Vec<String> {
+        self.names.unused()
+    }
+
     pub(crate) fn into_map(self) -> SourceMap {
         self.map
     }
@@ -738,6 +750,19 @@ impl<'h> Preprocessor<'h> {
                 continue;
             }
             at = from + 1;
+        }
+        let grown: usize = changes.iter().map(|c| c.2.len()).sum();
+        if grown > LONGEST_LINE {
+            let (lo, hi) = line.origin(0, line.text.len());
+            let span = self.place(lo, hi);
+            return refuse(
+                Diagnostic::error(
+                    "E0108",
+                    span,
+                    "with its `%name%` filled in, this line is longer than 4 MB",
+                )
+                .help("a name that stands for itself twice doubles with each `$set`"),
+            );
         }
         line.replace(&changes);
         Ok(line)

@@ -3,7 +3,8 @@
 //! Three scopes, as in GAMS: `$setLocal` lives in its file, `$set` in its file and the files that it
 //! includes, `$setGlobal` everywhere. The innermost wins. Names are compared without regard to case.
 
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
+use std::cell::RefCell;
 
 /// One level of names.
 type Scope = FxHashMap<String, String>;
@@ -14,6 +15,8 @@ pub(super) struct Variables {
     global: Scope,
     /// `(scoped, local)` per open file, the innermost last.
     files: Vec<(Scope, Scope)>,
+    /// Names from outside that nothing has asked for yet.
+    unused: RefCell<FxHashSet<String>>,
 }
 
 /// The three ways of defining a name.
@@ -48,6 +51,19 @@ impl Variables {
         };
     }
 
+    /// Defines a name from outside the text.
+    pub(super) fn define(&mut self, name: &str, value: String) {
+        self.set(Reach::Global, name, value);
+        self.unused.get_mut().insert(name.to_ascii_lowercase());
+    }
+
+    /// Names from outside that nothing has asked for, in alphabetical order.
+    pub(super) fn unused(&self) -> Vec<String> {
+        let mut names: Vec<String> = self.unused.borrow().iter().cloned().collect();
+        names.sort();
+        names
+    }
+
     /// Forgets a name.
     pub(super) fn drop(&mut self, reach: Reach, name: &str) {
         let name = name.to_ascii_lowercase();
@@ -65,6 +81,7 @@ impl Variables {
     /// What a name stands for.
     pub(super) fn get(&self, name: &str) -> Option<&str> {
         let name = name.to_ascii_lowercase();
+        self.unused.borrow_mut().remove(&name);
         let local = self.files.last().and_then(|(_, local)| local.get(&name));
         local
             .or_else(|| self.files.iter().rev().find_map(|(s, _)| s.get(&name)))
@@ -75,6 +92,7 @@ impl Variables {
     /// Whether a name is defined in one scope (`$if setLocal x`).
     pub(super) fn has(&self, reach: Reach, name: &str) -> bool {
         let name = name.to_ascii_lowercase();
+        self.unused.borrow_mut().remove(&name);
         match reach {
             Reach::Local => self
                 .files

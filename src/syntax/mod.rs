@@ -336,6 +336,11 @@ impl<'h> Parser<'h> {
         &self.text.map
     }
 
+    /// Names that `-D` defined and the text never asked for.
+    pub fn unused_defines(&self) -> Vec<String> {
+        self.text.unused_defines()
+    }
+
     /// The files and the expanded text, when parsing is done.
     pub fn into_map(self) -> SourceMap {
         self.text.into_map()

@@ -2,6 +2,9 @@
 
 use super::{Class, Phase, Role, Scanner, quoted_end, words};
 
+/// What separates; other blanks of Unicode are part of a text.
+const BLANKS: [char; 3] = [' ', '\t', '\r'];
+
 impl Scanner<'_> {
     pub(super) fn declaration(&mut self, i: usize, hi: usize) -> usize {
         let bytes = self.code.as_bytes();
@@ -56,7 +59,7 @@ impl Scanner<'_> {
                     b'/'
                 };
                 let end = memchr::memchr3(b',', data, b';', &bytes[i..hi]).map_or(hi, |n| i + n);
-                let end = i + self.code[i..end].trim_end().len();
+                let end = i + self.code[i..end].trim_end_matches(BLANKS).len();
                 self.push(i, end.max(i + 1), Role::Text);
                 self.phase = Phase::AfterText;
                 end.max(i + 1)
@@ -195,14 +198,14 @@ impl Scanner<'_> {
         }
         if self.class == Class::File {
             let end = memchr::memchr(b'/', &bytes[i..hi]).map_or(hi, |n| i + n);
-            let end = i + self.code[i..end].trim_end().len().max(1);
+            let end = i + self.code[i..end].trim_end_matches(BLANKS).len().max(1);
             self.push(i, end, Role::Text);
             return end;
         }
         if self.class == Class::Set && !self.record {
             // An element's text runs to the comma.
             let end = memchr::memchr3(b',', b'/', b';', &bytes[i..hi]).map_or(hi, |n| i + n);
-            let end = i + self.code[i..end].trim_end().len().max(1);
+            let end = i + self.code[i..end].trim_end_matches(BLANKS).len().max(1);
             self.push(i, end, Role::Text);
             return end;
         }
