@@ -29,9 +29,19 @@ type Job = { request: Request; done(answer: any): void; failed(error: Error): vo
 export class Engine {
   private worker: Worker | undefined;
   private queue: Job[] = [];
-  private current: Job | undefined;
+  private job: Job | undefined;
 
-  constructor(private listen: (kind: 'print' | 'progress', text: string) => void = () => {}) {}
+  /** `turned` hears when the engine begins to work and when it has nothing to do. */
+  constructor(private listen: (kind: 'print' | 'progress', text: string) => void = () => {}, private turned: (busy: boolean) => void = () => {}) {}
+
+  private get current(): Job | undefined {
+    return this.job;
+  }
+
+  private set current(job: Job | undefined) {
+    this.job = job;
+    this.turned(this.busy);
+  }
 
   get busy(): boolean {
     return this.current !== undefined;

@@ -28,7 +28,10 @@ let open: Open = { file: 'model.blk', files: { 'model.blk': '' }, values: {} };
 let shown = open.file;
 let last: Answer | undefined;
 
-const runner = new Engine((kind, text) => kind === 'progress' && say(text));
+const runner = new Engine(
+  (kind, text) => kind === 'progress' && say(text),
+  (busy) => (byId<HTMLButtonElement>('stop').disabled = !busy),
+);
 const checker = new Engine();
 const answerView = new AnswerView();
 const figures = new Figures();
@@ -71,14 +74,16 @@ function request(): Project & Settings {
 }
 
 let again = false;
+/** What is being run; a view that is computed meanwhile is waited for by the engine. */
+let running: Open | undefined;
 
 /** Runs the model. While a slider moves, one run follows the other, always with the newest values. */
 async function run(following = false): Promise<void> {
-  if (runner.busy) {
+  if (running === open) {
     if (following) again = true;
     return;
   }
-  byId<HTMLButtonElement>('stop').disabled = false;
+  running = open;
   document.body.dataset.state = 'running';
   say(texts.running);
   const begin = performance.now();
@@ -97,7 +102,7 @@ async function run(following = false): Promise<void> {
     say(stopped ? texts.stopped : '');
     again = false;
   }
-  byId<HTMLButtonElement>('stop').disabled = true;
+  running = undefined;
   document.body.dataset.state = 'done';
   if (again) {
     again = false;
@@ -250,7 +255,7 @@ function use(project: Open): void {
   open = project;
   if (runner.busy) stop();
   document.body.dataset.state = '';
-  byId<HTMLButtonElement>('stop').disabled = true;
+  again = false;
   last = undefined;
   editor.reset();
   sliders.reset(open);

@@ -30,6 +30,7 @@ export class View {
       const nodes = this.kind === 'why' ? await this.why(request) : await this.page(request);
       if (now === this.seen) this.element.replaceChildren(...nodes);
     } catch (error) {
+      if (now !== this.seen) return; // another question is under way
       this.seen = '';
       const why = error instanceof Stopped ? texts.stopped : `${texts.broke} (${(error as Error).message})`;
       this.element.replaceChildren(h('p', { class: 'note' }, why));
