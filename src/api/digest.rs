@@ -42,7 +42,8 @@ impl Digest {
 
 impl Model {
     /// A text that is the same for the same run: texts of the model and of what it reads when it is compiled, defines, data,
-    /// options, version of bmod, and whatever else `with` has. What only the run reads (`execute_load`) is not looked at.
+    /// options, version of bmod, and whatever else `with` has. What only the run reads (`execute_load`) is not looked at: for that
+    /// see [`Model::still_reads`].
     ///
     /// ```
     /// use bmod::{Model, Options};
@@ -76,6 +77,14 @@ impl Model {
         inputs.iter().for_each(|i| d.input(i));
         options.describe(&mut |text| d.add(text.as_bytes()));
         format!("{:032x}", d.0)
+    }
+
+    /// Whether the files of [`Run::reads`](crate::Run::reads) are as that run found them.
+    pub fn still_reads(&self, reads: &str) -> bool {
+        let options = Options::default();
+        let host = host::RunHost::new(self, &options);
+        let questions = serde_json::from_str::<Vec<host::Question>>(reads);
+        questions.is_ok_and(|all| all.iter().all(|q| host.answers_again(q)))
     }
 
     /// What the disk says to what the text asks while it is compiled.

@@ -2,7 +2,8 @@
 
 use super::{Model, Options, OutputFile, Run};
 use crate::host::{Host, HostError, day_number};
-use std::cell::Cell;
+use serde::{Deserialize, Serialize};
+use std::cell::{Cell, RefCell};
 use std::path::{Component, Path, PathBuf};
 
 pub(super) struct RunHost<'a> {
@@ -11,11 +12,14 @@ pub(super) struct RunHost<'a> {
     written: Vec<OutputFile>,
     printed: String,
     start: f64,
-    /// What was asked of the disk; none once something was asked that may be different every time.
-    questions: Cell<Option<Vec<Question>>>,
+    /// What was asked of the disk.
+    questions: RefCell<Vec<Question>>,
+    /// Something was asked that may be different every time.
+    uncertain: Cell<bool>,
 }
 
-/// What a text asked of the disk while it was compiled, and a digest of the answer.
+/// What was asked of the disk, and a digest of the answer.
+#[derive(Serialize, Deserialize)]
 pub(super) struct Question {
     what: What,
     path: String,
@@ -23,7 +27,7 @@ pub(super) struct Question {
     pub(super) answer: u64,
 }
 
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Serialize, Deserialize)]
 #[cfg_attr(not(feature = "system"), expect(dead_code))]
 enum What {
     File,
@@ -54,7 +58,8 @@ impl<'a> RunHost<'a> {
             written: Vec::new(),
             printed: String::new(),
             start: 0.0,
-            questions: Cell::new(Some(Vec::new())),
+            questions: RefCell::default(),
+            uncertain: Cell::new(false),
         };
         host.start = host.clock();
         host
@@ -62,13 +67,15 @@ impl<'a> RunHost<'a> {
 
     /// The run with what it wrote and printed.
     pub(super) fn finish(self, mut run: Run) -> Run {
-        run.take_output(self.written, self.printed);
+        let reads = serde_json::to_string(&self.questions.take()).unwrap_or_default();
+        run.take_output(self.written, self.printed, reads);
         run
     }
 
-    /// What was asked of the disk so far; `None` if something was asked that may be different every time.
+    /// What was asked of the disk since the last call; `None` if something was asked that may be different every time.
     pub(super) fn questions(&self) -> Option<Vec<Question>> {
-        self.questions.take()
+        let questions = self.questions.take();
+        (!self.uncertain.get()).then_some(questions)
     }
 
     /// The answers to them.
@@ -107,16 +114,12 @@ impl<'a> RunHost<'a> {
 
     #[cfg_attr(not(feature = "system"), expect(dead_code))]
     fn asked(&self, what: What, path: &str, from: Option<&Path>) {
-        let asked = self.questions.take().map(|mut list| {
-            list.push(Question {
-                what,
-                path: path.into(),
-                from: from.map(Path::to_path_buf),
-                answer: self.answer(what, path, from),
-            });
-            list
+        self.questions.borrow_mut().push(Question {
+            what,
+            path: path.into(),
+            from: from.map(Path::to_path_buf),
+            answer: self.answer(what, path, from),
         });
-        self.questions.set(asked);
     }
 
     fn clock(&self) -> f64 {
@@ -140,7 +143,7 @@ impl<'a> RunHost<'a> {
             .filter_map(|n| contents.get(&n).map(|t| (PathBuf::from(n), t.clone())));
         found.next().or_else(|| {
             let resolver = self.model.resolver.as_ref()?;
-            self.questions.set(None);
+            self.uncertain.set(true);
             let text = resolver(path)?;
             Some((path.into(), text.into_bytes()))
         })
@@ -224,7 +227,7 @@ impl Host for RunHost<'_> {
     }
 
     fn now(&self) -> f64 {
-        self.questions.set(None);
+        self.uncertain.set(true);
         day_number(self.clock())
     }
 

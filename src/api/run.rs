@@ -53,6 +53,8 @@ pub struct Run {
     solution: Option<String>,
     stopped: bool,
     claims: Vec<Claim>,
+    reads: String,
+    unused_defines: Vec<String>,
 }
 
 /// What a comment of the text claims about the run: `*= total.l 285`.
@@ -203,6 +205,8 @@ impl Run {
             solution: None,
             stopped: false,
             claims: Vec::new(),
+            reads: String::new(),
+            unused_defines: Vec::new(),
         }
     }
 
@@ -213,6 +217,7 @@ impl Run {
         };
         Self {
             data: Data::new(&program.symbols, program.store),
+            unused_defines: program.unused_defines,
             ..Self::new(name, status, &program.diagnostics, &program.map)
         }
     }
@@ -247,8 +252,20 @@ impl Run {
         }
     }
 
-    pub(super) fn take_output(&mut self, files: Vec<OutputFile>, printed: String) {
-        (self.files, self.printed) = (files, printed);
+    pub(super) fn take_output(&mut self, files: Vec<OutputFile>, printed: String, reads: String) {
+        (self.files, self.printed, self.reads) = (files, printed, reads);
+    }
+
+    /// The files that the run read, and digests of what is in them: a text for [`Model::still_reads`](crate::Model::still_reads).
+    /// Of a model that [keeps](crate::Model::keep) its text only those that were read behind its compilation.
+    pub fn reads(&self) -> &str {
+        &self.reads
+    }
+
+    /// After [`Model::check`](crate::Model::check): the names that were [defined](crate::Model::define) for nothing, in small
+    /// letters; the text never asks for them.
+    pub fn unused_defines(&self) -> &[String] {
+        &self.unused_defines
     }
 
     /// How the run ended.

@@ -94,14 +94,57 @@ fn model_at(base: &Model, point: &Point) -> Model {
     }
     let declared = model.check();
     for (name, value) in point {
-        let symbol = declared.symbol(name).ok();
-        let is_scalar =
-            symbol.is_some_and(|s| s.kind() == SymbolKind::Parameter && s.dimension() == 0);
-        if let (true, Ok(v)) = (is_scalar, value.parse()) {
+        if let (true, Ok(v)) = (is_scalar(&declared, name), value.parse()) {
             model.set_scalar(name, v);
         }
     }
     model
+}
+
+fn is_scalar(declared: &Run, name: &str) -> bool {
+    let symbol = declared.symbol(name).ok();
+    symbol.is_some_and(|s| s.kind() == SymbolKind::Parameter && s.dimension() == 0)
+}
+
+/// Whether every name stands for something at some point, and every scalar's value is a number. A model that does not
+/// compile says so in its rows.
+fn check_names(base: &Model, points: &[Point]) -> Result<(), String> {
+    let mut idle: Vec<String> = points.first().map_or_else(Vec::new, |p| {
+        p.iter().map(|(name, _)| name.clone()).collect()
+    });
+    for point in points {
+        if idle.is_empty() {
+            return Ok(());
+        }
+        let mut model = base.clone();
+        for (name, value) in point {
+            model.define(name, value);
+        }
+        let declared = model.check();
+        if !declared.succeeded() {
+            return Ok(());
+        }
+        let unused = declared.unused_defines();
+        idle.retain(|n| !is_scalar(&declared, n) && unused.contains(&n.to_ascii_lowercase()));
+        let scalars = point.iter().filter(|(n, _)| is_scalar(&declared, n));
+        let wrong = |v: &str| !v.parse::<f64>().is_ok_and(f64::is_finite);
+        for (name, _) in scalars {
+            let values = points
+                .iter()
+                .flat_map(|p| p.iter().filter(|(n, _)| n == name));
+            if let Some((_, v)) = values.into_iter().find(|(_, v)| wrong(v)) {
+                return Err(format!(
+                    "-D {name}: `{name}` is a scalar, `{v}` is no finite number; values are `1,2,5` or FIRST:LAST:STEP"
+                ));
+            }
+        }
+    }
+    match idle.first() {
+        None => Ok(()),
+        Some(name) => Err(format!(
+            "-D {name}: the model asks for no `%{name}%`, and has no scalar of this name; all runs would be the same"
+        )),
+    }
 }
 
 /// What came of a run, as a row: the columns are those of `bmod.sweep` in Python.
@@ -151,21 +194,24 @@ fn snake(status: ModelStatus) -> String {
 
 /// The rows of a folder: those that were there, and a file for those to come.
 struct Store {
-    known: HashMap<String, Row>,
+    /// By key; of those with the same one, files that the run read may have changed since.
+    known: HashMap<String, Vec<Row>>,
     file: File,
 }
 
 impl Store {
     fn open(folder: &Path, own: &str) -> std::io::Result<Self> {
         std::fs::create_dir_all(folder)?;
-        let mut known = HashMap::new();
+        let mut known = HashMap::default();
         for entry in std::fs::read_dir(folder)? {
             let path = entry?.path();
             let name = path.file_name().unwrap_or_default().to_string_lossy();
             if name.starts_with("rows-") && name.ends_with(".jsonl") {
                 let text = std::fs::read_to_string(&path)?;
                 let rows = text.lines().filter_map(|l| serde_json::from_str(l).ok());
-                known.extend(rows.filter_map(|r: Row| Some((r.get("key")?.as_str()?.into(), r))));
+                for row in rows {
+                    remember(&mut known, row);
+                }
             }
         }
         let path = folder.join(own);
@@ -178,11 +224,24 @@ impl Store {
         Ok(Self { known, file })
     }
 
-    fn add(&mut self, key: &str, row: Row) -> std::io::Result<()> {
+    fn add(&mut self, row: &Row) -> std::io::Result<()> {
         let line = format!("{}\n", Value::Object(row.clone()));
-        self.file.write_all(line.as_bytes())?;
-        self.known.insert(key.to_string(), row);
-        Ok(())
+        self.file.write_all(line.as_bytes())
+    }
+
+    /// The row of a run, if what it read is as it was.
+    fn find(&self, key: &str, model: &Model) -> Option<&Row> {
+        let same = |r: &&Row| {
+            let reads = r.get("reads").and_then(Value::as_str);
+            reads.is_some_and(|reads| model.still_reads(reads))
+        };
+        self.known.get(key)?.iter().find(same)
+    }
+}
+
+fn remember(known: &mut HashMap<String, Vec<Row>>, row: Row) {
+    if let Some(key) = row.get("key").and_then(Value::as_str) {
+        known.entry(key.to_string()).or_default().push(row);
     }
 }
 
@@ -202,6 +261,7 @@ fn carry_out(a: &SweepArgs, points: &[Point]) -> Result<u8, String> {
     if let Some(seconds) = a.solve.time_limit {
         options = options.time_limit(seconds);
     }
+    check_names(&base, points)?;
     let outputs: Vec<&str> = a.output.iter().map(String::as_str).collect();
     let (part, parts) = a.part.unwrap_or((1, 1));
     let own = format!("rows-{part}.jsonl");
@@ -210,7 +270,7 @@ fn carry_out(a: &SweepArgs, points: &[Point]) -> Result<u8, String> {
     let store = Mutex::new(Store::open(folder, &own).map_err(in_folder)?);
     let lock = || store.lock().unwrap_or_else(PoisonError::into_inner);
     let next = AtomicUsize::new(part - 1);
-    let keys: Mutex<BTreeMap<usize, String>> = Mutex::default();
+    let rows: Mutex<BTreeMap<usize, Row>> = Mutex::default();
     let failed: Mutex<Option<String>> = Mutex::default();
     let bar = bar(points.len().div_ceil(parts));
     let controls: Vec<Control> = (0..a.jobs).map(|_| Control::new()).collect();
@@ -222,10 +282,14 @@ fn carry_out(a: &SweepArgs, points: &[Point]) -> Result<u8, String> {
             let Some(point) = points.get(n) else { break };
             let model = model_at(&base, point);
             let key = model.digest(&options, &outputs);
-            keys.lock()
-                .unwrap_or_else(PoisonError::into_inner)
-                .insert(n, key.clone());
-            if !lock().known.contains_key(&key) {
+            let found = lock().find(&key, &model).cloned();
+            let done = |row: Row| {
+                let mut rows = rows.lock().unwrap_or_else(PoisonError::into_inner);
+                rows.insert(n, row);
+            };
+            if let Some(row) = found {
+                done(row);
+            } else {
                 let run = model.run(&options);
                 // What Ctrl-C has stopped is run again next time.
                 if control.is_cancelled() {
@@ -235,9 +299,12 @@ fn carry_out(a: &SweepArgs, points: &[Point]) -> Result<u8, String> {
                     .map_err(|e| e.to_string())
                     .and_then(|found| {
                         let point = point.iter().map(|(k, v)| (k.clone(), typed(v)));
-                        let mut all = Row::from_iter([("key".to_string(), json!(key))]);
-                        all.extend(point.chain(found));
-                        lock().add(&key, all).map_err(in_folder)
+                        let own = [("key", json!(key)), ("reads", json!(run.reads()))];
+                        let own = own.map(|(k, v)| (k.to_string(), v));
+                        let all = Row::from_iter(own.into_iter().chain(point).chain(found));
+                        lock().add(&all).map_err(in_folder)?;
+                        done(all);
+                        Ok(())
                     });
                 if let Err(why) = stored {
                     *failed.lock().unwrap_or_else(PoisonError::into_inner) = Some(why);
@@ -267,12 +334,8 @@ fn carry_out(a: &SweepArgs, points: &[Point]) -> Result<u8, String> {
     if let Some(why) = failed.into_inner().unwrap_or_else(PoisonError::into_inner) {
         return Err(why);
     }
-    let known = store
-        .into_inner()
-        .unwrap_or_else(PoisonError::into_inner)
-        .known;
-    let keys = keys.into_inner().unwrap_or_else(PoisonError::into_inner);
-    let rows: Vec<&Row> = keys.values().filter_map(|k| known.get(k)).collect();
+    let rows = rows.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let rows: Vec<&Row> = rows.values().collect();
     if parts == 1 {
         let path = folder.join("results.csv");
         let text = table(&rows).map_err(|e| e.to_string())?;
@@ -287,12 +350,12 @@ fn typed(value: &str) -> Value {
     number.map_or_else(|| json!(value), |v| json!(v))
 }
 
-/// Rows as comma-separated values; their columns in the order in which they come up.
+/// Rows as comma-separated values; their columns in alphabetical order, then those that only later rows have.
 fn table(rows: &[&Row]) -> Result<Vec<u8>, csv::Error> {
     let mut names: Vec<&str> = Vec::new();
     for row in rows {
         for name in row.keys() {
-            if name != "key" && !names.contains(&name.as_str()) {
+            if name != "key" && name != "reads" && !names.contains(&name.as_str()) {
                 names.push(name);
             }
         }
@@ -388,7 +451,10 @@ fn slurm(a: &SweepArgs, jobs: usize, points: usize) -> u8 {
             println!(
                 "written: {}; submit it with `sbatch {}`",
                 path.display(),
-                path.display()
+                match path.to_string_lossy() {
+                    p if p.contains(' ') => quoted(p.into_owned()),
+                    p => p.into_owned(),
+                }
             );
             0
         }
@@ -402,6 +468,42 @@ fn slurm(a: &SweepArgs, jobs: usize, points: usize) -> u8 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A name that stands for nothing, and a value that is no number, would give equal rows.
+    #[test]
+    fn names_and_values_are_checked() {
+        let text = "$if not set f $set f 0.65\nScalar s, n / 1 /;\nSet i / a /;\nParameter p(i);\ns = %f%*n;";
+        let model = Model::from_text("m.blk", text);
+        let wrong = |name: &str, values: &[&str]| {
+            let point = |v: &&str| vec![(name.to_string(), v.to_string())];
+            check_names(&model, &values.iter().map(point).collect::<Vec<_>>()).is_err()
+        };
+        assert!(!wrong("F", &["1", "x"]) && !wrong("n", &["1", "-1"]));
+        assert!(wrong("g", &["1", "2"]) && wrong("p", &["1", "2"]) && wrong("n", &["1", "2x"]));
+        assert!(wrong("n", &["1", "inf"]) && wrong("n", &["1:3"]));
+    }
+
+    /// What only the run reads counts too.
+    #[test]
+    fn data_that_have_changed() -> std::io::Result<()> {
+        let folder = tempfile::tempdir()?;
+        let (file, data) = (folder.path().join("m.blk"), folder.path().join("d.csv"));
+        std::fs::write(
+            &file,
+            "Set i / a /;\nParameter p(i);\nexecute_load 'd.csv' p;",
+        )?;
+        std::fs::write(&data, "i,value\na,1\n")?;
+        let model = Model::from_file(&file).expect("a file");
+        for keep in [false, true] {
+            std::fs::write(&data, "i,value\na,1\n")?;
+            let model = model.clone().keep(keep).clone();
+            let run = model.run(&Options::default());
+            assert!(run.succeeded() && model.still_reads(run.reads()));
+            std::fs::write(&data, "i,value\na,2\n")?;
+            assert!(!model.still_reads(run.reads()));
+        }
+        Ok(())
+    }
 
     #[test]
     fn ranges_and_lists() {
