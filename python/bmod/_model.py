@@ -237,8 +237,23 @@ class Model:
         return iter(self.symbols)
 
     def _members(self, name: str) -> List[str]:
-        labels = self._with_data()[name]
-        return [str(label) for label in labels]
+        """A set's labels in the model's order, which is where each came up first.
+
+        :raises DataError: the set was given in another order, in which an array may be meant.
+        """
+        known = self._with_data()
+        labels = [str(label) for label in known[name]]
+        given = self._given.get((known.symbol(name).alias_of or name).lower())
+        if given is not None:
+            (there,), (codes,) = given[2:4]
+            order = [there[code] for code in memoryview(codes).cast("i")]
+            if order != labels:
+                shown = ", ".join(order[:3]), ", ".join(labels[:3])
+                raise DataError(
+                    f"`{name}` was given in the order {shown[0]}, …; the model, where labels that come up earlier "
+                    f"stand first, has it as {shown[1]}, …; instead of an array give a dict or a Series"
+                )
+        return labels
 
     def run(
         self,

@@ -115,6 +115,8 @@ class Symbol:
     kind: str
     domain: List[str]
     text: str
+    #: For an alias, its set.
+    alias_of: Optional[str] = None
 
     def __str__(self) -> str:
         return f"{self.name}({','.join(self.domain)})" if self.domain else self.name

@@ -133,6 +133,12 @@ impl Model {
         Ok(())
     }
 
+    /// Whether the files that a run read are as they were.
+    fn still_reads(&self, py: Python<'_>, reads: &str) -> bool {
+        let model = Arc::clone(&self.model);
+        py.detach(|| model.still_reads(reads))
+    }
+
     /// Compiles only.
     fn check(&self, py: Python<'_>) -> run::Run {
         let model = Arc::clone(&self.model);

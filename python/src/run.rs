@@ -6,7 +6,7 @@ use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use pyo3::types::{PyByteArray, PyBytes, PyDict, PyList};
 use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// How often the calling thread looks for signals.
 const POLL: Duration = Duration::from_millis(50);
@@ -45,6 +45,7 @@ pub fn carry_out(
             });
             let (mut interrupted, mut raised) = (false, None);
             let mut message = String::new();
+            let mut looked = Instant::now();
             let mut stop = |e: PyErr, py: Python<'_>| {
                 control.cancel();
                 if e.is_instance_of::<PyKeyboardInterrupt>(py) && !interrupted {
@@ -64,27 +65,29 @@ pub fn carry_out(
                             }
                         });
                     }
-                    Err(RecvTimeoutError::Timeout) => {
-                        let progress = control.progress();
-                        Python::attach(|py| {
-                            if let Err(e) = py.check_signals() {
-                                stop(e, py);
-                            }
-                            if let Some(f) = &on_progress
-                                && progress.message != message
-                            {
-                                let arguments = (&progress.message, progress.seconds);
-                                if let Err(e) = f.call1(py, arguments) {
-                                    stop(e, py);
-                                }
-                            }
-                        });
-                        message = progress.message;
-                        if worker.is_finished() {
-                            break;
+                    Err(RecvTimeoutError::Timeout) if worker.is_finished() => break,
+                    Err(RecvTimeoutError::Timeout) => {}
+                }
+                // A model that prints without pause leaves no timeout.
+                if looked.elapsed() < POLL {
+                    continue;
+                }
+                looked = Instant::now();
+                let progress = control.progress();
+                Python::attach(|py| {
+                    if let Err(e) = py.check_signals() {
+                        stop(e, py);
+                    }
+                    if let Some(f) = &on_progress
+                        && progress.message != message
+                    {
+                        let arguments = (&progress.message, progress.seconds);
+                        if let Err(e) = f.call1(py, arguments) {
+                            stop(e, py);
                         }
                     }
-                }
+                });
+                message = progress.message;
             }
             (worker.join(), interrupted, raised)
         })
@@ -109,6 +112,9 @@ impl Run {
         Self { run }
     }
 }
+
+/// Name, kind, index sets, text; of an alias its set.
+type Symbol = (String, String, Vec<String>, String, Option<String>);
 
 /// Labels and codes of each position, names and numbers of each column, texts of a set's members.
 type Records<'py> = (
@@ -145,11 +151,30 @@ impl Run {
         self.run.printed()
     }
 
-    /// Name, kind, index sets, text of each symbol.
-    fn symbols(&self) -> Vec<(String, String, Vec<String>, String)> {
+    /// What the run read, for `Model.still_reads`.
+    #[getter]
+    fn reads(&self) -> &str {
+        self.run.reads()
+    }
+
+    /// Defined names that the text never asks for.
+    #[getter]
+    fn unused_defines(&self) -> Vec<String> {
+        self.run.unused_defines().to_vec()
+    }
+
+    /// All symbols in order of declaration.
+    fn symbols(&self) -> Vec<Symbol> {
         let one = |s: bmod::Symbol<'_>| {
             let (name, text) = (s.name().to_string(), s.text().to_string());
-            (name, s.kind().to_string(), s.domain().to_vec(), text)
+            let alias_of = s.alias_of().map(String::from);
+            (
+                name,
+                s.kind().to_string(),
+                s.domain().to_vec(),
+                text,
+                alias_of,
+            )
         };
         self.run.symbols().map(one).collect()
     }
