@@ -5,6 +5,7 @@ from __future__ import annotations
 import concurrent.futures as futures
 import itertools
 import json
+import numbers
 import os
 import pathlib
 import tempfile
@@ -39,7 +40,8 @@ def model_at(source: Source, data: Mapping[str, Any], point: Mapping[str, Any]) 
     from . import Model
 
     path, text = source
-    define = {k: _plain(v) for k, v in point.items() if isinstance(v, (str, int, float, bool))}
+    point = {name: _plain(value) for name, value in point.items()}
+    define = {k: v for k, v in point.items() if isinstance(v, (str, numbers.Real))}
     model = Model.from_file(path, define=define) if path else Model.from_text(text or "", define=define)
     symbols = {name.lower(): s for name, s in model.symbols.items()}
     for name, value in {**data, **point}.items():
@@ -52,7 +54,9 @@ def model_at(source: Source, data: Mapping[str, Any], point: Mapping[str, Any]) 
 
 
 def _plain(value: Any) -> Any:
-    """A number as ``bmod sweep -D`` has it: 1.0 is `1`."""
+    """A number as ``bmod sweep -D`` has it, also one of NumPy: 1.0 is `1`."""
+    if getattr(value, "ndim", None) == 0 and hasattr(value, "item"):
+        value = value.item()
     return int(value) if isinstance(value, float) and value.is_integer() else value
 
 
@@ -75,6 +79,7 @@ def run_one(
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             result = model.run(check=False, **keywords)
+        row["reads"] = result._run.reads
         row["run"] = result._run.status
         row["messages"] = result.messages
         row["stopped"] = result.stopped
@@ -128,8 +133,13 @@ class _Store:
                     except ValueError:
                         pass  # half a line of a process that was killed
 
-    def known(self) -> Dict[str, Dict[str, Any]]:
-        return {r["key"]: r for r in self.rows if r.get("key")}
+    def known(self) -> Dict[str, List[Dict[str, Any]]]:
+        """Rows by key; of those with the same one, files that the run read may have changed since."""
+        known: Dict[str, List[Dict[str, Any]]] = {}
+        for row in self.rows:
+            if row.get("key"):
+                known.setdefault(row["key"], []).append(row)
+        return known
 
     def add(self, row: Dict[str, Any]) -> None:
         self.rows.append(row)
@@ -187,17 +197,19 @@ def sweep(
     import pandas as pd
 
     text = os.fspath(model)
-    source: Source = (None, text) if "\n" in text else (text, None)
-    if source[0] is not None and not os.path.isfile(source[0]):
-        raise FileNotFoundError(f"there is no model {source[0]!r}")
+    if "\n" not in text and not os.path.isfile(text):
+        raise FileNotFoundError(f"there is no model {text!r}")
+    # A worker may stand in another folder.
+    source: Source = (None, text) if "\n" in text else (os.path.abspath(text), None)
     fixed = (source, dict(data or {}))
     points = points_of(grid)
+    _check_names(fixed, points)
     store = _Store(out)
     known = store.known()
     rows: Dict[int, Dict[str, Any]] = {}
     if known:
         for n, point in enumerate(points):
-            found = known.get(_key_at(fixed, point, outputs, keywords) or "")
+            found = _found(known, fixed, point, outputs, keywords)
             if found is not None:
                 rows[n] = found
     bar = _bar(len(points), len(rows), progress)
@@ -230,7 +242,7 @@ def sweep(
                     own.shutdown(cancel_futures=True)
     finally:
         bar.close()
-    return pd.DataFrame([{**points[n], **rows[n]} for n in range(len(points))]).drop(columns="key", errors="ignore")
+    return pd.DataFrame([{**points[n], **rows[n]} for n in range(len(points))]).drop(columns=["key", "reads"], errors="ignore")
 
 
 def _processes(jobs: Optional[int]) -> futures.Executor:
@@ -253,11 +265,41 @@ def _end_with(parent: int) -> None:
 _LOST = {"run": "lost"}
 
 
-def _key_at(fixed: Tuple[Source, Dict[str, Any]], point: Mapping[str, Any], outputs: Sequence[str], keywords: Mapping[str, Any]) -> Optional[str]:
+Fixed = Tuple[Source, Dict[str, Any]]
+
+
+def _check_names(fixed: Fixed, points: List[Dict[str, Any]]) -> None:
+    """Refuses a name that stands for nothing at any point: all runs would be the same."""
+    from . import DataError, Error
+
+    idle = {name for point in points for name in point}
+    for point in points:
+        if not idle:
+            return
+        try:
+            known = model_at(*fixed, point)._with_data()
+        except (Error, OSError, ValueError):
+            return  # the rows say why
+        if not known.ok:
+            return
+        symbols = {name.lower() for name, s in known.symbols.items() if s.kind in ("set", "parameter")}
+        unused = set(known._run.unused_defines)
+        idle = {n for n in idle if n not in point or n.lower() in unused and n.lower() not in symbols}
+    if idle and points:
+        name = sorted(idle)[0]
+        raise DataError(f"the model asks for no `%{name}%`, and has no set or parameter of this name; all runs would be the same")
+
+
+def _found(
+    known: Mapping[str, List[Dict[str, Any]]], fixed: Fixed, point: Mapping[str, Any], outputs: Sequence[str], keywords: Mapping[str, Any]
+) -> Optional[Dict[str, Any]]:
+    """The row of a run that was made, if the files that it read are as they were."""
     from . import Error
 
     try:
-        return model_at(*fixed, point).digest(outputs, **keywords)
+        model = model_at(*fixed, point)
+        rows = known.get(model.digest(outputs, **keywords), [])
+        return next((r for r in rows if model._model.still_reads(r.get("reads") or "")), None)
     except (Error, OSError, ValueError):
         return None
 

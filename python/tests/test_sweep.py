@@ -155,3 +155,24 @@ def test_dask_with_a_worker_killed(tmp_path):
             assert killed and first[0] not in client.run(os.getpid).values()
     assert list(table.run) == ["ok"] * 40 and list(table.objective) == grid["price"]
     assert len(stored(tmp_path / "r")) == len(set(stored(tmp_path / "r"))) == 40
+
+
+def test_names_and_numbers_of_numpy():
+    np = pytest.importorskip("numpy")
+    text = "$if not set f $set f 0.65\nscalar s;\nset i / a /;\nparameter p(i);\ns = %f%;\n"
+    for values in (np.arange(1, 3), np.array([0.5, 1.5], dtype=np.float32), [np.float64(2)]):
+        with futures.ThreadPoolExecutor(1) as pool:
+            table = bmod.sweep(text, {"f": values}, outputs=["s"], executor=pool, progress=False)
+        assert list(table.s) == [float(v) for v in values]
+    with pytest.raises(bmod.DataError, match="%ff%"):
+        bmod.sweep(text, {"ff": [1, 2]}, progress=False)
+
+
+def test_data_that_have_changed(tmp_path, monkeypatch):
+    (tmp_path / "m.blk").write_text("set i / a /; parameter p(i); scalar s;\nexecute_load 'd.csv' p;\ns = %f%*sum(i, p(i));\n")
+    monkeypatch.chdir(tmp_path)
+    for value in (1, 10, 1):
+        (tmp_path / "d.csv").write_text(f"i,value\na,{value}\n")
+        with futures.ThreadPoolExecutor(1) as pool:
+            table = bmod.sweep("m.blk", {"f": [8]}, outputs=["s"], out="r", executor=pool, progress=False)
+        assert list(table.s) == [8 * value] and "reads" not in table
