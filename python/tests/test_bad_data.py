@@ -133,6 +133,15 @@ def test_exceptions_in_callbacks_and_outside():
     assert m.run().objective == pytest.approx(3)
 
 
+def test_an_array_after_a_set_in_another_order():
+    m = bmod.Model.from_text("set u / a, b, c /; set i; parameter p(i);")
+    m["i"] = ["c", "a"]
+    with pytest.raises(bmod.DataError, match="order"):
+        m["p"] = [10, 20]
+    m["p"] = {"c": 10, "a": 20}
+    assert dict(m["p"]) == {"a": 20, "c": 10}
+
+
 def test_a_model_that_is_gone():
     m = bmod.Model.from_text(TEXT)
     r = m.run()
