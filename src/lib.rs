@@ -83,7 +83,7 @@ mod system;
 
 pub use api::{
     Choice, Claim, Columns, Control, Error, Formulas, Labels, Model, Options, OutputFile, Progress,
-    Record, Records, Run, Sheet, Solve, Special, Symbol, SymbolKind, VariableRecord,
+    Ranges, Record, Records, Run, Sheet, Solve, Special, Symbol, SymbolKind, VariableRecord,
     VariableRecords,
 };
 pub use data::input::Keys;
@@ -98,3 +98,4 @@ pub use model::outcome::{ModelStatus, SolverStatus};
 pub use model::problem_type::ProblemType;
 pub use report::diagnostic::{Diagnostic, Place, Related};
 pub use report::json::{Display, Number, Residual, RunStatus, Seconds};
+pub use solve::range::{CostRange, RowRange};

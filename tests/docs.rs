@@ -149,6 +149,25 @@ fn commands_of_the_pages_print_what_stands_there() {
     );
 }
 
+/// No page is longer than a reader likes, but for the language and the tables that are written from the program; the lab is
+/// apart.
+#[test]
+fn pages_are_short() {
+    let long = ["language.md", "errors.md", "options.md"];
+    for page in pages() {
+        let words = std::fs::read_to_string(&page)
+            .expect("a page")
+            .split_whitespace()
+            .count();
+        let is_long = long.iter().any(|l| page.ends_with(l));
+        assert!(
+            is_long || words <= 1500,
+            "{}: {words} words",
+            page.display()
+        );
+    }
+}
+
 /// Every relative link in the pages leads to a file of the project.
 #[test]
 fn links_of_the_pages_lead_to_files() {

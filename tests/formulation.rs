@@ -233,6 +233,7 @@ fn latex_is_compiled() {
         derive("tanks.gms"),
         derive("attributes.gms"),
         derive("collision.gms"),
+        derive("labels.gms"),
     ];
     let folder = tempfile::tempdir().expect("a folder");
     let tex = folder.path().join("m.tex");
@@ -311,20 +312,218 @@ fn a_linear_objective_over_quadratic_rows_has_a_dual() {
     assert!(c.passed(), "{:?}", c.differences);
 }
 
-/// What `bmod explain` says of a text.
-fn explained(text: &str) -> String {
+/// What a command says of a text: standard output, then standard error.
+fn told(command: &[&str], text: &str) -> String {
     let folder = tempfile::tempdir().expect("a folder");
-    let file = folder.path().join("told.blk");
-    std::fs::write(&file, text).expect("written");
-    let out = std::process::Command::new(env!("CARGO_BIN_EXE_bmod"))
-        .arg("explain")
-        .arg(&file)
+    std::fs::write(folder.path().join("told.blk"), text).expect("written");
+    let out = Command::new(env!("CARGO_BIN_EXE_bmod"))
+        .args(command)
+        .current_dir(folder.path())
+        .env("COLUMNS", "70")
         .output()
         .expect("bmod runs");
-    let told = String::from_utf8(out.stdout).expect("UTF-8");
+    let told = [out.stdout, out.stderr].map(|b| String::from_utf8(b).expect("UTF-8"));
+    told.concat()
+}
+
+/// What `bmod explain` says of a text.
+fn explained(text: &str) -> String {
+    let told = told(&["explain", "told.blk"], text);
     assert!(!told.contains('∞'), "{told}");
+    assert!(told.lines().all(|l| l.chars().count() <= 70), "{told}");
     // As one line: where lines break is another matter.
     told.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// These lines stand in a text.
+fn has(text: &str, lines: &[&str]) {
+    for line in lines {
+        assert!(text.contains(line), "`{line}` is missing:\n{text}");
+    }
+}
+
+/// The formulas of a text have these lines.
+fn shows(text: &str, lines: &[&str]) {
+    let shown = Model::from_text("m.blk", text).show(&Choice::default());
+    has(&shown.expect("formulas").text(100), lines);
+}
+
+/// The dual and the optimality conditions of a text have these lines.
+fn derives(text: &str, dual: &[&str], kkt: &[&str]) {
+    let model = Model::from_text("m.blk", text);
+    let (choice, options) = (Choice::default(), bmod::Options::default());
+    let page = |f: Result<bmod::Formulas, bmod::Error>| f.expect("formulas").text(100);
+    if !dual.is_empty() {
+        has(&page(model.dual(&choice, &options)), dual);
+    }
+    has(&page(model.kkt(&choice, &options)), kkt);
+}
+
+/// Columns that a solve held fixed have their values in what is said of it, and rows their whole activities.
+#[test]
+fn what_a_solve_held_fixed_is_in_its_answer() {
+    let text = "positive variables x, y;  variable z;  equations o, r;
+        o..  z =e= 2*x + 3*y;  r..  x + y =g= 4;  x.fx = 2.5;
+        model h / all /;  h.holdFixed = 1;  solve h using lp minimizing z;";
+    says(
+        text,
+        &["The smallest z is 9.5, at x = 2.5, y = 1.5.", "r binds"],
+    );
+    let numbers = [
+        "r: 4 ≥ 4, tight: its multiplier is 3",
+        "x: 2.5 = 2.5, tight: its multiplier is −1",
+    ];
+    derives(text, &numbers, &["x = 2.5"]);
+}
+
+/// What is divided by a fraction, raised to one, or squared as a root stays in parentheses.
+#[test]
+fn formulas_in_text_keep_their_parentheses() {
+    let text = "scalars a / 2 /, b / 3 /;  variables y, w, z;  equation o;  y.lo = 1;  w.lo = 1;
+        o..  z =e= a/(b/y) + 1/(1/(y + 1)) + y**(1/3) + sqr(sqrt(y)) + 0.2*0.2*y + w**1.5;
+        model m / all /;  solve m using nlp minimizing z;";
+    shows(
+        text,
+        &["a/(b/y) + 1/(1/(y + 1)) + y^(1/3) + (√y)² + 0.2·0.2·y"],
+    );
+    derives(text, &[], &["y^(−2/3)/3 + ", "1.5·w^0.5"]);
+}
+
+/// A row whose name has a lead, a set that stands twice, data in bounds: all of it is in the formulas.
+#[test]
+fn formulas_say_what_they_run_over() {
+    let text = "sets t / 1*3 /, n / a, b /, y / u, v /;  alias (n,m);  parameter cap(n,m) 'capacity';
+        variables k(t), x(n,m), w(y,y), z;  positive variables x, w;  equations e(t), o, r(n), s(y);
+        e(t+1)..  k(t+1) =e= 0.9*k(t) + 1;  o..  z =e= sum((n,m), x(n,m));  r(n)..  sum(m, x(n,m)) =g= 1;
+        s(y)..  w(y,y) =g= 1;  cap(n,m) = 2;  x.up(n,m) = cap(n,m);
+        model d / all /;  solve d using lp minimizing z;  x.up(n,m) = 7;";
+    shows(
+        text,
+        &[
+            "for all t : t+1 ∈ t",
+            "x(n,m) ≥ 0",
+            "w(y,y2) ≥ 0",
+            "cap(n,m)  capacity",
+            "x(n,m) ≤ cap(n,m)",
+        ],
+    );
+}
+
+/// What declarations say of the values of a variable.
+#[test]
+fn formulas_say_what_is_discrete() {
+    let text = "set i / a, b /;  variable z;  binary variable b(i);  integer variable n(i);
+        semicont variable s(i);  semiint variable q;  sos1 variable u(i);  sos2 variable v(i);  equation o;
+        o..  z =e= sum(i, b(i) + n(i) + s(i) + u(i) + v(i)) + q;  n.up(i) = 7;  s.lo(i) = 1;  s.up(i) = 9;
+        q.lo = 2;  q.up = 5;  model m / all /;  solve m using USING minimizing z;";
+    let values = [
+        "b(i) ∈ {0, 1}",
+        "n(i) ∈ ℤ",
+        "n(i) ≤ 7",
+        "s(i) = 0 or s(i) ≥ 1",
+        "s(i) ≤ 9",
+        "q = 0 or q ≥ 2",
+        "q ∈ ℤ",
+        "u(i) SOS1: at most one is not 0 along i",
+        "v(i) SOS2: ",
+    ];
+    shows(&text.replace("USING", "mip"), &values);
+    shows(&text.replace("USING", "rmip"), &["b(i) ≤ 1", "  s(i) ≥ 1"]);
+}
+
+/// Bounds stand in the primal beside its dual, are paired with their multipliers, and belong to the conditions.
+#[test]
+fn bounds_are_in_derivations() {
+    let text = "variables x, z;  equations o, r;  x.lo = -5;  x.up = 4;
+        o..  z =e= 2*x;  r..  x =g= -7;  model m / all /;  solve m using lp minimizing z;";
+    let dual = [
+        "with\n  x ≥ −5\n  x ≤ 4\n",
+        "x       │ dual_x = …",
+        "x ≥ −5  │ y_lo_x ≥ 0",
+        "x ≤ 4   │ y_up_x ≤ 0",
+        "x: −5 ≥ −5, tight: its multiplier is 2",
+    ];
+    derives(text, &dual, &["x ≥ −5", "x ≤ 4"]);
+}
+
+/// A derived model that includes the text finds it from its own folder, and says where the text goes on to other data.
+#[test]
+fn a_derived_model_includes_the_text_from_its_folder() {
+    let text = "set i / a /;  scalar b / 3 /;  positive variable x(i);  variable z;  equations o, r;
+        o..  z =e= sum(i, x(i));  r..  sum(i, x(i)) =g= b;  model m / all /;  solve m using lp min z;";
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::create_dir_all(folder.path().join("a/b")).expect("folders");
+    std::fs::write(folder.path().join("m.blk"), text).expect("written");
+    let run = |args: &[&str]| {
+        let mut bmod = Command::new(env!("CARGO_BIN_EXE_bmod"));
+        let out = bmod.args(args).current_dir(folder.path()).output();
+        let out = out.expect("bmod runs");
+        assert!(out.status.success(), "{out:?}");
+        String::from_utf8(out.stdout).expect("UTF-8")
+    };
+    let same = run(&["dual", "m.blk", "--include", "--as-model", "a/b/d.blk"]);
+    assert!(!same.contains("other values"), "{same}");
+    has(&run(&["run", "a/b/d.blk"]), &["dual_objective = 3"]);
+    std::fs::write(folder.path().join("m.blk"), format!("{text}  b = 5;")).expect("written");
+    let other = run(&["dual", "m.blk", "--include", "--as-model", "a/b/d.blk"]);
+    has(
+        &other,
+        &["b has other values at the end of the text than at the solve"],
+    );
+}
+
+/// Points for the comparison are found where all bases of powers are 0 at the answer.
+#[test]
+fn a_check_finds_points_where_powers_have_values() {
+    let text = "set i / 1*20 /;  variables a(i), z;  equations o, r;
+        o..  z =e= sum(i, (a(i) - ord(i))**2);  r..  sum(i, a(i)) =g= 100;  a.l(i) = 30;
+        model m / all /;  solve m using nlp min z;";
+    has(&told(&["kkt", "told.blk", "--check"], text), &["Checked: "]);
+}
+
+/// The page of a solve has its dual, or its optimality conditions where it has none.
+#[test]
+fn a_report_has_the_dual_or_the_conditions() {
+    let text = "variables x, z;  equations o, r;  x.lo = 1;  o..  z =e= EXPR;  r..  x =g= 2;
+        model m / all /;  solve m using TYPE minimizing z;";
+    for (expression, using, heading) in [
+        ("3*x", "lp", "What is paired with what"),
+        (
+            "exp(x)",
+            "nlp",
+            "Optimality conditions (Karush, Kuhn, Tucker)",
+        ),
+    ] {
+        let text = text.replace("EXPR", expression).replace("TYPE", using);
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("told.blk");
+        std::fs::write(&file, text).expect("written");
+        let page = folder.path().join("told.html");
+        let mut bmod = Command::new(env!("CARGO_BIN_EXE_bmod"));
+        let run = bmod.arg("report").arg(&file).arg("--html").arg(&page);
+        assert!(run.status().expect("bmod runs").success());
+        has(
+            &std::fs::read_to_string(&page).expect("a page"),
+            &[heading, "<h2>In words</h2>"],
+        );
+    }
+}
+
+/// What no command and no record is called.
+#[test]
+fn names_that_are_not_there_are_told() {
+    let text = "variables x, z;  equation o;  x.lo = 1;  o..  z =e= 3*x;  model m / all /;  solve m using lp min z;";
+    let said = told(&["range", "told.blk", "nosuch"], text);
+    has(
+        &said,
+        &["no row or column is called `nosuch`; there are o, "],
+    );
+    has(
+        &told(&["told.blk"], text),
+        &["`bmod run told.blk` runs a model"],
+    );
+    let unbounded = told(&["run", "told.blk"], &text.replace("x.lo", "x.up"));
+    assert!(unbounded.contains("unbounded\n"), "{unbounded}");
 }
 
 /// The explanation of a text has these sentences.

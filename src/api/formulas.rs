@@ -14,6 +14,7 @@ use crate::report::diagnostic::Diagnostic;
 use crate::report::diagnostics::{self, Look};
 use crate::run::{self, Machine, Studied, StudyChoice};
 use crate::session;
+use crate::solve::range::{CostRange, RowRange};
 use crate::solve::registry::SOLVERS;
 use crate::source::SourceMap;
 
@@ -163,7 +164,7 @@ impl Formulas {
     }
 }
 
-/// Tables and sentences: [`Model::ranges`], [`Model::explain`].
+/// Tables and sentences: [`Ranges::sheet`], [`Model::explain`].
 #[derive(Clone, Debug)]
 pub struct Sheet(Page);
 
@@ -177,6 +178,19 @@ impl Sheet {
     pub fn html_body(&self) -> String {
         body(&self.0)
     }
+}
+
+/// In which intervals the prices and the solution of a linear program hold: [`Model::ranges`].
+#[derive(Clone, Debug)]
+pub struct Ranges {
+    /// By name of a row.
+    pub rows: Vec<(String, RowRange)>,
+    /// By name of a column.
+    pub columns: Vec<(String, CostRange)>,
+    /// Some are missing: their time is used up, or they are lost in rounding.
+    pub unfinished: bool,
+    /// All of it to be read.
+    pub sheet: Sheet,
 }
 
 /// What is asked of a solve that has run.
@@ -227,7 +241,7 @@ impl Model {
             self.study(choice, options, &mut |m, primal, studied| {
                 let d = kind.derive(m, primal, studied, choice.check, true)?;
                 Ok(Formulas {
-                    model: d.model(m, primal, &self.name, false),
+                    model: d.model(m, primal, &self.name, None),
                     remarks: d.remarks(),
                     check: d.check,
                     title: d.title,
@@ -259,13 +273,37 @@ impl Model {
     /// The ranges of a linear program: in which intervals of the right-hand sides the prices hold, in which intervals of the
     /// objective's coefficients the solution stays optimal. The model is run.
     ///
+    /// ```
+    /// # use bmod::{Choice, Model, Options};
+    /// let text = "Positive variable x; Variable z; Equations o, e; o.. z =e= 3*x; e.. 2*x =l= 8; Model m / all /;
+    ///             solve m using lp maximizing z;";
+    /// let ranges = Model::from_text("m.blk", text).ranges(&Choice::default(), &Options::default())?;
+    /// let (name, e) = &ranges.rows[0];
+    /// assert_eq!((&**name, e.price, e.interval), ("e", [1.5, 1.5], [0.0, f64::INFINITY]));
+    /// # Ok::<(), bmod::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// [`Error::Model`] if the run fails, if there is no such solve, if it is not linear or has no optimal answer.
-    pub fn ranges(&self, choice: &Choice, options: &Options) -> Result<Sheet, Error> {
-        self.sheet(choice, options, |m, primal, studied| {
-            let found = range::of(m, primal, studied, &[])?;
-            Ok(range::page(m, primal, &found))
-        })
+    pub fn ranges(&self, choice: &Choice, options: &Options) -> Result<Ranges, Error> {
+        let ranges = on_large_stack(|| {
+            self.study(choice, options, &mut |m, primal, studied| {
+                let found = range::of(m, primal, studied, &[])?;
+                let o = &primal.generated.origin;
+                let sheet = Sheet(range::page(m, primal, &found));
+                let rows = found.rows.into_iter();
+                let columns = found.costs.into_iter();
+                Ok(Ranges {
+                    rows: rows.map(|r| (range::named(m, &o.rows, r.row), r)).collect(),
+                    columns: columns
+                        .map(|c| (range::named(m, &o.columns, c.column), c))
+                        .collect(),
+                    unfinished: found.unfinished,
+                    sheet,
+                })
+            })
+        });
+        ranges.unwrap_or_else(broken)
     }
 
     /// What a model decides, what its answer is and what binds, in words. The model is run.

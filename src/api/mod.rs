@@ -12,7 +12,7 @@ mod run;
 mod symbols;
 
 pub use error::Error;
-pub use formulas::{Choice, Formulas, Sheet};
+pub use formulas::{Choice, Formulas, Ranges, Sheet};
 pub use labels::Labels;
 pub use options::{Control, Options, Progress};
 pub use run::{Claim, OutputFile, Run, Solve};

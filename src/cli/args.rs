@@ -574,8 +574,14 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Parsed {
     match try_parse(arguments) {
         Ok(cli) => Parsed::Run(Box::new(cli)),
         Err(e) => {
-            // A reader that has gone away is no error of ours.
-            let _ = e.print();
+            use clap::error::{ContextKind, ContextValue};
+            match e.get(ContextKind::InvalidSubcommand) {
+                Some(ContextValue::String(file)) if file.contains('.') => {
+                    eprintln!("bmod: `{file}` is no command; `bmod run {file}` runs a model");
+                }
+                // A reader that has gone away is no error of ours.
+                _ => e.print().unwrap_or_default(),
+            }
             Parsed::Exit(if e.use_stderr() { USAGE } else { 0 })
         }
     }

@@ -10,23 +10,21 @@ use crate::formulation::page::{Format, write};
 use crate::formulation::study;
 use crate::run::{Machine, Options, Studied, StudyChoice};
 use std::io::{IsTerminal, Write};
-use std::path::Path;
+use std::path::{Component, Path};
 
 /// Characters of a line, where the terminal does not say.
 const WIDTH: usize = 100;
 
+/// Characters of a line.
+pub fn width() -> usize {
+    let said = crate::report::diagnostics::columns(std::io::stdout().is_terminal());
+    said.unwrap_or(WIDTH).max(40)
+}
+
 /// How formulas are written.
 pub fn format(f: FormulaFormat) -> Format {
-    let columns = || crate::report::diagnostics::columns(std::io::stdout().is_terminal());
     match f {
-        FormulaFormat::Text => {
-            let wide: usize = if std::io::stdout().is_terminal() {
-                columns().unwrap_or(WIDTH)
-            } else {
-                WIDTH
-            };
-            Format::Text(wide.max(40))
-        }
+        FormulaFormat::Text => Format::Text(width()),
         FormulaFormat::Latex => Format::Latex,
         FormulaFormat::Html => Format::Html,
     }
@@ -71,12 +69,12 @@ pub fn studied(model: &ModelArgs, solve: &SolveArgs, chosen: &ChosenArgs, f: &mu
 pub fn derive(a: &DeriveArgs, kind: Kind) -> u8 {
     studied(&a.model, &a.solve, &a.chosen, &mut |m, primal, studied| {
         let d = kind.derive(m, &primal, &studied, a.check, a.as_model.is_some())?;
-        Ok(finish(a, m, &d, &primal))
+        Ok(finish(a, m, &d, &primal, &studied))
     })
 }
 
 /// Shows a derivation, writes its model, and says what the comparison found; the exit status.
-fn finish(a: &DeriveArgs, m: &Machine, d: &Derived, primal: &Primal) -> u8 {
+fn finish(a: &DeriveArgs, m: &Machine, d: &Derived, primal: &Primal, studied: &Studied) -> u8 {
     let to_stdout = a.as_model.as_deref() == Some(Path::new("-"));
     let mut status = if d.failed() { EXECUTION } else { 0 };
     if a.as_model.is_none() {
@@ -90,7 +88,11 @@ fn finish(a: &DeriveArgs, m: &Machine, d: &Derived, primal: &Primal) -> u8 {
     let Some(path) = &a.as_model else {
         return status;
     };
-    let text = d.model(m, primal, &name(&a.model), a.include);
+    let include = a.include.then(|| seen_from(path, &a.model.file));
+    if include.is_some() {
+        d.changed_later(m, studied).into_iter().for_each(&say);
+    }
+    let text = d.model(m, primal, &name(&a.model), include.as_deref());
     if to_stdout {
         tell(&text);
         return status;
@@ -107,6 +109,27 @@ fn finish(a: &DeriveArgs, m: &Machine, d: &Derived, primal: &Primal) -> u8 {
         }
     }
     status
+}
+
+/// The path of a file as a text that is written to `out` names it.
+fn seen_from(out: &Path, file: &Path) -> String {
+    let folder = out
+        .parent()
+        .filter(|p| *p != Path::new(""))
+        .unwrap_or(Path::new("."));
+    let path = match (folder.canonicalize(), file.canonicalize()) {
+        (Ok(folder), Ok(file)) => {
+            let both = folder.components().zip(file.components());
+            let shared = both.take_while(|(a, b)| a == b).count();
+            let up = folder
+                .components()
+                .skip(shared)
+                .map(|_| Component::ParentDir);
+            up.chain(file.components().skip(shared)).collect()
+        }
+        _ => file.to_path_buf(),
+    };
+    path.to_string_lossy().into_owned()
 }
 
 /// Writes to standard output; a reader that has gone away is no error.

@@ -1,7 +1,7 @@
 //! `bmod explain`: a model and its answer in words.
 
 use super::args::ExplainArgs;
-use super::derive::{studied, tell};
+use super::derive::{studied, tell, width};
 use crate::formulation::explain::of;
 use crate::formulation::page::filled;
 use crate::solve::ModelStatus;
@@ -20,7 +20,7 @@ pub fn run(a: &ExplainArgs) -> u8 {
         );
         let (paragraphs, _) = of(m, &primal, &studied);
         for p in paragraphs {
-            tell(&format!("{}\n", filled(&p, 100)));
+            tell(&format!("{}\n", filled(&p, width())));
         }
         Ok(0)
     });

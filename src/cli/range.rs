@@ -1,7 +1,7 @@
 //! `bmod range`: in which intervals prices and solutions of a linear program hold.
 
 use super::args::{EXECUTION, RangeArgs, TableFormat};
-use super::derive::{studied, tell};
+use super::derive::{studied, tell, width};
 use crate::formulation::derive::Primal;
 use crate::formulation::page::{Format, write};
 use crate::formulation::range::{Ranges, named, of, page};
@@ -12,7 +12,7 @@ pub fn range(a: &RangeArgs) -> u8 {
     studied(&a.model, &a.solve, &a.chosen, &mut |m, primal, studied| {
         let r = of(m, &primal, &studied, &a.names)?;
         match a.format {
-            TableFormat::Text => tell(&write(&page(m, &primal, &r), Format::Text(100), "")),
+            TableFormat::Text => tell(&write(&page(m, &primal, &r), Format::Text(width()), "")),
             TableFormat::Csv => tell(&csv(m, &primal, &r)),
             TableFormat::Json => tell(&json(m, &primal, &r)),
         }

@@ -5,6 +5,7 @@ use super::commands::{Task, carry_out, name, options};
 use super::host::{Output, write_whole};
 use crate::check::symbols::SymbolKind;
 use crate::formulation::derive::Primal;
+use crate::formulation::derived::Kind;
 use crate::formulation::page::{Block, Page, STYLE, body};
 use crate::formulation::render::plain;
 use crate::formulation::side::short;
@@ -96,6 +97,13 @@ fn sections(m: &Machine, primal: &Primal, studied: &Studied) -> String {
     if let Some(r) = &ranges {
         page.extend(range::page(m, primal, r));
     }
+    let derived = |k: Kind| k.derive(m, primal, studied, false, false).ok();
+    page.extend(
+        [Kind::Dual, Kind::Kkt]
+            .into_iter()
+            .find_map(derived)
+            .map_or(Vec::new(), |d| d.page),
+    );
     body(&page)
 }
 

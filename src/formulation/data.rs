@@ -3,7 +3,7 @@
 use super::text::attribute_name;
 use super::tree::*;
 use super::{NewData, Row};
-use crate::check::node::SymbolId;
+use crate::check::node::{SymbolId, TableId};
 use crate::check::symbols::{DomainPosition, Store, SymbolKind, Symbols, UNIVERSE};
 use crate::data::input::{Input, InputData, Keys};
 use crate::data::table::Table;
@@ -23,9 +23,9 @@ pub fn number(x: f64) -> String {
         f64::NEG_INFINITY => "-inf".into(),
         _ if x.is_nan() => "na".into(),
         _ => {
-            let plain = format!("{x}");
-            match plain.len() > 17 {
-                true => format!("{x:e}"),
+            let (plain, short) = (format!("{x}"), format!("{x:e}"));
+            match plain.len() > 17 && short.len() < plain.len() {
+                true => short,
                 false => plain,
             }
         }
@@ -181,6 +181,31 @@ impl<'a> Data<'a> {
             out.records("Parameter", &head, &text, false, all);
         }
         out.text.push('\n');
+    }
+
+    /// What of it has other records elsewhere, by name.
+    pub fn changed<'t>(&self, other: &dyn Fn(TableId) -> Option<&'t Table>) -> Vec<String> {
+        let differs = |table: TableId, is_set: bool| {
+            let own = self.store.table(table);
+            let value = |v: f64| if is_set { 0 } else { v.to_bits() };
+            let same = |((k, v), (l, w)): ((&[Label], f64), (&[Label], f64))| {
+                k == l && value(v) == value(w)
+            };
+            let all = |o: &Table| own.len() == o.len() && records(own).zip(records(o)).all(same);
+            other(table).is_some_and(|o| !all(o))
+        };
+        let symbol = |s: &SymbolId| self.symbols.get(*s);
+        let sets = self.sets.iter().filter(|s| differs(symbol(s).table, true));
+        let parameters = self
+            .parameters
+            .iter()
+            .filter(|p| differs(symbol(p).table, false));
+        let plain = sets.chain(parameters).map(|s| symbol(s).name.to_string());
+        let attributes = self.attributes.iter();
+        let attributes = attributes.filter(|(s, o)| differs(symbol(s).table + o, false));
+        let word = crate::check::functions::attribute_word;
+        let attributes = attributes.map(|(s, o)| format!("{}.{}", symbol(s).name, word(*o)));
+        plain.chain(attributes).collect()
     }
 
     /// Labels in the order they had, where the sets alone would bring them up in another one.

@@ -1,5 +1,6 @@
 //! The dual and the optimality conditions of a solve: the page, the model, the comparison; or a refusal with its place.
 
+use super::bounds;
 use super::check::{self, Comparison};
 use super::derive::{Derivation, Primal};
 use super::math::{Math, name};
@@ -69,6 +70,10 @@ impl Derived {
             ));
         }
         out.extend(self.check.as_ref().map(|c| match c.passed() {
+            _ if c.impossible.is_some() => format!(
+                "The check could not be made: {}.",
+                c.impossible.as_deref().unwrap_or_default()
+            ),
             true => format!(
                 "Checked: {}: {} entries and {} numbers are equal (largest relative difference {:.0e}).",
                 self.compared, c.entries, c.numbers, c.largest
@@ -87,17 +92,32 @@ impl Derived {
         self.check.as_ref().is_some_and(|c| !c.passed())
     }
 
-    /// The model as a text that solves itself; `include` is a file of the user's text in place of the data. `file`: where
-    /// it comes from.
-    pub fn model(&self, m: &Machine, primal: &Primal, file: &str, include: bool) -> String {
+    /// The model as a text that solves itself; `include`: the user's text in place of the data. `file`: where it comes
+    /// from.
+    pub fn model(&self, m: &Machine, primal: &Primal, file: &str, include: Option<&str>) -> String {
         let head = format!(
             "$title {}\n* Derived by bmod from the model {} of {file}.\n\n",
             self.title, primal.name
         );
-        let include = include.then_some(file);
         let f = &self.formulation;
         text::model(&m.symbols, &m.store, f, include, &head, true, None)
     }
+
+    /// That a model which includes the text is another one, where the text goes on and changes its data.
+    pub fn changed_later(&self, m: &Machine, studied: &Studied) -> Option<String> {
+        let at_end = |t| studied.at_end(t);
+        let changed = text::changed(&m.symbols, &m.store, &self.formulation, &at_end);
+        let (names, last) = (changed.join(", "), changed.last()?);
+        let verb = if *last == names { "has" } else { "have" };
+        Some(format!(
+            "{names} {verb} other values at the end of the text than at the solve: the model that includes the text is \
+             derived from those of the end. Without `--include` it has those of the solve."
+        ))
+    }
+}
+
+fn not_generated(why: &str) -> Comparison {
+    Comparison::impossible(&format!("the derived model could not be generated: {why}"))
 }
 
 fn linear_dual(
@@ -116,7 +136,9 @@ fn linear_dual(
     let formulation = dual::dual(symbols, store, primal, false).map_err(failed)?;
     let d =
         Derivation::new(symbols, store, primal, String::new(), "lp").map_err(|e| failed(e.1))?;
-    let mut page = side::page(symbols, store, &side::own(&d), &shown);
+    let mut own = side::own(&d);
+    let assigned = bounds::assigned(m, &m.code, &mut own, Some(studied.span));
+    let mut page = side::page(symbols, store, &own, &assigned, &shown);
     match no_optimum(studied) {
         None => page.extend(side::slackness(symbols, store, primal, shown.flipped)),
         words => page.extend(words),
@@ -127,7 +149,7 @@ fn linear_dual(
         formulation,
         check: check.then(|| match check::checked_dual(symbols, store, primal) {
             Ok((_, c)) => c,
-            Err(why) => Comparison::impossible(&why),
+            Err(why) => not_generated(&why),
         }),
         compared: match primal.generated.instance.is_linear() {
             true => {
@@ -247,7 +269,7 @@ fn conditions(
     refuse_discrete(m, primal, |message| {
         Diagnostic::execution("E0432", studied.span, message).label("of this solve")
     })?;
-    let f = kkt::kkt(symbols, store, primal, false, true)
+    let mut f = kkt::kkt(symbols, store, primal, false, true)
         .map_err(|r| refuse_kkt(m, primal, studied, r))?;
     let mut page = vec![Block::Heading(format!("Lagrangian of {}", primal.name))];
     if let Some(l) = lagrangian(m, primal) {
@@ -262,7 +284,11 @@ fn conditions(
     page.push(Block::Heading(
         "Optimality conditions (Karush, Kuhn, Tucker)".into(),
     ));
-    page.extend(formulas(&mut Setter::new(symbols, store, &f), symbols, &f));
+    let assigned = bounds::assigned(m, &m.code, &mut f, Some(studied.span));
+    let mut s = Setter::new(symbols, store, &f);
+    page.extend(formulas(&mut s, symbols, &f));
+    let known = bounds::known(&mut s, symbols, &f, &assigned, true);
+    page.extend(bounds::with(known, !f.multipliers.is_empty()));
     page.extend(f.notes.iter().cloned().map(Block::Words));
     page.extend(no_optimum(studied));
     // What is written is what was generated.
@@ -270,7 +296,7 @@ fn conditions(
         false => (f, None),
         true => match check::checked_kkt(symbols, store, primal) {
             Ok((written, c)) => (written, check.then_some(c)),
-            Err(why) => (f, check.then(|| Comparison::impossible(&why))),
+            Err(why) => (f, check.then(|| not_generated(&why))),
         },
     };
     Ok(Derived {

@@ -177,11 +177,7 @@ impl Gradient<'_> {
     }
 
     fn power(&mut self, a: &Expr, b: &Expr, negative: bool) -> Result<(), NoDerivative> {
-        let n = |b: Expr| match &b {
-            Expr::Number(x) => Expr::Number(x - 1.0),
-            _ => sum(vec![(false, b), (true, Expr::Number(1.0))]),
-        };
-        let lower = match n(b.clone()) {
+        let lower = match less_one(b) {
             Expr::Number(1.0) => a.clone(),
             Expr::Number(0.0) => Expr::Number(1.0),
             m => Expr::Binary(BinaryOp::Power, Box::new(a.clone()), Box::new(m)),
@@ -234,6 +230,19 @@ fn minus(a: Expr, b: Expr) -> Expr {
     sum(vec![(false, a), (true, b)])
 }
 
+/// An exponent less 1, in numbers where it is one.
+fn less_one(n: &Expr) -> Expr {
+    let ratio = match n {
+        Expr::Product(t) => t.as_slice(),
+        _ => &[],
+    };
+    match (n, ratio) {
+        (Expr::Number(x), _) => number(x - 1.0),
+        (_, [(false, Expr::Number(p)), (true, Expr::Number(q))]) => over(number(p - q), number(*q)),
+        _ => minus(n.clone(), number(1.0)),
+    }
+}
+
 fn plus(a: Expr, b: Expr) -> Expr {
     sum(vec![(false, a), (false, b)])
 }
@@ -262,13 +271,13 @@ fn derivative(f: Function, args: &[Expr], k: usize) -> Option<Vec<(bool, Expr)>>
             let lower = match &n {
                 Expr::Number(2.0) => x.clone(),
                 Expr::Number(1.0) => number(1.0),
-                _ => call(f, vec![x.clone(), minus(n.clone(), number(1.0))]),
+                _ => call(f, vec![x.clone(), less_one(&n)]),
             };
             vec![(false, n), (false, lower)]
         }
         (F::RPower | F::VcPower, 0) => {
             let n = args[1].clone();
-            let lower = call(f, vec![x.clone(), minus(n.clone(), number(1.0))]);
+            let lower = call(f, vec![x.clone(), less_one(&n)]);
             vec![(false, n), (false, lower)]
         }
         (F::RPower | F::CvPower, 1) => {
@@ -277,10 +286,7 @@ fn derivative(f: Function, args: &[Expr], k: usize) -> Option<Vec<(bool, Expr)>>
         (F::SignPower, 0) => {
             let n = args[1].clone();
             let size = call(F::Abs, vec![x.clone()]);
-            vec![
-                (false, n.clone()),
-                (false, power(&size, minus(n, number(1.0)))),
-            ]
+            vec![(false, n.clone()), (false, power(&size, less_one(&n)))]
         }
         (F::Sin, _) => mul(call(F::Cos, vec![x.clone()])),
         (F::Cos, _) => mul(negate(call(F::Sin, vec![x.clone()]))),
@@ -359,21 +365,15 @@ fn derivative(f: Function, args: &[Expr], k: usize) -> Option<Vec<(bool, Expr)>>
         (F::BetaReg, 0) => {
             let (a, b) = (&args[1], &args[2]);
             vec![
-                (false, power(x, minus(a.clone(), number(1.0)))),
-                (
-                    false,
-                    power(
-                        &minus(number(1.0), x.clone()),
-                        minus(b.clone(), number(1.0)),
-                    ),
-                ),
+                (false, power(x, less_one(a))),
+                (false, power(&minus(number(1.0), x.clone()), less_one(b))),
                 (true, call(F::Beta, vec![a.clone(), b.clone()])),
             ]
         }
         (F::GammaReg, 0) => {
             let a = &args[1];
             vec![
-                (false, power(x, minus(a.clone(), number(1.0)))),
+                (false, power(x, less_one(a))),
                 (false, call(F::Exp, vec![negate(x.clone())])),
                 (true, call(F::Gamma, vec![a.clone()])),
             ]

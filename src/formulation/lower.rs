@@ -48,11 +48,21 @@ impl<'a> Lowering<'a> {
     /// An equation.
     pub fn equation(&mut self, e: &EquationDef) -> Equation {
         self.slots.clear();
-        let binder = self.domain(&e.domain);
+        let mut binder = self.domain(&e.domain);
+        let key = self.key(&e.key);
+        // Where a lead in its name leaves the set an equation has no row.
+        for p in &key {
+            if let Part::Lag(l) = p
+                && !l.circular
+            {
+                let inside = Expr::Member(self.symbols.root(l.set), vec![p.clone()]);
+                binder.conditions.push(inside);
+            }
+        }
         Equation {
             symbol: e.symbol,
             binder,
-            key: self.key(&e.key),
+            key,
             left: self.expr(&e.left),
             relation: e.relation,
             right: self.expr(&e.right),

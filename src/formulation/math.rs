@@ -232,7 +232,12 @@ impl<'a> Setter<'a> {
         use level::*;
         match e {
             Expr::Number(x) => {
-                let text = shortest(*x).replace('-', "−");
+                // Without the rounding of what was multiplied out: 0.2 · 0.2 is 0.04.
+                let digits = match x.is_normal() {
+                    true => format!("{x:.14e}").parse().unwrap_or(*x),
+                    false => *x,
+                };
+                let text = shortest(digits).replace('-', "−");
                 let mine = if text.starts_with('−') { SUM } else { ATOM };
                 (Math::Number(text), mine)
             }

@@ -6,6 +6,7 @@
 //! [`algebra`] for other programs. [`derived`] is what the commands and the library ask for.
 
 pub mod algebra;
+pub mod bounds;
 pub mod check;
 mod columns;
 pub mod data;

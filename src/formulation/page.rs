@@ -1,11 +1,12 @@
 //! A formulation as a page: headings, formulas, legends and tables, as text, LaTeX or HTML.
 
 use super::math::{Math, explained, name, symbol_name};
-use super::render::{escaped, latex, latex_lines, mathml, mathml_lines, plain, text, wrapped};
+use super::names::Names;
+use super::render::{latex, latex_lines, latex_words, mathml, mathml_lines, plain, text, wrapped};
 use super::tree::*;
 use super::{Formulation, Origin, Sign};
 use crate::check::node::SymbolId;
-use crate::check::symbols::{SymbolKind, Symbols};
+use crate::check::symbols::{SymbolKind, Symbols, UNIVERSE};
 use std::fmt::Write;
 
 pub use super::math::Setter;
@@ -135,8 +136,25 @@ pub fn over_domain(symbols: &Symbols, base: Math, domain: &[SymbolId]) -> Math {
     if domain.is_empty() {
         return base;
     }
-    let sets = domain.iter().map(|s| Math::Name(symbol_name(symbols, *s)));
-    Math::Indexed(Box::new(base), sets.collect())
+    let again = |n: usize| domain[n] != UNIVERSE && domain[..n].contains(&domain[n]);
+    let sets: Vec<Math> = match (0..domain.len()).any(again) {
+        false => domain
+            .iter()
+            .map(|s| Math::Name(symbol_name(symbols, *s)))
+            .collect(),
+        // The same set twice: with the names that two indices over it have, it does not read as the diagonal.
+        true => {
+            let mut indices = Indices::default();
+            let each: Vec<IndexId> = domain.iter().map(|s| indices.add(*s)).collect();
+            let taken = symbols.iter().map(|(_, s)| s.name.to_lowercase()).collect();
+            let mut names = Names::new(symbols, &indices, taken);
+            names.enter(&each);
+            each.iter()
+                .map(|k| Math::Name(name(names.of(*k))))
+                .collect()
+        }
+    };
+    Math::Indexed(Box::new(base), sets)
 }
 
 /// With the sign that it has.
@@ -152,7 +170,11 @@ pub fn signed(m: Math, sign: Sign) -> Math {
 }
 
 /// The user's symbols in a formulation with their explanatory texts: sets, data, variables.
-pub fn legend(symbols: &Symbols, f: &Formulation) -> Page {
+pub fn legend<'a>(
+    symbols: &Symbols,
+    f: &Formulation,
+    more: impl Iterator<Item = &'a Expr>,
+) -> Page {
     let mut used: Vec<SymbolId> = f.own.clone();
     let mut see = |e: &Expr| {
         e.walk(&mut |e| match e {
@@ -174,6 +196,7 @@ pub fn legend(symbols: &Symbols, f: &Formulation) -> Page {
     if let Some((_, e)) = &f.objective {
         see(e);
     }
+    more.for_each(&mut see);
     for r in &f.rows {
         used.extend(r.binder.indices.iter().map(|k| f.indices.set[*k]));
     }
@@ -355,11 +378,11 @@ fn as_latex(page: &Page, title: &str) -> String {
         "\\documentclass{article}\n\\usepackage[utf8]{inputenc}\n\\usepackage{amsmath}\n\\allowdisplaybreaks\n\
          \\addtolength{\\textwidth}{3cm}\\addtolength{\\oddsidemargin}{-1.5cm}\n\\begin{document}\n",
     );
-    let _ = writeln!(out, "\\section*{{{}}}", escaped(title));
+    let _ = writeln!(out, "\\section*{{{}}}", latex_words(title));
     for b in page {
         match b {
             Block::Heading(t) => {
-                let _ = writeln!(out, "\\subsection*{{{}}}", escaped(t));
+                let _ = writeln!(out, "\\subsection*{{{}}}", latex_words(t));
             }
             Block::Words(t) => {
                 let _ = writeln!(out, "{}\n", latex_words(t));
@@ -384,12 +407,12 @@ fn as_latex(page: &Page, title: &str) -> String {
                     let _ = writeln!(
                         out,
                         "\\text{{{}}} \\quad & {}{words}{}{end}",
-                        escaped(&f.name),
+                        latex_words(&f.name),
                         latex_lines(&f.math),
                         f.example.as_ref().map_or(String::new(), |(name, math)| {
                             format!(
                                 " \\\\\n&\\text{{{}: }} {}",
-                                escaped(name),
+                                latex_words(name),
                                 latex_lines(math)
                             )
                         })
@@ -414,8 +437,8 @@ fn as_latex(page: &Page, title: &str) -> String {
                 let _ = writeln!(
                     out,
                     "\\begin{{tabular}}{{l|l}}\n{} & {} \\\\ \\hline",
-                    escaped(&head[0]),
-                    escaped(&head[1])
+                    latex_words(&head[0]),
+                    latex_words(&head[1])
                 );
                 for (a, b) in rows {
                     let _ = writeln!(out, "${}$ & ${}$ \\\\", latex(a), latex(b));
@@ -443,28 +466,6 @@ fn as_latex(page: &Page, title: &str) -> String {
         }
     }
     out.push_str("\\end{document}\n");
-    out
-}
-
-/// Words in LaTeX: what the default fonts lack is written as mathematics.
-fn latex_words(t: &str) -> String {
-    let mut out = String::new();
-    for c in escaped(t).chars() {
-        match c {
-            '≤' => out.push_str("$\\le$"),
-            '≥' => out.push_str("$\\ge$"),
-            '∞' => out.push_str("$\\infty$"),
-            c if super::math::command(&c.to_string()).is_some() => {
-                let _ = write!(
-                    out,
-                    "$\\{}$",
-                    super::math::command(&c.to_string()).unwrap_or_default()
-                );
-            }
-            c if c.is_ascii() || ('\u{a0}'..='\u{ff}').contains(&c) => out.push(c),
-            _ => out.push('?'),
-        }
-    }
     out
 }
 

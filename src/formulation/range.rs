@@ -45,18 +45,29 @@ pub fn of(
             .into());
     };
     let g = &primal.generated;
-    let wanted = |blocks: &Blocks, i: usize| {
-        if names.is_empty() {
-            return true;
-        }
+    let is = |name: &String, blocks: &Blocks, i: usize| {
         let b = blocks.of(i as u32);
         let symbol = &m.symbols.get(b.symbol).name;
-        let whole = record(&m.store, symbol, b.key(i as u32));
+        let whole = || record(&m.store, symbol, b.key(i as u32));
         let plain = |t: &str| t.to_lowercase().replace(['\'', '"', ' '], "");
-        names
-            .iter()
-            .any(|n| n.eq_ignore_ascii_case(symbol) || plain(n) == plain(&whole))
+        name.eq_ignore_ascii_case(symbol) || plain(name) == plain(&whole())
     };
+    let wanted =
+        |blocks: &Blocks, i: usize| names.is_empty() || names.iter().any(|n| is(n, blocks, i));
+    let (rows, columns) = (&g.origin.rows, &g.origin.columns);
+    let known = |n: &&String| {
+        let found = |blocks, count| (0..count).any(|i| is(n, blocks, i));
+        found(rows, g.instance.row_count()) || found(columns, g.instance.column_count())
+    };
+    if let Some(name) = names.iter().find(|n| !known(n)) {
+        let blocks = rows.list.iter().chain(&columns.list);
+        let all: Vec<&str> = blocks.map(|b| &*m.symbols.get(b.symbol).name).collect();
+        let message = format!(
+            "no row or column is called `{name}`; there are {}",
+            all.join(", ")
+        );
+        return Err(no(&message).into());
+    }
     let begin = m.elapsed();
     Ok(ranges(
         &g.instance,

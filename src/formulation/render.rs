@@ -36,10 +36,16 @@ pub fn text(m: &Math) -> String {
         Math::Marked(m, "*") => format!("{}.l", text(m)),
         Math::Marked(m, word) => format!("{}.{word}", text(m)),
         Math::Fraction(a, b) => format!("{}/{}", tight(a), tight(b)),
-        Math::Power(a, b) => match superscript(&text(b)) {
-            Some(s) => format!("{}{s}", text(a)),
-            None => format!("{}^{}", text(a), tight(b)),
-        },
+        Math::Power(a, b) => {
+            let base = match **a {
+                Math::Root(_) => format!("({})", text(a)),
+                _ => text(a),
+            };
+            match superscript(&text(b)) {
+                Some(s) => format!("{base}{s}"),
+                None => format!("{base}^{}", tight(b)),
+            }
+        }
         Math::Root(m) => format!("√{}", tight(m)),
         Math::Absolute(m) => format!("|{}|", text(m)),
         Math::Big(op, under, body) => format!("{op}{{{}}} {}", text(under), text(body)),
@@ -57,6 +63,7 @@ fn is_factor(m: &Math) -> bool {
 /// In parentheses unless it is one piece.
 fn tight(m: &Math) -> String {
     match m {
+        Math::Row(list) if list.len() == 1 => tight(&list[0]),
         Math::Row(list) if list.len() > 1 => format!("({})", text(m)),
         Math::Fraction(..) | Math::Big(..) => format!("({})", text(m)),
         m => text(m),
@@ -174,9 +181,8 @@ fn begins(piece: &Math) -> bool {
 pub fn latex(m: &Math) -> String {
     match m {
         Math::Number(t) => t.replace('−', "-").replace('∞', "\\infty "),
-        Math::Words(t) => format!("\\text{{{}}}", escaped(t)),
+        Math::Words(t) | Math::Quoted(t) => format!("\\text{{{}}}", latex_words(t)),
         Math::Name(n) => latex_name(n),
-        Math::Quoted(t) => format!("\\text{{{}}}", escaped(t)),
         Math::Operator(o) | Math::Prefix(o) => format!(" {} ", latex_operator(o)),
         Math::Row(list) => {
             let mut out = String::new();
@@ -265,8 +271,8 @@ fn latex_name(n: &Name) -> String {
     }
 }
 
-/// A text in LaTeX.
-pub fn escaped(t: &str) -> String {
+/// A name in LaTeX.
+fn escaped(t: &str) -> String {
     let mut out = String::new();
     for c in t.chars() {
         match c {
@@ -279,6 +285,37 @@ pub fn escaped(t: &str) -> String {
             '^' => out.push_str("\\textasciicircum{}"),
             '−' => out.push('-'),
             c => out.push(c),
+        }
+    }
+    out
+}
+
+/// Words in LaTeX: what the default fonts lack is written as mathematics.
+pub fn latex_words(t: &str) -> String {
+    let mut out = String::new();
+    for c in t.chars() {
+        let mut bytes = [0; 4];
+        let text: &str = c.encode_utf8(&mut bytes);
+        let operator = latex_operator(text);
+        let digit = |zero: char| (c as u32).wrapping_sub(zero as u32);
+        match c {
+            '<' | '>' | '|' => out.push_str(&format!("${c}$")),
+            '−' => out.push('-'),
+            c if c.is_ascii() => out.push_str(&escaped(text)),
+            _ if operator.starts_with('\\') => out.push_str(&format!("${operator}$")),
+            '€' => out.push_str("\\texteuro{}"),
+            '→' => out.push_str("$\\to$"),
+            '←' => out.push_str("$\\leftarrow$"),
+            '∞' => out.push_str("$\\infty$"),
+            '⁻' => out.push_str("$^-$"),
+            '₀'..='₉' => out.push_str(&format!("$_{}$", digit('₀'))),
+            '⁴'..='⁹' => out.push_str(&format!("$^{}$", digit('⁰'))),
+            '–' | '—' | '‘' | '’' | '“' | '”' | '„' => out.push(c),
+            '\u{a0}'..='\u{ff}' => out.push(c),
+            _ => match command(text) {
+                Some(greek) => out.push_str(&format!("$\\{greek}$")),
+                None => out.push('?'),
+            },
         }
     }
     out
@@ -302,6 +339,8 @@ fn latex_operator(o: &str) -> &str {
         "⊖" => "\\ominus",
         "⋚" => "\\mathrel{\\substack{<\\\\[-.4ex]>}}",
         "…" => "\\ldots",
+        "{" => "\\{",
+        "}" => "\\}",
         o => o,
     }
 }

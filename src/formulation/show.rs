@@ -1,16 +1,17 @@
 //! A model as it was written, as formulas.
 
-use super::derive::{domain_of, kind};
+use super::bounds;
+use super::derive::domain_of;
 use super::lower::{Equation, Lowering};
-use super::math::Math;
-use super::page::{Block, Formula, Page, Setter, formulas, legend, over_domain, signed};
+use super::page::{Block, Page, Setter, formulas, legend};
 use super::tree::*;
-use super::{Formulation, Row, Sign};
-use crate::check::node::{Code, CodeKind, ModelRow, Node, NodeKind, SolveCode, SymbolId, Target};
-use crate::check::symbols::{SymbolKind, Symbols, attribute};
+use super::{Formulation, Row};
+use crate::check::node::{Code, CodeKind, ModelRow, SolveCode, SymbolId};
+use crate::check::symbols::{SymbolKind, Symbols};
 use crate::diag::nearest;
 use crate::run::{Generated, Machine, Studied};
-use crate::syntax::ast::{ModelItem, VariableKind};
+use crate::source::Span;
+use crate::syntax::ast::ModelItem;
 
 /// What a model consists of, with its objective if some solve says one.
 pub struct Chosen {
@@ -22,6 +23,8 @@ pub struct Chosen {
     pub objective: Option<(Sense, SymbolId)>,
     /// Problem type, if it is solved.
     pub using: Option<String>,
+    /// The place of the solve.
+    pub solve: Option<Span>,
 }
 
 impl Chosen {
@@ -32,6 +35,7 @@ impl Chosen {
             rows: s.code.equations.clone(),
             objective: s.code.objective,
             using: Some(s.code.using.to_string()),
+            solve: Some(s.span),
         }
     }
 }
@@ -39,14 +43,14 @@ impl Chosen {
 /// The model of this name, or the one that is solved last; `Err` says why there is none.
 pub fn choose(m: &Machine, code: &[Code], name: Option<&str>) -> Result<Chosen, String> {
     let symbols = &m.symbols;
-    let mut solves = Vec::new();
+    let mut solves: Vec<(&SolveCode, Span)> = Vec::new();
     solves_of(code, &mut solves);
     if let Some(name) = name {
         let is_model = |s: &SymbolId| matches!(symbols.get(*s).kind, SymbolKind::Model(_));
         let Some(model) = symbols.find(name).filter(is_model) else {
             return Err(unknown(symbols, name));
         };
-        solves.retain(|s| s.model == model);
+        solves.retain(|s| s.0.model == model);
         if solves.is_empty() {
             let SymbolKind::Model(info) = &symbols.get(model).kind else {
                 return Err(unknown(symbols, name));
@@ -58,15 +62,17 @@ pub fn choose(m: &Machine, code: &[Code], name: Option<&str>) -> Result<Chosen, 
                 rows,
                 objective: None,
                 using: None,
+                solve: None,
             });
         }
     }
     match solves.last() {
-        Some(s) => Ok(Chosen {
+        Some((s, span)) => Ok(Chosen {
             model: s.model,
             rows: s.equations.clone(),
             objective: s.objective,
             using: Some(s.using.to_string()),
+            solve: Some(*span),
         }),
         None => {
             let models: Vec<&str> = symbols
@@ -102,10 +108,10 @@ pub fn unknown(symbols: &Symbols, name: &str) -> String {
     }
 }
 
-fn solves_of<'a>(code: &'a [Code], out: &mut Vec<&'a SolveCode>) {
+fn solves_of<'a>(code: &'a [Code], out: &mut Vec<(&'a SolveCode, Span)>) {
     for c in code {
         match &c.kind {
-            CodeKind::Solve(s) => out.push(s),
+            CodeKind::Solve(s) => out.push((s, c.span)),
             CodeKind::Loop(_, b) | CodeKind::While(_, b) | CodeKind::Repeat(b, _) => {
                 solves_of(b, out)
             }
@@ -219,113 +225,6 @@ pub fn formulation(m: &Machine, chosen: &Chosen) -> Formulation {
     }
 }
 
-/// A bound as the text assigns it.
-struct Assigned {
-    variable: SymbolId,
-    offset: u32,
-    binder: Binder,
-    key: Vec<Part>,
-    value: Expr,
-    /// It holds for all records.
-    covers: bool,
-}
-
-/// The assignments to bounds of these variables that hold at the end; those that cannot be told without running are the
-/// attribute itself.
-fn assigned_bounds(m: &Machine, code: &[Code], f: &mut Formulation) -> Vec<Assigned> {
-    let symbols = &m.symbols;
-    let owner = |t| m.table_owner(t);
-    let mut out: Vec<Assigned> = Vec::new();
-    let own = f.own.clone();
-    let mut lowering = Lowering::new(symbols, &owner);
-    lowering.indices = std::mem::take(&mut f.indices);
-    let mut each = |c: &Code, top: bool| {
-        let CodeKind::Assign {
-            domain,
-            target,
-            key,
-            value,
-            covers,
-            ..
-        } = &c.kind
-        else {
-            return;
-        };
-        let (v, offsets) = match *target {
-            Target::Fix(s) => (s, vec![attribute::LO, attribute::UP]),
-            Target::Table(t) => {
-                let Some(s) = owner(t) else { return };
-                (s, vec![t - symbols.get(s).table])
-            }
-            _ => return,
-        };
-        let is_bound = |o: &u32| matches!(*o, attribute::LO | attribute::UP);
-        if !own.contains(&v) || !offsets.iter().all(is_bound) {
-            return;
-        }
-        let whole = *covers || symbols.get(v).dim() == 0;
-        if top {
-            let binder = lowering.domain(domain);
-            let node = Node::data(NodeKind::Var(v, key.clone()), c.span);
-            let Expr::Variable(_, key) = lowering.expr(&node) else {
-                return;
-            };
-            let value = lowering.expr(value);
-            for offset in offsets {
-                out.retain(|a| !(whole && (a.variable, a.offset) == (v, offset)));
-                out.push(Assigned {
-                    variable: v,
-                    offset,
-                    binder: binder.clone(),
-                    key: key.clone(),
-                    value: value.clone(),
-                    covers: whole,
-                });
-            }
-            return;
-        }
-        let indices: Vec<IndexId> = domain_of(symbols, v)
-            .iter()
-            .map(|s| lowering.indices.add(*s))
-            .collect();
-        let key: Vec<Part> = indices.iter().map(|k| Part::Index(*k)).collect();
-        for offset in offsets {
-            out.retain(|a| (a.variable, a.offset) != (v, offset));
-            out.push(Assigned {
-                variable: v,
-                offset,
-                binder: Binder {
-                    indices: indices.clone(),
-                    conditions: Vec::new(),
-                },
-                key: key.clone(),
-                value: Expr::Data(Source::Attribute(v, offset), key.clone()),
-                covers: true,
-            });
-        }
-    };
-    walk(code, true, &mut each);
-    f.indices = lowering.indices;
-    out
-}
-
-fn walk(code: &[Code], top: bool, f: &mut dyn FnMut(&Code, bool)) {
-    for c in code {
-        f(c, top);
-        match &c.kind {
-            CodeKind::Loop(_, b) | CodeKind::While(_, b) | CodeKind::Repeat(b, _) => {
-                walk(b, false, f)
-            }
-            CodeKind::For { body, .. } => walk(body, false, f),
-            CodeKind::If(branches, other) => {
-                branches.iter().for_each(|(_, b)| walk(b, false, f));
-                walk(other, false, f);
-            }
-            _ => {}
-        }
-    }
-}
-
 /// The page: legend, objective, rows, bounds; with an instance its numbers.
 pub fn page(
     m: &Machine,
@@ -335,51 +234,14 @@ pub fn page(
 ) -> (Page, Formulation) {
     let symbols = &m.symbols;
     let mut f = formulation(m, chosen);
-    let bounds = assigned_bounds(m, code, &mut f);
-    let mut out = legend(symbols, &f);
+    let bounds = bounds::assigned(m, code, &mut f, chosen.solve);
+    let in_bounds = bounds.iter().flat_map(bounds::Assigned::expressions);
+    let mut out = legend(symbols, &f, in_bounds);
     out.push(Block::Heading(heading(&f)));
     let mut s = Setter::new(symbols, &m.store, &f);
     out.extend(formulas(&mut s, symbols, &f));
-    let mut lines = Vec::new();
-    for &v in &f.own {
-        let mine: Vec<&Assigned> = bounds.iter().filter(|b| b.variable == v).collect();
-        let covered = |o: u32| mine.iter().any(|b| b.offset == o && b.covers);
-        let sign = match kind(symbols, v) {
-            VariableKind::Positive if !covered(attribute::LO) => Some(Sign::Positive),
-            VariableKind::Negative if !covered(attribute::UP) => Some(Sign::Negative),
-            _ => None,
-        };
-        if let Some(sign) = sign {
-            let base = s.variable(Variable::Own(v));
-            let base = over_domain(symbols, base, &domain_of(symbols, v));
-            lines.push(Formula::of(signed(base, sign)));
-        }
-        for b in &mine {
-            // What fixes says both.
-            let twin =
-                |o: &&&Assigned| o.offset != b.offset && o.value == b.value && o.key == b.key;
-            let fixed = mine.iter().any(|o| twin(&o));
-            let relation = match (fixed, b.offset) {
-                (true, attribute::UP) => continue,
-                (true, _) => "=",
-                (false, attribute::LO) => "≥",
-                (false, _) => "≤",
-            };
-            let before = s.names.enter(&b.binder.indices);
-            let left = s.expr(&Expr::Variable(Variable::Own(v), b.key.clone()));
-            let right = s.expr(&b.value);
-            let runs = (b.binder != Binder::default()).then(|| s.domain(&b.binder));
-            s.names.leave(before);
-            lines.push(Formula {
-                runs,
-                ..Formula::of(Math::Row(vec![left, Math::Operator(relation), right]))
-            });
-        }
-    }
-    if !lines.is_empty() {
-        out.push(Block::Words("with".into()));
-        out.push(Block::Formulas(lines));
-    }
+    let known = bounds::known(&mut s, symbols, &f, &bounds, f.using.starts_with('r'));
+    out.extend(bounds::with(known, false));
     if let Some(g) = numbers {
         super::numbers::add(&mut out, m, g);
     }

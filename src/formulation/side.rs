@@ -1,10 +1,11 @@
 //! A model and its dual side by side, and complementary slackness in numbers.
 
+use super::bounds::{self, Assigned};
 use super::derive::{Derivation, Primal};
 use super::math::{Math, name, relation_sign, symbol_name};
 use super::page::{Block, Formula, Page, Setter, formulas, over_domain, signed};
 use super::tree::*;
-use super::{Formulation, Origin, Row, Sign};
+use super::{Formulation, Multiplier, Origin, Row, Sign};
 use crate::check::node::SymbolId;
 use crate::check::symbols::{Store, Symbols};
 use crate::solve::nlp::convex::{Shape, shape};
@@ -50,15 +51,28 @@ pub fn own(d: &Derivation) -> Formulation {
 }
 
 /// Primal, dual, and what is paired with what.
-pub fn page(symbols: &Symbols, store: &Store, primal: &Formulation, dual: &Formulation) -> Page {
+pub fn page(
+    symbols: &Symbols,
+    store: &Store,
+    primal: &Formulation,
+    bounds: &[Assigned],
+    dual: &Formulation,
+) -> Page {
     let mut out = vec![Block::Heading(format!("Primal: {}", primal.name))];
     let mut s = Setter::new(symbols, store, primal);
     out.extend(formulas(&mut s, symbols, primal));
-    let signs: Vec<Math> = primal.own.iter().map(|v| sign(symbols, dual, *v)).collect();
+    let known = bounds::known(&mut s, symbols, primal, bounds, true);
+    let mut lines = Vec::new();
+    for &v in &primal.own {
+        let before = lines.len();
+        let mine = known.iter().filter(|k| k.variable == v);
+        lines.extend(mine.map(|k| k.formula.clone()));
+        if lines.len() == before {
+            lines.push(Formula::of(sign(symbols, dual, v)));
+        }
+    }
     out.push(Block::Words("with".into()));
-    out.push(Block::Formulas(
-        signs.iter().cloned().map(Formula::of).collect(),
-    ));
+    out.push(Block::Formulas(lines));
     out.push(Block::Heading(format!("Dual: {}", dual.name)));
     let mut t = Setter::new(symbols, store, dual);
     out.extend(formulas(&mut t, symbols, dual));
@@ -81,7 +95,8 @@ pub fn page(symbols: &Symbols, store: &Store, primal: &Formulation, dual: &Formu
         let right = over_domain(symbols, t.variable(Variable::Multiplier(n)), &m.domain);
         pairs.push((left, signed(right, m.sign)));
     }
-    for (v, left) in primal.own.iter().zip(signs) {
+    for v in &primal.own {
+        let left = sign(symbols, dual, *v);
         for r in dual
             .rows
             .iter()
@@ -95,12 +110,33 @@ pub fn page(symbols: &Symbols, store: &Store, primal: &Formulation, dual: &Formu
             ]);
             pairs.push((left.clone(), right));
         }
+        for (n, m) in dual.multipliers.iter().enumerate() {
+            let (relation, upper) = match m.origin {
+                Origin::Lower(of) if of == *v => ("≥", false),
+                Origin::Upper(of) if of == *v => ("≤", true),
+                Origin::Fixed(of) if of == *v => ("=", false),
+                _ => continue,
+            };
+            let mut mine = known.iter().filter(|k| k.origin == Some(m.origin));
+            let left = match (mine.next(), mine.next()) {
+                (Some(one), None) => one.formula.math.clone(),
+                _ => {
+                    let base = Math::Name(symbol_name(symbols, *v));
+                    let bound = Math::Bar(Box::new(base), upper);
+                    let bound = over_domain(symbols, bound, &m.domain);
+                    let variable = bounds::variable(symbols, *v);
+                    Math::Row(vec![variable, Math::Operator(relation), bound])
+                }
+            };
+            let right = over_domain(symbols, t.variable(Variable::Multiplier(n)), &m.domain);
+            pairs.push((left, signed(right, m.sign)));
+        }
     }
     out.push(Block::Pairs(["primal".into(), "dual".into()], pairs));
     out
 }
 
-/// A variable with the sign that its rows in the dual give it.
+/// A variable with the sign that its rows in the dual give it; free only without bounds.
 fn sign(symbols: &Symbols, dual: &Formulation, v: SymbolId) -> Math {
     let maximum = matches!(dual.objective, Some((Sense::Maximize, _)));
     let rows: Vec<&Row> = dual
@@ -116,11 +152,15 @@ fn sign(symbols: &Symbols, dual: &Formulation, v: SymbolId) -> Math {
         },
         _ => Sign::Free,
     };
-    let base = Math::Name(symbol_name(symbols, v));
-    signed(
-        over_domain(symbols, base, &super::derive::domain_of(symbols, v)),
-        sign,
-    )
+    let base = bounds::variable(symbols, v);
+    let limits = |m: &Multiplier| {
+        let all = [Origin::Lower(v), Origin::Upper(v), Origin::Fixed(v)];
+        all.contains(&m.origin)
+    };
+    match sign {
+        Sign::Free if rows.len() != 1 || dual.multipliers.iter().any(limits) => base,
+        sign => signed(base, sign),
+    }
 }
 
 /// A number as people read it: seven digits.
@@ -199,6 +239,7 @@ pub fn slackness(symbols: &Symbols, store: &Store, primal: &Primal, flipped: boo
             let (x, d) = (a.level[k], a.column_marginal[k]);
             let at_lower = near(x - lo, x);
             let sign = if at_lower != maximum { "≤" } else { "≥" };
+            let bound = if at_lower { lo } else { up };
             let (left, right) = (cost[k] - d, cost[k]);
             let name = named(b, j);
             lines.push(match near(d, 0.0) {
@@ -206,6 +247,20 @@ pub fn slackness(symbols: &Symbols, store: &Store, primal: &Primal, flipped: boo
                     "{name}: {0} = {0}, tight; its level is {1}",
                     short(right),
                     short(x)
+                ),
+                // A bound other than 0 has a multiplier, and the row in the dual is tight.
+                false if bound != 0.0 || lo == up => format!(
+                    "{name}: {} {} {}, tight: its multiplier is {}",
+                    short(x),
+                    if lo == up {
+                        "="
+                    } else if at_lower {
+                        "≥"
+                    } else {
+                        "≤"
+                    },
+                    short(bound),
+                    short(if flipped { -d } else { d })
                 ),
                 false => format!(
                     "{name}: {} {sign} {}, slack {}, so it is at its {} bound, {}",

@@ -4,10 +4,12 @@ use super::derive::{Primal, Values, domain_of};
 use super::lower::{Equation, Lowering};
 use super::numbers::left_side;
 use super::tree::{Binder, Expr, IndexId, Indices, Part, Variable, guarded, sum};
+use crate::autodiff::Evaluator;
 use crate::check::symbols::{Symbols, UNIVERSE};
 use crate::diag::Diagnostic;
-use crate::model::origin::Blocks;
+use crate::model::origin::{Blocks, Origin};
 use crate::run::{Generated, Machine, Studied};
+use crate::solve::answer::Answer;
 use crate::source::Span;
 
 /// The model of the solve that a run was asked to look at.
@@ -67,17 +69,6 @@ pub fn primal(m: &mut Machine) -> Option<(Primal, Studied)> {
             e.right = change(&e.right).unwrap_or(Expr::Number(0.0));
         }
     }
-    for e in &mut equations {
-        // Where a lead in its name leaves the set an equation has no row.
-        for p in &e.key {
-            if let Part::Lag(l) = p
-                && !l.circular
-            {
-                let inside = Expr::Member(m.symbols.root(l.set), vec![p.clone()]);
-                e.binder.conditions.push(inside);
-            }
-        }
-    }
     let tuples = studied.code.equations.iter();
     let mut tuples: Vec<usize> = tuples.map(|r| m.tuple_count(r.definition)).collect();
     let mut by_instance = Vec::new();
@@ -91,16 +82,8 @@ pub fn primal(m: &mut Machine) -> Option<(Primal, Studied)> {
             }
         }
     }
-    let answer = studied.answer.as_ref().map(|(origin, a)| {
-        let columns = |v: &[f64]| moved(&origin.columns, v, &generated.origin.columns);
-        let rows = |v: &[f64]| moved(&origin.rows, v, &generated.origin.rows);
-        Values {
-            level: columns(&a.outcome.level),
-            column_marginal: columns(&a.outcome.column_marginal),
-            activity: rows(&a.activity),
-            row_marginal: rows(&a.outcome.row_marginal),
-        }
-    });
+    let answer = studied.answer.as_ref();
+    let answer = answer.map(|(origin, a)| values(&generated, origin, a));
     let primal = Primal {
         name: m.symbols.get(studied.code.model).name.to_string(),
         using: studied.code.using.to_string(),
@@ -151,15 +134,59 @@ fn by_rows(symbols: &Symbols, g: &Generated, e: &Equation, indices: &mut Indices
     }
 }
 
-/// Values by the rows or columns of another instance of the model; 0 where there was none.
-fn moved(from: &Blocks, values: &[f64], to: &Blocks) -> Vec<f64> {
+/// The answer of a solve by the rows and columns of the whole instance, of which the solve may have held some fixed
+/// (`holdFixed`): activities and reduced costs are then those of the whole.
+fn values(g: &Generated, origin: &Origin, a: &Answer) -> Values {
+    let p = &g.instance;
+    let columns = |v: &[f64]| moved(&origin.columns, v, &g.origin.columns);
+    let rows = |v: &[f64]| moved(&origin.rows, v, &g.origin.rows);
+    let plain = |v: Vec<Option<f64>>| v.into_iter().map(|x| x.unwrap_or(0.0)).collect();
+    let levels = columns(&a.outcome.level);
+    let held: Vec<usize> = (0..levels.len()).filter(|&j| levels[j].is_none()).collect();
+    let fixed = p.columns.lower.iter().map(|x| x.max(f64::MIN));
+    let mut out = Values {
+        level: levels
+            .iter()
+            .zip(fixed)
+            .map(|(x, lo)| x.unwrap_or(lo))
+            .collect(),
+        column_marginal: plain(columns(&a.outcome.column_marginal)),
+        activity: plain(rows(&a.activity)),
+        row_marginal: plain(rows(&a.outcome.row_marginal)),
+    };
+    if held.is_empty() {
+        return out;
+    }
+    let mut e = Evaluator::new(p);
+    let mut activity = vec![0.0; p.row_count()];
+    if e.rows(&out.level, &mut activity).is_ok() {
+        out.activity = activity;
+    }
+    let (start, column) = e.jacobian_pattern();
+    let (start, column) = (start.to_vec(), column.to_vec());
+    let mut slope = vec![0.0; column.len()];
+    let z = p.objective.map(|o| o.column as usize);
+    if z.is_some() && e.jacobian(&out.level, &mut slope).is_ok() {
+        let mut reduced = vec![0.0; p.column_count()];
+        for (i, y) in out.row_marginal.iter().enumerate() {
+            for k in start[i]..start[i + 1] {
+                reduced[column[k] as usize] -= y * slope[k];
+            }
+        }
+        held.iter()
+            .for_each(|&j| out.column_marginal[j] = reduced[j]);
+    }
+    out
+}
+
+/// Values by the rows or columns of another instance of the model; None where there was none.
+fn moved(from: &Blocks, values: &[f64], to: &Blocks) -> Vec<Option<f64>> {
     let mut out = Vec::new();
     for b in &to.list {
         let old = from.symbol(b.symbol);
         for i in b.start..b.start + b.len {
             let at = old.and_then(|o| o.find(b.key(i)));
-            let value = at.and_then(|at| values.get(at as usize));
-            out.push(value.copied().unwrap_or(0.0));
+            out.push(at.and_then(|at| values.get(at as usize)).copied());
         }
     }
     out

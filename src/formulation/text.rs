@@ -5,9 +5,10 @@ use super::names::Names;
 use super::tree::*;
 use super::{Formulation, NewData, Row, Sign};
 use crate::check::functions::{attribute_word, data_word, label_word};
-use crate::check::node::SymbolId;
+use crate::check::node::{SymbolId, TableId};
 use crate::check::symbols::{Store, Symbols};
 use crate::data::input::Input;
+use crate::data::table::Table;
 use crate::report::names::join;
 use crate::syntax::ast::VariableKind;
 use rustc_hash::FxHashSet;
@@ -384,7 +385,8 @@ pub fn model(
     data_text.text.push_str(head);
     match include {
         Some(file) => {
-            let _ = writeln!(data_text.text, "$include {file}\n");
+            let quote = if file.contains(' ') { "\"" } else { "" };
+            let _ = writeln!(data_text.text, "$include {quote}{file}{quote}\n");
         }
         None => needed(symbols, store, f, &w).statements(&mut data_text),
     }
@@ -441,6 +443,16 @@ pub fn model(
 /// The data that a formulation introduces.
 fn introduced(f: &Formulation) -> impl Iterator<Item = &NewData> {
     f.data.iter().chain(f.start.iter().map(|a| &a.data))
+}
+
+/// The user's data that a formulation reads and that are others elsewhere, by name.
+pub fn changed<'t>(
+    symbols: &Symbols,
+    store: &Store,
+    f: &Formulation,
+    other: &dyn Fn(TableId) -> Option<&'t Table>,
+) -> Vec<String> {
+    needed(symbols, store, f, &Writer::new(symbols, store, f, false)).changed(other)
 }
 
 /// What a formulation needs of the user's data.

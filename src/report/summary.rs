@@ -32,8 +32,7 @@ pub fn solve(s: &SolveReport, color: bool) -> String {
         _ => {}
     }
     let mut out = format!("  {what}: {}{}{reset}", paint(status), s.model_status.name);
-    // The objective of a point that violates the rows means nothing.
-    if let Some(Number(v)) = s.objective.filter(|_| !is_infeasible(s)) {
+    if let Some(Number(v)) = s.objective.filter(|_| !means_nothing(s)) {
         let name = s.objective_name.as_deref().unwrap_or("objective");
         let _ = write!(out, ", {name} = {}{}{reset}", paint(BOLD), digits(v));
     }
@@ -111,9 +110,9 @@ pub fn solve(s: &SolveReport, color: bool) -> String {
     out
 }
 
-/// Whether the point violates rows or bounds.
-fn is_infeasible(s: &SolveReport) -> bool {
-    matches!(s.model_status.code, 4 | 5 | 6 | 19)
+/// Whether the objective means nothing: its point violates rows or bounds, or it has no limit.
+fn means_nothing(s: &SolveReport) -> bool {
+    matches!(s.model_status.code, 3 | 4 | 5 | 6 | 18 | 19)
 }
 
 /// Ten significant digits, without trailing zeros.

@@ -2,7 +2,7 @@
 
 use super::random::Random;
 use super::{Frame, GenerateOptions, Generated, Machine};
-use crate::check::node::SolveCode;
+use crate::check::node::{SolveCode, TableId};
 use crate::data::table::Table;
 use crate::model::origin::Origin;
 use crate::solve::answer::Answer;
@@ -27,12 +27,19 @@ pub struct Studied {
     pub span: Span,
     /// Its number in the run, counted from 1.
     pub number: usize,
-    /// All data before it.
+    /// All data before it; once it is taken, those of the end.
     tables: Vec<Table>,
     /// Random numbers before it.
     random: Random,
     /// What the instance was made of, and the answer.
     pub answer: Option<(Origin, Answer)>,
+}
+
+impl Studied {
+    /// A table as it was when the run ended.
+    pub fn at_end(&self, table: TableId) -> Option<&Table> {
+        self.tables.get(table as usize)
+    }
 }
 
 impl Machine<'_> {

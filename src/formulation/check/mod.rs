@@ -34,19 +34,22 @@ pub struct Comparison {
     pub count: usize,
     /// The largest relative difference.
     pub largest: f64,
+    /// Why nothing could be compared.
+    pub impossible: Option<String>,
 }
 
 impl Comparison {
     /// Whether all is equal.
     pub fn passed(&self) -> bool {
-        self.count == 0
+        self.count == 0 && self.impossible.is_none()
     }
 
     /// There is nothing to compare, and why.
     pub fn impossible(why: &str) -> Self {
-        let mut c = Self::default();
-        c.differ(format!("the derived model could not be generated: {why}"));
-        c
+        Self {
+            impossible: Some(why.to_string()),
+            ..Self::default()
+        }
     }
 
     /// Notes a difference.

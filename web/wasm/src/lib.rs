@@ -190,7 +190,7 @@ fn view_of(view: &str, model: &Model, options: &Options) -> String {
         "dual" => model.dual(&choice, options),
         "kkt" => model.kkt(&choice, options),
         "words" => return sheet(model.explain(&choice, options)),
-        "prices" => return sheet(model.ranges(&choice, options)),
+        "prices" => return sheet(model.ranges(&choice, options).map(|r| r.sheet)),
         "rows" => {
             let run = model.run(&options.clone().list(LISTED));
             return written(&Page {
