@@ -188,11 +188,11 @@ impl<'a> Data<'a> {
         let differs = |table: TableId, is_set: bool| {
             let own = self.store.table(table);
             let value = |v: f64| if is_set { 0 } else { v.to_bits() };
-            let same = |((k, v), (l, w)): ((&[Label], f64), (&[Label], f64))| {
-                k == l && value(v) == value(w)
+            let same = |o: &Table| {
+                let mut pairs = records(own).zip(records(o));
+                own.len() == o.len() && pairs.all(|((k, v), (l, w))| k == l && value(v) == value(w))
             };
-            let all = |o: &Table| own.len() == o.len() && records(own).zip(records(o)).all(same);
-            other(table).is_some_and(|o| !all(o))
+            other(table).is_some_and(|o| !same(o))
         };
         let symbol = |s: &SymbolId| self.symbols.get(*s);
         let sets = self.sets.iter().filter(|s| differs(symbol(s).table, true));

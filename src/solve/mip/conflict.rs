@@ -88,7 +88,7 @@ fn find(using: ProblemType, instance: &Instance, budget: &Budget) -> Option<Conf
         stands[j as usize] |= rows.contains(&(i as usize));
     }
     let mut columns = Vec::new();
-    for j in 0..p.column_count() {
+    for (j, stands) in stands.into_iter().enumerate() {
         let kind = p.columns.kind[j];
         if matches!(kind, ColumnKind::Continuous | ColumnKind::OrderedSet) {
             continue;
@@ -96,7 +96,7 @@ fn find(using: ProblemType, instance: &Instance, budget: &Budget) -> Option<Conf
         let thresholds = p.discrete.thresholds.clone();
         p.columns.kind[j] = ColumnKind::Continuous;
         p.discrete.thresholds.retain(|t| t.0 as usize != j);
-        if stands[j] && !empty(&p) {
+        if stands && !empty(&p) {
             p.columns.kind[j] = kind;
             p.discrete.thresholds = thresholds;
             columns.push(j);
