@@ -200,9 +200,7 @@ class Model:
             else:
                 keys, values = _data.parameter(name, data, domain, self._members)
                 self._give(name, "set_values", [k[0] for k in keys], [k[1] for k in keys], values)
-        except DataError:
-            raise
-        except (ValueError, TypeError, OverflowError) as e:
+        except (DataError, ValueError, TypeError, OverflowError) as e:
             text = str(e)
             raise DataError(text if f"`{name}`" in text else f"`{name}`: {text}") from None
 
@@ -247,7 +245,8 @@ class Model:
         if given is not None:
             (there,), (codes,) = given[2:4]
             order = [there[code] for code in memoryview(codes).cast("i")]
-            if order != labels:
+            # The first writing of a label is kept: capitals and blanks behind it make no other label.
+            if [label.rstrip().lower() for label in order] != [label.rstrip().lower() for label in labels]:
                 shown = ", ".join(order[:3]), ", ".join(labels[:3])
                 raise DataError(
                     f"`{name}` was given in the order {shown[0]}, …; the model, where labels that come up earlier "
