@@ -284,6 +284,21 @@ fn a_part_of_a_model() {
     c.tell("textDocument/didChange", json!({ "textDocument": { "uri": uri, "version": 2 }, "contentChanges": [{ "text": "Parameter p(i) / a 1, c 2 /;\n" }] }));
     let wrong = c.diagnostics(&uri, 2);
     assert_eq!(wrong.len(), 1, "{wrong:?}");
+    // The model has the file as it was saved when its text is closed.
+    let main = c.open(&folder.join("a main.blk")).replace(" ", "%20");
+    assert_eq!(c.diagnostics(&main, 1), Vec::<Value>::new());
+    c.heard.clear();
+    c.tell(
+        "textDocument/didClose",
+        json!({ "textDocument": { "uri": uri } }),
+    );
+    let told = |c: &mut Client| loop {
+        let m = c.read();
+        if m["params"]["uri"] == main.as_str() {
+            return m["params"]["diagnostics"].clone();
+        }
+    };
+    assert_eq!(told(&mut c), json!([]));
     // Its name only ends like that of the file that is included.
     std::fs::write(folder.join("t.blk"), "Scalar y;\ny = q;\n").expect("written");
     let uri = c.open(&folder.join("t.blk"));

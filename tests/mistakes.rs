@@ -47,6 +47,9 @@ const MODEL: &[(&str, &str)] = &[
 /// Cases with exactly one message that has a place and says what to do.
 const RIGHT: usize = 575;
 
+/// Fixes that an editor offers over all cases.
+const FIXED: usize = 70;
+
 struct Case {
     name: String,
     text: String,
@@ -159,7 +162,7 @@ fn one_mistake_one_message() {
     );
 }
 
-/// What an editor offers as a fix mends what it is offered for: the message is gone, and nothing else is wrong instead.
+/// What an editor offers as a fix mends what it is offered for: less is wrong, or as much, but only behind that place.
 #[test]
 fn fixes_mend() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/mistakes");
@@ -182,7 +185,9 @@ fn fixes_mend() {
                 changed.open("m.blk", case.text.as_str());
                 changed.change("m.blk", Some(edit.range), &edit.new_text);
                 let text = changed.text("m.blk").expect("it is open").to_owned();
-                if check(&text).len() < before.len() {
+                let after = check(&text);
+                let behind = after.iter().all(|d| d.range.start > edit.range.start);
+                if after.len() < before.len() || after.len() == before.len() && behind {
                     fixed += 1;
                 } else {
                     worse.push(format!("{} ({}): {}", case.name, d.code, fix.title));
@@ -192,7 +197,7 @@ fn fixes_mend() {
     }
     println!("{fixed} fixes mend; these do not:\n{}", worse.join("\n"));
     assert!(
-        fixed >= 25 && worse.len() * 8 <= fixed,
+        fixed >= FIXED && worse.is_empty(),
         "{fixed} mend, {} do not",
         worse.len()
     );

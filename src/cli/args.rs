@@ -75,6 +75,10 @@ pub enum Command {
     Gdx(GdxArgs),
     /// Runs a model for every combination of values, on several cores or as a job array; what is there is not
     /// repeated.
+    ///
+    /// `-D NAME=A,B,C` lists values, `-D NAME=FIRST:LAST:STEP` is a range of numbers; NAME is a %NAME% of the text, or a
+    /// scalar of the model. With several -D all combinations are run. The status is 0 if all have a row and one of them ran
+    /// without an error.
     Sweep(SweepArgs),
     /// Runs a model again at each save of a file in its folder.
     Watch(WatchArgs),

@@ -303,9 +303,15 @@ impl Server<'_> {
                 }
             }
             "textDocument/didClose" => {
-                self.editor.close(&file);
+                // What was not saved is gone for the models that include it, too.
+                let mains = self.editor.close(&file);
                 self.waiting.retain(|f| *f != file);
                 self.publish(&file, &[]);
+                for main in mains {
+                    if !self.waiting.contains(&main) {
+                        self.waiting.push(main);
+                    }
+                }
                 return;
             }
             "textDocument/didSave" => {}

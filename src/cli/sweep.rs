@@ -338,7 +338,8 @@ fn carry_out(a: &SweepArgs, points: &[Point]) -> Result<u8, String> {
     let rows: Vec<&Row> = rows.values().collect();
     if parts == 1 {
         let path = folder.join("results.csv");
-        let text = table(&rows).map_err(|e| e.to_string())?;
+        let names: Vec<&str> = a.model.define.iter().map(|d| d.0.as_str()).collect();
+        let text = table(&rows, &names, &outputs).map_err(|e| e.to_string())?;
         write_whole(&path, &text).map_err(in_folder)?;
     }
     Ok(summary(&rows, points.len().div_ceil(parts), folder))
@@ -350,16 +351,38 @@ fn typed(value: &str) -> Value {
     number.map_or_else(|| json!(value), |v| json!(v))
 }
 
-/// Rows as comma-separated values; their columns in alphabetical order, then those that only later rows have.
-fn table(rows: &[&Row]) -> Result<Vec<u8>, csv::Error> {
-    let mut names: Vec<&str> = Vec::new();
+/// Columns behind those of the values and outputs.
+const ABOUT: &[&str] = &[
+    "run",
+    "status",
+    "objective",
+    "solver",
+    "iterations",
+    "primal",
+    "seconds",
+    "stopped",
+    "messages",
+];
+
+/// Rows as comma-separated values: what is varied, outputs, how the run ended, messages.
+fn table(rows: &[&Row], varied: &[&str], outputs: &[&str]) -> Result<Vec<u8>, csv::Error> {
+    let mut found: Vec<&str> = Vec::new();
     for row in rows {
         for name in row.keys() {
-            if name != "key" && name != "reads" && !names.contains(&name.as_str()) {
-                names.push(name);
+            if name != "key" && name != "reads" && !found.contains(&name.as_str()) {
+                found.push(name);
             }
         }
     }
+    let place = |name: &&str| {
+        let symbol = name.split('[').next().unwrap_or(name);
+        let at = |list: &[&str], name: &str| list.iter().position(|n| *n == name);
+        let known = at(varied, name).map(|n| (0, n));
+        let known = known.or_else(|| at(ABOUT, name).map(|n| (2, n)));
+        known.unwrap_or((1, at(outputs, symbol).unwrap_or(outputs.len())))
+    };
+    found.sort_by_key(place);
+    let names = found;
     let mut out = csv::Writer::from_writer(Vec::new());
     out.write_record(&names)?;
     for row in rows {
@@ -391,7 +414,11 @@ fn summary(rows: &[&Row], wanted: usize, folder: &Path) -> u8 {
         counts.join(", "),
         folder.display()
     );
-    if rows.len() < wanted { EXECUTION } else { 0 }
+    let ran = |row: &&Row| row.get("run").and_then(Value::as_str) == Some("ok");
+    match rows.len() < wanted || !rows.iter().any(ran) {
+        true => EXECUTION,
+        false => 0,
+    }
 }
 
 fn bar(count: usize) -> ProgressBar {
@@ -503,6 +530,23 @@ mod tests {
             assert!(!model.still_reads(run.reads()));
         }
         Ok(())
+    }
+
+    #[test]
+    fn columns_in_their_order() {
+        let row = json!({
+            "run": "ok", "messages": "a\nb", "status": "optimal", "key": "1", "friction": 0.5, "b[x]": 1, "a": 2,
+        });
+        let row = row.as_object().expect("a row");
+        let text = table(&[row], &["friction"], &["b", "a"]).expect("a table");
+        let text = String::from_utf8(text).expect("a text");
+        assert!(
+            text.starts_with("friction,b[x],a,run,status,messages\n"),
+            "{text}"
+        );
+        let failed = Row::from_iter([("run".to_string(), json!("aborted"))]);
+        assert_eq!(summary(&[row, &failed], 2, Path::new(".")), 0);
+        assert_eq!(summary(&[&failed], 1, Path::new(".")), EXECUTION);
     }
 
     #[test]

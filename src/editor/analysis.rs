@@ -8,7 +8,9 @@ use crate::check::{self, Program};
 use crate::diag::{self, Severity};
 use crate::solve::registry::SOLVERS;
 use crate::source::{PreprocessOptions, SourceMap, Span};
+use rustc_hash::FxHashMap;
 use serde::Serialize;
+use std::path::PathBuf;
 
 /// What data in a text may take while it is being written: a slip of the pen must not fill the memory.
 const MAX_MEMORY: usize = 512 << 20;
@@ -91,7 +93,46 @@ impl Analysis {
     }
 }
 
+/// A program with what is wrong with it; or what is wrong, and with which texts.
+type Compiled = (Option<Program>, Vec<diag::Diagnostic>, Option<SourceMap>);
+
 impl Editor {
+    /// Compiles a model from open texts and others; with the names in it, and the paths they stand for.
+    fn compile(
+        &self,
+        open: &FxHashMap<String, Document>,
+        main: &str,
+    ) -> (Compiled, Vec<(String, PathBuf)>) {
+        let mut host = ProjectHost {
+            open,
+            files: self.files.as_deref(),
+            known: Vec::new(),
+        };
+        let options = PreprocessOptions {
+            slash_comments: has_slashes(main),
+            max_memory: Some(MAX_MEMORY),
+            most_jumps: Some(MOST_JUMPS),
+            ..PreprocessOptions::default()
+        };
+        let compiled = match check::compile(&mut host, main, options, &SOLVERS) {
+            Ok(mut p) => {
+                let found = std::mem::take(&mut p.diagnostics);
+                (Some(p), found, None)
+            }
+            Err(e) => (None, vec![e.0], Some(e.1)),
+        };
+        (compiled, host.known)
+    }
+
+    /// What keeps a model from running, with these texts open.
+    pub(super) fn errors(&self, open: &FxHashMap<String, Document>, main: &str) -> Vec<String> {
+        let found = self.compile(open, main).0.1.into_iter();
+        found
+            .filter(|d| d.severity != Severity::Warning)
+            .map(|d| d.message)
+            .collect()
+    }
+
     /// Compiles the model that a file belongs to, and says what is wrong in each of its files: those where something is, the
     /// file itself, and those where something was.
     pub fn check(&mut self, file: &str) -> Vec<FileDiagnostics> {
@@ -100,31 +141,13 @@ impl Editor {
             // It was checked by itself before anything included it.
             self.analyses.remove(file);
         }
-        let mut host = ProjectHost {
-            open: &self.open,
-            files: self.files.as_deref(),
-            known: Vec::new(),
-        };
-        let options = PreprocessOptions {
-            slash_comments: has_slashes(&main),
-            max_memory: Some(MAX_MEMORY),
-            most_jumps: Some(MOST_JUMPS),
-            ..PreprocessOptions::default()
-        };
-        let compiled = check::compile(&mut host, &main, options, &SOLVERS);
-        let known = host.known;
+        let (compiled, known) = self.compile(&self.open, &main);
         let before = self.analyses.remove(&main);
         let (told_before, last, good) = match before {
             Some(a) => (a.told, a.program, a.good),
             None => (Vec::new(), None, None),
         };
-        let (program, found, map) = match compiled {
-            Ok(mut p) => {
-                let found = std::mem::take(&mut p.diagnostics);
-                (Some(p), found, None)
-            }
-            Err(e) => (None, vec![e.0], Some(e.1)),
-        };
+        let (program, found, map) = compiled;
         let wrong = found.iter().any(|d| d.severity != Severity::Warning);
         let path_of = |name: &str| {
             let known = known.iter().find(|k| k.0 == name);
@@ -255,13 +278,20 @@ impl Analysis {
             }
             (hi, hi, ";".to_owned())
         } else {
-            // What a help says to write is an example; only a nearer name is sure.
-            let rest = d.help.as_deref()?.strip_prefix("did you mean `")?;
-            let new = &rest[..rest.find('`')?];
-            if new.contains(['(', '…']) {
+            let new = to_write(d)?;
+            let (lo, hi, new) = replacement(text, lo, hi, new)?;
+            // A sign beside it is part of what is wrong: `=<`, `l=`.
+            let sign = |c: char| "<>=!&|:".contains(c);
+            let part = new.starts_with('=')
+                && (text[..lo].ends_with(sign)
+                    || text[hi..].starts_with(sign)
+                    || [" l", " g", " e"].iter().any(|w| text[..lo].ends_with(w)));
+            // `:` and `&` have no counterpart of one sign.
+            let part = part || matches!(&text[lo..hi], ":" | "&");
+            if part || new.eq_ignore_ascii_case(&text[lo..hi]) {
                 return None;
             }
-            replacement(text, lo, hi, new)?
+            (lo, hi, new)
         };
         let file = self.files.get(place.file.0 as usize)?.clone();
         let index = LineIndex::new(text);
@@ -278,6 +308,26 @@ impl Analysis {
             }],
         })
     }
+}
+
+/// What a message says to write at its place: a nearer name, or a word or sign. More than that is an example.
+fn to_write(d: &diag::Diagnostic) -> Option<&str> {
+    let help = d.help.as_deref().unwrap_or_default();
+    let (_, behind) = d.label.rsplit_once("write `").unwrap_or_default();
+    let new = match help.strip_prefix("did you mean `") {
+        Some(rest) => &rest[..rest.find('`')?],
+        None => {
+            let whole = help
+                .strip_prefix("write `")
+                .and_then(|w| w.strip_suffix('`'));
+            let new = behind.strip_suffix('`').or(whole)?;
+            if new.contains([' ', '`', ';']) && new != ";" {
+                return None;
+            }
+            new
+        }
+    };
+    (!new.contains(['(', '…'])).then_some(new)
 }
 
 /// The piece that a suggestion stands for, and what stands there instead: the place may hold quotes, or a word among others.

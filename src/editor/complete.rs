@@ -196,11 +196,18 @@ impl Editor {
             return Vec::new();
         };
         let at = d.offset(at);
-        let word = d.text[..at]
-            .rfind(|c: char| !c.is_ascii_alphanumeric() && c != '_')
-            .map_or(0, |n| {
-                n + d.text[n..].chars().next().map_or(1, char::len_utf8)
-            });
+        // A label in data may have signs in it.
+        let label = d.scan.token_at(at).map(|n| d.scan.tokens[n]);
+        let label = label.filter(|t| t.data && t.role == Role::Label && t.lo < at);
+        let from = label.map_or(0, |t| t.lo);
+        let belongs = |c: char| match label {
+            Some(_) => c.is_alphanumeric() || matches!(c, '_' | '-' | '+'),
+            None => c.is_ascii_alphanumeric() || c == '_',
+        };
+        let end = d.text[from..at].rfind(|c| !belongs(c)).map(|n| from + n);
+        let word = end.map_or(from, |n| {
+            n + d.text[n..].chars().next().map_or(1, char::len_utf8)
+        });
         let mut list = List {
             out: Vec::new(),
             range: d.range(word, at),

@@ -187,6 +187,9 @@ fn entry(e: &Entry) -> String {
 impl Editor {
     /// What stands at a place: a symbol with its declaration, text and values, a label with its sets, a word of the language.
     pub fn hover(&self, file: &str, at: Position) -> Option<Hover> {
+        if let Some((range, contents)) = self.substitution_text(file, at) {
+            return Some(Hover { range, contents });
+        }
         let d = self.document(file)?;
         let token = d.scan.token_at(d.offset(at))?;
         let word = d.word(token);

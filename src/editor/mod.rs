@@ -29,6 +29,7 @@ mod outline;
 mod place;
 mod project;
 mod scan;
+mod substitution;
 pub mod vocabulary;
 
 pub use analysis::{Diagnostic, FileDiagnostics, Fix, Related};
@@ -88,10 +89,15 @@ impl Editor {
         self.open(file, text);
     }
 
-    /// A text is open no more.
-    pub fn close(&mut self, file: &str) {
+    /// A text is open no more: what holds is what [`Files`] have. Gives the models that include it, which are to be checked again.
+    pub fn close(&mut self, file: &str) -> Vec<String> {
         self.open.remove(file);
         self.analyses.remove(file);
+        let including = self
+            .analyses
+            .iter()
+            .filter(|(_, a)| a.files.iter().any(|f| f == file));
+        including.map(|(main, _)| main.clone()).collect()
     }
 
     /// A file is checked as part of this one, which includes it; should it turn out not to, the file is checked by itself.

@@ -6,6 +6,7 @@ use super::project::Document;
 use super::scan::Role;
 use crate::check::functions;
 use crate::syntax::words;
+use rustc_hash::FxHashMap;
 use serde::Serialize;
 
 /// A change of a text.
@@ -29,6 +30,8 @@ pub enum RenameError {
     NotAName(String),
     /// There is a symbol of this name.
     Taken(String),
+    /// With the new name the model has an error that it does not have now.
+    Breaks(String),
 }
 
 impl std::fmt::Display for RenameError {
@@ -40,6 +43,10 @@ impl std::fmt::Display for RenameError {
                 "`{n}` is no name: a letter, then letters, digits and `_`, and no word of the language"
             ),
             Self::Taken(n) => write!(f, "there is a symbol `{n}` already"),
+            Self::Breaks(why) => write!(
+                f,
+                "the name is used where it cannot be followed; with another one: {why}"
+            ),
         }
     }
 }
@@ -60,7 +67,63 @@ fn between_quotes(word: &str) -> Option<&str> {
     (!inside.is_empty()).then_some(inside)
 }
 
+/// The words of a text, as pieces of it, and what stands before them.
+fn words_in(text: &str) -> impl Iterator<Item = (usize, usize, Option<u8>)> {
+    let bytes = text.as_bytes();
+    let mut i = 0;
+    std::iter::from_fn(move || {
+        while i < bytes.len() && words::word_end(bytes, i) == i {
+            i += 1;
+        }
+        let lo = i;
+        i = words::word_end(bytes, i);
+        let before = lo.checked_sub(1).map(|b| bytes[b]);
+        (lo < i).then_some((lo, i, before))
+    })
+}
+
+/// The sets that a label in data names: `#i`, `a.#i`, `set.i`; in a table that is one word.
+fn symbols_in_label(label: &str, behind_set: bool) -> Vec<(usize, usize)> {
+    let is_set = |end: usize| {
+        let word = &label[..end];
+        let before = word.len().checked_sub(4).map(|n| word.as_bytes()[n]);
+        word.get(word.len().saturating_sub(3)..)
+            .is_some_and(|w| w.eq_ignore_ascii_case("set"))
+            && before.is_none_or(|b| b == b'.')
+    };
+    words_in(label)
+        .filter(|&(lo, _, before)| match before {
+            None => behind_set,
+            Some(b'#') => true,
+            Some(b'.') => is_set(lo - 1),
+            _ => false,
+        })
+        .map(|(lo, hi, _)| (lo, hi))
+        .collect()
+}
+
 impl Document {
+    /// Whether a token of data stands behind `set.`.
+    fn is_behind_set(&self, token: usize) -> bool {
+        token > 1
+            && self.scan.tokens[token - 1].role == Role::Dot
+            && self.word(token - 2).eq_ignore_ascii_case("set")
+    }
+
+    /// Whether the argument of a directive is a name of the preprocessor: `$eval x …`, `$if set x`, `%x%`.
+    fn is_control(&self, token: usize) -> bool {
+        let Some(before) = token.checked_sub(1) else {
+            return false;
+        };
+        let word = self.word(before).to_ascii_lowercase();
+        match self.scan.tokens[before].role {
+            _ if word == "%" => true,
+            Role::Directive => word.contains("eval"),
+            Role::Argument => matches!(word.as_str(), "set" | "setglobal" | "setlocal"),
+            _ => false,
+        }
+    }
+
     /// The symbol or label that a token names.
     pub(super) fn subject(&self, token: usize) -> Option<Subject> {
         let word = self.word(token);
@@ -71,6 +134,9 @@ impl Document {
                 Some(Subject::Symbol(word.to_lowercase()))
             }
             // In data an unquoted word is a label, a quoted one a label or a text.
+            Role::Label if !symbols_in_label(word, self.is_behind_set(token)).is_empty() => {
+                Some(Subject::Symbol(word.trim_start_matches('#').to_lowercase()))
+            }
             Role::Label => Some(Subject::Label(word.to_owned())),
             Role::Quoted => between_quotes(word).map(|l| Subject::Label(l.to_owned())),
             _ => None,
@@ -88,9 +154,24 @@ impl Document {
             let declares = matches!(t.role, Role::Declared | Role::Defined);
             match t.role {
                 Role::Name | Role::Declared | Role::Defined | Role::Argument
-                    if is_symbol && self.word(n).eq_ignore_ascii_case(name) =>
+                    if is_symbol
+                        && self.word(n).eq_ignore_ascii_case(name)
+                        && !(t.role == Role::Argument && self.is_control(n)) =>
                 {
                     out.push((t.lo, t.hi, declares));
+                }
+                // An expression in brackets, or an acronym as a value.
+                Role::Number if is_symbol && t.data => {
+                    let text = self.word(n);
+                    let found = words_in(text)
+                        .filter(|&(lo, hi, _)| text[lo..hi].eq_ignore_ascii_case(name));
+                    out.extend(found.map(|(lo, hi, _)| (t.lo + lo, t.lo + hi, false)));
+                }
+                Role::Label if is_symbol => {
+                    let text = self.word(n);
+                    let found = symbols_in_label(text, self.is_behind_set(n)).into_iter();
+                    let found = found.filter(|&(lo, hi)| text[lo..hi].eq_ignore_ascii_case(name));
+                    out.extend(found.map(|(lo, hi)| (t.lo + lo, t.lo + hi, false)));
                 }
                 Role::Label if !is_symbol && self.word(n).eq_ignore_ascii_case(name) => {
                     out.push((t.lo, t.hi, false))
@@ -103,18 +184,11 @@ impl Document {
                 }
                 Role::Comment if is_symbol && self.word(n).starts_with("*=") => {
                     let text = self.word(n);
-                    let mut i = 2;
-                    while i < text.len() {
-                        let end = words::word_end(text.as_bytes(), i);
-                        let quoted = i > 0 && matches!(text.as_bytes()[i - 1], b'\'' | b'"' | b'.');
-                        if end > i && !quoted && text[i..end].eq_ignore_ascii_case(name) {
-                            out.push((t.lo + i, t.lo + end, false));
-                        }
-                        i = end.max(i + 1);
-                        while !text.is_char_boundary(i) {
-                            i += 1;
-                        }
-                    }
+                    let found = words_in(text).filter(|&(lo, hi, before)| {
+                        !matches!(before, Some(b'\'' | b'"' | b'.'))
+                            && text[lo..hi].eq_ignore_ascii_case(name)
+                    });
+                    out.extend(found.map(|(lo, hi, _)| (t.lo + lo, t.lo + hi, false)));
                 }
                 _ => {}
             }
@@ -162,6 +236,10 @@ impl Editor {
                 file: included,
                 range: Range::default(),
             }];
+        }
+        let given = self.substitution(file, at);
+        if !given.is_empty() {
+            return given;
         }
         let Some((subject, _)) = self.subject(file, at) else {
             return Vec::new();
@@ -258,7 +336,7 @@ impl Editor {
     /// Another name for the symbol at a place, everywhere: in all files of the model, and in claims in comments.
     ///
     /// # Errors
-    /// If there is no symbol, or the new name cannot be one.
+    /// If there is no symbol, the new name cannot be one, or the model would have an error with it.
     pub fn rename(&self, file: &str, at: Position, new: &str) -> Result<Vec<Edit>, RenameError> {
         let (_, old) = self.prepare_rename(file, at).ok_or(RenameError::NoSymbol)?;
         let first = new.as_bytes().first();
@@ -276,12 +354,41 @@ impl Editor {
             return Err(RenameError::Taken(new.to_owned()));
         }
         let places = self.references(file, at, true).into_iter();
-        Ok(places
+        let edits: Vec<Edit> = places
             .map(|l| Edit {
                 file: l.file,
                 range: l.range,
                 new_text: new.to_owned(),
             })
-            .collect())
+            .collect();
+        match self.new_error(file, &edits) {
+            Some(why) => Err(RenameError::Breaks(why)),
+            None => Ok(edits),
+        }
+    }
+
+    /// What is wrong with a model after some changes that is not wrong before them.
+    fn new_error(&self, file: &str, edits: &[Edit]) -> Option<String> {
+        let main = self.main_of(file);
+        let mut changed = FxHashMap::default();
+        for (name, d) in self.open.iter().chain(&self.included) {
+            let mut text = d.text.clone();
+            let here = edits.iter().filter(|e| e.file == *name);
+            let mut places: Vec<_> = here.map(|e| (e.range, &e.new_text)).collect();
+            places.sort_by_key(|p| std::cmp::Reverse(p.0.start));
+            for (range, new) in places {
+                text.replace_range(d.offset(range.start)..d.offset(range.end), new);
+            }
+            if self.open.contains_key(name) || text != d.text {
+                changed.insert(name.clone(), Document::new(name, text));
+            }
+        }
+        let after = self.errors(&changed, &main);
+        if after.is_empty() {
+            return None;
+        }
+        let before = self.errors(&self.open, &main).len();
+        let more = after.len() > before;
+        more.then(|| after.into_iter().next_back()).flatten()
     }
 }

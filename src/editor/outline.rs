@@ -163,7 +163,8 @@ impl Editor {
                             .collect(),
                         _ => vec![d.word(s.first + 1)],
                     };
-                    add(names.join(" "), s.first, d.statement_range(s), &word);
+                    let named = s.first + usize::from(word == "figure");
+                    add(names.join(" "), named, d.statement_range(s), &word);
                 }
                 _ => {}
             }

@@ -117,7 +117,8 @@ impl Layout<'_> {
             return 2;
         }
         if x.role == R::Semicolon {
-            return (y.lo - x.hi).clamp(1, 3);
+            let least = usize::from(y.role != R::Close);
+            return (y.lo - x.hi).clamp(least, 3);
         }
         if matches!(y.role, R::Semicolon) {
             return 0;
@@ -142,6 +143,9 @@ impl Layout<'_> {
             return was;
         }
         match (x.role, y.role) {
+            // `{ points(i) }`
+            (R::Open, _) if self.word(a) == "{" => was,
+            (_, R::Close) if self.word(b) == "}" => was,
             (R::Open, _) | (_, R::Close) | (_, R::Comma) | (R::Dot, _) | (_, R::Dot) => 0,
             (R::Comma, _) if self.inside[b] == Inside::Arguments => was,
             (R::Comma, _) => usize::from(!indices),
@@ -163,6 +167,7 @@ impl Layout<'_> {
                 "alias" | "aliases" => 1,
                 _ => 0,
             },
+            (_, R::Open) if self.word(b) == "{" => was,
             (R::Name | R::Attribute | R::Declared | R::Defined, R::Open) => 0,
             (R::Close, R::Open) => was,
             (p, q) if wordy(p) && wordy(q) => was,
