@@ -39,7 +39,12 @@ def _keys(name: str, columns: List[Any]) -> List[Key]:
         if isinstance(column, tuple):
             codes, labels = column
         else:
-            codes, labels = pd.factorize(pd.Index(column), use_na_sentinel=True)
+            try:
+                codes, labels = pd.factorize(pd.Index(column), use_na_sentinel=True)
+            except TypeError:  # what cannot be compared or has no hash
+                odd = next((v for v in column if isinstance(v, (list, dict, set))), column)
+                hint = "; several labels are a tuple" if isinstance(odd, list) else ""
+                raise DataError(f"`{name}`: {odd!r} is not a label{hint}") from None
         if len(codes) and codes.min() < 0:
             raise DataError(f"`{name}`: record {int(codes.argmin()) + 1} has no label")
         try:
@@ -73,8 +78,12 @@ def _frame(name: str, data: Any, domain: Optional[List[str]]) -> Tuple[List[Any]
     columns = list(data.columns)
     if not data.columns.is_unique:
         raise DataError(f"`{name}`: two columns have the same name")
+    if columns == ["value"] and domain and isinstance(data.index, pd.RangeIndex):
+        raise DataError(f"`{name}` has {len(domain)} index positions; the DataFrame has no labels beside `value`")
     if columns and columns[-1] == "value" and isinstance(data.index, pd.RangeIndex):
         return _ordered([data[c] for c in columns[:-1]], columns[:-1], domain), data["value"]
+    if _is_list(data, domain):
+        return _ordered([data[c] for c in columns[:-1]], columns[:-1], domain), data[columns[-1]]
     if len(columns) == 1 and (domain is None or data.index.nlevels == len(domain)):
         return _ordered(_levels(data.index), data.index.names, domain), data[columns[0]]
     # A table: its columns are the last positions. Empty cells are no records.
@@ -85,6 +94,18 @@ def _frame(name: str, data: Any, domain: Optional[List[str]]) -> Tuple[List[Any]
     at_column = _tile(len(columns), len(data))[full]
     keys = [_take(level, at_row) for level in rows] + [_take(level, at_column) for level in wide]
     return _ordered(keys, [*data.index.names, *data.columns.names], domain), values[full]
+
+
+def _is_list(data: Any, domain: Optional[List[str]]) -> bool:
+    """Whether the columns are labels and, last, numbers, whatever that one is called; a table has numbers in all of them."""
+    import pandas as pd
+
+    if not domain or len(data.columns) != len(domain) + 1 or not isinstance(data.index, pd.RangeIndex):
+        return False
+    *labels, values = (data.iloc[:, k] for k in range(len(data.columns)))
+    words = any(pd.api.types.infer_dtype(c) in ("string", "categorical") for c in labels)
+    named = sorted(str(c).lower() for c in data.columns[:-1]) == sorted(s.lower() for s in domain)
+    return (words or named) and pd.api.types.is_numeric_dtype(values)
 
 
 def _tile(count: int, times: int) -> Any:
@@ -182,7 +203,7 @@ def parameter(
 def members(
     name: str, data: Any, dimension: Optional[int]
 ) -> Tuple[List[Key], Optional[List[str]]]:
-    """Members of a set: a list of labels or tuples, or a dict with their texts."""
+    """Members of a set: a list of labels or tuples, or a dict or a Series with their texts."""
     import pandas as pd
 
     columns: List[Any]
@@ -194,6 +215,8 @@ def members(
         raise DataError(f"`{name}`: a set takes a list of labels, not {data!r}")
     if isinstance(data, pd.DataFrame):
         columns = [data[c] for c in data.columns]
+    elif isinstance(data, pd.Series) and not pd.api.types.is_integer_dtype(data.index):
+        return _described(name, data, dimension)
     elif isinstance(data, (pd.Index, pd.Series)):
         columns = _levels(data) if isinstance(data, pd.Index) else [data]
     else:
@@ -205,6 +228,22 @@ def members(
     if dimension is not None and len(columns) != dimension:
         raise DataError(f"`{name}` has {dimension} index positions; its members have {len(columns)}")
     return _keys(name, columns), texts
+
+
+def _described(name: str, data: Any, dimension: Optional[int]) -> Tuple[List[Key], Optional[List[str]]]:
+    """A Series whose index has the labels: its values are texts, or tell which labels are members."""
+    import pandas as pd
+
+    kind = pd.api.types.infer_dtype(data, skipna=True)
+    if kind == "boolean":
+        return members(name, data.index[data.fillna(False).astype(bool)], dimension)
+    if kind not in ("string", "empty"):
+        raise DataError(
+            f"`{name}`: the values of a Series with labels are texts of the members, or booleans that tell which they are, "
+            f"not {data.dtype}; give `s.index` for its labels alone"
+        )
+    keys, _ = members(name, data.index, dimension)
+    return keys, ["" if t else v for v, t in zip(data, data.isna())]
 
 
 def index(keys: List[Tuple[List[str], bytearray]], names: List[str]) -> Any:

@@ -104,3 +104,9 @@ class ModelWarning(UserWarning):
 
 class InterruptedWarning(UserWarning):
     """Ctrl-C stopped a run; the result has the best point found."""
+
+
+def _limit(seconds: Optional[float]) -> None:
+    """Refuses a time limit that is none."""
+    if seconds is not None and not 0 < float(seconds) < float("inf"):
+        raise ValueError(f"time_limit is a number of seconds above 0, or None for no limit; not {seconds!r}")

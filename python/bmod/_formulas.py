@@ -57,6 +57,9 @@ class Formulas:
     def __repr__(self) -> str:
         return f"<bmod.Formulas {self.title!r}>"
 
+    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> Dict[str, Any]:
+        return {"text/plain": self.text, "text/html": self._repr_html_(), "text/latex": self._repr_latex_()}
+
     def _repr_html_(self) -> str:
         notes = "".join(f"<p>{note}</p>" for note in self.remarks)
         return self._body + notes

@@ -17,6 +17,7 @@ from ._errors import (
     InterruptedWarning,
     ModelWarning,
     UnknownSymbolError,
+    _limit,
 )
 from ._formulas import Formulas
 from ._result import Result, Symbol, head_of, value_of
@@ -183,7 +184,10 @@ class Model:
 
         Parameters take a number, a dict from labels (tuples of labels), a pandas Series with an index, a DataFrame
         (one column; a table; or columns of labels and `value`), a NumPy array in the order of the sets, an
-        xarray. Sets take a list of labels (tuples of labels), or a dict with their texts.
+        xarray. Sets take a list of labels (tuples of labels), or a dict with their texts; a Series of labels whose index only
+        counts, or one whose index has the labels and whose values are texts, or tell which are members (booleans).
+
+        While a run is under way, in a callback or another thread, they are for the next run.
 
         :raises DataError: data that the symbol cannot take; the message names it.
         :raises UnknownSymbolError: the model has no such symbol.
@@ -280,9 +284,10 @@ class Model:
         :param check: raises an exception if the model does not compile, or its run ends with an error.
         :raises CompilationError, ExecutionError, AbortError: with all diagnostics and their places.
 
-        Other threads of Python run meanwhile. Ctrl-C stops the run; the result has the best point found, and
+        Other threads of Python run meanwhile, and callbacks may give the model data for its next run. Ctrl-C stops the run; the result has the best point found, and
         ``result.stopped`` is true. The logger ``bmod`` gets a line per solve.
         """
+        _limit(time_limit)
         given = [(k, value_of(v)) for k, v in (options or {}).items()]
         line = None
         if progress and on_progress is None:
@@ -348,6 +353,14 @@ class Model:
 
     def __repr__(self) -> str:
         return f"<bmod.Model {self.name!r}>"
+
+    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> Dict[str, Any]:
+        from ._errors import ModelError
+
+        try:
+            return {**self.show()._repr_mimebundle_(), "text/plain": repr(self)}
+        except ModelError:
+            return {"text/plain": repr(self), "text/html": self._repr_html_()}
 
     def _repr_html_(self) -> Optional[str]:
         from ._errors import ModelError

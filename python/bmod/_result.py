@@ -357,6 +357,9 @@ class Result:
             return f"<bmod.Result {self._run.status}, no solves>"
         return f"<bmod.Result {head_of(self._last)}>"
 
+    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> Dict[str, Any]:
+        return {"text/plain": repr(self), "text/html": self._repr_html_()}
+
     def _repr_html_(self) -> str:
         head = "<tr><th>model</th><th>status</th><th>objective</th><th>rows × columns</th><th>solver</th><th>seconds</th></tr>"
         rows = "".join(

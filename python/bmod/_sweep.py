@@ -13,14 +13,16 @@ import threading
 import time
 from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple, Union
 
+from ._errors import _limit
+
 if TYPE_CHECKING:
     import pandas as pd
 
     from ._model import Model
 
 Grid = Union[Mapping[str, Sequence[Any]], Iterable[Mapping[str, Any]]]
-#: A file, or a text.
-Source = Tuple[Optional[str], Optional[str]]
+#: What makes a model in another process: that of its pickle.
+Source = Tuple[Any, ...]
 
 #: Rows of a Parquet file of results, which are collected while they come, and seconds for which they wait at most.
 ROWS_PER_PART = 200
@@ -37,12 +39,13 @@ def points_of(grid: Grid) -> List[Dict[str, Any]]:
 
 def model_at(source: Source, data: Mapping[str, Any], point: Mapping[str, Any]) -> "Model":
     """The model at a point, which gives defines (``%name%``) and data of symbols by the same names."""
-    from . import Model
+    from ._model import _rebuild
 
-    path, text = source
     point = {name: _plain(value) for name, value in point.items()}
-    define = {k: v for k, v in point.items() if isinstance(v, (str, numbers.Real))}
-    model = Model.from_file(path, define=define) if path else Model.from_text(text or "", define=define)
+    model = _rebuild(*source)
+    for name, value in point.items():
+        if isinstance(value, (str, numbers.Real)):
+            model.define(name, value)
     symbols = {name.lower(): s for name, s in model.symbols.items()}
     for name, value in {**data, **point}.items():
         symbol = symbols.get(name.lower())
@@ -179,7 +182,7 @@ def sweep(
 ) -> "pd.DataFrame":
     """Runs a model for every point of a grid; a table with a row per point, in the order of the grid.
 
-    :param model: a file, or a text that has more than one line.
+    :param model: a file, a text that has more than one line, or a :class:`bmod.Model` with its defines, files and data.
     :param grid: a mapping from names to values (all combinations are run), or a list of mappings. A name is a define
         (``%name%``), or a set or parameter of the model, or both.
     :param data: data of symbols that are the same in all runs.
@@ -196,12 +199,8 @@ def sweep(
     """
     import pandas as pd
 
-    text = os.fspath(model)
-    if "\n" not in text and not os.path.isfile(text):
-        raise FileNotFoundError(f"there is no model {text!r}")
-    # A worker may stand in another folder.
-    source: Source = (None, text) if "\n" in text else (os.path.abspath(text), None)
-    fixed = (source, dict(data or {}))
+    _limit(keywords.get("time_limit"))
+    fixed = (_source(model), dict(data or {}))
     points = points_of(grid)
     _check_names(fixed, points)
     store = _Store(out)
@@ -242,7 +241,28 @@ def sweep(
                     own.shutdown(cancel_futures=True)
     finally:
         bar.close()
-    return pd.DataFrame([{**points[n], **rows[n]} for n in range(len(points))]).drop(columns=["key", "reads"], errors="ignore")
+    table = pd.DataFrame([{**points[n], **rows[n]} for n in range(len(points))])
+    last = ["key", "reads", *_ABOUT]
+    return table[[c for c in table if c not in last] + [c for c in _ABOUT if c in table]]
+
+
+#: Columns behind those of the grid and the outputs, as `bmod sweep` has them.
+_ABOUT = ["run", "status", "objective", "solver", "iterations", "primal", "seconds", "stopped", "messages"]
+
+
+def _source(model: Any) -> Source:
+    """What makes the model anywhere: a worker may stand in another folder."""
+    from . import Model
+
+    if isinstance(model, Model):
+        source, define, files, folders, given = model.__reduce__()[1]
+        if len(source) == 1:
+            source = (os.path.abspath(source[0]),)
+        return source, define, files, [os.path.abspath(f) for f in folders], given
+    text = os.fspath(model)
+    if "\n" not in text and not os.path.isfile(text):
+        raise FileNotFoundError(f"there is no model {text!r}")
+    return ("model.blk", text) if "\n" in text else (os.path.abspath(text),), {}, {}, [], {}
 
 
 def _processes(jobs: Optional[int]) -> futures.Executor:

@@ -134,21 +134,21 @@ impl Model {
     }
 
     /// Whether the files that a run read are as they were.
-    fn still_reads(&self, py: Python<'_>, reads: &str) -> bool {
-        let model = Arc::clone(&self.model);
+    fn still_reads(slf: &Bound<'_, Self>, py: Python<'_>, reads: &str) -> bool {
+        let model = shared(slf);
         py.detach(|| model.still_reads(reads))
     }
 
     /// Compiles only.
-    fn check(&self, py: Python<'_>) -> run::Run {
-        let model = Arc::clone(&self.model);
+    fn check(slf: &Bound<'_, Self>, py: Python<'_>) -> run::Run {
+        let model = shared(slf);
         run::Run::new(py.detach(move || model.check()))
     }
 
     /// Runs the model; whether Ctrl-C stopped it.
     #[allow(clippy::too_many_arguments)]
     fn run(
-        &self,
+        slf: &Bound<'_, Self>,
         py: Python<'_>,
         options: Vec<(String, String)>,
         time_limit: Option<f64>,
@@ -159,14 +159,14 @@ impl Model {
         on_progress: Option<Py<PyAny>>,
     ) -> PyResult<(run::Run, bool)> {
         let all = all_options(options, time_limit, max_memory, certify, explain);
-        let model = Arc::clone(&self.model);
+        let model = shared(slf);
         run::carry_out(py, &model, all, on_print, on_progress)
     }
 
     /// A text that is the same for the same run.
     #[allow(clippy::too_many_arguments)]
     fn digest(
-        &self,
+        slf: &Bound<'_, Self>,
         py: Python<'_>,
         options: Vec<(String, String)>,
         time_limit: Option<f64>,
@@ -176,49 +176,54 @@ impl Model {
         with: Vec<String>,
     ) -> String {
         let all = all_options(options, time_limit, max_memory, certify, explain);
-        let model = Arc::clone(&self.model);
+        let model = shared(slf);
         let with: Vec<&str> = with.iter().map(String::as_str).collect();
         py.detach(|| model.digest(&all, &with))
     }
 
     /// The model as formulas; where there are none, messages and diagnostics.
     fn show<'py>(
-        &self,
+        slf: &Bound<'py, Self>,
         py: Python<'py>,
         model: Option<String>,
         solve: Option<usize>,
         check: bool,
     ) -> PyResult<formulas::Made<'py>> {
         let choice = formulas::choice(model, solve, check);
-        let of = Arc::clone(&self.model);
+        let of = shared(slf);
         formulas::made(py, py.detach(|| of.show(&choice)))
     }
 
     /// Its dual.
     fn dual<'py>(
-        &self,
+        slf: &Bound<'py, Self>,
         py: Python<'py>,
         model: Option<String>,
         solve: Option<usize>,
         check: bool,
     ) -> PyResult<formulas::Made<'py>> {
         let choice = formulas::choice(model, solve, check);
-        let of = Arc::clone(&self.model);
+        let of = shared(slf);
         formulas::made(py, py.detach(|| of.dual(&choice, &Default::default())))
     }
 
     /// Its optimality conditions.
     fn kkt<'py>(
-        &self,
+        slf: &Bound<'py, Self>,
         py: Python<'py>,
         model: Option<String>,
         solve: Option<usize>,
         check: bool,
     ) -> PyResult<formulas::Made<'py>> {
         let choice = formulas::choice(model, solve, check);
-        let of = Arc::clone(&self.model);
+        let of = shared(slf);
         formulas::made(py, py.detach(|| of.kkt(&choice, &Default::default())))
     }
+}
+
+/// The model of a run. It is borrowed no longer than that: a callback, or another thread, may give it other data.
+fn shared(model: &Bound<'_, Model>) -> Arc<bmod::Model> {
+    Arc::clone(&model.borrow().model)
 }
 
 fn all_options(

@@ -227,6 +227,40 @@ def test_ctrl_c_returns_what_was_found():
     assert out.stdout.split() == ["True", "True", "True"], out.stderr
 
 
+#: Knapsacks that are far from proved within seconds.
+LONG = """
+Set i / i1*i120 /, k / k1*k30 /;
+Parameter w(i,k), v(i);  w(i,k) = uniformInt(10, 99);  v(i) = round(sum(k, w(i,k))/card(k)) + uniformInt(1, 9);
+Binary variable x(i);  Variable z;  Equations value, fits(k);
+value.. z =e= sum(i, v(i)*x(i));  fits(k).. sum(i, w(i,k)*x(i)) =l= 2500;
+Model m / all /;  option optCr = 0;  solve m using mip maximizing z;
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+def test_ctrl_c_stops_a_solve_at_its_best_point():
+    code = (
+        "import bmod, os, signal, sys, warnings\n"
+        "warnings.simplefilter('ignore')\n"
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        "best = lambda message, seconds: 'objective' in message and os.kill(os.getpid(), signal.SIGINT)\n"
+        "r = bmod.Model(sys.argv[1]).run(on_progress=best)\n"
+        "print(r.interrupted, r.status.name, r.objective > 0, r.residuals.primal < 1e-6)\n"
+    )
+    out = subprocess.run([sys.executable, "-c", code, LONG], capture_output=True, text=True, timeout=60)
+    assert out.stdout.split() == ["True", "INTEGER_SOLUTION", "True", "True"], (out.stdout, out.stderr)
+
+
+def test_exceptions_in_progress():
+    def fails(message, seconds):
+        raise RuntimeError("from the callback")
+
+    start = time.time()
+    with pytest.raises(RuntimeError, match="from the callback"):
+        bmod.Model(LONG).run(on_progress=fails)
+    assert time.time() - start < 30
+
+
 def test_command_line(tmp_path):
     (tmp_path / "m.blk").write_text("scalar n / 3 /; display n;")
     out = subprocess.run([sys.executable, "-m", "bmod", "run", str(tmp_path / "m.blk")], capture_output=True, text=True)
@@ -347,3 +381,64 @@ def test_many_records():
     m["p"] = pd.Series(np.ones(n), index=labels)
     r = m.run()
     assert r["s"] == n and len(r["p"]) == n and r["p"].index[5] == "l5"
+
+
+def test_series_for_sets():
+    m = bmod.Model("set i, j; scalar n; n = card(i);")
+    for data, labels in [
+        (pd.Series(["b", "a"]), ["b", "a"]),
+        (pd.Series(["x", "y", "z"])[1:], ["y", "z"]),  # filtered: the index still counts
+        (pd.Series({"b": "the first", "a": None}), ["b", "a"]),
+        (pd.Series({"b": True, "c": False, "a": True}), ["b", "a"]),
+    ]:
+        m["i"] = data
+        assert sorted(m["i"]) == sorted(labels)
+    m["i"] = pd.Series({"b": "the first", "a": None})
+    assert dict(m.run().texts("i")) == {"a": "", "b": "the first"}
+    with pytest.raises(bmod.DataError, match="`i`.*s.index"):
+        m["i"] = pd.Series({"a": 1, "b": 2})
+    with pytest.raises(bmod.DataError, match=r"`i`: \['a'\] is not a label; several labels are a tuple"):
+        m["i"] = [["a"]]
+
+
+def test_a_column_of_values_by_any_name(transport):
+    data = {"i": ["seattle"], "j": ["topeka"], "cost": [7.0]}
+    transport["d"] = pd.DataFrame(data)
+    assert dict(transport["d"]) == {("seattle", "topeka"): 7}
+    transport["d"] = pd.DataFrame(data)[["j", "i", "cost"]]
+    assert dict(transport["d"]) == {("seattle", "topeka"): 7}
+    with pytest.raises(bmod.DataError, match="`b`.*no labels"):
+        transport["b"] = pd.DataFrame({"value": [1, 2, 3]})
+    # An empty cell of a table is no record; NaN anywhere else is wrong.
+    table = pd.DataFrame([[1, math.nan]], index=["seattle"], columns=["topeka", "chicago"])
+    transport["d"] = table
+    assert dict(transport["d"]) == {("seattle", "topeka"): 1}
+    with pytest.raises(bmod.DataError, match="NaN"):
+        transport["d"] = table.T.unstack()
+
+
+@pytest.mark.parametrize("limit", [math.nan, 0, -1, math.inf])
+def test_time_limits_that_are_none(transport, limit):
+    with pytest.raises(ValueError, match="time_limit"):
+        transport.run(time_limit=limit)
+    with pytest.raises(ValueError, match="time_limit"):
+        bmod.sweep(TRANSPORT, {"f": [1]}, time_limit=limit, progress=False)
+
+
+def test_data_given_while_a_run_is_under_way():
+    """They are for the next run."""
+    m = bmod.Model("scalar k / 1 /; display k;")
+
+    def give(_):
+        m["k"] = 3
+
+    assert m.run(on_print=give)["k"] == 1
+    assert m.run()["k"] == 3
+
+
+def test_what_a_notebook_shows(transport):
+    shown = transport._repr_mimebundle_(include=None, exclude=None)
+    assert set(shown) == {"text/plain", "text/html", "text/latex"} and "<math>" in shown["text/html"]
+    shown = transport.run()._repr_mimebundle_()
+    assert "optimal" in shown["text/plain"] and "<table>" in shown["text/html"]
+    assert "E0203" in bmod.Model("scalar a / 1 ")._repr_mimebundle_()["text/html"]

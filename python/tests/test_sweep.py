@@ -176,3 +176,18 @@ def test_data_that_have_changed(tmp_path, monkeypatch):
         with futures.ThreadPoolExecutor(1) as pool:
             table = bmod.sweep("m.blk", {"f": [8]}, outputs=["s"], out="r", executor=pool, progress=False)
         assert list(table.s) == [8 * value] and "reads" not in table
+
+
+def test_a_model_with_its_data(tmp_path):
+    """A model goes with its defines, files and data; what the grid gives stands in their place."""
+    text = "$include part.inc\nset i; parameter p(i); scalar s, k / 1 /;\ns = %f%*k*sum(i, p(i));\n"
+    m = bmod.Model(text, files={"part.inc": "* nothing"}, define={"f": 2}, data={"i": ["a", "b"], "p": {"a": 1, "b": 10}})
+    with futures.ThreadPoolExecutor(2) as pool:
+        table = bmod.sweep(m, {"k": [1, 3]}, outputs=["s"], executor=pool, out=tmp_path, progress=False)
+        assert list(table.s) == [22, 66]
+        table = bmod.sweep(m, {"f": [3]}, outputs=["s"], executor=pool, progress=False)
+    assert list(table.s) == [33] and m.run()["s"] == 22
+    assert list(table) == ["f", "s", "run", "stopped", "messages"]
+    m["p"] = {"a": 5}
+    table = bmod.sweep(m, {"k": [1]}, outputs=["s"], jobs=1, out=tmp_path, progress=False)
+    assert list(table.s) == [10]
