@@ -69,9 +69,11 @@ function page(path, source, pages) {
   markdown.renderer.rules.fence = (tokens, at) => {
     const { info, content } = tokens[at];
     const [language, file] = info.trim().split(/\s+/);
+    // The examples of the language are whole programs, but for those that show an error (tests/suite.rs holds them to it).
+    const whole = (language === 'blk' && file?.endsWith('.blk')) || (language === 'gams' && !/^\*!/m.test(content));
     const code = `<pre tabindex="0"><code>${escaped(content)}</code></pre>`;
-    if (language !== 'blk' || !file?.endsWith('.blk')) return code;
-    return `<div class="example" data-file="${escaped(file)}">${code}</div>`;
+    if (!whole) return code;
+    return `<div class="example" data-file="${escaped(file ?? 'example.blk')}">${code}</div>`;
   };
   // Code without a fence. What may be too wide for a phone can be reached, and moved, with the keyboard.
   markdown.renderer.rules.code_block = (tokens, at) => `<pre tabindex="0"><code>${escaped(tokens[at].content)}</code></pre>`;

@@ -14,7 +14,9 @@ class BmodModel extends HTMLElement {
   static observedAttributes = ['src', 'model', 'tab', 'readonly', 'theme', 'height'];
 
   connectedCallback() {
-    this.text ??= this.querySelector('pre, script, template')?.textContent ?? this.textContent.trim();
+    const inner = this.querySelector('pre, script, template');
+    // What is in a template is no part of the page.
+    this.text ??= (inner?.content ?? inner)?.textContent ?? this.textContent.trim();
     this.draw();
   }
 

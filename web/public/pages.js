@@ -6,7 +6,7 @@ for (const example of document.querySelectorAll('.example')) {
   button.addEventListener('click', () => {
     const frame = document.createElement('iframe');
     frame.title = example.dataset.file;
-    frame.src = `${site}index.html?embed&run#text=${encodeURIComponent(example.querySelector('pre').textContent)}`;
+    frame.src = `${site}index.html?embed&run&claims#text=${encodeURIComponent(example.querySelector('pre').textContent)}`;
     example.replaceWith(frame);
   });
   example.append(button);

@@ -118,7 +118,7 @@ function show(answer: Answer, following: boolean): void {
   };
   answerView.show(answer, asked);
   const drawn = figures.show(answer.files);
-  showExercise(byId('exercise'), open, answer.claims);
+  showExercise(byId('exercise'), open, open.exercise || parameters.has('claims') ? answer.claims : undefined);
   tabs.changed();
   if (following) return;
   const failed = answer.report.status !== 'ok';

@@ -179,7 +179,8 @@ export function serviceExtensions(desk: Desk): Extension {
     if (!found?.length || context.aborted) return null;
     const from = offset(text, found[0]!.range.start);
     const options = found.map((c) => ({ label: c.label, type: TYPES[c.kind] ?? c.kind, detail: c.detail, info: c.documentation || undefined }));
-    return { from, options, validFor: /^\w*$/ };
+    // A label may have signs in it.
+    return { from, options, validFor: found.some((c) => c.kind === 'label') ? /^[\w+-]*$/ : /^\w*$/ };
   };
 
   const hover = hoverTooltip(async (view, pos) => {

@@ -31,6 +31,8 @@ export class Sliders {
   private row(s: Slider): HTMLElement[] {
     const values = this.open!.values;
     const start = written(s, this.open!.files) ?? s.low;
+    // The text may have narrowed the range since it was moved.
+    if (values[s.name] !== undefined) values[s.name] = Math.min(Math.max(values[s.name]!, s.low), s.high);
     const limits = { min: s.low, max: s.high, step: s.step, 'aria-label': s.text || s.name, value: values[s.name] ?? start };
     const range = h('input', { type: 'range', ...limits });
     const number = h('input', { type: 'number', ...limits });

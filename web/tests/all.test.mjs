@@ -16,7 +16,8 @@ const root = fileURLToPath(new URL('../../', import.meta.url));
 const bmod = process.env.BMOD ?? join(root, 'target/debug/bmod');
 const gallery = JSON.parse(readFileSync(join(dist, 'models/gallery.json'), 'utf8'));
 const lecture = `<!doctype html><h1>Lecture</h1><script type="module" src="/some/path/bmod-model.js"></script>
-<bmod-model src="three.blk" readonly></bmod-model><bmod-model height="300"><pre>Scalar z; z = 4; display z;</pre></bmod-model>`;
+<bmod-model src="three.blk" readonly></bmod-model><bmod-model height="300"><template>Scalar a; a = 2; display a;</template></bmod-model>
+<bmod-model height="300"><pre>Scalar z; z = 4; display z;</pre></bmod-model>`;
 
 let site, browser;
 before(async () => {
@@ -145,6 +146,48 @@ test('a slider redraws', async () => {
   assert.ok(report.solves[0].objective > 0.6428590033 + 0.01, String(report.solves[0].objective));
   // Ten times a second on a machine that does nothing else; a busy one gets more time.
   assert.ok(times[15] < Number(process.env.SLIDER_MS ?? 1000), 'a slider is slow');
+  await page.context().close();
+});
+
+test('a slider that moves while a view is computed is not forgotten', async () => {
+  const page = await open(browser, `${site.site}#model=wall.blk`);
+  await answer(page);
+  for (const [tab, to, load] of [['kkt', '0.75', 0.6811509], ['words', '0.65', 0.6428590033]]) {
+    await page.click(`#tab-${tab}`); // begins to compute
+    for (const value of ['0.3', '0.55', to]) {
+      await page.locator('#sliders input[type=range]').evaluate((range, v) => {
+        range.value = v;
+        range.dispatchEvent(new Event('input'));
+      }, value);
+    }
+    await page.waitForFunction(() => document.querySelector('#stop').disabled && document.body.dataset.state === 'done');
+    same((await answer(page)).solves[0].objective, load, 1e-6, tab);
+  }
+  await page.context().close();
+});
+
+test('a link to a view runs the model', async () => {
+  const page = await open(browser, `${site.site}#model=teaching/transport.blk&tab=prices`);
+  await page.waitForFunction(() => /ford/.test(document.querySelector('#panel').textContent));
+  assert.equal((await answer(page)).status, 'ok');
+  await page.context().close();
+});
+
+test('a slider stays in the range that the text gives; labels with signs are completed whole', async () => {
+  const page = await open(browser, `${site.site}?x#text=${encodeURIComponent('* @slider n 0 10 1\nScalar n / 1 /;\ndisplay n;')}`);
+  await answer(page);
+  await page.fill('#sliders input[type=number]', '9');
+  await page.locator('#sliders input[type=number]').blur();
+  await type(page, '* @slider n 0 3 1\nScalar n / 1 /;\ndisplay n;\n');
+  assert.equal(await page.inputValue('#sliders input[type=number]'), '3');
+  assert.equal((await run(page)).displays[0].value, 3);
+  await type(page, 'Set i / new-york, los-angeles /;\nParameter p(i) / ');
+  await page.waitForSelector('.tok-parameter');
+  await page.keyboard.type('new-y', { delay: 100 });
+  await page.waitForSelector('.cm-tooltip-autocomplete:has-text("new-york")');
+  await page.waitForTimeout(300);
+  await page.keyboard.press('Enter');
+  assert.match(await page.evaluate(() => document.querySelector('#editor').shadowRoot.querySelector('.cm-content').innerText), /\/ new-york$/);
   await page.context().close();
 });
 
@@ -299,6 +342,9 @@ test('a model in a page of a lecture', async () => {
   const second = page.frameLocator('iframe').last();
   await second.locator('body[data-state=done]').waitFor();
   assert.match(await second.locator('#panel pre').textContent(), /z +=? +4\.000/);
+  const inTemplate = page.frameLocator('iframe').nth(1);
+  await inTemplate.locator('body[data-state=done]').waitFor();
+  assert.match(await inTemplate.locator('#panel pre').textContent(), /a +=? +2\.000/);
   assert.equal(await frame.locator('#examples').isVisible(), false);
   await page.context().close();
 });
@@ -309,6 +355,18 @@ test('an example of a page runs in place', async () => {
   const frame = page.frameLocator('iframe').first();
   await frame.locator('body[data-state=done]').waitFor();
   assert.match(await frame.locator('#panel').textContent(), /optimal/);
+  await page.context().close();
+});
+
+test('the examples of the language run in place, and say whether their claims hold', async () => {
+  const page = await open(browser, `${site.site}docs/language.html`);
+  const blocks = readFileSync(join(root, 'docs/language.md'), 'utf8').split('\n```gams\n').slice(1).map((t) => t.split('\n```')[0]);
+  const whole = blocks.filter((t) => !/^\*!/m.test(t));
+  assert.equal(await page.locator('.example button').count(), whole.length);
+  await page.locator('.example button').first().click();
+  const frame = page.frameLocator('iframe').first();
+  await frame.locator('body[data-state=done]').waitFor();
+  assert.match(await frame.locator('#exercise').textContent(), /✓/);
   await page.context().close();
 });
 
