@@ -7,7 +7,7 @@ cd "$(dirname "$0")"
 root=$(cd .. && pwd)
 skipped() { echo "SKIPPED: $1"; }
 
-command -v nvim >/dev/null || apt-get install -y -qq neovim >/dev/null 2>&1 || true
+command -v nvim >/dev/null || (apt-get update -qq && apt-get install -y -qq neovim) >/dev/null 2>&1 || true
 vim/tests/run.sh "${1:-$root/target/debug/bmod}" # says itself where there is no nvim
 
 # Only what the test needs, in a folder of its own: the client of the extension is not run here.
@@ -23,7 +23,7 @@ fi
 tools=$root/target/tools
 PATH=$tools/bin:$PATH
 if command -v tree-sitter >/dev/null ||
-  cargo install --quiet --locked --version 0.27.1 --no-default-features --root "$tools" tree-sitter-cli; then
+  cargo install --quiet --debug --locked --version 0.27.1 --no-default-features --root "$tools" tree-sitter-cli; then
   tree-sitter-bmod/test.sh
 else
   skipped "cargo cannot install tree-sitter-cli"

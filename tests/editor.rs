@@ -609,8 +609,10 @@ fn blanks_of_unicode() {
         "Scalar rate\u{a0};\nrate = 1;\n",
         "Set f\u{2028};\n",
         "Set i / a \u{a0}, b \u{2028} /;\n",
+        "Parameters\n   d\u{a0}(i-1);\n",
     ] {
         format(text, true);
+        open(text);
     }
 }
 

@@ -9,6 +9,6 @@ out=$(cd "$1" && pwd)
 
 tools=$(cd ../.. && pwd)/target/tools
 PATH=$tools/bin:$PATH
-command -v tree-sitter >/dev/null || cargo install --quiet --locked --version 0.27.1 --no-default-features --root "$tools" tree-sitter-cli
+command -v tree-sitter >/dev/null || cargo install --quiet --debug --locked --version 0.27.1 --no-default-features --root "$tools" tree-sitter-cli
 cp -r grammar.js words.json tree-sitter.json queries src test "$out"
 cd "$out" && tree-sitter generate

@@ -405,9 +405,8 @@ fn slip(f: &Failure<'_>) -> Option<Diagnostic> {
 /// In the declarations: values without slashes, keywords as names.
 fn in_declaration(f: &Failure<'_>, token: &str) -> Option<Diagnostic> {
     let name = f.text[..f.at].trim_end();
-    let name = &name[name
-        .rfind(|c: char| c.is_whitespace() || c == ',')
-        .map_or(0, |n| n + 1)..];
+    let mut words = name.rsplit(|c: char| c.is_whitespace() || c == ',');
+    let name = words.next().unwrap_or_default();
     let here = f.span(f.at, f.at).lo as usize;
     if f.raw.class == Class::Equation && f.expanded[here..].starts_with("..") {
         return Some(
