@@ -10,8 +10,8 @@ use crate::syntax::ast::Ident;
 use rustc_hash::FxHashSet;
 
 /// About a symbol: repeated, these are one mistake in its declaration.
-const ONCE: [&str; 7] = [
-    "E0301", "E0302", "E0304", "E0306", "E0315", "E0326", "E0348",
+const ONCE: [&str; 9] = [
+    "E0301", "E0302", "E0304", "E0306", "E0315", "E0326", "E0334", "E0339", "E0348",
 ];
 /// Of each group the first one in a statement says it all: what is wrong there is wrong in all of it.
 const ONCE_PER_STATEMENT: [&[&str]; 5] = [

@@ -57,10 +57,12 @@ impl Backend for Highs {
         }
     }
 
-    /// Ordered sets and semicontinuous columns with large bounds are left to the own search.
+    /// Ordered sets, and semicontinuous columns with large bounds or small thresholds, are left to the own search.
     fn takes(&self, task: &Task) -> bool {
         let columns = &task.instance.columns;
-        let within = |&(j, _): &(u32, f64)| columns.upper[j as usize] <= MOST_SEMICONTINUOUS;
+        let within = |&(j, threshold): &(u32, f64)| {
+            columns.upper[j as usize] <= MOST_SEMICONTINUOUS && threshold >= LEAST_THRESHOLD
+        };
         self.about().supports.takes(task)
             && task.has_integers()
             && task.instance.discrete.sets.is_empty()
@@ -121,6 +123,8 @@ const FINE: f64 = 1e-9;
 
 /// HiGHS turns a semicontinuous column into a binary and a row with its upper bound, and refuses larger ones.
 const MOST_SEMICONTINUOUS: f64 = 1e5;
+/// A smaller threshold cannot be told from 0 by HiGHS: ten times its tolerance of feasibility.
+const LEAST_THRESHOLD: f64 = 10.0 * TOLERANCE;
 
 /// The search, and its iterations.
 fn search(
