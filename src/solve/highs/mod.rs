@@ -57,10 +57,13 @@ impl Backend for Highs {
         }
     }
 
-    /// Ordered sets and semicontinuous columns with large bounds are left to the own search.
+    /// Ordered sets and semicontinuous columns with large or tiny bounds are left to the own search.
     fn takes(&self, task: &Task) -> bool {
         let columns = &task.instance.columns;
-        let within = |&(j, _): &(u32, f64)| columns.upper[j as usize] <= MOST_SEMICONTINUOUS;
+        let within = |&(j, least): &(u32, f64)| {
+            columns.upper[j as usize] <= MOST_SEMICONTINUOUS
+                && (least == 0.0 || least >= LEAST_SEMICONTINUOUS)
+        };
         self.about().supports.takes(task)
             && task.has_integers()
             && task.instance.discrete.sets.is_empty()
@@ -121,6 +124,9 @@ const FINE: f64 = 1e-9;
 
 /// HiGHS turns a semicontinuous column into a binary and a row with its upper bound, and refuses larger ones.
 const MOST_SEMICONTINUOUS: f64 = 1e5;
+
+/// Smaller ones are not told from 0 by its tolerance of 1e-6.
+const LEAST_SEMICONTINUOUS: f64 = 1e-3;
 
 /// The search, and its iterations.
 fn search(
