@@ -1,11 +1,13 @@
 //! Reformulations: an instance in place of another, and the way back. Each stands here once, whoever uses it.
 //!
+//! * [`binaries`]: products with a binary factor, as columns and rows, for programs with discrete columns;
 //! * [`elastic`]: rows that may be violated at a price;
 //! * [`epigraph`]: max, min and abs where they stand convexly, as columns and rows;
 //! * [`inner_sums`]: long sums inside functions, as columns and rows;
 //! * [`kkt`]: the optimality conditions of a linear program as a complementarity problem;
 //! * [`products`]: pairs as nonlinear rows, for programs with equilibrium constraints.
 
+pub mod binaries;
 mod builder;
 pub mod elastic;
 pub mod epigraph;

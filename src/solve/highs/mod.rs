@@ -57,11 +57,12 @@ impl Backend for Highs {
         }
     }
 
-    /// Ordered sets, and semicontinuous columns with large bounds or small thresholds, are left to the own search.
+    /// Ordered sets and semicontinuous columns with large or tiny bounds are left to the own search.
     fn takes(&self, task: &Task) -> bool {
         let columns = &task.instance.columns;
-        let within = |&(j, threshold): &(u32, f64)| {
-            columns.upper[j as usize] <= MOST_SEMICONTINUOUS && threshold >= LEAST_THRESHOLD
+        let within = |&(j, least): &(u32, f64)| {
+            columns.upper[j as usize] <= MOST_SEMICONTINUOUS
+                && (least == 0.0 || least >= LEAST_SEMICONTINUOUS)
         };
         self.about().supports.takes(task)
             && task.has_integers()
@@ -123,8 +124,9 @@ const FINE: f64 = 1e-9;
 
 /// HiGHS turns a semicontinuous column into a binary and a row with its upper bound, and refuses larger ones.
 const MOST_SEMICONTINUOUS: f64 = 1e5;
-/// A smaller threshold cannot be told from 0 by HiGHS: ten times its tolerance of feasibility.
-const LEAST_THRESHOLD: f64 = 10.0 * TOLERANCE;
+
+/// Smaller ones are not told from 0 by its tolerance of 1e-6.
+const LEAST_SEMICONTINUOUS: f64 = 1e-3;
 
 /// The search, and its iterations.
 fn search(

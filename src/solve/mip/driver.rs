@@ -44,6 +44,16 @@ impl Found {
             made: 0,
         }
     }
+
+    /// Of a program that begins with these columns and has more: the others are forgotten.
+    pub(super) fn keep(&mut self, columns: usize) {
+        if let Some(x) = &mut self.x {
+            x.truncate(columns);
+        }
+        for r in &mut self.records {
+            r.change = r.change.filter(|c| c.column < columns);
+        }
+    }
 }
 
 /// The best solution of a linear program with discrete columns; `start` may be one.

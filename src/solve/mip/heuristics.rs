@@ -29,6 +29,7 @@ impl<R: Relaxation> Search<'_, R> {
             if self.best.is_none() {
                 self.dive(Dive::Nearest, x, control);
             }
+            self.jump(x, control);
         } else if affordable && self.nodes.is_multiple_of(often) {
             self.dives.count += 1;
             let kind = match (&self.best, self.dives.count % 3) {

@@ -12,6 +12,7 @@ pub mod conflict;
 pub mod cuts;
 mod driver;
 mod heuristics;
+mod jump;
 pub mod linear;
 pub mod model;
 pub mod nonlinear;
@@ -24,8 +25,10 @@ pub use tree::{Aim, Record};
 
 use super::answer::subproblem;
 use super::backend::{About, Backend, Replied, Reply, Supports, Task, Terms};
+use super::bridge::binaries::{Replaced, without_binary_products};
 use super::lp::form::Form;
 use super::lp::{self, Ended};
+use super::nlp::convex::{Shape, shape};
 use super::{Budget, Claim, Outcome, Settings, SolveError, SolverStatus};
 use crate::model::instance::{ColumnKind, Instance};
 use crate::model::option::OptionTable;
@@ -95,8 +98,7 @@ impl Backend for Bmip {
     }
 
     fn takes(&self, task: &Task) -> bool {
-        self.about().supports.takes(task)
-            && (task.using != ProblemType::Mpec || task.has_integers())
+        self.about().supports.takes(task) && task.has_integers()
     }
 
     fn solve(&self, task: &Task, settings: &Settings, budget: &Budget) -> Replied {
@@ -106,9 +108,17 @@ impl Backend for Bmip {
 
 /// Solves an instance with discrete columns.
 fn search(task: &Task, settings: &Settings, budget: &Budget) -> Result<Reply, SolveError> {
-    let instance = task.instance;
-    let aim = settings.search.minimizing(instance.sign());
-    let (found, iterations) = match instance.is_linear() && !task.has_pairs() {
+    let aim = settings.search.minimizing(task.instance.sign());
+    let replaced = replaced(task, aim, settings, budget);
+    let instance = replaced.as_ref().map_or(task.instance, |r| &r.instance);
+    let aim = match replaced.is_some() {
+        true => Aim {
+            try_start: 1.0,
+            ..aim
+        },
+        false => aim,
+    };
+    let (mut found, iterations) = match instance.is_linear() && !task.has_pairs() {
         true => {
             let mut control = Control::for_each_program(budget);
             let found = linear_search(instance, aim, &mut control)?;
@@ -116,14 +126,49 @@ fn search(task: &Task, settings: &Settings, budget: &Budget) -> Result<Reply, So
         }
         false => {
             let mut control = Control::new(budget);
-            let found = nonlinear_search(task, aim, settings, &mut control)?;
+            let inner = Task { instance, ..*task };
+            let found = nonlinear_search(&inner, aim, settings, &mut control)?;
             budget.spend(control.iterations);
             (found, control.iterations)
         }
     };
+    if replaced.is_some() {
+        found.keep(task.instance.column_count());
+    }
     let mut reply = concluded(task, found, settings, budget);
     reply.outcome.iterations = iterations;
     Ok(reply)
+}
+
+/// Nodes of the nonlinear program that are solved for a first solution.
+const FIRST_NODES: u64 = 5;
+
+/// The program without products that have a binary factor, where there are some and the program is not convex with them. It
+/// starts at the best point of a few nodes of the nonlinear program.
+fn replaced(task: &Task, aim: Aim, settings: &Settings, budget: &Budget) -> Option<Replaced> {
+    let instance = task.instance;
+    if instance.is_linear() || task.has_pairs() {
+        return None;
+    }
+    if let Shape::ConvexQuadratic { .. } = shape(instance) {
+        return None;
+    }
+    let mut replaced = without_binary_products(instance)?;
+    if replaced.instance.is_linear() {
+        let aim = Aim {
+            nodes: FIRST_NODES,
+            record: false,
+            ..aim
+        };
+        let seconds = budget.seconds_left() / 4.0;
+        let first = budget.within(seconds, u64::MAX, |budget| {
+            nonlinear_search(task, aim, settings, &mut Control::new(budget))
+        });
+        if let Some(x) = first.ok().and_then(|found| found.x) {
+            replaced.start_at(&x);
+        }
+    }
+    Some(replaced)
 }
 
 /// The reply after a search.

@@ -160,7 +160,7 @@ pub struct Search<'a, R: Relaxation> {
     pub(super) aim: Aim,
     units: Units,
     /// Bounds that hold everywhere.
-    root: [Vec<f64>; 2],
+    pub(super) root: [Vec<f64>; 2],
     /// Bounds of the present node.
     pub(super) lower: Vec<f64>,
     pub(super) upper: Vec<f64>,
@@ -231,6 +231,10 @@ pub(super) struct Dives {
     pub last_near: f64,
     /// How many there were.
     pub count: u64,
+    /// Walks of feasibility jump, their work, and the number of nodes at which the next is due.
+    pub jumps: u64,
+    pub jumped: u64,
+    pub next_jump: u64,
 }
 
 impl<'a, R: Relaxation> Search<'a, R> {
@@ -346,6 +350,7 @@ impl<'a, R: Relaxation> Search<'a, R> {
                 self.open.push(node);
                 return End::Nodes;
             }
+            self.jump_again(control);
             if let Some(end) = self.plunge(node, control) {
                 return end;
             }

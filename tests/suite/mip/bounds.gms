@@ -1,4 +1,4 @@
-* bmod only: what objEst and nodUsd say of the own search: cheat leaves a gap, nothing is known without convexity or a solution, and what needs no search is its own bound.
+* bmod only: what objEst and nodUsd say: cheat leaves a gap, nothing is known without convexity or a solution, and what needs no search is its own bound.
 set i / 1*3 /;
 binary variable x(i);
 integer variables p, q;
@@ -15,9 +15,7 @@ first..  z =e= 3*p;
 n..  z =e= sqr(y - 1)*sin(3*y) + q;
 model m / o, c /, empty / o, c, none /, fixed / first /, wavy / n /;
 option optCR = 0;
-solve fixed using mip maximizing z;
-*= fixed.objest 6
-*= fixed.nodusd 0
+* HiGHS knows no cheat: in a build with it this is asked of the own search.
 option mip = bmip;
 m.cheat = 10;
 m.tryInt = 0.1;
@@ -28,6 +26,9 @@ solve m using mip maximizing z;
 solve empty using mip maximizing z;
 *= empty.modelstat 10
 *= empty.objest na
+solve fixed using mip maximizing z;
+*= fixed.objest 6
+*= fixed.nodusd 0
 solve wavy using minlp minimizing z;
 *= wavy.modelstat 8
 *= wavy.objest na
