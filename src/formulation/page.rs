@@ -500,6 +500,12 @@ pub fn body(page: &Page) -> String {
                 for f in list {
                     let runs = f.runs.as_ref().map(|r| format!("for all {}", math(r)));
                     let runs = runs.unwrap_or_default();
+                    // What takes half a line stands below.
+                    let is_long = |r: &Math| text(r).chars().count() > LINE / 2;
+                    let (below, beside) = match f.runs.as_ref().is_some_and(is_long) {
+                        true => (format!("<div>{runs}</div>"), String::new()),
+                        false => (String::new(), runs),
+                    };
                     let words = if f.name.is_empty() {
                         plain(&f.words)
                     } else {
@@ -507,7 +513,7 @@ pub fn body(page: &Page) -> String {
                     };
                     let _ = writeln!(
                         out,
-                        "<tr title=\"{}\"><td class=\"name\">{}</td><td>{}</td><td class=\"runs\">{runs}{words}</td></tr>",
+                        "<tr title=\"{}\"><td class=\"name\">{}</td><td>{}{below}</td><td class=\"runs\">{beside}{words}</td></tr>",
                         plain(&f.words).replace('"', "&quot;"),
                         plain(&f.name),
                         mathml_lines(&f.math),

@@ -264,7 +264,11 @@ impl<'a> Cone<'a> {
         for (j, a) in self.engine.tableau_row(v)? {
             let way = -(a * direction).signum();
             if a.abs() > PIVOT && self.room[j][usize::from(way > 0.0)] != 0.0 {
-                let ratio = self.engine.reduced()[j].abs() / a.abs();
+                let reduced = self.engine.reduced()[j].abs();
+                let ratio = match reduced <= ROUNDING {
+                    true => 0.0,
+                    false => reduced / a.abs(),
+                };
                 if ratio < least.0 {
                     least = (ratio, Some((j, way)));
                 }
@@ -402,6 +406,7 @@ impl<'a> Cone<'a> {
             let at = match self.engine.is_basic(k) {
                 _ if stuck => None,
                 true => match self.dual_ratio(k, direction) {
+                    Some(0.0) => return Some(cost),
                     Some(by) => return Some(end(cost, -direction * by * unit)),
                     None => self.least(k, [direction; 2])?.map(|f| f.1),
                 },
