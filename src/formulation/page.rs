@@ -497,12 +497,13 @@ pub fn body(page: &Page) -> String {
             }
             Block::Formulas(list) => {
                 out.push_str("<table class=\"f\">\n");
+                // What formulas run over stands below them where it takes half a line.
+                let mut runs = list.iter().filter_map(|f| f.runs.as_ref());
+                let is_long = runs.any(|r| text(r).chars().count() > LINE / 2);
                 for f in list {
                     let runs = f.runs.as_ref().map(|r| format!("for all {}", math(r)));
                     let runs = runs.unwrap_or_default();
-                    // What takes half a line stands below.
-                    let is_long = |r: &Math| text(r).chars().count() > LINE / 2;
-                    let (below, beside) = match f.runs.as_ref().is_some_and(is_long) {
+                    let (below, beside) = match is_long {
                         true => (format!("<div>{runs}</div>"), String::new()),
                         false => (String::new(), runs),
                     };

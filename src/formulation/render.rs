@@ -159,15 +159,16 @@ fn flat(m: &Math) -> Vec<Math> {
     }
 }
 
-/// A term cut between its factors, and behind what a sum runs over.
+/// A term cut between its factors, and behind what a sum runs over if that is long.
 fn factored(m: &Math) -> Vec<Math> {
+    let is_long = |m: &Math| matches!(m, Math::Big(..)) && text(m).chars().count() > LINE / 3;
     let mut out: Vec<Vec<Math>> = vec![Vec::new()];
     for m in flat(m) {
         let last = out.last().and_then(|p| p.last());
         let is_factor = last.is_some_and(|l| are_factors(l, &m));
         if is_factor {
             out.push(vec![Math::Prefix("·")]);
-        } else if matches!(last, Some(Math::Big(..))) {
+        } else if last.is_some_and(is_long) {
             out.push(Vec::new());
         }
         out.last_mut().into_iter().for_each(|p| p.push(m.clone()));
