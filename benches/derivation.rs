@@ -1,4 +1,5 @@
-//! What a dual costs: symbols do not grow with the data, and the comparison takes about as long as generating twice.
+//! What a dual costs: symbols do not grow with the data, and the comparison takes about as long as generating twice, and what
+//! reading the derived text takes (2.6 million instructions, a millisecond), which does not grow either.
 //! `cargo bench --bench derivation`
 //!
 //! Medians of interleaved runs, in milliseconds of processor time, for a wall of n courses of n blocks.

@@ -389,6 +389,39 @@ fn formulas_in_text_keep_their_parentheses() {
     derives(text, &[], &["y^(−2/3)/3 + ", "1.5·w^0.5"]);
 }
 
+/// What a lag does to a condition on positions is worked out, and what holds anyway is left out.
+#[test]
+fn conditions_on_positions_are_short() {
+    let text = "set t / 1*6 /;  variables x(t), z;  positive variables x;  equations o, e(t), f(t), g(t), h(t);
+        scalar far / 2 /;  o..  z =e= sum(t, x(t));  e(t)$(ord(t) > 1)..  x(t) - x(t-1) =g= 1;
+        f(t)$(ord(t) < card(t))..  x(t) + x(t+1) =g= 2;  g(t)$(ord(t) < card(t) - 1)..  x(t+1) =l= 9;
+        h(t)..  x(t-(far+1)) =l= 8;  model m / all /;  solve m using lp minimizing z;";
+    let dual = [
+        "y_e(t)·[ord(t) > 1] − y_e(t+1) + y_f(t)·[ord(t) < |t|] + y_f(t−1)",
+        "+ y_g(t−1)·[ord(t) < |t|] + y_h(t+(far + 1)) ≤ 1   for all t",
+    ];
+    derives(text, &dual, &[]);
+}
+
+/// Long terms are broken inside of their parentheses; lines of text fit the terminal.
+#[test]
+fn formulas_fit_the_terminal() {
+    let text = "sets plant / a, b /, product / p, q /, month / 1*3 /;  parameters yield(plant,product), loss(month);
+        yield(plant,product) = 1;  loss(month) = 0.1;  variables z;
+        positive variables processed(plant,product,month), bought(plant,product,month);  equation output(product), o;
+        o..  z =e= sum((plant,product,month), bought(plant,product,month));
+        output(product)..  sum((plant,month)$(ord(month) > 1), (1 - loss(month))*yield(plant,product)
+            *(processed(plant,product,month) + bought(plant,product,month) - 2*processed(plant,product,month-1))) =g= 5;
+        model m / all /;  solve m using lp minimizing z;";
+    let shown = Model::from_text("m.blk", text)
+        .show(&Choice::default())
+        .expect("formulas");
+    let lines = shown.text(72);
+    assert!(lines.lines().all(|l| l.chars().count() <= 72), "{lines}");
+    has(&lines, &["− 2·processed(plant,product,month−1)) ≥ 5"]);
+    has(&shown.latex(), &["\\bigl(", "\\bigr)"]);
+}
+
 /// A row whose name has a lead, a set that stands twice, data in bounds: all of it is in the formulas.
 #[test]
 fn formulas_say_what_they_run_over() {

@@ -190,8 +190,15 @@ impl Inversion<'_> {
         }
         debug_assert!(target.iter().all(|j| !self.open.contains(j)));
         // What does not depend on what is summed stands before the sum.
-        let (inside, before): (Vec<_>, Vec<_>) = self
-            .factors
+        let (opposite, factors) = match product(self.factors) {
+            Expr::Negate(e) => (true, *e),
+            e => (false, e),
+        };
+        let factors = match factors {
+            Expr::Product(t) => t,
+            e => vec![(false, e)],
+        };
+        let (inside, before): (Vec<_>, Vec<_>) = factors
             .into_iter()
             .partition(|(_, f)| self.open.iter().any(|&k| f.mentions(k)));
         let binder = Binder {
@@ -206,7 +213,11 @@ impl Inversion<'_> {
         let body = product(factors);
         Inverted {
             conditions: outer,
-            body: if negative { negate(body) } else { body },
+            body: if negative != opposite {
+                negate(body)
+            } else {
+                body
+            },
         }
     }
 }
@@ -219,6 +230,18 @@ fn is_implied(symbols: &Symbols, indices: &Indices, c: &Expr) -> bool {
             _ => false,
         },
         Expr::SameAs(a, b) => a == b,
+        // Positions are those from 1 to the number of elements.
+        Expr::Binary(op, a, b) => match (op, &**a, &**b) {
+            (BinaryOp::Gt | BinaryOp::Ne, Expr::Ord(..), Expr::Number(x)) => *x < 1.0,
+            (BinaryOp::Ge, Expr::Ord(..), Expr::Number(x)) => *x <= 1.0,
+            (BinaryOp::Lt | BinaryOp::Le, Expr::Ord(s, _), Expr::Sum(t)) => match t.as_slice() {
+                [(false, Expr::Card(all)), (false, Expr::Number(x))] => {
+                    symbols.root(*s) == symbols.root(*all) && *x >= 1.0
+                }
+                _ => false,
+            },
+            _ => false,
+        },
         _ => false,
     }
 }
@@ -256,9 +279,44 @@ fn substituted(sets: Sets, e: &Expr, k: IndexId, to: &Part) -> Option<Expr> {
         {
             None
         }
+        (Expr::Binary(op, a, b), Some(_)) if RELATIONS.contains(&op) => Some(balanced(op, *a, *b)),
         (e, _) => Some(e),
     };
     e.map(&mut node, &mut part)
+}
+
+const RELATIONS: [BinaryOp; 6] = [
+    BinaryOp::Eq,
+    BinaryOp::Ne,
+    BinaryOp::Lt,
+    BinaryOp::Le,
+    BinaryOp::Gt,
+    BinaryOp::Ge,
+];
+
+/// A relation without what stands on both sides, its numbers on the right: `ord(t) - 1 < card(t) - 1` is `ord(t) < card(t)`.
+fn balanced(op: BinaryOp, a: Expr, b: Expr) -> Expr {
+    let terms = |e: Expr| match e {
+        Expr::Sum(t) => t,
+        e => vec![(false, e)],
+    };
+    let (mut left, mut right, mut number) = (terms(a), Vec::new(), 0.0);
+    left.retain(|(minus, t)| match t {
+        Expr::Number(x) if x.is_finite() => {
+            number += if *minus { *x } else { -x };
+            false
+        }
+        _ => true,
+    });
+    for (minus, t) in terms(b) {
+        match (&t, left.iter().position(|l| l.0 == minus && l.1 == t)) {
+            (Expr::Number(x), _) if x.is_finite() => number += if minus { -x } else { *x },
+            (_, Some(p)) => drop(left.remove(p)),
+            _ => right.push((minus, t)),
+        }
+    }
+    right.push((false, Expr::Number(number)));
+    Expr::Binary(op, Box::new(sum(left)), Box::new(sum(right)))
 }
 
 /// Whether a property of a label depends on the set.

@@ -29,6 +29,10 @@ pub enum Math {
     Row(Vec<Math>),
     /// In parentheses.
     Parentheses(Box<Math>),
+    /// A parenthesis that opens, of a pair between which a line breaks.
+    Open(&'static str),
+    /// One that closes.
+    Close(&'static str),
     /// In brackets: 1 if it holds, else 0.
     Bracket(Box<Math>),
     /// With indices.
@@ -199,6 +203,7 @@ impl<'a> Setter<'a> {
                 let (minus, offset) = match &l.offset {
                     Expr::Number(x) if *x < 0.0 => (true, Expr::Number(-x)),
                     Expr::Negate(e) => (true, (**e).clone()),
+                    Expr::Sum(t) if t.iter().all(|t| t.0) => (true, negate(l.offset.clone())),
                     e => (false, e.clone()),
                 };
                 let operator = match (minus, l.circular) {

@@ -2,7 +2,9 @@
 
 use super::math::{Math, explained, name, symbol_name};
 use super::names::Names;
-use super::render::{latex, latex_lines, latex_words, mathml, mathml_lines, plain, text, wrapped};
+use super::render::{
+    LINE, latex, latex_lines, latex_words, mathml, mathml_lines, plain, text, wrapped,
+};
 use super::tree::*;
 use super::{Formulation, Origin, Sign};
 use crate::check::node::SymbolId;
@@ -316,9 +318,14 @@ fn formulas_text(out: &mut String, list: &[Formula], width: usize) {
         if let Some(r) = &f.runs {
             let runs = format!("for all {}", text(r));
             let last = line.rsplit('\n').next().unwrap_or_default().chars().count();
-            match last + 3 + runs.chars().count() <= width {
-                true => line.push_str(&format!("   {runs}")),
-                false => line.push_str(&format!("\n{}{runs}", " ".repeat(indent + 2))),
+            if last + 3 + runs.chars().count() <= width {
+                line.push_str(&format!("   {runs}"));
+            } else {
+                let blanks = " ".repeat(indent + 2);
+                let room = width.saturating_sub(indent + 2);
+                for runs in filled(&runs, room).lines() {
+                    line.push_str(&format!("\n{blanks}{runs}"));
+                }
             }
         }
         if !f.words.is_empty() && f.name.is_empty() {
@@ -392,81 +399,69 @@ fn as_latex(page: &Page, title: &str) -> String {
                     continue;
                 }
                 out.push_str("\\begin{align*}\n");
+                let names = list.iter().map(|f| f.name.chars().count());
+                let room = LINE.saturating_sub(names.max().unwrap_or(0));
                 for (n, f) in list.iter().enumerate() {
-                    let runs = f
-                        .runs
-                        .as_ref()
-                        .map(|r| format!(" && \\forall\\, {}", latex(r)));
-                    let words = match f.name.is_empty() {
-                        true if !f.words.is_empty() => {
-                            format!(" && \\text{{{}}}", latex_words(&f.words))
-                        }
-                        _ => runs.unwrap_or_default(),
+                    let words = match f.name.is_empty() && !f.words.is_empty() {
+                        true => format!(" && \\text{{{}}}", latex_words(&f.words)),
+                        false => String::new(),
+                    };
+                    let example = match &f.example {
+                        Some((name, math)) => format!(
+                            " \\\\\n&\\text{{{}: }} {}",
+                            latex_words(name),
+                            latex_lines(math, room, None)
+                        ),
+                        None => String::new(),
                     };
                     let end = if n + 1 < list.len() { " \\\\" } else { "" };
                     let _ = writeln!(
                         out,
-                        "\\text{{{}}} \\quad & {}{words}{}{end}",
+                        "\\text{{{}}} \\quad & {}{words}{example}{end}",
                         latex_words(&f.name),
-                        latex_lines(&f.math),
-                        f.example.as_ref().map_or(String::new(), |(name, math)| {
-                            format!(
-                                " \\\\\n&\\text{{{}: }} {}",
-                                latex_words(name),
-                                latex_lines(math)
-                            )
-                        })
+                        latex_lines(&f.math, room, f.runs.as_ref()),
                     );
                 }
                 out.push_str("\\end{align*}\n");
             }
             Block::Legend(rows) => {
-                out.push_str("\\begin{tabular}{lll}\n");
-                for (m, words, unit) in rows {
-                    let _ = writeln!(
-                        out,
-                        "${}$ & {} & {} \\\\",
-                        latex(m),
-                        latex_words(words),
-                        latex_words(unit)
-                    );
-                }
-                out.push_str("\\end{tabular}\n\n");
+                let cells = rows.iter().map(|(m, words, unit)| {
+                    let words = [words, unit].map(|t| latex_words(t));
+                    [vec![format!("${}$", latex(m))], words.to_vec()].concat()
+                });
+                tabular(&mut out, "lll", &[], cells.collect());
             }
             Block::Pairs(head, rows) => {
-                let _ = writeln!(
-                    out,
-                    "\\begin{{tabular}}{{l|l}}\n{} & {} \\\\ \\hline",
-                    latex_words(&head[0]),
-                    latex_words(&head[1])
-                );
-                for (a, b) in rows {
-                    let _ = writeln!(out, "${}$ & ${}$ \\\\", latex(a), latex(b));
-                }
-                out.push_str("\\end{tabular}\n\n");
+                let cell = |m| format!("${}$", latex(m));
+                let cells = rows.iter().map(|(a, b)| vec![cell(a), cell(b)]);
+                tabular(&mut out, "l|l", head, cells.collect());
             }
             Block::Table(head, rows) => {
-                let columns = "l".repeat(head.len());
-                let line = |r: &[String]| {
-                    r.iter()
-                        .map(|t| latex_words(t))
-                        .collect::<Vec<_>>()
-                        .join(" & ")
-                };
-                let _ = writeln!(
-                    out,
-                    "\\begin{{tabular}}{{{columns}}}\n{} \\\\ \\hline",
-                    line(head)
-                );
-                for r in rows {
-                    let _ = writeln!(out, "{} \\\\", line(r));
-                }
-                out.push_str("\\end{tabular}\n\n");
+                let cells = rows
+                    .iter()
+                    .map(|r| r.iter().map(|t| latex_words(t)).collect());
+                tabular(&mut out, &"l".repeat(head.len()), head, cells.collect());
             }
         }
     }
     out.push_str("\\end{document}\n");
     out
+}
+
+/// A table, in as many as fit on pages.
+fn tabular(out: &mut String, columns: &str, head: &[String], rows: Vec<Vec<String>>) {
+    const ROWS: usize = 40;
+    let head: Vec<String> = head.iter().map(|t| latex_words(t)).collect();
+    for rows in rows.chunks(ROWS) {
+        let _ = writeln!(out, "\\noindent\\begin{{tabular}}{{{columns}}}");
+        if !head.is_empty() {
+            let _ = writeln!(out, "{} \\\\ \\hline", head.join(" & "));
+        }
+        for r in rows {
+            let _ = writeln!(out, "{} \\\\", r.join(" & "));
+        }
+        out.push_str("\\end{tabular}\n\n");
+    }
 }
 
 /// The look of a page that stands alone; also of `bmod report`.
@@ -502,9 +497,16 @@ pub fn body(page: &Page) -> String {
             }
             Block::Formulas(list) => {
                 out.push_str("<table class=\"f\">\n");
+                // What formulas run over stands below them where it takes half a line.
+                let mut runs = list.iter().filter_map(|f| f.runs.as_ref());
+                let is_long = runs.any(|r| text(r).chars().count() > LINE / 2);
                 for f in list {
                     let runs = f.runs.as_ref().map(|r| format!("for all {}", math(r)));
                     let runs = runs.unwrap_or_default();
+                    let (below, beside) = match is_long {
+                        true => (format!("<div>{runs}</div>"), String::new()),
+                        false => (String::new(), runs),
+                    };
                     let words = if f.name.is_empty() {
                         plain(&f.words)
                     } else {
@@ -512,7 +514,7 @@ pub fn body(page: &Page) -> String {
                     };
                     let _ = writeln!(
                         out,
-                        "<tr title=\"{}\"><td class=\"name\">{}</td><td>{}</td><td class=\"runs\">{runs}{words}</td></tr>",
+                        "<tr title=\"{}\"><td class=\"name\">{}</td><td>{}{below}</td><td class=\"runs\">{beside}{words}</td></tr>",
                         plain(&f.words).replace('"', "&quot;"),
                         plain(&f.name),
                         mathml_lines(&f.math),

@@ -18,8 +18,7 @@ pub fn text(m: &Math) -> String {
         Math::Row(list) => {
             let mut out = String::new();
             for (n, m) in list.iter().enumerate() {
-                let factors = n > 0 && is_factor(&list[n - 1]) && is_factor(m);
-                if factors {
+                if n > 0 && are_factors(&list[n - 1], m) {
                     out.push('·');
                 }
                 out.push_str(&text(m));
@@ -28,6 +27,7 @@ pub fn text(m: &Math) -> String {
         }
         Math::Parentheses(m) => format!("({})", text(m)),
         Math::Bracket(m) => format!("[{}]", text(m)),
+        Math::Open(t) | Math::Close(t) => (*t).to_string(),
         Math::Indexed(base, parts) => {
             let parts: Vec<String> = parts.iter().map(text).collect();
             format!("{}({})", text(base), parts.join(","))
@@ -56,8 +56,18 @@ pub fn text(m: &Math) -> String {
     }
 }
 
-fn is_factor(m: &Math) -> bool {
-    !matches!(m, Math::Operator(_) | Math::Prefix(_) | Math::Words(_))
+/// Whether two neighbours are multiplied.
+fn are_factors(a: &Math, b: &Math) -> bool {
+    let is_factor = |m: &Math| !matches!(m, Math::Operator(_) | Math::Prefix(_) | Math::Words(_));
+    let opens = match a {
+        Math::Big(_, _, body) => matches!(&**body, Math::Row(list) if list.is_empty()),
+        a => matches!(a, Math::Open(_)),
+    };
+    let closes = match b {
+        Math::Power(base, _) => matches!(**base, Math::Close(_)),
+        b => matches!(b, Math::Close(_)),
+    };
+    is_factor(a) && is_factor(b) && !opens && !closes
 }
 
 /// In parentheses unless it is one piece.
@@ -122,11 +132,92 @@ pub fn pieces(m: &Math) -> Vec<Math> {
     out.into_iter().map(Math::Row).collect()
 }
 
-/// Text in lines of at most `width` characters. Lines behind the first begin with `indent` blanks.
+/// The pieces of a formula; those that take more than `room` characters as text are cut inside of their parentheses and sums,
+/// then between factors, and what is not the first of them is marked.
+fn fitting(m: &Math, room: usize) -> Vec<(bool, Math)> {
+    let mut out = Vec::new();
+    for p in pieces(m) {
+        if text(&p).chars().count() <= room {
+            out.push((false, p));
+            continue;
+        }
+        let parts = match opened(&p) {
+            Some(list) => fitting(&Math::Row(list), room),
+            None => factored(&p).into_iter().map(|p| (true, p)).collect(),
+        };
+        let parts = parts.into_iter().enumerate();
+        out.extend(parts.map(|(n, (_, p))| (n > 0, p)));
+    }
+    out
+}
+
+/// What stands in a row, without rows in it.
+fn flat(m: &Math) -> Vec<Math> {
+    match m {
+        Math::Row(list) => list.iter().flat_map(flat).collect(),
+        m => vec![m.clone()],
+    }
+}
+
+/// A term cut between its factors, and behind what a sum runs over if that is long.
+fn factored(m: &Math) -> Vec<Math> {
+    let is_long = |m: &Math| matches!(m, Math::Big(..)) && text(m).chars().count() > LINE / 3;
+    let mut out: Vec<Vec<Math>> = vec![Vec::new()];
+    for m in flat(m) {
+        let last = out.last().and_then(|p| p.last());
+        let is_factor = last.is_some_and(|l| are_factors(l, &m));
+        if is_factor {
+            out.push(vec![Math::Prefix("·")]);
+        } else if last.is_some_and(is_long) {
+            out.push(Vec::new());
+        }
+        out.last_mut().into_iter().for_each(|p| p.push(m.clone()));
+    }
+    out.into_iter().map(Math::Row).collect()
+}
+
+/// A formula with its outermost parentheses, sums and fractions open; None where it has none.
+fn opened(m: &Math) -> Option<Vec<Math>> {
+    let between = |m: &Math, close| [vec![Math::Open("(")], flat(m), vec![close]].concat();
+    match m {
+        Math::Row(list) => {
+            let parts: Vec<Option<Vec<Math>>> = list.iter().map(opened).collect();
+            let any = parts.iter().any(Option::is_some);
+            let each = list.iter().zip(parts);
+            let all = each.flat_map(|(m, open)| open.unwrap_or_else(|| vec![m.clone()]));
+            any.then(|| all.collect())
+        }
+        Math::Parentheses(m) => Some(between(m, Math::Close(")"))),
+        Math::Power(base, exponent) => match &**base {
+            Math::Parentheses(m) => {
+                let close = Math::Power(Box::new(Math::Close(")")), exponent.clone());
+                Some(between(m, close))
+            }
+            _ => None,
+        },
+        Math::Fraction(above, below) if flat(above).len() > 1 => {
+            let below = match flat(below).len() {
+                1 => (**below).clone(),
+                _ => Math::Parentheses(below.clone()),
+            };
+            let over = vec![Math::Prefix("/"), below];
+            Some([between(above, Math::Close(")")), over].concat())
+        }
+        Math::Big(op, under, body) if !flat(body).is_empty() => {
+            let head = Math::Big(op, under.clone(), Box::new(Math::Row(Vec::new())));
+            Some([vec![head], flat(body)].concat())
+        }
+        _ => None,
+    }
+}
+
+/// Text in lines of at most `width` characters. Lines behind the first begin with `indent` blanks, those that go on inside of a
+/// term with two more.
 pub fn wrapped(m: &Math, width: usize, indent: usize) -> String {
     let mut out = String::new();
     let mut column = indent;
-    for p in pieces(m) {
+    for (inside, p) in fitting(m, width.saturating_sub(indent + 2)) {
+        let indent = indent + if inside { 2 } else { 0 };
         let p = text(&p);
         let length = p.chars().count();
         if column + length > width && column > indent {
@@ -143,21 +234,33 @@ pub fn wrapped(m: &Math, width: usize, indent: usize) -> String {
     out
 }
 
-/// Characters of a line of LaTeX, as the formula would take them as text.
-const LINE: usize = 84;
+/// Characters of a line of LaTeX or HTML, as the formula would take them as text.
+pub const LINE: usize = 84;
 
-/// LaTeX in lines, for an `align`.
-pub fn latex_lines(m: &Math) -> String {
+/// LaTeX in lines, for an `align` with `room` characters; what `behind` stands at its end, or on a line of its own.
+pub fn latex_lines(m: &Math, room: usize, behind: Option<&Math>) -> String {
     let mut out = String::new();
     let mut column = 0;
-    for p in pieces(m) {
+    let line = |inside| {
+        if inside {
+            " \\\\\n & \\qquad\\quad {}"
+        } else {
+            " \\\\\n & \\qquad {}"
+        }
+    };
+    for (inside, p) in fitting(m, room) {
         let length = text(&p).chars().count();
-        if column > 0 && column + length > LINE {
-            out.push_str(" \\\\\n & \\qquad {}");
+        if column > 0 && column + length > room {
+            out.push_str(line(inside));
             column = 0;
         }
         column += length;
         out.push_str(&latex(&p));
+    }
+    if let Some(m) = behind {
+        let fits = column + 3 + text(m).chars().count() <= room;
+        out.push_str(if fits { " \\qquad " } else { line(true) });
+        out.push_str(&format!("\\forall\\, {}", latex(m)));
     }
     out
 }
@@ -165,7 +268,7 @@ pub fn latex_lines(m: &Math) -> String {
 /// MathML in pieces between which a line may break.
 pub fn mathml_lines(m: &Math) -> String {
     let mut out = String::new();
-    for p in pieces(m) {
+    for (_, p) in fitting(m, LINE) {
         // An operator that begins a piece stands between two terms all the same.
         let piece = mathml(&p).replacen("<mo>", "<mo form=\"infix\">", usize::from(begins(&p)));
         out.push_str(&format!("<math displaystyle=\"true\">{piece}</math><wbr>"));
@@ -187,7 +290,7 @@ pub fn latex(m: &Math) -> String {
         Math::Row(list) => {
             let mut out = String::new();
             for (n, m) in list.iter().enumerate() {
-                if n > 0 && is_factor(&list[n - 1]) && is_factor(m) {
+                if n > 0 && are_factors(&list[n - 1], m) {
                     let numbers = matches!(m, Math::Number(_) | Math::Fraction(..));
                     out.push_str(if numbers { " \\cdot " } else { "\\," });
                 }
@@ -197,6 +300,8 @@ pub fn latex(m: &Math) -> String {
         }
         Math::Parentheses(m) => format!("\\left({}\\right)", latex(m)),
         Math::Bracket(m) => format!("\\left[{}\\right]", latex(m)),
+        Math::Open(t) => format!("\\bigl{t}"),
+        Math::Close(t) => format!("\\bigr{t}"),
         Math::Indexed(base, parts) => {
             let single = parts
                 .iter()
@@ -339,6 +444,7 @@ fn latex_operator(o: &str) -> &str {
         "⊖" => "\\ominus",
         "⋚" => "\\mathrel{\\substack{<\\\\[-.4ex]>}}",
         "…" => "\\ldots",
+        "·" => "\\cdot",
         "{" => "\\{",
         "}" => "\\}",
         o => o,
@@ -366,7 +472,7 @@ pub fn mathml(m: &Math) -> String {
         Math::Row(list) => {
             let mut out = String::new();
             for (n, m) in list.iter().enumerate() {
-                if n > 0 && is_factor(&list[n - 1]) && is_factor(m) {
+                if n > 0 && are_factors(&list[n - 1], m) {
                     let numbers = matches!(m, Math::Number(_));
                     out.push_str(if numbers {
                         "<mo>·</mo>"
@@ -380,6 +486,7 @@ pub fn mathml(m: &Math) -> String {
         }
         Math::Parentheses(m) => format!("<mrow><mo>(</mo>{}<mo>)</mo></mrow>", mathml(m)),
         Math::Bracket(m) => format!("<mrow><mo>[</mo>{}<mo>]</mo></mrow>", mathml(m)),
+        Math::Open(t) | Math::Close(t) => format!("<mo stretchy=\"false\">{t}</mo>"),
         Math::Indexed(base, parts) => {
             let single = parts
                 .iter()

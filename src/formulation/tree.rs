@@ -266,13 +266,26 @@ pub fn product(factors: Vec<(bool, Expr)>) -> Expr {
             Expr::Product(inner) => {
                 todo.extend(inner.into_iter().rev().map(|(d, e)| (d != divide, e)));
             }
-            // What divides and multiplies cancels.
-            f => match out.iter().position(|(d, e)| *d != divide && *e == f) {
-                Some(p) => {
+            // What divides and multiplies cancels, of a square once.
+            f => {
+                let opposite = |e: &Expr| out.iter().position(|o| o.0 != divide && o.1 == *e);
+                let square = Expr::Call(Function::Sqr, vec![f.clone()]);
+                let root = match &f {
+                    Expr::Call(Function::Sqr, args) => {
+                        opposite(&args[0]).map(|p| (p, args[0].clone()))
+                    }
+                    _ => None,
+                };
+                if let Some(p) = opposite(&f) {
                     out.remove(p);
+                } else if let Some(p) = opposite(&square) {
+                    out[p].1 = f;
+                } else if let Some((p, root)) = root {
+                    out[p] = (divide, root);
+                } else {
+                    out.push((divide, f));
                 }
-                None => out.push((divide, f)),
-            },
+            }
         }
     }
     if zero {

@@ -13,15 +13,15 @@
 //! * for a row, what its right-hand side is worth on that side: the price, or that nothing is feasible there;
 //! * for a column, by how much its cost must change until moving it costs nothing: the interval of the cost.
 //!
-//! The basis of x is optimal for the cone too, and begins each of these programs: where x is no degenerate vertex nothing is
-//! left to do (the classical ratio tests: one solve with the factor for each), else the dual simplex method goes on from there, so
-//! prices are one-sided as they must be. A price holds as far as the row can go while what its multipliers hold at a bound stays
-//! there; that is one ratio test where the optimum is the only one, and a few primal pivots where it is not.
+//! The basis of x is optimal for the cone too, and begins each of these programs: where it stays optimal, the classical ratio
+//! tests say all (one solve with the factor for each); else, at a degenerate vertex, the dual simplex method goes on from
+//! there, so prices are one-sided as they must be. A price holds as far as the row can go while what its multipliers hold at a
+//! bound stays there; that is one ratio test where the optimum is the only one, and a few primal pivots where it is not.
 
 use super::answer::subproblem;
 use super::backend::Task;
 use super::lp::Ended;
-use super::lp::form::{Form, Point, Sparse};
+use super::lp::form::{Form, Sparse};
 use super::lp::scale::Scaling;
 use super::lp::simplex::{Simplex, State};
 use super::{Budget, ModelStatus, Quiet, Settings};
@@ -76,6 +76,8 @@ const END_TOLERANCE: f64 = 1e-8;
 const ROUNDING: f64 = 1e-12;
 /// A direction in which one variable moves this much farther than another is none, where that is in doubt.
 const STEEP: f64 = 1e9;
+/// A movement or pivot below this is rounding, in the units of the scaled program.
+const PIVOT: f64 = 1e-9;
 /// Updates after which a factor still counts as fresh: what comes out is computed anew at the end.
 const TRUSTED: usize = 30;
 
@@ -90,19 +92,20 @@ pub fn ranges(
     in_time: &dyn Fn() -> bool,
 ) -> Ranges {
     let mut out = Ranges::default();
-    let Some(cone) = Cone::new(p, x, activity, in_time) else {
+    let Some(mut cone) = Cone::new(p, x, activity, in_time) else {
         out.unfinished = p.objective.is_some();
         return out;
     };
-    let rows = cone.form.rows.iter().enumerate();
-    for (k, &i) in rows.filter(|(_, i)| wanted_row(**i as usize)) {
-        let found = in_time().then(|| cone.row(k, i as usize)).flatten();
+    let numbered = |all: &[u32]| all.iter().map(|i| *i as usize).enumerate().collect();
+    let rows: Vec<(usize, usize)> = numbered(&cone.form.rows);
+    for (k, i) in rows.into_iter().filter(|r| wanted_row(r.1)) {
+        let found = in_time().then(|| cone.row(k, i)).flatten();
         out.unfinished |= found.is_none();
         out.rows.extend(found);
     }
-    let columns = cone.form.columns.iter().enumerate();
-    for (k, &j) in columns.filter(|(_, j)| wanted_column(**j as usize)) {
-        let found = in_time().then(|| cone.column(k, j as usize)).flatten();
+    let columns: Vec<(usize, usize)> = numbered(&cone.form.columns);
+    for (k, j) in columns.into_iter().filter(|c| wanted_column(c.1)) {
+        let found = in_time().then(|| cone.column(k, j)).flatten();
         out.unfinished |= found.is_none();
         out.costs.extend(found);
     }
@@ -145,7 +148,9 @@ struct Cone<'a> {
     columns: Sparse,
     /// At an optimal basis of the cone, and its multipliers.
     engine: Simplex,
-    at_rest: Point,
+    at_rest: Vec<f64>,
+    /// Its optimum is the only one: what is at a bound has a reduced cost that holds it there.
+    is_unique: bool,
 }
 
 impl<'a> Cone<'a> {
@@ -218,9 +223,12 @@ impl<'a> Cone<'a> {
             engine.set_bounds(v, lower, upper);
         }
         let ended = engine.solve_from_basis(&form.basis(basis), &mut |_| None);
-        let at_rest = engine.point().filter(|_| ended == Ended::Solved)?;
+        let at_rest = engine.point().filter(|_| ended == Ended::Solved)?.y;
         engine.trusted = TRUSTED;
+        let held = |v: usize| engine.is_basic(v) || engine.reduced()[v].abs() > NO_PRICE;
+        let is_unique = (0..room.len()).all(|v| room[v] == [0.0; 2] || held(v));
         Some(Self {
+            is_unique,
             p,
             x: x.to_vec(),
             activity: activity.to_vec(),
@@ -234,6 +242,44 @@ impl<'a> Cone<'a> {
         })
     }
 
+    /// How far a nonbasic variable goes in a direction with the basis as it is; None where another one has to come at once.
+    fn ratio(&mut self, v: usize, direction: f64) -> Option<f64> {
+        let mut far = f64::INFINITY;
+        for (k, rate) in self.engine.direction(v)? {
+            let rate = rate * direction;
+            let room = self.room[k][usize::from(rate > 0.0)];
+            match rate.abs() > PIVOT {
+                true if room == 0.0 => return None,
+                true => far = far.min(room / rate),
+                false => {}
+            }
+        }
+        Some(far)
+    }
+
+    /// What the cost of a basic variable has to change by until it moves in a direction, after one pivot; None where that takes
+    /// more.
+    fn dual_ratio(&mut self, v: usize, direction: f64) -> Option<f64> {
+        let mut least = (f64::INFINITY, None);
+        for (j, a) in self.engine.tableau_row(v)? {
+            let way = -(a * direction).signum();
+            if a.abs() > PIVOT && self.room[j][usize::from(way > 0.0)] != 0.0 {
+                let reduced = self.engine.reduced()[j].abs();
+                let ratio = match reduced <= ROUNDING {
+                    true => 0.0,
+                    false => reduced / a.abs(),
+                };
+                if ratio < least.0 {
+                    least = (ratio, Some((j, way)));
+                }
+            }
+        }
+        if let Some((entering, way)) = least.1 {
+            self.ratio(entering, way)?;
+        }
+        Some(least.0)
+    }
+
     /// Solves again after bounds or costs have changed.
     fn solved(&self, mut s: Simplex) -> (Ended, Simplex) {
         let in_time = self.in_time;
@@ -243,7 +289,7 @@ impl<'a> Cone<'a> {
 
     /// The cone's optimum with other bounds for a variable; inner None: no direction is like this.
     #[allow(clippy::option_option)]
-    fn least(&self, v: usize, [lower, upper]: [f64; 2]) -> Option<Option<(Simplex, Point)>> {
+    fn least(&self, v: usize, [lower, upper]: [f64; 2]) -> Option<Option<(Simplex, Vec<f64>)>> {
         let mut s = self.engine.clone();
         s.set_bounds(v, lower, upper);
         let (mut ended, mut s) = self.solved(s);
@@ -261,7 +307,7 @@ impl<'a> Cone<'a> {
             }
         }
         match ended {
-            Ended::Solved => s.point().map(|point| Some((s, point))),
+            Ended::Solved => s.prices().map(|y| Some((s, y))),
             Ended::Infeasible(_) => Some(None),
             _ => None,
         }
@@ -281,19 +327,20 @@ impl<'a> Cone<'a> {
             s.set_cost(k, if k == v { -direction } else { 0.0 });
         }
         match self.solved(s) {
-            (Ended::Solved, mut s) => s.point().map(|_| s.values()[v].abs()),
+            (Ended::Solved, mut s) => s.fresh_values().map(|x| x[v].abs()),
             (Ended::Unbounded(_), _) => Some(f64::INFINITY),
             _ => None,
         }
     }
 
-    fn row(&self, k: usize, i: usize) -> Option<RowRange> {
+    fn row(&mut self, k: usize, i: usize) -> Option<RowRange> {
         let v = self.form.columns.len() + k;
         let (value, relation) = (self.p.rows.rhs[i], self.p.rows.relation[i]);
         let tight = relation == Relation::Equal || near(self.activity[i], value);
         let unit = self.scaling.size / self.scaling.row[k];
+        let worth = self.scaling.price * self.scaling.row[k];
         // The price and how far it holds when the right-hand side moves so.
-        let side = |direction: f64| {
+        let mut side = |direction: f64| {
             let loosens = match relation {
                 Relation::Less => direction > 0.0,
                 Relation::Greater => direction < 0.0,
@@ -301,6 +348,24 @@ impl<'a> Cone<'a> {
             };
             if !tight && loosens {
                 return Some((0.0, f64::INFINITY));
+            }
+            let spare = match tight {
+                true => 0.0,
+                false => (self.activity[i] - value).abs(),
+            };
+            if self.is_unique && !tight {
+                return Some((0.0, spare));
+            }
+            let y = self.at_rest[k];
+            if !self.engine.is_basic(v)
+                && y.abs() > NO_PRICE
+                && let Some(far) = self.ratio(v, direction)
+            {
+                let far = match self.is_unique || far.is_infinite() {
+                    true => far,
+                    false => self.furthest(self.engine.clone(), v, direction)?,
+                };
+                return Some((y * worth, far * unit));
             }
             let bounds = match relation {
                 Relation::Less => [f64::NEG_INFINITY, direction],
@@ -311,23 +376,17 @@ impl<'a> Cone<'a> {
                 true => self.least(v, bounds)?,
                 false => Some((self.engine.clone(), self.at_rest.clone())),
             };
-            let Some((engine, point)) = at else {
+            let Some((engine, y)) = at else {
                 return Some((direction * f64::INFINITY, 0.0));
             };
-            let y = point.y[k];
+            let y = y[k];
             if engine.is_basic(v) || y.abs() <= NO_PRICE {
                 if loosens {
                     return Some((0.0, f64::INFINITY));
                 }
-                let spare = if tight {
-                    0.0
-                } else {
-                    (self.activity[i] - value).abs()
-                };
                 return Some((0.0, spare + self.furthest(engine, v, direction)? * unit));
             }
-            let price = y * self.scaling.price * self.scaling.row[k];
-            Some((price, self.furthest(engine, v, direction)? * unit))
+            Some((y * worth, self.furthest(engine, v, direction)? * unit))
         };
         let (below, above) = (side(-1.0)?, side(1.0)?);
         Some(RowRange {
@@ -338,31 +397,36 @@ impl<'a> Cone<'a> {
         })
     }
 
-    fn column(&self, k: usize, j: usize) -> Option<CostRange> {
+    fn column(&mut self, k: usize, j: usize) -> Option<CostRange> {
         let unit = self.scaling.price / self.scaling.column[k];
         let cost = self.form.problem.cost[k];
         // The cost with which the column would go this way: what the multipliers say that it is worth.
-        let side = |direction: f64| {
-            let [down, up] = self.room[k];
-            let stuck = if direction < 0.0 { down } else { up } == 0.0;
-            let at = match stuck {
-                true => None,
-                false => self.least(k, [direction; 2])?,
+        let mut side = |direction: f64| {
+            let stuck = self.room[k][usize::from(direction > 0.0)] == 0.0;
+            let at = match self.engine.is_basic(k) {
+                _ if stuck => None,
+                true => match self.dual_ratio(k, direction) {
+                    Some(0.0) => return Some(cost),
+                    Some(by) => return Some(end(cost, -direction * by * unit)),
+                    None => self.least(k, [direction; 2])?.map(|f| f.1),
+                },
+                false => match self.ratio(k, direction) {
+                    Some(_) => Some(self.at_rest.clone()),
+                    None => self.least(k, [direction; 2])?.map(|f| f.1),
+                },
             };
-            let Some((_, point)) = at else {
+            let Some(y) = at else {
                 return Some(-direction * f64::INFINITY);
             };
-            let terms = self.columns.line(k).map(|(i, a)| a * point.y[i]);
+            let terms = self.columns.line(k).map(|(i, a)| a * y[i]);
             let (worth, size) = terms.fold((0.0, 0.0), |(w, s), t: f64| (w + t, s + t.abs()));
-            let worth = if worth.abs() <= ROUNDING * size {
-                0.0
-            } else {
-                worth * unit
+            let worth = match worth.abs() <= ROUNDING * size {
+                true => 0.0,
+                false => worth * unit,
             };
-            Some(if point.d[k] * direction > 0.0 {
-                rounded(worth)
-            } else {
-                cost
+            Some(match (cost - worth) * direction > 0.0 {
+                true => rounded(worth),
+                false => cost,
             })
         };
         let mut interval = [side(1.0)?, side(-1.0)?].map(|c| c * self.form.sign + 0.0);

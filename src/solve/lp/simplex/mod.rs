@@ -516,6 +516,22 @@ impl Simplex {
         }
     }
 
+    /// The row of the tableau in which this variable is basic: the others in it with their entries.
+    pub fn tableau_row(&mut self, variable: usize) -> Option<Entries> {
+        let rho = self.tableau_multipliers(variable)?;
+        self.pivot_row(&rho);
+        let entry = |j: &u32| (*j as usize, self.row[*j as usize]);
+        Some(self.row_index.iter().map(entry).collect())
+    }
+
+    /// What the basic variables change by when a nonbasic one grows by 1.
+    pub fn direction(&mut self, variable: usize) -> Option<Entries> {
+        let column = self.column(variable);
+        let moved = self.factor.as_mut()?.forward(&column)?;
+        let of = |&(k, a): &(usize, f64)| (self.head[k] as usize, -a);
+        Some(moved.iter().map(of).collect())
+    }
+
     /// Whether a variable (a column, or n + row) is basic.
     pub fn is_basic(&self, variable: usize) -> bool {
         self.slot[variable] != NONBASIC
@@ -586,6 +602,19 @@ impl Simplex {
             }
         }
         Ended::Failed
+    }
+
+    /// Multipliers of the rows at the present basis, for the true costs.
+    pub fn prices(&mut self) -> Option<Vec<f64>> {
+        self.restore()?;
+        self.multipliers()
+    }
+
+    /// Values of columns and rows at the present basis, for the true bounds, computed anew.
+    pub fn fresh_values(&mut self) -> Option<&[f64]> {
+        self.restore()?;
+        self.compute_values()?;
+        Some(&self.x)
     }
 
     /// The point of the present basis for the true costs and bounds, refined.
