@@ -107,6 +107,10 @@ strategies! {
             "at least as many equations as variables: Newton's method with Levenberg and Marquardt's damping",
             "50 steps",
             "Nocedal & Wright 2006, chapter 10";
+        DifferentiableStart "differentiable_start",
+            "a row has no derivatives at the start, as √x at 0: its variables are moved by a hundredth",
+            "100 evaluations of the derivatives",
+            "as an interior point begins: Wächter & Biegler 2006, 3.6";
         ConsistentStart "consistent_start",
             "variables without a start level that are the only such one in an equation are computed from it",
             "50 evaluations of the rows and their derivatives",
@@ -167,10 +171,6 @@ strategies! {
             "no certified point: again from the best one, near its bounds",
             "a run of each method",
             "ablation";
-        RestartMoved "restart_moved",
-            "no certified point: again from the start moved by a tenth, which may have derivatives where the start has none",
-            "a run of each method",
-            "multistart";
         ActiveSetPolish "active_set_polish",
             "residuals above 1e-13: Newton steps on the active set of the point",
             "a few factorisations",

@@ -48,16 +48,12 @@ impl Nonlinear {
         relaxed.columns.kind.fill(ColumnKind::Continuous);
         relaxed.discrete = Default::default();
         let level = &instance.columns.level;
-        let mut settings = settings.clone();
-        settings
-            .options
-            .insert(0, ("nlp_attempts".into(), "few".into()));
         Self {
             using,
             instance: relaxed,
             // of a convex quadratic program it says that its answer is a global one
             choice: Some(choice.unwrap_or("clarabel").to_string()),
-            settings,
+            settings: settings.clone(),
             first: level.clone(),
             point: Rc::new(level.clone()),
             known: matches!(shape(instance), Shape::ConvexQuadratic { .. }),

@@ -234,8 +234,7 @@ impl Search<'_, '_> {
         most: u64,
         seen: Option<&Seen>,
     ) -> Result<Answer, SolveError> {
-        let short = [("nlp_search", "no"), ("nlp_attempts", "few")];
-        let settings = self.sub_settings(&[&short, extra].concat());
+        let settings = self.sub_settings(&[&[("nlp_search", "no")][..], extra].concat());
         let most = most.min(self.left());
         self.budget.silently(|budget| {
             budget.within(f64::INFINITY, most, |budget| {
@@ -682,10 +681,7 @@ impl Search<'_, '_> {
                 let task = Task::new(ProblemType::Lp, envelope);
                 answer_with(BACKENDS, &task, self.settings, self.budget)?
             }
-            false => {
-                let all = [("nlp_attempts", "all")];
-                self.program(self.choice, envelope, &all, u64::MAX, None)?
-            }
+            false => self.program(self.choice, envelope, &[], u64::MAX, None)?,
         };
         let mut outcome = a.outcome;
         let status = stopped.map_or(SolverStatus::NormalCompletion, Stop::status);

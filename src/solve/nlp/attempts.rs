@@ -86,7 +86,7 @@ impl Driver<'_, '_> {
     pub(super) fn round_kinks(&mut self) -> Result<(), SolveError> {
         let mut x = self.start.clone();
         for (k, delta) in ROUNDING.into_iter().enumerate() {
-            if self.is_stopped() {
+            if self.is_settled() {
                 break;
             }
             let mut problem = Problem::smoothed(self.instance, delta);

@@ -8,7 +8,7 @@
 //!
 //! * a point that satisfies them is looked at once more: negative curvature on the tangent space of
 //!   what is active shows a saddle, which is left along that direction and solved again;
-//! * anything else is tried again from other starts (see [`RESTARTS`]);
+//! * anything else is tried again from the best point;
 //! * a claim of infeasibility or unboundedness must show in the point.
 //!
 //! The first certified point wins. Where there is none, the best point that was seen is returned, and
@@ -22,7 +22,7 @@ use super::problem::{Nlp, Problem};
 use super::quadratic::Quadratic;
 use super::schedule::{
     AGREEMENT, CHEAP, DOUBT, ELSEWHERE, ENOUGH, FIRST_ATTEMPT_ITERATIONS, From,
-    MAX_ATTEMPT_ITERATIONS, MIN_ATTEMPT_ITERATIONS, NEAR, OVERHEAD, RESTARTS, TIMES,
+    MAX_ATTEMPT_ITERATIONS, MIN_ATTEMPT_ITERATIONS, NEAR, OVERHEAD, TIMES,
 };
 use super::slqp::Effort;
 use super::trial::{Trial, clean, polished, residuals_at, tidy, without_noise};
@@ -41,6 +41,10 @@ use std::sync::{Arc, Mutex};
 pub(super) const UNBOUNDED: f64 = 1e15;
 /// A point is unbounded evidence from here on, if the interior-point solver stopped with diverging iterates.
 const LARGE: f64 = 1e10;
+
+/// How far a start without derivatives is moved, relative to its size; and rows that are looked at for that.
+const BESIDE: f64 = 1e-2;
+const MOST_BESIDE: u32 = 100;
 
 /// Nonlinear equations from which on the interior point may go first.
 const MANY_CURVED: usize = 50;
@@ -72,6 +76,11 @@ pub fn solve(
     }
     let start = problem.start().to_vec();
     check_start(instance, &mut problem, &start)?;
+    if problem.without_derivatives(&start).is_some() && settings.runs(Strategy::DifferentiableStart)
+    {
+        let start = differentiable(&mut problem, &start);
+        problem.set_start(start);
+    }
     let quadratic = match convexity {
         Convexity::Ignored => None,
         Convexity::Used => Quadratic::new(&mut problem, lp::QUADRATIC, budget),
@@ -91,8 +100,8 @@ pub fn solve(
     driver.run(quadratic)
 }
 
-/// x moved by up to this fraction of its size (at least by this much); or, where that is asked for, anywhere between near bounds.
-/// With `by` 0 halfway between them.
+/// x moved by up to this fraction of its size (at least by this much), inwards from its bounds; or, where that is asked for, anywhere
+/// between near bounds. With `by` 0 halfway between them.
 fn placed(nlp: &dyn Nlp, x: &[f64], by: f64, anywhere: bool, seed: u64) -> Vec<f64> {
     let (lower, upper) = nlp.bounds();
     let mut random = Random(seed);
@@ -101,9 +110,31 @@ fn placed(nlp: &dyn Nlp, x: &[f64], by: f64, anywhere: bool, seed: u64) -> Vec<f
         if anywhere && u - l <= 1e4 {
             return l + r * (u - l);
         }
-        (x + (2.0 * r - 1.0) * by * x.abs().max(1.0)).max(l).min(u)
+        let there = x + (2.0 * r - 1.0) * by * x.abs().max(1.0);
+        let inside = match there {
+            y if y < l => 2.0 * l - y,
+            y if y > u => 2.0 * u - y,
+            y => y,
+        };
+        inside.max(l).min(u)
     };
     x.iter().zip(lower.iter().zip(upper)).map(place).collect()
+}
+
+/// The start, where a row has values there but no derivatives, as √x at 0, with the variables of that row moved a little.
+fn differentiable(problem: &mut Problem, start: &[f64]) -> Vec<f64> {
+    let moved = placed(problem, start, BESIDE, false, 1);
+    let mut x = start.to_vec();
+    for _ in 0..MOST_BESIDE {
+        let Some(variables) = problem.without_derivatives(&x) else {
+            return x;
+        };
+        if variables.iter().all(|&j| x[j] == moved[j]) {
+            break;
+        }
+        variables.iter().for_each(|&j| x[j] = moved[j]);
+    }
+    start.to_vec()
 }
 
 /// The start point must have values; derivatives may be missing there.
@@ -272,22 +303,16 @@ impl Driver<'_, '_> {
         if kinks.is_some() && self.settings.runs(Strategy::KinkSmoothing) {
             self.round_kinks()?;
         }
-        for (strategy, from) in RESTARTS.into_iter().take(self.attempts()) {
-            let proved =
-                self.infeasibility.is_some() && !self.best.as_ref().is_some_and(Trial::is_feasible);
-            if self.is_settled() || proved || self.work() > self.enough {
-                break;
-            }
-            if !self.settings.runs(strategy) {
-                continue;
-            }
+        let lacks_point = !self.best.as_ref().is_some_and(Trial::is_feasible);
+        let proved = self.infeasibility.is_some() && lacks_point;
+        let goes_on = !self.is_settled() && !proved && self.work() <= self.enough;
+        if goes_on && self.settings.runs(Strategy::RestartFromBest) {
             if !self.named {
-                let x = self.start_point(from);
-                self.sequential(x, None, Effort::FULL);
+                self.sequential(self.start_point(From::Best), None, Effort::FULL);
                 self.leave_saddles()?;
             }
             if !self.is_settled() {
-                self.attempt(from, NEAR)?;
+                self.attempt(From::Best, NEAR)?;
                 self.leave_saddles()?;
             }
         }
@@ -367,14 +392,6 @@ impl Driver<'_, '_> {
     /// Whether there may be several local optima, and the user lets us look for them.
     fn wants_search(&self) -> bool {
         self.settings.switch("nlp_search").unwrap_or(false)
-    }
-
-    /// How much of the schedule is tried: one program of a sequence is not worth all of it.
-    fn attempts(&self) -> usize {
-        match self.settings.option("nlp_attempts").as_deref() {
-            Some("few") => 1,
-            _ => usize::MAX,
-        }
     }
 
     fn is_constant(&self) -> bool {

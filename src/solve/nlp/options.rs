@@ -13,7 +13,6 @@ pub const SHARED_OPTIONS: OptionTable = OptionTable {
     backend: "nlp",
     title: "nlp, dnlp, qcp and the nonlinear programs inside other types, whichever solver runs",
     rows: &[
-        row("nlp_attempts", Kind::Words(&["all", "few"]), "all", "how many starts and settings are tried where the first ones lead to no certified point"),
         row("nlp_search", Kind::Switch, "no", "whether a better local optimum is looked for where that is cheap"),
     ],
     more: None,

@@ -172,7 +172,13 @@ fn run(
     }
     app.initialize()
         .map_err(|e| format!("pounce could not begin: {}", e.message))?;
-    let configuration = feral_config_from_options(app.options());
+    // One thread: the same factors without a pool of threads, which a small system is done before it has woken.
+    let mut configuration = feral_config_from_options(app.options());
+    configuration.parallel = Some(false);
+    app.set_linear_backend_factory(default_backend_factory(
+        configuration.clone(),
+        Ma57Config::default(),
+    ));
     let mint = move || -> InnerBackendFactoryFactory {
         let configuration = configuration.clone();
         Box::new(move || default_backend_factory(configuration.clone(), Ma57Config::default()))

@@ -429,6 +429,18 @@ impl Problem {
         }
     }
 
+    /// The variables of a row that has no derivatives at x; None if all have some.
+    pub fn without_derivatives(&mut self, x: &[f64]) -> Option<Vec<usize>> {
+        self.derivative_at = None;
+        self.place(x);
+        let evaluated = self.evaluator.jacobian(&self.full, &mut self.derivative);
+        let row = evaluated.err()?.row as usize;
+        let (start, column) = self.evaluator.jacobian_pattern();
+        let own = column[start[row]..start[row + 1]].iter();
+        let variable = |j: &u32| self.columns.binary_search(j).ok();
+        Some(own.filter_map(variable).collect())
+    }
+
     fn need_derivative(&mut self, x: &[f64]) -> Option<()> {
         if self.derivative_at.as_deref() == Some(x) {
             return Some(());

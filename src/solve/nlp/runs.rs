@@ -16,12 +16,21 @@ const UNCHANGED: f64 = 1e-5;
 const MOST_SHORT: u32 = 10;
 const WINDOW: u32 = 20;
 
-/// Whether a run stands still: at a kink, or where rounding refuses every step.
+/// So near to the end Newton's method takes two or three iterations more; where the dual residual stays above its tolerance for
+/// longer, multipliers are not unique, and the point is as good as it gets.
+const LAST_MU: f64 = 1e-8;
+const NEARLY_PRIMAL: f64 = 1e-5;
+const NEARLY_DUAL: [f64; 2] = [1e-6, 1e-4];
+const MOST_NEARLY: u32 = 10;
+
+/// Whether a run stands still: at a kink, where rounding refuses every step, or where it does not come to an end.
 #[derive(Default)]
 struct Standstill {
     before: f64,
     /// One bit an iteration: whether it went nowhere.
     short: u32,
+    /// Iterations in a row that all but satisfied the conditions.
+    nearly: u32,
 }
 
 impl Standstill {
@@ -29,8 +38,11 @@ impl Standstill {
         let change = (p.objective - self.before).abs();
         let nowhere = p.step <= SHORT && change <= UNCHANGED * p.objective.abs().max(1.0);
         self.before = p.objective;
+        let dual = NEARLY_DUAL[0] < p.dual && p.dual <= NEARLY_DUAL[1];
+        let nearly = p.mu <= LAST_MU && p.primal <= NEARLY_PRIMAL && dual;
+        self.nearly = if nearly { self.nearly + 1 } else { 0 };
         self.short = (self.short << 1 | u32::from(nowhere)) & ((1 << WINDOW) - 1);
-        !p.restoration && self.short.count_ones() >= MOST_SHORT
+        !p.restoration && (self.short.count_ones() >= MOST_SHORT || self.nearly >= MOST_NEARLY)
     }
 }
 

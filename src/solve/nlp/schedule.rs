@@ -1,7 +1,5 @@
 //! Options and starts: what is tried first, and what when that does not lead to a certified point.
 
-use crate::solve::Strategy;
-
 /// Options of every attempt; the user's own come after them.
 pub(super) const BASE: [(&str, &str); 8] = [
     ("tol", "1e-9"),
@@ -51,12 +49,6 @@ pub(super) const NEARER: &[(&str, &str)] = &[
     ("mu_init", "1e-8"),
     ("bound_push", "1e-8"),
     ("bound_frac", "1e-8"),
-];
-
-/// Where to begin again when neither sequential programs nor a plain run has led to a certified point.
-pub(super) const RESTARTS: [(Strategy, From); 2] = [
-    (Strategy::RestartFromBest, From::Best),
-    (Strategy::RestartMoved, From::Moved(0.1)),
 ];
 
 /// From where a better optimum than a certified one is looked for: the first [`AGREEMENT`] are always tried, the others where
