@@ -13,6 +13,7 @@ export const texts = {
     dual: 'Dual',
     kkt: 'KKT',
     why: 'Why',
+    steps: 'Steps',
     words: 'In words',
     prices: 'Prices',
     rows: 'Rows',

@@ -1,5 +1,6 @@
 ;;; check.el --- see run.sh  -*- lexical-binding: t -*-
 
+(require 'cl-lib)
 (require 'bmod-mode)
 (require 'eglot)
 (require 'flymake)
@@ -18,7 +19,7 @@
 (defun face-of (text)
   (save-excursion
     (goto-char (point-min))
-    (search-forward text)
+    (re-search-forward (concat "^" (regexp-quote text)))
     (get-text-property (match-beginning 0) 'face)))
 
 (setq eglot-server-programs (list (cons 'bmod-mode (list (getenv "BMOD") "lsp"))))
@@ -47,7 +48,7 @@
          (and places (string-match-p "block_limit.blk\\'" (xref-location-group (xref-item-location (car places))))) places))
 (let ((hover (jsonrpc-request (eglot-current-server) :textDocument/hover (eglot--TextDocumentPositionParams))))
   (check "hover" (string-match-p "static theorem" (format "%S" hover)) hover))
-(let ((eglot-confirm-server-initiated-edits nil))
+(cl-letf (((symbol-function 'y-or-n-p) #'always)) ; the other file is to be changed, too
   (eglot-rename "upper"))
 (goto-char (point-min))
 (check "a name changed" (search-forward "solve upper using lp" nil t) nil)

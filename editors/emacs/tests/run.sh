@@ -7,4 +7,4 @@ emacs --batch -f package-initialize --eval "(require 'eglot)" > /dev/null 2>&1 |
 export BMOD=${1:-$PWD/target/debug/bmod}
 folder=$(mktemp -d); trap 'rm -rf "$folder"' EXIT
 cp models/wall.blk models/block_limit.blk models/mechanism.blk "$folder"
-timeout 120 emacs --batch -f package-initialize -L editors/emacs "$folder/wall.blk" -l editors/emacs/tests/check.el
+timeout 120 emacs --batch -f package-initialize -L "$PWD/editors/emacs" "$folder/wall.blk" -l "$PWD/editors/emacs/tests/check.el"
