@@ -188,7 +188,7 @@ def sweep(
     :param data: data of symbols that are the same in all runs.
     :param outputs: parameters and variables whose values (levels) become columns, ``x[a,b]`` for one with indices.
     :param executor: any :class:`concurrent.futures.Executor`; none: `jobs` processes on this machine. Those of
-        Dask (``client.get_executor()``), Ray and MPI (``mpi4py.futures``) take the runs to a cluster.
+        Dask (``client.get_executor()``) and MPI (``mpi4py.futures``) take the runs to a cluster.
     :param jobs: processes; by default one per core.
     :param out: a folder for the rows as Parquet files, written while they come. Runs that are there, also those of the
         command ``bmod sweep``, are not repeated.
