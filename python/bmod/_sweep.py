@@ -126,7 +126,10 @@ class _Store:
         self.flushed = time.monotonic()
         self.folder = None if out is None else pathlib.Path(out)
         if self.folder is not None:
-            import pyarrow.parquet as parquet
+            try:
+                import pyarrow.parquet as parquet
+            except ImportError:
+                raise ImportError("`out` keeps the rows in Parquet files, for which it needs pyarrow: pip install pyarrow") from None
 
             self.folder.mkdir(parents=True, exist_ok=True)
             for file in sorted(self.folder.glob("_part-*.parquet")):
