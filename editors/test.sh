@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Tests what editors get: Neovim with `bmod lsp`, the grammars of VS Code and tree-sitter. What cannot be installed is skipped, and
+# Tests what editors get: Neovim and Emacs with `bmod lsp`, the grammars of VS Code and tree-sitter. What cannot be installed is skipped, and
 # that is said; what is there must pass.
 # usage: editors/test.sh [PROGRAM]      PROGRAM: bmod, target/debug/bmod by default
 set -euo pipefail
@@ -7,8 +7,10 @@ cd "$(dirname "$0")"
 root=$(cd .. && pwd)
 skipped() { echo "SKIPPED: $1"; }
 
-command -v nvim >/dev/null || (apt-get update -qq && apt-get install -y -qq neovim) >/dev/null 2>&1 || true
-vim/tests/run.sh "${1:-$root/target/debug/bmod}" # says itself where there is no nvim
+dpkg -s neovim emacs-nox elpa-eglot >/dev/null 2>&1 || (apt-get update -qq && apt-get install -y -qq neovim emacs-nox elpa-eglot) >/dev/null 2>&1 || true
+for editor in vim emacs; do
+  $editor/tests/run.sh "${1:-$root/target/debug/bmod}" # says itself where there is no such editor
+done
 
 # Only what the test needs, in a folder of its own: the client of the extension is not run here.
 folder=$(mktemp -d)

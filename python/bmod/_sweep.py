@@ -115,7 +115,10 @@ def run_one(
 
 
 class _Store:
-    """Rows in a folder of Parquet files; each is written whole. What is there is not run again."""
+    """Rows in a folder of Parquet files; each is written whole. What is there is not run again.
+
+    Their names begin with `_`: those who read the folder as a table pass over such files.
+    """
 
     def __init__(self, out: Optional[Any]):
         self.rows: List[Dict[str, Any]] = []
@@ -123,10 +126,13 @@ class _Store:
         self.flushed = time.monotonic()
         self.folder = None if out is None else pathlib.Path(out)
         if self.folder is not None:
-            import pyarrow.parquet as parquet
+            try:
+                import pyarrow.parquet as parquet
+            except ImportError:
+                raise ImportError("`out` keeps the rows in Parquet files, for which it needs pyarrow: pip install pyarrow") from None
 
             self.folder.mkdir(parents=True, exist_ok=True)
-            for file in sorted(self.folder.glob("part-*.parquet")):
+            for file in sorted(self.folder.glob("_part-*.parquet")):
                 self.rows += parquet.read_table(file).to_pylist()
             # What `bmod sweep` has run.
             for file in sorted(self.folder.glob("rows-*.jsonl")):
@@ -156,16 +162,28 @@ class _Store:
             self.pending = []
             return
         import pyarrow
-        import pyarrow.parquet as parquet
 
         names = dict.fromkeys(n for row in self.pending for n in row)
         table = pyarrow.Table.from_pylist([{n: r.get(n) for n in names} for r in self.pending])
-        number = len(list(self.folder.glob("part-*.parquet")))
+        number = len(list(self.folder.glob("_part-*.parquet")))
+        self._write(f"_part-{number:05d}.parquet", table)
+        self.pending = []
+
+    def end(self, table: "pd.DataFrame") -> None:
+        """The whole table beside the parts, of which each has the columns of its own rows only; who reads the folder gets it alone."""
+        if self.folder is not None:
+            import pyarrow
+
+            self._write("results.parquet", pyarrow.Table.from_pandas(table, preserve_index=False))
+
+    def _write(self, name: str, table: Any) -> None:
+        import pyarrow.parquet as parquet
+
+        assert self.folder is not None
         handle, draft = tempfile.mkstemp(dir=self.folder, prefix=".part-")
         os.close(handle)
         parquet.write_table(table, draft)
-        os.replace(draft, self.folder / f"part-{number:05d}.parquet")
-        self.pending = []
+        os.replace(draft, self.folder / name)
 
 
 def sweep(
@@ -188,10 +206,10 @@ def sweep(
     :param data: data of symbols that are the same in all runs.
     :param outputs: parameters and variables whose values (levels) become columns, ``x[a,b]`` for one with indices.
     :param executor: any :class:`concurrent.futures.Executor`; none: `jobs` processes on this machine. Those of
-        Dask (``client.get_executor()``), Ray and MPI (``mpi4py.futures``) take the runs to a cluster.
+        Dask (``client.get_executor()``) and MPI (``mpi4py.futures``) take the runs to a cluster.
     :param jobs: processes; by default one per core.
-    :param out: a folder for the rows as Parquet files, written while they come. Runs that are there, also those of the
-        command ``bmod sweep``, are not repeated.
+    :param out: a folder for the rows as Parquet files, written while they come, and for the table, `results.parquet`, at the end.
+        Runs that are there, also those of the command ``bmod sweep``, are not repeated.
     :param progress: whether tqdm shows a bar; by default if it is installed.
     :param keywords: of :meth:`bmod.Model.run`: ``time_limit``, ``options``, ``max_memory``, ``certify``, ``explain``.
 
@@ -243,7 +261,9 @@ def sweep(
         bar.close()
     table = pd.DataFrame([{**points[n], **rows[n]} for n in range(len(points))])
     last = ["key", "reads", *_ABOUT]
-    return table[[c for c in table if c not in last] + [c for c in _ABOUT if c in table]]
+    table = table[[c for c in table if c not in last] + [c for c in _ABOUT if c in table]]
+    store.end(table)
+    return table
 
 
 #: Columns behind those of the grid and the outputs, as `bmod sweep` has them.

@@ -331,6 +331,19 @@ def test_the_next_run_starts_at_the_last_basis(transport):
     assert fresh.run().solves[0].iterations == 0 and r.solves[0].status is bmod.ModelStatus.OPTIMAL
 
 
+def test_a_thousand_solves_cost_their_pivots(transport):
+    """New data each time: the basis is kept, and what it costs is the pivots from one answer to the next."""
+    fresh = transport.run().solves[0].iterations
+    pivots = 0
+    for k in range(1000):
+        transport["b"] = [325 - k % 50, 300 - k % 7, 275 - k % 11]
+        r = transport.run()
+        pivots += r.solves[0].iterations
+    assert fresh > 0 and pivots < 1000 * fresh / 4
+    again = bmod.Model.from_text(TRANSPORT, data={"b": list(transport["b"])})
+    assert r.objective == pytest.approx(again.run().objective)
+
+
 def test_update_and_logging(transport, caplog):
     transport.update({"f": 45, "b": {"new-york": 100}})
     with caplog.at_level("INFO", logger="bmod"):

@@ -13,6 +13,7 @@ import pandas as pd
 import pytest
 
 import bmod
+import bmod._sweep
 
 pytest.importorskip("pyarrow")
 
@@ -34,10 +35,19 @@ def test_rows_in_order_and_resumed(tmp_path):
         assert list(table.objective[:2]) == [1, 2] and list(table.x[:2]) == [1, 2]
         assert list(table.run) == ["ok", "ok", "aborted"] * 2
         assert "too much" in table.messages[2]
-        before = {f.name: f.stat().st_mtime_ns for f in (tmp_path / "r").iterdir()}
+        before = {f.name: f.stat().st_mtime_ns for f in (tmp_path / "r").glob("_part-*")}
         again = bmod.sweep(MODEL, grid, executor=pool, out=tmp_path / "r", outputs=["x"], progress=False)
-        assert before == {f.name: f.stat().st_mtime_ns for f in (tmp_path / "r").iterdir()}
+        assert before == {f.name: f.stat().st_mtime_ns for f in (tmp_path / "r").glob("_part-*")}
     assert again.drop(columns="seconds").equals(table.drop(columns="seconds"))
+
+
+def test_the_table_on_disk_has_all_columns(tmp_path, monkeypatch):
+    """Also those that no row of the first part has."""
+    monkeypatch.setattr(bmod._sweep, "ROWS_PER_PART", 1)
+    with futures.ThreadPoolExecutor(1) as pool:
+        table = bmod.sweep(MODEL, {"price": [1.0], "need": [4, 1]}, executor=pool, outputs=["x"], out=tmp_path, progress=False)
+    assert len(list(tmp_path.glob("_part-*"))) == 2 and "x" in table
+    assert pd.read_parquet(tmp_path / "results.parquet").equals(table) and pd.read_parquet(tmp_path).equals(table)
 
 
 def test_processes():
@@ -62,7 +72,7 @@ def same(a, b):
 def stored(folder):
     import pyarrow.parquet as parquet
 
-    return [row["key"] for f in folder.glob("part-*.parquet") for row in parquet.read_table(f).to_pylist()]
+    return [row["key"] for f in folder.glob("_part-*.parquet") for row in parquet.read_table(f).to_pylist()]
 
 
 def test_a_killed_process_loses_nothing(tmp_path):
@@ -95,7 +105,7 @@ def test_killed_and_resumed(tmp_path):
     )
     work = subprocess.Popen([sys.executable, "-c", code, str(tmp_path / "r")])
     until = time.time() + 60
-    while time.time() < until and work.poll() is None and not list(tmp_path.glob("r/part-*.parquet")):
+    while time.time() < until and work.poll() is None and not list(tmp_path.glob("r/_part-*.parquet")):
         time.sleep(0.02)
     work.kill()
     work.wait()
@@ -121,7 +131,7 @@ def test_rows_of_the_command_are_known(tmp_path):
     assert list(by_command.price) == [1, 1, 1, 1.5, 1.5, 1.5, 2, 2, 2]
     grid = {"price": [1.0, 1.5, 2.0], "need": [1, 2, 4]}
     table = bmod.sweep(tmp_path / "m.blk", grid, outputs=["x"], out=tmp_path / "r", jobs=2, progress=False)
-    assert not list((tmp_path / "r").glob("part-*.parquet")), "nothing was run again"
+    assert not list((tmp_path / "r").glob("_part-*.parquet")), "nothing was run again"
     assert table.objective.equals(by_command.objective)
     script = subprocess.run([*command, "--slurm", "3"], capture_output=True, text=True)
     assert script.returncode == 0, script

@@ -28,7 +28,6 @@ pub(super) struct Question {
 }
 
 #[derive(Clone, Copy, Serialize, Deserialize)]
-#[cfg_attr(not(feature = "system"), expect(dead_code))]
 enum What {
     File,
     IsFile,

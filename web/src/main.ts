@@ -40,7 +40,7 @@ const service = new Service(checker, () => open);
 const extensions = serviceExtensions({ ask: (question) => service.ask(shown, question), go: goTo, change, say: toast });
 const editor = new Editor(byId('editor'), { readOnly, changed, run: () => void run(), stop, extensions });
 const sliders = new Sliders(byId('sliders'), () => void run(true));
-const view = (tab: 'formulas' | 'dual' | 'kkt' | 'words' | 'prices' | 'rows' | 'why') => new View(tab, runner, () => request(), say);
+const view = (tab: 'formulas' | 'dual' | 'kkt' | 'words' | 'prices' | 'rows' | 'steps' | 'why') => new View(tab, runner, () => request(), say);
 const tabs = new Tabs(byId('tabs'), byId('panel'), {
   answer: { element: answerView.element },
   figures: { element: figures.element },
@@ -50,6 +50,7 @@ const tabs = new Tabs(byId('tabs'), byId('panel'), {
   words: view('words'),
   prices: view('prices'),
   why: view('why'),
+  steps: view('steps'),
   rows: view('rows'),
   json: { element: h('pre', { tabindex: 0 }), show: (e) => void (e.textContent = last ? JSON.stringify(last.report, null, 1) : texts.empty) },
 });

@@ -30,7 +30,7 @@ export function tableView(table: Table): HTMLElement {
   const note = h('p', { class: 'note', hidden: true });
   const heads = table.head.map((name, c) =>
     h('th', { scope: 'col', class: numeric[c] ? 'number' : undefined },
-      h('button', { onclick: () => sort(c) }, name)));
+      h('button', { onclick: () => sort(c) }, name === '*' ? texts.anyLabel : name)));
 
   const chosen = () => {
     const rows = wanted ? table.rows.filter((r) => r.some((v) => String(v).toLowerCase().includes(wanted))) : [...table.rows];

@@ -58,7 +58,7 @@ async function fine(address, looks) {
   await page.context().close();
 }
 
-const TABS = ['formulas', 'dual', 'kkt', 'words', 'prices', 'why', 'rows', 'json', 'answer'];
+const TABS = ['formulas', 'dual', 'kkt', 'words', 'prices', 'why', 'steps', 'rows', 'json', 'answer'];
 
 /** Until the tab shows what it asked for. */
 async function show(page, tab) {

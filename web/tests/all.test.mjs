@@ -173,6 +173,12 @@ test('a link to a view runs the model', async () => {
   await page.context().close();
 });
 
+test('steps: the pivots of a small program', async () => {
+  const page = await open(browser, `${site.site}#model=teaching/production.blk&tab=steps`);
+  await page.waitForFunction(() => /pivot 2: make\('chair'\) enters the basis, limit\('saw'\) leaves/.test(document.querySelector('#panel').textContent));
+  await page.context().close();
+});
+
 test('a slider stays in the range that the text gives; labels with signs are completed whole', async () => {
   const page = await open(browser, `${site.site}?x#text=${encodeURIComponent('* @slider n 0 10 1\nScalar n / 1 /;\ndisplay n;')}`);
   await answer(page);

@@ -30,7 +30,7 @@ enum Request {
     Edit(edit::Edit),
     /// A run.
     Run(Project),
-    /// Another view of a model: `formulas`, `dual`, `kkt`, `rows`.
+    /// Another view of a model: `formulas`, `dual`, `kkt`, `words`, `prices`, `rows`, `steps`.
     View {
         view: String,
         #[serde(flatten)]
@@ -191,14 +191,8 @@ fn view_of(view: &str, model: &Model, options: &Options) -> String {
         "kkt" => model.kkt(&choice, options),
         "words" => return sheet(model.explain(&choice, options)),
         "prices" => return sheet(model.ranges(&choice, options).map(|r| r.sheet)),
-        "rows" => {
-            let run = model.run(&options.clone().list(LISTED));
-            return written(&Page {
-                text: run.printed().into(),
-                diagnostics: run.diagnostics().to_vec(),
-                ..Page::default()
-            });
-        }
+        "rows" => return printed(model, &options.clone().list(LISTED)),
+        "steps" => return printed(model, &options.clone().option("log", "1")),
         _ => return error("there is no such view"),
     };
     match formulas {
@@ -210,6 +204,16 @@ fn view_of(view: &str, model: &Model, options: &Options) -> String {
         }),
         Err(e) => refused(e),
     }
+}
+
+/// What a run prints.
+fn printed(model: &Model, options: &Options) -> String {
+    let run = model.run(options);
+    written(&Page {
+        text: run.printed().into(),
+        diagnostics: run.diagnostics().to_vec(),
+        ..Page::default()
+    })
 }
 
 fn sheet(sheet: Result<bmod::Sheet, bmod::Error>) -> String {

@@ -1,0 +1,56 @@
+;;; check.el --- see run.sh  -*- lexical-binding: t -*-
+
+(require 'cl-lib)
+(require 'bmod-mode)
+(require 'eglot)
+(require 'flymake)
+(require 'xref)
+
+(defvar failed nil)
+(defun check (what ok seen)
+  (princ (if ok (format "ok     %s\n" what) (format "FAILED %s: %S\n" what seen)))
+  (unless ok (setq failed t)))
+(defun wait-for (condition)
+  "Lets the processes speak until CONDITION gives something; that."
+  (let ((ends (+ (float-time) 20)) found)
+    (while (and (not (setq found (funcall condition))) (< (float-time) ends))
+      (accept-process-output nil 0.05))
+    found))
+(defun face-of (text)
+  (save-excursion
+    (goto-char (point-min))
+    (re-search-forward (concat "^" (regexp-quote text)))
+    (get-text-property (match-beginning 0) 'face)))
+
+(setq eglot-server-programs (list (cons 'bmod-mode (list (getenv "BMOD") "lsp"))))
+(normal-mode)
+(check "the mode of the file" (eq major-mode 'bmod-mode) major-mode)
+(font-lock-ensure)
+(check "colours" (and (eq (face-of "Sets") 'font-lock-type-face) (eq (face-of "$include") 'font-lock-preprocessor-face)
+                      (eq (face-of "solve static") 'font-lock-keyword-face))
+       (mapcar #'face-of '("Sets" "$include" "solve static")))
+(apply #'eglot (eglot--guess-contact))
+(check "the server is attached" (wait-for #'eglot-current-server) nil)
+
+(goto-char (point-max))
+(insert "display nosuch;\n")
+(eglot--signal-textDocument/didChange)
+(flymake-start)
+(let ((told (wait-for #'flymake-diagnostics)))
+  (check "a slip is told" (and told (string-match-p "nosuch" (flymake-diagnostic-text (car told)))) (mapcar #'flymake-diagnostic-text told)))
+
+(goto-char (point-min))
+(search-forward "solve static")
+(goto-char (match-end 0))
+(backward-char 2)
+(let ((places (xref-backend-definitions 'eglot (xref-backend-identifier-at-point 'eglot))))
+  (check "a definition in the included file"
+         (and places (string-match-p "block_limit.blk\\'" (xref-location-group (xref-item-location (car places))))) places))
+(let ((hover (jsonrpc-request (eglot-current-server) :textDocument/hover (eglot--TextDocumentPositionParams))))
+  (check "hover" (string-match-p "static theorem" (format "%S" hover)) hover))
+(cl-letf (((symbol-function 'y-or-n-p) #'always)) ; the other file is to be changed, too
+  (eglot-rename "upper"))
+(goto-char (point-min))
+(check "a name changed" (search-forward "solve upper using lp" nil t) nil)
+(set-buffer-modified-p nil)
+(kill-emacs (if failed 1 0))
