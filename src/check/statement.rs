@@ -90,14 +90,7 @@ impl Compiler {
                         domain.conditions.push(cond);
                     }
                 }
-                let body = late.into_iter().rev().fold(body, |body, cond| {
-                    let span = cond.span;
-                    vec![Code::new(
-                        CodeKind::If(vec![(cond, body)], Vec::new()),
-                        span,
-                    )]
-                });
-                Ok(CodeKind::Loop(domain, body))
+                Ok(CodeKind::Loop(domain, late, body))
             })?,
             StmtKind::While(cond, body) => CodeKind::While(self.expr(cond)?, self.body(body, map)?),
             StmtKind::Repeat(body, until) => {
