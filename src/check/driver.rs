@@ -13,7 +13,9 @@ impl Compiler {
     /// where each turn assigns whole symbols: `p(i)`, not `p(i,j)` with j of the loop, `p(i,'a')`, `p(i+1)`, a
     /// subset, or `p(*)`.
     /// What the right side reads is searched by its first positions, up to the first that the loop does not
-    /// control: of `loop(j, p(i) = q(j,i))` the turns are those for which q has a record with this j.
+    /// control: of `loop(j, p(i) = q(j,i))` the turns are those for which q has a record with this j. Where the first
+    /// position is the innermost index it alone is searched: j of `q(j,'a')`, but both of `q('a',j)`.
+    /// A loop that is all that another holds counts as one with it; indices of others around do not drive.
     pub(super) fn driver(&mut self, body: &[Code]) -> Option<Node> {
         let mut assigned = Vec::new();
         if !self.driven(body, &mut assigned) {
@@ -53,7 +55,9 @@ impl Compiler {
         match &n.kind {
             NodeKind::Const(0.0) => Some(Vec::new()),
             NodeKind::Data(table, key) => Some(vec![self.begins_with(*table, key, own, n.span)?]),
-            NodeKind::SameAs(a, b) if [a, b].iter().all(|p| is_fixed(p, own)) => {
+            NodeKind::SameAs(a, b)
+                if [a, b].iter().all(|p| is_fixed(p, own)) && (self.turns(a) || self.turns(b)) =>
+            {
                 let same = NodeKind::SameAs(a.clone(), b.clone());
                 Some(vec![Node::membership(same, n.span)])
             }
@@ -213,6 +217,11 @@ impl Compiler {
         Some(vec![all.reduce(both)?])
     }
 
+    /// Whether it is an index that turns the loop.
+    fn turns(&self, p: &Part) -> bool {
+        matches!(p, Part::Slot(s) if self.nest.contains(s))
+    }
+
     /// Whether there is a record with these first positions, up to the first that the loop does not control.
     fn begins_with(&mut self, table: TableId, key: &Key, own: &[Slot], span: Span) -> Option<Node> {
         // An index that comes again is not searched for.
@@ -224,10 +233,17 @@ impl Compiler {
             }
             !again && is_fixed(p, own)
         };
-        let fixed = key.parts.iter().take_while(searched).count();
-        let runs = |p: &Part| matches!(p, Part::Slot(_));
-        if !key.parts[..fixed].iter().any(runs) {
+        let mut fixed = key.parts.iter().take_while(searched).count();
+        if !key.parts[..fixed].iter().any(|p| self.turns(p)) {
             return None;
+        }
+        let running = key.parts.iter().filter(|p| is_fixed(p, own));
+        let innermost = running.filter_map(|p| match p {
+            Part::Slot(s) => Some(*s),
+            _ => None,
+        });
+        if matches!(key.parts[0], Part::Slot(first) if innermost.max() == Some(first)) {
+            fixed = 1;
         }
         let mut parts = key.parts.clone();
         if fixed == parts.len() {
