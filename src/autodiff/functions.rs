@@ -30,6 +30,9 @@ pub enum Operation {
     Term,
 }
 
+/// `gammareg` is 0 below this, which is e^−88.
+const GAMMA_REG_LEAST: f64 = 6.054601895401186e-39;
+
 /// Why an evaluation failed.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum ErrorKind {
@@ -339,7 +342,8 @@ pub fn function_value(f: Function, args: &[f64]) -> Result<f64, DomainError> {
             if y > special::LARGEST_PARAMETER {
                 return fail(1, Precision);
             }
-            special::gamma_reg(y, x).v
+            let v = special::gamma_reg(y, x).v;
+            if v < GAMMA_REG_LEAST { 0.0 } else { v }
         }
         F::Binomial => {
             if x <= -1.0 || y <= -1.0 {

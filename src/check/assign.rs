@@ -29,6 +29,7 @@ impl Compiler {
                 value,
                 covers: false,
                 nonzero: a.nonzero,
+                in_turn: false,
             };
             out.push(Code::new(kind, span));
             return Ok(());
@@ -78,32 +79,16 @@ impl Compiler {
         if covers && whole && reading.counted && !reading.read {
             out.push(Code::new(CodeKind::Clear(root, None), span));
         }
-        let recurrence = reading.is_recurrence(&key);
-        let assigned = |domain, key, value| {
-            let kind = CodeKind::Assign {
-                domain,
-                target,
-                value,
-                covers,
-                nonzero: a.nonzero,
-                key,
-            };
-            Code::new(kind, span)
-        };
-        if !recurrence {
-            out.push(assigned(domain, key, value));
-            return Ok(());
-        }
-        let tables = match symbol.has_attributes() {
-            true => symbol.table..symbol.table + attribute::COUNT,
-            false => symbol.table..symbol.table + 1,
-        };
-        out.push(in_turn(
-            tables,
+        let kind = CodeKind::Assign {
+            in_turn: reading.is_recurrence(&key),
             domain,
-            |d| assigned(d, key.clone(), value.clone()),
-            span,
-        ));
+            target,
+            value,
+            covers,
+            nonzero: a.nonzero,
+            key,
+        };
+        out.push(Code::new(kind, span));
         Ok(())
     }
 
@@ -304,31 +289,6 @@ fn of_the_run(name: &str) -> Option<Target> {
         "heaplimit" => Target::Ignored,
         _ => return None,
     })
-}
-
-/// An assignment that reads what it writes: at once where the symbol has no record, which is read as it was, else element
-/// by element.
-fn in_turn(
-    tables: std::ops::Range<TableId>,
-    domain: Domain,
-    assigned: impl Fn(Domain) -> Code,
-    span: Span,
-) -> Code {
-    let at_once = assigned(domain.clone());
-    let inner = Domain {
-        conditions: domain.conditions,
-        ..Domain::default()
-    };
-    let outer = Domain {
-        conditions: Vec::new(),
-        ..domain
-    };
-    let turns = Code::new(CodeKind::Loop(outer, vec![assigned(inner)]), span);
-    let records = tables.map(|t| Node::data(NodeKind::Card(t), span));
-    let or = |a, b| NodeKind::Binary(ast::BinaryOp::Or, Box::new(a), Box::new(b));
-    let records = records.reduce(|a, b| Node::data(or(a, b), span));
-    let arms = records.into_iter().zip([vec![turns]]).collect();
-    Code::new(CodeKind::If(arms, vec![at_once]), span)
 }
 
 /// How an assignment reads what it writes to.

@@ -153,6 +153,10 @@ impl Compiler {
             }
             return Ok(self.run_over(id, out));
         };
+        let found = self.scope.iter().rposition(|(s, _)| *s == id);
+        if found.is_some_and(|at| self.maps.contains(&at)) {
+            return self.controlled_already(set, span);
+        }
         let parts = self.control_key(indices, id, span, out)?;
         out.members.push(Driver {
             table: symbol.table,

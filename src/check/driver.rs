@@ -1,4 +1,4 @@
-//! What drives a loop around one assignment: turns that GAMS passes over.
+//! What drives a loop around assignments: turns that GAMS passes over.
 
 use super::Compiler;
 use super::node::*;
@@ -8,32 +8,44 @@ use crate::model::instance::Function;
 use crate::source::Span;
 
 impl Compiler {
-    /// What drives a loop around a single assignment to a parameter or set, as GAMS runs it: turns in which the
-    /// right side is 0 whatever the assignment's own indices are passed over, and nothing is assigned in them. Only
-    /// where each turn assigns the whole symbol: `p(i)`, not `p(i,j)` with j of the loop, `p(i,'a')`, `p(i+1)`, a
+    /// What drives a loop around nothing but assignments to parameters and sets, as GAMS runs it: turns in which the
+    /// right sides are 0 whatever the assignments' own indices are passed over, and nothing is assigned in them. Only
+    /// where each turn assigns whole symbols: `p(i)`, not `p(i,j)` with j of the loop, `p(i,'a')`, `p(i+1)`, a
     /// subset, or `p(*)`.
     /// What the right side reads is searched by its first positions, up to the first that the loop does not
-    /// control: of `loop(j, p(i) = q(j,i))` the turns are those for which q has a record with this j.
+    /// control: of `loop(j, p(i) = q(j,i))` the turns are those for which q has a record with this j. Where the first
+    /// position is the innermost index it alone is searched: j of `q(j,'a')`, but both of `q('a',j)`.
+    /// A loop that is all that another holds counts as one with it; indices of others around do not drive.
     pub(super) fn driver(&mut self, body: &[Code]) -> Option<Node> {
-        let (value, own, target) = self.driven(body)?;
-        let (table, set) = match target {
-            Target::Set(t) => (t, true),
-            Target::Table(t) => (t, false),
-            _ => return None,
-        };
-        let mut reading = LateReading {
-            compiler: self,
-            table,
-            own,
-            inner: Vec::new(),
-            guarded: set,
-            early: false,
-        };
-        reading.node(value);
-        if reading.early {
+        let mut assigned = Vec::new();
+        if !self.driven(body, &mut assigned) {
             return None;
         }
-        self.resting(value, own)?.into_iter().reduce(either)
+        let tables: Vec<TableId> = assigned.iter().map(|a| a.table).collect();
+        let mut unless = Vec::new();
+        for &Assigned {
+            value,
+            own,
+            table,
+            set,
+        } in &assigned
+        {
+            let mut reading = LateReading {
+                compiler: self,
+                table,
+                tables: &tables,
+                own,
+                inner: Vec::new(),
+                guarded: set,
+                early: false,
+            };
+            reading.node(value);
+            if reading.early {
+                return None;
+            }
+            unless.extend(self.resting(value, own)?);
+        }
+        unless.into_iter().reduce(either)
     }
 
     /// Where no record of the loop's indices is read an expression is 0, whatever its own indices are: the conditions of
@@ -43,7 +55,9 @@ impl Compiler {
         match &n.kind {
             NodeKind::Const(0.0) => Some(Vec::new()),
             NodeKind::Data(table, key) => Some(vec![self.begins_with(*table, key, own, n.span)?]),
-            NodeKind::SameAs(a, b) if [a, b].iter().all(|p| is_fixed(p, own)) => {
+            NodeKind::SameAs(a, b)
+                if [a, b].iter().all(|p| is_fixed(p, own)) && (self.turns(a) || self.turns(b)) =>
+            {
                 let same = NodeKind::SameAs(a.clone(), b.clone());
                 Some(vec![Node::membership(same, n.span)])
             }
@@ -203,6 +217,11 @@ impl Compiler {
         Some(vec![all.reduce(both)?])
     }
 
+    /// Whether it is an index that turns the loop.
+    fn turns(&self, p: &Part) -> bool {
+        matches!(p, Part::Slot(s) if self.nest.contains(s))
+    }
+
     /// Whether there is a record with these first positions, up to the first that the loop does not control.
     fn begins_with(&mut self, table: TableId, key: &Key, own: &[Slot], span: Span) -> Option<Node> {
         // An index that comes again is not searched for.
@@ -214,10 +233,17 @@ impl Compiler {
             }
             !again && is_fixed(p, own)
         };
-        let fixed = key.parts.iter().take_while(searched).count();
-        let runs = |p: &Part| matches!(p, Part::Slot(_));
-        if !key.parts[..fixed].iter().any(runs) {
+        let mut fixed = key.parts.iter().take_while(searched).count();
+        if !key.parts[..fixed].iter().any(|p| self.turns(p)) {
             return None;
+        }
+        let running = key.parts.iter().filter(|p| is_fixed(p, own));
+        let innermost = running.filter_map(|p| match p {
+            Part::Slot(s) => Some(*s),
+            _ => None,
+        });
+        if matches!(key.parts[0], Part::Slot(first) if innermost.max() == Some(first)) {
+            fixed = 1;
         }
         let mut parts = key.parts.clone();
         if fixed == parts.len() {
@@ -239,36 +265,51 @@ impl Compiler {
         Some(Node::data(any, span))
     }
 
-    /// The right side of such an assignment, its own indices, and what it writes to.
-    fn driven<'b>(&self, body: &'b [Code]) -> Option<(&'b Node, &'b [Slot], Target)> {
-        let [only] = body else { return None };
-        match &only.kind {
+    /// Whether these are such assignments, under conditions or not; adds them.
+    fn driven<'b>(&self, body: &'b [Code], out: &mut Vec<Assigned<'b>>) -> bool {
+        body.iter().all(|c| match &c.kind {
             CodeKind::If(arms, otherwise) if otherwise.is_empty() => match arms.as_slice() {
-                [(_, body)] => self.driven(body),
-                _ => None,
+                [(_, body)] => self.driven(body, out),
+                _ => false,
             },
             CodeKind::Assign {
                 domain,
-                target: target @ (Target::Table(t) | Target::Set(t)),
+                target: target @ (Target::Table(table) | Target::Set(table)),
                 value,
                 nonzero: false,
                 covers: true,
                 ..
             } if !domain.slots.is_empty() => {
-                let driven = self.is_data(*t) && !value.has_random();
-                driven.then_some((value, &domain.slots, *target))
+                out.push(Assigned {
+                    value,
+                    own: &domain.slots,
+                    table: *table,
+                    set: matches!(target, Target::Set(_)),
+                });
+                self.is_data(*table) && !value.has_random()
             }
-            _ => None,
-        }
+            _ => false,
+        })
     }
+}
+
+/// An assignment to a whole parameter or set.
+struct Assigned<'b> {
+    value: &'b Node,
+    /// Its own indices.
+    own: &'b [Slot],
+    table: TableId,
+    set: bool,
 }
 
 /// Whether a loop's assignment reads what it writes to so that no turn may be passed over: GAMS passes over turns
 /// where no such reading is at the record that is written or at labels alone, and, of a parameter, all is under a `$`
 /// whose other side drives the loop: `p(i,j) = q(k)$p(i++1,j)`, but not `q(k)*p(i++1,j)`, `q(k)$p(i,j)`, `q(k)$p('a','b')`.
+/// What other assignments of the loop write to need only be so guarded.
 struct LateReading<'c> {
     compiler: &'c mut Compiler,
     table: TableId,
+    tables: &'c [TableId],
     own: &'c [Slot],
     /// Indices of the sums around.
     inner: Vec<Slot>,
@@ -297,11 +338,11 @@ impl LateReading<'_> {
 impl<'a> Visitor<'a> for LateReading<'_> {
     fn node(&mut self, n: &'a Node) {
         match &n.kind {
-            NodeKind::Data(t, key) if *t == self.table => {
+            NodeKind::Data(t, key) if self.tables.contains(t) => {
                 let own = |p: (&Part, &Slot)| matches!(p.0, Part::Slot(s) if s == p.1);
                 let same = key.parts.iter().zip(self.own).all(own);
                 let fixed = key.parts.iter().all(|p| matches!(p, Part::Label(_)));
-                self.early |= !self.guarded || same || fixed;
+                self.early |= !self.guarded || *t == self.table && (same || fixed);
                 n.walk(self);
             }
             NodeKind::Dollar(a, c) => self.sides(a, c),

@@ -108,6 +108,8 @@ pub(crate) struct Compiler {
     output: Option<(String, Span, Vec<exchange::Wanted>)>,
     shows_numbers: bool,
     next_slot: Slot,
+    /// Indices of the loop that is read and of those around it that hold nothing else.
+    nest: Vec<Slot>,
     slots: usize,
     in_equation: bool,
     /// Labels that are new may stand here.
@@ -244,6 +246,7 @@ impl Compiler {
             input: None,
             output: None,
             next_slot: 0,
+            nest: Vec::new(),
             shows_numbers: false,
             slots: 0,
             in_equation: false,

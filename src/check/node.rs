@@ -418,9 +418,11 @@ pub enum CodeKind {
         covers: bool,
         /// `$=`: what is 0 is not assigned.
         nonzero: bool,
+        /// Element by element: the right side reads what was written before.
+        in_turn: bool,
     },
-    /// `loop`
-    Loop(Domain, Vec<Code>),
+    /// `loop`: conjuncts of its condition that the body may change stand apart.
+    Loop(Domain, Vec<Node>, Vec<Code>),
     /// `while`
     While(Node, Vec<Code>),
     /// `for`

@@ -78,8 +78,15 @@ impl Compiler {
             StmtKind::Solve(s) => self.solve(s, span)?,
             StmtKind::Loop(d, body) => self.scoped(|c| {
                 let mut domain = c.domain(d)?;
+                let mut nest = std::mem::take(&mut c.nest);
+                nest.extend(&domain.slots);
+                if holds_one_loop(body) {
+                    c.nest.clone_from(&nest);
+                }
                 let body = c.body(body, map)?;
+                c.nest = nest;
                 domain.conditions.extend(c.driver(&body));
+                c.nest.clear();
                 // What the body changes is asked at every turn, not before the first.
                 let effects = Effects::of(&body, &c.symbols);
                 let mut late = Vec::new();
@@ -90,14 +97,7 @@ impl Compiler {
                         domain.conditions.push(cond);
                     }
                 }
-                let body = late.into_iter().rev().fold(body, |body, cond| {
-                    let span = cond.span;
-                    vec![Code::new(
-                        CodeKind::If(vec![(cond, body)], Vec::new()),
-                        span,
-                    )]
-                });
-                Ok(CodeKind::Loop(domain, body))
+                Ok(CodeKind::Loop(domain, late, body))
             })?,
             StmtKind::While(cond, body) => CodeKind::While(self.expr(cond)?, self.body(body, map)?),
             StmtKind::Repeat(body, until) => {
@@ -375,4 +375,19 @@ fn from_first_item(items: &[DisplayItem], span: Span) -> Span {
         None => span,
     };
     Span::new(first.lo, span.hi)
+}
+
+/// Whether these are a loop and nothing else, under conditions or not.
+fn holds_one_loop(body: &[Stmt]) -> bool {
+    let mut rest = body.iter().filter(|s| !matches!(s.kind, StmtKind::Empty));
+    let (Some(only), None) = (rest.next(), rest.next()) else {
+        return false;
+    };
+    match &only.kind {
+        StmtKind::Loop(..) => true,
+        StmtKind::If(arms, otherwise) => {
+            otherwise.is_empty() && matches!(arms.as_slice(), [(_, body)] if holds_one_loop(body))
+        }
+        _ => false,
+    }
 }

@@ -144,8 +144,9 @@ impl Code {
                 key.walk(v);
                 v.node(value);
             }
-            CodeKind::Loop(d, body) => {
+            CodeKind::Loop(d, anew, body) => {
                 v.domain(d);
+                anew.iter().for_each(|c| v.guard(c));
                 body.iter().for_each(|c| v.code(c));
             }
             CodeKind::While(condition, body) | CodeKind::Repeat(body, condition) => {

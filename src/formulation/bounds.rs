@@ -140,7 +140,7 @@ fn walk(code: &[Code], top: bool, f: &mut dyn FnMut(&Code, bool)) {
     for c in code {
         f(c, top);
         match &c.kind {
-            CodeKind::Loop(_, b) | CodeKind::While(_, b) | CodeKind::Repeat(b, _) => {
+            CodeKind::Loop(_, _, b) | CodeKind::While(_, b) | CodeKind::Repeat(b, _) => {
                 walk(b, false, f)
             }
             CodeKind::For { body, .. } => walk(body, false, f),

@@ -112,7 +112,7 @@ fn solves_of<'a>(code: &'a [Code], out: &mut Vec<(&'a SolveCode, Span)>) {
     for c in code {
         match &c.kind {
             CodeKind::Solve(s) => out.push((s, c.span)),
-            CodeKind::Loop(_, b) | CodeKind::While(_, b) | CodeKind::Repeat(b, _) => {
+            CodeKind::Loop(_, _, b) | CodeKind::While(_, b) | CodeKind::Repeat(b, _) => {
                 solves_of(b, out)
             }
             CodeKind::For { body, .. } => solves_of(body, out),

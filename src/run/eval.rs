@@ -468,6 +468,10 @@ impl Machine<'_> {
             return functions::HUGE;
         }
         if let Err(why) = random::valid(f, &a) {
+            if matches!(f, D::RandLinear | D::RandTriangle) {
+                // These look at their arguments behind the draw.
+                self.random.borrow_mut().uniform(0.0, 1.0);
+            }
             return self.execution_error("E0403", span, why.into(), "guard it with a condition");
         }
         let mut random = self.random.borrow_mut();

@@ -41,7 +41,7 @@ impl Machine<'_> {
             point: x.keyword.name.contains("point"),
             strict: x.keyword.name.ends_with("dc"),
             merge: false,
-            explain: false,
+            reading: false,
             span,
         });
     }

@@ -3,6 +3,7 @@
 use super::plan::Wanted;
 use super::random::Random;
 use super::scan::Scans;
+use super::support::Analysis;
 use super::{Flow, Frame, Machine};
 use crate::check::expansion::Tuples;
 use crate::check::node::*;
@@ -71,14 +72,18 @@ impl Machine<'_> {
                 value,
                 covers,
                 nonzero,
+                in_turn,
             } => {
                 let right = Right {
                     value,
                     nonzero: *nonzero,
                 };
-                self.assign(domain, *target, key, right, *covers, frame);
+                match in_turn {
+                    true => self.assign_in_turn(domain, *target, key, right, frame),
+                    false => self.assign(domain, *target, key, right, *covers, frame),
+                }
             }
-            CodeKind::Loop(d, body) => return self.run_loop(d, body, frame),
+            CodeKind::Loop(d, anew, body) => return self.run_loop(d, anew, body, frame),
             CodeKind::While(cond, body) => {
                 while truth(self.eval(cond, frame)) {
                     if let ControlFlow::Break(flow) = self.turn(body, frame) {
@@ -186,7 +191,15 @@ impl Machine<'_> {
         }
     }
 
-    fn run_loop(&mut self, d: &Domain, body: &[Code], frame: &mut Frame) -> Flow {
+    /// `anew` are the conjuncts of the condition that are asked at every turn.
+    fn run_loop(&mut self, d: &Domain, anew: &[Node], body: &[Code], frame: &mut Frame) -> Flow {
+        if !d.conditions.is_empty() && Analysis::new(self, &d.slots).any_undefined(anew) {
+            // `na and 0` is `na`, which counts as true: none stands alone.
+            let mut whole = d.clone();
+            let mut all = std::mem::take(&mut whole.conditions);
+            all.extend_from_slice(anew);
+            return self.run_loop(&whole, &all, body, frame);
+        }
         if d.slots.is_empty() {
             // Everything is under control already: once, if the tuple is there.
             let plan = self.plan(d, Wanted::default());
@@ -195,7 +208,10 @@ impl Machine<'_> {
                 once = true;
                 false
             });
-            if once && let ControlFlow::Break(flow) = self.turn(body, frame) {
+            if once
+                && self.all_hold(anew, frame)
+                && let ControlFlow::Break(flow) = self.turn(body, frame)
+            {
                 return flow;
             }
             return Flow::Next;
@@ -205,7 +221,11 @@ impl Machine<'_> {
             for (&s, &l) in d.slots.iter().zip(t) {
                 frame[s as usize] = l;
             }
-            if let ControlFlow::Break(flow) = self.turn(body, frame) {
+            if !self.all_hold(anew, frame) {
+                if !self.keep_going() {
+                    return Flow::Stop;
+                }
+            } else if let ControlFlow::Break(flow) = self.turn(body, frame) {
                 return flow;
             }
         }
@@ -344,6 +364,73 @@ impl Machine<'_> {
         }
         tidy_records(&mut out, key.parts.len());
         self.write(target, out, covers);
+    }
+
+    /// Each element reads what those before it have written. As in GAMS what has its first label before that of the
+    /// symbol's first record is not seen before the end.
+    fn assign_in_turn(
+        &mut self,
+        domain: &Domain,
+        target: Target,
+        key: &Key,
+        right: Right,
+        frame: &mut Frame,
+    ) {
+        let symbol = self.target_table(target).and_then(|t| self.table_symbol(t));
+        let Some(symbol) = symbol.filter(|_| !domain.slots.is_empty()) else {
+            return self.assign(domain, target, key, right, false, frame);
+        };
+        let owner = self.symbols.get(symbol);
+        let count = match owner.has_attributes() {
+            true => attribute::COUNT,
+            false => 1,
+        };
+        let mut first: Option<Label> = None;
+        for t in owner.table..owner.table + count {
+            let table = &mut self.store.tables[t as usize];
+            table.tidy();
+            if !table.is_empty() {
+                let least = table.key(0)[0];
+                first = Some(first.map_or(least, |f| f.min(least)));
+            }
+        }
+        let outer = Domain {
+            conditions: Vec::new(),
+            ..domain.clone()
+        };
+        let tuples = self.tuples(&outer, frame);
+        let mut late = Records {
+            keys: Vec::new(),
+            values: Vec::new(),
+        };
+        for t in tuples.chunks_exact(domain.slots.len()) {
+            for (&s, &l) in domain.slots.iter().zip(t) {
+                frame[s as usize] = l;
+            }
+            if !self.keep_going() {
+                break;
+            }
+            if !self.all_hold(&domain.conditions, frame) {
+                continue;
+            }
+            let (at, before) = (late.keys.len(), late.values.len());
+            self.evaluate(symbol, key, right, frame, &mut late);
+            if late.values.len() > before && first.is_some_and(|f| late.keys[at] >= f) {
+                let one = Records {
+                    keys: late.keys.split_off(at),
+                    values: late.values.split_off(before),
+                };
+                match target {
+                    Target::Table(t) => self.store.table_mut(t).set(&one.keys, one.values[0]),
+                    _ => self.write(target, one, false),
+                }
+            }
+        }
+        *self.current.borrow_mut() = None;
+        if !self.stopped() {
+            tidy_records(&mut late, key.parts.len());
+            self.write(target, late, false);
+        }
     }
 
     fn assign_one(

@@ -1,6 +1,7 @@
 //! GAMS's random stream: Knuth's subtractive lagged-Fibonacci generator (lags 55 and 24, modulus
 //! 10⁹; The Art of Computer Programming, vol. 2, section 3.6), and the distributions on top of it.
 
+use crate::autodiff::special::log_gamma;
 use crate::check::node::DataFunction;
 
 const MODULUS: i64 = 1_000_000_000;
@@ -106,10 +107,13 @@ impl Random {
 
     /// Density falling linearly from `low` (slope from low to high).
     pub fn linear(&mut self, low: f64, slope: f64, high: f64) -> f64 {
-        // Density c + slope·x with total 1 on [low, high], by inversion.
+        // Density c + slope·x, by inversion. As in GAMS its total is 1 only where high − low is.
         let w = high - low;
-        let c = 1.0 / w - slope * w / 2.0;
+        let c = 1.0 / w - slope / 2.0;
         let u = self.unit();
+        if w == 0.0 {
+            return low;
+        }
         if slope == 0.0 {
             return low + w * u;
         }
@@ -130,9 +134,34 @@ impl Random {
         }
     }
 
-    /// Number of successes in `n` trials.
+    /// Number of successes in `n` trials. As in GAMS by one number: from the most probable count down to 0, then up.
     pub fn binomial(&mut self, n: f64, p: f64) -> f64 {
-        (0..n.max(0.0) as u64).filter(|_| self.unit() < p).count() as f64
+        if p.min(1.0 - p) <= 1e-4 {
+            return if p < 0.5 { 0.0 } else { n };
+        }
+        let odds = p / (1.0 - p);
+        let mode = ((n + 1.0) * p).floor().min(n);
+        let likely = (log_gamma(n + 1.0) - log_gamma(mode + 1.0) - log_gamma(n - mode + 1.0)
+            + mode * p.ln()
+            + (n - mode) * (1.0 - p).ln())
+        .exp();
+        let mut left = self.unit() - likely;
+        let (mut k, mut here) = (mode, likely);
+        while left >= 0.0 && k > 0.0 {
+            here *= k / ((n - k + 1.0) * odds);
+            k -= 1.0;
+            left -= here;
+        }
+        if left < 0.0 {
+            return k;
+        }
+        (k, here) = (mode, likely);
+        while left >= 0.0 && k < n {
+            here *= (n - k) * odds / (k + 1.0);
+            k += 1.0;
+            left -= here;
+        }
+        k
     }
 }
 
@@ -162,11 +191,10 @@ pub(super) fn valid(f: DataFunction, a: &[f64]) -> Result<(), &'static str> {
         (D::RandTriangle, [low, mid, high]) if !(low <= mid && mid <= high) => {
             Err("the mode must be between the ends of the interval")
         }
-        // The density falls below 0 at one end where the slope is too steep.
-        (D::RandLinear, [low, slope, high])
-            if low >= high || slope.abs() * (high - low).powi(2) > 2.0 =>
-        {
-            Err("a linear density needs low < high and a slope that keeps it positive")
+        (D::RandLinear, [low, slope, high]) if low > high || slope.abs() * (high - low) > 2.0 => {
+            Err(
+                "a linear density needs low <= high and a slope of at most 2/(high − low) either way",
+            )
         }
         _ => Ok(()),
     }

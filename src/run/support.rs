@@ -172,8 +172,13 @@ impl<'m, 'h> Analysis<'m, 'h> {
     }
 
     /// Whether conditions must be evaluated together: `na and 0` is `na`, which counts as true.
-    pub(super) fn are_joint(&mut self, conditions: &[Node]) -> bool {
-        conditions.len() > 1 && !conditions.iter().all(|c| self.is_defined(c))
+    fn are_joint(&mut self, conditions: &[Node]) -> bool {
+        conditions.len() > 1 && self.any_undefined(conditions)
+    }
+
+    /// Whether some condition may be `na`, or `undf` without an error.
+    pub(super) fn any_undefined(&mut self, conditions: &[Node]) -> bool {
+        !conditions.iter().all(|c| self.is_defined(c))
     }
 
     /// Whether a value is never `na`, nor `undf` unless an error is reported.

@@ -255,12 +255,13 @@ impl Reader<'_> {
         for (r, key) in keys.chunks_exact(dim).enumerate() {
             if !loading.request.strict {
                 let wrong = key.iter().enumerate().find(|&(p, &k)| {
-                    let Some(set) = sets.get(p).copied().flatten() else {
+                    let set = sets.get(p).copied().flatten();
+                    if set.is_none() && loading.request.reading {
                         return false;
-                    };
+                    }
                     let known = belongs.entry((p, k)).or_insert_with(|| {
                         let label = loading.known(&self.gdx.labels[k as usize]);
-                        label.is_some_and(|l| loading.belongs(set, l))
+                        label.is_some_and(|l| set.is_none_or(|s| loading.belongs(s, l)))
                     });
                     !*known
                 });
@@ -281,16 +282,16 @@ impl Reader<'_> {
         }
         if let Some((_, p, label)) = outside {
             let set = symbol.domain.get(p).and_then(domain_set);
-            let set = set.map_or("", |s| &loading.symbols.get(s).name);
+            let why = set.map_or("which the program does not have".into(), |s| {
+                format!("which is not in `{}`", loading.symbols.get(s).name)
+            });
             let (file, name) = (self.file, &w.name);
             let total = taken.len() + count;
             let message =
                 format!("{file}: {count} of the {total} records of `{name}` are left out");
             loading.warn(
                 Diagnostic::warning("E0479", w.span, message)
-                    .label(format!(
-                        "such as one with `{label}`, which is not in `{set}`"
-                    ))
+                    .label(format!("such as one with `{label}`, {why}"))
                     .help("`$loadDC` and `execute_loadDC` make it an error"),
             );
         }

@@ -213,8 +213,8 @@ pub struct Request<'a> {
     pub strict: bool,
     /// What a symbol held stays where the file has no record.
     pub merge: bool,
-    /// Symbols without an explanatory text take that of the file, as they do while the text is read.
-    pub explain: bool,
+    /// The text is being read: symbols without an explanatory text take that of the file, and its labels are new ones.
+    pub reading: bool,
     /// Place of the statement.
     pub span: Span,
 }
@@ -293,7 +293,7 @@ pub fn load(
     }
     for (symbol, text) in loaded.explanations {
         let symbol = symbols.get_mut(symbol);
-        if request.explain && symbol.text.is_empty() {
+        if request.reading && symbol.text.is_empty() {
             symbol.text = text;
         }
     }
@@ -422,7 +422,7 @@ impl Compiler {
             point: false,
             strict: how.starts_with("dc"),
             merge: matches!(how, "m" | "dcm"),
-            explain: true,
+            reading: true,
             span,
         };
         let mut read = |name: &str, at| parser.read(name, at);
