@@ -13,6 +13,8 @@ enum Dive {
     Locks,
     /// Towards the best solution.
     Guided,
+    /// The column that lacks least to the next integer, up to it: where one of many is chosen, that decides the others.
+    Up,
 }
 
 impl<R: Relaxation> Search<'_, R> {
@@ -30,10 +32,14 @@ impl<R: Relaxation> Search<'_, R> {
                 self.dive(Dive::Nearest, x, control);
             }
             self.jump(x, control);
+            if self.best.is_none() {
+                self.dive(Dive::Up, x, control);
+            }
         } else if affordable && self.nodes.is_multiple_of(often) {
             self.dives.count += 1;
             let kind = match (&self.best, self.dives.count % 3) {
                 (Some(_), 0) => Dive::Guided,
+                (None, 0) => Dive::Up,
                 (_, 1) => Dive::Locks,
                 _ => Dive::Nearest,
             };
@@ -161,6 +167,7 @@ impl<R: Relaxation> Search<'_, R> {
                         goes_up,
                     )
                 }
+                (Dive::Up, _) => (1.0 - fraction, j, true),
                 _ => (far, j, fraction >= 0.5),
             }
         });

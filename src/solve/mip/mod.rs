@@ -143,8 +143,8 @@ fn search(task: &Task, settings: &Settings, budget: &Budget) -> Result<Reply, So
 /// Nodes of the nonlinear program that are solved for a first solution.
 const FIRST_NODES: u64 = 5;
 
-/// The program without products that have a binary factor, where there are some and the program is not convex with them. It
-/// starts at the best point of a few nodes of the nonlinear program.
+/// The program without products that have a binary factor, where it is linear or convex quadratic without them and was neither
+/// before. It starts at the best point of a few nodes of the nonlinear program.
 fn replaced(task: &Task, aim: Aim, settings: &Settings, budget: &Budget) -> Option<Replaced> {
     let instance = task.instance;
     if instance.is_linear() || task.has_pairs() {
@@ -154,19 +154,22 @@ fn replaced(task: &Task, aim: Aim, settings: &Settings, budget: &Budget) -> Opti
         return None;
     }
     let mut replaced = without_binary_products(instance)?;
-    if replaced.instance.is_linear() {
-        let aim = Aim {
-            nodes: FIRST_NODES,
-            record: false,
-            ..aim
-        };
-        let seconds = budget.seconds_left() / 4.0;
-        let first = budget.within(seconds, u64::MAX, |budget| {
-            nonlinear_search(task, aim, settings, &mut Control::new(budget))
-        });
-        if let Some(x) = first.ok().and_then(|found| found.x) {
-            replaced.start_at(&x);
-        }
+    match shape(&replaced.instance) {
+        Shape::Linear => {}
+        Shape::ConvexQuadratic { .. } => return Some(replaced),
+        _ => return None,
+    }
+    let aim = Aim {
+        nodes: FIRST_NODES,
+        record: false,
+        ..aim
+    };
+    let seconds = budget.seconds_left() / 4.0;
+    let first = budget.within(seconds, u64::MAX, |budget| {
+        nonlinear_search(task, aim, settings, &mut Control::new(budget))
+    });
+    if let Some(x) = first.ok().and_then(|found| found.x) {
+        replaced.start_at(&x);
     }
     Some(replaced)
 }
