@@ -26,13 +26,13 @@ type Monomial = Vec<u32>;
 type Polynomial = BTreeMap<Monomial, f64>;
 
 /// Products that are multiplied out of one term, at most.
-const LONGEST: usize = 10_000;
+const MAX_TERM_PRODUCTS: usize = 10_000;
 
 /// New columns, at most: a search over more of them is no better than one over the nonlinear program.
-const MOST: usize = 20_000;
+const MAX_NEW_COLUMNS: usize = 20_000;
 
 /// Bounds of the other factor, at most: what is multiplied by a binary that is 0 to a tolerance is to be 0, too.
-const WIDEST: f64 = 1e6;
+const MAX_FACTOR_BOUND: f64 = 1e6;
 
 /// A program without products that have a binary factor.
 pub(in crate::solve) struct Replaced {
@@ -74,12 +74,12 @@ pub(in crate::solve) fn without_binary_products(instance: &Instance) -> Option<R
                 None => products.builder.push_term(row, weight, part),
             }
         }
-        if products.made.len() > MOST {
+        if products.made.len() > MAX_NEW_COLUMNS {
             return None;
         }
     }
     products.multiply_equations(instance);
-    (changed && products.made.len() <= MOST).then(|| products.finish(instance))
+    (changed && products.made.len() <= MAX_NEW_COLUMNS).then(|| products.finish(instance))
 }
 
 /// What is known of the columns.
@@ -114,7 +114,7 @@ impl Known {
         let mut others = product.iter().filter(|&&j| !self.binary[j as usize]);
         let bounded = |&j: &u32| {
             let (l, u) = (self.lower[j as usize], self.upper[j as usize]);
-            l.abs().max(u.abs()) <= WIDEST
+            l.abs().max(u.abs()) <= MAX_FACTOR_BOUND
         };
         match (others.next(), others.next()) {
             (None, _) => product.len() > 1,
@@ -187,7 +187,7 @@ impl Known {
     fn product<'p>(&self, factors: impl Iterator<Item = &'p Polynomial>) -> Option<Polynomial> {
         let mut out = constant(1.0);
         for factor in factors {
-            if out.len() * factor.len() > LONGEST {
+            if out.len() * factor.len() > MAX_TERM_PRODUCTS {
                 return None;
             }
             let mut next = Polynomial::new();
@@ -360,7 +360,7 @@ impl Products {
             }
             for (x, count) in count {
                 let inside = entries.iter().any(|e| e.0 == x);
-                if inside || 2 * count < entries.len() || self.made.len() > MOST {
+                if inside || 2 * count < entries.len() || self.made.len() > MAX_NEW_COLUMNS {
                     continue;
                 }
                 let row = self.builder.push_row(Relation::Equal);

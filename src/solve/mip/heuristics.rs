@@ -13,7 +13,7 @@ enum Dive {
     Locks,
     /// Towards the best solution.
     Guided,
-    /// The column that lacks least to the next integer, up to it: where one of many is chosen, that decides the others.
+    /// Up: the column that is nearest to the integer above it. Where one of many is chosen, that fixes the others.
     Up,
 }
 

@@ -14,10 +14,10 @@ use crate::solve::random::Random;
 const TOLERANCE: f64 = 1e-7;
 
 /// Steps among which the best is taken.
-const SAMPLE: usize = 25;
+const MAX_SAMPLED_STEPS: usize = 25;
 
 /// What a step must lessen.
-const LEAST: f64 = 1e-7;
+const MIN_GAIN: f64 = 1e-7;
 
 /// Some numbers below n, with their places, to go in and out at once.
 struct Subset {
@@ -179,7 +179,7 @@ impl<'m> Walk<'m> {
             true => 0.0,
             false => self.cost(j, target) - self.cost(j, x),
         };
-        self.good.set(j, self.score[j] < -LEAST);
+        self.good.set(j, self.score[j] < -MIN_GAIN);
     }
 
     /// The value of column j with the least weighted violations, other than the present one where it is an integer: their
@@ -227,8 +227,8 @@ impl<'m> Walk<'m> {
     /// The column with the best step of a few; numbers of columns by their place in a list.
     fn best(&mut self, of: impl Fn(&Self, usize) -> usize, count: usize) -> Option<usize> {
         let mut best: Option<usize> = None;
-        for k in 0..SAMPLE.min(count) {
-            let k = if count <= SAMPLE {
+        for k in 0..MAX_SAMPLED_STEPS.min(count) {
+            let k = if count <= MAX_SAMPLED_STEPS {
                 k
             } else {
                 self.below(count)
@@ -249,7 +249,7 @@ impl<'m> Walk<'m> {
             if !self.is_binary(j) {
                 self.aim(j);
             }
-            if self.score[j] < -LEAST {
+            if self.score[j] < -MIN_GAIN {
                 return Some(j);
             }
         }
@@ -262,7 +262,7 @@ impl<'m> Walk<'m> {
             for (j, a) in self.rows.line(i) {
                 let d = self.target[j] - self.x[j];
                 self.score[j] += unit * (outside(now + a * d, sides) - here);
-                self.good.set(j, self.score[j] < -LEAST);
+                self.good.set(j, self.score[j] < -MIN_GAIN);
             }
             self.work += self.rows.line(i).len() as u64;
         }
@@ -296,7 +296,7 @@ impl<'m> Walk<'m> {
                 let change = outside(new + s, sides) - after - outside(old + s, sides) + before;
                 if k != j && change != 0.0 {
                     self.score[k] += w * change;
-                    self.good.set(k, self.score[k] < -LEAST);
+                    self.good.set(k, self.score[k] < -MIN_GAIN);
                 }
             }
         }
@@ -328,8 +328,8 @@ impl<'m> Walk<'m> {
 }
 
 impl<R: Relaxation> Search<'_, R> {
-    /// How much work a walk may be.
-    pub(super) fn jump_work(&self) -> u64 {
+    /// Entries that a walk may touch.
+    fn jump_work(&self) -> u64 {
         (2000 * self.mip.problem.rows.value.len() as u64).clamp(200_000, 20_000_000)
     }
 

@@ -42,9 +42,9 @@ pub(super) const UNBOUNDED: f64 = 1e15;
 /// A point is unbounded evidence from here on, if the interior-point solver stopped with diverging iterates.
 const LARGE: f64 = 1e10;
 
-/// How far a start without derivatives is moved, relative to its size; and rows that are looked at for that.
-const BESIDE: f64 = 1e-2;
-const MOST_BESIDE: u32 = 100;
+/// How far a start without derivatives is moved, relative to its size; and how often derivatives are evaluated for that.
+const START_DISPLACEMENT: f64 = 1e-2;
+const MAX_START_EVALUATIONS: u32 = 100;
 
 /// Nonlinear equations from which on the interior point may go first.
 const MANY_CURVED: usize = 50;
@@ -76,9 +76,9 @@ pub fn solve(
     }
     let start = problem.start().to_vec();
     check_start(instance, &mut problem, &start)?;
-    if problem.without_derivatives(&start).is_some() && settings.runs(Strategy::DifferentiableStart)
+    if settings.runs(Strategy::DifferentiableStart)
+        && let Some(start) = differentiable(&mut problem, &start)
     {
-        let start = differentiable(&mut problem, &start);
         problem.set_start(start);
     }
     let quadratic = match convexity {
@@ -121,20 +121,23 @@ fn placed(nlp: &dyn Nlp, x: &[f64], by: f64, anywhere: bool, seed: u64) -> Vec<f
     x.iter().zip(lower.iter().zip(upper)).map(place).collect()
 }
 
-/// The start, where a row has values there but no derivatives, as √x at 0, with the variables of that row moved a little.
-fn differentiable(problem: &mut Problem, start: &[f64]) -> Vec<f64> {
-    let moved = placed(problem, start, BESIDE, false, 1);
+/// Where rows have values at the start but no derivatives, as √x at 0: the start with the variables of these rows moved a little.
+/// None: there are derivatives, or there are none nearby either.
+fn differentiable(problem: &mut Problem, start: &[f64]) -> Option<Vec<f64>> {
+    let mut variables = problem.without_derivatives(start)?;
+    let moved = placed(problem, start, START_DISPLACEMENT, false, 1);
     let mut x = start.to_vec();
-    for _ in 0..MOST_BESIDE {
-        let Some(variables) = problem.without_derivatives(&x) else {
-            return x;
-        };
+    for _ in 1..MAX_START_EVALUATIONS {
         if variables.iter().all(|&j| x[j] == moved[j]) {
             break;
         }
         variables.iter().for_each(|&j| x[j] = moved[j]);
+        match problem.without_derivatives(&x) {
+            Some(others) => variables = others,
+            None => return Some(x),
+        }
     }
-    start.to_vec()
+    None
 }
 
 /// The start point must have values; derivatives may be missing there.

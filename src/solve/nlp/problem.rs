@@ -431,32 +431,29 @@ impl Problem {
 
     /// The variables of a row that has no derivatives at x; None if all have some.
     pub fn without_derivatives(&mut self, x: &[f64]) -> Option<Vec<usize>> {
-        self.derivative_at = None;
-        self.place(x);
-        let evaluated = self.evaluator.jacobian(&self.full, &mut self.derivative);
-        let row = evaluated.err()?.row as usize;
+        let row = self.evaluate_derivative(x).err()?.row as usize;
         let (start, column) = self.evaluator.jacobian_pattern();
         let own = column[start[row]..start[row + 1]].iter();
         let variable = |j: &u32| self.columns.binary_search(j).ok();
         Some(own.filter_map(variable).collect())
     }
 
-    fn need_derivative(&mut self, x: &[f64]) -> Option<()> {
+    /// Computes the derivatives of all rows at x, unless they are known.
+    fn evaluate_derivative(&mut self, x: &[f64]) -> Result<(), EvalFailure> {
         if self.derivative_at.as_deref() == Some(x) {
-            return Some(());
+            return Ok(());
         }
         self.derivative_at = None;
         self.place(x);
-        match self.evaluator.jacobian(&self.full, &mut self.derivative) {
-            Ok(()) => {
-                self.derivative_at = Some(x.to_vec());
-                Some(())
-            }
-            Err(e) => {
-                self.fail(e);
-                None
-            }
-        }
+        self.evaluator.jacobian(&self.full, &mut self.derivative)?;
+        self.derivative_at = Some(x.to_vec());
+        Ok(())
+    }
+
+    /// The same; a failure is counted.
+    fn need_derivative(&mut self, x: &[f64]) -> Option<()> {
+        let evaluated = self.evaluate_derivative(x);
+        evaluated.map_err(|e| self.fail(e)).ok()
     }
 }
 

@@ -19,9 +19,9 @@ const WINDOW: u32 = 20;
 /// So near to the end Newton's method takes two or three iterations more; where the dual residual stays above its tolerance for
 /// longer, multipliers are not unique, and the point is as good as it gets.
 const LAST_MU: f64 = 1e-8;
-const NEARLY_PRIMAL: f64 = 1e-5;
-const NEARLY_DUAL: [f64; 2] = [1e-6, 1e-4];
-const MOST_NEARLY: u32 = 10;
+const STALL_PRIMAL: f64 = 1e-5;
+const STALL_DUAL: [f64; 2] = [1e-6, 1e-4];
+const STALL_ITERATIONS: u32 = 10;
 
 /// Whether a run stands still: at a kink, where rounding refuses every step, or where it does not come to an end.
 #[derive(Default)]
@@ -38,11 +38,11 @@ impl Standstill {
         let change = (p.objective - self.before).abs();
         let nowhere = p.step <= SHORT && change <= UNCHANGED * p.objective.abs().max(1.0);
         self.before = p.objective;
-        let dual = NEARLY_DUAL[0] < p.dual && p.dual <= NEARLY_DUAL[1];
-        let nearly = p.mu <= LAST_MU && p.primal <= NEARLY_PRIMAL && dual;
+        let dual = STALL_DUAL[0] < p.dual && p.dual <= STALL_DUAL[1];
+        let nearly = p.mu <= LAST_MU && p.primal <= STALL_PRIMAL && dual;
         self.nearly = if nearly { self.nearly + 1 } else { 0 };
         self.short = (self.short << 1 | u32::from(nowhere)) & ((1 << WINDOW) - 1);
-        !p.restoration && (self.short.count_ones() >= MOST_SHORT || self.nearly >= MOST_NEARLY)
+        !p.restoration && (self.short.count_ones() >= MOST_SHORT || self.nearly >= STALL_ITERATIONS)
     }
 }
 
