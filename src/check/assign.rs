@@ -151,6 +151,8 @@ impl Compiler {
             SymbolKind::Variable(_) | SymbolKind::Equation(_) => {
                 let Some(attr) = &t.attribute else {
                     let what = symbol.kind_name();
+                    // `z = 3*x;` is meant as the definition of an equation, which is missing then.
+                    self.lose_definition();
                     let d = Diagnostic::error(
                         "E0310",
                         t.span,
@@ -168,7 +170,7 @@ impl Compiler {
                         ))
                     } else {
                         d.help(format!(
-                            "assign `{0}.l`, `{0}.lo`, `{0}.up` or `{0}.fx`",
+                            "assign `{0}.l`, `{0}.lo`, `{0}.up` or `{0}.fx`; what it must be equal to is said by an equation: `e.. {0} =e= …;`",
                             t.name.name
                         ))
                     });

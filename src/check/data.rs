@@ -531,10 +531,16 @@ impl Compiler {
         {
             return Ok(value::acronym(n));
         }
+        let help = match name.starts_with(['\u{2212}', '\u{2013}', '\u{2014}']) {
+            true => "write the plain minus sign `-`",
+            false => {
+                "numbers are `1.5`, `-2e3`, `inf`, `eps`, `na`; a label with a blank stands in quotes, `'new york' 3`; other words are declared as acronyms"
+            }
+        };
         self.fail(
             Diagnostic::error("E0345", span, format!("`{name}` is not a number"))
                 .label("a number is expected")
-                .help("numbers are `1.5`, `-2e3`, `inf`, `eps`, `na`; a label with a blank stands in quotes, `'new york' 3`; other words are declared as acronyms"),
+                .help(help),
         )
     }
 

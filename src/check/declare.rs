@@ -153,18 +153,37 @@ impl Compiler {
         domain: Vec<DomainPosition>,
     ) -> Result<SymbolId, Failed> {
         let old = self.symbols.get(s).clone();
-        if std::mem::discriminant(&old.kind) != std::mem::discriminant(kind) || s == UNIVERSE {
+        let reshaped = !old.open && d.domain.is_some() && domain.len() != old.dim();
+        let unlike = std::mem::discriminant(&old.kind) != std::mem::discriminant(kind);
+        if unlike || reshaped || s == UNIVERSE {
+            let capitals = match *old.name == *d.name.name {
+                true => "",
+                false => ": capitals do not distinguish names",
+            };
+            let listed =
+                matches!(kind, SymbolKind::Model(_)) && matches!(old.kind, SymbolKind::Equation(_));
+            let shape = match (unlike, old.dim()) {
+                (true, _) => String::new(),
+                (false, 0) => " without an index".into(),
+                (false, n) => format!(" with {n} ind{}", if n == 1 { "ex" } else { "ices" }),
+            };
             return self.fail(
                 Diagnostic::error(
                     "E0333",
                     d.name.span,
-                    format!("`{}` is declared already, as {}", d.name.name, old.a_kind()),
+                    format!(
+                        "`{}` is declared already, as {}{shape}",
+                        d.name.name,
+                        old.a_kind()
+                    ),
                 )
                 .label("declared again")
                 .other(old.declared, "first declared here")
-                .help(match *old.name == *d.name.name {
-                    true => "choose another name",
-                    false => "choose another name: capitals do not distinguish names",
+                .help(match listed {
+                    true => {
+                        "the equations of a model stand between slashes: `model m / e, f /;`".into()
+                    }
+                    false => format!("choose another name{capitals}"),
                 }),
             );
         }
@@ -173,8 +192,6 @@ impl Compiler {
             let symbol = self.symbols.get_mut(s);
             symbol.domain = domain;
             symbol.open = false;
-        } else if d.domain.is_some() && domain.len() != old.dim() {
-            return self.wrong_dimension(s, d.name.span, domain.len());
         } else if d.domain.is_some()
             && domain != old.domain
             && !matches!(old.kind, SymbolKind::Equation(Some(_)))
@@ -349,6 +366,26 @@ impl Compiler {
         map: &SourceMap,
     ) -> Result<(), Failed> {
         for p in list {
+            if let Some(first) = p
+                .symbol
+                .domain
+                .as_ref()
+                .and_then(|d| d.first())
+                .filter(|_| p.scalar)
+            {
+                let name = &p.symbol.name;
+                let message = format!("`{}` is a scalar: it has no index", name.name);
+                self.report(
+                    Diagnostic::error("E0336", first.name.span, message)
+                        .label("no index here")
+                        .help(format!(
+                            "write `parameter {}({}) …`",
+                            name.name, first.name.name
+                        )),
+                );
+                self.lose_declaration(&name.name);
+                continue;
+            }
             let kind = SymbolKind::Parameter { scalar: p.scalar };
             let Ok(s) = self.declare(&p.symbol, kind, |c, n| c.store.add_table(n, 0.0)) else {
                 continue;
@@ -525,6 +562,14 @@ impl Compiler {
 
     fn check_model_item(&mut self, item: &ModelItem) -> Result<(), Failed> {
         let is_equation = |c: &mut Self, n: &Ident, model_too: bool| {
+            let perpendicular = ["perp", "complements", "complement"];
+            if perpendicular.iter().any(|w| n.name.eq_ignore_ascii_case(w)) && c.named(n).is_none()
+            {
+                let message = "an equation and its variable are paired with a dot";
+                return c.fail(
+                    Diagnostic::error("E0338", n.span, message).help("write `model m / e.x /;`"),
+                );
+            }
             let s = c.lookup(n)?;
             let symbol = c.symbols.get(s).clone();
             match symbol.kind {
@@ -542,7 +587,7 @@ impl Compiler {
                     )
                     .label("not an equation")
                     .other(symbol.declared, "declared here")
-                    .help("list equations, or `model m / all /;` for all of them; variables are found in them"),
+                    .help("list equations, or `model m / all /;` for all of them; variables are found in them; a pair of a complementarity problem is `e.x`"),
                 ),
             }
         };

@@ -375,6 +375,11 @@ impl Compiler {
                         return self.fail(d);
                     }
                     Err(NoRange::Unlike) => {
+                        let known = self.symbols.find(to).map(|s| self.symbols.get(s));
+                        let help = match known.is_some_and(|s| !s.is_set()) {
+                            true => format!("labels are fixed when the text is read: `$set {to} 10` above, and `{from}*%{to}%` here"),
+                            false => "for instance `i1*i10` or `1990*2000`; other labels are listed, with commas between them".into(),
+                        };
                         return self.fail(
                             Diagnostic::error(
                                 "E0344",
@@ -382,7 +387,7 @@ impl Compiler {
                                 format!("`{from}*{to}` is not a range"),
                             )
                             .label("the labels must differ in one number")
-                            .help("for instance `i1*i10` or `1990*2000`; other labels are listed, with commas between them"),
+                            .help(help),
                         );
                     }
                 };

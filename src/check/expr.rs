@@ -81,7 +81,7 @@ impl Compiler {
     }
 
     /// A symbol by name; `file` stands for the file that `put` named last.
-    fn named(&self, id: &Ident) -> Option<SymbolId> {
+    pub(super) fn named(&self, id: &Ident) -> Option<SymbolId> {
         let file = || {
             let last = self.put_named;
             last.filter(|_| id.name.eq_ignore_ascii_case("file"))
@@ -561,7 +561,14 @@ impl Compiler {
         kind: &str,
         known: &str,
     ) -> Result<T, Failed> {
-        let near = nearest(&a.name, known.split(", ")).map(str::to_string);
+        let meant = functions::meant_attribute(&a.name, kind);
+        let near = meant
+            .or_else(|| nearest(&a.name, known.split(", ")))
+            .map(str::to_string);
+        let known = match known.match_indices(", ").nth(11) {
+            Some((at, _)) => format!("{}, …", &known[..at]),
+            None => known.to_string(),
+        };
         let d = Diagnostic::error(
             "E0314",
             a.span,

@@ -14,19 +14,24 @@ const ONCE: [&str; 9] = [
     "E0301", "E0302", "E0304", "E0306", "E0315", "E0326", "E0334", "E0339", "E0348",
 ];
 /// Of each group the first one in a statement says it all: what is wrong there is wrong in all of it.
-const ONCE_PER_STATEMENT: [&[&str]; 5] = [
+const ONCE_PER_STATEMENT: [&[&str]; 6] = [
     // Data that cannot be read: what the rest of them mean is a guess.
     &[
         "E0241", "E0242", "E0243", "E0245", "E0247", "E0248", "E0250", "E0251", "E0252", "E0253",
         "E0345",
     ],
     &["E0310"],
+    &["E0333"],
     &["E0338"],
     &["E0375"],
     &["E0329", "E0330"],
 ];
 /// A text is missing in which anything may be declared.
 const TEXT_MISSING: [&str; 6] = ["E0102", "E0103", "E0104", "E0105", "E0112", "E0300"];
+/// What E0308 says of a label that another position of its symbol's domain has.
+pub(super) const EXCHANGED: &str = "labels stand in the order of the declaration";
+/// What E0319 says of variables and equations.
+pub(super) const NOTHING_SOLVED: &str = "nothing was solved or assigned above";
 /// Other places that a message shows.
 const MAX_PLACES: usize = 4;
 
@@ -72,11 +77,21 @@ impl Compiler {
             return;
         }
         // Labels that one set lacks are one mistake of a data statement.
+        // So are variables that are shown before anything is solved.
+        let alike = d.code == "E0308" || d.label == NOTHING_SOLVED;
         let same_set = |e: &&mut Diagnostic| {
-            e.code == d.code && d.code == "E0308" && e.label == d.label && !d.label.is_empty()
+            alike && e.code == d.code && e.label == d.label && !d.label.is_empty()
         };
         if let Some(first) = here.iter_mut().find(same_set) {
             return also(first, d.span, "nor is this");
+        }
+        // Labels in the places of others: the other positions of the same records are wrong too.
+        let exchanged = |e: &Diagnostic| {
+            e.code == "E0308" && e.help.as_ref().is_some_and(|h| h.contains(EXCHANGED))
+        };
+        let from = self.lost.statement.min(self.diagnostics.len());
+        if exchanged(&d) && self.diagnostics[from..].iter().any(exchanged) {
+            return;
         }
         let same = |e: &&mut Diagnostic| e.code == d.code && e.message == d.message;
         if ONCE.contains(&d.code)
@@ -121,6 +136,11 @@ impl Compiler {
             let root = self.symbols.root(s);
             self.symbols.get_mut(root).assigned = true;
         }
+    }
+
+    /// What was meant as the definition of an equation is none.
+    pub(super) fn lose_definition(&mut self) {
+        self.lost.statements = true;
     }
 
     /// A declaration failed.

@@ -148,6 +148,33 @@ const RECORD_ATTRIBUTES: &[(&str, &str, RecordAttribute)] = {
     ]
 };
 
+/// Attributes as other languages call them: kind of the symbol (empty: variables and equations), names there, the name here.
+#[rustfmt::skip]
+const ELSEWHERE: &[(&str, &[&str], &str)] = &[
+    ("", &["max", "upper", "ub", "upperbound", "upbnd"], "up"),
+    ("", &["min", "lower", "lb", "low", "lowerbound", "lobnd"], "lo"),
+    ("", &["fix", "fixed", "setvalue"], "fx"),
+    ("", &["value", "level", "val", "x", "sol", "solution", "initial", "init", "start", "starting_point"], "l"),
+    ("", &["dual", "price", "pi", "shadow", "shadowprice", "marginal", "multiplier", "lambda", "rc", "dj", "reducedcost"], "m"),
+    ("", &["s", "sl", "surplus"], "slack"),
+    ("model", &["status", "termination_status", "stat"], "modelStat"),
+    ("model", &["obj", "objective", "value", "objectivevalue", "z"], "objVal"),
+    ("model", &["time", "cpu", "runtime", "solvetime"], "resUsd"),
+    ("model", &["iterations", "iter", "iters"], "iterUsd"),
+    ("model", &["gap"], "optCR"),
+    ("model", &["nodes"], "nodUsd"),
+    ("model", &["timelimit"], "resLim"),
+];
+
+/// The attribute that is meant by another language's name for it.
+pub fn meant_attribute(name: &str, kind: &str) -> Option<&'static str> {
+    let of = if kind == "model" { kind } else { "" };
+    let named = |row: &&(&str, &[&str], &str)| {
+        row.0 == of && row.1.iter().any(|n| n.eq_ignore_ascii_case(name))
+    };
+    ELSEWHERE.iter().find(named).map(|row| row.2)
+}
+
 /// Name, name in displays, and meaning of the attribute with this name.
 fn attribute_row(name: &str) -> Option<&'static (&'static str, &'static str, RecordAttribute)> {
     let mut rows = RECORD_ATTRIBUTES.iter();

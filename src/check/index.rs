@@ -2,6 +2,7 @@
 
 use super::data::meant_range;
 use super::expansion::range;
+use super::follow::EXCHANGED;
 use super::node::*;
 use super::symbols::{DomainPosition, SymbolKind, UNIVERSE, attribute};
 use super::{Compiler, Failed};
@@ -435,10 +436,23 @@ impl Compiler {
             (0..table.len().min(10_000) as u32).map(|r| self.store.universe.name(table.key(r)[0]));
         let (name, set_name) = (&symbol.name, &set.name);
         let near = nearest(text, known);
+        let (elsewhere, mut lost) = (self.member_elsewhere(of, position, text), false);
         let help = match self.misread(set.table, text) {
             Some(help) => help,
             None if near.is_some() => {
                 format!("did you mean `{quote}{}{quote}`?", near.unwrap_or_default())
+            }
+            None if !quote.is_empty()
+                && self
+                    .symbols
+                    .find(text)
+                    .is_some_and(|s| self.symbols.get(s).is_set()) =>
+            {
+                format!("an index stands without quotes: `{text}`; quotes make it one label")
+            }
+            None if elsewhere.is_some() => {
+                lost = quote.is_empty();
+                elsewhere.unwrap_or_default()
             }
             None if quote.is_empty() => format!(
                 "add `{text}` to `{set_name}`, or correct the label; a label with a blank stands in quotes"
@@ -462,7 +476,42 @@ impl Compiler {
             self.report(d);
             return Ok(self.store.universe.intern(text));
         }
+        // Declared over the wrong set: what its uses show is no news.
+        if lost {
+            let name = name.clone();
+            self.lose_declaration(&name);
+        }
         self.fail(d)
+    }
+
+    /// A label that another position of the symbol's domain has, or another set alone.
+    fn member_elsewhere(&self, of: SymbolId, position: usize, text: &str) -> Option<String> {
+        let label = self.store.universe.get(text)?;
+        let has = |s: SymbolId| {
+            let set = self.symbols.get(self.symbols.root(s));
+            set.dim() == 1 && self.store.table(set.table).find(&[label]).is_some()
+        };
+        let symbol = self.symbols.get(of);
+        let other = symbol.domain.iter().enumerate().find_map(|(n, d)| match d {
+            DomainPosition::Set(s) if n != position && has(*s) => Some((n, *s)),
+            _ => None,
+        });
+        if let Some((n, set)) = other {
+            return Some(format!(
+                "`{text}` is a member of `{}`, at position {} of `{}`: {EXCHANGED}, with dots between them in data",
+                self.symbols.get(set).name,
+                n + 1,
+                symbol.name
+            ));
+        }
+        let sets = self
+            .symbols
+            .iter()
+            .skip(1)
+            .filter(|(s, d)| d.is_set() && self.symbols.root(*s) == *s && has(*s));
+        let mut names = sets.map(|(_, d)| &d.name);
+        let (name, none) = (names.next()?, names.next().is_none());
+        none.then(|| format!("`{text}` is a member of `{name}`: correct the label, or declare `{}` over `{name}`", symbol.name))
     }
 
     /// Where a label went that a set lacks: into the text of an element, or a range with a hyphen.

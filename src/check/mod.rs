@@ -335,7 +335,7 @@ impl Compiler {
                 span,
                 format!("the {kind} `{name}` has no values yet"),
             )
-            .label("nothing was solved or assigned above")
+            .label(follow::NOTHING_SOLVED)
             .other(declared, "declared here")
             .help(format!(
                 "solve a model with `{name}` first, or assign `{name}.l`"

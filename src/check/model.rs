@@ -1,7 +1,7 @@
 //! The `solve` statement: which equations, paired with what, of which class.
 
 use super::node::*;
-use super::symbols::{DomainPosition, SymbolKind};
+use super::symbols::{DomainPosition, Symbol, SymbolKind};
 use super::{Compiler, Failed};
 use crate::diag::{Diagnostic, nearest};
 use crate::model::instance::Function;
@@ -109,7 +109,19 @@ impl Compiler {
     }
 
     fn lookup_model(&mut self, name: &Ident) -> Result<SymbolId, Failed> {
-        if !name.name.eq_ignore_ascii_case("all") {
+        let all = name.name.eq_ignore_ascii_case("all");
+        let is_model = |(_, s): (SymbolId, &Symbol)| matches!(s.kind, SymbolKind::Model(_));
+        if !all && self.named(name).is_none() && !self.symbols.iter().any(is_model) {
+            let d = Diagnostic::error(
+                "E0301",
+                name.span,
+                format!("the model `{}` is not declared", name.name),
+            )
+            .label("unknown model")
+            .help(format!("declare it before: `model {} / all /;`", name.name));
+            return self.unknown(name, d);
+        }
+        if !all {
             return self.lookup(name);
         }
         self.fail(
@@ -559,11 +571,20 @@ impl Compiler {
             .iter()
             .filter_map(|r| Some((r.pair?, r.span)))
             .collect();
+        let twice = |span: Span| {
+            let of = |r: &&ModelRow| r.span == span;
+            let row = rows.iter().find(of).map(|r| r.definition);
+            rows.iter()
+                .filter(|r| Some(r.definition) == row && r.pair.is_some())
+                .count()
+                > 1
+        };
         for (v, span) in paired {
-            let appears = rows.iter().any(|r| {
-                let e = &self.equations[r.definition];
-                e.left.mentions(v) || e.right.mentions(v)
-            });
+            let appears = twice(span)
+                || rows.iter().any(|r| {
+                    let e = &self.equations[r.definition];
+                    e.left.mentions(v) || e.right.mentions(v)
+                });
             if !appears {
                 let (name, declared) = (
                     self.symbols.get(v).name.clone(),
@@ -615,7 +636,8 @@ impl Compiler {
                             format!("the equation `{}` is paired twice", eq.name),
                         )
                         .label("second pair")
-                        .other(other.span, "first pair"),
+                        .other(other.span, "first pair")
+                        .help("an equation has one partner: take one of the pairs out"),
                     )
                     .is_err();
             }

@@ -21,6 +21,13 @@ impl Compiler {
             match item {
                 DisplayItem::Text(t, _) => out.push(Shown::Text(t.clone())),
                 DisplayItem::Symbol(r) => {
+                    let is_known = self.symbols.find(&r.name.name).is_some();
+                    if !is_known && !r.indices.is_empty() && is_operation(&r.name.name) {
+                        let message = "`display` takes symbols, not expressions";
+                        return self.fail(Diagnostic::error("E0328", r.span, message).help(
+                            "assign it first: `parameter total; total = …; display total;`",
+                        ));
+                    }
                     let s = self.lookup(&r.name)?;
                     let symbol = self.symbols.get(s).clone();
                     if !r.indices.is_empty() {
@@ -32,8 +39,11 @@ impl Compiler {
                             )
                             .label("indices here")
                             .help(format!(
-                                "write `display {}`; or copy the part you want into a parameter",
-                                r.name.name
+                                "write `display {}{}`; or copy the part you want into a parameter",
+                                r.name.name,
+                                r.attribute
+                                    .as_ref()
+                                    .map_or(String::new(), |a| format!(".{}", a.name))
                             )),
                         );
                     }
@@ -108,6 +118,9 @@ impl Compiler {
             });
             self.put_named = named.or(self.put_named);
             if self.put_named.is_none() && !p.keyword.starts_with("put_util") {
+                if self.lacks_something() {
+                    return Err(Failed);
+                }
                 return self.fail(
                     Diagnostic::error("E0374", span, "no file is named to write to")
                         .label("which file?")
@@ -282,4 +295,13 @@ impl Compiler {
 /// `system.date` and the like.
 fn is_system(name: &Ident) -> bool {
     name.name.eq_ignore_ascii_case("system")
+}
+
+/// Whether a name is that of a function, or of a sum and its kin.
+fn is_operation(name: &str) -> bool {
+    let sums = ["sum", "prod", "smin", "smax", "sand", "sor", "ord", "card"];
+    functions::names()
+        .into_iter()
+        .chain(sums)
+        .any(|n| n.eq_ignore_ascii_case(name))
 }

@@ -216,6 +216,23 @@ impl<'a, F: FnMut(&'a Node)> Visitor<'a> for Each<F> {
     }
 }
 
+/// Calls a function for each statement and those in its blocks, with how many blocks are around it.
+pub fn each_statement<'a>(code: &'a [Code], f: &mut dyn FnMut(&'a Code, usize)) {
+    struct Statements<'f, 'a>(&'f mut dyn FnMut(&'a Code, usize), usize);
+    impl<'a> Visitor<'a> for Statements<'_, 'a> {
+        fn code(&mut self, c: &'a Code) {
+            (self.0)(c, self.1);
+            self.1 += 1;
+            c.walk(self);
+            self.1 -= 1;
+        }
+        fn node(&mut self, _: &'a Node) {}
+        fn domain(&mut self, _: &'a Domain) {}
+    }
+    let mut v = Statements(f, 0);
+    code.iter().for_each(|c| v.code(c));
+}
+
 impl Node {
     /// Calls `f` for the node and all below: operands, conditions, offsets of lags.
     pub fn each<'a>(&'a self, f: impl FnMut(&'a Node)) {

@@ -148,7 +148,7 @@ pub const CODES: &[Code] = &[
     row("E0333", Error, "declared twice", "a name belongs to one symbol; capitals do not distinguish names"),
     row("E0334", Error, "domain of several positions", "a domain is one-dimensional"),
     row("E0335", Error, "declared over other sets", "a second declaration repeats the domain of the first"),
-    row("E0336", Error, "too many positions", "a symbol has at most 20 indices"),
+    row("E0336", Error, "too many positions", "a symbol has at most 20 indices, a scalar none"),
     row("E0337", Error, "`alias` without a set", "`alias` gives a set another name"),
     row("E0338", Error, "wrong item in a model", "a model is made of equations, and pairs `equation.variable`"),
     row("E0339", Error, "dynamic set as a domain", "a set that is assigned cannot be a domain"),

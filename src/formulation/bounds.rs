@@ -9,6 +9,7 @@ use super::tree::*;
 use super::{Origin, Sign};
 use crate::check::node::{Code, CodeKind, Node, NodeKind, SymbolId, Target};
 use crate::check::symbols::{Symbols, attribute};
+use crate::check::visit::each_statement;
 use crate::run::Machine;
 use crate::source::Span;
 use crate::syntax::ast::VariableKind;
@@ -55,7 +56,7 @@ pub fn assigned(
     let own = f.own.clone();
     let mut lowering = Lowering::new(symbols, &owner);
     lowering.indices = std::mem::take(&mut f.indices);
-    let mut each = |c: &Code, top: bool| {
+    let mut each = |c: &Code, depth: usize| {
         let CodeKind::Assign {
             domain,
             target,
@@ -80,7 +81,7 @@ pub fn assigned(
             return;
         }
         let whole = *covers || symbols.get(v).dim() == 0;
-        if top {
+        if depth == 0 {
             let binder = lowering.domain(domain);
             let node = Node::data(NodeKind::Var(v, key.clone()), c.span);
             let Expr::Variable(_, key) = lowering.expr(&node) else {
@@ -122,10 +123,10 @@ pub fn assigned(
     };
     for c in code {
         let here = std::slice::from_ref(c);
-        walk(here, true, &mut each);
+        each_statement(here, &mut each);
         // What is assigned behind the solve does not hold at it.
         let mut reached = false;
-        walk(here, true, &mut |c, _| {
+        each_statement(here, &mut |c, _| {
             reached |= matches!(c.kind, CodeKind::Solve(_)) && Some(c.span) == solve;
         });
         if reached {
@@ -134,23 +135,6 @@ pub fn assigned(
     }
     f.indices = lowering.indices;
     out
-}
-
-fn walk(code: &[Code], top: bool, f: &mut dyn FnMut(&Code, bool)) {
-    for c in code {
-        f(c, top);
-        match &c.kind {
-            CodeKind::Loop(_, _, b) | CodeKind::While(_, b) | CodeKind::Repeat(b, _) => {
-                walk(b, false, f)
-            }
-            CodeKind::For { body, .. } => walk(body, false, f),
-            CodeKind::If(branches, other) => {
-                branches.iter().for_each(|(_, b)| walk(b, false, f));
-                walk(other, false, f);
-            }
-            _ => {}
-        }
-    }
 }
 
 /// Kinds, signs and bounds of a formulation's variables; `relaxed`: discrete ones are not.

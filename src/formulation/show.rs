@@ -8,6 +8,7 @@ use super::tree::*;
 use super::{Formulation, Row};
 use crate::check::node::{Code, CodeKind, ModelRow, SolveCode, SymbolId};
 use crate::check::symbols::{SymbolKind, Symbols};
+use crate::check::visit::each_statement;
 use crate::diag::nearest;
 use crate::run::{Generated, Machine, Studied};
 use crate::source::Span;
@@ -44,7 +45,11 @@ impl Chosen {
 pub fn choose(m: &Machine, code: &[Code], name: Option<&str>) -> Result<Chosen, String> {
     let symbols = &m.symbols;
     let mut solves: Vec<(&SolveCode, Span)> = Vec::new();
-    solves_of(code, &mut solves);
+    each_statement(code, &mut |c, _| {
+        if let CodeKind::Solve(s) = &c.kind {
+            solves.push((s, c.span));
+        }
+    });
     if let Some(name) = name {
         let is_model = |s: &SymbolId| matches!(symbols.get(*s).kind, SymbolKind::Model(_));
         let Some(model) = symbols.find(name).filter(is_model) else {
@@ -105,23 +110,6 @@ pub fn unknown(symbols: &Symbols, name: &str) -> String {
             "there is no model `{name}`; there are: {}",
             names.join(", ")
         ),
-    }
-}
-
-fn solves_of<'a>(code: &'a [Code], out: &mut Vec<(&'a SolveCode, Span)>) {
-    for c in code {
-        match &c.kind {
-            CodeKind::Solve(s) => out.push((s, c.span)),
-            CodeKind::Loop(_, _, b) | CodeKind::While(_, b) | CodeKind::Repeat(b, _) => {
-                solves_of(b, out)
-            }
-            CodeKind::For { body, .. } => solves_of(body, out),
-            CodeKind::If(branches, other) => {
-                branches.iter().for_each(|(_, b)| solves_of(b, out));
-                solves_of(other, out);
-            }
-            _ => {}
-        }
     }
 }
 

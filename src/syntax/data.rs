@@ -802,7 +802,10 @@ impl<'a> DataReader<'a> {
             Some('.') => d.help("a range of labels is written `1*5`; a number begins with a digit or with `.` and a digit"),
             Some('%') => d.help("write 15 percent as `0.15`"),
             Some('$' | '€' | '£') => d.help("numbers stand without a unit"),
+            Some(',') => d.help("a comma stands between two records; between the columns of a table stand blanks, or commas behind `$onDelim`"),
             Some('|') => d.help("blanks stand between the columns of a table, and no lines"),
+            Some('-') if rest.starts_with("->") => d.help("a blank stands between a label and its number: `/ a 1, b 2 /`"),
+            Some('^' | '*') => d.help("powers of ten are written with `e`: `1.5e3`"),
             Some('-') => d.help("blanks stand between the columns of a table, and no lines; a label that begins with `-` stands in quotes"),
             _ => d.help(
                 "labels with other signs than letters, digits, `_`, `-`, `+` stand in quotes",

@@ -129,6 +129,10 @@ pub(super) fn explain(
     }
     if let Some(d) = slips::at_token(&f).or_else(|| slip(&f)) {
         let mut found = Explanation::of(d);
+        if found.code() == "E0236" && closes_early(&f) {
+            // What ends the block in another language is the same mistake.
+            found.language = Language::Blocks;
+        }
         if found.code() == "E0230" {
             // A comment mark of another language spoils its line.
             found.go_on = foreign::line_end(&f, f.at);
@@ -136,6 +140,13 @@ pub(super) fn explain(
         return found;
     }
     Explanation::of(expected(&f, e))
+}
+
+/// `if(k = 1) …`: the parentheses of a block are closed before the error.
+fn closes_early(f: &Failure<'_>) -> bool {
+    let open = f.text.find('(');
+    open.and_then(|o| closing(f.text.as_bytes(), o))
+        .is_some_and(|c| c < f.at)
 }
 
 /// Two statements with no `;` between them.
@@ -298,6 +309,17 @@ fn slip(f: &Failure<'_>) -> Option<Diagnostic> {
     let token = f.token(f.at);
     let first = token.chars().next();
     match first {
+        Some('\'' | '"') if f.raw.class == Class::File => {
+            return Some(
+                f.error(
+                    "E0210",
+                    f.at,
+                    1,
+                    "a file has a name in the text, and one outside of it",
+                )
+                .help("write `file out / 'out.txt' /;`, and `put out 'text' /;`"),
+            );
+        }
         Some('\'' | '"') => {
             let line = f.text[f.at + 1..].split('\n').next().unwrap_or("");
             if !line.contains(token) {
@@ -405,8 +427,13 @@ fn slip(f: &Failure<'_>) -> Option<Diagnostic> {
 /// In the declarations: values without slashes, keywords as names.
 fn in_declaration(f: &Failure<'_>, token: &str) -> Option<Diagnostic> {
     let name = f.text[..f.at].trim_end();
-    let mut words = name.rsplit(|c: char| c.is_whitespace() || c == ',');
-    let name = words.next().unwrap_or_default();
+    // The last name, with its indices.
+    let bare = name
+        .rfind(['(', '[', '{'])
+        .filter(|_| name.ends_with([')', ']', '}']));
+    let head = &name[..bare.unwrap_or(name.len())];
+    let last = head.rsplit(|c: char| c.is_whitespace() || c == ',').next();
+    let name = &name[head.len() - last.map_or(0, str::len)..];
     let here = f.span(f.at, f.at).lo as usize;
     if f.raw.class == Class::Equation && f.expanded[here..].starts_with("..") {
         return Some(
@@ -436,7 +463,7 @@ fn in_declaration(f: &Failure<'_>, token: &str) -> Option<Diagnostic> {
         );
     }
     if f.raw.class == Class::Variable
-        && f.text.contains(['<', '>'])
+        && (f.text.contains(['<', '>']) || f.text[..f.at].contains(" in "))
         && token.starts_with(|c: char| c.is_ascii_digit())
     {
         return Some(
@@ -461,7 +488,12 @@ fn in_declaration(f: &Failure<'_>, token: &str) -> Option<Diagnostic> {
         let help = match f.raw.class {
             Class::Set => "write `set i / a, b, c /;`; a set that is computed is declared first and assigned then".to_owned(),
             Class::Model => "write `model m / all /;`".to_owned(),
-            Class::Equation | Class::Variable => format!("declare it first: `{name};`, and write what is equal in a statement of its own"),
+            Class::Table => "leave it out: the labels of the columns stand in the next line, the rows below them".to_owned(),
+            Class::Variable => {
+                let bare = name.split(['(', '[', '{']).next().unwrap_or(name);
+                format!("declare it first: `{name};`, and assign a start `{bare}.l = …;` or a fixed value `{bare}.fx = …;` then")
+            }
+            Class::Equation => format!("declare it first: `{name};`, and write what is equal in a statement of its own"),
             _ if name.ends_with([')', ']', '}']) => format!("declare it, then assign: `parameter {name}; {name} = …;`; or write `/ label 1, … /`"),
             _ => format!("write `scalar {name} / 5 /;`, or declare it first and assign then: `scalar {name}; {name} = 5;`"),
         };
@@ -554,6 +586,25 @@ fn called(rule: Rule) -> Option<&'static str> {
 
 /// The last resort: what pest would have accepted.
 fn expected(f: &Failure<'_>, e: &Error<Rule>) -> Diagnostic {
+    if f.raw.class.declares() && f.token(f.at).as_bytes().first() == Some(&1) {
+        let message = "the text stands before the data";
+        return f
+            .error("E0210", f.at, 1, message)
+            .help("write `parameter p(i) 'price' / a 1, b 2 /;`");
+    }
+    let first = f.text.trim_start();
+    if first[..words::word_end(first.as_bytes(), 0)].eq_ignore_ascii_case("alias") {
+        let names = first.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+        let names: Vec<_> = names.skip(1).filter(|n| !n.is_empty()).collect();
+        return f
+            .error(
+                "E0210",
+                f.at,
+                f.token(f.at).len().max(1),
+                "the names of an alias stand in parentheses",
+            )
+            .help(format!("write `alias({});`", names.join(", ")));
+    }
     let mut wanted: Vec<String> = Vec::new();
     let mut add = |s: String| {
         if !wanted.contains(&s) {
@@ -577,6 +628,24 @@ fn expected(f: &Failure<'_>, e: &Error<Rule>) -> Diagnostic {
         }
     }
     let token = f.token(f.at);
+    let options = ["option ", "options "]
+        .iter()
+        .any(|w| first.to_ascii_lowercase().starts_with(w));
+    if options && token.starts_with(|c: char| c.is_ascii_digit()) {
+        let name = f.text[..f.at]
+            .trim_end()
+            .rsplit([' ', ',', '\n'])
+            .next()
+            .unwrap_or("reslim");
+        return f
+            .error(
+                "E0210",
+                f.at,
+                token.len(),
+                "an option and its value are joined by `=`",
+            )
+            .help(format!("write `option {name} = {token};`"));
+    }
     let (span, message) = if token.is_empty() {
         let end = f.text.trim_end().len();
         (

@@ -176,7 +176,8 @@ pub(super) fn statement(f: &Failure<'_>) -> Option<Explanation> {
     }
     let found = IDIOMS
         .iter()
-        .find(|i| i.words.contains(&lower.as_str()) && i.stands.fits(rest));
+        .find(|i| i.words.contains(&lower.as_str()) && i.stands.fits(rest))
+        .filter(|_| !rest.to_ascii_lowercase().starts_with("variable"));
     if let Some(i) = found {
         let d = f.error("E0231", lead, word.len(), i.message).help(i.help);
         let mut found = said(d, i.language);
@@ -389,7 +390,12 @@ fn blocks(f: &Failure<'_>, word: &str, rest: &str, lead: usize) -> Option<Explan
         {
             let mut found = say(
                 format!("`{word}` needs parentheses around its condition and its statements"),
-                "write `for(k = 1 to n, … );`, `if(c, … );`, `loop(i, … );`",
+                match word {
+                    "while" => "write `while(a < 5, … );`",
+                    "for" => "write `for(k = 1 to n, … );`; over the elements of a set runs `loop(i, … );`",
+                    "loop" => "write `loop(i, … );`",
+                    _ => "write `if(c, … );`, `if(c, … ; else … );`",
+                },
             )?;
             if head.trim_end().ends_with(':') {
                 found.language = Language::Python;
@@ -576,19 +582,22 @@ pub(super) fn keyword_inside(f: &Failure<'_>) -> Option<Explanation> {
     let lo = f.expanded.len() - after.len();
     let span = Span::new(lo as u32, (lo + word.len()) as u32);
     words::statement_word(after, 0, word.len())?;
-    let d =
-        if f.raw.class.declares() || f.text.trim_start().len() < 8 && f.raw.class == Class::Other {
-            words::reserved(word, span)
-        } else if word.eq_ignore_ascii_case("if") && f.raw.class == Class::Algebra {
-            Diagnostic::error(
-                "E0231",
-                span,
-                "`if` is a statement; it cannot stand in an expression",
-            )
-            .help("write `ifThen(c, a, b)`, or `a$(c) + b$(not c)`")
-        } else {
-            return None;
-        };
+    let d = if f.text.trim().eq_ignore_ascii_case("abort") && word.eq_ignore_ascii_case("if") {
+        Diagnostic::error("E0231", span, "a condition stands behind `$`")
+            .help("write `abort$(a > 0) 'why';`")
+    } else if f.raw.class.declares() || f.text.trim_start().len() < 8 && f.raw.class == Class::Other
+    {
+        words::reserved(word, span)
+    } else if word.eq_ignore_ascii_case("if") && f.raw.class == Class::Algebra {
+        Diagnostic::error(
+            "E0231",
+            span,
+            "`if` is a statement; it cannot stand in an expression",
+        )
+        .help("write `ifThen(c, a, b)`, or `a$(c) + b$(not c)`")
+    } else {
+        return None;
+    };
     Some(Explanation {
         go_on: GoOn::At((lo + behind(after)) as u32),
         ..Explanation::of(d)

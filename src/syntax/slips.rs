@@ -63,6 +63,17 @@ fn sum(f: &Failure<'_>) -> Option<Diagnostic> {
             "a sum names its index first",
             format!("write `{word}(i, …)`, or `{word}((i,j), …)` for several indices"),
         ),
+        "," if inside.contains(['<', '>', '=']) => {
+            let condition = inside.split_once(',').map_or("", |(_, c)| c.trim());
+            say(
+                "the condition of a sum stands behind its index and `$`",
+                format!("write `{word}({first}$({condition}), …)`"),
+            )
+        }
+        "if" | "where" | "when" if !top_comma(inside) => say(
+            "the condition of a sum stands behind its index and `$`",
+            format!("write `{word}({first}$(a({first}) > 0), …)`"),
+        ),
         "," => say(
             "several indices of a sum stand in parentheses of their own",
             format!("write `{word}((i,j), …)`"),
@@ -125,9 +136,9 @@ const OPERATORS: &[(&str, &str)] = &[
 /// Operators of other languages.
 pub(super) fn at_token(f: &Failure<'_>) -> Option<Diagnostic> {
     let known = [
+        display,
         sum_condition,
         sum,
-        display,
         solve,
         control,
         parts,
@@ -171,6 +182,10 @@ fn operator(f: &Failure<'_>) -> Option<Diagnostic> {
             .label("write `=`"),
         );
     }
+    if f.at > 0 && bytes.get(f.at - 1..=f.at) == Some(b"<-") || is_here(f, "<-") {
+        let at = f.at - usize::from(!is_here(f, "<-"));
+        return Some(not_an_operator(f, at, "<-", "write `=`").label("write `=`"));
+    }
     if is_here(f, "...") {
         return Some(
             f.error(
@@ -195,6 +210,10 @@ fn operator(f: &Failure<'_>) -> Option<Diagnostic> {
             is_here(f, op).then_some(f.at)
         };
         if let Some(at) = at {
+            let base = last_word(f.text[..at].trim_end());
+            if *op == "^" && ["e", "exp"].iter().any(|w| base.eq_ignore_ascii_case(w)) {
+                return Some(not_an_operator(f, at, op, "write `exp(x)`"));
+            }
             return Some(
                 not_an_operator(f, at, op, format!("write `{write}`"))
                     .label(format!("write `{write}`")),
@@ -449,6 +468,16 @@ fn parts(f: &Failure<'_>) -> Option<Diagnostic> {
                     }),
             )
         }
+        "," if algebra && before.len() == named && top_level(bytes, f.at, |b| b.starts_with(b"..")).is_some() => {
+            let dots = top_level(bytes, f.at, |b| b.starts_with(b".."))?;
+            let condition = f.text[f.at + 1..dots].trim();
+            say(
+                f.at,
+                1,
+                "a condition stands behind `$`",
+                format!("write `{before}$({condition})..`"),
+            )
+        }
         "," if algebra && enclosing(f.text, f.at).is_none() && (before.contains('=') || before.contains("..")) && !before.ends_with(|c: char| c.is_ascii_digit()) | (bytes.get(f.at + 1) == Some(&b' ')) => say(
             f.at,
             1,
@@ -625,6 +654,16 @@ fn behind_declaration(f: &Failure<'_>, lead: usize) -> bool {
     !above.is_empty() && words::classify(above, 0).0.declares()
 }
 
+/// `i, j` of `i, j, statement`, the head of a loop without parentheses around its indices.
+fn second_index(head: &str) -> Option<String> {
+    let mut parts = head.splitn(3, ',').map(str::trim);
+    let (first, second) = (parts.next()?, parts.next()?);
+    parts.next()?;
+    let is_name =
+        |w: &str| !w.is_empty() && w.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
+    (is_name(first) && is_name(second)).then(|| format!("{first},{second}"))
+}
+
 /// Slips in the heads of `loop`, `for`, `if` and `while`.
 fn control(f: &Failure<'_>) -> Option<Diagnostic> {
     if f.raw.class != Class::Other {
@@ -669,6 +708,13 @@ fn control(f: &Failure<'_>) -> Option<Diagnostic> {
             "a loop names its set alone, without `in`",
             "write `loop(i, … );`",
         ),
+        "loop" if second_index(head).is_some() => {
+            let indices = second_index(head)?;
+            say(
+                "several indices of a loop stand in parentheses of their own",
+                &format!("write `loop(({indices}), … );`"),
+            )
+        }
         // Further on the head is not to blame.
         _ if top_comma(head) && word != "for" => None,
         "for"
@@ -722,6 +768,17 @@ fn display(f: &Failure<'_>) -> Option<Diagnostic> {
             .help(format!("write `display {inside};`")),
         );
     }
+    if rest.starts_with(['\'', '"']) && f.token(f.at) == "+" {
+        return Some(
+            f.error(
+                "E0328",
+                f.at,
+                1,
+                "`display` takes texts and symbols, with commas between them",
+            )
+            .help("write `display 'total', z.l;`"),
+        );
+    }
     let expression = is_sum(&rest[..words::word_end(rest.as_bytes(), 0)])
         || matches!(f.token(f.at), "*" | "+" | "-" | "/" | "(")
         || rest.starts_with(|c: char| c.is_ascii_digit());
@@ -750,6 +807,12 @@ fn solve(f: &Failure<'_>) -> Option<Diagnostic> {
         return said(
             "`using` stands before the type of the model",
             &format!("write `solve m using {token} minimizing z;`"),
+        );
+    }
+    if token == "," {
+        return said(
+            "a `solve` has no commas",
+            "write `solve m using lp minimizing z;`",
         );
     }
     if token.eq_ignore_ascii_case("with") {

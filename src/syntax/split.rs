@@ -171,7 +171,7 @@ impl Splitter {
             return Cut::Statement(self.finish());
         }
         if last && self.start.is_some() {
-            self.at_end(bytes);
+            self.at_end(text);
             return Cut::Statement(self.finish());
         }
         Cut::More
@@ -244,10 +244,11 @@ impl Splitter {
     }
 
     /// The text has ended inside a statement.
-    fn at_end(&mut self, bytes: &[u8]) {
+    fn at_end(&mut self, text: &str) {
+        let bytes = text.as_bytes();
         if self.class.declares() {
             match self.declare {
-                Declare::Body => self.unclosed_body(self.body_start, bytes.len()),
+                Declare::Body => self.unclosed_body(text, self.body_start, bytes.len()),
                 Declare::Table => self.end_table(bytes, bytes.len()),
                 _ => {}
             }
@@ -286,7 +287,22 @@ impl Splitter {
         );
     }
 
-    fn unclosed_body(&mut self, at: usize, end: usize) {
+    fn unclosed_body(&mut self, text: &str, at: usize, end: usize) {
+        let digit = |b: Option<&u8>| b.is_some_and(u8::is_ascii_digit);
+        let line = text[..at.saturating_sub(1)]
+            .rsplit('\n')
+            .next()
+            .unwrap_or("")
+            .trim_end();
+        // `/ 1/3 /`
+        let fraction = line.rfind('/').is_some_and(|n| {
+            let (left, right) = (line[..n].as_bytes(), line[n + 1..].as_bytes());
+            digit(left.last()) && digit(right.first())
+        });
+        let help = match fraction {
+            true => "a `/` ends the data; a fraction stands in brackets: `[1/3]`",
+            false => "data stand between two slashes: `/ a 1, b 2 /`",
+        };
         self.problems.push(
             Diagnostic::error(
                 "E0203",
@@ -294,7 +310,7 @@ impl Splitter {
                 "the data that begin here are never closed by `/`",
             )
             .label("opened here")
-            .help("data stand between two slashes: `/ a 1, b 2 /`"),
+            .help(help),
         );
         self.last_end = end;
     }

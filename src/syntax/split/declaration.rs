@@ -82,6 +82,10 @@ impl Splitter {
                     self.last_end = self.pos;
                 }
                 b'/' => {
+                    if self.class == Class::Table && self.declare != Declare::Name {
+                        let help = "leave both out: the labels of the columns stand in the next line, and `;` ends the last row";
+                        self.stray(i, i + 1, "a table has no slashes", help);
+                    }
                     self.declare = Declare::Body;
                     self.body_start = i + 1;
                     self.searched = i + 1;
@@ -90,6 +94,33 @@ impl Splitter {
                 b'(' | b'[' | b'{' if self.declare != Declare::Name && !self.has_domain(bytes) => {
                     self.declare = Declare::Domain;
                     self.pos += 1;
+                    self.last_end = self.pos;
+                }
+                b'\'' | b'"'
+                    if self.declare == Declare::Name
+                        && self.class != Class::File
+                        && line_quote(bytes, i).is_some() =>
+                {
+                    let end = line_quote(bytes, i).unwrap_or(i + 1);
+                    self.problems.push(
+                        Diagnostic::error("E0220", span(i, end), "the name stands before its text")
+                            .help("write `set i 'plants' / a, b /;`, `parameter p(i) 'price';`"),
+                    );
+                    self.pos = end;
+                    self.last_end = end;
+                }
+                b'{' if self.declare == Declare::AfterText
+                    && memchr::memchr(b'}', &bytes[i..]).is_some() =>
+                {
+                    self.problems.push(
+                        Diagnostic::error(
+                            "E0220",
+                            span(i, i + 1),
+                            "data stand between two slashes",
+                        )
+                        .help("write `/ a 1, b 2 /`"),
+                    );
+                    self.pos = i + memchr::memchr(b'}', &bytes[i..]).map_or(1, |n| n + 1);
                     self.last_end = self.pos;
                 }
                 b'\'' | b'"' if self.declare != Declare::Name => match line_quote(bytes, i) {
@@ -130,7 +161,7 @@ impl Splitter {
                     }
                     if self.declare == Declare::AfterText && !self.new_line && self.names > 0 {
                         if let Some((body, next)) = self.swallowed_declaration(text) {
-                            self.unclosed_body(body, next);
+                            self.unclosed_body(text, body, next);
                             self.pos = next;
                             return true;
                         }
@@ -339,7 +370,7 @@ impl Splitter {
         let Some(stop) = self.forgotten_slash(text, to) else {
             return false;
         };
-        self.unclosed_body(self.body_start, stop);
+        self.unclosed_body(text, self.body_start, stop);
         self.pos = next_declaration(text, self.body_start, stop).unwrap_or(stop + 1);
         true
     }
@@ -477,6 +508,28 @@ impl Splitter {
                     self.pos = self.last_end;
                     return true;
                 }
+                let rows: usize = match bytes[at] == b';' && text[at + 1..end].trim().is_empty() {
+                    true => text[end..]
+                        .split_inclusive('\n')
+                        .take_while(|l| is_row(l))
+                        .map(str::len)
+                        .sum(),
+                    false => 0,
+                };
+                if rows > 0 {
+                    self.problems.push(
+                        Diagnostic::error(
+                            "E0248",
+                            span(at, at + 1),
+                            "`;` ends a table; rows follow behind it",
+                        )
+                        .label("the table ends here")
+                        .help("write `;` behind the last row only"),
+                    );
+                    self.end_table(bytes, end + rows);
+                    self.pos = self.last_end;
+                    return true;
+                }
                 if bytes[at] == b';' {
                     self.end_table(bytes, at);
                     self.pos = at + 1;
@@ -502,6 +555,19 @@ fn not_available(bytes: &[u8], at: usize) -> bool {
         && !bytes[at - 2].is_ascii_alphanumeric()
         && is(at + 1, b'a')
         && !bytes.get(at + 2).is_some_and(u8::is_ascii_alphanumeric)
+}
+
+/// A label and a number behind it, as the rows of a table begin.
+fn is_row(line: &str) -> bool {
+    let line = line.trim();
+    let word = words::word_end(line.as_bytes(), 0);
+    let number = line[word..]
+        .trim_start()
+        .trim_start_matches(['-', '+', '.']);
+    word > 0
+        && line[word..].starts_with([' ', '\t'])
+        && number.starts_with(|c: char| c.is_ascii_digit())
+        && words::statement_word(line, 0, word).is_none()
 }
 
 /// Whether a statement's keyword comes next.
