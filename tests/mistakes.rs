@@ -45,7 +45,7 @@ const MODEL: &[(&str, &str)] = &[
 ];
 
 /// Cases with exactly one message that has a place and says what to do.
-const RIGHT: usize = 629;
+const RIGHT: usize = 633;
 
 /// Fixes that an editor offers over all cases.
 const FIXED: usize = 70;

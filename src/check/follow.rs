@@ -27,7 +27,9 @@ const ONCE_PER_STATEMENT: [&[&str]; 6] = [
     &["E0329", "E0330"],
 ];
 /// A text is missing in which anything may be declared.
-const TEXT_MISSING: [&str; 6] = ["E0102", "E0103", "E0104", "E0105", "E0112", "E0300"];
+const TEXT_MISSING: [&str; 7] = [
+    "E0102", "E0103", "E0104", "E0105", "E0112", "E0114", "E0300",
+];
 /// What E0308 says of a label that another position of its symbol's domain has.
 pub(super) const EXCHANGED: &str = "labels stand in the order of the declaration";
 /// What E0319 says of variables and equations.

@@ -148,7 +148,12 @@ impl Compiler {
                 s.declared,
                 format!("declared with {} here", plural(s.dim())),
             )
-            .help(format!("write `{shape}`")),
+            .help(match (s.dim(), &s.kind) {
+                (0, SymbolKind::Parameter { .. } | SymbolKind::Variable(_)) if given == 1 => {
+                    format!("write `{shape}`; a product is `{shape}*(…)`")
+                }
+                _ => format!("write `{shape}`"),
+            }),
         )
     }
 

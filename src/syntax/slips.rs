@@ -531,6 +531,18 @@ fn condition(f: &Failure<'_>, lead: usize, token: &str) -> Option<Diagnostic> {
     )
 }
 
+/// Directives that are often written behind a statement.
+const DIRECTIVES: [&str; 8] = [
+    "gdxIn",
+    "load",
+    "loadDC",
+    "include",
+    "set",
+    "setGlobal",
+    "onText",
+    "call",
+];
+
 /// What stands where an operand should, or where one is missing.
 fn operand(f: &Failure<'_>) -> Option<Diagnostic> {
     let bytes = f.text.as_bytes();
@@ -563,6 +575,18 @@ fn operand(f: &Failure<'_>) -> Option<Diagnostic> {
             "`@` cannot stand in an expression".into(),
             "functions and sums have no mark: `sum(i, x(i))`, `exp(x)`; a formula that is used often can be a `$macro f(x) (…)`",
         ),
+        "$" if DIRECTIVES
+            .iter()
+            .any(|d| f.token(f.at + 1).eq_ignore_ascii_case(d)) =>
+        {
+            say(
+                "E0210",
+                f.at,
+                1 + f.token(f.at + 1).len(),
+                "a directive begins its line".into(),
+                "write it on a line of its own, `$` in the first column",
+            )
+        }
         "$" if bytes.get(f.at + 1).is_some_and(u8::is_ascii_alphabetic)
             && !before.ends_with(|c: char| c.is_ascii_alphanumeric() || c == ')') =>
         {

@@ -378,7 +378,10 @@ impl<'a> TableReader<'a> {
             }
             0 => {
                 let mut d = Diagnostic::error("E0250", span, "this value stands under no column")
-                    .help("a value must stand under a part of its column's label");
+                    .help(match value {
+                        Tail::Name(..) => "a value must stand under a part of its column's label; dots stand between the labels of a row: `a.b`",
+                        _ => "a value must stand under a part of its column's label",
+                    });
                 for near in [first.wrapping_sub(1), first] {
                     if let Some(c) = self.columns.get(near) {
                         d = d.other(c.span, "a column near it");
