@@ -276,7 +276,12 @@ impl Compiler {
                 && let Some(body) = d.data
             {
                 if !explicit && new && map.text(body).trim().is_empty() {
-                    self.no_shape(&d.name);
+                    let message = format!("how many indices has `{}`?", d.name.name);
+                    self.report(
+                        Diagnostic::error("E0334", d.name.span, message)
+                            .label("neither a domain nor data say")
+                            .help(format!("write `{}(*)`, or leave the data out", d.name.name)),
+                    );
                     continue;
                 }
                 let _ = self.set_data(s, body, d.name.span, &d.defines(), map);
@@ -338,16 +343,6 @@ impl Compiler {
         Ok(())
     }
 
-    /// An error for a symbol with neither a domain nor a record.
-    fn no_shape(&mut self, name: &Ident) {
-        let message = format!("how many indices has `{}`?", name.name);
-        self.report(
-            Diagnostic::error("E0334", name.span, message)
-                .label("neither a domain nor data say")
-                .help(format!("write `{}(*)`, or leave the data out", name.name)),
-        );
-    }
-
     pub(super) fn declare_parameters(
         &mut self,
         list: &[ParameterDecl],
@@ -355,13 +350,6 @@ impl Compiler {
     ) -> Result<(), Failed> {
         for p in list {
             let kind = SymbolKind::Parameter { scalar: p.scalar };
-            let new = self.symbols.find(&p.symbol.name.name).is_none();
-            let empty = |body| map.text(body).trim().is_empty();
-            if !p.scalar && new && p.symbol.domain.is_none() && p.symbol.data.is_some_and(empty) {
-                self.no_shape(&p.symbol.name);
-                self.lose_declaration(&p.symbol.name.name);
-                continue;
-            }
             let Ok(s) = self.declare(&p.symbol, kind, |c, n| c.store.add_table(n, 0.0)) else {
                 continue;
             };
