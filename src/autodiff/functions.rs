@@ -330,7 +330,7 @@ pub fn function_value(f: Function, args: &[f64]) -> Result<f64, DomainError> {
             if y <= 0.0 || z <= 0.0 {
                 return fail(if y <= 0.0 { 1 } else { 2 }, Domain);
             }
-            if y.max(z) > special::LARGEST_PARAMETER {
+            if y.max(z) > special::LARGEST_PARAMETER && x > 0.0 && x < 1.0 {
                 return fail(if y > z { 1 } else { 2 }, Precision);
             }
             special::beta_reg(x, y, z).v

@@ -324,18 +324,49 @@ impl<'a> Visitor<'a> for SelfReading<'a> {
 
 impl SelfReading<'_> {
     /// Whether the assignment goes element by element, each reading what those before have written: GAMS does
-    /// where the left side has a lag, and all that is read has lags of the same indices (`p(t+1) = p(t-1)`).
+    /// where the left side has a lag, and all that is read has the same indices, behind the first position with lags
+    /// as far: `p(t+1) = p(t-1)`, `p(t--1,i+1) = p(t,i++1)`, not `p(t+1,i) = p(t,i+1)`.
     /// Else the right side sees the values from before.
     fn is_recurrence(&self, written: &Key) -> bool {
         let lagged = written.parts.iter().any(|p| matches!(p, Part::Lag(_)));
         lagged
             && !self.keys.is_empty()
             && self.keys.iter().all(|k| {
-                k.parts
-                    .iter()
-                    .zip(&written.parts)
-                    .all(|(a, b)| same_index(a, b))
+                let pairs = k.parts.iter().zip(&written.parts).enumerate();
+                pairs.into_iter().all(|(position, (a, b))| {
+                    same_index(a, b) && (position == 0 || as_far(distance(a), distance(b)))
+                })
             })
+    }
+}
+
+/// How far an index is moved.
+fn distance(p: &Part) -> Option<&Node> {
+    match p {
+        Part::Lag(lag) => Some(&lag.offset),
+        _ => None,
+    }
+}
+
+/// Whether two indices are moved as far, in whatever direction: by the same number, scalar or form.
+fn as_far(a: Option<&Node>, b: Option<&Node>) -> bool {
+    let unsigned = |n: &'_ Node| match &n.kind {
+        NodeKind::Sum(terms) if terms.len() == 1 => terms[0].1.clone(),
+        NodeKind::Negate(n) => (**n).clone(),
+        _ => n.clone(),
+    };
+    let (Some(a), Some(b)) = (a.map(unsigned), b.map(unsigned)) else {
+        return a.is_none() && b.is_none();
+    };
+    match (&a.kind, &b.kind) {
+        (NodeKind::Const(a), NodeKind::Const(b)) => a.abs() == b.abs(),
+        (NodeKind::Data(a, k), NodeKind::Data(b, l)) => {
+            a == b && k.parts.iter().zip(&l.parts).all(|(a, b)| same_index(a, b))
+        }
+        (NodeKind::Sum(a), NodeKind::Sum(b)) => {
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| as_far(Some(&a.1), Some(&b.1)))
+        }
+        (a, b) => std::mem::discriminant(a) == std::mem::discriminant(b),
     }
 }
 

@@ -16,36 +16,50 @@ impl Compiler {
     /// control: of `loop(j, p(i) = q(j,i))` the turns are those for which q has a record with this j. Where the first
     /// position is the innermost index it alone is searched: j of `q(j,'a')`, but both of `q('a',j)`.
     /// A loop that is all that another holds counts as one with it; indices of others around do not drive.
+    /// An assignment under a `$`, its own or that of a loop within, counts by the condition, whatever it assigns and to
+    /// what: `b(j)$q(i) = 5`, `b(j) $= q(i)`, `loop(k$q(i), s = 5)`.
     pub(super) fn driver(&mut self, body: &[Code]) -> Option<Node> {
         let mut assigned = Vec::new();
-        if !self.driven(body, &mut assigned) {
+        if !driven(body, &Around::default(), &mut assigned) {
             return None;
         }
-        let tables: Vec<TableId> = assigned.iter().map(|a| a.table).collect();
-        let mut unless = Vec::new();
-        for &Assigned {
-            value,
-            own,
-            table,
-            set,
-        } in &assigned
-        {
-            let mut reading = LateReading {
-                compiler: self,
-                table,
-                tables: &tables,
-                own,
-                inner: Vec::new(),
-                guarded: set,
-                early: false,
-            };
-            reading.node(value);
-            if reading.early {
+        let tables: Vec<TableId> = assigned.iter().filter_map(|a| a.table).collect();
+        let (mut unless, mut all_guarded) = (Vec::new(), true);
+        for a in &assigned {
+            let guard = self.meeting(&a.guards, &a.own);
+            let by_value = guard.is_none();
+            if by_value && !(a.whole && self.holds_data(a) && !a.value.has_random()) {
                 return None;
             }
-            unless.extend(self.resting(value, own)?);
+            let decides = match by_value {
+                true => std::slice::from_ref(a.value),
+                false => &a.guards,
+            };
+            let mut reading = LateReading {
+                compiler: self,
+                table: a.table.filter(|_| by_value),
+                tables: &tables,
+                own: &a.own,
+                inner: Vec::new(),
+                guarded: by_value && a.set,
+                early: false,
+            };
+            decides.iter().for_each(|n| reading.node(n));
+            if reading.early || decides.iter().any(Node::has_random) {
+                return None;
+            }
+            all_guarded &= !by_value;
+            unless.extend(match guard {
+                Some(guard) => guard,
+                None => self.resting(a.value, &a.own)?,
+            });
         }
-        unless.into_iter().reduce(either)
+        // Where nothing comes of a turn it need not be passed over.
+        unless.into_iter().reduce(either).filter(|_| !all_guarded)
+    }
+
+    fn holds_data(&self, a: &Assigned) -> bool {
+        a.table.is_some_and(|t| self.is_data(t))
     }
 
     /// Where no record of the loop's indices is read an expression is 0, whatever its own indices are: the conditions of
@@ -264,42 +278,75 @@ impl Compiler {
         let any = NodeKind::Aggregate(AggregateOp::Sor, Box::new(domain), one);
         Some(Node::data(any, span))
     }
-
-    /// Whether these are such assignments, under conditions or not; adds them.
-    fn driven<'b>(&self, body: &'b [Code], out: &mut Vec<Assigned<'b>>) -> bool {
-        body.iter().all(|c| match &c.kind {
-            CodeKind::If(arms, otherwise) if otherwise.is_empty() => match arms.as_slice() {
-                [(_, body)] => self.driven(body, out),
-                _ => false,
-            },
-            CodeKind::Assign {
-                domain,
-                target: target @ (Target::Table(table) | Target::Set(table)),
-                value,
-                nonzero: false,
-                covers: true,
-                ..
-            } if !domain.slots.is_empty() => {
-                out.push(Assigned {
-                    value,
-                    own: &domain.slots,
-                    table: *table,
-                    set: matches!(target, Target::Set(_)),
-                });
-                self.is_data(*table) && !value.has_random()
-            }
-            _ => false,
-        })
-    }
 }
 
-/// An assignment to a whole parameter or set.
+/// Loops around an assignment, within the one that is looked at.
+#[derive(Clone, Default)]
+struct Around {
+    slots: Vec<Slot>,
+    /// What must hold or be there for a turn.
+    guards: Vec<Node>,
+}
+
+/// An assignment that may count.
 struct Assigned<'b> {
     value: &'b Node,
-    /// Its own indices.
-    own: &'b [Slot],
-    table: TableId,
+    /// What must hold for anything to come of it.
+    guards: Vec<Node>,
+    /// Its own indices, and those of loops within.
+    own: Vec<Slot>,
+    table: Option<TableId>,
+    /// It assigns a whole symbol, under no `$` of its own.
+    whole: bool,
     set: bool,
+}
+
+/// Whether these are nothing but assignments, in `if` and in loops or not; adds them.
+fn driven<'b>(body: &'b [Code], around: &Around, out: &mut Vec<Assigned<'b>>) -> bool {
+    body.iter().all(|c| match &c.kind {
+        CodeKind::If(arms, otherwise) => {
+            arms.iter().all(|(_, body)| driven(body, around, out)) && driven(otherwise, around, out)
+        }
+        CodeKind::While(_, body) | CodeKind::Repeat(body, _) => driven(body, around, out),
+        CodeKind::Loop(domain, late, body) => {
+            let mut around = around.clone();
+            around.slots.extend(&domain.slots);
+            around.guards.extend(domain.members.iter().map(|m| {
+                let kind = NodeKind::Data(m.table, m.key.clone());
+                Node::data(kind, c.span)
+            }));
+            around
+                .guards
+                .extend(domain.conditions.iter().chain(late).cloned());
+            driven(body, &around, out)
+        }
+        CodeKind::Assign {
+            domain,
+            target,
+            value,
+            nonzero,
+            covers,
+            ..
+        } => {
+            let conditional = *nonzero || !domain.conditions.is_empty();
+            let mut guards = around.guards.clone();
+            guards.extend(domain.conditions.iter().cloned());
+            guards.extend(nonzero.then(|| value.clone()));
+            out.push(Assigned {
+                value,
+                guards,
+                own: [&around.slots[..], &domain.slots].concat(),
+                table: match target {
+                    Target::Table(t) | Target::Set(t) => Some(*t),
+                    _ => None,
+                },
+                whole: *covers && !conditional && !domain.slots.is_empty(),
+                set: matches!(target, Target::Set(_)),
+            });
+            true
+        }
+        _ => false,
+    })
 }
 
 /// Whether a loop's assignment reads what it writes to so that no turn may be passed over: GAMS passes over turns
@@ -308,7 +355,8 @@ struct Assigned<'b> {
 /// What other assignments of the loop write to need only be so guarded.
 struct LateReading<'c> {
     compiler: &'c mut Compiler,
-    table: TableId,
+    /// Of an assignment that is under no `$`.
+    table: Option<TableId>,
     tables: &'c [TableId],
     own: &'c [Slot],
     /// Indices of the sums around.
@@ -342,7 +390,9 @@ impl<'a> Visitor<'a> for LateReading<'_> {
                 let own = |p: (&Part, &Slot)| matches!(p.0, Part::Slot(s) if s == p.1);
                 let same = key.parts.iter().zip(self.own).all(own);
                 let fixed = key.parts.iter().all(|p| matches!(p, Part::Label(_)));
-                self.early |= !self.guarded || *t == self.table && (same || fixed);
+                let scalar = key.parts.is_empty();
+                self.early |=
+                    !scalar && (!self.guarded || Some(*t) == self.table && (same || fixed));
                 n.walk(self);
             }
             NodeKind::Dollar(a, c) => self.sides(a, c),

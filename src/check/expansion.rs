@@ -10,6 +10,7 @@ use crate::source::Span;
 use crate::syntax::ast::Ident;
 use crate::syntax::data::KeyPart;
 use std::borrow::Cow;
+use std::fmt::Write;
 use std::rc::Rc;
 
 /// What a label takes, about: its name twice, its place in the universe.
@@ -208,9 +209,11 @@ pub(crate) fn range<'a>(from: &'a str, to: &str, most: usize) -> Result<Labels<'
         false => lo - n as u64,
     };
     let label = move |n| {
-        let digits = number(n).to_string();
-        let zeros = width.saturating_sub(digits.len());
-        [head, &"0".repeat(zeros), &digits, tail].concat()
+        let mut label = String::with_capacity(head.len() + 20.max(width) + tail.len());
+        label.push_str(head);
+        write!(label, "{:0width$}", number(n)).expect("a string takes what is written");
+        label.push_str(tail);
+        label
     };
     Ok(Box::new((0..lo.abs_diff(hi) as usize + 1).map(label)))
 }

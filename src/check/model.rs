@@ -185,14 +185,15 @@ impl Compiler {
         }
         let table = self.symbols.get(self.symbols.root(s)).table;
         self.store.table_mut(table).tidy();
-        let names: Vec<Box<str>> = self
-            .store
-            .table(table)
-            .iter()
-            .map(|(k, _)| self.store.universe.name(k[2]).into())
-            .collect();
-        for n in names {
+        let spelled = |l| self.store.universe.name(l).to_lowercase();
+        let rows = self.store.table(table).iter();
+        let rows: Vec<(String, String)> =
+            rows.map(|(k, _)| (spelled(k[1]), spelled(k[2]))).collect();
+        for (role, n) in rows {
             if let Some(s) = self.symbols.find(&n) {
+                if matches!(role.as_str(), "param" | "lower" | "upper" | "fixed") {
+                    self.used(s, name.span);
+                }
                 let root = self.symbols.root(s);
                 self.symbols.get_mut(root).assigned = true;
             }

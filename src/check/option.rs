@@ -165,6 +165,7 @@ impl Compiler {
             // A scalar and a single list have no table.
             [_, 0, list, ..] => *list >= 1,
             [_, rows, columns, ..] => *rows < dim && (1..=dim - rows).contains(columns),
+            [_, _] => false,
             _ => true,
         };
         if fits {

@@ -176,9 +176,18 @@ impl Compiler {
 
     fn fill_cell(&mut self, s: SymbolId, lines: &mut Lines, cell: &Cell) -> Result<(), Failed> {
         if cell.first {
-            let row = match self.familiar_line(&mut lines.familiar, cell.row, &lines.defines) {
-                Some(labels) => Line::Labels(labels),
-                None => self.table_line(s, 0, cell.row, &lines.defines, lines.name),
+            let row = match self.familiar_line(lines, cell.row) {
+                true => {
+                    // The room of the row before is used again.
+                    let mut labels = match std::mem::take(&mut lines.row) {
+                        Line::Labels(before) => before,
+                        _ => Vec::new(),
+                    };
+                    labels.clear();
+                    labels.extend_from_slice(&lines.familiar.key[..cell.row.len()]);
+                    Line::Labels(labels)
+                }
+                false => self.table_line(s, 0, cell.row, &lines.defines, lines.name),
             };
             lines.row = self.not_again(row, &mut lines.rows, cell.row_span, "row");
         }
@@ -199,8 +208,7 @@ impl Compiler {
             (Line::Labels(row), Some(Line::Labels(column))) if row.len() + column.len() == dim => {
                 self.take(1, record_bytes(dim), cell.span)?;
                 lines.key.clear();
-                lines.key.extend_from_slice(row);
-                lines.key.extend_from_slice(column);
+                row.iter().chain(column).for_each(|l| lines.key.push(*l));
                 // Neither its row nor its column comes twice, so it does not.
                 self.store.tables[table as usize].set(&lines.key, value);
                 return Ok(());
@@ -289,26 +297,17 @@ impl Compiler {
         Line::Open
     }
 
-    /// The labels of a row that has one at each position, and none that is new to its set.
-    fn familiar_line(
-        &mut self,
-        familiar: &mut Familiar,
-        key: &[KeyPart],
-        defines: &[bool],
-    ) -> Option<Vec<Label>> {
-        if set_prefix(key).is_some() || key.len() > familiar.key.len() {
-            return None;
-        }
-        for (p, part) in key.iter().enumerate() {
-            let known = match part {
-                KeyPart::Label { text, .. } => familiar.find(&mut self.store, p, text),
+    /// Finds the labels of a row that has one at each position, and none that is new to its set.
+    fn familiar_line(&mut self, lines: &mut Lines, key: &[KeyPart]) -> bool {
+        set_prefix(key).is_none()
+            && key.len() <= lines.familiar.key.len()
+            && key.iter().enumerate().all(|(p, part)| match part {
+                KeyPart::Label { text, .. } => {
+                    lines.defines.get(p) != Some(&true)
+                        && lines.familiar.find(&mut self.store, p, text)
+                }
                 _ => false,
-            };
-            if !known || defines.get(p) == Some(&true) {
-                return None;
-            }
-        }
-        Some(familiar.key[..key.len()].to_vec())
+            })
     }
 
     /// The labels of a row or column, refused if they came before.

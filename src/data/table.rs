@@ -318,7 +318,13 @@ impl Table {
 
     fn push(&mut self, key: &[Label], value: f64) {
         let r = self.values.len() as u32;
-        self.keys.extend_from_slice(key);
+        // Without a call for the usual lengths.
+        match *key {
+            [a] => self.keys.push(a),
+            [a, b] => self.keys.extend([a, b]),
+            [a, b, c] => self.keys.extend([a, b, c]),
+            _ => self.keys.extend_from_slice(key),
+        }
         self.values.push(value);
         self.moved();
         if let Some(index) = self.index.get_mut() {

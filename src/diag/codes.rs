@@ -231,7 +231,7 @@ pub const CODES: &[Code] = &[
     row("E0475", Execution, "nothing to exchange", "a symbol with data, and a file, must be named"),
     row("E0477", Execution, "symbol not in the file", "the message names the nearest"),
     row("E0478", Execution, "data file", "its content cannot be loaded; nothing was changed"),
-    row("E0479", Execution, "label of a data file", "it is not in the domain; nothing was loaded"),
+    row("E0479", Execution, "label of a data file", "it is not in the domain"),
 
     row("E0480", Execution, "`abort`", "the model stopped itself"),
     row("E0481", Execution, "figure not drawn", "its file or format cannot be written"),

@@ -4,6 +4,7 @@
 use super::Machine;
 use crate::check::exchange::{Part, Request, Wanted, load, no_file, unload, wanted};
 use crate::check::node::SymbolId;
+use crate::diag::Diagnostic;
 use crate::model::origin::Origin;
 use crate::source::Span;
 use crate::syntax::ast::Exchange;
@@ -47,15 +48,26 @@ impl Machine<'_> {
     }
 
     fn load(&mut self, request: &Request<'_>) {
+        match self.take_in(request) {
+            Ok(warnings) => warnings.into_iter().for_each(|d| self.note(d)),
+            Err(d) => {
+                // As in GAMS what fits is there behind the error.
+                if request.strict && d.code == "E0479" {
+                    let strict = false;
+                    let _ = self.take_in(&Request { strict, ..*request });
+                }
+                self.note(*d);
+            }
+        }
+    }
+
+    fn take_in(&mut self, request: &Request<'_>) -> Result<Vec<Diagnostic>, Box<Diagnostic>> {
         let mut symbols = std::mem::take(&mut self.symbols);
         let mut store = std::mem::take(&mut self.store);
         let mut read = |name: &str, at| self.read_bytes(name, at);
         let done = load(&mut symbols, &mut store, request, &mut read);
         (self.symbols, self.store) = (symbols, store);
-        match done {
-            Ok(warnings) => warnings.into_iter().for_each(|d| self.note(d)),
-            Err(d) => self.note(*d),
-        }
+        done
     }
 
     /// `savepoint`: levels and marginals of a model are written after its solve, for `execute_loadpoint`.

@@ -492,7 +492,10 @@ impl<'h> Preprocessor<'h> {
                 }
                 let end = self.plain_end(pos);
                 if end > pos {
-                    self.map.push_copy(file, pos as u32, end as u32);
+                    match self.marks.delimited {
+                        true => self.push_delimited(file, pos, end),
+                        false => _ = self.map.push_copy(file, pos as u32, end as u32),
+                    }
                     self.advance(end);
                     self.end_line(end);
                     continue;
@@ -597,6 +600,19 @@ impl<'h> Preprocessor<'h> {
         }
     }
 
+    /// Appends lines of data under `$onDelim`, each behind its mark.
+    fn push_delimited(&mut self, file: FileId, mut pos: usize, end: usize) {
+        while pos < end {
+            let next = self.line_end(pos).min(end);
+            if !self.raw(pos, next).trim().is_empty() {
+                let at = pos as u32;
+                self.map.push_substitute(DELIMITED, file, at, at);
+            }
+            self.map.push_copy(file, pos as u32, next as u32);
+            pos = next;
+        }
+    }
+
     /// Takes the next line of the present file, without its end.
     pub(super) fn take_line(&mut self) -> Line {
         let (file, pos) = match self.frames.last() {
@@ -614,8 +630,7 @@ impl<'h> Preprocessor<'h> {
 
     /// End of the run of lines from `pos` on that can be copied as they are.
     fn plain_end(&mut self, pos: usize) -> usize {
-        if !self.macros.is_empty() || self.marks.columns != (1, usize::MAX) || self.marks.delimited
-        {
+        if !self.macros.is_empty() || self.marks.columns != (1, usize::MAX) {
             return pos;
         }
         let Some(frame) = self.frames.last_mut() else {

@@ -818,10 +818,10 @@ impl<'a> DataReader<'a> {
 pub(super) const LARGE: f64 = 1e300;
 pub(super) const TINY: f64 = 1e-299;
 
-/// The value of a number without its sign: too large is `undf`, too small `eps`.
+/// The value of a number behind its sign: too large is `undf`, or the least number there is; too small is `eps`.
 fn ordinary(x: f64, minus: bool, digits: &str) -> f64 {
     if x >= LARGE {
-        UNDF
+        if minus { -LARGE } else { UNDF }
     } else if x == 0.0 && is_tiny(digits) || x > 0.0 && x <= TINY {
         EPS
     } else if minus {

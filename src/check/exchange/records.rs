@@ -166,7 +166,7 @@ impl<'a> Loading<'a> {
                 ),
             )
             .label(format!(
-                "position {} of `{}` runs over `{}`; nothing was loaded",
+                "position {} of `{}` runs over `{}`",
                 p + 1,
                 symbol.name,
                 set_symbol.name

@@ -324,7 +324,9 @@ impl<R: Relaxation> Search<'_, R> {
             false => 1e-7,
         };
         let far = |j: &usize| (x[*j] - x[*j].round()).abs();
-        let whole = (0..x.len()).filter(|&j| self.mip.integer[j] && self.lower[j] < self.upper[j]);
+        // At a bound, or beyond it by rounding, neither side would be smaller.
+        let inside = |j: usize| self.lower[j] < x[j] && x[j] < self.upper[j];
+        let whole = (0..x.len()).filter(|&j| self.mip.integer[j] && inside(j));
         let j = whole
             .filter(|j| far(j) > noise)
             .max_by(|a, b| far(a).total_cmp(&far(b)))?;

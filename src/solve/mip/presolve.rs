@@ -94,7 +94,7 @@ fn singletons(mip: &mut Mip, idle: &mut [bool]) -> Option<bool> {
             continue;
         }
         let p = &mut mip.problem;
-        let open = |&(j, _): &(usize, f64)| p.lower[j] < p.upper[j];
+        let open = |&(j, a): &(usize, f64)| a != 0.0 && p.lower[j] < p.upper[j];
         let mut entries = p.rows.line(i).filter(open);
         let (Some((j, a)), None) = (entries.next(), entries.next()) else {
             continue;

@@ -154,7 +154,7 @@ impl Propagator {
         }
         for (j, a) in p.rows.line(i) {
             let (l, u) = (lower[j], upper[j]);
-            if l == u || !(mip.integer[j] || self.continuous) {
+            if l == u || a == 0.0 || !(mip.integer[j] || self.continuous) {
                 continue;
             }
             let (mut new_l, mut new_u) = (l, u);
