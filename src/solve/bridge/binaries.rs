@@ -157,7 +157,13 @@ impl Known {
         let others = product.iter().filter(|&&j| !self.binary[j as usize]);
         let mut others: Vec<u32> = others.copied().collect();
         let range = |j: u32| self.upper[j as usize] - self.lower[j as usize];
-        let rank = |j: u32| (self.integer[j as usize], self.bits.contains_key(&j), range(j));
+        let rank = |j: u32| {
+            (
+                self.integer[j as usize],
+                self.bits.contains_key(&j),
+                range(j),
+            )
+        };
         others.sort_by(|&i, &j| {
             let (i, j) = (rank(i), rank(j));
             (i.0, i.1).cmp(&(j.0, j.1)).then(j.2.total_cmp(&i.2))

@@ -242,7 +242,11 @@ fn switches(instance: &Instance, nonlinear: &[bool]) -> Switches {
 
 /// A binary at whose 0 all columns are.
 fn common_switch(switches: &Switches, columns: &[u32]) -> Option<u32> {
-    let off = |j: &u32, u: &u32| switches.get(j).is_some_and(|s| s.iter().all(|s| s.contains(u)));
+    let off = |j: &u32, u: &u32| {
+        switches
+            .get(j)
+            .is_some_and(|s| s.iter().all(|s| s.contains(u)))
+    };
     let (first, rest) = columns.split_first()?;
     let candidates = switches.get(first)?[0].iter().filter(|u| off(first, u));
     candidates.copied().find(|u| rest.iter().all(|j| off(j, u)))

@@ -25,6 +25,8 @@ pub(crate) struct Found {
     pub incomplete: bool,
     /// Values of relaxations are bounds.
     pub exact: bool,
+    /// The relaxation has a point.
+    pub relaxed: bool,
     /// What became of the nodes.
     pub records: Vec<Record>,
     /// Nodes made.
@@ -42,6 +44,7 @@ impl Found {
             end: End::Complete,
             incomplete: false,
             exact: true,
+            relaxed: false,
             records: Vec::new(),
             made: 0,
         }

@@ -7,8 +7,8 @@
 use super::model::Mip;
 use super::relaxation::{Control, Relaxation};
 use super::tree::Search;
-use crate::solve::lp::form::Sparse;
 use crate::solve::Settings;
+use crate::solve::lp::form::Sparse;
 use crate::solve::random::Random;
 use crate::solve::strategy::Strategy;
 

@@ -56,6 +56,8 @@ pub struct Report {
     pub bound: Option<f64>,
     /// Nodes solved.
     pub nodes: u64,
+    /// The relaxation has a point: if there is no solution, this is due to discrete columns.
+    pub relaxed: bool,
     /// What became of the nodes, where that was asked for; columns are the instance's.
     pub records: Vec<Record>,
     /// Nodes that are not among them.
@@ -243,7 +245,7 @@ pub(super) fn concluded(task: &Task, found: Found, settings: &Settings, budget: 
         () if outcome.claim == Claim::LocallyInfeasible => {
             Some("not convex: the nonlinear solver found no point, which proves nothing".into())
         }
-        () if outcome.claim == Claim::Infeasible && found.nodes == 0 => {
+        () if outcome.claim == Claim::Infeasible && found.nodes == 0 && !found.relaxed => {
             Some("the bounds and rows contradict each other before any search".into())
         }
         () if found.incomplete => {
@@ -274,6 +276,7 @@ pub(super) fn concluded(task: &Task, found: Found, settings: &Settings, budget: 
         solution: complete,
         bound: Some(shown).filter(|b| b.is_finite() && found.exact && !empty),
         nodes: found.nodes,
+        relaxed: found.relaxed,
         left_out: (found.made as usize).saturating_sub(found.records.len()),
         records: found.records,
     };
@@ -388,6 +391,7 @@ fn convex_search(
     };
     let mut found = searched(&squared.instance, &form, &mip, aim, begin, control);
     found.keep(instance.column_count());
+    found.relaxed = true;
     Ok(Some(found))
 }
 

@@ -14,8 +14,8 @@ use super::driver::Found;
 use super::model::{Change, INTEGRAL, Mip, Units};
 use super::propagate::Propagator;
 use super::relaxation::{Control, Relaxation, Solved};
-use crate::solve::{Progress, Settings};
 use crate::solve::lp::Ended;
+use crate::solve::{Progress, Settings};
 use std::collections::BinaryHeap;
 use std::rc::Rc;
 
@@ -330,6 +330,7 @@ impl<'a, R: Relaxation> Search<'a, R> {
         Found {
             value: self.best.as_ref().map_or(f64::INFINITY, |b| b.0),
             exact: self.relaxation.is_exact(),
+            relaxed: self.nodes > 1,
             x: self.best.map(|b| b.1),
             bound: self.bound,
             nodes: self.nodes,
