@@ -104,7 +104,10 @@ impl Square {
         terms.push((self.column, -1.0));
         let side = match self.switch {
             Some(u) => {
-                terms.push((u, -value));
+                match terms.iter_mut().find(|t| t.0 == u) {
+                    Some(own) => own.1 -= value,
+                    None => terms.push((u, -value)),
+                }
                 0.0
             }
             None => value,

@@ -370,7 +370,12 @@ fn convex_search(
     let form = Form::new(&squared.instance)?;
     let mut convex = Convex {
         nonlinear,
-        columns: instance.column_count() as u32,
+        discrete: instance
+            .columns
+            .kind
+            .iter()
+            .map(|k| *k != ColumnKind::Continuous)
+            .collect(),
         squares: &squared.squares,
         numbers: &form.columns,
     };
@@ -390,6 +395,11 @@ fn convex_search(
         start: None,
     };
     let mut found = searched(&squared.instance, &form, &mip, aim, begin, control);
+    // degenerate: the nonlinear solver at every node may know more
+    let given_up = found.incomplete || !found.exact;
+    if given_up && matches!(found.end, End::Complete | End::Gap) {
+        return Ok(None);
+    }
     found.keep(instance.column_count());
     found.relaxed = true;
     Ok(Some(found))

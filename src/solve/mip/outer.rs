@@ -60,8 +60,8 @@ impl Way {
 pub(super) struct Convex<'s> {
     /// The program itself.
     pub nonlinear: Nonlinear,
-    /// Its columns.
-    pub columns: u32,
+    /// By column of it: discrete.
+    pub discrete: Vec<bool>,
     pub squares: &'s [Square],
     /// Columns of the linear instance, of those of the linear program.
     pub numbers: &'s [u32],
@@ -70,7 +70,7 @@ pub(super) struct Convex<'s> {
 impl<'s> Convex<'s> {
     /// The way from a search over what presolve left.
     pub(super) fn way(&self, reduced: &Reduced, scale: &[f64]) -> Way {
-        let mut fixed = vec![0.0; self.columns as usize + self.squares.len()];
+        let mut fixed = vec![0.0; self.discrete.len() + self.squares.len()];
         let values = reduced.restore(&vec![0.0; scale.len()]);
         for (&j, v) in self.numbers.iter().zip(values) {
             fixed[j as usize] = v;
@@ -92,7 +92,7 @@ impl<'s> Convex<'s> {
     }
 
     fn with_values(&self, mut level: Vec<f64>) -> Vec<f64> {
-        level.resize(self.columns as usize + self.squares.len(), 0.0);
+        level.resize(self.discrete.len() + self.squares.len(), 0.0);
         for s in self.squares {
             level[s.column as usize] = s.value(&level);
         }
@@ -140,10 +140,21 @@ pub(super) struct Outer<'s> {
 
 impl<'s> Outer<'s> {
     /// Over a linear program with some tangents.
-    pub(super) fn new(mip: &'s Mip, linear: Linear, convex: Convex<'s>, way: Way) -> Self {
+    pub(super) fn new(mip: &'s Mip, linear: Linear, mut convex: Convex<'s>, way: Way) -> Self {
         let mut place = vec![usize::MAX; way.fixed.len()];
         for (k, c) in way.column.iter().enumerate() {
             place[c.0 as usize] = k;
+        }
+        // what presolve has decided
+        for (column, _) in convex.discrete.iter().enumerate().filter(|d| *d.1) {
+            if place[column] == usize::MAX {
+                let [lower, upper] = [way.fixed[column]; 2];
+                convex.nonlinear.set_bounds(Change {
+                    column,
+                    lower,
+                    upper,
+                });
+            }
         }
         let (lower, upper) = (mip.problem.lower.iter(), mip.problem.upper.iter());
         Self {
@@ -224,10 +235,11 @@ impl<'s> Outer<'s> {
         point
     }
 
-    /// Bounds of a column of the search go to the program as well.
+    /// Bounds of a discrete column of the search go to the program as well.
     fn bound(&mut self, j: usize, [lower, upper]: [f64; 2]) {
         let (column, factor) = self.way.column[j];
-        if column >= self.convex.columns {
+        let discrete = self.convex.discrete.get(column as usize);
+        if discrete != Some(&true) {
             return;
         }
         let change = Change {

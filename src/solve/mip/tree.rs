@@ -159,7 +159,7 @@ pub struct Search<'a, R: Relaxation> {
     pub(super) mip: &'a Mip,
     pub(super) relaxation: R,
     pub(super) aim: Aim,
-    units: Units,
+    pub(super) units: Units,
     /// Bounds that hold everywhere.
     pub(super) root: [Vec<f64>; 2],
     /// Bounds of the present node.

@@ -37,3 +37,27 @@ solve lots using miqcp minimizing z;
 *= lots.objval 122.6977
 solve shares using miqcp maximizing z;
 *= shares.modelstat 1
+
+* Units with quadratic costs of fuel: the perspective of a square is what makes their bound worth something.
+set unit /1*8/, t /1*18/;
+parameters top(unit), base(unit), slope(unit), curve(unit), start(unit), load(t);
+top(unit) = 80 + 35*mod(ord(unit)*3, 7);
+base(unit) = 100 + 40*mod(ord(unit), 5);
+slope(unit) = 14 + mod(ord(unit)*5, 9)*0.7;
+curve(unit) = 0.003 + 0.001*mod(ord(unit)*2, 5);
+start(unit) = 150 + 60*mod(ord(unit)*3, 4);
+load(t) = 620 + 260*sin(ord(t)*0.35) + 40*mod(ord(t), 3);
+binary variables on(unit, t), up(unit, t);
+positive variable output(unit, t);
+equations fuel, met(t), spare(t), lowest(unit, t), highest(unit, t), started(unit, t), once(unit, t);
+fuel..  z =e= sum((unit, t), base(unit)*on(unit, t) + slope(unit)*output(unit, t) + curve(unit)*sqr(output(unit, t)) + start(unit)*up(unit, t));
+met(t)..  sum(unit, output(unit, t)) =e= load(t);
+spare(t)..  sum(unit, top(unit)*on(unit, t)) =g= 1.08*load(t);
+lowest(unit, t)..  output(unit, t) =g= 0.3*top(unit)*on(unit, t);
+highest(unit, t)..  output(unit, t) =l= top(unit)*on(unit, t);
+started(unit, t)..  up(unit, t) =g= on(unit, t) - on(unit, t-1);
+once(unit, t)$(ord(t) > 2)..  up(unit, t-1) + up(unit, t) =l= on(unit, t);
+model commit / fuel, met, spare, lowest, highest, started, once /;
+solve commit using miqcp minimizing z;
+*= commit.modelstat 1
+*= commit.objval 211829.411616
