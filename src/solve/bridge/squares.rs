@@ -30,14 +30,17 @@ pub(in crate::solve) struct Squared {
     pub(in crate::solve) squares: Vec<Square>,
 }
 
+/// Entries of a matrix, by positions among the columns of its form.
+type Entries = Vec<(u32, u32, f64)>;
+
 /// A form ½ xᵀHx, and the column that is not below it.
 #[derive(Debug)]
 pub(in crate::solve) struct Square {
     pub(in crate::solve) column: u32,
     /// The columns of x.
     pub(in crate::solve) columns: Vec<u32>,
-    /// H, both triangles, by positions among these.
-    entries: Vec<(u32, u32, f64)>,
+    /// H, both triangles.
+    entries: Entries,
     /// A binary column; x is 0 where it is.
     switch: Option<u32>,
     /// x is one integer column.
@@ -164,7 +167,7 @@ pub(in crate::solve) fn with_squares(instance: &Instance) -> Option<Squared> {
 }
 
 /// Columns that entries join, with their entries.
-fn blocks(hessian: &[(usize, usize, f64)]) -> Vec<(Vec<u32>, Vec<(u32, u32, f64)>)> {
+fn blocks(hessian: &[(usize, usize, f64)]) -> Vec<(Vec<u32>, Entries)> {
     let mut leader: BTreeMap<usize, usize> = hessian.iter().map(|e| (e.0, e.0)).collect();
     fn find(leader: &BTreeMap<usize, usize>, mut j: usize) -> usize {
         while leader[&j] != j {
@@ -180,7 +183,7 @@ fn blocks(hessian: &[(usize, usize, f64)]) -> Vec<(Vec<u32>, Vec<(u32, u32, f64)
     for &j in leader.keys() {
         columns.entry(find(&leader, j)).or_default().push(j as u32);
     }
-    let mut entries: BTreeMap<usize, Vec<(u32, u32, f64)>> = BTreeMap::new();
+    let mut entries: BTreeMap<usize, Entries> = BTreeMap::new();
     for &(i, j, h) in hessian {
         let block = find(&leader, i);
         let place = |j: usize| columns[&block].partition_point(|&k| (k as usize) < j) as u32;
