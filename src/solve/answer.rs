@@ -296,8 +296,8 @@ fn status_of_search(
         (true, Claim::Solved) => S::Optimal,
         (true, _) => S::IntegerSolution,
         // The nonlinear solver found no point for the root: this is not due to integers.
-        (false, Claim::LocallyInfeasible) if search.nodes <= 1 => S::LocallyInfeasible,
-        (false, Claim::Infeasible) if search.nodes <= 1 && !task.instance.is_linear() => {
+        (false, Claim::LocallyInfeasible) if !search.relaxed => S::LocallyInfeasible,
+        (false, Claim::Infeasible) if !search.relaxed && !task.instance.is_linear() => {
             S::Infeasible
         }
         (false, Claim::Infeasible | Claim::LocallyInfeasible) => S::IntegerInfeasible,

@@ -11,6 +11,7 @@ pub mod certificate;
 pub mod complementarity;
 #[cfg(test)]
 pub mod conformance;
+pub mod discrete;
 pub(crate) mod factor_size;
 #[cfg(feature = "highs")]
 pub mod highs;

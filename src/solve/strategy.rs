@@ -195,6 +195,20 @@ strategies! {
             "Raghunathan & Biegler 2005";
     }
     "mip": {
+        BinaryProducts "binary_products",
+            "`miqcp` or `minlp` that is not convex quadratic, products with a binary factor, or of integers with at most 256 values: columns and rows take their place, if what is left then is linear or convex quadratic",
+            "20 000 columns, and 5 nodes of the nonlinear program for a first solution (500, then 20 000 of the linear one, with integers in bits)",
+            "Fortet 1960, Watters 1967, McCormick 1976, Adams & Sherali 1986";
+        OuterApproximation "outer_approximation",
+            "convex quadratic: tangents at the nodes of a tree over linear programs, with those of the perspective where a binary switches columns off",
+            "a column and a tangent for each block of columns that the Hessians join",
+            "Quesada & Grossmann 1992, Frangioni & Gentile 2006";
+        FeasibilityJump "feasibility_jump",
+            "no ordered sets or semicontinuous columns: solutions without linear programs, at the root and between plunges",
+            "a tenth of the time",
+            "Luteberget & Sartor 2023";
+    }
+    "mip": {
     }
 }
 

@@ -7,16 +7,17 @@
 //!
 //! (Fortet 1960; McCormick 1976.) An equation of binaries times another binary is an equation of such products: where half of
 //! them are there, it is added, which is much of what is known of the others (Adams & Sherali 1986; for assignments it is what
-//! makes bounds worth something). Powers and products of sums are multiplied out first. Functions stay, and products without
+//! makes bounds worth something). Of a product of integers all but one are written in bits, x = l + Σ 2ᵏ bₖ, where their ranges are
+//! short (Watters 1967). Powers and products of sums are multiplied out first. Functions stay, and products without
 //! a binary factor. Where a row gains only from a product that is too small, or only from one that is too large, the rows that
 //! forbid the other are left out. The new columns and rows come last, so that a point begins with that of the program itself.
 
 use super::builder::Builder;
-use super::parts::expressions;
+use super::parts::{directions, expressions};
 use crate::model::builder::Term;
 use crate::model::instance::{ColumnKind, Function, Instance, Op, Relation};
-use crate::solve::mip::Mip;
-use crate::solve::mip::propagate::Propagator;
+use crate::solve::discrete::Mip;
+use crate::solve::discrete::propagate::Propagator;
 use std::collections::BTreeMap;
 
 /// Columns of a product, in order; a binary one stands there once.
@@ -31,6 +32,9 @@ const MAX_TERM_PRODUCTS: usize = 10_000;
 /// New columns, at most: a search over more of them is no better than one over the nonlinear program.
 const MAX_NEW_COLUMNS: usize = 20_000;
 
+/// Values of an integer column that is written in bits, at most, less one: a longer one has a bound worth little.
+const MAX_RANGE: f64 = 255.0;
+
 /// Bounds of the other factor, at most: what is multiplied by a binary that is 0 to a tolerance is to be 0, too.
 const MAX_FACTOR_BOUND: f64 = 1e6;
 
@@ -38,7 +42,9 @@ const MAX_FACTOR_BOUND: f64 = 1e6;
 pub(in crate::solve) struct Replaced {
     /// The program.
     pub(in crate::solve) instance: Instance,
-    /// Products in whose place the new columns stand, in order.
+    /// The first new columns, bits: of what, from where, and their units.
+    written: Vec<(u32, f64, f64)>,
+    /// Products in whose place the columns behind them stand, in order.
     products: Vec<Monomial>,
 }
 
@@ -47,32 +53,51 @@ impl Replaced {
     pub(in crate::solve) fn start_at(&mut self, x: &[f64]) {
         let level = &mut self.instance.columns.level;
         level[..x.len()].copy_from_slice(x);
-        for (w, product) in self.products.iter().enumerate() {
-            level[x.len() + w] = product.iter().map(|&j| x[j as usize]).product();
+        let bits = self.written.iter();
+        let bits = bits.map(|&(j, l, unit)| bit_of(x[j as usize], l, unit));
+        for (k, bit) in (x.len()..).zip(bits) {
+            level[k] = bit;
         }
+        let first = x.len() + self.written.len();
+        for (w, product) in self.products.iter().enumerate() {
+            level[first + w] = product.iter().map(|&j| level[j as usize]).product();
+        }
+    }
+
+    /// Whether integer columns were written in bits.
+    pub(in crate::solve) fn has_bits(&self) -> bool {
+        !self.written.is_empty()
     }
 }
 
 /// The program without products that have a binary factor; None where there is none.
 pub(in crate::solve) fn without_binary_products(instance: &Instance) -> Option<Replaced> {
-    let mut changed = false;
     let mut products = Products::new(instance)?;
+    let mut terms = Vec::new();
     for (row, coefficient, term) in expressions(instance) {
         let parts = products.builder.place_linear(row, term.parts(coefficient));
         for (weight, part) in parts {
             let multiplied = products.known.multiplied_out(&part);
-            let replaced = |p: &Polynomial| {
-                let linear = p.keys().all(|m| m.len() < 2);
-                linear || p.keys().any(|m| products.known.is_replaced(m))
-            };
-            match multiplied.filter(replaced) {
-                Some(p) => {
-                    changed = true;
-                    p.into_iter()
-                        .for_each(|(m, a)| products.place(row, m, weight * a));
-                }
-                None => products.builder.push_term(row, weight, part),
+            terms.push((row, weight, part, multiplied));
+        }
+    }
+    let all = || terms.iter().flat_map(|t| &t.3).flat_map(Polynomial::keys);
+    products.write_in_bits(all());
+    let mut changed = false;
+    for (row, weight, part, multiplied) in terms {
+        let known = &products.known;
+        let multiplied = multiplied.and_then(|p| known.in_bits(p));
+        let replaced = |p: &Polynomial| {
+            let linear = p.keys().all(|m| m.len() < 2);
+            linear || p.keys().any(|m| known.is_replaced(m))
+        };
+        match multiplied.filter(replaced) {
+            Some(p) => {
+                changed = true;
+                p.into_iter()
+                    .for_each(|(m, a)| products.place(row, m, weight * a));
             }
+            None => products.builder.push_term(row, weight, part),
         }
         if products.made.len() > MAX_NEW_COLUMNS {
             return None;
@@ -88,6 +113,8 @@ struct Known {
     upper: Vec<f64>,
     integer: Vec<bool>,
     binary: Vec<bool>,
+    /// Bits of integer columns that are written in them, lowest first.
+    bits: BTreeMap<u32, Vec<u32>>,
 }
 
 impl Known {
@@ -103,6 +130,7 @@ impl Known {
         let is_binary = |j: usize| mip.integer[j] && lower[j] >= 0.0 && upper[j] <= 1.0;
         Some(Self {
             binary: (0..lower.len()).map(is_binary).collect(),
+            bits: BTreeMap::new(),
             integer: mip.integer,
             lower,
             upper,
@@ -121,6 +149,51 @@ impl Known {
             (Some(j), None) => product.len() > 1 && bounded(j),
             _ => false,
         }
+    }
+
+    /// Columns of a product that are not binary, but for one: it would have a column in place of each with a binary in place of
+    /// one of these. None: one of them cannot be written in binaries.
+    fn to_write(&self, product: &[u32]) -> Option<Vec<u32>> {
+        let others = product.iter().filter(|&&j| !self.binary[j as usize]);
+        let mut others: Vec<u32> = others.copied().collect();
+        let range = |j: u32| self.upper[j as usize] - self.lower[j as usize];
+        let rank = |j: u32| {
+            (
+                self.integer[j as usize],
+                self.bits.contains_key(&j),
+                range(j),
+            )
+        };
+        others.sort_by(|&i, &j| {
+            let (i, j) = (rank(i), rank(j));
+            (i.0, i.1).cmp(&(j.0, j.1)).then(j.2.total_cmp(&i.2))
+        });
+        let rest = others.split_off(others.len().min(1));
+        let short = |&j: &u32| self.integer[j as usize] && range(j) <= MAX_RANGE;
+        rest.iter().all(short).then_some(rest)
+    }
+
+    /// A polynomial with bits in place of the columns that are written in them, as far as each product needs it.
+    fn in_bits(&self, p: Polynomial) -> Option<Polynomial> {
+        let mut out = Polynomial::new();
+        for (product, a) in p {
+            let mut rest = product.clone();
+            let mut factors = Vec::new();
+            for j in self.to_write(&product).unwrap_or_default() {
+                let Some(bits) = self.bits.get(&j) else {
+                    continue;
+                };
+                rest.remove(rest.iter().position(|&k| k == j)?);
+                let mut number = constant(self.lower[j as usize]);
+                for (k, &bit) in bits.iter().enumerate() {
+                    number = sum(number, &self.column(bit, 1.0), (1u64 << k) as f64);
+                }
+                factors.push(number);
+            }
+            factors.push(Polynomial::from([(rest, a)]));
+            out = sum(out, &self.product(factors.iter())?, 1.0);
+        }
+        Some(out)
     }
 
     /// A term as a polynomial, if it is one of moderate length.
@@ -234,36 +307,58 @@ struct Products {
     builder: Builder,
     /// By row: 1 where its left side is to be small, −1 where it is to be large, 0 where it is given.
     direction: Vec<f64>,
+    /// The first new columns, bits: of what, from where, and their units.
+    written: Vec<(u32, f64, f64)>,
     made: Vec<Made>,
     number: BTreeMap<Monomial, usize>,
 }
 
+/// The bit of this unit in the binary number x − l.
+fn bit_of(x: f64, l: f64, unit: f64) -> f64 {
+    ((x - l).round().max(0.0) / unit).floor() % 2.0
+}
+
 impl Products {
     fn new(instance: &Instance) -> Option<Self> {
-        let mut direction: Vec<f64> = instance
-            .rows
-            .relation
-            .iter()
-            .map(|r| match r {
-                Relation::Less => 1.0,
-                Relation::Greater => -1.0,
-                Relation::Equal | Relation::Free => 0.0,
-            })
-            .collect();
-        // a z + f(x) = c: what makes z better makes a·sign·f larger
-        if let (Some(o), Some((row, a))) = (instance.objective, instance.objective_row())
-            && instance.is_free(o.column as usize)
-            && instance.rows.relation[row] == Relation::Equal
-        {
-            direction[row] = -(a * o.sense.sign()).signum();
-        }
         Some(Self {
             known: Known::new(instance)?,
             builder: Builder::new(instance),
-            direction,
+            direction: directions(instance),
+            written: Vec::new(),
             made: Vec::new(),
             number: BTreeMap::new(),
         })
+    }
+
+    /// Integer columns of which products need it get bits, x = l + Σ 2ᵏ bₖ.
+    fn write_in_bits<'p>(&mut self, products: impl Iterator<Item = &'p Monomial>) {
+        for product in products {
+            for j in self.known.to_write(product).unwrap_or_default() {
+                if self.known.bits.contains_key(&j) {
+                    continue;
+                }
+                let (l, u) = (self.known.lower[j as usize], self.known.upper[j as usize]);
+                let row = self.builder.push_row(Relation::Equal);
+                self.builder.rows.rhs[row] = l;
+                self.builder.entries.push((row, j, 1.0));
+                let mut bits = Vec::new();
+                while ((1u64 << bits.len()) as f64) <= u - l {
+                    let bit = self.builder.columns.push(0.0, 1.0);
+                    self.builder.columns.kind[bit] = ColumnKind::Integer;
+                    let unit = (1u64 << bits.len()) as f64;
+                    self.builder.entries.push((row, bit as u32, -unit));
+                    bits.push(bit as u32);
+                    self.known.lower.push(0.0);
+                    self.known.upper.push(1.0);
+                    self.known.integer.push(true);
+                    self.known.binary.push(true);
+                    self.written.push((j, l, unit));
+                    self.builder.columns.level[bit] =
+                        bit_of(self.builder.columns.level[j as usize], l, unit);
+                }
+                self.known.bits.insert(j, bits);
+            }
+        }
     }
 
     /// Puts a product into the left side of a row.
@@ -420,6 +515,10 @@ impl Products {
             let all = instance.columns.kind.len();
             instance.discrete.priorities.resize(all, f64::MAX);
         }
-        Replaced { instance, products }
+        Replaced {
+            instance,
+            written: self.written,
+            products,
+        }
     }
 }

@@ -5,7 +5,8 @@
 //! * [`epigraph`]: max, min and abs where they stand convexly, as columns and rows;
 //! * [`inner_sums`]: long sums inside functions, as columns and rows;
 //! * [`kkt`]: the optimality conditions of a linear program as a complementarity problem;
-//! * [`products`]: pairs as nonlinear rows, for programs with equilibrium constraints.
+//! * [`products`]: pairs as nonlinear rows, for programs with equilibrium constraints;
+//! * [`squares`]: convex quadratic forms as columns, for programs with discrete columns.
 
 pub mod binaries;
 mod builder;
@@ -15,6 +16,7 @@ mod inner_sums;
 pub mod kkt;
 mod parts;
 pub mod products;
+pub mod squares;
 
 use super::Settings;
 use super::answer::Answer;

@@ -1,7 +1,7 @@
 //! Terms taken apart: a kernel as a weighted sum of constants, variables and what cannot be split further.
 
 use crate::model::builder::Term;
-use crate::model::instance::{Function, Instance, Op};
+use crate::model::instance::{Function, Instance, Op, Relation};
 
 /// All nonlinear terms: row, coefficient, expression.
 pub(super) fn expressions(instance: &Instance) -> impl Iterator<Item = (usize, f64, Term)> {
@@ -15,6 +15,25 @@ pub(super) fn expressions(instance: &Instance) -> impl Iterator<Item = (usize, f
             (slots.row, slots.coef, expression)
         })
     })
+}
+
+/// By row: 1 where its left side is to be small, −1 where it is to be large, 0 where it is given. In the row that defines the
+/// objective, what makes the objective better makes its other terms larger or smaller.
+pub(super) fn directions(instance: &Instance) -> Vec<f64> {
+    let of = |r: &Relation| match r {
+        Relation::Less => 1.0,
+        Relation::Greater => -1.0,
+        Relation::Equal | Relation::Free => 0.0,
+    };
+    let mut direction: Vec<f64> = instance.rows.relation.iter().map(of).collect();
+    // a z + f(x) = c: what makes z better makes a·sign·f larger
+    if let (Some(o), Some((row, a))) = (instance.objective, instance.objective_row())
+        && instance.is_free(o.column as usize)
+        && instance.rows.relation[row] == Relation::Equal
+    {
+        direction[row] = -(a * o.sense.sign()).signum();
+    }
+    direction
 }
 
 /// A weighted sum.

@@ -7,9 +7,10 @@
 mod engine;
 
 use super::backend::{About, Backend, QuadraticEngine, Replied, Supports, Task, Terms};
+use super::discrete::Mip;
 use super::lp::form::{Form, Point, Problem, Sparse};
 use super::lp::{self, Ended, interior};
-use super::mip::{self, Aim, End, Found, Mip};
+use super::mip::{self, Aim, End, Found};
 use super::{Budget, Claim, Outcome, Settings, SolveError, SolverStatus, nlp};
 use crate::model::instance::Instance;
 use crate::model::option::{Kind, OptionTable, row};

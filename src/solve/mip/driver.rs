@@ -3,9 +3,11 @@
 use super::cuts::Separator;
 use super::linear::Linear;
 use super::model::{Change, Mip, Units};
+use super::outer::{Convex, Outer};
 use super::presolve;
 use super::relaxation::{Control, Relaxation, Solved};
 use super::tree::{Aim, End, Record, Search};
+use crate::solve::Settings;
 
 /// What a search gave, in columns of the instance, for a minimisation.
 pub(crate) struct Found {
@@ -23,6 +25,8 @@ pub(crate) struct Found {
     pub incomplete: bool,
     /// Values of relaxations are bounds.
     pub exact: bool,
+    /// The relaxation has a point.
+    pub relaxed: bool,
     /// What became of the nodes.
     pub records: Vec<Record>,
     /// Nodes made.
@@ -40,6 +44,7 @@ impl Found {
             end: End::Complete,
             incomplete: false,
             exact: true,
+            relaxed: false,
             records: Vec::new(),
             made: 0,
         }
@@ -56,13 +61,19 @@ impl Found {
     }
 }
 
-/// The best solution of a linear program with discrete columns; `start` may be one.
-pub(super) fn search_linear(
-    mip: &Mip,
-    aim: Aim,
-    start: Option<Vec<f64>>,
-    control: &mut Control,
-) -> Found {
+/// What a search of a linear program begins with.
+#[derive(Default)]
+pub(super) struct Begin<'s> {
+    /// A point that may be a solution.
+    pub start: Option<Vec<f64>>,
+    /// What may be left out.
+    pub settings: Option<&'s Settings>,
+    /// The squares that the linear program has columns for.
+    pub convex: Option<Convex<'s>>,
+}
+
+/// The best solution of a linear program with discrete columns.
+pub(super) fn search_linear(mip: &Mip, aim: Aim, begin: Begin, control: &mut Control) -> Found {
     let Some(reduced) = presolve::reduce(mip, &[]) else {
         return Found::empty();
     };
@@ -79,26 +90,32 @@ pub(super) fn search_linear(
         offset: reduced.mip.problem.offset,
     };
     let mut linear = Linear::new(&scaled);
-    let solved = strengthen(&scaled, &mut linear, 30, control);
-    let near = |mip: &Mip, fixed: &[Change], cutoff: f64, control: &mut Control| {
-        nearby(mip, fixed, cutoff, control)
-    };
-    let mut search = Search::new(&scaled, linear, aim, units);
-    search.neighbourhood = Some(&near);
-    if solved == Solved::Infeasible {
+    if strengthen(&scaled, &mut linear, 30, control) == Solved::Infeasible {
         return Found::empty();
     }
-    if let Some(x) = start {
-        let mut y = reduced.reduce(&x);
-        y.iter_mut().zip(&scaling.column).for_each(|(x, c)| *x /= c);
-        search.offer(&y, control);
-    }
-    let mut end = search.run(control);
-    if end == End::Unbounded && search.best.is_none() {
+    let start = begin.start.map(|x| {
+        let x = reduced.reduce(&x);
+        x.iter().zip(&scaling.column).map(|(x, c)| x / c).collect()
+    });
+    let explore = Explore {
+        mip: &scaled,
+        aim,
+        units,
+        start,
+        settings: begin.settings,
+    };
+    let mut found = match begin.convex {
+        None => explore.run(linear, control),
+        Some(convex) => {
+            let way = convex.way(&reduced, &scaling.column);
+            explore.run(Outer::new(&scaled, linear, convex, way), control)
+        }
+    };
+    if found.end == End::Unbounded && found.x.is_none() {
         // Unbounded, if there is a solution at all.
         let mut anything = mip.clone();
         anything.problem.cost.fill(0.0);
-        let some = search_linear(&anything, Aim::default(), None, control);
+        let some = search_linear(&anything, Aim::default(), Begin::default(), control);
         return Found {
             end: if some.end == End::Complete && some.x.is_none() {
                 End::Complete
@@ -113,15 +130,14 @@ pub(super) fn search_linear(
             ..some
         };
     }
-    if end == End::Gap && search.best.is_none() {
-        end = End::Complete;
+    if found.end == End::Gap && found.x.is_none() {
+        found.end = End::Complete;
     }
-    let restore = |x: &Vec<f64>| {
+    found.x = found.x.map(|x| {
         let x: Vec<f64> = x.iter().zip(&scaling.column).map(|(x, c)| x * c).collect();
         reduced.restore(&x)
-    };
-    let mut records = std::mem::take(&mut search.records);
-    for r in &mut records {
+    });
+    for r in &mut found.records {
         r.value = units.shown(r.value);
         r.solution = r.solution.map(|v| units.shown(v));
         if let Some(c) = &mut r.change {
@@ -133,19 +149,33 @@ pub(super) fn search_linear(
             };
         }
     }
-    Found {
-        value: search
-            .best
-            .as_ref()
-            .map_or(f64::INFINITY, |b| units.shown(b.0)),
-        x: search.best.as_ref().map(|b| restore(&b.1)),
-        bound: units.shown(search.bound),
-        nodes: search.nodes,
-        incomplete: search.incomplete,
-        exact: true,
-        end,
-        records,
-        made: search.made,
+    found.value = units.shown(found.value);
+    found.bound = units.shown(found.bound);
+    found
+}
+
+/// A search over a program that is presolved and scaled.
+struct Explore<'e> {
+    mip: &'e Mip,
+    aim: Aim,
+    units: Units,
+    start: Option<Vec<f64>>,
+    settings: Option<&'e Settings>,
+}
+
+impl Explore<'_> {
+    fn run<R: Relaxation>(self, relaxation: R, control: &mut Control) -> Found {
+        let near = |mip: &Mip, fixed: &[Change], cutoff: f64, control: &mut Control| {
+            nearby(mip, fixed, cutoff, control)
+        };
+        let mut search = Search::new(self.mip, relaxation, self.aim, self.units);
+        search.neighbourhood = Some(&near);
+        search.settings = self.settings;
+        if let Some(x) = self.start {
+            search.offer(&x, control);
+        }
+        let end = search.run(control);
+        search.found(end)
     }
 }
 

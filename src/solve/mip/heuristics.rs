@@ -4,6 +4,9 @@ use super::model::{Change, INTEGRAL};
 use super::relaxation::{Control, Relaxation, Solved};
 use super::tree::Search;
 
+/// A gap, relative to the solution, from which on it is no guide.
+const POOR: f64 = 0.1;
+
 /// How a dive chooses.
 #[derive(Clone, Copy, PartialEq)]
 enum Dive {
@@ -25,21 +28,21 @@ impl<R: Relaxation> Search<'_, R> {
         }
         let root = depth == 0 && self.nodes <= 1;
         let affordable = self.dives.iterations < control.iterations / 4 + 2000;
-        let often = if self.best.is_none() { 5 } else { 40 };
+        let often = if self.is_poor() { 5 } else { 40 };
         if root {
             self.dive(Dive::Locks, x, control);
-            if self.best.is_none() {
+            if self.is_poor() {
                 self.dive(Dive::Nearest, x, control);
             }
             self.jump(x, control);
-            if self.best.is_none() {
+            if self.is_poor() {
                 self.dive(Dive::Up, x, control);
             }
         } else if affordable && self.nodes.is_multiple_of(often) {
             self.dives.count += 1;
-            let kind = match (&self.best, self.dives.count % 3) {
-                (Some(_), 0) => Dive::Guided,
-                (None, 0) => Dive::Up,
+            let kind = match (self.is_poor(), self.dives.count % 3) {
+                (false, 0) => Dive::Guided,
+                (true, 0) => Dive::Up,
                 (_, 1) => Dive::Locks,
                 _ => Dive::Nearest,
             };
@@ -49,6 +52,13 @@ impl<R: Relaxation> Search<'_, R> {
         if near && affordable && control.stop(control.iterations).is_none() {
             self.search_near(x, control);
         }
+    }
+
+    /// Whether there is no solution, or one that is far from the bound: then others are looked for as if there were none.
+    fn is_poor(&self) -> bool {
+        let far = |v: f64| self.units.gap(v, self.bound)[1] > POOR;
+        let best = self.best.as_ref();
+        best.is_none_or(|b| self.relaxation.is_exact() && far(b.0))
     }
 
     /// By column and direction: how many rows object to a step.
@@ -193,8 +203,9 @@ impl<R: Relaxation> Search<'_, R> {
         self.dives.last_near = seen;
         let mut changes = Vec::new();
         let mut open = 0;
+        let guide = self.best.as_ref().filter(|_| !self.is_poor());
         for j in (0..x.len()).filter(|&j| self.mip.integer[j] && self.mip.threshold[j] == 0.0) {
-            let agrees = match &self.best {
+            let agrees = match guide {
                 Some((_, best)) => (best[j] - x[j]).abs() <= INTEGRAL,
                 None => (x[j] - x[j].round()).abs() <= INTEGRAL,
             };

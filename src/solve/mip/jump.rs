@@ -7,8 +7,10 @@
 use super::model::Mip;
 use super::relaxation::{Control, Relaxation};
 use super::tree::Search;
+use crate::solve::Settings;
 use crate::solve::lp::form::Sparse;
 use crate::solve::random::Random;
+use crate::solve::strategy::Strategy;
 
 /// A violation of a row up to this, relative to its side, is none.
 const TOLERANCE: f64 = 1e-7;
@@ -354,7 +356,9 @@ impl<R: Relaxation> Search<'_, R> {
     /// Walks from a point to solutions, each better than the one before.
     pub(super) fn jump(&mut self, from: &[f64], control: &mut Control) {
         let plain = self.mip.sets.is_empty() && self.mip.threshold.iter().all(|t| *t == 0.0);
-        if !plain || self.neighbourhood.is_none() || self.mip.problem.m() == 0 {
+        let applies = plain && self.mip.problem.m() > 0;
+        let runs = |s: &Settings| s.runs(Strategy::FeasibilityJump);
+        if !applies || !self.settings.is_some_and(runs) {
             return;
         }
         let mip = self.mip;

@@ -170,7 +170,8 @@ impl Relaxation for Linear {
 }
 
 impl Linear {
-    fn value(&self) -> f64 {
+    /// Value of its point.
+    pub(super) fn value(&self) -> f64 {
         self.problem
             .cost
             .iter()

@@ -14,10 +14,9 @@ mod driver;
 mod heuristics;
 mod jump;
 pub mod linear;
-pub mod model;
 pub mod nonlinear;
+mod outer;
 pub mod presolve;
-pub mod propagate;
 mod relaxation;
 pub mod tree;
 
@@ -26,18 +25,21 @@ pub use tree::{Aim, Record};
 use super::answer::subproblem;
 use super::backend::{About, Backend, Replied, Reply, Supports, Task, Terms};
 use super::bridge::binaries::{Replaced, without_binary_products};
+use super::bridge::squares::with_squares;
+use super::discrete::{Mip, model, propagate};
 use super::lp::form::Form;
 use super::lp::{self, Ended};
 use super::nlp::convex::{Shape, shape};
+use super::strategy::Strategy;
 use super::{Budget, Claim, Outcome, Settings, SolveError, SolverStatus};
 use crate::model::instance::{ColumnKind, Instance};
 use crate::model::option::OptionTable;
 use crate::model::problem_type::ProblemType;
 pub(super) use driver::Found;
-use driver::search_linear;
-pub(super) use model::Mip;
+use driver::{Begin, search_linear};
 use model::Units;
 use nonlinear::Nonlinear;
+use outer::Convex;
 use relaxation::Control;
 pub(super) use tree::End;
 use tree::{PROVED, Search};
@@ -54,6 +56,8 @@ pub struct Report {
     pub bound: Option<f64>,
     /// Nodes solved.
     pub nodes: u64,
+    /// The relaxation has a point: if there is no solution, this is due to discrete columns.
+    pub relaxed: bool,
     /// What became of the nodes, where that was asked for; columns are the instance's.
     pub records: Vec<Record>,
     /// Nodes that are not among them.
@@ -111,27 +115,42 @@ fn search(task: &Task, settings: &Settings, budget: &Budget) -> Result<Reply, So
     let aim = settings.search.minimizing(task.instance.sign());
     let replaced = replaced(task, aim, settings, budget);
     let instance = replaced.as_ref().map_or(task.instance, |r| &r.instance);
-    let aim = match replaced.is_some() {
-        true => Aim {
+    let asked = aim.nodes;
+    let aim = match &replaced {
+        Some(r) => Aim {
             try_start: 1.0,
+            nodes: match r.has_bits() && (asked == 0 || asked > BIT_NODES) {
+                true => BIT_NODES,
+                false => asked,
+            },
             ..aim
         },
-        false => aim,
+        None => aim,
     };
     let (mut found, iterations) = match instance.is_linear() && !task.has_pairs() {
         true => {
             let mut control = Control::for_each_program(budget);
-            let found = linear_search(instance, aim, &mut control)?;
+            let begin = Begin {
+                settings: Some(settings),
+                ..Begin::default()
+            };
+            let found = linear_search(instance, aim, begin, &mut control)?;
             (found, control.iterations)
         }
         false => {
             let mut control = Control::new(budget);
             let inner = Task { instance, ..*task };
-            let found = nonlinear_search(&inner, aim, settings, &mut control)?;
+            let found = match convex_search(&inner, aim, settings, &mut control)? {
+                Some(found) => found,
+                None => nonlinear_search(&inner, aim, settings, &mut control)?,
+            };
             budget.spend(control.iterations);
             (found, control.iterations)
         }
     };
+    if found.end == End::Nodes && aim.nodes != asked {
+        found.end = End::Gap;
+    }
     if replaced.is_some() {
         found.keep(task.instance.column_count());
     }
@@ -140,8 +159,12 @@ fn search(task: &Task, settings: &Settings, budget: &Budget) -> Result<Reply, So
     Ok(reply)
 }
 
-/// Nodes of the nonlinear program that are solved for a first solution.
-const FIRST_NODES: u64 = 5;
+/// Nodes of the nonlinear program that are solved for a first solution: without integers that are written in bits, and with
+/// such, whose linear program is often a worse guide.
+const FIRST_NODES: [u64; 2] = [5, 500];
+
+/// Nodes of the linear program with integers in bits, at most: its bounds may rise slowly.
+const BIT_NODES: u64 = 20_000;
 
 /// The program without products that have a binary factor, where it is linear or convex quadratic without them and was neither
 /// before. It starts at the best point of a few nodes of the nonlinear program.
@@ -154,13 +177,16 @@ fn replaced(task: &Task, aim: Aim, settings: &Settings, budget: &Budget) -> Opti
         return None;
     }
     let mut replaced = without_binary_products(instance)?;
+    if !settings.runs(Strategy::BinaryProducts) {
+        return None;
+    }
     match shape(&replaced.instance) {
         Shape::Linear => {}
         Shape::ConvexQuadratic { .. } => return Some(replaced),
         _ => return None,
     }
     let aim = Aim {
-        nodes: FIRST_NODES,
+        nodes: FIRST_NODES[usize::from(replaced.has_bits())],
         record: false,
         ..aim
     };
@@ -219,7 +245,7 @@ pub(super) fn concluded(task: &Task, found: Found, settings: &Settings, budget: 
         () if outcome.claim == Claim::LocallyInfeasible => {
             Some("not convex: the nonlinear solver found no point, which proves nothing".into())
         }
-        () if outcome.claim == Claim::Infeasible && found.nodes == 0 => {
+        () if outcome.claim == Claim::Infeasible && found.nodes == 0 && !found.relaxed => {
             Some("the bounds and rows contradict each other before any search".into())
         }
         () if found.incomplete => {
@@ -250,6 +276,7 @@ pub(super) fn concluded(task: &Task, found: Found, settings: &Settings, budget: 
         solution: complete,
         bound: Some(shown).filter(|b| b.is_finite() && found.exact && !empty),
         nodes: found.nodes,
+        relaxed: found.relaxed,
         left_out: (found.made as usize).saturating_sub(found.records.len()),
         records: found.records,
     };
@@ -271,6 +298,7 @@ fn is_unlimited(instance: &Instance) -> bool {
 fn linear_search(
     instance: &Instance,
     aim: Aim,
+    begin: Begin,
     control: &mut Control,
 ) -> Result<Found, SolveError> {
     let form = Form::new(instance)?;
@@ -280,20 +308,29 @@ fn linear_search(
         &form.columns,
         aim.priorities,
     );
-    let start = aim.try_start > 0.0 && {
-        let near = |k: usize| {
-            let x = instance.columns.level[form.columns[k] as usize];
-            (x - x.round()).abs() <= aim.try_start
-        };
-        (0..mip.integer.len()).filter(|&k| mip.integer[k]).all(near)
-    };
-    let start: Option<Vec<f64>> = start.then(|| {
-        form.columns
-            .iter()
-            .map(|&j| instance.columns.level[j as usize])
-            .collect()
-    });
-    let mut found = search_linear(&mip, aim, start, control);
+    Ok(searched(instance, &form, &mip, aim, begin, control))
+}
+
+/// The search of the linear program that an instance has become, from its levels where they may be a solution.
+fn searched(
+    instance: &Instance,
+    form: &Form,
+    mip: &Mip,
+    aim: Aim,
+    mut begin: Begin,
+    control: &mut Control,
+) -> Found {
+    let start: Vec<f64> = form
+        .columns
+        .iter()
+        .map(|&j| instance.columns.level[j as usize])
+        .collect();
+    let near = |k: usize| (start[k] - start[k].round()).abs() <= aim.try_start;
+    let mut whole = (0..mip.integer.len()).filter(|&k| mip.integer[k]);
+    if aim.try_start > 0.0 && whole.all(near) {
+        begin.start = Some(start);
+    }
+    let mut found = search_linear(mip, aim, begin, control);
     // In columns of the instance; the objective's follows from the others.
     if let Some(x) = found.x.take() {
         let point = lp::form::Point {
@@ -306,22 +343,80 @@ fn linear_search(
     for c in found.records.iter_mut().filter_map(|r| r.change.as_mut()) {
         c.column = form.columns[c.column] as usize;
     }
-    Ok(found)
+    found
 }
 
-/// The search of a nonlinear program.
-fn nonlinear_search(
+/// The search of a convex quadratic program by tangents. None: it is none, tangents would be many, or its relaxation has no best
+/// point.
+fn convex_search(
     task: &Task,
     aim: Aim,
     settings: &Settings,
     control: &mut Control,
-) -> Result<Found, SolveError> {
+) -> Result<Option<Found>, SolveError> {
+    let instance = task.instance;
+    let convex = !task.has_pairs() && matches!(shape(instance), Shape::ConvexQuadratic { .. });
+    if !convex {
+        return Ok(None);
+    }
+    let Some(squared) = with_squares(instance) else {
+        return Ok(None);
+    };
+    let small = squared.squares.iter().all(|s| s.is_small());
+    if !small || !settings.runs(Strategy::OuterApproximation) {
+        return Ok(None);
+    }
+    let (_, nonlinear) = relaxed(task, aim, settings, control)?;
+    let form = Form::new(&squared.instance)?;
+    let mut convex = Convex {
+        nonlinear,
+        discrete: instance
+            .columns
+            .kind
+            .iter()
+            .map(|k| *k != ColumnKind::Continuous)
+            .collect(),
+        squares: &squared.squares,
+        numbers: &form.columns,
+    };
+    let Some(root) = convex.root(&instance.columns.level, control) else {
+        return Ok(None);
+    };
+    let mut mip = Mip::new(
+        form.problem.clone(),
+        &squared.instance,
+        &form.columns,
+        aim.priorities,
+    );
+    convex.tighten(&mut mip, &root);
+    let begin = Begin {
+        settings: Some(settings),
+        convex: Some(convex),
+        start: None,
+    };
+    let mut found = searched(&squared.instance, &form, &mip, aim, begin, control);
+    // degenerate: the nonlinear solver at every node may know more
+    let given_up = found.incomplete || !found.exact;
+    if given_up && matches!(found.end, End::Complete | End::Gap) {
+        return Ok(None);
+    }
+    found.keep(instance.column_count());
+    found.relaxed = true;
+    Ok(Some(found))
+}
+
+/// The linear rows of a nonlinear program, and its relaxation.
+fn relaxed(
+    task: &Task,
+    aim: Aim,
+    settings: &Settings,
+    control: &mut Control,
+) -> Result<(Mip, Nonlinear), SolveError> {
     let (instance, relaxed) = (task.instance, task.using.relaxation());
     let mip = Mip::of_nonlinear(instance, aim.priorities)?;
     let mut first = instance.clone();
     first.columns.lower.copy_from_slice(&mip.problem.lower);
     first.columns.upper.copy_from_slice(&mip.problem.upper);
-    let mut relaxation = Nonlinear::new(&first, relaxed, task.choice, settings);
     // What keeps the solver from starting is said before anything else.
     control.budget.aside(|budget| {
         budget.within(f64::INFINITY, 1, |budget| {
@@ -332,24 +427,26 @@ fn nonlinear_search(
             )
         })
     })?;
+    let mut relaxation = Nonlinear::new(&first, relaxed, task.choice, settings);
     relaxation.convex = !task.has_pairs();
+    Ok((mip, relaxation))
+}
+
+/// The search of a nonlinear program.
+fn nonlinear_search(
+    task: &Task,
+    aim: Aim,
+    settings: &Settings,
+    control: &mut Control,
+) -> Result<Found, SolveError> {
+    let (mip, relaxation) = relaxed(task, aim, settings, control)?;
     let units = Units {
         price: 1.0,
         offset: 0.0,
     };
     let mut search = Search::new(&mip, relaxation, aim, units);
     let end = search.run(control);
-    Ok(Found {
-        value: search.best.as_ref().map_or(f64::INFINITY, |b| b.0),
-        x: search.best.as_ref().map(|b| b.1.clone()),
-        bound: search.bound,
-        nodes: search.nodes,
-        incomplete: search.incomplete,
-        exact: search.relaxation.convex,
-        end,
-        made: search.made,
-        records: std::mem::take(&mut search.records),
-    })
+    Ok(search.found(end))
 }
 
 /// The program with its discrete columns fixed where a point has them.

@@ -63,6 +63,17 @@ impl Nonlinear {
         }
     }
 
+    /// A point inside of the bounds, a unit from one: at 0, where many models start, products have no slopes.
+    fn inside(&self) -> Vec<f64> {
+        let c = &self.instance.columns;
+        let within = |(&l, &u): (&f64, &f64)| match (l.is_finite(), u.is_finite()) {
+            (true, _) => l + (0.5 * (u - l)).min(1.0),
+            (false, true) => u - 1.0,
+            (false, false) => 0.0,
+        };
+        c.lower.iter().zip(&c.upper).map(within).collect()
+    }
+
     /// Solves from a point; None: a limit.
     pub fn answer(&mut self, from: &[f64], control: &mut Control) -> Option<Answer> {
         let columns = &mut self.instance.columns;
@@ -92,7 +103,11 @@ impl Relaxation for Nonlinear {
             return Solved::Stopped(why);
         }
         let mut solved = Solved::Failed;
-        for from in [self.point.clone(), Rc::new(self.first.clone())] {
+        let mut starts = vec![self.point.clone(), Rc::new(self.first.clone())];
+        if !self.rooted {
+            starts.push(Rc::new(self.inside()));
+        }
+        for from in starts {
             let Some(answer) = self.answer(&from, control) else {
                 continue;
             };

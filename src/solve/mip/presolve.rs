@@ -40,9 +40,10 @@ pub fn reduce(mip: &Mip, fixed: &[Change]) -> Option<Reduced> {
     for c in fixed {
         (work.problem.lower[c.column], work.problem.upper[c.column]) = (c.lower, c.upper);
     }
-    let mut in_set = vec![false; work.problem.n()];
+    let mut stays = vec![false; work.problem.n()];
+    work.held.iter().for_each(|&j| stays[j as usize] = true);
     for set in &work.sets {
-        set.columns.iter().for_each(|&j| in_set[j as usize] = true);
+        set.columns.iter().for_each(|&j| stays[j as usize] = true);
     }
     if (0..work.problem.m()).any(|i| is_indivisible(&work, i)) {
         return None;
@@ -59,12 +60,12 @@ pub fn reduce(mip: &Mip, fixed: &[Change]) -> Option<Reduced> {
         changed |= !propagator.moved.is_empty();
         (work.problem.lower, work.problem.upper) = (lower, upper);
         changed |= rows(&mut work, &mut idle);
-        changed |= dual_fixing(&mut work, &idle, &in_set);
+        changed |= dual_fixing(&mut work, &idle, &stays);
         if !changed {
             break;
         }
     }
-    Some(assemble(&work, &idle, &in_set))
+    Some(assemble(&work, &idle, &stays))
 }
 
 /// Whether a row asks for a number that no sum of integers times its coefficients is.
@@ -218,11 +219,11 @@ fn rows(mip: &mut Mip, idle: &mut [bool]) -> bool {
 }
 
 /// Columns that neither rows nor costs keep from a bound go there.
-fn dual_fixing(mip: &mut Mip, idle: &[bool], in_set: &[bool]) -> bool {
+fn dual_fixing(mip: &mut Mip, idle: &[bool], stays: &[bool]) -> bool {
     let mut changed = false;
     let p = &mut mip.problem;
-    for (j, in_set) in in_set.iter().enumerate() {
-        if p.lower[j] == p.upper[j] || *in_set {
+    for (j, stays) in stays.iter().enumerate() {
+        if p.lower[j] == p.upper[j] || *stays {
             continue;
         }
         let (mut up, mut down) = (0, 0);
@@ -248,10 +249,10 @@ fn dual_fixing(mip: &mut Mip, idle: &[bool], in_set: &[bool]) -> bool {
 }
 
 /// Columns that are fixed go, and rows that say nothing; members of sets stay.
-fn assemble(work: &Mip, idle: &[bool], in_set: &[bool]) -> Reduced {
+fn assemble(work: &Mip, idle: &[bool], stays: &[bool]) -> Reduced {
     let p = &work.problem;
     let n = p.n();
-    let open = |j: usize| p.lower[j] < p.upper[j] || in_set[j];
+    let open = |j: usize| p.lower[j] < p.upper[j] || stays[j];
     let mut number = vec![u32::MAX; n];
     let mut columns = Vec::new();
     for j in (0..n).filter(|&j| open(j)) {
@@ -301,6 +302,7 @@ fn assemble(work: &Mip, idle: &[bool], in_set: &[bool]) -> Reduced {
             false => pick(&work.priority),
         },
         sets,
+        held: Vec::new(),
         problem,
     };
     Reduced {

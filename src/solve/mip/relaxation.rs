@@ -74,6 +74,11 @@ pub trait Relaxation {
     /// Solves for the present bounds; may give up above the cutoff.
     fn solve(&mut self, cutoff: f64, control: &mut Control) -> Solved;
 
+    /// The best point whose discrete columns are as in this one, where bounds say that.
+    fn solve_decided(&mut self, _: &[f64], control: &mut Control) -> Solved {
+        self.solve(f64::INFINITY, control)
+    }
+
     /// The last point.
     fn x(&self) -> &[f64];
 

@@ -10,11 +10,12 @@
 //! first (Achterberg, Koch & Martin 2005).
 
 use super::branching::{Branch, Pseudo};
+use super::driver::Found;
 use super::model::{Change, INTEGRAL, Mip, Units};
 use super::propagate::Propagator;
 use super::relaxation::{Control, Relaxation, Solved};
-use crate::solve::Progress;
 use crate::solve::lp::Ended;
+use crate::solve::{Progress, Settings};
 use std::collections::BinaryHeap;
 use std::rc::Rc;
 
@@ -158,7 +159,7 @@ pub struct Search<'a, R: Relaxation> {
     pub(super) mip: &'a Mip,
     pub(super) relaxation: R,
     pub(super) aim: Aim,
-    units: Units,
+    pub(super) units: Units,
     /// Bounds that hold everywhere.
     pub(super) root: [Vec<f64>; 2],
     /// Bounds of the present node.
@@ -181,6 +182,8 @@ pub struct Search<'a, R: Relaxation> {
     pub incomplete: bool,
     /// Solves the rest where some columns are fixed; None inside such a search.
     pub neighbourhood: Option<Neighbourhood<'a>>,
+    /// What may be left out; None: all that may.
+    pub settings: Option<&'a Settings>,
     pub(super) dives: Dives,
     next_log: f64,
     /// Nodes made.
@@ -261,6 +264,7 @@ impl<'a, R: Relaxation> Search<'a, R> {
             records: Vec::new(),
             incomplete: false,
             neighbourhood: None,
+            settings: None,
             dives: Dives::default(),
             next_log: 0.0,
             made: 0,
@@ -319,6 +323,22 @@ impl<'a, R: Relaxation> Search<'a, R> {
         done.iter().for_each(|n| self.fate(n.number, "bound"));
         self.log(control, true);
         end
+    }
+
+    /// What it found, in its own columns and units.
+    pub(super) fn found(self, end: End) -> Found {
+        Found {
+            value: self.best.as_ref().map_or(f64::INFINITY, |b| b.0),
+            exact: self.relaxation.is_exact(),
+            relaxed: self.nodes > 1,
+            x: self.best.map(|b| b.1),
+            bound: self.bound,
+            nodes: self.nodes,
+            incomplete: self.incomplete,
+            end,
+            records: self.records,
+            made: self.made,
+        }
     }
 
     fn search(&mut self, control: &mut Control) -> End {
@@ -810,7 +830,7 @@ impl<'a, R: Relaxation> Search<'a, R> {
                 upper: 0.0,
             });
         }
-        let solved = self.relaxation.solve(f64::INFINITY, control);
+        let solved = self.relaxation.solve_decided(y, control);
         let found = match solved {
             Solved::Value(v) => Some((v, self.relaxation.x().to_vec())),
             _ => None,

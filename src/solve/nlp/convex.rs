@@ -95,7 +95,7 @@ fn is_convex(p: &Instance, hessian: &[(usize, usize, f64)], sign: f64) -> bool {
 }
 
 /// Entries of the Hessian of a quadratic row times a number: row, column, value, both triangles.
-fn hessian(
+pub fn hessian(
     p: &Instance,
     e: &mut Evaluator,
     row: usize,

@@ -1,11 +1,13 @@
 * bmod only: a convex quadratic program with integers is solved for certain, others are not shown to be
 integer variables x, y;
+positive variable v;
 free variable z;
 x.up = 5;
 y.up = 5;
+v.up = 5;
 equations e, n;
 e..  z =e= sqr(x - 1.3) + sqr(y - 2.2);
-n..  z =e= sqr(x - 1.3) - sqr(y - 2.2) + x*y;
+n..  z =e= sqr(x - 1.3) - sqr(v - 2.2) + x*y*v;
 model convex / e /, not_convex / n /;
 option optCR = 0;
 solve convex using miqcp minimizing z;

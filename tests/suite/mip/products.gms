@@ -42,3 +42,25 @@ solve squares using miqcp minimizing z;
 *= squares.objval -11
 solve none using miqcp minimizing z;
 *= none.modelstat 4
+
+* Products of two integers: patterns to cut rolls by, and how often each is cut.
+set width /1*3/, pattern /1*3/;
+parameter wide(width) /1 330, 2 360, 3 430/, wanted(width) /1 9, 2 7, 3 6/;
+integer variables often(pattern), cuts1(width, pattern);
+often.up(pattern) = 12;
+cuts1.up(width, pattern) = 5;
+equations rolls, enough(width), fits(pattern), knives(pattern), twice, apart;
+rolls..  z =e= sum(pattern, often(pattern));
+enough(width)..  sum(pattern, often(pattern)*cuts1(width, pattern)) =g= wanted(width);
+fits(pattern)..  sum(width, wide(width)*cuts1(width, pattern)) =l= 1900;
+knives(pattern)..  sum(width, cuts1(width, pattern)) =l= 5;
+twice..  z =e= sqr(often('1') - 3)*often('2') - 5*often('1')*often('2') + 0.5*often('1');
+apart..  often('1') =g= 2;
+model trim / rolls, enough, fits, knives /, powers / twice, apart /;
+solve trim using minlp minimizing z;
+*= trim.modelstat 1
+*= trim.objval 5
+often.lo(pattern) = -3;
+solve powers using minlp minimizing z;
+*= powers.modelstat 1
+*= powers.objval -249.5

@@ -38,6 +38,8 @@ pub struct Mip {
     pub sets: Vec<OrderedSet>,
     /// By column: what is branched on first has the least; empty: no preference.
     pub priority: Vec<f64>,
+    /// Columns that stand in rows which are not there yet.
+    pub held: Vec<u32>,
 }
 
 /// What of a program's value is not a matter of the search: its unit and its constant.
@@ -84,6 +86,7 @@ impl Mip {
             threshold: vec![0.0; n],
             sets: Vec::new(),
             priority: Vec::new(),
+            held: Vec::new(),
         };
         for &(j, lower) in &instance.discrete.thresholds {
             if let Some(k) = number.get(j as usize).filter(|&&k| k != u32::MAX) {

@@ -1,0 +1,6 @@
+//! Linear programs some of whose columns are discrete, and what their bounds imply: what bridges and solvers share.
+
+pub mod model;
+pub mod propagate;
+
+pub use model::Mip;
