@@ -5,7 +5,8 @@
 //! ```
 //!
 //! by one factorisation of [H + τD, Aᵀ; A, 0]; τ grows until the matrix has as many negative eigenvalues as rows, so that the
-//! solution is a minimum.
+//! solution is a minimum. A bound or a row that a step meets joins the set by a Schur complement: what is a minimum on a space is one on a
+//! part of it.
 
 use super::point::{Frame, Point};
 use crate::solve::nlp::polish::number;
