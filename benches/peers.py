@@ -1,12 +1,12 @@
 """bmod beside GAMS (CONOPT, PATH, NLPEC), HiGHS, and CasADi with its Ipopt: processor time of whole processes, answers compared.
 
-    python3 benches/peers.py BMOD [--old BMOD] [--repeat 3] [--only lp,nlp,mcp,mpec,loop] > docs/lab/peers.md
+    python3 benches/peers.py BMOD [--old BMOD] [--repeat 3] [--only lp,nlp,mcp,mpec,loop] [--netlib FOLDER] > docs/lab/peers.md
 
 Runs the instances of ../shared/corpus (or BMOD_SHARED), models/teaching and loops of solves written here. GAMS takes part if
 GAMS_DIR names its folder or the Python package gamspy_base is installed (its size limit leaves out what is larger); HiGHS needs
 highspy and takes the linear programs as bmod writes them (--solution); CasADi (pip install casadi) takes the scalar instances of the
-corpus, of which this file reads the few forms that occur, so its time contains Python's start. A time is user and system time of the process and its children, the
-median of the runs; below 10 ms it counts as 10 ms in the ratios. --old: another build of bmod.
+corpus, of which this file reads the few forms that occur; its time contains Python's start. A time is user and system time of the process and its children, the median
+of the runs, 10 ms at least in the ratios. --old: another build of bmod. --netlib: the folder of benches/netlib.py.
 """
 import argparse
 import csv
@@ -21,8 +21,7 @@ import subprocess
 import sys
 import tempfile
 
-FLOOR = 0.01
-LIMIT = 60
+FLOOR, LIMIT = 0.01, 60
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 CORPUS = pathlib.Path(os.environ.get("BMOD_SHARED", ROOT.parent / "shared")) / "corpus"
 
@@ -79,7 +78,6 @@ def gams():
         return os.path.join(os.environ["GAMS_DIR"], "gams")
     try:
         import gamspy_base
-
         return os.path.join(gamspy_base.directory, "gams")
     except ImportError:
         return shutil.which("gams")
@@ -158,6 +156,11 @@ def instances(folder):
             yield {"dnlp": "nlp", "qcp": "nlp"}.get(kind, kind), CORPUS / row["file"], row["sense"]
         for path in sorted((CORPUS / "mcp" / "classic").glob("*.gms")):
             yield "mcp", path, "min"
+    for path in sorted((ROOT / "models" / "teaching").glob("*.blk")):
+        solves = re.findall(r"(?m)^\s*solve +\w+ +using +(\w+)(?: +(m[ai]))?", path.read_text())
+        kind = {"qcp": "nlp"}.get(solves[-1][0], solves[-1][0])
+        if kind in ("lp", "nlp", "mcp", "mpec") and "mip" not in [k for k, _ in solves]:
+            yield kind, path, "max" if solves[-1][1] == "ma" else "min"
     for name, text in LOOP.items():
         for n in (1, 3, 10, 20, 30, 50, 70, 100, 150, 200, 300, 400, 600, 800, 1000):
             path = pathlib.Path(folder) / f"{name}_{n}.gms"
@@ -165,18 +168,17 @@ def instances(folder):
             yield "loop", path, "min"
 
 
-def solved(answer):
-    return answer is not None and answer[1] in (1, 2, 8, 15, 16)
-
-
 def compared(mine, other, sense):
     """What the answers say: same, better, worse, only one."""
+    def solved(answer):
+        return answer is not None and answer[1] in (1, 2, 8, 15, 16)
     if not solved(mine) or not solved(other):
         return "both not" if not solved(mine) and not solved(other) else "only bmod" if solved(mine) else "only other"
     if mine[2] is None or other[2] is None:
         return "same"
-    gap = (mine[2] - other[2]) * (-1 if sense == "max" else 1) / max(1.0, abs(other[2]))
-    return "same" if abs(gap) <= 1e-5 else "worse" if gap > 0 else "better"
+    gap = (mine[2] - other[2]) * (-1 if sense == "max" else 1)
+    # GAMS's listing has four decimals
+    return "same" if abs(gap) <= 6e-5 + 1e-5 * abs(other[2]) else "worse" if gap > 0 else "better"
 
 
 def table(name, rows):
@@ -199,6 +201,7 @@ def main():
     parser.add_argument("--old")
     parser.add_argument("--repeat", type=int, default=1)
     parser.add_argument("--only", default="lp,nlp,mcp,mpec,loop")
+    parser.add_argument("--netlib")
     given = parser.parse_args()
     only = given.only.split(",")
     program = os.path.abspath(given.bmod)
@@ -233,12 +236,14 @@ def main():
             if made:
                 worst.append((f"{kind}, {name}", *made))
     for name, slow, bad in worst:
-        print(f"\n## {name}\n")
-        print("| the worst ten | ratio | bmod | peer |\n| --- | --: | --: | --: |")
+        print(f"\n## {name}\n\n| the worst ten | ratio | bmod | peer |\n| --- | --: | --: | --: |")
         for ratio, f, m, o in slow:
             print(f"| {f} | {ratio:.1f} | {m[0]:.3f} | {o[0]:.3f} |")
         if bad:
             print("\nNot as good: " + ", ".join(f"{f} ({w})" for f, w in bad) + ".")
+    if given.netlib:
+        command = [sys.executable, str(ROOT / "benches" / "netlib.py"), "--times", program, given.netlib]
+        print("\n## Netlib, HiGHS\n\n" + subprocess.run(command, capture_output=True, text=True).stdout.splitlines()[-1])
 
 
 if __name__ == "__main__":

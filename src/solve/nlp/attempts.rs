@@ -86,7 +86,7 @@ impl Driver<'_, '_> {
     pub(super) fn round_kinks(&mut self) -> Result<(), SolveError> {
         let mut x = self.start.clone();
         for (k, delta) in ROUNDING.into_iter().enumerate() {
-            if self.is_settled() {
+            if self.is_settled() || self.ended == Ended::TooFewDegrees {
                 break;
             }
             let mut problem = Problem::smoothed(self.instance, delta);
@@ -98,6 +98,10 @@ impl Driver<'_, '_> {
                 let trial = self.judge(solution.x, solution.lambda, solution.ended);
                 self.keep(trial.clone());
                 self.finish_rounded(&trial, delta);
+            }
+            // what is not solved with this parameter is not with a smaller one
+            if self.ended == Ended::Iterations {
+                break;
             }
         }
         Ok(())

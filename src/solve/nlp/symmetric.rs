@@ -32,25 +32,37 @@ impl Lower {
 impl Symmetric {
     /// Factors a matrix of order n; None if it is singular or not finite.
     pub(super) fn new(n: usize, lower: &Lower) -> Option<Self> {
-        // One thread: the same digits on every machine.
-        Self::with(Solver::new().with_parallel(false), n, lower)
+        let mut out = Self::empty();
+        out.factor(n, lower).then_some(out)
     }
 
-    /// The same for other values, in the order that was found if the places are the same.
-    pub(super) fn again(self, n: usize, lower: &Lower) -> Option<Self> {
-        Self::with(self.solver, n, lower)
-    }
-
-    fn with(mut solver: Solver, n: usize, lower: &Lower) -> Option<Self> {
-        if !lower.values.iter().all(|v| v.is_finite()) {
-            return None;
+    /// Without a matrix.
+    pub(super) fn empty() -> Self {
+        Self {
+            matrix: CscMatrix {
+                n: 0,
+                col_ptr: vec![0],
+                row_idx: Vec::new(),
+                values: Vec::new(),
+            },
+            // One thread: the same digits on every machine.
+            solver: Solver::new().with_parallel(false),
         }
+    }
+
+    /// Factors a matrix of order n, in the order that was found for the last one if the places are the same. Whether it is regular
+    /// and finite; otherwise there are no factors.
+    pub(super) fn factor(&mut self, n: usize, lower: &Lower) -> bool {
         let entries = (&lower.rows, &lower.columns, &lower.values);
-        let matrix = CscMatrix::from_triplets(n, entries.0, entries.1, entries.2).ok()?;
-        match solver.factor(&matrix, None) {
-            FactorStatus::Success => Some(Self { matrix, solver }),
-            _ => None,
+        let finite = lower.values.iter().all(|v| v.is_finite());
+        match CscMatrix::from_triplets(n, entries.0, entries.1, entries.2) {
+            Ok(matrix) if finite => self.matrix = matrix,
+            _ => return false,
         }
+        matches!(
+            self.solver.factor(&self.matrix, None),
+            FactorStatus::Success
+        )
     }
 
     /// A⁻¹b, refined; None if it is not finite.

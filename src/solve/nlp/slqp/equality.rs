@@ -5,12 +5,23 @@
 //! ```
 //!
 //! by one factorisation of [H + τD, Aᵀ; A, 0]; τ grows until the matrix has as many negative eigenvalues as rows, so that the
-//! solution is a minimum.
+//! solution is a minimum. A bound or a row that a step meets joins the set by a Schur complement: what is a minimum on a space is one on a
+//! part of it.
 
 use super::point::{Frame, Point};
 use crate::solve::nlp::polish::number;
 use crate::solve::nlp::problem::Entry;
 use crate::solve::nlp::symmetric::{Lower, Symmetric};
+use crate::solve::strategy::{Strategies, Strategy};
+use faer::Mat;
+use faer::linalg::solvers::Solve;
+
+/// A bound of a variable or a side of a row that a step meets, and its value.
+#[derive(Clone, Copy)]
+pub(super) enum Met {
+    Column(usize, f64),
+    Row(usize, f64),
+}
 
 /// What is held: bounds of variables and sides of rows.
 #[derive(Clone, PartialEq)]
@@ -28,6 +39,11 @@ const SHIFTS: [f64; 10] = [0.0, 1e-8, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0, 10
 /// The number of the last one.
 pub(super) const ANY: usize = SHIFTS.len() - 1;
 
+/// The squared sine of the angle to what is held from which on something may join.
+const INDEPENDENT: f64 = 1e-10;
+/// What dependent rows give way by, in units, for a multiplier of 1.
+const YIELDING: f64 = 1e-7;
+
 /// What one program leaves to the next.
 #[derive(Default)]
 pub(super) struct Memory {
@@ -35,6 +51,16 @@ pub(super) struct Memory {
     pub(super) shift: usize,
     /// Factors whose order may serve again.
     pub(super) factors: Option<Symmetric>,
+    /// What of it runs.
+    pub(super) strategies: Strategies,
+}
+
+/// What joined the set after the factorisation: its entries in the matrix, what they add up to, and A⁻¹ times the entries.
+struct Joined {
+    met: Met,
+    entries: Vec<(usize, f64)>,
+    to: f64,
+    solved: Vec<f64>,
 }
 
 /// A solution, and the factors for a correction of it.
@@ -43,12 +69,21 @@ pub(super) struct Equality {
     /// Multipliers of all rows.
     pub(super) lambda: Vec<f64>,
     pub(super) factors: Option<Symmetric>,
+    /// What rows that stay violated pull with.
+    pull: Vec<f64>,
     column: Vec<Option<usize>>,
     row: Vec<Option<usize>>,
     free: usize,
     held: usize,
+    /// The solution of the factorised system alone.
+    alone: Vec<f64>,
+    /// The largest entry of H + τD in units.
+    curvature: f64,
+    joined: Vec<Joined>,
     /// The shift that it took.
     pub(super) shifted: bool,
+    /// The rows depend on each other, nearly, and give way a little: the multipliers are worth nothing.
+    pub(super) yields: bool,
 }
 
 impl Equality {
@@ -105,11 +140,16 @@ impl Equality {
             d,
             lambda: working.pull.clone(),
             factors: None,
+            pull: working.pull.clone(),
             column,
             row,
             free,
             held,
+            alone: Vec::new(),
+            curvature: 0.0,
+            joined: Vec::new(),
             shifted: false,
+            yields: false,
         };
         if free == 0 {
             return (held == 0).then_some(out);
@@ -124,27 +164,29 @@ impl Equality {
                     matrix.push(*p, *p, tau / at.unit(j).powi(2));
                 }
             }
+            let mut factors = memory.factors.take().unwrap_or_else(Symmetric::empty);
+            let give = if out.yields { YIELDING } else { 0.0 };
             for k in free..free + held {
-                matrix.push(k, k, 0.0);
+                matrix.push(k, k, -give);
             }
-            let factors = match memory.factors.take() {
-                Some(last) => last.again(free + held, &matrix),
-                None => Symmetric::new(free + held, &matrix),
+            let regular = factors.factor(free + held, &matrix);
+            let inertia = factors.inertia().filter(|_| regular);
+            let solution = match inertia == Some((free, held)) {
+                true => factors.solve(&right),
+                false => None,
             };
-            let Some(factors) = factors else { continue };
-            let minimum = factors.inertia() == Some((free, held));
-            let Some(s) = minimum.then(|| factors.solve(&right)).flatten() else {
+            let Some(s) = solution else {
+                // fewer negative eigenvalues than rows: these are dependent whatever the shift
+                let dependent = out.yields || inertia.is_some_and(|i| i.1 < held);
+                out.yields = dependent && memory.strategies.run(Strategy::DependentRows);
                 memory.factors = Some(factors);
                 continue;
             };
-            for (d, p) in out.d.iter_mut().zip(&out.column) {
-                *d = p.map_or(*d, |p| s[p]);
-            }
-            for (l, p) in out.lambda.iter_mut().zip(&out.row) {
-                *l = p.map_or(*l, |p| s[free + p]);
-            }
+            out.spread(&s, &[]);
+            out.alone = s;
+            out.curvature = largest + tau;
             out.factors = Some(factors);
-            out.shifted = k > 0;
+            out.shifted = k > 0 || out.yields;
             if k > 0 {
                 memory.shift = k;
             }
@@ -153,16 +195,105 @@ impl Equality {
         None
     }
 
+    /// Reads d and λ from the solution of the system and the multipliers of what joined.
+    fn spread(&mut self, s: &[f64], joined: &[f64]) {
+        for (d, p) in self.d.iter_mut().zip(&self.column) {
+            *d = p.map_or(*d, |p| s[p]);
+        }
+        for (l, p) in self.lambda.iter_mut().zip(&self.row) {
+            *l = p.map_or(*l, |p| s[self.free + p]);
+        }
+        for (joined, multiplier) in self.joined.iter().zip(joined) {
+            if let Met::Row(i, _) = joined.met {
+                self.lambda[i] = self.pull[i] + multiplier;
+            }
+        }
+    }
+
+    /// Solves \[A C; Cᵀ 0\] for the columns C of what joined, given A⁻¹ times the first part of the right-hand side: by the Schur complement,
+    /// without a factorisation. The first part of the solution, and the multipliers of what joined.
+    fn bordered(&self, mut s: Vec<f64>, to: impl Fn(&Joined) -> f64) -> (Vec<f64>, Vec<f64>) {
+        let joined = &self.joined;
+        let k = joined.len();
+        let complement = Mat::from_fn(k, k, |i, j| along(&joined[i].entries, &joined[j].solved));
+        let right = Mat::from_fn(k, 1, |i, _| along(&joined[i].entries, &s) - to(&joined[i]));
+        let solution = complement.partial_piv_lu().solve(&right);
+        let multipliers: Vec<f64> = (0..k).map(|i| solution[(i, 0)]).collect();
+        for (joined, multiplier) in joined.iter().zip(&multipliers) {
+            for (s, z) in s.iter_mut().zip(&joined.solved) {
+                *s -= multiplier * z;
+            }
+        }
+        (s, multipliers)
+    }
+
+    /// A bound or a row joins the set: what d and λ were before. None if it depends on what is held: then nothing changes.
+    pub(super) fn join(&mut self, at: &Point, met: Met) -> Option<(Vec<f64>, Vec<f64>)> {
+        let (mut entries, mut to, mut size) = (Vec::new(), 0.0, 0.0);
+        let mut add = |j: usize, a: f64| match self.column[j] {
+            Some(p) => {
+                entries.push((p, a));
+                size += (a * at.unit(j)).powi(2);
+            }
+            None => to -= a * self.d[j],
+        };
+        match met {
+            Met::Column(j, _) => add(j, 1.0),
+            Met::Row(i, _) => at.rows.line(i).for_each(|(j, a)| add(j, a)),
+        }
+        to += match met {
+            Met::Column(j, bound) => bound - at.x[j],
+            Met::Row(i, side) => side - at.values.g[i],
+        };
+        let mut dense = vec![0.0; self.free + self.held];
+        entries.iter().for_each(|&(p, a)| dense[p] += a);
+        let solved = self.factors.as_ref()?.solve(&dense)?;
+        let (own, _) = self.bordered(solved.clone(), |_| 0.0);
+        // cᵀ Z (ZᵀHZ)⁻¹ Zᵀ c, Z the null space of what is held
+        let independent = along(&entries, &own) * self.curvature > INDEPENDENT * size;
+        if !independent {
+            return None;
+        }
+        self.joined.push(Joined {
+            met,
+            entries,
+            to,
+            solved,
+        });
+        let (s, multipliers) = self.bordered(self.alone.clone(), |j| j.to);
+        let before = (self.d.clone(), self.lambda.clone());
+        self.spread(&s, &multipliers);
+        Some(before)
+    }
+
+    /// The last that joined leaves again.
+    pub(super) fn leave(&mut self, (d, lambda): (Vec<f64>, Vec<f64>)) {
+        self.joined.pop();
+        (self.d, self.lambda) = (d, lambda);
+    }
+
+    /// All that joined leave again.
+    pub(super) fn leave_all(&mut self) {
+        let alone = std::mem::take(&mut self.alone);
+        self.joined.clear();
+        self.lambda.clone_from(&self.pull);
+        self.spread(&alone, &[]);
+        self.alone = alone;
+    }
+
     /// The step that takes so much off the held rows besides: what their curvature added on the way.
     pub(super) fn correction(&self, curvature: &[f64]) -> Option<Vec<f64>> {
-        let factors = self.factors.as_ref().filter(|_| self.held > 0)?;
+        let factors = self.factors.as_ref()?;
         let mut right = vec![0.0; self.free + self.held];
         for (c, p) in curvature.iter().zip(&self.row) {
             if let Some(p) = p {
                 right[self.free + p] = -c;
             }
         }
-        let s = factors.solve(&right)?;
+        let (s, _) = self.bordered(factors.solve(&right)?, |j| match j.met {
+            Met::Column(..) => 0.0,
+            Met::Row(i, _) => -curvature[i],
+        });
         Some(
             self.column
                 .iter()
@@ -170,4 +301,9 @@ impl Equality {
                 .collect(),
         )
     }
+}
+
+/// The product of a sparse and a dense vector.
+fn along(entries: &[(usize, f64)], v: &[f64]) -> f64 {
+    entries.iter().map(|&(p, a)| a * v[p]).sum()
 }

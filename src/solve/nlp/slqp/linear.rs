@@ -3,6 +3,7 @@
 //! What is violated is elastic, at a price ν; what is satisfied stays so, which d = 0 does. A basis goes on from one program to
 //! the next.
 
+use super::MOST_PENALTY;
 use super::equality::Working;
 use super::point::{Frame, Point};
 use crate::solve::Budget;
@@ -46,6 +47,8 @@ pub(super) struct Step {
     pub(super) working: Working,
     /// Some variable is at the trust region.
     pub(super) confined: bool,
+    /// Price of what is violated: what was asked for, or more where that left the program without a minimum.
+    pub(super) penalty: f64,
 }
 
 impl Linear {
@@ -75,17 +78,22 @@ impl Linear {
         &mut self,
         frame: &Frame,
         at: &Point,
-        aim: Aim,
+        mut aim: Aim,
         budget: &Budget,
     ) -> Option<Step> {
         for everything in [false, true] {
             let mut program = Program::new(frame, at, aim, everything, self.confined);
             let mut ended = self.minimum(&program, budget);
-            if let Ok(Err(Ended::Unbounded(_))) = &ended
+            while let Ok(Err(Ended::Unbounded(_))) = &ended
                 && !self.confined
             {
-                self.confined = true;
-                program = Program::new(frame, at, aim, everything, true);
+                // what is violated may be too cheap
+                if aim.weight > 0.0 && aim.penalty < MOST_PENALTY && !program.elastic.is_empty() {
+                    aim.penalty *= 10.0;
+                } else {
+                    self.confined = true;
+                }
+                program = Program::new(frame, at, aim, everything, self.confined);
                 ended = self.minimum(&program, budget);
             }
             match ended {
@@ -191,6 +199,7 @@ impl Linear {
             short,
             working: Working { column, row, pull },
             confined,
+            penalty: aim.penalty,
         }
     }
 }

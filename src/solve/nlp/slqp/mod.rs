@@ -143,7 +143,10 @@ pub(super) fn solve(nlp: &mut dyn Nlp, request: Request<'_>, budget: &Budget) ->
         linear_radius: 1.0,
         budget,
         lowered: 0,
-        memory: Memory::default(),
+        memory: Memory {
+            strategies: request.strategies,
+            ..Memory::default()
+        },
         refused: None,
         strategies: request.strategies,
     };
@@ -373,6 +376,10 @@ impl Method<'_, '_> {
             let Some(step) = self.linear.solve(&self.frame, &self.at, aim, self.budget) else {
                 return Found::End(End::Stuck);
             };
+            self.penalty = step.penalty;
+            if self.linear.confined {
+                self.frame.nonlinear.fill(true);
+            }
             if step.short == 0.0 || now == 0.0 {
                 return Found::Step(step);
             }
@@ -413,7 +420,7 @@ impl Method<'_, '_> {
 
     /// A step from the solution of the linear program, if it lessens φ; the working set if that may stay.
     fn step(&mut self, linear: Step) -> Result<Option<Working>, End> {
-        let working = linear.working;
+        let working = &linear.working;
         let largest = |l: &[f64]| l.iter().fold(0.0_f64, |t, v| t.max(v.abs()));
         let mut needed = 2.0 * largest(&linear.lambda);
         // of rows that are new the linear program knows more
@@ -425,14 +432,16 @@ impl Method<'_, '_> {
             })
             .collect();
         let (hessian, quadratic) = match self.refused.take() {
-            Some(r) if r.working == working && r.lambda == lambda => (r.hessian, Some(r.quadratic)),
+            Some(r) if r.working == *working && r.lambda == lambda => {
+                (r.hessian, Some(r.quadratic))
+            }
             refused => {
                 if let Some(refused) = refused {
                     self.memory.factors = refused.quadratic.factors;
                 }
                 let hessian = self.at.hessian(self.nlp, &self.frame, &lambda);
                 let (frame, memory) = (&self.frame, &mut self.memory);
-                let new = Equality::new(frame, &self.at, &hessian, &working, ANY, memory);
+                let new = Equality::new(frame, &self.at, &hessian, working, ANY, memory);
                 (hessian, new)
             }
         };
@@ -456,7 +465,7 @@ impl Method<'_, '_> {
             full,
             working,
             quadratic,
-        } = model.course(&cauchy, quadratic, working, self.radius, &mut self.memory);
+        } = model.course(&cauchy, quadratic, linear.working.clone(), self.radius);
         let promised = -model.change(&d);
         let small = promised <= ROUNDING * now.abs().max(1.0);
         let mut next = sum(&self.at.x, 1.0, &d);
@@ -486,16 +495,19 @@ impl Method<'_, '_> {
         let first = self.at.length(&self.frame, &cauchy);
         self.resize(gain, length, first, part >= 1.0);
         if gain < TAKEN {
-            self.refused = quadratic.map(|quadratic| Refused {
-                working,
-                lambda,
-                hessian,
-                quadratic,
+            self.refused = quadratic.map(|mut quadratic| {
+                quadratic.leave_all();
+                Refused {
+                    working: linear.working,
+                    lambda,
+                    hessian,
+                    quadratic,
+                }
             });
             return Ok(None);
         }
         let lambda = match (&quadratic, full) {
-            (Some(q), true) => q.lambda.clone(),
+            (Some(q), true) if !q.yields => q.lambda.clone(),
             _ => linear.lambda,
         };
         let point = there.and_then(|v| Point::new(self.nlp, &self.frame, next, v));

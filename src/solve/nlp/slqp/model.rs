@@ -1,6 +1,6 @@
 //! The quadratic model of φ, and how far it is worth going.
 
-use super::equality::{ANY, Equality, Memory, Working};
+use super::equality::{Equality, Met, Working};
 use super::point::{Frame, Point};
 use crate::solve::nlp::problem::Entry;
 
@@ -13,14 +13,7 @@ pub(super) struct Model<'a> {
     pub(super) weight: f64,
 }
 
-/// A bound or a side of a row that a step meets.
-#[derive(Clone, Copy)]
-enum Met {
-    Column(usize, f64),
-    Row(usize, f64),
-}
-
-/// Bounds and rows that are added to a working set at most, each for a factorisation.
+/// Bounds and rows that are added to a working set at most.
 const MOST_MET: u32 = 10;
 /// What is met within this part of the way is met at once.
 const AT_ONCE: f64 = 1e-6;
@@ -76,7 +69,6 @@ impl Model<'_> {
         quadratic: Option<Equality>,
         working: Working,
         radius: f64,
-        memory: &mut Memory,
     ) -> Course {
         let (d, full) = match &quadratic {
             Some(q) => self.onwards(cauchy, q, &working, radius),
@@ -89,29 +81,28 @@ impl Model<'_> {
             quadratic,
         };
         for _ in 0..MOST_MET {
-            let Some(q) = course.quadratic.as_ref().filter(|_| !course.full) else {
+            let Some(q) = course.quadratic.as_mut().filter(|_| !course.full) else {
                 break;
             };
             let rest = sum(&q.d, -1.0, &course.d);
             let (part, met) = self.blocked(&course.d, &rest, &course.working, radius);
+            let Some(met) = met.filter(|_| part <= AT_ONCE) else {
+                break;
+            };
+            let Some(before) = q.join(self.at, met) else {
+                break;
+            };
             let mut working = course.working.clone();
-            match met.filter(|_| part <= AT_ONCE) {
-                Some(Met::Column(j, bound)) => working.column[j] = Some(bound),
-                Some(Met::Row(i, side)) => working.row[i] = Some(side),
-                None => break,
+            match met {
+                Met::Column(j, bound) => working.column[j] = Some(bound),
+                Met::Row(i, side) => working.row[i] = Some(side),
             }
-            let next = Equality::new(self.frame, self.at, self.hessian, &working, ANY, memory);
-            let Some(q) = next else { break };
-            let (d, full) = self.onwards(&course.d, &q, &working, radius);
+            let (d, full) = self.onwards(&course.d, q, &working, radius);
             if self.change(&d) > self.change(&course.d) {
+                q.leave(before);
                 break;
             }
-            course = Course {
-                d,
-                full,
-                working,
-                quadratic: Some(q),
-            };
+            (course.d, course.full, course.working) = (d, full, working);
         }
         course
     }
