@@ -551,6 +551,27 @@ mod tests {
         )
     }
 
+    /// Equal rows whose multipliers cancel: beside their size any slope of the objective looks small.
+    #[test]
+    fn multipliers_that_cancel_hide_no_slope() {
+        let row = (vec![1., 1.], Relation::Equal, 10.);
+        let free = (0., f64::INFINITY);
+        let instance = program(
+            Sense::Minimize,
+            &[1., 2.],
+            &[free, free],
+            &[row.clone(), row],
+        );
+        let mut evaluator = crate::autodiff::Evaluator::first_order(&instance);
+        let mut dual = |m: [f64; 2]| {
+            let (x, m) = ([3., 7., 17.], [m[0], m[1], 1.]);
+            let at = nonlinear::linearise(&instance, &mut evaluator, &x, &m).expect("it is linear");
+            nonlinear::residuals(&instance, &x, &m, &at).dual_relative
+        };
+        assert!(dual([1., 1.]) > 0.1);
+        assert!(dual([5e15, -5e15]) > 0.1);
+    }
+
     #[test]
     fn status_follows_the_point_in_any_unit() {
         for unit in [1e-9, 1e-3, 1.0, 1e6] {

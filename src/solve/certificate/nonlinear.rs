@@ -28,6 +28,9 @@ pub const FAR: f64 = 1e7;
 /// A change of the objective that matters, relative to its size.
 pub const CONSIDERABLE: f64 = 0.01;
 
+/// Products of multipliers and slopes beyond this lose a slope of 1e-3 by rounding: a reduced cost that is small beside them alone says nothing
+/// about the objective.
+const HIDING: f64 = 1e12;
 /// A row binds where its slack is at most this, relative to its size.
 const BINDING: f64 = 1e-6;
 
@@ -160,8 +163,11 @@ pub fn residuals(
         let priced = sigma * r;
         let side = if priced > 0.0 { x[j] - l } else { u - x[j] };
         let distance = side.max(0.0);
-        let relative =
-            (priced.abs() / at.column_size[j].max(1.0)).min(distance / x[j].abs().max(1.0));
+        let size = match at.column_size[j] {
+            size if size > HIDING => 1.0,
+            size => size.max(1.0),
+        };
+        let relative = (priced.abs() / size).min(distance / x[j].abs().max(1.0));
         columns.see(priced.abs().min(distance), relative, j);
         if r != 0.0 && distance.is_finite() {
             complement(priced.abs() * distance);
