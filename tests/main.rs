@@ -32,3 +32,4 @@ mod syntax;
 mod syntax_corpus;
 mod syntax_mutations;
 mod walls;
+mod watch;

@@ -1,6 +1,6 @@
 //! `bmod watch`: runs a model again whenever a file of its folder is saved.
 
-use std::io::IsTerminal;
+use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, SystemTime};
@@ -30,6 +30,8 @@ pub fn watch(a: &WatchArgs) -> u8 {
         // On a terminal the screen is cleared, so that the first error or the answer stands on top.
         if std::io::stdout().is_terminal() {
             print!("\x1b[2J\x1b[H");
+            // Before the run writes: it is a process of its own.
+            let _ = std::io::stdout().flush();
         }
         let saved = modified(&a.file);
         let mut run = Command::new(&program);
