@@ -301,7 +301,6 @@ fn is_system(name: &Ident) -> bool {
 fn is_operation(name: &str) -> bool {
     let sums = ["sum", "prod", "smin", "smax", "sand", "sor", "ord", "card"];
     functions::names()
-        .into_iter()
         .chain(sums)
         .any(|n| n.eq_ignore_ascii_case(name))
 }

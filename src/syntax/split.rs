@@ -296,7 +296,7 @@ impl Splitter {
             .trim_end();
         // `/ 1/3 /`
         let fraction = line.rfind('/').is_some_and(|n| {
-            let (left, right) = (line[..n].as_bytes(), line[n + 1..].as_bytes());
+            let (left, right) = (&line.as_bytes()[..n], &line.as_bytes()[n + 1..]);
             digit(left.last()) && digit(right.first())
         });
         let help = match fraction {
