@@ -138,7 +138,12 @@ pub struct Budget<'m> {
     stopped: Cell<Option<Stop>>,
     asked: Cell<u32>,
     log: Cell<bool>,
+    /// Seconds at which a method last told how far it has come.
+    told: Cell<f64>,
 }
+
+/// Seconds between two reports of a method that asks often.
+const REPORTS: f64 = 0.1;
 
 impl<'m> Budget<'m> {
     /// From now on.
@@ -155,6 +160,7 @@ impl<'m> Budget<'m> {
             stopped: Cell::new(None),
             asked: Cell::new(0),
             log: Cell::new(log),
+            told: Cell::new(0.0),
         }
     }
 
@@ -336,6 +342,15 @@ impl<'m> Budget<'m> {
             ..progress
         };
         self.monitor.borrow_mut().progress(&told);
+    }
+
+    /// The same for loops that ask often: now and then.
+    pub(in crate::solve) fn tell(&self, progress: Progress) {
+        let seconds = self.seconds();
+        if seconds >= self.told.get() + REPORTS {
+            self.told.set(seconds);
+            self.progress(progress);
+        }
     }
 
     /// Name of a row for the log.

@@ -3,7 +3,7 @@
 //! of bound, no rows, no columns.
 
 use super::backend::{Backend, Task};
-use super::{Budget, Claim, ModelStatus, Outcome, Settings, SolveError};
+use super::{Budget, Claim, ModelStatus, Monitor, Outcome, Progress, Settings, SolveError};
 use crate::model::instance::{Columns, Instance, Relation, Sense};
 use crate::model::problem_type::ProblemType;
 use crate::solve::certificate;
@@ -94,6 +94,39 @@ pub fn suite(backend: &dyn Backend, settings: &Settings, tolerance: f64) {
     infeasible(solver);
     unbounded(solver);
     refused(solver);
+    tells(backend, settings);
+}
+
+/// A clock that goes on by a second with every look, and what was told.
+#[derive(Default)]
+struct Told {
+    clock: f64,
+    methods: Vec<&'static str>,
+}
+
+impl Monitor for Told {
+    fn log(&mut self, _: &str) {}
+    fn interrupted(&mut self) -> bool {
+        false
+    }
+    fn seconds(&mut self) -> f64 {
+        self.clock += 1.0;
+        self.clock
+    }
+    fn progress(&mut self, progress: &Progress) {
+        self.methods.push(progress.method);
+    }
+}
+
+/// Who waits sees what the method does.
+fn tells(backend: &dyn Backend, settings: &Settings) {
+    let rows = [(vec![1., 1.], Less, 4.), (vec![1., 3.], Less, 6.)];
+    let instance = linear(Sense::Maximize, &[3., 2.], &[(0., INF); 2], &rows);
+    let mut told = Told::default();
+    let task = Task::new(ProblemType::Lp, &instance);
+    let reply = backend.solve(&task, settings, &Budget::unlimited(&mut told));
+    reply.expect("a valid instance");
+    assert!(!told.methods.is_empty());
 }
 
 fn textbook(solver: Solve, tol: f64) {

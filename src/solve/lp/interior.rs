@@ -24,8 +24,8 @@ use std::sync::{Mutex, mpsc};
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
-    DefaultSettings, DefaultSolution, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus,
-    SupportedConeT, ZeroConeT,
+    DefaultInfo, DefaultSettings, DefaultSolution, DefaultSolver, IPSolver, NonnegativeConeT,
+    SolverStatus, SupportedConeT, ZeroConeT,
 };
 
 use super::Ended;
@@ -33,10 +33,10 @@ use super::form::{Point, Problem, Sparse};
 use super::scale::power_of_two;
 use crate::solve::budget::Size;
 use crate::solve::factor_size::symmetric_size;
-use crate::solve::{Budget, Stop};
+use crate::solve::{Budget, Progress, Stop};
 
-/// Whether to stop: asked in each iteration.
-type Question = Box<dyn FnMut() -> bool + Send + Sync>;
+/// Whether to stop: asked in each iteration, with how far the method has come.
+type Question = Box<dyn FnMut(Progress) -> bool + Send + Sync>;
 
 /// What one run gave.
 #[derive(Debug)]
@@ -176,7 +176,15 @@ pub fn solve(p: &Problem, hessian: Option<&Sparse>, aim: Aim, budget: &Budget) -
             },
         };
         let mut solver = DefaultSolver::new(&objective, &q, &a, &b, &cones, first).ok()?;
-        solver.set_termination_callback(move |_: &_| stop());
+        solver.set_termination_callback(move |info: &DefaultInfo<f64>| {
+            stop(Progress {
+                method: "interior point",
+                iteration: u64::from(info.iterations),
+                primal: Some(info.res_primal),
+                dual: Some(info.res_dual),
+                ..Progress::default()
+            })
+        });
         solver.solve();
         let status = solver.solution.status;
         let rough = matches!(status, SolverStatus::Solved | SolverStatus::MaxIterations);
@@ -237,7 +245,7 @@ fn asking(
     #[cfg(not(feature = "system"))]
     {
         let is_over = budget.is_over();
-        run(Box::new(move || is_over))
+        run(Box::new(move |_| is_over))
     }
     #[cfg(feature = "system")]
     std::thread::scope(|scope| {
@@ -245,9 +253,10 @@ fn asking(
         let (answer, answers) = mpsc::channel();
         let answers = Mutex::new(answers);
         let reply = move || answers.lock().ok()?.recv().ok();
-        let stop = move || question.send(()).is_err() || reply().unwrap_or(true);
+        let stop = move |p| question.send(p).is_err() || reply().unwrap_or(true);
         let worker = scope.spawn(move || run(Box::new(stop)));
-        for () in questions {
+        for progress in questions {
+            budget.tell(progress);
             let _ = answer.send(budget.is_over());
         }
         worker.join().ok().flatten()

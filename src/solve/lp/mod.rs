@@ -15,7 +15,7 @@ pub mod simplex;
 use super::backend::{About, Backend, QuadraticEngine, Replied, Supports, Task, Terms};
 use super::noise;
 use super::strategy::{Strategies, Strategy};
-use super::{Budget, Claim, Outcome, Settings, SolveError, SolverStatus, Stop};
+use super::{Budget, Claim, Outcome, Progress, Settings, SolveError, SolverStatus, Stop};
 use crate::model::instance::Instance;
 use crate::model::problem_type::ProblemType;
 use form::{Form, Point, Problem};
@@ -305,7 +305,14 @@ pub fn watch<'a>(budget: &'a Budget, most: u64) -> impl FnMut(u64) -> Option<End
     let most = most.min(budget.iterations_left());
     move |iterations| match iterations >= most {
         true => Some(Ended::Iterations),
-        false => budget.stop().map(Ended::from),
+        false => {
+            budget.tell(Progress {
+                method: "simplex",
+                iteration: iterations,
+                ..Progress::default()
+            });
+            budget.stop().map(Ended::from)
+        }
     }
 }
 

@@ -6,8 +6,8 @@ use feral::SparseColMatrix;
 use super::factor::Fill;
 use super::merit::natural_residual;
 use super::{EvalError, Help, INFINITY, Problem, Settings};
-use crate::solve::Budget;
 pub(super) use crate::solve::budget::Stop;
+use crate::solve::{Budget, Progress};
 
 /// How a method ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -140,6 +140,11 @@ impl<'a, 'm> Run<'a, 'm> {
         if self.pivots >= self.settings.cumulative_iteration_limit {
             return Err(Stop::Iterations);
         }
+        self.budget.tell(Progress {
+            method: self.method,
+            iteration: (self.majors + self.pivots) as u64,
+            ..Progress::default()
+        });
         self.budget.stop().map_or(Ok(()), Err)
     }
 

@@ -18,8 +18,8 @@ mod model;
 mod point;
 
 use super::problem::{Entry, Nlp};
-use crate::solve::Budget;
 use crate::solve::strategy::{Strategies, Strategy};
+use crate::solve::{Budget, Progress};
 use equality::{ANY, Equality, Memory, Working};
 use linear::{Aim, Linear, Step};
 use model::{Course, Model, sum};
@@ -247,6 +247,12 @@ impl Method<'_, '_> {
     }
 
     fn note(&self, step: u64) {
+        self.budget.tell(Progress {
+            method: "sequential quadratic programming",
+            iteration: step,
+            objective: Some(self.at.values.f * self.frame.price),
+            ..Progress::default()
+        });
         if self.budget.wants_log() {
             self.budget.log(format!(
                 "{step:>6}  {:>16.9e}  violation {:.2e}  residual {:.2e}  trust {:.1e} {:.1e}  penalty {:.0e}",
