@@ -78,7 +78,8 @@ pub fn carry_out(
                     if let Err(e) = py.check_signals() {
                         stop(e, py);
                     }
-                    if let Some(f) = &on_progress
+                    // Who has stopped it is told nothing more: another signal from there would lose the answer.
+                    if let Some(f) = on_progress.as_ref().filter(|_| !control.is_cancelled())
                         && progress.message != message
                     {
                         let arguments = (&progress.message, progress.seconds);

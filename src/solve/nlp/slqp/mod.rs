@@ -250,7 +250,6 @@ impl Method<'_, '_> {
         self.budget.tell(Progress {
             method: "sequential quadratic programming",
             iteration: step,
-            objective: Some(self.at.values.f * self.frame.price),
             ..Progress::default()
         });
         if self.budget.wants_log() {
