@@ -332,8 +332,8 @@ impl SelfReading<'_> {
         lagged
             && !self.keys.is_empty()
             && self.keys.iter().all(|k| {
-                let pairs = k.parts.iter().zip(&written.parts).enumerate();
-                pairs.into_iter().all(|(position, (a, b))| {
+                let mut pairs = k.parts.iter().zip(&written.parts).enumerate();
+                pairs.all(|(position, (a, b))| {
                     same_index(a, b) && (position == 0 || as_far(distance(a), distance(b)))
                 })
             })

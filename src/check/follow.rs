@@ -91,8 +91,7 @@ impl Compiler {
         let exchanged = |e: &Diagnostic| {
             e.code == "E0308" && e.help.as_ref().is_some_and(|h| h.contains(EXCHANGED))
         };
-        let from = self.lost.statement.min(self.diagnostics.len());
-        if exchanged(&d) && self.diagnostics[from..].iter().any(exchanged) {
+        if exchanged(&d) && here.iter().any(exchanged) {
             return;
         }
         let same = |e: &&mut Diagnostic| e.code == d.code && e.message == d.message;

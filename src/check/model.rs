@@ -568,25 +568,17 @@ impl Compiler {
     /// The rules of matching that can be seen in the text.
     fn check_pairs(&mut self, rows: &[ModelRow], using: ProblemType) -> Result<(), Failed> {
         let mut failed = false;
-        let paired: Vec<(SymbolId, Span)> = rows
-            .iter()
-            .filter_map(|r| Some((r.pair?, r.span)))
-            .collect();
-        let twice = |span: Span| {
-            let of = |r: &&ModelRow| r.span == span;
-            let row = rows.iter().find(of).map(|r| r.definition);
+        let paired = || {
             rows.iter()
-                .filter(|r| Some(r.definition) == row && r.pair.is_some())
-                .count()
-                > 1
+                .filter_map(|r| Some((r.pair?, r.definition, r.span)))
         };
-        for (v, span) in paired {
-            let appears = twice(span)
-                || rows.iter().any(|r| {
-                    let e = &self.equations[r.definition];
-                    e.left.mentions(v) || e.right.mentions(v)
-                });
-            if !appears {
+        for (v, definition, span) in paired() {
+            let appears = rows.iter().any(|r| {
+                let e = &self.equations[r.definition];
+                e.left.mentions(v) || e.right.mentions(v)
+            });
+            let is_only = paired().filter(|p| p.1 == definition).count() == 1;
+            if !appears && is_only {
                 let (name, declared) = (
                     self.symbols.get(v).name.clone(),
                     self.symbols.get(v).declared,

@@ -212,8 +212,6 @@ strategies! {
             "a tenth of the time",
             "Luteberget & Sartor 2023";
     }
-    "mip": {
-    }
 }
 
 /// The option that leaves strategies out.

@@ -139,11 +139,11 @@ pub(super) fn explain(
         }
         return found;
     }
-    Explanation::of(expected(&f, e))
+    Explanation::of(form(&f).unwrap_or_else(|| expected(&f, e)))
 }
 
 /// `if(k = 1) …`: the parentheses of a block are closed before the error.
-fn closes_early(f: &Failure<'_>) -> bool {
+pub(super) fn closes_early(f: &Failure<'_>) -> bool {
     let open = f.text.find('(');
     open.and_then(|o| closing(f.text.as_bytes(), o))
         .is_some_and(|c| c < f.at)
@@ -584,27 +584,44 @@ fn called(rule: Rule) -> Option<&'static str> {
     })
 }
 
-/// The last resort: what pest would have accepted.
-fn expected(f: &Failure<'_>, e: &Error<Rule>) -> Diagnostic {
-    if f.raw.class.declares() && f.token(f.at).as_bytes().first() == Some(&1) {
-        let message = "the text stands before the data";
-        return f
-            .error("E0210", f.at, 1, message)
-            .help("write `parameter p(i) 'price' / a 1, b 2 /;`");
+/// Statements of one form, where that is not kept: a text behind data, names of an alias, the value of an option.
+fn form(f: &Failure<'_>) -> Option<Diagnostic> {
+    let token = f.token(f.at);
+    let say = |message: &str, help: String| {
+        let d = f.error("E0210", f.at, token.len().max(1), message);
+        Some(d.help(help))
+    };
+    if f.raw.class.declares() && token.as_bytes().first() == Some(&1) {
+        return say(
+            "the text stands before the data",
+            "write `parameter p(i) 'price' / a 1, b 2 /;`".into(),
+        );
     }
     let first = f.text.trim_start();
-    if first[..words::word_end(first.as_bytes(), 0)].eq_ignore_ascii_case("alias") {
-        let names = first.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
-        let names: Vec<_> = names.skip(1).filter(|n| !n.is_empty()).collect();
-        return f
-            .error(
-                "E0210",
-                f.at,
-                f.token(f.at).len().max(1),
+    let word = first[..words::word_end(first.as_bytes(), 0)].to_ascii_lowercase();
+    match word.as_str() {
+        "alias" => {
+            let names = first.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+            let names: Vec<_> = names.skip(1).filter(|n| !n.is_empty()).collect();
+            say(
                 "the names of an alias stand in parentheses",
+                format!("write `alias({});`", names.join(", ")),
             )
-            .help(format!("write `alias({});`", names.join(", ")));
+        }
+        "option" | "options" if token.starts_with(|c: char| c.is_ascii_digit()) => {
+            let before = f.text[..f.at].trim_end();
+            let name = before.rsplit([' ', ',', '\n']).next().unwrap_or("reslim");
+            say(
+                "an option and its value are joined by `=`",
+                format!("write `option {name} = {token};`"),
+            )
+        }
+        _ => None,
     }
+}
+
+/// The last resort: what pest would have accepted.
+fn expected(f: &Failure<'_>, e: &Error<Rule>) -> Diagnostic {
     let mut wanted: Vec<String> = Vec::new();
     let mut add = |s: String| {
         if !wanted.contains(&s) {
@@ -628,24 +645,6 @@ fn expected(f: &Failure<'_>, e: &Error<Rule>) -> Diagnostic {
         }
     }
     let token = f.token(f.at);
-    let options = ["option ", "options "]
-        .iter()
-        .any(|w| first.to_ascii_lowercase().starts_with(w));
-    if options && token.starts_with(|c: char| c.is_ascii_digit()) {
-        let name = f.text[..f.at]
-            .trim_end()
-            .rsplit([' ', ',', '\n'])
-            .next()
-            .unwrap_or("reslim");
-        return f
-            .error(
-                "E0210",
-                f.at,
-                token.len(),
-                "an option and its value are joined by `=`",
-            )
-            .help(format!("write `option {name} = {token};`"));
-    }
     let (span, message) = if token.is_empty() {
         let end = f.text.trim_end().len();
         (

@@ -2,7 +2,7 @@
 //!
 //! Only statements that did not parse come here, so nothing legal is refused.
 
-use super::explain::{Failure, closing, is_relation};
+use super::explain::{Failure, closes_early, closing, is_relation};
 use super::neighbours::{is_sum, top_level};
 use super::words::{self, Class};
 use crate::diag::Diagnostic;
@@ -431,6 +431,7 @@ fn parts(f: &Failure<'_>) -> Option<Diagnostic> {
         Some(b'(' | b'[' | b'{') => closing(bytes, word).map_or(word, |c| c + 1),
         _ => word,
     };
+    let dots = top_level(bytes, f.at, |b| b.starts_with(b".."));
     match token {
         "." if before.ends_with([')', ']', '}']) && bytes.get(f.at + 1).is_some_and(u8::is_ascii_alphabetic) => {
             let open = (0..f.at).rev().find(|&o| closing(bytes, o) == Some(before.len() - 1))?;
@@ -468,16 +469,12 @@ fn parts(f: &Failure<'_>) -> Option<Diagnostic> {
                     }),
             )
         }
-        "," if algebra && before.len() == named && top_level(bytes, f.at, |b| b.starts_with(b"..")).is_some() => {
-            let dots = top_level(bytes, f.at, |b| b.starts_with(b".."))?;
-            let condition = f.text[f.at + 1..dots].trim();
-            say(
-                f.at,
-                1,
-                "a condition stands behind `$`",
-                format!("write `{before}$({condition})..`"),
-            )
-        }
+        "," if algebra && before.len() == named && dots.is_some() => say(
+            f.at,
+            1,
+            "a condition stands behind `$`",
+            format!("write `{before}$({})..`", f.text[f.at + 1..dots?].trim()),
+        ),
         "," if algebra && enclosing(f.text, f.at).is_none() && (before.contains('=') || before.contains("..")) && !before.ends_with(|c: char| c.is_ascii_digit()) | (bytes.get(f.at + 1) == Some(&b' ')) => say(
             f.at,
             1,
@@ -678,13 +675,16 @@ fn behind_declaration(f: &Failure<'_>, lead: usize) -> bool {
     !above.is_empty() && words::classify(above, 0).0.declares()
 }
 
+/// Letters, digits and `_`, and nothing else.
+fn is_name(text: &str) -> bool {
+    !text.is_empty() && words::word_end(text.as_bytes(), 0) == text.len()
+}
+
 /// `i, j` of `i, j, statement`, the head of a loop without parentheses around its indices.
 fn second_index(head: &str) -> Option<String> {
     let mut parts = head.splitn(3, ',').map(str::trim);
     let (first, second) = (parts.next()?, parts.next()?);
     parts.next()?;
-    let is_name =
-        |w: &str| !w.is_empty() && w.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
     (is_name(first) && is_name(second)).then(|| format!("{first},{second}"))
 }
 
@@ -757,7 +757,7 @@ fn control(f: &Failure<'_>) -> Option<Diagnostic> {
                 "write `for(k = 1 to 5, … );`; over the elements of a set runs `loop(i, … );`",
             )
         }
-        _ if closing(f.text.as_bytes(), open).is_some_and(|c| c < f.at) => say(
+        _ if closes_early(f) => say(
             "the statements of a block stand inside of its parentheses",
             "write `if(a > 0, b = 2; );`, `loop(i, … );`",
         ),
@@ -865,7 +865,7 @@ fn solve(f: &Failure<'_>) -> Option<Diagnostic> {
         "the objective is the name of a variable",
     );
     Some(match rest.strip_prefix('(').and_then(|r| r.strip_suffix(')')) {
-        Some(name) if name.trim().bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_') => d.help(format!("write `minimizing {}`", name.trim())),
+        Some(name) if is_name(name.trim()) => d.help(format!("write `minimizing {}`", name.trim())),
         _ if rest.starts_with(|c: char| c.is_ascii_alphabetic() || c == '(' || c.is_ascii_digit()) && rest.contains(['(', '*', '+', '-']) => {
             d.help("declare `variable z; equation obj;`, write `obj.. z =e= …;` and `minimizing z`")
         }

@@ -509,14 +509,8 @@ impl Products {
                 }
             }
         }
-        let mut instance = self.builder.finish(original);
-        instance.discrete = original.discrete.clone();
-        if !instance.discrete.priorities.is_empty() {
-            let all = instance.columns.kind.len();
-            instance.discrete.priorities.resize(all, f64::MAX);
-        }
         Replaced {
-            instance,
+            instance: self.builder.finish_discrete(original),
             written: self.written,
             products,
         }

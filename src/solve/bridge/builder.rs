@@ -111,4 +111,15 @@ impl Builder {
         }
         instance
     }
+
+    /// The same with what is discrete in the original; new columns are branched on last.
+    pub(super) fn finish_discrete(self, original: &Instance) -> Instance {
+        let mut instance = self.finish(original);
+        instance.discrete = original.discrete.clone();
+        if !instance.discrete.priorities.is_empty() {
+            let all = instance.column_count();
+            instance.discrete.priorities.resize(all, f64::MAX);
+        }
+        instance
+    }
 }

@@ -154,14 +154,8 @@ pub(in crate::solve) fn with_squares(instance: &Instance) -> Option<Squared> {
             squares.push(square);
         }
     }
-    let mut linear = builder.finish(instance);
-    linear.discrete = instance.discrete.clone();
-    if !linear.discrete.priorities.is_empty() {
-        let all = linear.column_count();
-        linear.discrete.priorities.resize(all, f64::MAX);
-    }
     Some(Squared {
-        instance: linear,
+        instance: builder.finish_discrete(instance),
         squares,
     })
 }

@@ -28,9 +28,10 @@ pub const FAR: f64 = 1e7;
 /// A change of the objective that matters, relative to its size.
 pub const CONSIDERABLE: f64 = 0.01;
 
-/// Products of multipliers and slopes beyond this lose a slope of 1e-3 by rounding: a reduced cost that is small beside them alone says nothing
-/// about the objective.
+/// Products of multipliers and slopes beyond this lose a slope of 1e-3 by rounding: a reduced cost that is small
+/// beside them alone says nothing about the objective.
 const HIDING: f64 = 1e12;
+
 /// A row binds where its slack is at most this, relative to its size.
 const BINDING: f64 = 1e-6;
 

@@ -191,6 +191,11 @@ impl Mip {
             .map(|(_, &j)| j as usize)
     }
 
+    /// Whether integer columns are all that is discrete: no ordered sets, nothing semicontinuous.
+    pub fn has_integers_only(&self) -> bool {
+        self.sets.is_empty() && self.threshold.iter().all(|t| *t == 0.0)
+    }
+
     /// Whether all discrete columns have values that they may have.
     pub fn is_discrete(&self, x: &[f64]) -> bool {
         let fine = |j: usize| self.distance(j, x[j], 0.0) <= INTEGRAL;

@@ -355,8 +355,7 @@ impl<R: Relaxation> Search<'_, R> {
 
     /// Walks from a point to solutions, each better than the one before.
     pub(super) fn jump(&mut self, from: &[f64], control: &mut Control) {
-        let plain = self.mip.sets.is_empty() && self.mip.threshold.iter().all(|t| *t == 0.0);
-        let applies = plain && self.mip.problem.m() > 0;
+        let applies = self.mip.has_integers_only() && self.mip.problem.m() > 0;
         let runs = |s: &Settings| s.runs(Strategy::FeasibilityJump);
         if !applies || !self.settings.is_some_and(runs) {
             return;

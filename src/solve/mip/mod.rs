@@ -379,7 +379,7 @@ fn convex_search(
         squares: &squared.squares,
         numbers: &form.columns,
     };
-    let Some(root) = convex.root(&instance.columns.level, control) else {
+    let Some(root) = convex.best(&instance.columns.level, control) else {
         return Ok(None);
     };
     let mut mip = Mip::new(

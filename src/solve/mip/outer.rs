@@ -83,10 +83,10 @@ impl<'s> Convex<'s> {
         }
     }
 
-    /// The best point of the relaxation, with the values of the squares.
-    pub(super) fn root(&mut self, level: &[f64], control: &mut Control) -> Option<Vec<f64>> {
-        let answer = self.nonlinear.answer(level, control)?;
+    /// The best point of the program for the present bounds, with the values of the squares.
+    pub(super) fn best(&mut self, level: &[f64], control: &mut Control) -> Option<Vec<f64>> {
         use ModelStatus as S;
+        let answer = self.nonlinear.answer(level, control)?;
         let solved = matches!(answer.status, S::Optimal | S::LocallyOptimal);
         solved.then(|| self.with_values(answer.outcome.level))
     }
@@ -213,9 +213,8 @@ impl<'s> Outer<'s> {
                 false => 0.0,
             };
         }
-        let plain = mip.sets.is_empty() && mip.threshold.iter().all(|t| *t == 0.0);
         if let Some((known, point)) = &self.decided
-            && plain
+            && mip.has_integers_only()
             && *known == key
         {
             return point.clone();
@@ -224,13 +223,10 @@ impl<'s> Outer<'s> {
             self.bound(j, [key[j]; 2]);
         }
         let from = self.way.back(x);
-        let answer = self.convex.nonlinear.answer(&from, control);
+        let point = self.convex.best(&from, control);
         for j in (0..key.len()).filter(|&j| mip.integer[j]) {
             self.bound(j, self.bounds[j]);
         }
-        use ModelStatus as S;
-        let solved = answer.filter(|a| matches!(a.status, S::Optimal | S::LocallyOptimal));
-        let point = solved.map(|a| self.convex.with_values(a.outcome.level));
         self.decided = Some((key, point.clone()));
         point
     }
