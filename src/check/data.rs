@@ -11,7 +11,7 @@ use crate::data::value::{self, EPS};
 use crate::diag::Diagnostic;
 use crate::source::{Known, SourceMap, Span};
 use crate::syntax::ast::Ident;
-use crate::syntax::data::{DataKind, DataReader, KeyPart, Tail, undf_refused, width};
+use crate::syntax::data::{DataKind, DataReader, KeyPart, Record, Tail, undf_refused, width};
 
 /// Keys that came already: none may come twice. Keys in label order cost no index.
 #[derive(Default)]
@@ -426,62 +426,15 @@ impl Compiler {
                     continue;
                 }
             };
-            let v = match (&record.value, record.key) {
-                (Tail::Number(v, _), _) => *v,
-                (Tail::Name(n, at), key) if dim <= width(key) || self.symbols.find(n).is_some() => {
-                    match self.acronym(n, *at) {
-                        Ok(v) => v,
-                        Err(Failed) => continue,
-                    }
-                }
-                // `/ 5 /` of a scalar comes as a lone label.
-                (Tail::None, [KeyPart::Label { text, span, .. }]) if dim == 0 => match number(text)
-                {
-                    Some(v) if value::is_undf(v) && !self.modes.at(*span).undf => {
-                        self.report(undf_refused(*span));
-                        continue;
-                    }
-                    Some(v) => {
-                        self.put_value(&mut filling, &[], v, *span);
-                        continue;
-                    }
-                    None => match self.acronym(text, *span) {
-                        Ok(v) => {
-                            self.put_value(&mut filling, &[], v, *span);
-                            continue;
-                        }
-                        Err(Failed) => continue,
-                    },
-                },
-                (tail, _) => {
-                    let at = match tail {
-                        Tail::Text(..) => "a text stands where a number is expected",
-                        Tail::Name(..) => "dots stand between the labels of a record",
-                        _ => "no number follows the label",
-                    };
-                    let example = self.example(s).join(".");
-                    self.report(
-                        Diagnostic::error(
-                            "E0345",
-                            record.span,
-                            format!(
-                                "the data of `{}` need a number for each record",
-                                symbol.name
-                            ),
-                        )
-                        .label(at)
-                        .help(match decimal_comma(map, record.span) {
-                            true => "decimals stand behind a point: `1.5`".to_owned(),
-                            false if dim == 0 => "write `/ 5 /`".to_owned(),
-                            false => format!(
-                                "write {}its number, with no comma between them: `/ {example} 1, … /`",
-                                match dim { 1 => "each label and ", _ => "the labels of a record with dots between them, then " }
-                            ),
-                        }),
-                    );
-                    continue;
-                }
+            let Ok(v) = self.number_of(&record, s, map) else {
+                continue;
             };
+            // `/ 5 /` of a scalar comes as a lone label.
+            if let (0, Tail::None, [KeyPart::Label { span, .. }]) = (dim, &record.value, record.key)
+            {
+                self.put_value(&mut filling, &[], v, *span);
+                continue;
+            }
             let (span, key) = (record.span, record.key);
             if dim == 0 && !key.is_empty() {
                 let message = format!("the scalar `{}` gets one number", symbol.name);
@@ -507,6 +460,57 @@ impl Compiler {
         }
         self.store.table_mut(filling.table).tidy();
         Ok(())
+    }
+
+    /// The number of a record of a parameter; that of a scalar may stand where a label would.
+    fn number_of(
+        &mut self,
+        record: &Record<'_, '_>,
+        s: SymbolId,
+        map: &SourceMap,
+    ) -> Result<f64, Failed> {
+        let dim = self.symbols.get(s).dim();
+        let at = match (&record.value, record.key) {
+            (Tail::Number(v, _), _) => return Ok(*v),
+            (Tail::Name(n, at), key) if dim <= width(key) || self.symbols.find(n).is_some() => {
+                return self.acronym(n, *at);
+            }
+            (Tail::None, [KeyPart::Label { text, span, .. }]) if dim == 0 => {
+                return match number(text) {
+                    Some(v) if value::is_undf(v) && !self.modes.at(*span).undf => {
+                        self.report(undf_refused(*span));
+                        Err(Failed)
+                    }
+                    Some(v) => Ok(v),
+                    None => self.acronym(text, *span),
+                };
+            }
+            (Tail::Text(..), _) => "a text stands where a number is expected",
+            (Tail::Name(..), _) => "dots stand between the labels of a record",
+            _ => "no number follows the label",
+        };
+        let help = match (decimal_comma(map, record.span), dim) {
+            (true, _) => "decimals stand behind a point: `1.5`".to_owned(),
+            (false, 0) => "write `/ 5 /`".to_owned(),
+            (false, _) => {
+                let labels = match dim {
+                    1 => "each label and ",
+                    _ => "the labels of a record with dots between them, then ",
+                };
+                let example = self.example(s).join(".");
+                format!(
+                    "write {labels}its number, with no comma between them: `/ {example} 1, … /`"
+                )
+            }
+        };
+        let name = &self.symbols.get(s).name;
+        let message = format!("the data of `{name}` need a number for each record");
+        self.report(
+            Diagnostic::error("E0345", record.span, message)
+                .label(at)
+                .help(help),
+        );
+        Err(Failed)
     }
 
     /// The first label of each position, for messages.

@@ -17,6 +17,7 @@ mod declaration;
 use super::words::{self, Class, Word};
 use crate::diag::Diagnostic;
 use crate::source::{Span, embedded_code};
+use std::ops::Range;
 
 /// Parentheses and blocks inside each other.
 pub(super) const DEEPEST: usize = 250;
@@ -362,65 +363,15 @@ impl Splitter {
                 }
                 b'a'..=b'z' | b'A'..=b'Z' | b'_' => {
                     let end = words::word_end(bytes, i);
-                    let boundary = i > start && !self.after_dot;
-                    if let Some(word) = words::statement_word(text, i, end) {
-                        if boundary
-                            && self.opens.is_empty()
-                            && self.blocks == 0
-                            && !word.inside_blocks_only()
-                        {
-                            self.pos = i;
-                            return true;
+                    let ends = match words::statement_word(text, i, end) {
+                        Some(word) => self.word(text, word, i..end, i > start, on_end),
+                        None => {
+                            self.control = false;
+                            false
                         }
-                        if boundary && word == Word::Declaration {
-                            // No block and no parenthesis holds a declaration.
-                            if let Some(open) = self
-                                .opens
-                                .iter()
-                                .rev()
-                                .find(|o| o.block)
-                                .or(self.opens.last())
-                                .copied()
-                            {
-                                if open.block
-                                    && let Some(n) = closes(&text[i..])
-                                {
-                                    self.problems.push(
-                                        Diagnostic::error("E0324", span(i, end), "a declaration cannot stand inside of a loop or an `if`")
-                                            .help("move it before the loop"),
-                                    );
-                                    self.last_end = i + n;
-                                    self.pos = i + n;
-                                    return true;
-                                }
-                                self.unclosed(open);
-                            }
-                            self.pos = i;
-                            return true;
-                        }
-                        if !self.after_dot {
-                            match word {
-                                Word::Control => {
-                                    self.control = true;
-                                    let bare = !opens_parenthesis(bytes, end)
-                                        || on_end && ends_in_word(text, end);
-                                    let repeat = text[i..end].eq_ignore_ascii_case("repeat");
-                                    if bare && (on_end || repeat) {
-                                        // Inside parentheses a `;` ends nothing anyway.
-                                        self.blocks += usize::from(self.opens.is_empty());
-                                        self.control = false;
-                                    }
-                                }
-                                Word::EndControl | Word::Until
-                                    if self.blocks > 0 && self.opens.is_empty() =>
-                                {
-                                    self.blocks -= 1
-                                }
-                                _ => {}
-                            }
-                        }
-                    } else {
-                        self.control = false;
+                    };
+                    if ends {
+                        return true;
                     }
                     i = end;
                 }
@@ -453,38 +404,14 @@ impl Splitter {
                     self.opens.pop();
                     i += 1;
                 }
-                b';' => match self.opens.last() {
-                    None if self.blocks == 0 => {
-                        self.pos = i + 1;
+                b';' => {
+                    let (next, ends) = self.semicolon(text, i);
+                    if ends {
+                        self.pos = next;
                         return true;
                     }
-                    Some(open) if !open.block => {
-                        if stray_semicolon(&text[i + 1..], self.opens.len()) {
-                            self.problems.push(
-                                Diagnostic::error("E0202", span(i, i + 1), "a `;` stands inside of parentheses")
-                                    .label("a comma is meant?")
-                                    .help("write `,` between the parts of a sum or the arguments of a function; `;` ends a statement"),
-                            );
-                            i += 1;
-                            continue;
-                        }
-                        // The `;` ends what is inside, closed or not.
-                        let first = self
-                            .opens
-                            .iter()
-                            .rposition(|o| o.block)
-                            .map_or(0, |n| n + 1);
-                        let open = self.opens[first];
-                        self.unclosed(open);
-                        self.opens.truncate(first);
-                        if first == 0 && self.blocks == 0 {
-                            self.pos = i + 1;
-                            return true;
-                        }
-                        i += 1;
-                    }
-                    _ => i += 1,
-                },
+                    i = next;
+                }
                 b'$' if i > 0
                     && bytes[i - 1] == b'\n'
                     && self.opens.is_empty()
@@ -501,6 +428,88 @@ impl Splitter {
         }
         self.pos = i;
         false
+    }
+
+    /// A word that may begin or end a statement. Whether the statement ends, before it or behind a declaration that cannot stand here.
+    fn word(
+        &mut self,
+        text: &str,
+        word: Word,
+        at: Range<usize>,
+        is_inside: bool,
+        on_end: bool,
+    ) -> bool {
+        let boundary = is_inside && !self.after_dot;
+        let outermost = self.opens.is_empty() && self.blocks == 0;
+        if boundary && outermost && !word.inside_blocks_only() {
+            self.pos = at.start;
+            return true;
+        }
+        if boundary && word == Word::Declaration {
+            // No block and no parenthesis holds a declaration.
+            self.pos = at.start;
+            let block = self.opens.iter().rev().find(|o| o.block);
+            if let Some(&open) = block.or(self.opens.last()) {
+                match closes(&text[at.start..]) {
+                    Some(n) if open.block => {
+                        let message = "a declaration cannot stand inside of a loop or an `if`";
+                        self.problems.push(
+                            Diagnostic::error("E0324", span(at.start, at.end), message)
+                                .help("move it before the loop"),
+                        );
+                        self.pos = at.start + n;
+                        self.last_end = self.pos;
+                    }
+                    _ => self.unclosed(open),
+                }
+            }
+            return true;
+        }
+        if self.after_dot {
+            return false;
+        }
+        match word {
+            Word::Control => {
+                self.control = true;
+                let bare = !opens_parenthesis(text.as_bytes(), at.end)
+                    || on_end && ends_in_word(text, at.end);
+                let repeat = text[at].eq_ignore_ascii_case("repeat");
+                if bare && (on_end || repeat) {
+                    // Inside parentheses a `;` ends nothing anyway.
+                    self.blocks += usize::from(self.opens.is_empty());
+                    self.control = false;
+                }
+            }
+            Word::EndControl | Word::Until if self.blocks > 0 && self.opens.is_empty() => {
+                self.blocks -= 1;
+            }
+            _ => {}
+        }
+        false
+    }
+
+    /// A `;` at byte `i`: where it goes on, and whether the statement ends.
+    fn semicolon(&mut self, text: &str, i: usize) -> (usize, bool) {
+        match self.opens.last() {
+            None => (i + 1, self.blocks == 0),
+            Some(open) if open.block => (i + 1, false),
+            Some(_) if stray_semicolon(&text[i + 1..], self.opens.len()) => {
+                self.problems.push(
+                    Diagnostic::error("E0202", span(i, i + 1), "a `;` stands inside of parentheses")
+                        .label("a comma is meant?")
+                        .help("write `,` between the parts of a sum or the arguments of a function; `;` ends a statement"),
+                );
+                (i + 1, false)
+            }
+            Some(_) => {
+                // The `;` ends what is inside, closed or not.
+                let block = self.opens.iter().rposition(|o| o.block);
+                let first = block.map_or(0, |n| n + 1);
+                self.unclosed(self.opens[first]);
+                self.opens.truncate(first);
+                (i + 1, first == 0 && self.blocks == 0)
+            }
+        }
     }
 
     /// `loop(i) { p(i) = 1; }`: the statement ends behind the brace that closes.
