@@ -2,6 +2,7 @@
 
 use bmod::{Control, Error, Model, ModelStatus, Options, RunStatus, Special, SymbolKind};
 use std::path::Path;
+use std::sync::{Arc, Mutex};
 
 const SHOP: &str = "
 Set i 'goods' / a 'first', b /;
@@ -214,6 +215,24 @@ fn limits_and_cancelling() {
     control.cancel();
     let run = model.run(&Options::default().control(&control));
     assert!(run.was_stopped() && control.is_cancelled());
+}
+
+#[test]
+fn who_waits_is_told_before_a_solver_begins() {
+    let text = "set i / 1*300 /; alias(i, j); parameter p(i,j); p(i,j) = ord(i)*ord(j); variable x(i,j), z; equation e(i,j), o;
+                e(i,j).. x(i,j) =g= p(i,j); o.. z =e= sum((i,j), x(i,j)); model m / all /; solve m using lp minimizing z;";
+    let told = Arc::new(Mutex::new(Vec::new()));
+    let heard = told.clone();
+    let options = Options::default().list(1).on_progress(move |message| {
+        heard.lock().expect("one thread").push(message.to_string());
+    });
+    Model::from_text("m.blk", text).run(&options);
+    let told = told.lock().expect("one thread");
+    assert_eq!(told[0], "running statements");
+    assert!(
+        told.iter().filter(|t| *t == "generating m").count() > 1,
+        "{told:?}"
+    );
 }
 
 #[test]

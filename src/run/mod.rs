@@ -49,6 +49,8 @@ use std::sync::{Arc, MutexGuard};
 
 /// More execution errors than this are counted but not kept.
 const MAX_KEPT_ERRORS: usize = 30;
+/// What is done where nothing else is said.
+const STATEMENTS: &str = "running statements";
 
 /// What the rest of the run does after a statement.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -104,6 +106,8 @@ pub struct Machine<'h> {
     /// What is assigned just now, for messages.
     current: RefCell<Option<(SymbolId, Vec<Label>)>>,
     ticks: Cell<u32>,
+    /// What takes its time now, for who waits.
+    pub(crate) doing: RefCell<String>,
     stop: Cell<bool>,
     /// The text itself shows numbers.
     shows_numbers: bool,
@@ -165,6 +169,7 @@ impl<'h> Machine<'h> {
             most_errors: 0,
             current: RefCell::new(None),
             ticks: Cell::new(0),
+            doing: RefCell::new(STATEMENTS.into()),
             stop: Cell::new(false),
             shows_numbers: program.shows_numbers,
             loops: 0,
@@ -310,6 +315,8 @@ impl<'h> Machine<'h> {
             );
             return false;
         }
+        drop(host);
+        self.host().progress(&self.doing.borrow());
         true
     }
 

@@ -149,11 +149,14 @@ impl Machine<'_> {
             return Flow::Next;
         }
         let name = self.symbols.get(s.model).name.to_string();
-        self.host().progress(&format!("generating {name}"));
+        self.doing.replace(format!("generating {name}"));
+        self.host().progress(&self.doing.borrow());
         self.begins(s, None);
         // Equations have slots of their own: the loop around the solve keeps its labels.
         let mut own = frame.clone();
-        let Some(generated) = self.generate(s, options, &mut own) else {
+        let generated = self.generate(s, options, &mut own);
+        self.doing.replace(super::STATEMENTS.into());
+        let Some(generated) = generated else {
             if !self.stopped() && !self.failed() {
                 return self.skip(s, span);
             }
