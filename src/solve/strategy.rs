@@ -70,17 +70,13 @@ strategies! {
     }
     "mcp": {
         PairPresolve "pair_presolve",
-            "rows of one variable become bounds, and variables that only report go",
+            "rows of one variable become bounds",
             "the nonzeros, a few times",
             "Ferris & Munson 2000";
         InteriorCrash "interior_crash",
             "many variables: an interior point method leads to the first basis",
             "its iterations",
             "Wright 1997, chapter 8";
-        Smoothing "smoothing",
-            "the path failed: a smoothing Newton method",
-            "its iterations",
-            "Chen & Mangasarian 1996";
         RandomRestarts "random_restarts",
             "all methods failed from the given start: 30 random ones",
             "twice the work so far, or a second",

@@ -70,7 +70,7 @@ impl Basis {
             return None;
         }
         if fill == Fill::Heavy {
-            let lu = Box::new(faer_lu(matrix)?);
+            let lu = Box::new(faer_lu(matrix, &mut None)?);
             return Some(Basis(Engine::Product {
                 lu,
                 etas: Vec::new(),

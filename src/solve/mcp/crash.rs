@@ -110,7 +110,7 @@ fn direction(
 }
 
 /// Solves (J_BB + ρI) d = −F_B; None if the matrix is singular, or empty.
-pub(super) fn newton(
+fn newton(
     run: &mut Run,
     jacobian: &SparseColMatrix,
     basic: &[usize],

@@ -3,12 +3,8 @@
 //! `faer`'s LU (COLAMD ordering, partial pivoting, supernodal) reports structural singularity
 //! only; a numerically singular matrix gives factors full of infinities, or of rounding errors. So
 //! every solution is refined, and one whose residual is not small against the right-hand side
-//! counts as a singular matrix. Of matrices that share a pattern and have a diagonal ([`Factor::analysed`]) the
-//! [`multifrontal`](super::multifrontal) LU is tried first, which fills up far less. Where little fill is to be expected ([`Fill`]), `feral`'s Markowitz
+//! counts as a singular matrix. Where little fill is to be expected ([`Fill`]), `feral`'s Markowitz
 //! LU is used instead: it peels singletons, and a dense row does no harm.
-
-use std::cell::RefCell;
-use std::rc::Rc;
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::solvers::Solve;
@@ -16,9 +12,6 @@ use faer::sparse::linalg::amd;
 use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use feral::{LuParams, LuScaling, SparseColMatrix, SparseLu, SparseLuSymbolic};
-
-use super::gmres::gmres;
-use super::multifrontal::{Multifrontal, Tree};
 
 /// How much the factors of a problem's matrices will fill up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,8 +55,15 @@ impl Fill {
 }
 
 /// `faer`'s factors of a finite matrix; None if it is structurally singular.
-pub(super) fn faer_lu(matrix: &SparseColMatrix) -> Option<Lu<usize, f64>> {
-    Orderings::new(matrix).columns(matrix)
+pub(super) fn faer_lu(matrix: &SparseColMatrix, ordering: &mut Ordering) -> Option<Lu<usize, f64>> {
+    let m = matrix.m;
+    let pattern =
+        SymbolicSparseColMatRef::new_checked(m, m, &matrix.col_ptr, None, &matrix.row_idx);
+    if ordering.is_none() {
+        *ordering = Some(SymbolicLu::try_new(pattern).ok()?);
+    }
+    let matrix = SparseColMatRef::new(pattern, &matrix.values);
+    Lu::try_new_with_symbolic(ordering.clone()?, matrix).ok()
 }
 
 /// x ← A⁻¹x.
@@ -80,111 +80,31 @@ pub(super) struct Factor {
 enum Engine {
     Markowitz(Box<SparseLu>),
     Supernodal(Box<Lu<usize, f64>>),
-    /// With what to do where its solutions are not exact.
-    Multifrontal(Rc<Tree>, Multifrontal, Analysis),
 }
 
 /// Residual, relative to the right-hand side, above which a solution is not one.
 const RESIDUAL_TOLERANCE: f64 = 1e-6;
-/// Factorisations after one that failed for which the multifrontal LU is not tried again.
-const PAUSE: usize = 10;
-
-/// The orderings of a pattern, kept for matrices that share it.
-#[derive(Default, Clone)]
-pub(super) struct Analysis(Rc<RefCell<Orderings>>);
-
-#[derive(Default)]
-struct Orderings {
-    col_ptr: Vec<usize>,
-    row_idx: Vec<usize>,
-    columns: Option<SymbolicLu<usize>>,
-    tree: Option<Rc<Tree>>,
-    pause: usize,
-}
-
-impl Orderings {
-    fn new(matrix: &SparseColMatrix) -> Self {
-        Orderings {
-            col_ptr: matrix.col_ptr.clone(),
-            row_idx: matrix.row_idx.clone(),
-            ..Orderings::default()
-        }
-    }
-
-    /// `faer`'s factors.
-    fn columns(&mut self, matrix: &SparseColMatrix) -> Option<Lu<usize, f64>> {
-        let m = matrix.m;
-        let pattern =
-            SymbolicSparseColMatRef::new_checked(m, m, &matrix.col_ptr, None, &matrix.row_idx);
-        if self.columns.is_none() {
-            self.columns = Some(SymbolicLu::try_new(pattern).ok()?);
-        }
-        let matrix = SparseColMatRef::new(pattern, &matrix.values);
-        Lu::try_new_with_symbolic(self.columns.clone()?, matrix).ok()
-    }
-
-    /// Multifrontal factors, unless they failed of late.
-    fn fronts(&mut self, matrix: &SparseColMatrix) -> Option<(Rc<Tree>, Multifrontal)> {
-        if self.pause > 0 {
-            self.pause -= 1;
-            return None;
-        }
-        if self.tree.is_none() {
-            let tree = Tree::new(matrix.m, &matrix.col_ptr, &matrix.row_idx)?;
-            self.tree = Some(Rc::new(tree));
-        }
-        let tree = self.tree.clone()?;
-        let factors = Multifrontal::new(&tree, &matrix.values);
-        if factors.is_none() {
-            self.pause = PAUSE;
-        }
-        Some((tree, factors?))
-    }
-}
-
-impl Analysis {
-    /// The factors that promise the least work.
-    fn engine(&self, matrix: &SparseColMatrix) -> Option<Engine> {
-        let mut orderings = self.0.borrow_mut();
-        if orderings.col_ptr != matrix.col_ptr || orderings.row_idx != matrix.row_idx {
-            *orderings = Orderings::new(matrix);
-        }
-        if let Some((tree, factors)) = orderings.fronts(matrix) {
-            return Some(Engine::Multifrontal(tree, factors, self.clone()));
-        }
-        let lu = orderings.columns(matrix)?;
-        Some(Engine::Supernodal(Box::new(lu)))
-    }
-}
+/// The ordering of a pattern, for the matrices that share it.
+pub(super) type Ordering = Option<SymbolicLu<usize>>;
 
 impl Factor {
     /// Factorises; None if singular or not finite.
     pub(super) fn new(matrix: SparseColMatrix, fill: Fill) -> Option<Factor> {
-        Factor::with(matrix, fill, |matrix| {
-            Some(Engine::Supernodal(Box::new(faer_lu(matrix)?)))
-        })
+        Factor::ordered(matrix, fill, &mut None)
     }
 
-    /// Factorises one of several matrices with the same pattern, whose diagonals are worth pivoting on.
-    pub(super) fn analysed(
+    /// As [`Factor::new`], for one of several matrices with the same pattern.
+    pub(super) fn ordered(
         matrix: SparseColMatrix,
         fill: Fill,
-        analysis: &Analysis,
-    ) -> Option<Factor> {
-        Factor::with(matrix, fill, |matrix| analysis.engine(matrix))
-    }
-
-    fn with(
-        matrix: SparseColMatrix,
-        fill: Fill,
-        heavy: impl FnOnce(&SparseColMatrix) -> Option<Engine>,
+        ordering: &mut Ordering,
     ) -> Option<Factor> {
         // A non-finite entry must not reach the factorisation, which compares magnitudes.
         if matrix.m == 0 || matrix.values.iter().any(|v| !v.is_finite()) {
             return None;
         }
         let lu = match fill {
-            Fill::Heavy => heavy(&matrix)?,
+            Fill::Heavy => Engine::Supernodal(Box::new(faer_lu(&matrix, ordering)?)),
             Fill::Light => {
                 let params = LuParams {
                     scaling: LuScaling::InfNorm,
@@ -199,33 +119,13 @@ impl Factor {
         Some(Factor { matrix, lu })
     }
 
-    /// b ← A⁻¹b; to a residual of `enough` where factors are not exact.
-    fn solve_once(&mut self, b: &mut [f64], enough: f64) -> Option<()> {
+    /// b ← A⁻¹b.
+    fn solve_once(&mut self, b: &mut [f64]) -> Option<()> {
         match &mut self.lu {
             Engine::Markowitz(lu) => lu.ftran(b).ok()?,
             Engine::Supernodal(lu) => faer_solve(lu, b),
-            Engine::Multifrontal(tree, factors, _) => {
-                let solution = gmres(&self.matrix, b, enough, |x| factors.solve(tree, x));
-                b.copy_from_slice(&solution);
-            }
         }
         Some(())
-    }
-
-    /// Whether other factors may do better; then they are at hand.
-    fn exchanged(&mut self) -> bool {
-        let Engine::Multifrontal(_, _, analysis) = &self.lu else {
-            return false;
-        };
-        let mut orderings = analysis.0.borrow_mut();
-        orderings.pause = PAUSE;
-        let lu = orderings.columns(&self.matrix);
-        drop(orderings);
-        let exchanged = lu.is_some();
-        if let Some(lu) = lu {
-            self.lu = Engine::Supernodal(Box::new(lu));
-        }
-        exchanged
     }
 
     /// Solves A x = b; None if the solution does not satisfy the system.
@@ -235,16 +135,9 @@ impl Factor {
 
     /// As [`Factor::solve`], refined only as long as the residual, relative to b, is larger than `enough`.
     pub(super) fn solve_to(&mut self, b: &[f64], enough: f64) -> Option<Vec<f64>> {
-        self.refined(b, enough).or_else(|| {
-            let exchanged = self.exchanged();
-            exchanged.then(|| self.refined(b, enough))?
-        })
-    }
-
-    fn refined(&mut self, b: &[f64], enough: f64) -> Option<Vec<f64>> {
         let norm = b.iter().fold(0.0f64, |a, v| a.max(v.abs()));
         let mut x = b.to_vec();
-        self.solve_once(&mut x, enough * norm)?;
+        self.solve_once(&mut x)?;
         let mut residual = vec![0.0; b.len()];
         for step in 0..3 {
             self.matrix.matvec(&x, &mut residual);
@@ -266,7 +159,7 @@ impl Factor {
             if step == 2 {
                 return (worst <= RESIDUAL_TOLERANCE * norm).then_some(x);
             }
-            self.solve_once(&mut residual, enough * norm)?;
+            self.solve_once(&mut residual)?;
             x.iter_mut().zip(&residual).for_each(|(x, d)| *x += d);
         }
         unreachable!("the loop returns in its last step")

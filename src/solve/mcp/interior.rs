@@ -10,24 +10,23 @@
 //! with p = q = σμ less the products of the predictor's steps (Mehrotra 1992), or without them where
 //! they shorten the step, and then with outliers among the products pulled in (Gondzio 1996).
 //!
-//! Where J is not monotone, steps may get short far from a solution: the central path has folds. [`arc`](super::arc)
-//! goes around them. A fold is a matter of a few indices, but the path turns back with all of them, and the more folds, the
-//! longer it gets. Where it gets too long, the proximal term ρ grows with every short step and falls with long ones, so that
-//! steps go over the folds. What ρ adds to the equations, ρ dx, vanishes with the steps.
+//! Where J is not monotone, steps may get short far from a solution: the central path has folds. Then the proximal
+//! term ρ grows with every short step and falls with long ones, so that steps go over the folds. What ρ adds to the
+//! equations, ρ dx, vanishes with the steps.
 //!
 //! For monotone problems the number of steps hardly grows with n, while the path makes at least a pivot
 //! for every index that a crash got wrong; for others this is a heuristic like any crash. Its
 //! point need not be accurate: a bound is active where the slack is the larger of the two, and the
 //! path does the rest.
 
-use super::active::active_sets;
-use super::arc::{around, fold_limit};
-use super::factor::{Analysis, Factor, combine};
+use super::factor::{Factor, Ordering, combine};
 use super::log;
 use super::run::{Point, Run, StallCounter, Stop};
 
-/// Steps at most, over folds a share of the variables besides.
+/// Steps at most.
 const LIMIT: usize = 100;
+/// Variables per step over folds, and steps at most: where steps cost more than pivots, the paths of the majors do better.
+const FOLDS: (usize, usize) = (20, 500);
 /// Share of the way to the boundary.
 const DAMPING: f64 = 0.995;
 /// A step shorter than this says that a fold is near.
@@ -41,7 +40,7 @@ const STEP_SHORT: f64 = 0.3;
 /// Relative residual of a step.
 const ENOUGH: f64 = 1e-9;
 /// ρ, least and largest.
-pub(super) const PROX: (f64, f64) = (1e-14, 1e-1);
+const PROX: (f64, f64) = (1e-14, 1e-1);
 /// ρ with which steps go over folds: at first, and its factors after short and long steps.
 const OVER: (f64, f64, f64) = (1e-6, 10.0, 0.3);
 /// Products below this are rounding errors.
@@ -49,11 +48,11 @@ const PRODUCT_MIN: f64 = 1e-16;
 
 /// Distances from the bounds and the slacks that go with them; 1 and 0 for a bound that is not there.
 #[derive(Clone)]
-pub(super) struct State {
-    pub(super) a: Vec<f64>,
-    pub(super) w: Vec<f64>,
-    pub(super) b: Vec<f64>,
-    pub(super) v: Vec<f64>,
+struct State {
+    a: Vec<f64>,
+    w: Vec<f64>,
+    b: Vec<f64>,
+    v: Vec<f64>,
 }
 
 /// A step: of x, w and v.
@@ -66,9 +65,9 @@ struct Step {
 }
 
 /// Which bounds are finite.
-pub(super) struct Bounds {
-    pub(super) lower: Vec<bool>,
-    pub(super) upper: Vec<bool>,
+struct Bounds {
+    lower: Vec<bool>,
+    upper: Vec<bool>,
     count: usize,
 }
 
@@ -98,10 +97,10 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
         "Interior crash\n iter    product  equations    residual     step     prox".into()
     });
     let mut best = start.clone();
-    let analysis = Analysis::default();
+    let mut ordering = Ordering::None;
     let mut prox = PROX.0;
     let mut stall = StallCounter::new();
-    // Whether the way around folds was too long, and the steps that are left.
+    // Whether it goes over folds, and the steps that are left.
     let (mut over, mut left) = (false, LIMIT);
     for iteration in 1.. {
         run.check()?;
@@ -133,7 +132,7 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
             |_| 1.0,
         );
         run.factorisations += 1;
-        let step = Factor::analysed(matrix, run.fill, &analysis)
+        let step = Factor::ordered(matrix, run.fill, &mut ordering)
             .and_then(|mut factor| step(&mut factor, &state, &bounds, &r, mu));
         let Some(step) = step else {
             if prox >= PROX.1 {
@@ -161,25 +160,21 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
         state.w = along(&state.w, &step.w);
         state.v = along(&state.v, &step.v);
         if t < STEP_BAD && !over {
-            state.distances(run, &bounds, &point.x);
-            match around(run, (&point, &state), &bounds, &analysis)? {
-                Some(found) => ((point, state), stall) = (found, StallCounter::new()),
-                None => (over, left) = (true, fold_limit(run.n)),
-            }
+            (over, left) = (true, (run.n / FOLDS.0).min(FOLDS.1));
         }
-        if t < STEP_BAD && over {
+        if t < STEP_BAD {
             prox = (OVER.1 * prox).clamp(OVER.0, PROX.1);
             stall = StallCounter::new();
         } else if t > 0.5 {
             prox = (OVER.2 * prox).max(PROX.0);
         }
     }
-    if let Some(last) = run.point(snapped(run, &point.x, &state, &bounds)) {
-        let found = active_sets(run, &last)?;
+    if let Some(last) = run.point(snapped(run, &point.x, &state, &bounds))
         // Another point that is no solution either is no better to start from.
-        if run.converged(found.residual) && found.residual < best.residual {
-            best = found;
-        }
+        && run.converged(last.residual)
+        && last.residual < best.residual
+    {
+        best = last;
     }
     Ok((best.residual < start.residual).then_some(best))
 }
@@ -226,7 +221,7 @@ fn snapped(run: &Run, x: &[f64], state: &State, bounds: &Bounds) -> Vec<f64> {
 
 impl State {
     /// a and b at x.
-    pub(super) fn distances(&mut self, run: &Run, bounds: &Bounds, x: &[f64]) {
+    fn distances(&mut self, run: &Run, bounds: &Bounds, x: &[f64]) {
         for (i, x) in x.iter().enumerate() {
             if bounds.lower[i] {
                 self.a[i] = x - run.lower[i];

@@ -112,33 +112,9 @@ pub(super) fn step_line(run: &mut Run, point: &Point, step: f64, kind: char) {
     }
 }
 
-/// A line of one of the other Newton methods.
-pub(super) fn newton_line(
-    run: &mut Run,
-    iteration: usize,
-    point: &Point,
-    parameter: f64,
-    step: f64,
-    kind: char,
-) {
-    if wants(run, Part::Majors) {
-        let name = worst(run, point);
-        note(run, Part::Majors, || {
-            format!(
-                "{iteration:5} {parameter:9.2e} {:11.4e} {step:8.1e}   {kind}   ({name})",
-                point.residual
-            )
-        });
-    }
-}
-
 /// A path that was tried.
-pub(super) fn try_line(run: &mut Run, end: PathEnd, t: f64, prox: f64, pivots: usize, cover: bool) {
+pub(super) fn try_line(run: &mut Run, end: PathEnd, t: f64, prox: f64, pivots: usize) {
     note(run, Part::Paths, || {
-        format!(
-            "      {pivots:7}  {:<9} {t:5.3} {prox:8.1e}{}",
-            end.word(),
-            if cover { " (from slacks)" } else { "" }
-        )
+        format!("      {pivots:7}  {:<9} {t:5.3} {prox:8.1e}", end.word())
     });
 }

@@ -21,14 +21,12 @@ use super::factor::shifted;
 use super::interior::interior;
 use super::linear::{Kind, LinearProblem};
 use super::log;
-use super::merit::Phi;
+use super::merit::{phi, phi_slopes};
 use super::path::{HARRIS, HARRIS_CLOSE, PathEnd, PathResult, Start, follow};
 use super::run::{End, Point, Run, StallCounter, Stop};
 
 /// Armijo constant of the M test and of the line search.
 const ARMIJO: f64 = 1e-4;
-/// Number of variables up to which the slack start is tried early.
-const SLACK_START: usize = 1000;
 /// Number of variables from which the crash is interior: one step of it replaces many pivots.
 pub(super) const INTERIOR: usize = 600;
 /// Number of variables from which long paths are avoided near a solution.
@@ -284,7 +282,7 @@ impl Majors {
                 if polish {
                     start.tolerance = HARRIS_CLOSE;
                 }
-                if (polish || near) && (start.cover || level > 2) {
+                if (polish || near) && level > 2 {
                     continue;
                 }
                 tries += 1;
@@ -304,7 +302,7 @@ impl Majors {
                     kind,
                     pivots,
                 } = result;
-                log::try_line(run, end, t, v, pivots, start.cover);
+                log::try_line(run, end, t, v, pivots);
                 match end {
                     PathEnd::Solved => {
                         let off = x.iter().zip(&self.point.x).map(|(a, b)| (a - b).powi(2));
@@ -406,7 +404,6 @@ impl Majors {
         starts.push(Start {
             kind: near.clone(),
             x: x.clone(),
-            cover: false,
             tolerance: HARRIS,
         });
         if level == 0 {
@@ -427,35 +424,9 @@ impl Majors {
                 starts.push(Start {
                     kind,
                     x: x.clone(),
-                    cover: false,
                     tolerance: HARRIS,
                 });
             }
-        }
-        // From the slacks the path is as long as the solution has variables off their bounds: the way
-        // out where n is small, and the last resort where it is large.
-        if if run.n <= SLACK_START {
-            level <= 1
-        } else {
-            level == 4
-        } {
-            let kind = (0..run.n)
-                .map(|i| {
-                    if run.lower[i].is_finite() {
-                        Kind::AtLower
-                    } else if run.upper[i].is_finite() {
-                        Kind::AtUpper
-                    } else {
-                        Kind::Between
-                    }
-                })
-                .collect();
-            starts.push(Start {
-                kind,
-                x: x.clone(),
-                cover: true,
-                tolerance: HARRIS,
-            });
         }
         starts
     }
@@ -584,7 +555,7 @@ impl Majors {
         let Some(jacobian) = jacobian else {
             return Ok(false);
         };
-        let gradient = merit_gradient(run, Phi::PLAIN, &from, &jacobian);
+        let gradient = merit_gradient(run, &from, &jacobian);
         let norm = gradient.iter().map(|g| g * g).sum::<f64>().sqrt();
         if !(norm.is_finite() && norm > 0.0) {
             return Ok(false);
@@ -628,17 +599,12 @@ pub(super) fn pivot_limit(n: usize) -> usize {
 }
 
 /// Gradient of ½‖Φ‖²: DaΦ + Jᵀ(DbΦ).
-pub(super) fn merit_gradient(
-    run: &Run,
-    phi: Phi,
-    point: &Point,
-    jacobian: &SparseColMatrix,
-) -> Vec<f64> {
+fn merit_gradient(run: &Run, point: &Point, jacobian: &SparseColMatrix) -> Vec<f64> {
     let n = run.n;
     let (mut along_x, mut along_f) = (vec![0.0; n], vec![0.0; n]);
     for i in 0..n {
-        let value = phi.pair(point.x[i], point.f[i], run.lower[i], run.upper[i]);
-        let (a, b) = phi.pair_slopes(point.x[i], point.f[i], run.lower[i], run.upper[i]);
+        let (x, f, l, u) = (point.x[i], point.f[i], run.lower[i], run.upper[i]);
+        let (value, (a, b)) = (phi(x, f, l, u), phi_slopes(x, f, l, u));
         along_x[i] = a * value;
         along_f[i] = b * value;
     }

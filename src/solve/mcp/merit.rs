@@ -11,8 +11,8 @@
 //! ```
 //!
 //! is equivalent to the problem (Billups 1995), and Ψ = ½‖Φ‖² is continuously differentiable.
-//! [`Phi`] adds the two variants the fallbacks use: penalised, λφ(a, b) + (1 − λ)a₊b₊ (Chen, Chen
-//! and Kanzow), and smoothed, √(a² + b² + 2μ) in place of the root (Kanzow).
+
+use std::f64::consts::FRAC_1_SQRT_2;
 
 /// max |x − mid(l, u, x − F)| and where it is attained. Not-a-number counts as infinite.
 pub fn natural_residual(x: &[f64], f: &[f64], lower: &[f64], upper: &[f64]) -> (f64, usize) {
@@ -44,101 +44,55 @@ fn natural(x: f64, f: f64, l: f64, u: f64) -> f64 {
     }
 }
 
-/// Which function of the Fischer–Burmeister family.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Phi {
-    /// Weight λ of φ against the penalty a₊b₊; 1 is plain Fischer–Burmeister.
-    pub(super) lambda: f64,
-    /// Smoothing μ under the root; 0 is exact.
-    pub(super) mu: f64,
+/// φ(a, b) = a + b − √(a² + b²).
+fn fischer_burmeister(a: f64, b: f64) -> f64 {
+    let (sum, root) = (a + b, a.hypot(b));
+    // a + b − √… cancels when both are positive and one is small.
+    match sum > 0.0 {
+        true => 2.0 * (a * b) / (sum + root),
+        false => sum - root,
+    }
 }
 
-impl Phi {
-    /// The function the main method's merit is made of.
-    pub(super) const PLAIN: Phi = Phi {
-        lambda: 1.0,
-        mu: 0.0,
-    };
+/// An element of the generalised gradient of φ at (a, b).
+fn slopes(a: f64, b: f64) -> (f64, f64) {
+    let root = a.hypot(b);
+    match root > 0.0 {
+        true => (1.0 - a / root, 1.0 - b / root),
+        // At the kink: the element in the direction (1, 1).
+        false => (1.0 - FRAC_1_SQRT_2, 1.0 - FRAC_1_SQRT_2),
+    }
+}
 
-    /// φ(a, b).
-    fn value(self, a: f64, b: f64) -> f64 {
-        let root = if self.mu > 0.0 {
-            (a * a + b * b + 2.0 * self.mu).sqrt()
-        } else {
-            a.hypot(b)
-        };
-        let s = a + b;
-        // a + b − √… cancels when both are positive and one is small.
-        let fb = if s > 0.0 {
-            2.0 * (a * b - self.mu) / (s + root)
-        } else {
-            s - root
-        };
-        if self.lambda == 1.0 {
-            fb
-        } else {
-            self.lambda * fb + (1.0 - self.lambda) * a.max(0.0) * b.max(0.0)
+/// Φᵢ of one pair.
+pub(super) fn phi(x: f64, f: f64, l: f64, u: f64) -> f64 {
+    match (l.is_finite(), u.is_finite()) {
+        (false, false) => f,
+        (true, false) => fischer_burmeister(x - l, f),
+        (false, true) => -fischer_burmeister(u - x, -f),
+        (true, true) => fischer_burmeister(x - l, -fischer_burmeister(u - x, -f)),
+    }
+}
+
+/// (∂Φᵢ/∂xᵢ, ∂Φᵢ/∂Fᵢ): the entries of Da and Db in H = Da + Db·J.
+pub(super) fn phi_slopes(x: f64, f: f64, l: f64, u: f64) -> (f64, f64) {
+    match (l.is_finite(), u.is_finite()) {
+        (false, false) => (0.0, 1.0),
+        (true, false) => slopes(x - l, f),
+        (false, true) => slopes(u - x, -f),
+        (true, true) => {
+            let inner = fischer_burmeister(u - x, -f);
+            let (ia, ib) = slopes(u - x, -f);
+            let (oa, ob) = slopes(x - l, -inner);
+            (oa + ob * ia, ob * ib)
         }
     }
+}
 
-    /// An element of the generalised gradient of φ at (a, b).
-    fn slopes(self, a: f64, b: f64) -> (f64, f64) {
-        let root = if self.mu > 0.0 {
-            (a * a + b * b + 2.0 * self.mu).sqrt()
-        } else {
-            a.hypot(b)
-        };
-        let (mut da, mut db) = if root > 0.0 {
-            (1.0 - a / root, 1.0 - b / root)
-        } else {
-            // At the kink: the element in the direction (1, 1).
-            (
-                1.0 - std::f64::consts::FRAC_1_SQRT_2,
-                1.0 - std::f64::consts::FRAC_1_SQRT_2,
-            )
-        };
-        if self.lambda != 1.0 {
-            da *= self.lambda;
-            db *= self.lambda;
-            if a > 0.0 && b > 0.0 {
-                da += (1.0 - self.lambda) * b;
-                db += (1.0 - self.lambda) * a;
-            }
-        }
-        (da, db)
-    }
-
-    /// Φᵢ of one pair.
-    pub(super) fn pair(self, x: f64, f: f64, l: f64, u: f64) -> f64 {
-        match (l.is_finite(), u.is_finite()) {
-            (false, false) => f,
-            (true, false) => self.value(x - l, f),
-            (false, true) => -self.value(u - x, -f),
-            (true, true) => self.value(x - l, -self.value(u - x, -f)),
-        }
-    }
-
-    /// (∂Φᵢ/∂xᵢ, ∂Φᵢ/∂Fᵢ): the entries of Da and Db in H = Da + Db·J.
-    pub(super) fn pair_slopes(self, x: f64, f: f64, l: f64, u: f64) -> (f64, f64) {
-        match (l.is_finite(), u.is_finite()) {
-            (false, false) => (0.0, 1.0),
-            (true, false) => self.slopes(x - l, f),
-            (false, true) => self.slopes(u - x, -f),
-            (true, true) => {
-                let inner = self.value(u - x, -f);
-                let (ia, ib) = self.slopes(u - x, -f);
-                let (oa, ob) = self.slopes(x - l, -inner);
-                (oa + ob * ia, ob * ib)
-            }
-        }
-    }
-
-    /// Ψ = ½‖Φ‖².
-    pub(super) fn merit(self, x: &[f64], f: &[f64], l: &[f64], u: &[f64]) -> f64 {
-        0.5 * (0..x.len())
-            .map(|i| self.pair(x[i], f[i], l[i], u[i]).powi(2))
-            .sum::<f64>()
-    }
+/// Ψ = ½‖Φ‖².
+pub(super) fn merit(x: &[f64], f: &[f64], l: &[f64], u: &[f64]) -> f64 {
+    let square = |i: usize| phi(x[i], f[i], l[i], u[i]).powi(2);
+    0.5 * (0..x.len()).map(square).sum::<f64>()
 }
 
 #[cfg(test)]
@@ -167,7 +121,7 @@ mod tests {
         ];
         for (x, f, l, u, solves) in cases {
             let natural = natural(x, f, l, u);
-            let phi = Phi::PLAIN.pair(x, f, l, u);
+            let phi = phi(x, f, l, u);
             assert_eq!(
                 natural < 1e-12,
                 solves,
@@ -188,27 +142,15 @@ mod tests {
     fn slopes_are_derivatives() {
         let points = [(0.3, 0.7), (2.0, -0.4), (-0.5, 0.2), (0.9, 1.5)];
         let bounds = [(-INF, INF), (0.0, INF), (-INF, 1.0), (0.0, 1.0)];
-        for phi in [
-            Phi::PLAIN,
-            Phi {
-                lambda: 0.9,
-                mu: 0.0,
-            },
-            Phi {
-                lambda: 1.0,
-                mu: 0.1,
-            },
-        ] {
-            for (x, f) in points {
-                for (l, u) in bounds {
-                    let (dx, df) = phi.pair_slopes(x, f, l, u);
-                    let h = 1e-6;
-                    let numeric = |a: f64, b: f64| (b - a) / (2.0 * h);
-                    let nx = numeric(phi.pair(x - h, f, l, u), phi.pair(x + h, f, l, u));
-                    let nf = numeric(phi.pair(x, f - h, l, u), phi.pair(x, f + h, l, u));
-                    assert!((dx - nx).abs() < 1e-6, "{phi:?} {x} {f} {l} {u}: {dx} {nx}");
-                    assert!((df - nf).abs() < 1e-6, "{phi:?} {x} {f} {l} {u}: {df} {nf}");
-                }
+        for (x, f) in points {
+            for (l, u) in bounds {
+                let (dx, df) = phi_slopes(x, f, l, u);
+                let h = 1e-6;
+                let numeric = |a: f64, b: f64| (b - a) / (2.0 * h);
+                let nx = numeric(phi(x - h, f, l, u), phi(x + h, f, l, u));
+                let nf = numeric(phi(x, f - h, l, u), phi(x, f + h, l, u));
+                assert!((dx - nx).abs() < 1e-6, "{x} {f} {l} {u}: {dx} {nx}");
+                assert!((df - nf).abs() < 1e-6, "{x} {f} {l} {u}: {df} {nf}");
             }
         }
     }

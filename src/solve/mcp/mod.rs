@@ -13,40 +13,32 @@
 //! The method is that of Dirkse & Ferris (1995): a stabilised Newton method on the nonsmooth
 //! equation of the problem, whose subproblem, the linear MCP of the linearised F, is solved by
 //! following a piecewise linear path with Lemke-type pivots ([`path`]). Around it: a presolve
-//! ([`presolve`]), a crash by projected Newton steps ([`crash`]), a watchdog on the
-//! Fischer–Burmeister merit function ([`majors`], [`merit`]), and, where the path fails, the
-//! smoothing Newton method ([`smoothing`]) of the literature.
-//! [`portfolio`] says in which order. Sources:
+//! ([`presolve`]), a crash by projected Newton steps ([`crash`]) or, where there are many variables, by interior steps
+//! ([`interior`]), a watchdog on the Fischer–Burmeister merit function ([`majors`], [`merit`]), and random restarts
+//! ([`portfolio`]). Sources:
 //!
 //! - S. P. Dirkse, M. C. Ferris: The PATH solver, a non-monotone stabilization scheme for mixed
 //!   complementarity problems. Optimization Methods and Software 5 (1995).
 //! - M. C. Ferris, T. S. Munson: Complementarity problems in GAMS and the PATH solver. Journal of
 //!   Economic Dynamics and Control 24 (2000).
-//! - B. Chen, X. Chen, C. Kanzow: A penalized Fischer–Burmeister NCP-function. Mathematical
-//!   Programming 88 (2000).
 //!
 //! The module knows numbers only: no names, no language. It is deterministic: the random numbers
 //! it needs come from fixed seeds, and no decision depends on the clock but the time limit.
 
-mod active;
-mod arc;
 mod basis;
 mod crash;
 mod factor;
-mod gmres;
 mod interior;
 mod linear;
 mod log;
 mod majors;
 mod merit;
-mod multifrontal;
 mod options;
 mod path;
 mod portfolio;
 mod presolve;
 mod random;
 mod run;
-mod smoothing;
 
 use super::Budget;
 use super::strategy::Strategies;
@@ -122,11 +114,11 @@ pub struct Settings {
     pub time_limit: f64,
     /// Whether simple rows are turned into bounds and fixed variables removed first. Default true.
     pub preprocess: bool,
-    /// Whether the other methods are tried when the main one fails. Default true.
+    /// Whether random restarts are made when all else fails. Default true.
     pub fallbacks: bool,
     /// Whether the log, if one is wanted, has the iterations of crashes. Default true.
     pub output_crash_iterations: bool,
-    /// Whether it has the major iterations, and those of the other Newton methods. Default true.
+    /// Whether it has the major iterations. Default true.
     pub output_major_iterations: bool,
     /// Whether it has a line for each path (PATH: some pivots on it). Default true.
     pub output_minor_iterations: bool,
@@ -208,8 +200,6 @@ pub struct Outcome {
     pub restarts: usize,
     /// Evaluations of F.
     pub evaluations: usize,
-    /// The method that produced the point.
-    pub method: &'static str,
     /// Why, for a status that wants an explanation; may be empty.
     pub message: String,
 }

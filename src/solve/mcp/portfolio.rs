@@ -1,44 +1,17 @@
-//! The order of the methods, and the verdict.
+//! The start, the restarts, and the verdict.
 //!
-//! The main method first; the others fail on other problems than it does, which is what makes them
-//! good company: smoothing where the merit function has local minima, and all of it again from random
-//! starts. Problems that are linear and not monotone (bimatrix games) often yield to one path from the right start.
+//! Where the path from the given start fails, it is followed from random ones: problems that are linear and not monotone
+//! (bimatrix games) often yield to one path from the right start.
 
 use super::log;
 use super::majors::{Crash, INTERIOR, majors};
 use super::merit::natural_residual;
 use super::presolve::Reduced;
 use super::random::Random;
-use super::run::{End, Point, Run, Stop, bound};
-use super::smoothing::smoothing;
+use super::run::{Point, Run, Stop, bound};
 use super::{Help, Outcome, Problem, Settings, Status};
 use crate::solve::Budget;
 use crate::solve::strategy::Strategy;
-
-/// A method of the portfolio.
-#[derive(Debug, Clone, Copy)]
-enum Method {
-    Path { crash: Crash },
-    Smoothing,
-}
-
-impl Method {
-    fn name(self) -> &'static str {
-        match self {
-            Method::Path { crash: Crash::None } => "path without crash",
-            Method::Path { .. } => "path",
-            Method::Smoothing => "smoothing",
-        }
-    }
-
-    fn run(self, run: &mut Run, start: Point) -> Result<End, Stop> {
-        run.method = self.name();
-        match self {
-            Method::Path { crash } => majors(run, start, crash),
-            Method::Smoothing => smoothing(run, start),
-        }
-    }
-}
 
 /// See [`super::solve`].
 pub(super) fn solve(
@@ -58,12 +31,11 @@ pub(super) fn solve(
     let mut reduced = Reduced::new(problem, preprocess);
     if statistics {
         let line = format!(
-            "{} variables, {} nonzeros; after presolve {} (rows turned into bounds: {}, variables that only report: {})",
+            "{} variables, {} nonzeros; after presolve {} (rows turned into bounds: {})",
             reduced.total(),
             reduced.total_nonzeros(),
             reduced.kept.len(),
-            reduced.dropped(),
-            reduced.reports()
+            reduced.dropped()
         );
         budget.log(&line);
     }
@@ -82,7 +54,6 @@ pub(super) fn solve(
         factorisations: run.factorisations,
         restarts,
         evaluations: run.evaluations + 1,
-        method: run.best_method,
         message: String::new(),
     };
     let evaluated = run.best.is_some();
@@ -104,10 +75,9 @@ pub(super) fn solve(
     if statistics {
         let at = worst.map_or(String::new(), |i| format!(" ({})", help.name(i)));
         let line = format!(
-            "{:?}: residual {:.2e}{at}, method {}; majors {}, pivots {}, crash {}, factorisations {}",
+            "{:?}: residual {:.2e}{at}; majors {}, pivots {}, crash {}, factorisations {}",
             outcome.status,
             outcome.residual,
-            outcome.method,
             outcome.majors,
             outcome.pivots,
             outcome.crash_iterations,
@@ -174,22 +144,17 @@ fn attempt(run: &mut Run, restarts: &mut usize) -> Result<(), Stop> {
         return Ok(());
     }
     run.check()?;
-    let large = run.n > INTERIOR;
     if let Some(start) = first_point(run) {
-        let path = |crash| Method::Path { crash };
-        let strategies = run.settings.strategies;
-        let mut methods = match run.settings.crash_method {
-            true if large && strategies.run(Strategy::InteriorCrash) => {
-                vec![path(Crash::Interior), path(Crash::Newton)]
+        let crashes: &[Crash] = match run.settings.crash_method {
+            true if run.n > INTERIOR && run.settings.strategies.run(Strategy::InteriorCrash) => {
+                &[Crash::Interior, Crash::Newton]
             }
-            true => vec![path(Crash::Newton)],
-            false => vec![path(Crash::None)],
+            true => &[Crash::Newton],
+            false => &[Crash::None],
         };
-        if run.settings.fallbacks && strategies.run(Strategy::Smoothing) {
-            methods.push(Method::Smoothing);
-        }
-        for (tried, method) in methods.into_iter().enumerate() {
-            if tried == 1 && run.help.proves_infeasible() || succeeds(run, method, start.clone())? {
+        for (tried, &crash) in crashes.iter().enumerate() {
+            let solved = succeeds(run, crash, start.clone())?;
+            if solved || tried == 0 && run.help.proves_infeasible() {
                 return Ok(());
             }
         }
@@ -214,19 +179,16 @@ fn attempt(run: &mut Run, restarts: &mut usize) -> Result<(), Stop> {
             format!("Restart {} from a random point", k + 1)
         });
         let Some(start) = run.point(x) else { continue };
-        let crash = Crash::Newton;
-        for method in [Method::Path { crash }, Method::Smoothing] {
-            if run.work() > budget || succeeds(run, method, start.clone())? {
-                return Ok(());
-            }
+        if run.work() > budget || succeeds(run, Crash::Newton, start)? {
+            return Ok(());
         }
     }
     Ok(())
 }
 
-/// Runs a method, and a last major iteration for full accuracy on what the others found.
-fn succeeds(run: &mut Run, method: Method, start: Point) -> Result<bool, Stop> {
-    method.run(run, start)?;
+/// Follows the path from a start. Whether it ended at a solution.
+fn succeeds(run: &mut Run, crash: Crash, start: Point) -> Result<bool, Stop> {
+    majors(run, start, crash)?;
     let Some(best) = run.best.clone() else {
         return Ok(false);
     };
@@ -238,15 +200,7 @@ fn succeeds(run: &mut Run, method: Method, start: Point) -> Result<bool, Stop> {
     let mut x = best.x;
     run.clip(&mut x);
     run.best = None;
-    match run.point(x) {
-        Some(point) if run.converged(point.residual) => {
-            if !matches!(method, Method::Path { .. }) {
-                majors(run, point, Crash::None)?;
-            }
-            Ok(true)
-        }
-        _ => Ok(false),
-    }
+    Ok(run.point(x).is_some_and(|p| run.converged(p.residual)))
 }
 
 /// The start within the bounds, or a point near it where F is defined.
@@ -343,7 +297,6 @@ fn invalid(problem: &mut dyn Problem) -> Option<Outcome> {
         factorisations: 0,
         restarts: 0,
         evaluations: 0,
-        method: "none",
         message,
     })
 }

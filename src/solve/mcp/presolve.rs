@@ -1,8 +1,4 @@
-//! Presolve: fixed variables go, so do variables that only report, and rows that only bound a variable become bounds.
-//!
-//! A free variable xᵢ that appears in its own row alone, with a constant entry a, is what that row says: the
-//! rest does not depend on it. The pair is dropped, and xᵢ − Fᵢ/a afterwards. What then appears in such rows and its own alone goes
-//! in the next round.
+//! Presolve: fixed variables go, and rows that only bound a variable become bounds.
 //!
 //! A pair (row i, variable xᵢ) whose row is a·xⱼ + b with a constant a, and whose variable, with
 //! lᵢ finite and uᵢ infinite, appears in row j alone, with a constant entry c, a·c < 0, is the
@@ -29,25 +25,12 @@ struct Dropped {
     upper: bool,
 }
 
-/// A variable that only reports.
-struct Report {
-    /// The pair.
-    i: usize,
-    /// The variable's entry in its row.
-    a: f64,
-}
-
-/// Entries smaller than this do not say what a variable is.
-const LEAST_ENTRY: f64 = 1e-6;
-
 /// The reduced problem.
 pub(super) struct Reduced<'a> {
     inner: &'a mut dyn Problem,
     /// Index of each kept variable in the inner problem.
     pub(super) kept: Vec<usize>,
     dropped: Vec<Dropped>,
-    /// Variables that only report; those of a round depend on later rounds.
-    reports: Vec<Vec<Report>>,
     lower: Vec<f64>,
     upper: Vec<f64>,
     start: Vec<f64>,
@@ -70,13 +53,11 @@ impl<'a> Reduced<'a> {
         let mut x: Vec<f64> = (0..n)
             .map(|i| inner.start()[i].max(lower[i]).min(upper[i]))
             .collect();
-        let mut gone: Vec<bool> = (0..n).map(|i| lower[i] == upper[i]).collect();
-        let (mut reports, mut dropped) = (Vec::new(), Vec::new());
-        if simplify {
-            reports = report_rows(inner, &mut gone, &lower, &upper, &x);
-            dropped = bound_rows(inner, &gone, &mut lower, &mut upper, &mut x);
-        }
-        let mut keep: Vec<bool> = gone.iter().map(|g| !g).collect();
+        let mut keep: Vec<bool> = (0..n).map(|i| lower[i] != upper[i]).collect();
+        let dropped = match simplify {
+            true => bound_rows(inner, &keep, &mut lower, &mut upper, &mut x),
+            false => Vec::new(),
+        };
         for d in &dropped {
             keep[d.i] = false;
         }
@@ -108,7 +89,6 @@ impl<'a> Reduced<'a> {
                 .collect(),
             kept,
             dropped,
-            reports,
             col_start,
             rows,
             entry,
@@ -131,11 +111,6 @@ impl<'a> Reduced<'a> {
     /// Pairs turned into bounds.
     pub(super) fn dropped(&self) -> usize {
         self.dropped.len()
-    }
-
-    /// Pairs that only report.
-    pub(super) fn reports(&self) -> usize {
-        self.reports.iter().map(Vec::len).sum()
     }
 
     fn scatter(&mut self, x: &[f64]) {
@@ -162,79 +137,27 @@ impl<'a> Reduced<'a> {
                 }
             }
         }
-        for round in self.reports.iter().rev() {
-            if self.inner.function(&full, &mut self.f).is_err() {
-                break;
-            }
-            round.iter().for_each(|r| full[r.i] -= self.f[r.i] / r.a);
-        }
         full
-    }
-}
-
-/// Finds the variables that only report, round by round, and marks them.
-fn report_rows(
-    inner: &mut dyn Problem,
-    gone: &mut [bool],
-    lower: &[f64],
-    upper: &[f64],
-    x: &[f64],
-) -> Vec<Vec<Report>> {
-    let free = |i: usize| lower[i] == f64::NEG_INFINITY && upper[i] == f64::INFINITY;
-    let mut values: Option<Vec<f64>> = None;
-    let mut rounds = Vec::new();
-    loop {
-        let found: Vec<(usize, usize)> = {
-            let (start, index) = inner.pattern();
-            let own = |i: usize| {
-                let mut entries = (start[i]..start[i + 1]).filter(|&k| !gone[index[k]]);
-                let only = entries.next().filter(|&k| index[k] == i)?;
-                (entries.next().is_none() && inner.is_constant(only)).then_some((i, only))
-            };
-            let candidates = (0..gone.len()).filter(|&i| !gone[i] && free(i));
-            candidates.filter_map(own).collect()
-        };
-        if found.is_empty() {
-            return rounds;
-        }
-        if values.is_none() {
-            let mut at = vec![0.0; inner.pattern().1.len()];
-            if inner.jacobian(x, &mut at).is_err() {
-                return rounds;
-            }
-            values = Some(at);
-        }
-        let entry = |k: usize| values.as_ref().map_or(0.0, |v| v[k]);
-        let round: Vec<Report> = found
-            .into_iter()
-            .map(|(i, k)| Report { i, a: entry(k) })
-            .filter(|r| r.a.abs() >= LEAST_ENTRY)
-            .collect();
-        if round.is_empty() {
-            return rounds;
-        }
-        round.iter().for_each(|r| gone[r.i] = true);
-        rounds.push(round);
     }
 }
 
 /// Finds the pairs that only bound a variable and tightens the bounds.
 fn bound_rows(
     inner: &mut dyn Problem,
-    gone: &[bool],
+    stays: &[bool],
     lower: &mut [f64],
     upper: &mut [f64],
     x: &mut [f64],
 ) -> Vec<Dropped> {
     let n = inner.n();
-    // Entries that count: fixed variables are constants, and what is gone is in no row that stays.
+    // Entries that count: fixed variables are constants.
     let mut row_count = vec![0usize; n];
     let mut row_entry = vec![(usize::MAX, usize::MAX); n];
     let mut column_entry = vec![None; n];
     {
         let (start, index) = inner.pattern();
-        for j in (0..n).filter(|&j| !gone[j]) {
-            let mut entries = (start[j]..start[j + 1]).filter(|&k| !gone[index[k]]);
+        for j in (0..n).filter(|&j| stays[j]) {
+            let mut entries = (start[j]..start[j + 1]).filter(|&k| stays[index[k]]);
             if let (Some(k), None) = (entries.next(), entries.next()) {
                 column_entry[j] = Some((index[k], k));
             }
@@ -246,7 +169,7 @@ fn bound_rows(
     }
     let candidates: Vec<(usize, usize, usize, usize)> = (0..n)
         .filter(|&i| {
-            !gone[i] && row_count[i] == 1 && lower[i].is_finite() && upper[i] == f64::INFINITY
+            stays[i] && row_count[i] == 1 && lower[i].is_finite() && upper[i] == f64::INFINITY
         })
         .filter_map(|i| {
             let (j, a) = row_entry[i];

@@ -4,7 +4,7 @@
 use feral::SparseColMatrix;
 
 use super::factor::Fill;
-use super::merit::natural_residual;
+use super::merit::{merit, natural_residual};
 use super::{EvalError, Help, INFINITY, Problem, Settings};
 pub(super) use crate::solve::budget::Stop;
 use crate::solve::{Budget, Progress};
@@ -29,7 +29,7 @@ pub(super) struct Point {
     pub(super) residual: f64,
     /// Where the natural residual is attained.
     pub(super) worst: usize,
-    /// Ψ, plain Fischer–Burmeister.
+    /// Ψ.
     pub(super) merit: f64,
 }
 
@@ -73,10 +73,6 @@ pub(super) struct Run<'a, 'm> {
     pub(super) evaluations: usize,
     /// The point of least natural residual so far.
     pub(super) best: Option<Point>,
-    /// Method that found it.
-    pub(super) best_method: &'static str,
-    /// Method at work.
-    pub(super) method: &'static str,
     /// The last failure to evaluate, for the message.
     pub(super) last_error: Option<EvalError>,
     /// What to expect of factorisations.
@@ -127,8 +123,6 @@ impl<'a, 'm> Run<'a, 'm> {
             factorisations: 0,
             evaluations: 0,
             best: None,
-            best_method: "none",
-            method: "none",
             last_error: None,
             fill,
             original: (0..n).collect(),
@@ -141,7 +135,7 @@ impl<'a, 'm> Run<'a, 'm> {
             return Err(Stop::Iterations);
         }
         self.budget.tell(Progress {
-            method: self.method,
+            method: "path",
             iteration: (self.majors + self.pivots) as u64,
             ..Progress::default()
         });
@@ -181,7 +175,7 @@ impl<'a, 'm> Run<'a, 'm> {
             return None;
         }
         let (residual, worst) = natural_residual(&x, &f, &self.lower, &self.upper);
-        let merit = super::merit::Phi::PLAIN.merit(&x, &f, &self.lower, &self.upper);
+        let merit = merit(&x, &f, &self.lower, &self.upper);
         let point = Point {
             x,
             f,
@@ -195,7 +189,6 @@ impl<'a, 'm> Run<'a, 'm> {
             .is_none_or(|b| point.residual < b.residual)
         {
             self.best = Some(point.clone());
-            self.best_method = self.method;
         }
         Some(point)
     }
