@@ -190,7 +190,7 @@ strategies! {
             "branch and bound",
             "Hu, Mitchell, Pang, Bennett & Kunapuli 2008";
         InteriorRelaxation "interior_relaxation",
-            "more than 120 rows and columns: programs in which products are bounded go to the interior point, not to the sequential method",
+            "more than 120 rows and columns: programs in which products are bounded go to the interior point, one coarse run each from μ = 1 on, not to the sequential method",
             "nothing",
             "Raghunathan & Biegler 2005";
     }

@@ -116,6 +116,33 @@ const FIRST_ITERATIONS: u64 = 3_000;
 /// Rows and columns up to which a relaxed program goes to the sequential method.
 const LARGEST_SEQUENTIAL: u64 = 120;
 
+/// First μ, and what it is multiplied by: for the interior point, which leaves the start whatever μ is, and for the sequential
+/// method, which stays near it.
+const STRIDES: [f64; 2] = [1.0, 1e-3];
+const STEPS: [f64; 2] = [1e-2, 0.1];
+
+/// From this μ on the solution of a relaxed program names a branch.
+const LAST_PHASE: f64 = 1.01e-4;
+
+/// The option that leaves strategies out.
+const WITHOUT: &str = "without";
+
+/// What a relaxed program is solved with.
+const RELAXED: [(&str, &str); 2] = [("bound_relax_factor", "0"), ("mu_strategy", "adaptive")];
+
+/// By the interior point in one run, in so many iterations at most, and coarsely: it only says which branch to solve.
+const MOST_COARSE: u64 = 150;
+const COARSE: [(&str, &str); 5] = [
+    ("tol", "1e-3"),
+    ("dual_inf_tol", "1e-2"),
+    ("compl_inf_tol", "1e-4"),
+    ("constr_viol_tol", "1e-6"),
+    (
+        WITHOUT,
+        "restart_from_best,saddle_escape,active_set_polish,interval_proof",
+    ),
+];
+
 /// A feasible point: the solution of a branch.
 #[derive(Clone)]
 struct Found {
@@ -214,11 +241,16 @@ impl Search<'_, '_> {
         self.enough.saturating_sub(self.budget.iterations())
     }
 
-    /// Options of a program that is solved on the way: the user's come last and win.
+    /// Options of a program that is solved on the way: the user's come last and win, and what he leaves out is left out besides.
     fn sub_settings(&self, extra: &[(&str, &str)]) -> Settings {
         let own = |(k, v): &(&str, &str)| (k.to_string(), v.to_string());
         let mut options: Vec<(String, String)> = extra.iter().map(own).collect();
         options.extend(self.settings.options.iter().cloned());
+        if let Some((name, ours)) = extra.iter().find(|e| e.0 == WITHOUT)
+            && let Some(theirs) = self.settings.option(WITHOUT)
+        {
+            options.push((name.to_string(), format!("{theirs},{ours}")));
+        }
         Settings {
             options,
             ..self.settings.clone()
@@ -271,6 +303,7 @@ impl Search<'_, '_> {
             return Ok(None);
         }
         let instance = self.program.branch(&pieces, start);
+        let before = self.budget.iterations();
         let passed = Arc::new(Exact::default());
         let answer = match instance.is_linear() {
             true => self.budget.silently(|budget| {
@@ -295,8 +328,9 @@ impl Search<'_, '_> {
         let worse = |p: &(f64, Vec<f64>)| !judged.feasible || p.0 < objective;
         self.passed.extend(passed.take().filter(worse).map(|p| p.1));
         self.log(&format!(
-            "branch: {}, objective {:.10}, primal {:.1e}, complementarity {:.1e}",
+            "branch: {} after {} iterations, objective {:.10}, primal {:.1e}, complementarity {:.1e}",
             answer.status.name(),
+            self.budget.iterations() - before,
             self.program.sign() * objective,
             judged.residuals.primal.unwrap_or(f64::NAN),
             judged.residuals.complementarity_sum.unwrap_or(f64::NAN),
@@ -497,20 +531,27 @@ impl Search<'_, '_> {
         let mut relaxed = Relaxed::new(self.program, kind);
         let mut x = start.to_vec();
         let n = x.len();
-        let mut mu = self.options.mu;
         let mut missed = 0;
         // next to the products' bounds there are no vertices that a sequential method could go along
-        let mut interior = self.choice;
-        if self.size() > LARGEST_SEQUENTIAL && self.settings.runs(Strategy::InteriorRelaxation) {
-            interior = interior.or(super::nlp::interior_point_solvers()
-                .first()
-                .map(|p| p.about().name));
-        }
+        let interior = self.choice.is_none()
+            && self.size() > LARGEST_SEQUENTIAL
+            && self.settings.runs(Strategy::InteriorRelaxation);
+        let first = super::nlp::interior_point_solvers().first();
+        let solver = first.map(|p| p.about().name).filter(|_| interior);
+        let (stride, most) = match interior {
+            true => (STRIDES, MOST_COARSE),
+            false => (STEPS, u64::MAX),
+        };
+        let coarse = if interior { &COARSE[..] } else { &[] };
+        let extra = [&RELAXED[..], coarse].concat();
+        let mut mu = self.options.mu.unwrap_or(stride[0]);
+        let factor = self.options.factor.unwrap_or(stride[1]);
         loop {
             relaxed.tighten(self.program, mu, &x);
-            let extra = [("bound_relax_factor", "0"), ("mu_strategy", "adaptive")];
             let seen = relaxed.exact.seen();
-            let a = self.program(interior, &relaxed.instance, &extra, u64::MAX, Some(&seen));
+            let before = self.budget.iterations();
+            let by = self.choice.or(solver);
+            let a = self.program(by, &relaxed.instance, &extra, most, Some(&seen));
             self.passed
                 .extend(relaxed.exact.take().map(|(_, mut level)| {
                     level.truncate(n);
@@ -520,8 +561,9 @@ impl Search<'_, '_> {
             let y = &a.outcome.level[..n];
             let judged = self.program.judge(y);
             self.log(&format!(
-                "relaxed, μ = {mu:.0e}: {}, objective {:.10}, complementarity {:.1e}",
+                "relaxed, μ = {mu:.0e}: {} after {} iterations, objective {:.10}, complementarity {:.1e}",
                 a.status.name(),
+                self.budget.iterations() - before,
                 self.program.sign() * self.program.objective(y),
                 judged.residuals.complementarity_sum.unwrap_or(f64::NAN),
             ));
@@ -532,10 +574,12 @@ impl Search<'_, '_> {
             }
             let usable = a.residuals.is_feasible(1e-4) && y.iter().all(|v| v.is_finite());
             missed = if usable { 0 } else { missed + 1 };
-            if usable {
+            // where a program was given up, the next begins where this one began
+            let given_up = self.budget.iterations() - before >= most;
+            if usable && (!given_up || mu <= LAST_PHASE) {
                 x.copy_from_slice(y);
             }
-            if usable && mu <= 1.01e-4 {
+            if usable && mu <= LAST_PHASE {
                 let pieces = self.program.nearest(&x);
                 if self.seen.contains(&pieces) {
                     return Ok(());
@@ -556,7 +600,7 @@ impl Search<'_, '_> {
             if missed == 2 || self.is_spent() || mu <= self.options.last {
                 break;
             }
-            mu = (mu * self.options.factor).max(self.options.last);
+            mu = (mu * factor).max(self.options.last);
         }
         if self.best.is_none() {
             let pieces = self.program.nearest(&x);

@@ -34,10 +34,10 @@ pub struct Options {
     pub method: Method,
     /// `mpec_relaxation` = `scholtes | aggregate`: every product at most μ, or their sum.
     pub aggregate: bool,
-    /// `mpec_mu`: first μ.
-    pub mu: f64,
-    /// `mpec_factor`: μ is multiplied by this from one program to the next.
-    pub factor: f64,
+    /// `mpec_mu`: first μ, where it is given.
+    pub mu: Option<f64>,
+    /// `mpec_factor`: μ is multiplied by this from one program to the next, where it is given.
+    pub factor: Option<f64>,
     /// `mpec_mu_end`: last μ.
     pub last: f64,
     /// `mpec_starts`: further starts, after the first local solution.
@@ -55,8 +55,8 @@ impl Default for Options {
         Self {
             method: Method::Auto,
             aggregate: false,
-            mu: 1e-2,
-            factor: 0.1,
+            mu: None,
+            factor: None,
             last: 1e-8,
             starts: 4,
             swaps: false,
@@ -83,9 +83,9 @@ impl Options {
                 ("mpec_bound", "none" | "no") => out.bound = Bound::None,
                 ("mpec_bound", "quick" | "yes") => out.bound = Bound::Quick,
                 ("mpec_bound", _) => out.bound = Bound::Seconds(number),
-                ("mpec_mu", _) => out.mu = number,
+                ("mpec_mu", _) => out.mu = Some(number),
                 ("mpec_mu_end", _) => out.last = number,
-                ("mpec_factor", _) => out.factor = number,
+                ("mpec_factor", _) => out.factor = Some(number),
                 ("mpec_starts", _) => out.starts = number as usize,
                 ("mpec_nodes", _) => out.nodes = number as usize,
                 _ => {}
@@ -105,8 +105,8 @@ pub const OPTIONS: OptionTable = OptionTable {
     rows: &[
         row("mpec_method", Kind::Words(&["auto", "relaxation", "pieces", "check"]), "auto", "what leads to the branch: `pieces` where it applies, otherwise `relaxation`; `check` judges the levels as they are"),
         row("mpec_relaxation", Kind::Words(&["scholtes", "aggregate"]), "scholtes", "every product at most μ, or their sum"),
-        row("mpec_mu", LIMITLESS, "1e-2", "first μ"),
-        row("mpec_factor", Kind::Inside(0.0, 1.0), "0.1", "what μ is multiplied by from one program to the next"),
+        row("mpec_mu", LIMITLESS, "1, or 1e-2", "first μ; the smaller one up to 120 rows and columns"),
+        row("mpec_factor", Kind::Inside(0.0, 1.0), "1e-3, or 0.1", "what μ is multiplied by from one program to the next; the larger one up to 120 rows and columns"),
         row("mpec_mu_end", LIMITLESS, "1e-8", "last μ"),
         row("mpec_starts", Kind::Whole(0.0, 1e9), "4", "random starts after the first local solution"),
         row("mpec_swaps", Kind::Switch, "no", "whether anything better than the first local solution is looked for"),
