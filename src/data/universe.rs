@@ -141,7 +141,7 @@ impl Universe {
     pub fn reserve(&mut self, labels: usize) {
         let room = self.len() + labels;
         self.ends.reserve(labels);
-        if !full(room - 1, self.places.len()) {
+        if labels == 0 || !full(room - 1, self.places.len()) {
             return;
         }
         let size = (room + room / 4 + 2).next_power_of_two();

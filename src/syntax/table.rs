@@ -249,11 +249,12 @@ impl<'a> TableReader<'a> {
             return;
         }
         self.row.clear();
+        let mut first = None;
         while self.row.len() < rows {
             let Some((mut from, to)) = fields.next() else {
                 return;
             };
-            self.row_span = self.span(from, to);
+            self.row_span = self.span(*first.get_or_insert(from), to);
             // Labels may have dots between as well: `a1.b1,5`.
             let quoted = from > 0 && matches!(self.line.as_bytes()[from - 1], b'\'' | b'"');
             while !quoted

@@ -165,7 +165,7 @@ impl<'a> TableReader<'a> {
             if matches!(bytes.get(i), None | Some(b',' | b'\n')) {
                 continue;
             }
-            if place == self.columns.len() {
+            if place >= self.columns.len() {
                 return None;
             }
             let (value, behind) = plain_number(text, i)?;
@@ -181,6 +181,9 @@ impl<'a> TableReader<'a> {
             (Some(b'\r'), None | Some(b'\n')) => i + 1,
             _ => return None,
         };
-        Some((Span::new(from as u32, to as u32), end))
+        // Without the quotes around.
+        let quote = |i: usize| usize::from(matches!(bytes[i], b'\'' | b'"'));
+        let (lo, hi) = (from + quote(from), to - quote(to - 1));
+        Some((Span::new(lo as u32, hi as u32), end))
     }
 }
