@@ -155,12 +155,14 @@ pub(crate) enum NoRange {
     TooLong(u64),
 }
 
+/// Appends a label, by its number from 0, to a text.
+type Speller<'a> = Box<dyn Fn(usize, &mut String) + 'a>;
+
 /// The labels of a range: there may be millions.
 pub(crate) struct Labels<'a> {
     /// How many.
     count: usize,
-    /// Appends the n-th, from 0, to a text.
-    spell: Box<dyn Fn(usize, &mut String) + 'a>,
+    spell: Speller<'a>,
 }
 
 impl Labels<'_> {
