@@ -5,34 +5,53 @@ use super::functions::{self, RecordAttribute};
 use super::node::{SymbolId, TableId};
 use super::symbols::{DomainPosition, Store, Symbol, SymbolKind, Symbols, attribute};
 use super::{Compiler, Failed};
-use crate::data::table::Table;
+use crate::data::key_index::KeyIndex;
 use crate::data::universe::Label;
 use crate::data::value::{self, EPS};
 use crate::diag::Diagnostic;
 use crate::source::{Known, SourceMap, Span};
 use crate::syntax::ast::Ident;
-use crate::syntax::data::{DataKind, DataReader, KeyPart, Record, Tail, undf_refused, width};
+use crate::syntax::data::{
+    DataKind, DataReader, KeyPart, Record, Tail, likely_labels, undf_refused, width,
+};
 
 /// Keys that came already: none may come twice. Keys in label order cost no index.
 #[derive(Default)]
-pub(super) struct Seen(Option<Table>);
+pub(super) struct Seen {
+    dim: usize,
+    keys: Vec<Label>,
+    index: Option<KeyIndex>,
+}
 
 impl Seen {
     /// Whether a key came before; from now on it did.
     pub(super) fn again(&mut self, key: &[Label]) -> bool {
-        let table = self.0.get_or_insert_with(|| Table::new(key.len(), 0.0));
-        // Keys of another length are refused elsewhere.
-        if table.dim() != key.len() {
+        if self.keys.is_empty() {
+            self.dim = key.len();
+        }
+        // Keys of another length are refused elsewhere, and second values of a scalar.
+        if self.dim != key.len() || key.is_empty() {
             return false;
         }
-        let again = !table.is_after_last(key) && table.find(key).is_some();
-        table.set(key, 1.0);
-        again
+        let count = self.len();
+        let last = &self.keys[self.keys.len().saturating_sub(self.dim)..];
+        if self.index.is_some() || last >= key {
+            let index = || KeyIndex::build(&self.keys, self.dim, |_| true);
+            let index = self.index.get_or_insert_with(index);
+            if index
+                .find_or_insert(key, count as u32, &self.keys)
+                .is_some()
+            {
+                return true;
+            }
+        }
+        self.keys.extend_from_slice(key);
+        false
     }
 
     /// How many.
     fn len(&self) -> usize {
-        self.0.as_ref().map_or(0, Table::len)
+        self.keys.len() / self.dim.max(1)
     }
 }
 
@@ -266,9 +285,13 @@ impl Compiler {
         let mut familiar = Familiar::new(&self.symbols, s);
         let (mut lists, mut plain) = (Vec::new(), false);
         loop {
-            while let Some((_, span)) =
-                reader.plain(|p, text| familiar.find(&mut self.store, p, text))
-            {
+            loop {
+                // Elements are mostly new labels.
+                if let ([_], Some(text)) = (&*familiar.key, reader.ahead()) {
+                    self.store.universe.warm(likely_labels(text));
+                }
+                let record = reader.plain(|p, text| familiar.find(&mut self.store, p, text));
+                let Some((_, span)) = record else { break };
                 if self
                     .take(1, record_bytes(familiar.key.len()), span)
                     .is_err()

@@ -18,21 +18,22 @@ impl Compiler {
     /// A loop that is all that another holds counts as one with it; indices of others around do not drive.
     /// An assignment under a `$`, its own or that of a loop within, counts by the condition, whatever it assigns and to
     /// what: `b(j)$q(i) = 5`, `b(j) $= q(i)`, `loop(k$q(i), s = 5)`.
+    /// `break`, `continue` and `option` among the assignments are passed over with the turn; under the `$` of a loop
+    /// within they count by its condition.
     pub(super) fn driver(&mut self, body: &[Code]) -> Option<Node> {
-        let mut assigned = Vec::new();
-        if !driven(body, &Around::default(), &mut assigned) {
+        let mut found = Found::default();
+        if !driven(body, &Around::default(), &mut found) {
             return None;
         }
+        let assigned = found.assigned;
         let tables: Vec<TableId> = assigned.iter().filter_map(|a| a.table).collect();
         let (mut unless, mut all_guarded) = (Vec::new(), true);
         for a in &assigned {
             let guard = self.meeting(&a.guards, &a.own);
             let by_value = guard.is_none();
-            if by_value && !(a.whole && self.holds_data(a) && !a.value.has_random()) {
-                return None;
-            }
+            let value = a.value.filter(|v| self.holds_data(a) && !v.has_random());
             let decides = match by_value {
-                true => std::slice::from_ref(a.value),
+                true => std::slice::from_ref(value?),
                 false => &a.guards,
             };
             let mut reading = LateReading {
@@ -51,11 +52,12 @@ impl Compiler {
             all_guarded &= !by_value;
             unless.extend(match guard {
                 Some(guard) => guard,
-                None => self.resting(a.value, &a.own)?,
+                None => self.resting(value?, &a.own)?,
             });
         }
         // Where nothing comes of a turn it need not be passed over.
-        unless.into_iter().reduce(either).filter(|_| !all_guarded)
+        let passing_shows = !all_guarded || found.others;
+        unless.into_iter().reduce(either).filter(|_| passing_shows)
     }
 
     fn holds_data(&self, a: &Assigned) -> bool {
@@ -286,23 +288,32 @@ struct Around {
     slots: Vec<Slot>,
     /// What must hold or be there for a turn.
     guards: Vec<Node>,
+    /// One of them has a `$`.
+    conditional: bool,
+}
+
+/// What drives a loop, perhaps.
+#[derive(Default)]
+struct Found<'b> {
+    assigned: Vec<Assigned<'b>>,
+    /// There is a `break` or an option besides.
+    others: bool,
 }
 
 /// An assignment that may count.
 struct Assigned<'b> {
-    value: &'b Node,
+    /// The right side, where a whole symbol is assigned under no `$` of its own.
+    value: Option<&'b Node>,
     /// What must hold for anything to come of it.
     guards: Vec<Node>,
     /// Its own indices, and those of loops within.
     own: Vec<Slot>,
     table: Option<TableId>,
-    /// It assigns a whole symbol, under no `$` of its own.
-    whole: bool,
     set: bool,
 }
 
-/// Whether these are nothing but assignments, in `if` and in loops or not; adds them.
-fn driven<'b>(body: &'b [Code], around: &Around, out: &mut Vec<Assigned<'b>>) -> bool {
+/// Whether these are nothing but assignments, `break`, `continue` and options, in `if` and in loops or not; adds them.
+fn driven<'b>(body: &'b [Code], around: &Around, out: &mut Found<'b>) -> bool {
     body.iter().all(|c| match &c.kind {
         CodeKind::If(arms, otherwise) => {
             arms.iter().all(|(_, body)| driven(body, around, out)) && driven(otherwise, around, out)
@@ -318,6 +329,7 @@ fn driven<'b>(body: &'b [Code], around: &Around, out: &mut Vec<Assigned<'b>>) ->
             around
                 .guards
                 .extend(domain.conditions.iter().chain(late).cloned());
+            around.conditional |= !domain.conditions.is_empty() || !late.is_empty();
             driven(body, &around, out)
         }
         CodeKind::Assign {
@@ -332,17 +344,36 @@ fn driven<'b>(body: &'b [Code], around: &Around, out: &mut Vec<Assigned<'b>>) ->
             let mut guards = around.guards.clone();
             guards.extend(domain.conditions.iter().cloned());
             guards.extend(nonzero.then(|| value.clone()));
-            out.push(Assigned {
-                value,
+            let whole = *covers && !conditional && !domain.slots.is_empty();
+            out.assigned.push(Assigned {
+                value: whole.then_some(value),
                 guards,
                 own: [&around.slots[..], &domain.slots].concat(),
                 table: match target {
                     Target::Table(t) | Target::Set(t) => Some(*t),
                     _ => None,
                 },
-                whole: *covers && !conditional && !domain.slots.is_empty(),
                 set: matches!(target, Target::Set(_)),
             });
+            true
+        }
+        CodeKind::Break(..)
+        | CodeKind::Continue(_)
+        | CodeKind::Option(..)
+        | CodeKind::Format(..)
+        | CodeKind::Clear(..)
+        | CodeKind::Match(..)
+        | CodeKind::Project { .. } => {
+            out.others |= !matches!(c.kind, CodeKind::Continue(_));
+            if around.conditional {
+                out.assigned.push(Assigned {
+                    value: None,
+                    guards: around.guards.clone(),
+                    own: around.slots.clone(),
+                    table: None,
+                    set: false,
+                });
+            }
             true
         }
         _ => false,

@@ -4,13 +4,12 @@ use super::node::SymbolId;
 use super::symbols::{DomainPosition, UNIVERSE};
 use super::{Compiler, Failed};
 use crate::data::table::Table;
-use crate::data::universe::Label;
+use crate::data::universe::{AT_ONCE, Label};
 use crate::diag::{Diagnostic, Severity};
 use crate::source::Span;
 use crate::syntax::ast::Ident;
 use crate::syntax::data::KeyPart;
 use std::borrow::Cow;
-use std::fmt::Write;
 use std::rc::Rc;
 
 /// What a label takes, about: its name twice, its place in the universe.
@@ -156,14 +155,49 @@ pub(crate) enum NoRange {
     TooLong(u64),
 }
 
-/// The labels of a range, one at a time: there may be millions.
-type Labels<'a> = Box<dyn ExactSizeIterator<Item = String> + 'a>;
+/// Appends a label, by its number from 0, to a text.
+type Speller<'a> = Box<dyn Fn(usize, &mut String) + 'a>;
+
+/// The labels of a range: there may be millions.
+pub(crate) struct Labels<'a> {
+    /// How many.
+    count: usize,
+    spell: Speller<'a>,
+}
+
+impl Labels<'_> {
+    /// One after the other.
+    pub(super) fn iter(&self) -> impl Iterator<Item = String> {
+        (0..self.count).map(|n| {
+            let mut label = String::new();
+            (self.spell)(n, &mut label);
+            label
+        })
+    }
+}
+
+/// Appends a number with zeros before it up to so many digits.
+fn push_number(text: &mut String, mut number: u64, width: usize) {
+    let mut digits = [b'0'; 20];
+    let mut at = digits.len();
+    while number > 0 || at == digits.len() {
+        at -= 1;
+        digits[at] += (number % 10) as u8;
+        number /= 10;
+    }
+    let zeros = width.saturating_sub(digits.len() - at);
+    text.extend(std::iter::repeat_n('0', zeros));
+    text.push_str(std::str::from_utf8(&digits[at..]).unwrap_or_default());
+}
 
 /// `i1*i10`: labels that differ in one number, up or down, so many at most; leading zeros are kept.
 pub(crate) fn range<'a>(from: &'a str, to: &str, most: usize) -> Result<Labels<'a>, NoRange> {
     let (a, b) = (from.as_bytes(), to.as_bytes());
     if from.eq_ignore_ascii_case(to) {
-        return Ok(Box::new(std::iter::once(from.to_string())));
+        return Ok(Labels {
+            count: 1,
+            spell: Box::new(|_, text| text.push_str(from)),
+        });
     }
     let mut prefix = a
         .iter()
@@ -208,14 +242,14 @@ pub(crate) fn range<'a>(from: &'a str, to: &str, most: usize) -> Result<Labels<'
         true => lo + n as u64,
         false => lo - n as u64,
     };
-    let label = move |n| {
-        let mut label = String::with_capacity(head.len() + 20.max(width) + tail.len());
-        label.push_str(head);
-        write!(label, "{:0width$}", number(n)).expect("a string takes what is written");
-        label.push_str(tail);
-        label
-    };
-    Ok(Box::new((0..lo.abs_diff(hi) as usize + 1).map(label)))
+    Ok(Labels {
+        count: lo.abs_diff(hi) as usize + 1,
+        spell: Box::new(move |n, text| {
+            text.push_str(head);
+            push_number(text, number(n), width);
+            text.push_str(tail);
+        }),
+    })
 }
 
 /// `a*e`, `x*ab`: labels of letters count like the columns of a spreadsheet.
@@ -234,17 +268,17 @@ fn letters<'a>(from: &str, to: &str) -> Option<Labels<'a>> {
         c if c.is_ascii_uppercase() => b'A',
         _ => b'a',
     };
-    let spell = move |n: usize| {
-        let mut k = lo + n as u64;
-        let mut s = Vec::new();
-        while k > 0 {
-            s.push(first + ((k - 1) % 26) as u8);
-            k = (k - 1) / 26;
-        }
-        s.reverse();
-        s.into_iter().map(char::from).collect()
-    };
-    Some(Box::new((0..(hi - lo) as usize + 1).map(spell)))
+    Some(Labels {
+        count: (hi - lo) as usize + 1,
+        spell: Box::new(move |n, text| {
+            let from = text.len();
+            let mut k = lo + n as u64;
+            while k > 0 {
+                text.insert(from, char::from(first + ((k - 1) % 26) as u8));
+                k = (k - 1) / 26;
+            }
+        }),
+    })
 }
 
 impl Compiler {
@@ -394,11 +428,27 @@ impl Compiler {
                         );
                     }
                 };
-                self.take(labels.len(), LABEL_BYTES, *span)?;
+                self.take(labels.count, LABEL_BYTES, *span)?;
                 self.range_of_words(from, to, s, position, *span, defines)?;
-                self.store.universe.reserve(labels.len());
-                let labels = labels.map(|l| self.data_label(s, position, &l, *span, defines));
-                Ok(Tuples::single(labels.collect::<Result<_, _>>()?))
+                self.store.universe.reserve(labels.count);
+                let mut found = Vec::with_capacity(labels.count);
+                let (mut text, mut ends) = (String::new(), Vec::new());
+                while found.len() < labels.count {
+                    let next = found.len()..labels.count.min(found.len() + AT_ONCE);
+                    text.clear();
+                    ends.clear();
+                    ends.push(0);
+                    for n in next {
+                        (labels.spell)(n, &mut text);
+                        ends.push(text.len());
+                    }
+                    let spelled = || ends.windows(2).map(|e| &text[e[0]..e[1]]);
+                    self.store.universe.warm(spelled());
+                    for label in spelled() {
+                        found.push(self.data_label(s, position, label, *span, defines)?);
+                    }
+                }
+                Ok(Tuples::single(found))
             }
             KeyPart::AllOf { set, .. } if *set == NO_ELEMENTS => Ok(Tuples::single(Vec::new())),
             KeyPart::AllOf { set, span } => {
@@ -474,10 +524,10 @@ impl Compiler {
         if !is_word(from) || !is_word(to) || head(from) == head(to) {
             return Ok(());
         }
-        let Some(mut labels) = letters(from, to) else {
+        let Some(labels) = letters(from, to) else {
             return Ok(());
         };
-        let (count, second) = (labels.len(), labels.nth(1).unwrap_or_default());
+        let (count, second) = (labels.count, labels.iter().nth(1).unwrap_or_default());
         let mut d = Diagnostic::warning(
             "E0344",
             span,
@@ -567,11 +617,16 @@ mod tests {
 
     #[test]
     fn ranges_keep_prefix_suffix_and_zeros() {
-        let all = |from, to, most| range(from, to, most).map(|labels| labels.collect::<Vec<_>>());
+        let all = |from, to, most| range(from, to, most).map(|l| l.iter().collect::<Vec<_>>());
         assert_eq!(all("a9", "a11", 100).unwrap(), ["a9", "a10", "a11"]);
         assert_eq!(all("c09", "c11", 100).unwrap(), ["c09", "c10", "c11"]);
         assert_eq!(all("s02s", "s04s", 100).unwrap(), ["s02s", "s03s", "s04s"]);
         assert_eq!(all("1990", "1992", 100).unwrap(), ["1990", "1991", "1992"]);
+        assert_eq!(
+            all("a98", "a101", 100).unwrap(),
+            ["a98", "a99", "a100", "a101"]
+        );
+        assert_eq!(all("c000", "c002", 100).unwrap(), ["c000", "c001", "c002"]);
         assert_eq!(all("a1", "b3", 100), Err(NoRange::Unlike));
         assert_eq!(all("a3", "a1", 100).unwrap(), ["a3", "a2", "a1"]);
         assert_eq!(all("b", "d", 100).unwrap(), ["b", "c", "d"]);

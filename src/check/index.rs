@@ -528,7 +528,7 @@ impl Compiler {
             let element = self.store.universe.name(*key.first()?);
             let text = texts.and_then(|t| t.get(key)).map_or("", |t| t);
             if let Some((from, to)) = meant_range(element, text)
-                && range(from, to, 1000).is_ok_and(|mut all| all.any(|l| l.eq_ignore_ascii_case(label)))
+                && range(from, to, 1000).is_ok_and(|all| all.iter().any(|l| l.eq_ignore_ascii_case(label)))
             {
                 return Some(format!("`{}` is one element; a range is written `{from}*{to}`", [element, text].join(" ").trim_end()));
             }

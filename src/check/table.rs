@@ -11,7 +11,7 @@ use crate::diag::Diagnostic;
 use crate::source::{Known, SourceMap, Span};
 use crate::syntax::ast::{ParameterDecl, SetDecl, SymbolDecl, TableDecl, TableOf, VariableKind};
 use crate::syntax::data::{KeyPart, Tail, width};
-use crate::syntax::table::{Cell, TableItem, TableReader};
+use crate::syntax::table::{Cell, PlainCell, TableItem, TableReader};
 
 /// What the label of a row or column stands for.
 #[derive(Default)]
@@ -30,6 +30,8 @@ enum Line {
 /// The labels of a table as far as it is read.
 struct Lines {
     columns: Vec<Line>,
+    /// Each of these columns stands for one label at each of its positions.
+    single: bool,
     row: Line,
     /// All columns so far, and the rows since the last headings: none may come twice.
     headings: Seen,
@@ -114,6 +116,7 @@ impl Compiler {
         }
         let lines = Lines {
             columns: Vec::new(),
+            single: false,
             row: Line::Open,
             headings: Seen::default(),
             rows: Seen::default(),
@@ -141,7 +144,17 @@ impl Compiler {
         let mut reader = self.table_reader(body, dim, map);
         let text = map.text(body);
         let height = memchr::memchr_iter(b'\n', text.as_bytes()).count();
-        while let Some(item) = reader.next() {
+        let mut cells = Vec::new();
+        loop {
+            while lines.single
+                && let Some(row) = reader.plain_row(&mut cells, |p, text| {
+                    lines.defines.get(p) != Some(&true)
+                        && lines.familiar.find(&mut self.store, p, text)
+                })
+            {
+                self.fill_row(s, &mut lines, row, &cells)?;
+            }
+            let Some(item) = reader.next() else { break };
             match item {
                 Ok(TableItem::Cell(cell)) => self.fill_cell(s, &mut lines, &cell)?,
                 // Labels count even where nothing stands under or behind them: they are checked, and
@@ -152,10 +165,14 @@ impl Compiler {
                     self.store.table_mut(table).reserve(cells);
                     lines.columns.clear();
                     lines.rows = Seen::default();
+                    let across = reader.columns().next().map_or(0, |(key, _)| width(key));
+                    lines.single = across < dim;
                     for (key, span) in reader.columns() {
                         let at = dim.saturating_sub(width(key));
                         let line = self.table_line(s, at, key, &lines.defines, lines.name);
                         let line = self.not_again(line, &mut lines.headings, span, "column");
+                        lines.single &= width(key) == across
+                            && matches!(&line, Line::Labels(l) if l.len() == across);
                         lines.columns.push(line);
                     }
                 }
@@ -170,6 +187,42 @@ impl Compiler {
                     }
                 }
             }
+        }
+        Ok(())
+    }
+
+    /// A row that [`TableReader::plain_row`] has read.
+    fn fill_row(
+        &mut self,
+        s: SymbolId,
+        lines: &mut Lines,
+        row: Span,
+        cells: &[PlainCell],
+    ) -> Result<(), Failed> {
+        let symbol = self.symbols.get(s);
+        let (dim, table, is_set) = (symbol.dim(), symbol.table, symbol.is_set());
+        let mut key = [0; 20];
+        let key = &mut key[..dim];
+        let Some(Line::Labels(column)) = lines.columns.first() else {
+            return Ok(());
+        };
+        let width = dim - column.len();
+        key[..width].copy_from_slice(&lines.familiar.key[..width]);
+        if lines.rows.again(&key[..width]) {
+            self.comes_again(&key[..width], row, "row");
+            return Ok(());
+        }
+        self.take(cells.len(), record_bytes(dim), row)?;
+        for cell in cells {
+            let Line::Labels(column) = &lines.columns[cell.place] else {
+                continue;
+            };
+            key[width..].copy_from_slice(column);
+            let value = match is_set {
+                true => f64::from(u8::from(truth(cell.value))),
+                false => self.stored(cell.value, cell.span),
+            };
+            self.store.tables[table as usize].set(key, value);
         }
         Ok(())
     }
@@ -320,10 +373,16 @@ impl Compiler {
         };
         for key in labels.chunks_exact(width.max(1)) {
             if before.again(key) {
-                again = Some(self.key_text(key));
+                again = Some(key.to_vec());
             }
         }
-        let Some(label) = again else { return line };
+        let Some(key) = again else { return line };
+        self.comes_again(&key, at, what);
+        Line::Refused
+    }
+
+    fn comes_again(&mut self, key: &[Label], at: Span, what: &str) {
+        let label = self.key_text(key);
         self.report(
             Diagnostic::error(
                 "E0341",
@@ -332,6 +391,5 @@ impl Compiler {
             )
             .label("second time"),
         );
-        Line::Refused
     }
 }

@@ -100,6 +100,16 @@ pub(super) fn same(a: &[Label], b: &[Label]) -> bool {
     }
 }
 
+/// Whether a key comes before another of the same length, without a call for the usual lengths.
+#[inline]
+pub(super) fn before(a: &[Label], b: &[Label]) -> bool {
+    match (a, b) {
+        ([a], [b]) => a < b,
+        ([a0, a1], [b0, b1]) => (a0, a1) < (b0, b1),
+        _ => a < b,
+    }
+}
+
 #[inline]
 fn hash_key(key: &[Label]) -> u64 {
     let mut h = rustc_hash::FxHasher::default();

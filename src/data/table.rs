@@ -8,7 +8,7 @@
 //! label order. An index by key and *orders* (records grouped by some positions) are built when first
 //! needed and dropped when records move.
 
-use super::key_index::{KeyIndex, same};
+use super::key_index::{KeyIndex, before, same};
 use super::sort::sort_records;
 use super::universe::Label;
 use super::value::is_eps;
@@ -274,14 +274,33 @@ impl Table {
         self.values.reserve(records);
     }
 
+    #[inline]
     fn moved(&mut self) {
-        self.orders.get_mut().clear();
+        let orders = self.orders.get_mut();
+        if !orders.is_empty() {
+            orders.clear();
+        }
         self.distinct.take();
     }
 
     /// Stores a value; the default removes the record.
+    #[inline]
     pub fn set(&mut self, key: &[Label], value: f64) {
         debug_assert_eq!(key.len(), self.dim);
+        // Appending in order needs no index.
+        if self.is_after_last(key) {
+            self.special = self.special.max(Special::of(value));
+            if value != self.default {
+                self.push(key, value);
+                self.sorted += 1;
+            }
+        } else {
+            self.set_among(key, value);
+        }
+    }
+
+    /// The same among the records that are there.
+    fn set_among(&mut self, key: &[Label], value: f64) {
         self.special = self.special.max(Special::of(value));
         if self.dim == 0 {
             self.values.clear();
@@ -289,16 +308,6 @@ impl Table {
                 self.values.push(value);
             }
             self.sorted = self.values.len();
-            return;
-        }
-        // Appending in order needs no index.
-        let n = self.values.len();
-        let after_last = self.sorted == n && (n == 0 || self.key(n as u32 - 1) < key);
-        if after_last {
-            if value != self.default {
-                self.push(key, value);
-                self.sorted += 1;
-            }
             return;
         }
         match self.find(key) {
@@ -316,6 +325,7 @@ impl Table {
         }
     }
 
+    #[inline]
     fn push(&mut self, key: &[Label], value: f64) {
         let r = self.values.len() as u32;
         // Without a call for the usual lengths.
@@ -341,9 +351,10 @@ impl Table {
     }
 
     /// Whether a key comes after all stored ones (and so is new).
+    #[inline]
     pub fn is_after_last(&self, key: &[Label]) -> bool {
         let n = self.values.len();
-        self.dim > 0 && self.sorted == n && (n == 0 || self.key(n as u32 - 1) < key)
+        self.dim > 0 && self.sorted == n && (n == 0 || before(self.key(n as u32 - 1), key))
     }
 
     /// Appends a record whose key is known to be new, without keeping order (call [`Table::tidy`] after).

@@ -1,6 +1,6 @@
 //! From the expanded text back to the files.
 
-use super::Span;
+use super::{DELIMITED, Span};
 use std::collections::BTreeMap;
 
 /// Number of a file in a [`SourceMap`].
@@ -39,6 +39,8 @@ struct Segment {
     /// Bytes in the original. Equal to `len` where the text was copied; otherwise the whole
     /// segment stands for the whole original range (a substituted `%name%`, a macro call).
     origin_len: u32,
+    /// Marks stand in the copy that the original does not have.
+    marked: bool,
 }
 
 /// All files of a run, and where each piece of the expanded text came from.
@@ -129,8 +131,33 @@ impl SourceMap {
             file,
             origin: lo,
             origin_len: hi - lo,
+            marked: false,
         });
         Span::new(start, start + hi - lo)
+    }
+
+    /// Appends a copy of the lines `lo..hi` of a file, with [`DELIMITED`] before each that is not blank.
+    pub(super) fn push_marked(&mut self, file: FileId, lo: u32, hi: u32) {
+        let start = self.expanded.len() as u32;
+        let lines = &self.files[file.0 as usize].text[lo as usize..hi as usize];
+        let ends = memchr::memchr_iter(b'\n', lines.as_bytes()).map(|n| n + 1);
+        let mut from = 0;
+        for end in ends.chain([lines.len()]) {
+            let line = &lines[from..end];
+            if !line.trim_start().is_empty() {
+                self.expanded.push_str(DELIMITED);
+            }
+            self.expanded.push_str(line);
+            from = end;
+        }
+        self.segments.push(Segment {
+            expanded: start,
+            len: self.expanded.len() as u32 - start,
+            file,
+            origin: lo,
+            origin_len: hi - lo,
+            marked: true,
+        });
     }
 
     /// Appends a text that stands for `lo..hi` of a file (a substitution).
@@ -144,6 +171,7 @@ impl SourceMap {
             file,
             origin: lo,
             origin_len: hi - lo,
+            marked: false,
         });
         Span::new(start, start + len)
     }
@@ -151,6 +179,7 @@ impl SourceMap {
     fn push_segment(&mut self, s: Segment) {
         if let Some(last) = self.segments.last_mut() {
             let contiguous = last.len == last.origin_len
+                && !last.marked
                 && last.file == s.file
                 && last.expanded + last.len == s.expanded
                 && last.origin + last.origin_len == s.origin;
@@ -179,14 +208,23 @@ impl SourceMap {
             span.lo
         };
         let b = at(last)?;
-        let copied = |s: Segment| s.len == s.origin_len;
+        let copied = |s: Segment| s.marked || s.len == s.origin_len;
+        let origin = |s: Segment, pos: u32| {
+            let pos = pos.min(s.expanded + s.len);
+            let before = &self.expanded.as_bytes()[s.expanded as usize..pos as usize];
+            let marks = match s.marked {
+                true => memchr::memchr_iter(DELIMITED.as_bytes()[0], before).count(),
+                false => 0,
+            };
+            s.origin + ((before.len() - marks) as u32).min(s.origin_len)
+        };
         let lo = if copied(a) {
-            a.origin + (span.lo - a.expanded).min(a.len)
+            origin(a, span.lo)
         } else {
             a.origin
         };
         let hi = if copied(b) {
-            b.origin + (last - b.expanded).min(b.len) + u32::from(span.hi > span.lo)
+            origin(b, last) + u32::from(span.hi > span.lo)
         } else {
             b.origin + b.origin_len
         };

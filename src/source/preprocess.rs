@@ -194,8 +194,8 @@ pub(super) struct Frame {
     pub(super) arguments: Option<Vec<String>>,
     /// Jumps to a label.
     pub(super) jumps: FxHashMap<String, usize>,
-    /// Next `%`, end-of-line mark, inline mark, slash mark, `$$`; as far as known.
-    ahead: [usize; 5],
+    /// Next `%`, end-of-line mark, inline mark, slash mark, `$$`, line end before a directive or a comment; as far as known.
+    ahead: [usize; 7],
     /// Where the file was asked for.
     pub(super) asked: Span,
 }
@@ -203,7 +203,7 @@ pub(super) struct Frame {
 impl Frame {
     /// The next marks are looked for again: reading goes on elsewhere.
     pub(super) fn forget_marks(&mut self) {
-        self.ahead = [0; 5];
+        self.ahead = [0; 7];
     }
 }
 
@@ -328,7 +328,7 @@ impl<'h> Preprocessor<'h> {
             ifs: Vec::new(),
             arguments,
             jumps: FxHashMap::default(),
-            ahead: [0; 5],
+            ahead: [0; 7],
             asked,
         });
         self.set_listed(listed);
@@ -493,7 +493,7 @@ impl<'h> Preprocessor<'h> {
                 let end = self.plain_end(pos);
                 if end > pos {
                     match self.marks.delimited {
-                        true => self.push_delimited(file, pos, end),
+                        true => self.map.push_marked(file, pos as u32, end as u32),
                         false => _ = self.map.push_copy(file, pos as u32, end as u32),
                     }
                     self.advance(end);
@@ -600,19 +600,6 @@ impl<'h> Preprocessor<'h> {
         }
     }
 
-    /// Appends lines of data under `$onDelim`, each behind its mark.
-    fn push_delimited(&mut self, file: FileId, mut pos: usize, end: usize) {
-        while pos < end {
-            let next = self.line_end(pos).min(end);
-            if !self.raw(pos, next).trim().is_empty() {
-                let at = pos as u32;
-                self.map.push_substitute(DELIMITED, file, at, at);
-            }
-            self.map.push_copy(file, pos as u32, next as u32);
-            pos = next;
-        }
-    }
-
     /// Takes the next line of the present file, without its end.
     pub(super) fn take_line(&mut self) -> Line {
         let (file, pos) = match self.frames.last() {
@@ -651,10 +638,13 @@ impl<'h> Preprocessor<'h> {
                 2 if marks.inline_on => find(&marks.inline.0),
                 3 if marks.slashes => find(b"//"),
                 4 => find(&[marks.dollar, marks.dollar]),
+                5 => find(&[b'\n', marks.dollar]),
+                6 => find(&[b'\n', marks.comment]),
                 _ => usize::MAX,
             };
         }
-        let mark = frame.ahead.iter().copied().min().unwrap_or(usize::MAX);
+        let [marks @ .., directive, comment] = frame.ahead;
+        let mark = marks.into_iter().min().unwrap_or(usize::MAX);
         let stop = if mark >= bytes.len() {
             bytes.len()
         } else {
@@ -665,14 +655,7 @@ impl<'h> Preprocessor<'h> {
         } else {
             stop
         };
-        for n in memchr::memchr_iter(b'\n', &bytes[pos..stop]) {
-            let next = pos + n + 1;
-            match bytes.get(next) {
-                Some(&c) if c == marks.dollar || c == marks.comment => return next.min(stop),
-                _ => {}
-            }
-        }
-        stop
+        stop.min(directive.min(comment).saturating_add(1))
     }
 
     /// Forgets where the next marks are: the marks have changed.

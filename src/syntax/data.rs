@@ -103,6 +103,8 @@ pub struct DataReader<'a> {
     factors: bool,
     /// What stands before the next record needs no comma, or its error is known.
     excused: bool,
+    /// What [`DataReader::ahead`] has given ends here.
+    shown: usize,
     constants: Constants,
 }
 
@@ -143,6 +145,7 @@ impl<'a> DataReader<'a> {
             key: Vec::with_capacity(8),
             factors: false,
             excused: false,
+            shown: 0,
             constants: Constants::default(),
         }
     }
@@ -819,6 +822,7 @@ pub(super) const LARGE: f64 = 1e300;
 pub(super) const TINY: f64 = 1e-299;
 
 /// The value of a number behind its sign: too large is `undf`, or the least number there is; too small is `eps`.
+#[inline]
 fn ordinary(x: f64, minus: bool, digits: &str) -> f64 {
     if x >= LARGE {
         if minus { -LARGE } else { UNDF }
@@ -853,5 +857,7 @@ pub fn undf_refused(span: Span) -> Diagnostic {
 }
 
 mod plain;
+pub use plain::likely_labels;
+pub(super) use plain::{plain_label, plain_number};
 #[cfg(test)]
 mod tests;

@@ -13,6 +13,9 @@ use super::fields::{Fields, MARK};
 use crate::diag::Diagnostic;
 use crate::source::{Known, Span};
 
+mod plain;
+pub use plain::PlainCell;
+
 /// What comes next in a table.
 #[derive(Debug)]
 pub enum TableItem<'r, 'a> {
@@ -246,11 +249,12 @@ impl<'a> TableReader<'a> {
             return;
         }
         self.row.clear();
+        let mut first = None;
         while self.row.len() < rows {
             let Some((mut from, to)) = fields.next() else {
                 return;
             };
-            self.row_span = self.span(from, to);
+            self.row_span = self.span(*first.get_or_insert(from), to);
             // Labels may have dots between as well: `a1.b1,5`.
             let quoted = from > 0 && matches!(self.line.as_bytes()[from - 1], b'\'' | b'"');
             while !quoted
@@ -558,6 +562,72 @@ mod tests {
             ["b|x=1234", "!E0250", "c|x=7", "!E0250", "!E0250", "d|"]
         );
         assert_eq!(cells("\n       aa\nr1 5x   3 "), ["!E0245", "r1|aa=3"]);
+    }
+
+    /// Rows as text, with places; `plainly`: those that can be read by [`TableReader::plain_row`] are.
+    fn rows(text: &str, dim: usize, plainly: bool) -> Vec<String> {
+        let mut t = TableReader::new(text, Span::new(0, text.len() as u32), dim, false);
+        let (mut out, mut cells) = (Vec::new(), Vec::new());
+        loop {
+            let mut labels: Vec<&str> = Vec::new();
+            let row = t.plain_row(&mut cells, |p, text| {
+                labels.truncate(p);
+                labels.push(text);
+                plainly && text != "b"
+            });
+            if let Some(row) = row {
+                out.extend(cells.iter().enumerate().map(|(n, c)| {
+                    let (first, x) = (n == 0, c.value.to_bits());
+                    format!("{labels:?} {row:?} {first} {} {x:x} {:?}", c.place, c.span)
+                }));
+                continue;
+            }
+            match t.next() {
+                None => return out,
+                Some(Ok(TableItem::Cell(c))) => {
+                    let label = |p: &KeyPart<'_>| match p {
+                        KeyPart::Label { text, .. } => (*text).to_owned(),
+                        p => format!("{p:?}"),
+                    };
+                    let row: Vec<String> = c.row.iter().map(label).collect();
+                    let value = match &c.value {
+                        Tail::Number(x, _) => format!("{:x}", x.to_bits()),
+                        value => format!("{value:?}"),
+                    };
+                    let at = c.row_span;
+                    out.push(format!(
+                        "{row:?} {at:?} {} {} {value} {:?}",
+                        c.first, c.place, c.span
+                    ));
+                }
+                Some(other) => out.push(format!("{other:?}")),
+            }
+        }
+    }
+
+    proptest::proptest! {
+        #![proptest_config(proptest::prelude::ProptestConfig::with_cases(4000))]
+        /// The short way reads what the long way reads.
+        #[test]
+        fn plain_rows_are_rows(
+            headings in proptest::sample::select(vec![
+                "     c1   c2  c3\n", "\n   c   d\n", "     a.x  b.y\n", "   c1 c2 c3 c4\n", "\u{1e}r,c1,c2,c3\n",
+                "\u{1e}r,q,c1,'c 2'\n",
+            ]),
+            rest in proptest::collection::vec(
+                proptest::sample::select(vec![
+                    "a", "b", "r1", "set", ".", " ", " ", "  ", "   ", "    ", "1", "2.5", "-3", "0", "1e400", "eps", "-", "+",
+                    ",", "\n", "\n", "\n", "'q r'", "(", "*", "#", "inf", "é", "\t", "\r\n", "\u{1e}", "r1   1    2   3\n",
+                    "r2        4\n", "a.r1 1    -2\n", "\u{1e}r1,5,,7\n", "\u{1e}'a b',1,2\n", "\u{1e}a,r1,1,2.5\r\n", "+   c5 c6\n",
+                    "r3 12345678 9\n",
+                ]),
+                0..16,
+            ),
+            dim in 2usize..4,
+        ) {
+            let text = headings.to_owned() + &rest.concat();
+            proptest::prop_assert_eq!(rows(&text, dim, true), rows(&text, dim, false));
+        }
     }
 
     #[test]

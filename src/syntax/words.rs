@@ -152,6 +152,13 @@ fn next_word(text: &str, end: usize) -> &str {
 
 /// Whether the word at `at..end` always begins a statement, and which kind.
 pub(crate) fn statement_word(text: &str, at: usize, end: usize) -> Option<Word> {
+    // Labels of a table begin most lines, and mostly with a number behind them.
+    let numbered = text.as_bytes()[at..end]
+        .last()
+        .is_some_and(u8::is_ascii_digit);
+    if numbered && !text[at..].starts_with(['s', 'S']) {
+        return None;
+    }
     let mut buffer = [0; 20];
     let n = lower(&text[at..end], &mut buffer)?;
     let word = &buffer[..n];

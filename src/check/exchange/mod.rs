@@ -268,8 +268,11 @@ pub fn load(
             };
             items = declared(symbols, &found, request.point, request.span);
         }
-        // Sets first: they may be the domains of the others.
-        items.sort_by_key(|w| !symbols.get(w.symbol).is_set());
+        // What is found at an index position first, then sets: they may be the domains of the others.
+        items.sort_by_key(|w| {
+            let found = matches!(w.part, Part::Position(_));
+            (!found, !symbols.get(w.symbol).is_set())
+        });
         match kind {
             Kind::Gdx => gdx::read(&name, &bytes, request.at, &items, &mut loading)?,
             Kind::Json => json::read(&name, text, &items, &mut loading)?,

@@ -179,3 +179,17 @@ fn special_values() {
     assert!(is_eps(value("eps")) && is_eps(value("1e-400")));
     assert!(is_na(value("NA")) && is_undf(value("undf")) && is_undf(value("1e400")));
 }
+
+proptest::proptest! {
+    #![proptest_config(proptest::prelude::ProptestConfig::with_cases(4000))]
+    /// Numbers read the short way are those of the library, to the last bit.
+    #[test]
+    fn short_numbers_are_exact(whole in 0u64..1_000_000_000, decimals in 0u64..100_000_000_000, zeros in 0usize..5, width in 0usize..12, behind in "[ ,\n]?") {
+        let fraction = format!("{}{decimals}", "0".repeat(zeros));
+        let fraction = &fraction[..width.min(fraction.len())];
+        let text = if fraction.is_empty() { whole.to_string() } else { format!("{whole}.{fraction}") };
+        let (x, end) = plain_number(&format!("-{text}{behind}"), 0).expect("a number");
+        proptest::prop_assert_eq!(end, text.len() + 1);
+        proptest::prop_assert_eq!((-x).to_bits(), text.parse::<f64>().expect("a number").to_bits());
+    }
+}
