@@ -271,7 +271,7 @@ impl Simplex {
         let Some(factor) = self.factor.as_mut() else {
             return Step::Broken;
         };
-        let Some(column) = factor.forward(&a_q).cloned() else {
+        let Some(column) = factor.forward_entering(&a_q).cloned() else {
             return Step::Broken;
         };
         let alpha = column.iter().find(|e| e.0 == slot).map_or(0.0, |e| e.1);
@@ -341,20 +341,20 @@ impl Simplex {
         column: &Entries,
         tau: &Entries,
     ) {
-        let mut t = tau.iter().peekable();
+        let mut at = std::mem::take(&mut self.scratch);
+        tau.iter().for_each(|&(k, t)| at[k] = t);
         for &(k, a) in column {
             if k == slot {
                 continue;
             }
-            while t.peek().is_some_and(|e| e.0 < k) {
-                t.next();
-            }
-            let tau_k = t.peek().filter(|e| e.0 == k).map_or(0.0, |e| e.1);
+            let tau_k = at[k];
             let ratio = a / alpha;
             let w = self.edge[k] - 2.0 * ratio * tau_k + ratio * ratio * weight;
             self.edge[k] = w.max(1e-4).max(1e-3 * ratio * ratio * weight);
         }
         self.edge[slot] = (weight / (alpha * alpha)).max(1e-4);
+        tau.iter().for_each(|&(k, _)| at[k] = 0.0);
+        self.scratch = at;
     }
 
     /// The entering variable and the variables that change bounds. None: no variable can enter.

@@ -23,6 +23,7 @@
 
 mod dual;
 pub(in crate::solve) mod factor;
+mod lu;
 mod primal;
 pub mod push;
 mod unique;
@@ -103,6 +104,8 @@ pub struct Simplex {
     row: Vec<f64>,
     row_index: Vec<u32>,
     row_mark: Vec<bool>,
+    /// One number for each slot, kept zero between uses.
+    scratch: Vec<f64>,
     /// Largest violation of a bound that counts as none.
     pub tolerance: f64,
     /// Largest violation of a reduced cost's sign that counts as none.
@@ -161,6 +164,7 @@ impl Simplex {
             row: vec![0.0; total],
             row_index: Vec::new(),
             row_mark: vec![false; total],
+            scratch: vec![0.0; m],
             tolerance: 1e-9,
             dual_tolerance: 1e-9,
             iterations: 0,
