@@ -88,6 +88,9 @@ impl Simplex {
         // Slots that are passed over until the factor is fresh again, or until the next pivot.
         let mut refused = vec![false; self.m];
         let mut bad_rows = 0;
+        self.touched.clear();
+        let mut violations: Vec<f64> = (0..self.m).map(|k| self.squared_violation(k)).collect();
+        let mut renewed = self.renewals;
         loop {
             if self.iterations.is_multiple_of(32)
                 && let Some(why) = stop(self.iterations)
@@ -105,7 +108,16 @@ impl Simplex {
             }
             let fresh = self.is_fresh();
             let mut renew = false;
-            match self.leaving(&refused) {
+            if std::mem::replace(&mut renewed, self.renewals) == renewed {
+                for &k in &self.touched {
+                    violations[k as usize] = self.squared_violation(k as usize);
+                }
+            } else {
+                (violations.iter_mut().enumerate())
+                    .for_each(|(k, v)| *v = self.squared_violation(k));
+            }
+            self.touched.clear();
+            match self.leaving(&violations, &refused) {
                 None if fresh || self.is_trusted() && !refused.contains(&true) => {
                     return Stop::Done;
                 }
@@ -214,23 +226,28 @@ impl Simplex {
         }
     }
 
+    /// By how much the variable in a slot violates a bound, squared.
+    fn squared_violation(&self, slot: usize) -> f64 {
+        let j = self.head[slot] as usize;
+        let violation = (self.x[j] - self.work_upper[j]).max(self.work_lower[j] - self.x[j]);
+        match violation > self.tolerance {
+            true => violation * violation,
+            false => 0.0,
+        }
+    }
+
     /// The slot that leaves: largest violation relative to the steepest-edge weight; and whether it
     /// is above its upper bound.
-    fn leaving(&self, refused: &[bool]) -> Option<(usize, bool)> {
+    fn leaving(&self, violations: &[f64], refused: &[bool]) -> Option<(usize, bool)> {
         let mut best = (0.0, None);
-        for (k, &j) in self.head.iter().enumerate() {
-            let j = j as usize;
-            let x = self.x[j];
-            let above = x - self.work_upper[j];
-            let violation = above.max(self.work_lower[j] - x);
-            if violation > self.tolerance && !refused[k] {
-                let score = violation * violation / self.edge[k];
-                if score > best.0 {
-                    best = (score, Some((k, above > 0.0)));
-                }
+        for (k, (&v, &edge)) in violations.iter().zip(&self.edge).enumerate() {
+            if v > best.0 * edge && !refused[k] {
+                best = (v / edge, Some(k));
             }
         }
-        best.1
+        let slot = best.1?;
+        let j = self.head[slot] as usize;
+        Some((slot, self.x[j] > self.work_upper[j]))
     }
 
     fn dual_step(&mut self, slot: usize, above: bool) -> Step {
@@ -258,9 +275,7 @@ impl Simplex {
         };
         let pivot = self.row[entering];
         let fresh = self.is_fresh();
-        let entries = self.row_index.iter();
-        let top = entries.fold(0.0f64, |t, &j| t.max(self.row[j as usize].abs()));
-        let top = top.min(1.0);
+        let top = self.row_top.min(1.0);
         if pivot.abs() < SAFE_PIVOT * top && !fresh {
             return Step::Unsafe;
         }
@@ -294,6 +309,7 @@ impl Simplex {
         for &(k, a) in &column {
             let j = self.head[k] as usize;
             self.x[j] -= step * a;
+            self.touched.push(k as u32);
         }
         self.x[entering] += step;
         self.x[leaving] = bound;
@@ -321,9 +337,11 @@ impl Simplex {
         if theta != 0.0 {
             for k in 0..self.row_index.len() {
                 let j = self.row_index[k] as usize;
+                let before = self.d[j];
                 self.d[j] -= theta * self.row[j];
-                let wrong = self.dual_violation(j);
-                if wrong > 0.0 && j != entering {
+                // All signs were right before.
+                let turned = before * self.d[j] <= 0.0;
+                if turned && j != entering && self.dual_violation(j) > 0.0 {
                     self.work_cost[j] -= self.d[j];
                     self.d[j] = 0.0;
                 }
@@ -360,10 +378,7 @@ impl Simplex {
     /// The entering variable and the variables that change bounds. None: no variable can enter.
     fn entering(&self, sign: f64, violation: f64) -> Option<(usize, Vec<u32>)> {
         // What is noise depends on the row: entries of one that is small throughout count.
-        let top = self
-            .row_index
-            .iter()
-            .fold(0.0f64, |t, &j| t.max(self.row[j as usize].abs()));
+        let top = self.row_top;
         let noise = PIVOT * top.min(1.0);
         // Candidates with their pivots, oriented so that a ratio is d/α ≥ 0.
         let mut candidates: Vec<(u32, f64, f64)> = Vec::new();
@@ -381,32 +396,32 @@ impl Simplex {
                 candidates.push((j, alpha.abs(), if free { 0.0 } else { self.d[k].abs() }));
             }
         }
-        // In the order of their ratios, each group by the ratios with slack: what is left has larger ones.
-        let mut queue: BinaryHeap<Reverse<Ratio>> = (candidates.iter().enumerate())
-            .map(|(k, c)| Reverse(Ratio(c.2 / c.1, k)))
-            .collect();
+        // In the order of their ratios, each group by the ratios with slack: what is left has larger ones. Mostly the first is all.
+        let slack = 0.5 * self.dual_tolerance;
+        let limits = candidates.iter().map(|c| (c.2 + slack) / c.1);
+        let first = limits.fold(f64::INFINITY, f64::min);
+        let (mut group, mut queue) = (Vec::new(), BinaryHeap::new());
+        let mut later = Vec::new();
+        for (k, c) in candidates.iter().enumerate() {
+            match c.2 <= first * c.1 {
+                true => group.push(k),
+                false => later.push(k),
+            }
+        }
         let mut slope = violation;
         let mut flips: Vec<u32> = Vec::new();
         let mut reserve: Option<(usize, usize)> = None;
-        let slack = 0.5 * self.dual_tolerance;
-        while !queue.is_empty() {
+        while !group.is_empty() {
             let before = flips.len();
-            let (mut limit, mut drop) = (f64::INFINITY, 0.0);
+            let mut drop = 0.0;
             let mut best = (0.0, usize::MAX);
-            while let Some(&Reverse(Ratio(ratio, k))) = queue.peek()
-                && ratio <= limit
-            {
-                queue.pop();
-                let (j, alpha, d) = candidates[k];
-                limit = limit.min((d + slack) / alpha);
+            for k in group.drain(..) {
+                let (j, alpha, _) = candidates[k];
                 drop += alpha * (self.work_upper[j as usize] - self.work_lower[j as usize]);
                 if alpha > best.0 || (alpha == best.0 && k < best.1) {
                     best = (alpha, k);
                 }
                 flips.push(j);
-            }
-            if flips.len() == before {
-                break; // what is left is not a number
             }
             let entering = candidates[best.1].0 as usize;
             let enough = best.0 >= SAFE_PIVOT * top.min(1.0);
@@ -422,6 +437,18 @@ impl Simplex {
                 reserve = Some((entering, before));
             }
             slope -= drop;
+            if !later.is_empty() {
+                let ratio = |k: usize| Reverse(Ratio(candidates[k].2 / candidates[k].1, k));
+                queue = later.drain(..).map(ratio).collect();
+            }
+            let mut limit = f64::INFINITY;
+            while let Some(&Reverse(Ratio(ratio, k))) = queue.peek()
+                && ratio <= limit
+            {
+                queue.pop();
+                limit = limit.min((candidates[k].2 + slack) / candidates[k].1);
+                group.push(k);
+            }
         }
         // Every candidate was passed, or only bad pivots were left: the last good one enters.
         let (entering, flipped) = reserve?;
@@ -452,6 +479,7 @@ impl Simplex {
             .and_then(|f| f.forward(&change).cloned())
         {
             for (k, v) in moved {
+                self.touched.push(k as u32);
                 self.x[self.head[k] as usize] -= v;
             }
         }

@@ -394,15 +394,24 @@ struct Reach {
     stack: Vec<(u32, u32)>,
     /// The rows, those that others lead to first.
     found: Vec<u32>,
+    /// Solves of each kind that are full without a search, for the last one led to many rows.
+    full: [u8; 6],
 }
+
+/// Solves without a search after one that led to many rows.
+const FULL: u8 = 10;
 
 impl Reach {
     /// The rows to which the entries lead, unless they are more than a tenth.
-    fn find(&mut self, lines: &Lines, from: &[u32]) -> bool {
+    fn find(&mut self, kind: usize, lines: &Lines, from: &[u32]) -> bool {
         let most = self.marked.len() / 10;
+        if self.full[kind] > 0 || from.len() > most {
+            self.full[kind] = self.full[kind].saturating_sub(1);
+            return false;
+        }
         self.found.clear();
-        let mut few = from.len() <= most;
-        for &start in from.iter().take(if few { from.len() } else { 0 }) {
+        let mut few = true;
+        for &start in from {
             if std::mem::replace(&mut self.marked[start as usize], true) {
                 continue;
             }
@@ -425,6 +434,7 @@ impl Reach {
             }
             if self.found.len() > most {
                 few = false;
+                self.full[kind] = FULL;
                 break;
             }
         }
@@ -442,7 +452,7 @@ fn triangle<'a>(
     pivots: Option<&[f64]>,
     order: impl Iterator<Item = &'a u32>,
     drop: f64,
-    reach: &mut Reach,
+    (reach, kind): (&mut Reach, usize),
     w: &mut Spread,
 ) {
     let step = |w: &mut Spread, p: usize| {
@@ -461,7 +471,7 @@ fn triangle<'a>(
             w.value[i as usize] -= v * x;
         }
     };
-    if !w.full && reach.find(lines, &w.list) {
+    if !w.full && reach.find(kind, lines, &w.list) {
         w.list.clear();
         w.list.extend(reach.found.iter().rev());
         for k in 0..w.list.len() {
@@ -598,11 +608,11 @@ impl Lu {
         self.nonzeros
     }
 
-    /// L and the updates.
-    fn forward_lower(&mut self, drop: f64) {
+    /// L and the updates; `kind` as in [`Reach`].
+    fn forward_lower(&mut self, kind: usize, drop: f64) {
         let w = &mut self.work;
-        let order = self.first_order.iter();
-        triangle(&self.lower, None, order, drop, &mut self.reach, w);
+        let (order, reach) = (self.first_order.iter(), (&mut self.reach, kind));
+        triangle(&self.lower, None, order, drop, reach, w);
         for (k, &p) in self.eliminated.iter().enumerate() {
             let sum: f64 = self.multipliers.line(k).map(|(i, v)| v * w.value[i]).sum();
             if sum != 0.0 {
@@ -611,14 +621,14 @@ impl Lu {
         }
     }
 
-    fn forward_upper(&mut self, drop: f64) {
+    fn forward_upper(&mut self, kind: usize, drop: f64) {
         let order = self.order.iter().rev();
-        let (pivots, reach) = (Some(&self.pivot[..]), &mut self.reach);
+        let (pivots, reach) = (Some(&self.pivot[..]), (&mut self.reach, kind));
         triangle(&self.upper, pivots, order, drop, reach, &mut self.work);
     }
 
     fn backward_upper(&mut self, drop: f64) {
-        let (pivots, reach) = (Some(&self.pivot[..]), &mut self.reach);
+        let (pivots, reach) = (Some(&self.pivot[..]), (&mut self.reach, 4));
         let order = self.order.iter();
         triangle(&self.upper_rows, pivots, order, drop, reach, &mut self.work);
     }
@@ -633,7 +643,7 @@ impl Lu {
             }
         }
         let order = self.first_order.iter().rev();
-        triangle(&self.lower_rows, None, order, drop, &mut self.reach, w);
+        triangle(&self.lower_rows, None, order, drop, (&mut self.reach, 5), w);
     }
 
     /// Solves B x = a; with `enters`, `a` may become a column of the basis next. False: numbers broke down.
@@ -644,13 +654,14 @@ impl Lu {
         x: &mut Vec<(usize, f64)>,
     ) -> bool {
         a.iter().for_each(|&(i, v)| self.work.add(i, v));
-        self.forward_lower(DROP);
+        let kind = 2 * usize::from(enters);
+        self.forward_lower(kind, DROP);
         if enters {
             self.column.0.clear();
             self.column.0.extend_from_slice(a);
             self.column.1 = self.work.entries();
         }
-        self.forward_upper(DROP);
+        self.forward_upper(kind + 1, DROP);
         x.clear();
         let slots = &self.slot_of_row;
         let mut good = true;
@@ -683,8 +694,8 @@ impl Lu {
     pub(super) fn forward_dense(&mut self, a: &mut [f64]) {
         self.work.full = true;
         self.work.value.copy_from_slice(a);
-        self.forward_lower(0.0);
-        self.forward_upper(0.0);
+        self.forward_lower(0, 0.0);
+        self.forward_upper(1, 0.0);
         a.fill(0.0);
         let slots = &self.slot_of_row;
         self.work.drain(|i, v| a[slots[i] as usize] = v);
@@ -707,7 +718,7 @@ impl Lu {
         let p = self.row_of_slot[slot];
         if self.column.0 != column {
             column.iter().for_each(|&(i, v)| self.work.add(i, v));
-            self.forward_lower(DROP);
+            self.forward_lower(2, DROP);
             self.column.1 = self.work.entries();
             self.work.drain(|_, _| {});
         }

@@ -104,6 +104,12 @@ pub struct Simplex {
     row: Vec<f64>,
     row_index: Vec<u32>,
     row_mark: Vec<bool>,
+    /// Its largest entry.
+    row_top: f64,
+    /// Slots whose values a pivot of the dual method has changed.
+    touched: Vec<u32>,
+    /// How often the basis was factorised.
+    renewals: u64,
     /// One number for each slot, kept zero between uses.
     scratch: Vec<f64>,
     /// Largest violation of a bound that counts as none.
@@ -164,6 +170,9 @@ impl Simplex {
             row: vec![0.0; total],
             row_index: Vec::new(),
             row_mark: vec![false; total],
+            row_top: 0.0,
+            touched: Vec::new(),
+            renewals: 0,
             scratch: vec![0.0; m],
             tolerance: 1e-9,
             dual_tolerance: 1e-9,
@@ -278,6 +287,7 @@ impl Simplex {
     /// Factorises the basis, replacing dependent columns by logicals, and computes values and
     /// reduced costs afresh. None: numbers broke down.
     fn refactor(&mut self) -> Option<()> {
+        self.renewals += 1;
         for _ in 0..20 {
             let columns: Vec<Entries> =
                 self.head.iter().map(|&j| self.column(j as usize)).collect();
@@ -702,8 +712,19 @@ impl Simplex {
             self.row_mark[j as usize] = false;
         }
         self.row_index.clear();
+        let lengths = rho.iter().map(|e| self.rows.line(e.0).len());
+        let length: usize = lengths.sum();
+        self.work += length as f64;
+        match length > self.n {
+            true => self.full_pivot_row(rho),
+            false => self.sparse_pivot_row(rho),
+        }
+        let entries = self.row_index.iter().map(|&j| self.row[j as usize].abs());
+        self.row_top = entries.fold(0.0, f64::max);
+    }
+
+    fn sparse_pivot_row(&mut self, rho: &[(usize, f64)]) {
         for &(i, r) in rho {
-            self.work += self.rows.line(i).len() as f64;
             for (j, a) in self.rows.line(i) {
                 if self.slot[j] == NONBASIC {
                     if !self.row_mark[j] {
@@ -717,6 +738,22 @@ impl Simplex {
             if self.slot[logical] == NONBASIC {
                 self.row_index.push(logical as u32);
                 self.row[logical] = -r;
+            }
+        }
+    }
+
+    /// The same where most entries of the row are met several times.
+    fn full_pivot_row(&mut self, rho: &[(usize, f64)]) {
+        for &(i, r) in rho {
+            let rows = Rc::clone(&self.rows);
+            rows.line(i).for_each(|(j, a)| self.row[j] += r * a);
+            self.row[self.n + i] = -r;
+        }
+        for j in 0..self.n + self.m {
+            if self.slot[j] != NONBASIC {
+                self.row[j] = 0.0;
+            } else if self.row[j] != 0.0 {
+                self.row_index.push(j as u32);
             }
         }
     }
