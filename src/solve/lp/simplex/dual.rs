@@ -88,9 +88,9 @@ impl Simplex {
         // Slots that are passed over until the factor is fresh again, or until the next pivot.
         let mut refused = vec![false; self.m];
         let mut bad_rows = 0;
-        self.touched.clear();
-        let mut violations: Vec<f64> = (0..self.m).map(|k| self.squared_violation(k)).collect();
-        let mut renewed = self.renewals;
+        let mut violations = vec![0.0; self.m];
+        // Everything is looked at anew.
+        let mut renewed = None;
         loop {
             if self.iterations.is_multiple_of(32)
                 && let Some(why) = stop(self.iterations)
@@ -108,13 +108,13 @@ impl Simplex {
             }
             let fresh = self.is_fresh();
             let mut renew = false;
-            if std::mem::replace(&mut renewed, self.renewals) == renewed {
+            if renewed.replace(self.renewals) == Some(self.renewals) {
                 for &k in &self.touched {
                     violations[k as usize] = self.squared_violation(k as usize);
                 }
             } else {
-                (violations.iter_mut().enumerate())
-                    .for_each(|(k, v)| *v = self.squared_violation(k));
+                (0..self.m).for_each(|k| violations[k] = self.squared_violation(k));
+                (0..self.n + self.m).for_each(|j| self.side[j] = self.side_of(j));
             }
             self.touched.clear();
             match self.leaving(&violations, &refused) {
@@ -226,6 +226,16 @@ impl Simplex {
         }
     }
 
+    fn side_of(&self, j: usize) -> i8 {
+        let (l, u) = (self.work_lower[j], self.work_upper[j]);
+        match (l == u, l.is_infinite() && u.is_infinite()) {
+            (true, _) => 0,
+            (_, true) => 2,
+            _ if self.is_low(j) => 1,
+            _ => -1,
+        }
+    }
+
     /// By how much the variable in a slot violates a bound, squared.
     fn squared_violation(&self, slot: usize) -> f64 {
         let j = self.head[slot] as usize;
@@ -252,12 +262,14 @@ impl Simplex {
 
     fn dual_step(&mut self, slot: usize, above: bool) -> Step {
         let leaving = self.head[slot] as usize;
+        let [mut rho, mut column, mut tau] = std::mem::take(&mut self.solutions);
         let Some(factor) = self.factor.as_mut() else {
             return Step::Broken;
         };
-        let Some(rho) = factor.backward(&[(slot, 1.0)]).cloned() else {
+        if factor.backward(&[(slot, 1.0)]).is_none() {
             return Step::Broken;
-        };
+        }
+        factor.hand_over(&mut rho);
         self.pivot_row(&rho);
         let sign = if above { 1.0 } else { -1.0 };
         let bound = if above {
@@ -286,18 +298,20 @@ impl Simplex {
         let Some(factor) = self.factor.as_mut() else {
             return Step::Broken;
         };
-        let Some(column) = factor.forward_entering(&a_q).cloned() else {
+        if factor.forward_entering(&a_q).is_none() {
             return Step::Broken;
-        };
+        }
+        factor.hand_over(&mut column);
         let alpha = column.iter().find(|e| e.0 == slot).map_or(0.0, |e| e.1);
         if (alpha - pivot).abs() > 1e-7 * (top + alpha.abs()) * if fresh { 100.0 } else { 1.0 } {
             return Step::Unsafe;
         }
         // Steepest edge: τ = B⁻¹ρ.
         let weight: f64 = rho.iter().map(|e| e.1 * e.1).sum();
-        let Some(tau) = factor.forward(&rho).cloned() else {
+        if factor.forward(&rho).is_none() {
             return Step::Broken;
-        };
+        }
+        factor.hand_over(&mut tau);
         // Flips change the basic values before the step is measured.
         if !flips.is_empty() {
             self.flip(&flips);
@@ -313,8 +327,10 @@ impl Simplex {
         }
         self.x[entering] += step;
         self.x[leaving] = bound;
+        self.side[leaving] = self.side_of(leaving);
         self.update_weights(slot, alpha, weight, &column, &tau);
         self.add_work(self.m, rho.len() + column.len() + tau.len());
+        self.solutions = [rho, column, tau];
         self.iterations += 1;
         let worn = self.exchange(slot, entering);
         if worn.is_none() {
@@ -382,18 +398,14 @@ impl Simplex {
         let noise = PIVOT * top.min(1.0);
         // Candidates with their pivots, oriented so that a ratio is d/α ≥ 0.
         let mut candidates: Vec<(u32, f64, f64)> = Vec::new();
+        let (row, d, side) = (&self.row[..], &self.d[..], &self.side[..]);
         for &j in &self.row_index {
             let k = j as usize;
-            let (l, u) = (self.work_lower[k], self.work_upper[k]);
-            let alpha = sign * self.row[k];
-            if l == u || alpha.abs() <= noise {
-                continue;
-            }
-            let free = l.is_infinite() && u.is_infinite();
-            let at_lower = self.is_low(k);
-            let may = free || (alpha > 0.0) == at_lower;
-            if may {
-                candidates.push((j, alpha.abs(), if free { 0.0 } else { self.d[k].abs() }));
+            let (alpha, side) = (sign * row[k], side[k]);
+            let free = side == 2;
+            let may = free || side != 0 && (alpha > 0.0) == (side > 0);
+            if may && alpha.abs() > noise {
+                candidates.push((j, alpha.abs(), if free { 0.0 } else { d[k].abs() }));
             }
         }
         // In the order of their ratios, each group by the ratios with slack: what is left has larger ones. Mostly the first is all.
@@ -469,6 +481,7 @@ impl Simplex {
             let to = if self.x[j] - l <= u - self.x[j] { u } else { l };
             let by = to - self.x[j];
             self.x[j] = to;
+            self.side[j] = -self.side[j];
             (self.column(j).iter()).for_each(|&(i, a)| change[i] += a * by);
         }
         let change = change.into_iter().enumerate();

@@ -9,7 +9,7 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 /// Updates before a fresh factorisation.
-const MOST_UPDATES: usize = 150;
+const MOST_UPDATES: usize = 100;
 
 /// A column as row–value pairs.
 pub(crate) type Entries = Vec<(usize, f64)>;
@@ -128,6 +128,11 @@ impl Factor {
         let rest: Entries = touched.into_iter().map(rest).collect();
         let good = lu.backward(&rest, &mut self.solution);
         good.then_some(&self.solution)
+    }
+
+    /// Hands over what the last sparse solve gave, for room to put the next one in.
+    pub(crate) fn hand_over(&mut self, to: &mut Entries) {
+        std::mem::swap(&mut self.solution, to);
     }
 
     /// Solves B x = a in place for a dense right-hand side.

@@ -455,34 +455,31 @@ fn triangle<'a>(
     (reach, kind): (&mut Reach, usize),
     w: &mut Spread,
 ) {
-    let step = |w: &mut Spread, p: usize| {
-        let mut x = w.value[p];
+    let (start, length) = (&lines.start[..], &lines.length[..]);
+    let (index, entry) = (&lines.index[..], &lines.value[..]);
+    let step = |value: &mut [f64], p: usize| {
+        let mut x = value[p];
         if x.abs() <= drop {
-            w.value[p] = 0.0;
+            value[p] = 0.0;
             return;
         }
         if let Some(pivots) = pivots {
             x /= pivots[p];
-            w.value[p] = x;
+            value[p] = x;
         }
-        let range = lines.range(p);
-        let values = &lines.value[range.clone()];
-        for (&i, &v) in lines.index[range].iter().zip(values) {
-            w.value[i as usize] -= v * x;
+        let range = start[p] as usize..(start[p] + length[p]) as usize;
+        for (&i, &v) in index[range.clone()].iter().zip(&entry[range]) {
+            value[i as usize] -= v * x;
         }
     };
     if !w.full && reach.find(kind, lines, &w.list) {
         w.list.clear();
         w.list.extend(reach.found.iter().rev());
-        for k in 0..w.list.len() {
-            let p = w.list[k] as usize;
-            step(w, p);
-        }
+        w.list.iter().for_each(|&p| step(&mut w.value, p as usize));
     } else {
         w.full = true;
-        order
-            .filter(|&&p| p != NONE)
-            .for_each(|&p| step(w, p as usize));
+        let pivots = order.filter(|&&p| p != NONE);
+        pivots.for_each(|&p| step(&mut w.value, p as usize));
     }
 }
 
@@ -492,8 +489,9 @@ pub(super) struct Lu {
     /// L by columns and by rows, without the diagonal.
     lower: Lines,
     lower_rows: Lines,
-    /// The rows in the order in which they became pivots.
-    first_order: Vec<u32>,
+    /// The rows of L's columns and rows, those that lead to others first.
+    lower_order: Vec<u32>,
+    lower_rows_order: Vec<u32>,
     /// U by columns and by rows, without the diagonal; columns are called by their pivots.
     upper: Lines,
     upper_rows: Lines,
@@ -573,13 +571,18 @@ impl Lu {
             .for_each(|j| *j = row_of_slot[*j as usize]);
         let mut place = vec![0; m];
         (order.iter().enumerate()).for_each(|(k, &p): (usize, &u32)| place[p as usize] = k as u32);
+        let lower_rows = lower.transposed();
+        let filled = |lines: &Lines, p: &u32| lines.length[*p as usize] > 0;
+        let down = order.iter().filter(|p| filled(&lower, p));
+        let up = order.iter().rev().filter(|p| filled(&lower_rows, p));
         Ok(Self {
             nonzeros: m + lower.index.len() + upper.index.len(),
-            lower_rows: lower.transposed(),
+            lower_order: down.copied().collect(),
+            lower_rows_order: up.copied().collect(),
+            lower_rows,
             upper: upper.transposed(),
             upper_rows: upper,
             lower,
-            first_order: order.clone(),
             pivot,
             order,
             place,
@@ -611,7 +614,7 @@ impl Lu {
     /// L and the updates; `kind` as in [`Reach`].
     fn forward_lower(&mut self, kind: usize, drop: f64) {
         let w = &mut self.work;
-        let (order, reach) = (self.first_order.iter(), (&mut self.reach, kind));
+        let (order, reach) = (self.lower_order.iter(), (&mut self.reach, kind));
         triangle(&self.lower, None, order, drop, reach, w);
         for (k, &p) in self.eliminated.iter().enumerate() {
             let sum: f64 = self.multipliers.line(k).map(|(i, v)| v * w.value[i]).sum();
@@ -642,7 +645,7 @@ impl Lu {
                 self.multipliers.line(k).for_each(|(i, v)| w.add(i, -v * x));
             }
         }
-        let order = self.first_order.iter().rev();
+        let order = self.lower_rows_order.iter();
         triangle(&self.lower_rows, None, order, drop, (&mut self.reach, 5), w);
     }
 

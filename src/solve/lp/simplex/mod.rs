@@ -103,13 +103,16 @@ pub struct Simplex {
     /// Pivot row, kept zero between uses.
     row: Vec<f64>,
     row_index: Vec<u32>,
-    row_mark: Vec<bool>,
     /// Its largest entry.
     row_top: f64,
+    /// Where the nonbasic variables are for the dual method: 1 at the lower bound, −1 at the upper one, 2 free, 0 fixed.
+    side: Vec<i8>,
     /// Slots whose values a pivot of the dual method has changed.
     touched: Vec<u32>,
     /// How often the basis was factorised.
     renewals: u64,
+    /// Room for the solutions of a dual pivot.
+    solutions: [Entries; 3],
     /// One number for each slot, kept zero between uses.
     scratch: Vec<f64>,
     /// Largest violation of a bound that counts as none.
@@ -126,7 +129,8 @@ pub struct Simplex {
     /// The dual method has a first phase in boxes; without it shifted costs, which the primal method mends, as soon in
     /// small programs and near a solution.
     pub boxes: bool,
-    /// Gives up, as at an iteration limit, when [`Simplex::work`] is more than this, or would be after as many pivots as there are rows.
+    /// Gives up, as at an iteration limit, when [`Simplex::work`] is more than this, or would be a fifth of it after as many
+    /// pivots as there are rows.
     pub most_work: f64,
     /// Numbers that the pivots have touched, about.
     work: f64,
@@ -169,8 +173,9 @@ impl Simplex {
             devex: vec![1.0; total],
             row: vec![0.0; total],
             row_index: Vec::new(),
-            row_mark: vec![false; total],
             row_top: 0.0,
+            solutions: Default::default(),
+            side: vec![0; total],
             touched: Vec::new(),
             renewals: 0,
             scratch: vec![0.0; m],
@@ -709,7 +714,6 @@ impl Simplex {
     fn pivot_row(&mut self, rho: &[(usize, f64)]) {
         for &j in &self.row_index {
             self.row[j as usize] = 0.0;
-            self.row_mark[j as usize] = false;
         }
         self.row_index.clear();
         let lengths = rho.iter().map(|e| self.rows.line(e.0).len());
@@ -724,35 +728,38 @@ impl Simplex {
     }
 
     fn sparse_pivot_row(&mut self, rho: &[(usize, f64)]) {
+        let (row, slot) = (&mut self.row[..], &self.slot[..]);
         for &(i, r) in rho {
             for (j, a) in self.rows.line(i) {
-                if self.slot[j] == NONBASIC {
-                    if !self.row_mark[j] {
-                        self.row_mark[j] = true;
+                if slot[j] == NONBASIC {
+                    let before = row[j];
+                    if before == 0.0 {
                         self.row_index.push(j as u32);
                     }
-                    self.row[j] += r * a;
+                    // What cancels stays marked as listed.
+                    let v = before + r * a;
+                    row[j] = if v == 0.0 { f64::MIN_POSITIVE } else { v };
                 }
             }
             let logical = self.n + i;
-            if self.slot[logical] == NONBASIC {
+            if slot[logical] == NONBASIC {
                 self.row_index.push(logical as u32);
-                self.row[logical] = -r;
+                row[logical] = -r;
             }
         }
     }
 
     /// The same where most entries of the row are met several times.
     fn full_pivot_row(&mut self, rho: &[(usize, f64)]) {
+        let row = &mut self.row[..];
         for &(i, r) in rho {
-            let rows = Rc::clone(&self.rows);
-            rows.line(i).for_each(|(j, a)| self.row[j] += r * a);
-            self.row[self.n + i] = -r;
+            self.rows.line(i).for_each(|(j, a)| row[j] += r * a);
+            row[self.n + i] = -r;
         }
-        for j in 0..self.n + self.m {
-            if self.slot[j] != NONBASIC {
-                self.row[j] = 0.0;
-            } else if self.row[j] != 0.0 {
+        for (j, (v, &slot)) in row.iter_mut().zip(&self.slot).enumerate() {
+            if slot != NONBASIC {
+                *v = 0.0;
+            } else if *v != 0.0 {
                 self.row_index.push(j as u32);
             }
         }
@@ -762,8 +769,8 @@ impl Simplex {
     fn is_spent(&self) -> bool {
         // The first pivots tell little.
         let pivots = self.iterations.max(200) as f64;
-        let projected = self.work * (self.m as f64 / pivots).max(1.0);
-        self.iterations >= self.limit || projected > self.most_work
+        let for_rows = self.work * self.m as f64 / pivots;
+        self.iterations >= self.limit || self.work.max(5.0 * for_rows) > self.most_work
     }
 
     /// Adds the work of a pivot: `passed` numbers, and sparse solves whose solutions have so many `entries`.
