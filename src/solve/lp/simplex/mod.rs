@@ -48,6 +48,10 @@ const PIVOT: f64 = 1e-9;
 /// A pivot smaller than this is taken only on a fresh factor.
 const SAFE_PIVOT: f64 = 1e-6;
 
+/// Pivots after which their work is looked at, and the part of all work beyond which as many of them as there are rows are too dear.
+const WINDOW: u64 = 300;
+const PACE: f64 = 10.0 / 3.0;
+
 /// How a method ended.
 #[derive(Clone, Debug, PartialEq)]
 enum Stop {
@@ -129,11 +133,14 @@ pub struct Simplex {
     /// The dual method has a first phase in boxes; without it shifted costs, which the primal method mends, as soon in
     /// small programs and near a solution.
     pub boxes: bool,
-    /// Gives up, as at an iteration limit, when [`Simplex::work`] is more than this, or would be a fifth of it after as many
-    /// pivots as there are rows.
+    /// Gives up, as at an iteration limit, when [`Simplex::work`] is more than this, or is to be 1/[`PACE`] of it in as
+    /// many pivots as there are rows.
     pub most_work: f64,
-    /// Numbers that the pivots have touched, about.
+    /// Numbers that the pivots have touched, about; and those that one has, in the last [`WINDOW`] of them.
     work: f64,
+    rate: f64,
+    /// Iterations and work where that window ended.
+    looked: (u64, f64),
     /// A factor that was updated at most so often counts as fresh.
     pub trusted: usize,
     /// The pivots, where they are asked for.
@@ -187,6 +194,8 @@ impl Simplex {
             boxes: false,
             most_work: f64::INFINITY,
             work: 0.0,
+            rate: 0.0,
+            looked: (0, 0.0),
             trusted: 0,
             pivots: None,
             perturb: true,
@@ -767,10 +776,8 @@ impl Simplex {
 
     /// Whether this is as far as it may go.
     fn is_spent(&self) -> bool {
-        // The first pivots tell little.
-        let pivots = self.iterations.max(200) as f64;
-        let for_rows = self.work * self.m as f64 / pivots;
-        self.iterations >= self.limit || self.work.max(5.0 * for_rows) > self.most_work
+        let for_rows = self.rate * self.m as f64;
+        self.iterations >= self.limit || self.work.max(PACE * for_rows) > self.most_work
     }
 
     /// Adds the work of a pivot: `passed` numbers, and sparse solves whose solutions have so many `entries`.
@@ -778,6 +785,11 @@ impl Simplex {
         let factor = self.factor.as_ref().map_or(0, Factor::nonzeros) as f64;
         let solves = entries as f64 * (1.0 + factor / self.m as f64);
         self.work += (passed + self.row_index.len()) as f64 + solves;
+        let (at, work) = self.looked;
+        if self.iterations >= at + WINDOW {
+            self.rate = (self.work - work) / (self.iterations - at) as f64;
+            self.looked = (self.iterations, self.work);
+        }
     }
 
     /// Replaces the variable in a slot; `column` is the entering one's. Factorises afresh when that
