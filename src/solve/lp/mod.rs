@@ -117,7 +117,7 @@ impl Backend for Clarabel {
         About {
             name: "clarabel",
             aliases: &[],
-            version: "lp: interior point, Clarabel 0.11.1, with a simplex finish on feral 0.22.0",
+            version: "lp: interior point, Clarabel 0.11.1, with bmod's own simplex method",
             supports: SUPPORTS,
             options: &OPTIONS,
             option_files: &["clarabel"],
@@ -149,7 +149,7 @@ impl Backend for SimplexAlone {
         About {
             name: "simplex",
             aliases: &[],
-            version: "lp: the simplex method alone, bmod's own, on feral 0.22.0",
+            version: "lp: the simplex method alone, bmod's own",
             supports: Supports {
                 only_by_name: true,
                 ..SUPPORTS

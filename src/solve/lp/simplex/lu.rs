@@ -791,3 +791,113 @@ impl Lu {
         self.order.push(p);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::jitter;
+    use super::*;
+
+    const M: usize = 60;
+
+    /// A sparse column that makes the matrix regular, with a slot's own entry the largest.
+    fn column(slot: usize, salt: usize) -> Vec<(usize, f64)> {
+        let at = |k: usize| 7 * slot + 13 * k + 31 * salt;
+        let mut entries = vec![(slot, 4.0 + jitter(at(9)))];
+        for k in 0..4 {
+            let i = (jitter(at(k)) * 1e6) as usize % M;
+            if entries.iter().all(|e| e.0 != i) {
+                entries.push((i, 2.0 * jitter(at(k + 20)) - 1.5));
+            }
+        }
+        entries
+    }
+
+    /// Largest residual of B x = a and of Bᵀ y = a for sparse and full right-hand sides.
+    fn residual(lu: &mut Lu, columns: &[Vec<(usize, f64)>]) -> f64 {
+        let mut worst = 0.0f64;
+        for k in [0, 17, 42] {
+            let a = vec![(k, 1.0), ((k + 5) % M, -2.0)];
+            let (mut x, mut full) = (Vec::new(), vec![0.0; M]);
+            a.iter().for_each(|&(i, v)| full[i] = v);
+            let mut transposed = full.clone();
+            assert!(lu.forward(&a, false, &mut x));
+            let mut rest = full.clone();
+            for (slot, v) in x {
+                columns[slot].iter().for_each(|&(i, b)| rest[i] -= v * b);
+            }
+            worst = rest.iter().fold(worst, |t, r| t.max(r.abs()));
+            let mut rest = full.clone();
+            lu.forward_dense(&mut full);
+            for (slot, v) in full.into_iter().enumerate() {
+                columns[slot].iter().for_each(|&(i, b)| rest[i] -= v * b);
+            }
+            worst = rest.iter().fold(worst, |t, r| t.max(r.abs()));
+            let mut y = Vec::new();
+            assert!(lu.backward(&a, &mut y));
+            let mut sparse = vec![0.0; M];
+            y.iter().for_each(|&(i, v)| sparse[i] = v);
+            let given = transposed.clone();
+            lu.backward_dense(&mut transposed);
+            for y in [sparse, transposed] {
+                for (slot, column) in columns.iter().enumerate() {
+                    let product: f64 = column.iter().map(|&(i, b)| b * y[i]).sum();
+                    worst = worst.max((product - given[slot]).abs());
+                }
+            }
+        }
+        worst
+    }
+
+    #[test]
+    fn solves_after_each_update() {
+        let mut columns: Vec<_> = (0..M).map(|k| column(k, 0)).collect();
+        let Ok(mut lu) = Lu::new(M, &columns, 1e-11) else {
+            panic!("regular");
+        };
+        assert!(residual(&mut lu, &columns) < 1e-12);
+        for step in 0..90 {
+            let slot = 11 * step % M;
+            columns[slot] = column(slot, step + 1);
+            // With what earlier solves have kept, and without.
+            let mut kept = Vec::new();
+            if step % 3 > 0 {
+                assert!(lu.forward(&columns[slot], true, &mut kept));
+            }
+            if step % 2 > 0 {
+                assert!(lu.backward(&[(slot, 1.0)], &mut kept));
+            }
+            assert!(lu.replace(slot, &columns[slot]));
+            assert_eq!(lu.updates(), step + 1);
+            assert!(residual(&mut lu, &columns) < 1e-10, "{step}");
+        }
+    }
+
+    #[test]
+    fn names_what_is_dependent() {
+        let mut columns: Vec<_> = (0..M).map(|k| column(k, 0)).collect();
+        columns[20] = columns[3].clone();
+        columns[30].clear();
+        let Err(Broken::Dependent(left)) = Lu::new(M, &columns, 1e-11) else {
+            panic!("singular");
+        };
+        let slots: Vec<usize> = left.iter().map(|l| l.0).collect();
+        assert!(slots == [3, 30] || slots == [20, 30], "{slots:?}");
+        for (slot, row) in left {
+            columns[slot] = vec![(row, 1.0)];
+        }
+        assert!(Lu::new(M, &columns, 1e-11).is_ok());
+        columns[5][0].1 = f64::NAN;
+        assert!(matches!(Lu::new(M, &columns, 1e-11), Err(Broken::Numbers)));
+    }
+
+    #[test]
+    fn refuses_a_pivot_that_is_noise() {
+        let columns: Vec<_> = (0..M).map(|k| column(k, 0)).collect();
+        let Ok(mut lu) = Lu::new(M, &columns, 1e-11) else {
+            panic!("regular");
+        };
+        // The column is in the basis already.
+        assert!(!lu.replace(8, &columns[9]));
+        assert!(residual(&mut lu, &columns) < 1e-12);
+    }
+}
