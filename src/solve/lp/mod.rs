@@ -496,9 +496,9 @@ fn interior_only(p: &Problem, aim: Aim, budget: &Budget) -> Gave {
 /// Columns and rows together up to which the simplex method is all that is needed, as a rule.
 const MAX_SMALL_SIZE: usize = 600;
 
-/// When the simplex method has touched so many numbers for each nonzero of the program, or is to touch 3/10 of it in as many pivots as there are
-/// rows, an interior point is sooner there. (From the times of both ways and the work after each 100 pivots on 90 programs of Netlib: those that the
-/// simplex method solves sooner take at most 0.28 in any 300 pivots, the others reach 0.3 after a tenth to a third of theirs.)
+/// When the simplex method has touched so many numbers for each nonzero of the program, or is to touch a third of it in as many pivots as there are
+/// rows, an interior point is sooner there. (From the times of both ways and the work after each 100 pivots on 90 programs of Netlib: in those that
+/// the simplex method solves sooner no 300 pivots reach that, in the others they do after a tenth to a third of all.)
 const WORK: f64 = 10_000.0;
 
 /// Columns and rows together from which an interior point of many digits saves more pivots than it costs.

@@ -329,7 +329,8 @@ impl Simplex {
         self.x[leaving] = bound;
         self.side[leaving] = self.side_of(leaving);
         self.update_weights(slot, alpha, weight, &column, &tau);
-        self.add_work(self.m, rho.len() + column.len() + tau.len());
+        // The slots are passed for the choice, and by each solve.
+        self.add_work(4 * self.m, rho.len() + column.len() + tau.len());
         self.solutions = [rho, column, tau];
         self.iterations += 1;
         let worn = self.exchange(slot, entering);

@@ -50,7 +50,7 @@ const SAFE_PIVOT: f64 = 1e-6;
 
 /// Pivots after which their work is looked at, and the part of all work beyond which as many of them as there are rows are too dear.
 const WINDOW: u64 = 300;
-const PACE: f64 = 10.0 / 3.0;
+const PACE: f64 = 3.0;
 
 /// How a method ended.
 #[derive(Clone, Debug, PartialEq)]
