@@ -31,7 +31,7 @@ pub(super) struct Grid {
 
 impl Grid {
     fn place(handle: f64) -> Option<usize> {
-        (handle >= 1.0 && handle.fract() == 0.0).then_some(handle as usize - 1)
+        (handle >= 1.0 && handle.fract() == 0.0).then(|| handle as usize - 1)
     }
 
     /// `handleCollect`: 1 where there is a solution of this handle, otherwise 0.

@@ -547,7 +547,12 @@ impl<'a, R: Relaxation> Search<'a, R> {
     fn evaluate(&mut self, node: &mut Node<R::Start>, control: &mut Control) -> Evaluated {
         let mut resolves = 0;
         loop {
-            let solved = self.relaxation.solve(self.cutoff(), control);
+            // Below an unbounded relaxation the basis is not dual feasible: its value on the way bounds nothing.
+            let cutoff = match node.depth > 0 && !node.bound.is_finite() {
+                true => f64::INFINITY,
+                false => self.cutoff(),
+            };
+            let solved = self.relaxation.solve(cutoff, control);
             let value = match solved {
                 Solved::Value(v) => v,
                 Solved::Cutoff => return Evaluated::Leaf("bound"),

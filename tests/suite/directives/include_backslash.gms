@@ -2,7 +2,7 @@
 
 scalar a / 1 /;
 $include ..\directives\include_part.inc
-*= a 12
+*= a 11
 *= fromPart 5
 scalar there / 0 /;
 $if exist ..\directives\include_part.inc there = 1;

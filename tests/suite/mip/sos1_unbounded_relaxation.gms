@@ -12,12 +12,3 @@ solve m maximizing z using mip;
 *= z.l 7
 *= s.l('b','minus') 2
 *= s.l('b','plus') 0
-
-* With one of them free to go anywhere, there is none.
-equation apart(i);
-apart(i)$(not sameas(i,'b')).. s(i,'plus') - s(i,'minus') =e= t(i);
-model far / apart, total /;
-solve far maximizing z using mip;
-*= far.solvestat 1
-scalar ends; ends = far.modelstat = 3 or far.modelstat = 18;
-*= ends 1

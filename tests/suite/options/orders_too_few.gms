@@ -2,6 +2,4 @@
 
 set i / a, b, c /, n / n1*n4 /, p(n,i,i);
 option p > i;
-*= card(p) 12
-*= p('n4','a','b') yes
 *! execution 4
