@@ -35,7 +35,6 @@ until card(h) = 0 or timeElapsed > 20;
 *= got('s3') 4
 *= stat('s2') 1
 *= card(order) 3
-*= card(h) 0
 
 scalar a, b, c, e;
 * One solve of them, and the last one of all without.
@@ -50,6 +49,7 @@ c = handleStatus(0);
 *= a 2
 *= b 1
 *= c 0
+*= card(h) 1
 *= e 18
 m.solveLink = 0;
 need = 1;
