@@ -4,7 +4,6 @@
 use super::generate::Generated;
 use super::{Flow, Machine};
 use crate::check::node::{SolveCode, SymbolId};
-use crate::data::value::NA;
 use crate::report::json;
 use crate::solve::answer::Answer;
 use crate::source::Span;
@@ -70,7 +69,7 @@ impl Machine<'_> {
         s.scenario.is_none() && [3.0, 4.0, 6.0, 7.0].contains(&link)
     }
 
-    /// Keeps what a solve gave, and gives its model the handle.
+    /// Keeps what a solve gave, and gives its model the handle; its status stays that of the last solution taken.
     pub(super) fn submit(
         &mut self,
         s: &SolveCode,
@@ -93,8 +92,7 @@ impl Machine<'_> {
             all.len() as f64
         };
         let state = self.models.entry(s.model).or_default();
-        let values = [("modelstat", NA), ("solvestat", NA), ("handle", handle)];
-        state.attributes.extend(values);
+        state.attributes.insert("handle", handle);
         match self.host().interrupted() {
             true => Flow::Stop,
             false => Flow::Next,

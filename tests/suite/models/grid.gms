@@ -36,11 +36,14 @@ until card(h) = 0 or timeElapsed > 20;
 *= stat('s2') 1
 *= card(order) 3
 
-scalar a, b, c, e;
+scalar a, b, c, e, kept;
 * One solve of them, and the last one of all without.
 need = 9;
 solve m min z using lp;
 h('s1') = m.handle;
+need = 99;  x.up = 50;
+solve m min z using lp;
+kept = m.modelStat;
 a = readyCollect(h, 10);
 a = handleStatus(h('s1'));
 b = handleCollect(h('s1'));
@@ -49,6 +52,7 @@ c = handleStatus(0);
 *= a 2
 *= b 1
 *= c 0
+*= kept 1
 *= card(h) 1
 *= e 18
 m.solveLink = 0;
