@@ -83,18 +83,21 @@ impl Files {
         Err(outside.map_or(HostError::NotFound, HostError::Outside))
     }
 
-    /// Where a file may be, in the order in which it is looked for.
-    fn places<'a>(
-        &'a self,
-        path: &'a str,
-        from: Option<&'a Path>,
-    ) -> impl Iterator<Item = PathBuf> + 'a {
+    /// Where a file may be, in the order in which it is looked for. Models from Windows part folders by `\`: where
+    /// the system does not, and no file has that name, they are understood all the same.
+    fn places(&self, path: &str, from: Option<&Path>) -> Vec<PathBuf> {
         let folders = [from.and_then(Path::parent), Some(&*self.model_folder)];
         let folders = folders.into_iter().flatten();
-        folders
+        let folders = folders
             .chain([Path::new("")])
-            .chain(self.allowed.iter().map(|d| &**d))
-            .map(move |folder| tidy(&folder.join(path)))
+            .chain(self.allowed.iter().map(|d| &**d));
+        let foreign = path.contains('\\') && !std::path::is_separator('\\');
+        let slashed = foreign.then(|| path.replace('\\', "/"));
+        [Some(path), slashed.as_deref()]
+            .into_iter()
+            .flatten()
+            .flat_map(|path| folders.clone().map(move |f| tidy(&f.join(path))))
+            .collect()
     }
 
     /// Reads a text, as [`crate::host::Host::read`] does.
@@ -145,9 +148,8 @@ impl Files {
 
     /// Whether there is a folder whose files may be read.
     pub(crate) fn folder_exists(&self, path: &str, from: Option<&Path>) -> bool {
-        let mut real = self
-            .places(path, from)
-            .filter_map(|p| p.canonicalize().ok());
+        let places = self.places(path, from).into_iter();
+        let mut real = places.filter_map(|p| p.canonicalize().ok());
         real.any(|p| p.is_dir() && self.may_read(&p))
     }
 }

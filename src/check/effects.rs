@@ -73,7 +73,9 @@ impl Visitor<'_> for Changes<'_> {
                 let t = first(*s);
                 e.tables.extend(t..t + attribute::COUNT);
             }
-            CodeKind::Match(target, _) | CodeKind::Project { target, .. } => {
+            CodeKind::Match(target, _)
+            | CodeKind::Permute(target, _)
+            | CodeKind::Project { target, .. } => {
                 e.tables.insert(first(*target));
             }
             CodeKind::Solve(_) | CodeKind::Exchange(_) => e.everything = true,

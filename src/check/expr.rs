@@ -716,6 +716,8 @@ impl Compiler {
                 }
                 Ok(combine(NodeKind::Call(f, nodes), span, v, false))
             }
+            // Its argument is a symbol without its indices.
+            Callee::Data(DataFunction::ReadyCollect) => Ok(Node::number(0.0, span)),
             Callee::Data(f) => {
                 let mut nodes = Vec::with_capacity(args.len());
                 for a in args {

@@ -74,9 +74,10 @@ const FUNCTIONS: &[(&str, Callee, usize, usize)] = {
         ("licensestatus", Data(D::Zero), 0, 0),
         ("gamsrelease", Data(D::GamsRelease), 0, 0),
         ("gamsversion", Data(D::GamsVersion), 0, 0),
-        ("handlecollect", Data(D::Zero), 1, 1),
-        ("handledelete", Data(D::Zero), 1, 1),
-        ("handlestatus", Data(D::Zero), 1, 1),
+        ("handlecollect", Data(D::HandleCollect), 1, 1),
+        ("handledelete", Data(D::HandleDelete), 1, 1),
+        ("handlestatus", Data(D::HandleStatus), 1, 1),
+        ("readycollect", Data(D::ReadyCollect), 1, 2),
         ("handlesubmit", Data(D::Zero), 1, 1),
         ("sleep", Data(D::Sleep), 1, 1),
     ]

@@ -425,6 +425,10 @@ impl Known for Compiler {
         self.put_named.is_some()
     }
 
+    fn is_label(&self, text: &str) -> bool {
+        self.store.universe.get(text).is_some()
+    }
+
     fn is_function(&self, name: &str) -> bool {
         functions::callee(&name.to_lowercase()).is_some()
     }

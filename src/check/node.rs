@@ -214,6 +214,11 @@ pub enum DataFunction {
     GamsVersion,
     GamsRelease,
     Sleep,
+    HandleCollect,
+    HandleStatus,
+    HandleDelete,
+    /// `readyCollect(h)`: whether nothing is left to wait for; 0, for nothing ever is.
+    ReadyCollect,
 }
 
 /// A record that must exist for a tuple to count: the table and the key.
@@ -476,6 +481,8 @@ pub enum CodeKind {
         /// For each position of the target the position of the source.
         positions: Vec<usize>,
     },
+    /// `option p > s`: numbers of orders, and the set that is ordered.
+    Permute(SymbolId, [TableId; 2]),
     /// `option m(i:j,k)`: sets that are matched with what stands before (true), or multiplied out.
     Match(SymbolId, Vec<(bool, TableId)>),
     /// `put` and its kin: keyword, condition, items.

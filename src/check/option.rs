@@ -2,7 +2,7 @@
 
 use super::functions;
 use super::node::*;
-use super::symbols::SymbolKind;
+use super::symbols::{DomainPosition, SymbolKind};
 use super::{Compiler, Failed};
 use crate::diag::Diagnostic;
 use crate::model::language;
@@ -25,6 +25,7 @@ impl Compiler {
                 self.fitting_format(s, numbers, item.name.span)?;
                 Ok(Some(CodeKind::Format(s, numbers.clone())))
             }
+            OptionForm::Permute(set) => self.permute(item, set),
             OptionForm::Project {
                 from_left,
                 source,
@@ -206,6 +207,29 @@ impl Compiler {
         }
         self.changes_set(target);
         Ok(Some(CodeKind::Match(target, tables)))
+    }
+
+    fn permute(&mut self, item: &OptionItem, set: &Ident) -> Result<Option<CodeKind>, Failed> {
+        let (target, s) = (self.lookup_set(&item.name)?, self.lookup_set(set)?);
+        self.used(s, set.span);
+        let (symbol, source) = (self.symbols.get(target), self.symbols.get(s));
+        let tables = match symbol.domain[..] {
+            [DomainPosition::Set(numbers), _, _] if source.dim() == 1 => {
+                [self.symbols.get(numbers).table, source.table]
+            }
+            _ => {
+                let message = "`option p > s` takes a set `p(n,s,s)`: a number, an element of `s`, and what takes its place";
+                return self.fail(
+                    Diagnostic::error("E0331", item.name.span, message)
+                        .other(symbol.declared, "declared here"),
+                );
+            }
+        };
+        for position in 1..3 {
+            self.fits(s, target, position, set.span)?;
+        }
+        self.changes_set(target);
+        Ok(Some(CodeKind::Permute(target, tables)))
     }
 
     /// A statement gives a symbol its values; a set has no order of its own then.

@@ -182,6 +182,7 @@ impl Code {
             | CodeKind::Format(..)
             | CodeKind::Project { .. }
             | CodeKind::Match(..)
+            | CodeKind::Permute(..)
             | CodeKind::Exchange(_)
             | CodeKind::Draw(..) => {}
         }

@@ -204,6 +204,7 @@ pub const CODES: &[Code] = &[
     row("E0406", Execution, "step of `for`", "the step is positive; `downto` counts down"),
     row("E0407", Execution, "elements of a singleton", "several were assigned; the first is kept"),
     row("E0408", Execution, "acronym in a computation", "acronyms can be assigned and compared only"),
+    row("E0409", Execution, "too few numbers of orders", "`option p > s` needs n! elements of the first index of `p` for n elements of `s`"),
 
     row("E0410", Execution, "empty row", "a row without variables cannot hold"),
     row("E0411", Execution, "coefficient not finite", "look for `inf`, `na` or `undf` in the data of the equation"),

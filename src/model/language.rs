@@ -42,7 +42,7 @@ pub static LANGUAGE: OptionTable = OptionTable {
         row("limrow", Whole(0.0, INF), "3", "rows in GAMS's listing; here `bmod list` prints them"),
         row("limcol", Whole(0.0, INF), "3", "columns in GAMS's listing; here `bmod list` prints them"),
         row("sysout", WordsOrReal(&["on", "off"], 0.0, 1.0), "off", "messages of solvers in GAMS's listing; here `log` prints them"),
-        row("solvelink", Whole(0.0, 7.0), "2", "how GAMS starts its solvers; here they are part of the program"),
+        row("solvelink", Whole(0.0, 7.0), "2", "how GAMS starts its solvers; here they are part of the program: with 3, 4, 6 and 7 the solution waits for handleCollect"),
     ],
     more: None,
     ignored: &[

@@ -529,7 +529,10 @@ impl Machine<'_> {
             D::MaxExecError => self.most_errors as f64,
             // Nobody waits: the seconds that would have passed.
             D::Sleep => a[0],
-            D::ErrorLevel | D::Zero => 0.0,
+            D::HandleCollect => self.grid.collect(a[0]),
+            D::HandleStatus => self.grid.status(a[0]),
+            D::HandleDelete => self.grid.delete(a[0]),
+            D::ErrorLevel | D::Zero | D::ReadyCollect => 0.0,
             D::One => 1.0,
             D::GamsVersion => 546.0,
             D::GamsRelease => 54.6,

@@ -19,6 +19,16 @@ pub(super) struct ExchangeState {
 impl Machine<'_> {
     /// A statement.
     pub(super) fn exchange(&mut self, x: &Exchange, span: Span) {
+        if x.keyword.name.eq_ignore_ascii_case("execute_loadhandle") {
+            let models = x
+                .items
+                .iter()
+                .filter_map(|i| self.symbols.find(&i.name.name));
+            return models
+                .collect::<Vec<_>>()
+                .into_iter()
+                .for_each(|m| self.load_handle(m));
+        }
         let items = match wanted(&self.symbols, &x.items) {
             Ok(items) => items,
             Err(d) => return self.note(*d),

@@ -63,6 +63,7 @@ impl Machine<'_> {
 
     fn statement(&mut self, c: &Code, frame: &mut Frame) -> Flow {
         self.options.at.set(c.span);
+        self.take_collected();
         self.tidy(c);
         match &c.kind {
             CodeKind::Assign {
@@ -159,6 +160,9 @@ impl Machine<'_> {
                 source,
                 positions,
             } => self.project(*target, *source, positions),
+            CodeKind::Permute(target, [numbers, set]) => {
+                self.permute(*target, *numbers, *set, c.span);
+            }
             CodeKind::Match(target, sets) => self.match_sets(*target, sets),
             CodeKind::Put(keyword, cond, items) => {
                 if self.holds(cond.as_ref(), frame) {
@@ -633,6 +637,43 @@ impl Machine<'_> {
         table.tidy();
     }
 
+    /// `option p > s`: for each element of the first index of `p` an order of the elements of `s`, as pairs of an
+    /// element and what stands in its place.
+    fn permute(&mut self, target: SymbolId, numbers: TableId, set: TableId, span: Span) {
+        let [numbers, set] = [numbers, set].map(|t| {
+            self.store.table_mut(t).tidy();
+            let labels = self.store.table(t).iter().map(|(k, _)| k[0]);
+            labels.collect::<Vec<Label>>()
+        });
+        let table = self.symbols.get(target).table;
+        let table = self.store.table_mut(table);
+        table.clear();
+        let mut order: Vec<usize> = (0..set.len()).collect();
+        let mut more = true;
+        for &number in &numbers {
+            if !more {
+                break;
+            }
+            for (&place, &k) in set.iter().zip(&order) {
+                table.set(&[number, place, set[k]], 1.0);
+            }
+            more = next_order(&mut order);
+        }
+        table.tidy();
+        if more {
+            self.execution_error(
+                "E0409",
+                span,
+                format!(
+                    "{} elements have more than {} orders",
+                    set.len(),
+                    numbers.len()
+                ),
+                "the rest is left out",
+            );
+        }
+    }
+
     /// `option p < q`: counts where `q` has more positions; to a set: membership.
     fn project(&mut self, target: SymbolId, source: SymbolId, positions: &[usize]) {
         let (t, s) = (self.symbols.get(target), self.symbols.get(source));
@@ -671,6 +712,17 @@ impl Machine<'_> {
             *table = Table::from_sorted(d, 0.0, keys, values);
         }
     }
+}
+
+/// The next order of numbers, as a dictionary has them. False: there is none.
+fn next_order(order: &mut [usize]) -> bool {
+    let Some(k) = order.windows(2).rposition(|w| w[0] < w[1]) else {
+        return false;
+    };
+    let larger = order.iter().rposition(|&x| x > order[k]).unwrap_or(k);
+    order.swap(k, larger);
+    order[k + 1..].reverse();
+    true
 }
 
 /// Sorts records by key; of equal keys the last one written stays.

@@ -17,6 +17,7 @@ mod exchange;
 mod exec;
 mod files;
 mod generate;
+mod grid;
 mod option_file;
 mod options;
 mod put;
@@ -87,6 +88,8 @@ pub struct Machine<'h> {
     ranges: FxHashMap<(SymbolId, Derived), Table>,
     /// Solves that are kept for `--solution`.
     kept: Vec<solve::KeptSolve>,
+    /// Solves whose solutions wait until they are asked for.
+    grid: grid::Grid,
     /// The solve that is looked at when the run is over, and how many there were.
     studied: Option<Box<Studied>>,
     solves_seen: usize,
@@ -157,6 +160,7 @@ impl<'h> Machine<'h> {
             formats: FxHashMap::default(),
             ranges: FxHashMap::default(),
             kept: Vec::new(),
+            grid: grid::Grid::default(),
             studied: None,
             solves_seen: 0,
             put: options::PutState::default(),

@@ -236,12 +236,10 @@ impl Machine<'_> {
         seconds: json::Seconds,
         span: Span,
     ) -> Flow {
-        self.store_outside(s, &generated);
-        self.store(&generated, &a);
-        self.ranged(s, &generated, &a);
-        self.remember(s, &generated, &a, seconds);
-        let savepoint = self.model_option(s.model, "savepoint", 0.0);
-        self.save_point(s.model, savepoint, &generated.origin, span);
+        if self.is_submitted(s) {
+            return self.submit(s, generated, a, seconds, span);
+        }
+        self.store_answer(s, &generated, &a, seconds, span);
         self.report_solve(s, &generated, &a, seconds);
         if self.options.keep_solutions {
             self.keep_solution(s, generated, a);
@@ -251,6 +249,23 @@ impl Machine<'_> {
         } else {
             Flow::Next
         }
+    }
+
+    /// Stores what a solve gave.
+    pub(super) fn store_answer(
+        &mut self,
+        s: &SolveCode,
+        generated: &Generated,
+        a: &Answer,
+        seconds: json::Seconds,
+        span: Span,
+    ) {
+        self.store_outside(s, generated);
+        self.store(generated, a);
+        self.ranged(s, generated, a);
+        self.remember(s, generated, a, seconds);
+        let savepoint = self.model_option(s.model, "savepoint", 0.0);
+        self.save_point(s.model, savepoint, &generated.origin, span);
     }
 
     /// Says why a model cannot be solved as it is, at the equation that is to blame.
@@ -608,7 +623,13 @@ impl Machine<'_> {
         }
     }
 
-    fn report_solve(&mut self, s: &SolveCode, g: &Generated, a: &Answer, seconds: json::Seconds) {
+    pub(super) fn report_solve(
+        &mut self,
+        s: &SolveCode,
+        g: &Generated,
+        a: &Answer,
+        seconds: json::Seconds,
+    ) {
         let r = &a.residuals;
         let objective = g.instance.objective;
         let solve = json::SolveReport {

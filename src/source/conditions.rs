@@ -165,7 +165,8 @@ impl Preprocessor<'_> {
                 Some(Ok((false, len + n)))
             }
             "putopen" => Some(Ok((known.put_open(), len))),
-            "uelexist" | "solver" => Some(Ok((false, len + term(after, false).1))),
+            "uelexist" => one(&mut |n| known.is_label(n)),
+            "solver" => Some(Ok((false, len + term(after, false).1))),
             _ => {
                 let found = self.of_data_file(word.strip_prefix("gdx")?, after, known)?;
                 Some(found.map(|(truth, n)| (truth, len + n)))

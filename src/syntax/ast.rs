@@ -506,6 +506,8 @@ pub enum OptionForm {
         /// Its index names.
         indices: Option<Vec<Ident>>,
     },
+    /// `option p > s`: the orders of a set's elements.
+    Permute(Ident),
     /// `option m(i:j,k)`: from left to right, a set behind a colon (true) is matched one by one, one behind
     /// a comma multiplied out.
     Match(Vec<(bool, Ident)>),

@@ -111,9 +111,9 @@ fn kind(word: &[u8]) -> Option<(Word, Class)> {
         b"else" | b"elseif" => (W::Inner, C::Other),
         b"until" => (W::Until, C::Other),
         b"display" | b"abort" | b"option" | b"options" | b"solve" | b"put" | b"putclose"
-        | b"puttl" | b"puthd" | b"putpage" | b"putclear" | b"execute" | b"execute_unload"
-        | b"execute_load" | b"execute_unloaddi" | b"execute_loaddc" | b"execute_loadpoint"
-        | b"put_utility" | b"put_utilities" => (W::Action, C::Other),
+        | b"puttl" | b"puthd" | b"putpage" | b"putclear" | b"execute" | b"executetool"
+        | b"execute_unload" | b"execute_load" | b"execute_unloaddi" | b"execute_loaddc"
+        | b"execute_loadpoint" | b"put_utility" | b"put_utilities" => (W::Action, C::Other),
         _ => return None,
     })
 }

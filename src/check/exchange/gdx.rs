@@ -73,7 +73,11 @@ pub(super) fn shape(
         };
         let dim = inside.domain.len();
         let symbol = symbols.get_mut(w.symbol);
-        if dim == symbol.dim() || !same_kind(inside.kind, &symbol.kind) {
+        if !same_kind(inside.kind, &symbol.kind) {
+            continue;
+        }
+        symbol.open = false;
+        if dim == symbol.dim() {
             continue;
         }
         symbol.domain = vec![DomainPosition::Universe; dim];

@@ -121,7 +121,7 @@ impl Relaxation for Linear {
         match ended {
             Ended::Solved => Solved::Value(self.value()),
             Ended::Infeasible(_) => Solved::Infeasible,
-            Ended::Unbounded(_) => Solved::Unbounded,
+            Ended::Unbounded(direction) => Solved::Unbounded(direction),
             Ended::Iterations if self.simplex.is_beyond_cutoff() => Solved::Cutoff,
             Ended::Failed => Solved::Failed,
             ended => Solved::Stopped(ended),

@@ -136,7 +136,7 @@ impl Relaxation for Nonlinear {
                     return Solved::Value(value);
                 }
                 S::Infeasible | S::InfeasibleNoSolution => return Solved::Infeasible,
-                S::Unbounded | S::UnboundedNoSolution => return Solved::Unbounded,
+                S::Unbounded | S::UnboundedNoSolution => return Solved::Unbounded(Vec::new()),
                 // from elsewhere it may be feasible
                 S::LocallyInfeasible if self.rooted && self.again >= AGAIN => {
                     return Solved::Infeasible;

@@ -13,8 +13,8 @@ pub enum Solved {
     Infeasible,
     /// Its value is above the cutoff.
     Cutoff,
-    /// Unbounded.
-    Unbounded,
+    /// Unbounded along this direction; empty where it is not known.
+    Unbounded(Vec<f64>),
     /// Numbers broke down: nothing is known.
     Failed,
     /// A limit.

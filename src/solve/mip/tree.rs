@@ -547,12 +547,17 @@ impl<'a, R: Relaxation> Search<'a, R> {
     fn evaluate(&mut self, node: &mut Node<R::Start>, control: &mut Control) -> Evaluated {
         let mut resolves = 0;
         loop {
-            let solved = self.relaxation.solve(self.cutoff(), control);
+            // Below an unbounded relaxation the basis is not dual feasible: its value on the way bounds nothing.
+            let cutoff = match node.depth > 0 && !node.bound.is_finite() {
+                true => f64::INFINITY,
+                false => self.cutoff(),
+            };
+            let solved = self.relaxation.solve(cutoff, control);
             let value = match solved {
                 Solved::Value(v) => v,
                 Solved::Cutoff => return Evaluated::Leaf("bound"),
                 Solved::Infeasible => return Evaluated::Leaf("infeasible"),
-                Solved::Unbounded => return Evaluated::Ended(End::Unbounded),
+                Solved::Unbounded(d) => return self.follow(node, &d, control),
                 Solved::Stopped(why) => return Evaluated::Ended(End::Stopped(why)),
                 // Nothing is known: what is below is looked at with the parent's bound, while there is something to branch on.
                 Solved::Failed => node.bound,
@@ -623,6 +628,21 @@ impl<'a, R: Relaxation> Search<'a, R> {
                     };
                 }
             }
+        }
+    }
+
+    /// What to do where the relaxation is unbounded along a direction: an ordered set that forbids it is divided.
+    fn follow(&mut self, node: &Node<R::Start>, d: &[f64], control: &mut Control) -> Evaluated {
+        let far: Vec<f64> = self
+            .relaxation
+            .x()
+            .iter()
+            .zip(d)
+            .map(|(x, d)| x.abs() + d.abs())
+            .collect();
+        match self.branch_on_set(&far, node.bound, 1, control) {
+            Some(branch) => Evaluated::Divided(branch),
+            None => Evaluated::Ended(End::Unbounded),
         }
     }
 

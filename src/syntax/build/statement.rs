@@ -344,6 +344,10 @@ impl Builder<'_> {
                     }
                     OptionForm::Match(sets)
                 }
+                Rule::option_permute => match p.into_inner().next() {
+                    Some(set) => OptionForm::Permute(self.ident(&set)),
+                    None => OptionForm::Flag,
+                },
                 _ => {
                     let (mut from_left, mut source, mut from) = (false, None, None);
                     for q in p.into_inner() {
