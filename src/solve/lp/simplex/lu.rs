@@ -507,8 +507,10 @@ pub(super) struct Lu {
     nonzeros: usize,
     work: Spread,
     reach: Reach,
-    /// The last entering column and what L made of it; the last row of U's inverse and its pivot.
-    column: (Vec<(usize, f64)>, Vec<(u32, f64)>),
+    /// The last entering column, and what L made of it.
+    entering: Vec<(usize, f64)>,
+    spike: Vec<(u32, f64)>,
+    /// The last row of U's inverse and its pivot.
     row: (u32, Vec<(u32, f64)>),
 }
 
@@ -598,7 +600,8 @@ impl Lu {
                 marked: vec![false; m],
                 ..Reach::default()
             },
-            column: Default::default(),
+            entering: Vec::new(),
+            spike: Vec::new(),
             row: (NONE, Vec::new()),
         })
     }
@@ -660,9 +663,9 @@ impl Lu {
         let kind = 2 * usize::from(enters);
         self.forward_lower(kind, DROP);
         if enters {
-            self.column.0.clear();
-            self.column.0.extend_from_slice(a);
-            self.column.1 = self.work.entries();
+            self.entering.clear();
+            self.entering.extend_from_slice(a);
+            self.spike = self.work.entries();
         }
         self.forward_upper(kind + 1, DROP);
         x.clear();
@@ -719,10 +722,10 @@ impl Lu {
     /// Replaces the column in a slot. False: it is not done, for the pivot would be noise.
     pub(super) fn replace(&mut self, slot: usize, column: &[(usize, f64)]) -> bool {
         let p = self.row_of_slot[slot];
-        if self.column.0 != column {
+        if self.entering != column {
             column.iter().for_each(|&(i, v)| self.work.add(i, v));
             self.forward_lower(2, DROP);
-            self.column.1 = self.work.entries();
+            self.spike = self.work.entries();
             self.work.drain(|_, _| {});
         }
         if self.row.0 != p {
@@ -732,10 +735,10 @@ impl Lu {
             self.work.drain(|_, _| {});
         }
         let (spike, row) = (
-            std::mem::take(&mut self.column.1),
+            std::mem::take(&mut self.spike),
             std::mem::take(&mut self.row.1),
         );
-        self.column.0.clear();
+        self.entering.clear();
         self.row.0 = NONE;
         // The row without the others: its entry in the new column is the new pivot.
         let old = self.pivot[p as usize];
