@@ -17,7 +17,7 @@
 //! refinement reaches 1e-12, and an objective that was right to 5 digits is right to 10. (Balancing the two
 //! terms, κ/β = |x|/|z|, leaves an error some hundred times larger: measured on walls, where it is the
 //! larger side that must not be disturbed.) A few iterations tell |x|/|z|: on walls they are the rough solution; where the two
-//! are alike, as in most programs of Netlib, the units stay, and digits beyond 1e-10 are left to the simplex method.
+//! are alike, as in most programs of Netlib, the units stay, and digits beyond 1e-8 are left to the simplex method.
 
 #[cfg(feature = "system")]
 use std::sync::{Mutex, mpsc};
@@ -63,7 +63,7 @@ pub enum Aim {
 
 /// The tolerance for [`Aim::Digits`] in units of its own, and in those of the problem.
 const FINE: f64 = 1e-12;
-const USUAL: f64 = 1e-10;
+const USUAL: f64 = 1e-8;
 
 /// The rough solution before it: its tolerance, and its iterations at most (4 and 5 on walls).
 const ROUGH: f64 = 1e-4;

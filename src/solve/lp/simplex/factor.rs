@@ -1,15 +1,22 @@
-//! The basis matrix: its [LU](super::lu), and what several engines share of it.
+//! The basis matrix: sparse LU with Forrest–Tomlin updates, by `feral`.
+//!
+//! A column of A that makes the basis singular is noticed by a *marked* pivot: `feral` is told to
+//! put a known number where no pivot is large enough, and the factor is then searched for it. The
+//! marked column is replaced by the logical of the row that it left without a pivot.
 //!
 //! A copy shares the LU. Columns that are replaced while it is shared stand in product form beside it,
 //! B = B₀ E₁ ⋯ E_k with E_i a unit matrix but for one column, so that many short runs from one basis cost
 //! neither a copy nor an update of the LU.
 
-use super::lu::{Broken, Lu};
+use feral::lu::{LuParams, LuSingularAction, SparseColMatrix, SparseLu};
 use std::cell::RefCell;
 use std::rc::Rc;
 
+/// Stands in U where no pivot was found. A number that no data gives.
+const MARK: f64 = 0.987_654_321_012_345_6;
+
 /// Updates before a fresh factorisation.
-const MOST_UPDATES: usize = 100;
+const MOST_UPDATES: usize = 150;
 
 /// A column as row–value pairs.
 pub(crate) type Entries = Vec<(usize, f64)>;
@@ -17,7 +24,7 @@ pub(crate) type Entries = Vec<(usize, f64)>;
 /// A factorised basis.
 #[derive(Clone)]
 pub(crate) struct Factor {
-    lu: Rc<RefCell<Lu>>,
+    lu: Rc<RefCell<SparseLu>>,
     /// Replacements since the LU is shared.
     etas: Vec<Eta>,
     /// Nonzeros of the factor when it was fresh.
@@ -49,6 +56,15 @@ pub(crate) enum Failure {
 /// A smaller pivot is none, usually.
 pub(crate) const ZERO: f64 = 1e-11;
 
+fn parameters(zero: f64) -> LuParams {
+    LuParams {
+        max_updates: MOST_UPDATES,
+        zero_pivot_tol: zero,
+        on_singular: LuSingularAction::PerturbToEps { abs_floor: MARK },
+        ..LuParams::default()
+    }
+}
+
 impl Factor {
     /// Factorises the matrix with these columns.
     pub(crate) fn new(m: usize, columns: &[Entries]) -> Result<Self, Failure> {
@@ -61,12 +77,19 @@ impl Factor {
         m: usize,
         columns: &[Entries],
     ) -> Result<Self, Failure> {
-        let lu = Lu::new(m, columns, zero).map_err(|broken| match broken {
-            Broken::Dependent(left) => Failure::Dependent(left),
-            Broken::Numbers => Failure::Numbers,
-        })?;
+        let matrix =
+            SparseColMatrix::from_sparse_columns(m, columns).map_err(|_| Failure::Numbers)?;
+        let lu =
+            SparseLu::factor_markowitz(&matrix, parameters(zero)).map_err(|_| Failure::Numbers)?;
+        let dependent: Vec<(usize, usize)> = (0..m)
+            .filter(|&k| lu.u_dense(k, k).abs() == MARK)
+            .map(|k| (lu.qcol()[k], lu.perm()[k]))
+            .collect();
+        if !dependent.is_empty() {
+            return Err(Failure::Dependent(dependent));
+        }
         Ok(Self {
-            fresh: lu.nonzeros(),
+            fresh: lu.factor_nnz(),
             lu: Rc::new(RefCell::new(lu)),
             etas: Vec::new(),
             solution: Vec::new(),
@@ -76,19 +99,8 @@ impl Factor {
 
     /// Solves B x = a. None if the factor has broken down.
     pub(crate) fn forward(&mut self, a: &[(usize, f64)]) -> Option<&Entries> {
-        self.solve_forward(a, false)
-    }
-
-    /// The same for a column that may replace one of the basis next, which costs less then.
-    pub(crate) fn forward_entering(&mut self, a: &[(usize, f64)]) -> Option<&Entries> {
-        self.solve_forward(a, true)
-    }
-
-    fn solve_forward(&mut self, a: &[(usize, f64)], enters: bool) -> Option<&Entries> {
         let mut lu = self.lu.borrow_mut();
-        if !lu.forward(a, enters, &mut self.solution) {
-            return None;
-        }
+        lu.ftran_sparse(a, &mut self.solution).ok()?;
         if !self.etas.is_empty() {
             let (x, work) = (&mut self.solution, &mut self.work);
             x.iter().for_each(|&(k, v)| work[k] = v);
@@ -100,6 +112,7 @@ impl Factor {
                     eta.forward(work);
                 }
             }
+            x.sort_unstable_by_key(|e| e.0);
             x.retain_mut(|(k, v)| {
                 *v = std::mem::take(&mut work[*k]);
                 *v != 0.0
@@ -112,8 +125,8 @@ impl Factor {
     pub(crate) fn backward(&mut self, a: &[(usize, f64)]) -> Option<&Entries> {
         let mut lu = self.lu.borrow_mut();
         if self.etas.is_empty() {
-            let good = lu.backward(a, &mut self.solution);
-            return good.then_some(&self.solution);
+            lu.btran_sparse(a, &mut self.solution).ok()?;
+            return Some(&self.solution);
         }
         let work = &mut self.work;
         a.iter().for_each(|&(k, v)| work[k] = v);
@@ -126,18 +139,13 @@ impl Factor {
         touched.dedup();
         let rest = |k: usize| (k, std::mem::take(&mut work[k]));
         let rest: Entries = touched.into_iter().map(rest).collect();
-        let good = lu.backward(&rest, &mut self.solution);
-        good.then_some(&self.solution)
-    }
-
-    /// Hands over what the last sparse solve gave, for room to put the next one in.
-    pub(crate) fn hand_over(&mut self, to: &mut Entries) {
-        std::mem::swap(&mut self.solution, to);
+        lu.btran_sparse(&rest, &mut self.solution).ok()?;
+        Some(&self.solution)
     }
 
     /// Solves B x = a in place for a dense right-hand side.
     pub(crate) fn forward_dense(&mut self, a: &mut [f64]) -> Option<()> {
-        self.lu.borrow_mut().forward_dense(a);
+        self.lu.borrow_mut().ftran(a).ok()?;
         self.etas.iter().for_each(|eta| eta.forward(a));
         Some(())
     }
@@ -145,8 +153,7 @@ impl Factor {
     /// Solves Bᵀ y = a in place for a dense right-hand side.
     pub(crate) fn backward_dense(&mut self, a: &mut [f64]) -> Option<()> {
         self.etas.iter().rev().for_each(|eta| eta.backward(a));
-        self.lu.borrow_mut().backward_dense(a);
-        Some(())
+        self.lu.borrow_mut().btran(a).ok()
     }
 
     /// Replaces the column in a slot. False: factorise afresh.
@@ -154,12 +161,12 @@ impl Factor {
         if self.etas.is_empty()
             && let Some(lu) = Rc::get_mut(&mut self.lu)
         {
-            return lu.get_mut().replace(slot, column);
+            return lu.get_mut().update_sparse(slot, column).is_ok();
         }
         let Some(mut others) = self.forward(column).cloned() else {
             return false;
         };
-        let Some(at) = others.iter().position(|e| e.0 == slot) else {
+        let Ok(at) = others.binary_search_by_key(&slot, |e| e.0) else {
             return false;
         };
         let (_, pivot) = others.remove(at);
@@ -173,18 +180,24 @@ impl Factor {
 
     /// Numbers that a solve with a full right-hand side touches.
     pub(crate) fn nonzeros(&self) -> usize {
+        let lu = self.lu.borrow();
         let etas: usize = self.etas.iter().map(|e| 1 + e.others.len()).sum();
-        etas + self.lu.borrow().nonzeros()
+        etas + lu.eta_ops() + lu.factor_nnz()
     }
 
     /// Number of updates since the factorisation.
     pub(crate) fn updates(&self) -> usize {
-        self.lu.borrow().updates() + self.etas.len()
+        self.lu.borrow().updates_since_refactor() + self.etas.len()
     }
 
     /// Whether a fresh factorisation is due.
     pub(crate) fn is_worn(&self) -> bool {
-        self.updates() >= MOST_UPDATES || self.nonzeros() > 3 * self.fresh + 1000
+        let lu = self.lu.borrow();
+        // A factorisation costs hundreds of times what its nonzeros suggest, so the solves may grow
+        // a good deal before a fresh one pays.
+        lu.updates_since_refactor() + self.etas.len() >= MOST_UPDATES
+            || lu.should_refactor_growth()
+            || self.nonzeros() > 3 * self.fresh + 1000
     }
 }
 

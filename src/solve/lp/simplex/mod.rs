@@ -23,7 +23,6 @@
 
 mod dual;
 pub(in crate::solve) mod factor;
-mod lu;
 mod primal;
 pub mod push;
 mod unique;
@@ -47,10 +46,6 @@ const PIVOT: f64 = 1e-9;
 
 /// A pivot smaller than this is taken only on a fresh factor.
 const SAFE_PIVOT: f64 = 1e-6;
-
-/// Pivots after which their work is looked at, and the part of all work beyond which as many of them as there are rows are too dear.
-const WINDOW: u64 = 300;
-const PACE: f64 = 3.0;
 
 /// How a method ended.
 #[derive(Clone, Debug, PartialEq)]
@@ -107,18 +102,7 @@ pub struct Simplex {
     /// Pivot row, kept zero between uses.
     row: Vec<f64>,
     row_index: Vec<u32>,
-    /// Its largest entry.
-    row_top: f64,
-    /// Where the nonbasic variables are for the dual method: 1 at the lower bound, −1 at the upper one, 2 free, 0 fixed.
-    side: Vec<i8>,
-    /// Slots whose values a pivot of the dual method has changed.
-    touched: Vec<u32>,
-    /// How often the basis was factorised.
-    renewals: u64,
-    /// Room for the solutions of a dual pivot.
-    solutions: [Entries; 3],
-    /// One number for each slot, kept zero between uses.
-    scratch: Vec<f64>,
+    row_mark: Vec<bool>,
     /// Largest violation of a bound that counts as none.
     pub tolerance: f64,
     /// Largest violation of a reduced cost's sign that counts as none.
@@ -133,14 +117,10 @@ pub struct Simplex {
     /// The dual method has a first phase in boxes; without it shifted costs, which the primal method mends, as soon in
     /// small programs and near a solution.
     pub boxes: bool,
-    /// Gives up, as at an iteration limit, when [`Simplex::work`] is more than this, or is to be 1/[`PACE`] of it in as
-    /// many pivots as there are rows.
+    /// Gives up, as at an iteration limit, when [`Simplex::work`] is more than this, or would be after as many pivots as there are rows.
     pub most_work: f64,
-    /// Numbers that the pivots have touched, about; and those that one has, in the last [`WINDOW`] of them.
+    /// Numbers that the pivots have touched, about.
     work: f64,
-    rate: f64,
-    /// Iterations and work where that window ended.
-    looked: (u64, f64),
     /// A factor that was updated at most so often counts as fresh.
     pub trusted: usize,
     /// The pivots, where they are asked for.
@@ -180,12 +160,7 @@ impl Simplex {
             devex: vec![1.0; total],
             row: vec![0.0; total],
             row_index: Vec::new(),
-            row_top: 0.0,
-            solutions: Default::default(),
-            side: vec![0; total],
-            touched: Vec::new(),
-            renewals: 0,
-            scratch: vec![0.0; m],
+            row_mark: vec![false; total],
             tolerance: 1e-9,
             dual_tolerance: 1e-9,
             iterations: 0,
@@ -194,8 +169,6 @@ impl Simplex {
             boxes: false,
             most_work: f64::INFINITY,
             work: 0.0,
-            rate: 0.0,
-            looked: (0, 0.0),
             trusted: 0,
             pivots: None,
             perturb: true,
@@ -301,7 +274,6 @@ impl Simplex {
     /// Factorises the basis, replacing dependent columns by logicals, and computes values and
     /// reduced costs afresh. None: numbers broke down.
     fn refactor(&mut self) -> Option<()> {
-        self.renewals += 1;
         for _ in 0..20 {
             let columns: Vec<Entries> =
                 self.head.iter().map(|&j| self.column(j as usize)).collect();
@@ -723,61 +695,34 @@ impl Simplex {
     fn pivot_row(&mut self, rho: &[(usize, f64)]) {
         for &j in &self.row_index {
             self.row[j as usize] = 0.0;
+            self.row_mark[j as usize] = false;
         }
         self.row_index.clear();
-        let lengths = rho.iter().map(|e| self.rows.line(e.0).len());
-        let length: usize = lengths.sum();
-        self.work += length as f64;
-        match length > self.n {
-            true => self.full_pivot_row(rho),
-            false => self.sparse_pivot_row(rho),
-        }
-        let entries = self.row_index.iter().map(|&j| self.row[j as usize].abs());
-        self.row_top = entries.fold(0.0, f64::max);
-    }
-
-    fn sparse_pivot_row(&mut self, rho: &[(usize, f64)]) {
-        let (row, slot) = (&mut self.row[..], &self.slot[..]);
         for &(i, r) in rho {
+            self.work += self.rows.line(i).len() as f64;
             for (j, a) in self.rows.line(i) {
-                if slot[j] == NONBASIC {
-                    let before = row[j];
-                    if before == 0.0 {
+                if self.slot[j] == NONBASIC {
+                    if !self.row_mark[j] {
+                        self.row_mark[j] = true;
                         self.row_index.push(j as u32);
                     }
-                    // What cancels stays marked as listed.
-                    let v = before + r * a;
-                    row[j] = if v == 0.0 { f64::MIN_POSITIVE } else { v };
+                    self.row[j] += r * a;
                 }
             }
             let logical = self.n + i;
-            if slot[logical] == NONBASIC {
+            if self.slot[logical] == NONBASIC {
                 self.row_index.push(logical as u32);
-                row[logical] = -r;
-            }
-        }
-    }
-
-    /// The same where most entries of the row are met several times.
-    fn full_pivot_row(&mut self, rho: &[(usize, f64)]) {
-        let row = &mut self.row[..];
-        for &(i, r) in rho {
-            self.rows.line(i).for_each(|(j, a)| row[j] += r * a);
-            row[self.n + i] = -r;
-        }
-        for (j, (v, &slot)) in row.iter_mut().zip(&self.slot).enumerate() {
-            if slot != NONBASIC {
-                *v = 0.0;
-            } else if *v != 0.0 {
-                self.row_index.push(j as u32);
+                self.row[logical] = -r;
             }
         }
     }
 
     /// Whether this is as far as it may go.
     fn is_spent(&self) -> bool {
-        let for_rows = self.rate * self.m as f64;
-        self.iterations >= self.limit || self.work.max(PACE * for_rows) > self.most_work
+        // The first pivots tell little.
+        let pivots = self.iterations.max(200) as f64;
+        let projected = self.work * (self.m as f64 / pivots).max(1.0);
+        self.iterations >= self.limit || projected > self.most_work
     }
 
     /// Adds the work of a pivot: `passed` numbers, and sparse solves whose solutions have so many `entries`.
@@ -785,11 +730,6 @@ impl Simplex {
         let factor = self.factor.as_ref().map_or(0, Factor::nonzeros) as f64;
         let solves = entries as f64 * (1.0 + factor / self.m as f64);
         self.work += (passed + self.row_index.len()) as f64 + solves;
-        let (at, work) = self.looked;
-        if self.iterations >= at + WINDOW {
-            self.rate = (self.work - work) / (self.iterations - at) as f64;
-            self.looked = (self.iterations, self.work);
-        }
     }
 
     /// Replaces the variable in a slot; `column` is the entering one's. Factorises afresh when that

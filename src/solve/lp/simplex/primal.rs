@@ -45,10 +45,7 @@ impl Simplex {
                 continue;
             };
             let a_q = self.column(entering);
-            let column = self
-                .factor
-                .as_mut()
-                .and_then(|f| f.forward_entering(&a_q).cloned());
+            let column = self.factor.as_mut().and_then(|f| f.forward(&a_q).cloned());
             let Some(column) = column else {
                 if fresh || self.refactor().is_none() {
                     return Stop::Ended(Ended::Failed);

@@ -25,6 +25,13 @@ const OUTSIDE: f64 = 1e-6;
 /// Weight of a row whose logical may well be basic.
 const UNHELD: f64 = 1.0 / 4096.0;
 
+/// Entries of a column that only makes a matrix square. The search for pivots looks at the columns with the fewest
+/// entries first, so empty ones would be in its way at every step.
+const PADDING: usize = 4;
+
+/// Such an entry: not 0, but too small for a pivot.
+const NO_PIVOT: f64 = 1e-200;
+
 /// Where a crossover begins: one entry per column, then one per row.
 #[derive(Clone, Debug)]
 pub struct Start {
@@ -100,15 +107,21 @@ impl Simplex {
             column.map(|(i, a)| (i, a * weight(i))).collect()
         };
         let mut columns: Vec<Entries> = inside.iter().map(weighted).collect();
-        // Empty ones make the matrix square.
-        columns.resize(self.m, Vec::new());
+        let padding = (0..self.m - columns.len()).map(|k| {
+            let rows = (k * PADDING..).take(PADDING.min(self.m));
+            rows.map(|i| (i % self.m, NO_PIVOT)).collect()
+        });
+        let padding: Vec<Entries> = padding.collect();
+        columns.extend(padding);
         let left = match Factor::new(self.m, &columns) {
             Err(Failure::Dependent(left)) => left,
+            // What is inside has hardly an entry: paddings were pivots.
             Ok(_) => return self.refactor(),
             Err(Failure::Numbers) => return None,
         };
+        let paddings = left.iter().filter(|l| l.0 >= inside.len()).count();
         let taken = left.iter().any(|&(_, row)| start.inside[self.n + row]);
-        if taken {
+        if paddings < self.m - inside.len() || taken {
             return self.refactor();
         }
         self.head = inside;
