@@ -238,16 +238,19 @@ fn who_waits_is_told_before_a_solver_begins() {
 #[test]
 fn a_folder_of_files() {
     let wall = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/wall.blk");
-    let control = Control::new();
+    let told = Arc::new(Mutex::new(String::new()));
+    let heard = told.clone();
+    let options =
+        Options::default().on_progress(move |m| heard.lock().expect("one thread").push_str(m));
     let model = Model::from_file(&wall).expect("the flagship");
-    let run = model.run(&Options::default().control(&control));
+    let run = model.run(&options);
     assert_eq!(run.messages(), "");
     assert!(
         run.level("alpha", [])
             .is_ok_and(|a| (a - 0.642_859_003).abs() < 1e-8)
     );
     assert!(run.figures().any(|(name, _)| name == "wall.svg"));
-    assert!(control.progress().message.contains("kinematic"));
+    assert!(told.lock().expect("one thread").contains("kinematic"));
 }
 
 /// Texts of data that make a difference while the text is read.

@@ -272,6 +272,16 @@ mod tests {
             host.read("lib", Some(&known)),
             Err(HostError::Other(_))
         ));
+        // folders of a model from Windows
+        assert!(
+            host.read(r"lib\a.blk", None)
+                .is_ok_and(|(_, text)| text == "set a;")
+        );
+        assert!(host.exists(r"..\model\lib\a.blk", None));
+        assert!(matches!(
+            host.read(r"..\secret.blk", Some(&known)),
+            Err(HostError::Outside(_))
+        ));
         assert_eq!(host.read("bad.blk", None), Err(HostError::NotUtf8(2)));
         assert!(host.exists("./lib/a.blk", None) && !host.exists("../secret.blk", None));
         #[cfg(unix)]

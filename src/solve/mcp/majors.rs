@@ -27,6 +27,8 @@ use super::run::{End, Point, Run, StallCounter, Stop};
 
 /// Armijo constant of the M test and of the line search.
 const ARMIJO: f64 = 1e-4;
+/// Number of variables up to which the slack start is tried early.
+const SLACK_START: usize = 1000;
 /// Number of variables from which the crash is interior: one step of it replaces many pivots.
 pub(super) const INTERIOR: usize = 600;
 /// Number of variables from which long paths are avoided near a solution.
@@ -282,7 +284,7 @@ impl Majors {
                 if polish {
                     start.tolerance = HARRIS_CLOSE;
                 }
-                if (polish || near) && level > 2 {
+                if (polish || near) && (start.cover || level > 2) {
                     continue;
                 }
                 tries += 1;
@@ -302,7 +304,7 @@ impl Majors {
                     kind,
                     pivots,
                 } = result;
-                log::try_line(run, end, t, v, pivots);
+                log::try_line(run, end, t, v, pivots, start.cover);
                 match end {
                     PathEnd::Solved => {
                         let off = x.iter().zip(&self.point.x).map(|(a, b)| (a - b).powi(2));
@@ -404,6 +406,7 @@ impl Majors {
         starts.push(Start {
             kind: near.clone(),
             x: x.clone(),
+            cover: false,
             tolerance: HARRIS,
         });
         if level == 0 {
@@ -424,9 +427,35 @@ impl Majors {
                 starts.push(Start {
                     kind,
                     x: x.clone(),
+                    cover: false,
                     tolerance: HARRIS,
                 });
             }
+        }
+        // From the slacks the path is as long as the solution has variables off their bounds: the way
+        // out where n is small, and the last resort where it is large.
+        if if run.n <= SLACK_START {
+            level <= 1
+        } else {
+            level == 4
+        } {
+            let kind = (0..run.n)
+                .map(|i| {
+                    if run.lower[i].is_finite() {
+                        Kind::AtLower
+                    } else if run.upper[i].is_finite() {
+                        Kind::AtUpper
+                    } else {
+                        Kind::Between
+                    }
+                })
+                .collect();
+            starts.push(Start {
+                kind,
+                x: x.clone(),
+                cover: true,
+                tolerance: HARRIS,
+            });
         }
         starts
     }
