@@ -14,6 +14,7 @@ use crate::diag::Diagnostic;
 use crate::model::instance::Function;
 use crate::report::textfile::Item;
 use crate::source::Span;
+use rustc_hash::FxHashSet;
 
 /// Labels in the slots.
 pub type Frame = Vec<Label>;
@@ -263,7 +264,7 @@ impl Machine<'_> {
                     .map_or(0.0, |r| f64::from(r) + 1.0),
                 None => 0.0,
             },
-            NodeKind::Card(t) => self.store.table(*t).len() as f64,
+            NodeKind::Card(t) => self.count(*t) as f64,
             NodeKind::SameAs(a, b) => {
                 let (a, b) = (self.part(a, frame), self.part(b, frame));
                 f64::from(u8::from(a.is_some() && a == b))
@@ -441,6 +442,22 @@ impl Machine<'_> {
                 }
             }
         }
+    }
+
+    /// Records of a symbol. A variable or an equation has one where any attribute is not at its default, and for each column or
+    /// row of the last solve until levels or marginals are assigned.
+    fn count(&self, table: TableId) -> usize {
+        let first = self.store.table(table);
+        let symbol = self.table_symbol(table).map(|s| (s, self.symbols.get(s)));
+        let Some((s, symbol)) = symbol.filter(|(_, s)| s.has_attributes() && s.dim() > 0) else {
+            return first.len();
+        };
+        let tables = (0..attribute::COUNT).map(|a| self.store.table(symbol.table + a));
+        let stored = tables.flat_map(|t| t.iter().map(|(key, _)| key));
+        let generated = self.generated.get(&s).map_or(&[][..], |keys| keys);
+        let keys: FxHashSet<&[Label]> =
+            stored.chain(generated.chunks_exact(symbol.dim())).collect();
+        keys.len()
     }
 
     fn data_call(&self, f: DataFunction, a: &[f64], span: Span) -> f64 {

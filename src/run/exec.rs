@@ -148,7 +148,10 @@ impl Machine<'_> {
             }
             CodeKind::Solve(s) => return self.solve(s, c.span, frame),
             CodeKind::Option(name, value) => self.set_option(name, value),
-            CodeKind::Clear(s, attribute) => self.store.clear(self.symbols.get(*s), *attribute),
+            CodeKind::Clear(s, attribute) => {
+                self.generated.remove(s);
+                self.store.clear(self.symbols.get(*s), *attribute);
+            }
             CodeKind::Format(s, numbers) => {
                 // Decimals alone leave the layout as it is.
                 let format = self.formats.entry(*s).or_default();
@@ -304,7 +307,13 @@ impl Machine<'_> {
         frame: &mut Frame,
     ) {
         let value = right.value;
-        let symbol = self.target_table(target).and_then(|t| self.table_symbol(t));
+        let table = self.target_table(target);
+        let symbol = table.and_then(|t| self.table_symbol(t));
+        if let (Some(s), Target::Table(t)) = (symbol, target)
+            && [attribute::L, attribute::M].contains(&(t - self.symbols.get(s).table))
+        {
+            self.generated.remove(&s);
+        }
         if domain.slots.is_empty() {
             if let Some(s) = symbol {
                 self.assign_one(s, domain, target, key, right, frame);

@@ -82,6 +82,8 @@ pub struct Machine<'h> {
     pub options: Options,
     /// State of each model.
     pub models: FxHashMap<SymbolId, ModelState>,
+    /// Keys of the columns and rows of the last solve, by symbol: they are records until levels or marginals are assigned.
+    generated: FxHashMap<SymbolId, Vec<Label>>,
     /// `option p:d:r:c`
     pub formats: FxHashMap<SymbolId, Vec<i64>>,
     /// Ranges of linear programs, where `option ranging` asks for them.
@@ -157,6 +159,7 @@ impl<'h> Machine<'h> {
             options,
             passed_over: FxHashSet::default(),
             models: FxHashMap::default(),
+            generated: FxHashMap::default(),
             formats: FxHashMap::default(),
             ranges: FxHashMap::default(),
             kept: Vec::new(),

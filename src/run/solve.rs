@@ -500,6 +500,9 @@ impl Machine<'_> {
             }
         };
         write(&g.origin.columns, attribute::L, &a.outcome.level);
+        for b in g.origin.columns.list.iter().chain(&g.origin.rows.list) {
+            self.generated.insert(b.symbol, b.keys.clone());
+        }
         let (columns, rows) = (&g.instance.columns, &g.instance.rows);
         let optimal = g.instance.matched.is_none()
             && g.instance.objective.is_some()
