@@ -97,14 +97,7 @@ enum Source {
 /// columns. The budget is asked every few milliseconds; a factorisation that it does not afford is not begun.
 pub fn solve(p: &Problem, hessian: Option<&Sparse>, aim: Aim, budget: &Budget) -> Run {
     let fixed: Vec<bool> = (0..p.n()).map(|j| p.lower[j] == p.upper[j]).collect();
-    let number: Vec<usize> = fixed
-        .iter()
-        .scan(0, |next, &f| {
-            let k = *next;
-            *next += usize::from(!f);
-            Some(k)
-        })
-        .collect();
+    let number = numbers(&fixed);
     let free = fixed.iter().filter(|&&f| !f).count();
     let mut q: Vec<f64> = (0..p.n())
         .filter(|&j| !fixed[j])
@@ -131,37 +124,29 @@ pub fn solve(p: &Problem, hessian: Option<&Sparse>, aim: Aim, budget: &Budget) -
     .into_iter()
     .filter(|c| !matches!(c, ZeroConeT(0) | NonnegativeConeT(0)))
     .collect();
-    let settings = DefaultSettings {
-        verbose: false,
-        max_iter: u32::try_from(budget.iterations_left().min(500)).unwrap_or(500),
-        time_limit: budget.seconds_left(),
-        direct_solve_method: "auto".into(),
-        max_threads: 1,
-        // Clarabel's own presolve drops rows with |b| ≥ 1e20; infinite sides are not sent.
-        presolve_enable: false,
-        ..DefaultSettings::default()
-    };
+    let settings = settings(budget);
     let asked = |tolerance| DefaultSettings {
         tol_gap_abs: tolerance,
         tol_gap_rel: tolerance,
         tol_feas: tolerance,
         ..settings.clone()
     };
-    let point = Point {
+    let mut point = Point {
         x: (0..p.n())
             .map(|j| if fixed[j] { p.lower[j] } else { 0.0 })
             .collect(),
         y: vec![0.0; p.m()],
         d: vec![0.0; p.n()],
     };
+    let without = |point, ended, iterations| Run {
+        point,
+        ended,
+        iterations,
+        almost: false,
+    };
     if let Err(why) = budget.affords(|| kkt_size(&a, hessian, free)) {
         budget.log(format!("clarabel: {why}"));
-        return Run {
-            point,
-            ended: Ended::TooLarge(why),
-            iterations: 0,
-            almost: false,
-        };
+        return without(point, Ended::TooLarge(why), 0);
     }
     let objective = match hessian {
         None => CscMatrix::zeros((free, free)),
@@ -198,34 +183,17 @@ pub fn solve(p: &Problem, hessian: Option<&Sparse>, aim: Aim, budget: &Budget) -
         Some(solver.solution)
     };
     let solution = asking(budget, run);
-    let mut point = point;
     let Some(solution) = solution else {
-        return Run {
-            point,
-            ended: Ended::Failed,
-            iterations: 0,
-            almost: false,
-        };
+        return without(point, Ended::Failed, 0);
     };
     let iterations = u64::from(solution.iterations);
     if !solution.x.iter().chain(&solution.z).all(|v| v.is_finite()) {
-        return Run {
-            point,
-            ended: Ended::Failed,
-            iterations,
-            almost: false,
-        };
+        return without(point, Ended::Failed, iterations);
     }
     for j in (0..p.n()).filter(|&j| !fixed[j]) {
         point.x[j] = solution.x[number[j]];
     }
-    for (&source, &z) in sources.iter().zip(&solution.z) {
-        match source {
-            Source::Equation(i) | Source::RowUpper(i) => point.y[i] -= z,
-            Source::RowLower(i) => point.y[i] += z,
-            Source::Upper(_) | Source::Lower(_) => {}
-        }
-    }
+    point.y = row_multipliers(&sources, &solution.z, p.m());
     let (ended, almost) = ended(solution.status, &point, &fixed, budget);
     point.d = reduced_costs(p, hessian, &point);
     Run {
@@ -233,6 +201,43 @@ pub fn solve(p: &Problem, hessian: Option<&Sparse>, aim: Aim, budget: &Budget) -
         ended,
         iterations,
         almost,
+    }
+}
+
+/// Multipliers of the rows from those of the inequalities and equations.
+fn row_multipliers(sources: &[Source], z: &[f64], rows: usize) -> Vec<f64> {
+    let mut y = vec![0.0; rows];
+    for (&source, &z) in sources.iter().zip(z) {
+        match source {
+            Source::Equation(i) | Source::RowUpper(i) => y[i] -= z,
+            Source::RowLower(i) => y[i] += z,
+            Source::Upper(_) | Source::Lower(_) => {}
+        }
+    }
+    y
+}
+
+/// The place of each column among those that are not fixed.
+fn numbers(fixed: &[bool]) -> Vec<usize> {
+    let count = |next: &mut usize, &f: &bool| {
+        let k = *next;
+        *next += usize::from(!f);
+        Some(k)
+    };
+    fixed.iter().scan(0, count).collect()
+}
+
+/// What is asked of Clarabel, its tolerances aside.
+fn settings(budget: &Budget) -> DefaultSettings<f64> {
+    DefaultSettings {
+        verbose: false,
+        max_iter: u32::try_from(budget.iterations_left().min(500)).unwrap_or(500),
+        time_limit: budget.seconds_left(),
+        direct_solve_method: "auto".into(),
+        max_threads: 1,
+        // Clarabel's own presolve drops rows with |b| ≥ 1e20; infinite sides are not sent.
+        presolve_enable: false,
+        ..DefaultSettings::default()
     }
 }
 

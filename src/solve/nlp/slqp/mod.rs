@@ -423,20 +423,22 @@ impl Method<'_, '_> {
         }
     }
 
-    /// A step from the solution of the linear program, if it lessens φ; the working set if that may stay.
-    fn step(&mut self, linear: Step) -> Result<Option<Working>, End> {
+    /// Multipliers to begin with: of rows that are new the linear program knows more.
+    fn expected(&self, linear: &Step) -> Vec<f64> {
         let working = &linear.working;
-        let largest = |l: &[f64]| l.iter().fold(0.0_f64, |t, v| t.max(v.abs()));
-        let mut needed = 2.0 * largest(&linear.lambda);
-        // of rows that are new the linear program knows more
-        let lambda: Vec<f64> = (0..self.frame.m)
+        (0..self.frame.m)
             .map(|i| match (working.row[i], self.lambda[i]) {
                 (None, _) => working.pull[i],
                 (Some(_), 0.0) => linear.lambda[i],
                 (Some(_), l) => l,
             })
-            .collect();
-        let (hessian, quadratic) = match self.refused.take() {
+            .collect()
+    }
+
+    /// The Hessian with these multipliers, and the quadratic program on a working set: those of a refused step where it was made of
+    /// the same.
+    fn quadratic(&mut self, working: &Working, lambda: &[f64]) -> (Vec<Entry>, Option<Equality>) {
+        match self.refused.take() {
             Some(r) if r.working == *working && r.lambda == lambda => {
                 (r.hessian, Some(r.quadratic))
             }
@@ -444,12 +446,21 @@ impl Method<'_, '_> {
                 if let Some(refused) = refused {
                     self.memory.factors = refused.quadratic.factors;
                 }
-                let hessian = self.at.hessian(self.nlp, &self.frame, &lambda);
+                let hessian = self.at.hessian(self.nlp, &self.frame, lambda);
                 let (frame, memory) = (&self.frame, &mut self.memory);
                 let new = Equality::new(frame, &self.at, &hessian, working, ANY, memory);
                 (hessian, new)
             }
-        };
+        }
+    }
+
+    /// A step from the solution of the linear program, if it lessens φ; the working set if that may stay.
+    fn step(&mut self, linear: Step) -> Result<Option<Working>, End> {
+        let working = &linear.working;
+        let largest = |l: &[f64]| l.iter().fold(0.0_f64, |t, v| t.max(v.abs()));
+        let mut needed = 2.0 * largest(&linear.lambda);
+        let lambda = self.expected(&linear);
+        let (hessian, quadratic) = self.quadratic(working, &lambda);
         if let Some(q) = &quadratic
             && !q.shifted
         {
