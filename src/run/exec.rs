@@ -307,8 +307,7 @@ impl Machine<'_> {
         frame: &mut Frame,
     ) {
         let value = right.value;
-        let table = self.target_table(target);
-        let symbol = table.and_then(|t| self.table_symbol(t));
+        let symbol = self.target_table(target).and_then(|t| self.table_symbol(t));
         if let (Some(s), Target::Table(t)) = (symbol, target)
             && [attribute::L, attribute::M].contains(&(t - self.symbols.get(s).table))
         {
