@@ -23,7 +23,7 @@ use super::linear::{Kind, LinearProblem};
 use super::log;
 use super::merit::{phi, phi_slopes};
 use super::path::{HARRIS, HARRIS_CLOSE, PathEnd, PathResult, Start, follow};
-use super::run::{End, Point, Run, StallCounter, Stop};
+use super::run::{Point, Run, StallCounter, Stop};
 
 /// Armijo constant of the M test and of the line search.
 const ARMIJO: f64 = 1e-4;
@@ -67,14 +67,14 @@ pub(super) enum Crash {
 }
 
 /// Runs a crash and major iterations from `start`.
-pub(super) fn majors(run: &mut Run, start: Point, before: Crash) -> Result<End, Stop> {
+pub(super) fn majors(run: &mut Run, start: Point, before: Crash) -> Result<(), Stop> {
     let mut history = vec![start.merit];
     let mut point = start;
     if before != Crash::None && !run.polished(point.residual) {
         let crashed = if before == Crash::Interior {
             match interior(run, &point)?.filter(|p| p.residual < 1e-2 * point.residual) {
                 Some(found) => found,
-                None => return Ok(End::Stuck),
+                None => return Ok(()),
             }
         } else {
             crash(run, point.clone(), &mut history)?
@@ -149,7 +149,7 @@ impl Majors {
             .fold(0.0, |a, &b| f64::max(a, b))
     }
 
-    fn run(mut self, run: &mut Run) -> Result<End, Stop> {
+    fn run(mut self, run: &mut Run) -> Result<(), Stop> {
         log::major_header(run, &self.point);
         // More iterations after convergence: Newton's method doubles the digits.
         let mut polishing = 0;
@@ -166,21 +166,21 @@ impl Majors {
                 run.n > LARGE && self.best.residual <= run.settings.acceptable_tolerance;
             let long = run.pivots - pivots_then > most;
             if idle > STAGNATION || long || acceptable && idle > STAGNATION_NEAR {
-                return Ok(End::Stuck);
+                return Ok(());
             }
             if run.converged(self.point.residual) {
                 if polishing == POLISH_STEPS || run.polished(self.point.residual) {
-                    return Ok(End::Solved);
+                    return Ok(());
                 }
                 polishing += 1;
             }
             run.check()?;
             let Some(jacobian) = run.jacobian(&self.point.x) else {
                 if polishing > 0 {
-                    return Ok(End::Solved);
+                    return Ok(());
                 }
                 if !self.back(run, None)? {
-                    return Ok(End::Stuck);
+                    return Ok(());
                 }
                 continue;
             };
@@ -191,7 +191,7 @@ impl Majors {
             if polish {
                 match self.keep_if_better(run, candidate, run.pivots - pivots, tries) {
                     true => continue,
-                    false => return Ok(End::Solved),
+                    false => return Ok(()),
                 }
             }
             let Some(candidate) = candidate else {
@@ -207,7 +207,7 @@ impl Majors {
                     tries,
                 );
                 if !self.back(run, Some(&jacobian))? {
-                    return Ok(End::Stuck);
+                    return Ok(());
                 }
                 continue;
             };
@@ -217,17 +217,13 @@ impl Majors {
                 0
             };
             if self.doubtful > DOUBTFUL_LIMIT {
-                return Ok(End::Stuck);
+                return Ok(());
             }
             if !self.accept(run, candidate, &jacobian, run.pivots - pivots, tries)? {
-                return Ok(End::Stuck);
+                return Ok(());
             }
         }
-        Ok(if run.converged(self.point.residual) {
-            End::Solved
-        } else {
-            End::Limit
-        })
+        Ok(())
     }
 
     /// After convergence: keeps the step only if it is better. Whether another may follow.

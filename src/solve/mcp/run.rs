@@ -9,17 +9,6 @@ use super::{EvalError, Help, INFINITY, Problem, Settings};
 pub(super) use crate::solve::budget::Stop;
 use crate::solve::{Budget, Progress};
 
-/// How a method ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum End {
-    /// The natural residual is within the convergence tolerance at the best point.
-    Solved,
-    /// No progress any more.
-    Stuck,
-    /// The method's iteration limit.
-    Limit,
-}
-
 /// A point with its function values.
 #[derive(Debug, Clone)]
 pub(super) struct Point {
