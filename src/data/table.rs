@@ -230,6 +230,14 @@ impl Table {
             .map(|r| (&self.keys[r * self.dim..(r + 1) * self.dim], self.values[r]))
     }
 
+    /// Keys of all records, in no order; the table need not be tidy.
+    pub fn keys(&self) -> impl Iterator<Item = &[Label]> + '_ {
+        let alive = |&r: &usize| self.values[r] != self.default;
+        (0..self.values.len())
+            .filter(alive)
+            .map(|r| &self.keys[r * self.dim..(r + 1) * self.dim])
+    }
+
     /// The record with this key.
     #[inline]
     pub fn find(&self, key: &[Label]) -> Option<u32> {

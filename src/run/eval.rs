@@ -453,7 +453,7 @@ impl Machine<'_> {
             return first.len();
         };
         let tables = (0..attribute::COUNT).map(|a| self.store.table(symbol.table + a));
-        let stored = tables.flat_map(|t| t.iter().map(|(key, _)| key));
+        let stored = tables.flat_map(|t| t.keys());
         let generated = self.generated.get(&s).map_or(&[][..], |keys| keys);
         let keys: FxHashSet<&[Label]> =
             stored.chain(generated.chunks_exact(symbol.dim())).collect();

@@ -223,72 +223,92 @@ impl Mip {
         self.problem.cost.iter().zip(x).map(|(c, x)| c * x).sum()
     }
 
-    /// The step of the objective's values where only columns with integer values have costs; 0 if there is none.
-    pub fn granularity(&self) -> f64 {
-        let whole = self.implied_integers();
-        let costs: Vec<f64> = (0..whole.len())
-            .filter(|&j| {
-                self.problem.cost[j] != 0.0 && self.problem.lower[j] < self.problem.upper[j]
-            })
-            .map(|j| {
-                if whole[j] {
-                    self.problem.cost[j].abs()
-                } else {
-                    f64::NAN
-                }
-            })
-            .collect();
-        let Some(least) = costs.iter().copied().reduce(f64::min) else {
-            return 0.0;
-        };
-        if costs.iter().any(|c| c.is_nan()) {
-            return 0.0;
-        }
-        // decimal fractions, and multiples of the least cost
-        for unit in [
-            1.0,
-            0.1,
-            0.01,
-            0.001,
-            1e-4,
-            least,
-            least / 2.0,
-            least / 3.0,
-            1.0 / 32.0,
-        ] {
-            let whole = |c: &f64| {
-                let k = c / unit;
-                k < 1e9 && (k - k.round()).abs() < 1e-9 * k.max(1.0)
-            };
-            if costs.iter().all(whole) {
-                let mut gcd = 0u64;
-                for c in &costs {
-                    let (mut a, mut b) = (gcd, (c / unit).round() as u64);
-                    while b > 0 {
-                        (a, b) = (b, a % b);
-                    }
-                    gcd = a;
-                }
-                return unit * gcd as f64;
-            }
-        }
-        0.0
+    /// Columns with costs, and these.
+    pub fn costs(&self) -> impl Iterator<Item = (usize, f64)> {
+        let costs = self.problem.cost.iter().copied().enumerate();
+        costs.filter(|c| c.1 != 0.0)
     }
 
-    /// Columns that are integers, or must be: alone in an equation whose other columns are.
-    fn implied_integers(&self) -> Vec<bool> {
+    /// The step of the objective's values where only columns whose values have one have costs; 0 if there is none.
+    pub fn granularity(&self) -> f64 {
+        let steps = self.steps();
+        let open = |j: usize| self.problem.lower[j] < self.problem.upper[j];
+        let costs = self.costs().filter(|&(j, _)| open(j));
+        let known = |step: f64| if step > 0.0 { step } else { f64::NAN };
+        step_of(costs.map(|(j, c)| c * known(steps[j])))
+    }
+
+    /// Steps of columns: 1 of integers; of others the step of what rows of such columns leave for them; 0: there is none.
+    ///
+    /// A column alone among such columns in an equation has no other values. One for which this is so in all of its rows,
+    /// and whose bounds are multiples of its step, has a best value that is one: an end of what its rows leave.
+    fn steps(&self) -> Vec<f64> {
         let p = &self.problem;
-        let mut whole = self.integer.clone();
+        let mut step: Vec<f64> = self
+            .integer
+            .iter()
+            .map(|&i| f64::from(u8::from(i)))
+            .collect();
+        let of_row = |i: usize, j: usize, a: f64, step: &[f64]| {
+            let sides = [p.row_lower[i], p.row_upper[i]];
+            let sides = sides.into_iter().filter(|s| s.is_finite());
+            let others = p.rows.line(i).filter(|e| e.0 != j && e.1 != 0.0);
+            let others = others.map(|(k, b)| if step[k] > 0.0 { b * step[k] } else { f64::NAN });
+            step_of(others.chain(sides).map(|v| v / a))
+        };
         for _ in 0..3 {
-            for i in (0..p.m()).filter(|&i| p.row_lower[i] == p.row_upper[i]) {
-                let mut others = p.rows.line(i).filter(|&(j, _)| !whole[j]);
-                let (Some((j, a)), None) = (others.next(), others.next()) else {
+            for j in (0..p.n()).filter(|&j| self.threshold[j] == 0.0) {
+                if step[j] > 0.0 || p.columns.line(j).len() == 0 {
                     continue;
+                }
+                let rows = || p.columns.line(j).filter(|e| e.1 != 0.0);
+                let fixed = |e: &(usize, f64)| p.row_lower[e.0] == p.row_upper[e.0];
+                let from_equation = rows().filter(fixed).map(|(i, a)| of_row(i, j, a, &step));
+                let found = from_equation.fold(0.0, f64::max);
+                step[j] = match found > 0.0 {
+                    true => found,
+                    false => {
+                        let rows = rows().map(|(i, a)| of_row(i, j, a, &step));
+                        let common = step_of(rows.map(|s| if s > 0.0 { s } else { f64::NAN }));
+                        let bounds = [p.lower[j], p.upper[j]]
+                            .into_iter()
+                            .filter(|b| b.is_finite());
+                        // presolve widens bounds that rows imply
+                        let off = |b: f64| (b - (b / common).round() * common).abs();
+                        let fits = |b: f64| off(b) <= 1e-6 * b.abs().max(common);
+                        if bounds.map(fits).all(|f| f) {
+                            common
+                        } else {
+                            0.0
+                        }
+                    }
                 };
-                let near = |v: f64| v.abs() < 1e9 && (v - v.round()).abs() < 1e-10;
-                whole[j] = near(p.row_lower[i] / a) && p.rows.line(i).all(|(_, b)| near(b / a));
             }
         }
-        whole
+        step
     }
+}
+
+/// The largest number of which all these are multiples, zeros aside; 0: there is none, or it is too small to tell.
+fn step_of(values: impl Iterator<Item = f64>) -> f64 {
+    let values: Vec<f64> = values.map(f64::abs).filter(|v| *v != 0.0).collect();
+    let largest = values.iter().copied().fold(0.0, f64::max);
+    let mut step = 0.0;
+    for &v in &values {
+        if v.is_nan() {
+            return 0.0;
+        }
+        let (mut a, mut b) = (v, step);
+        while b > 1e-11 * largest {
+            (a, b) = (b, (a - (a / b).round() * b).abs());
+        }
+        step = a;
+    }
+    if step <= 1e-8 * largest {
+        return 0.0;
+    }
+    // As exact as the largest is.
+    let step = largest / (largest / step).round();
+    let whole = |v: &f64| (v / step - (v / step).round()).abs() < 1e-9 * (v / step);
+    if values.iter().all(whole) { step } else { 0.0 }
 }

@@ -1,11 +1,14 @@
 //! What bounds imply for other bounds: rows, thresholds and ordered sets, followed until nothing moves.
 
 use super::model::{FEASIBLE, INTEGRAL, Mip};
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
+
+/// How much either value of every binary may cost, in entries of rows for every entry of the program.
+const PROBING: usize = 100;
 
 /// A row's least and largest activity over bounds, with the infinite terms counted apart.
 #[derive(Clone, Copy, Default)]
-pub struct Activity {
+struct Activity {
     low: f64,
     high: f64,
     low_infinite: u32,
@@ -20,9 +23,9 @@ fn top(a: f64, l: f64, u: f64) -> f64 {
 
 impl Activity {
     /// Of a row over these bounds.
-    pub fn of(mip: &Mip, row: usize, lower: &[f64], upper: &[f64]) -> Self {
+    fn of(row: impl Iterator<Item = (usize, f64)>, lower: &[f64], upper: &[f64]) -> Self {
         let mut s = Self::default();
-        for (j, a) in mip.problem.rows.line(row) {
+        for (j, a) in row {
             let high = top(a, lower[j], upper[j]);
             let low = -top(-a, lower[j], upper[j]);
             match low.is_finite() {
@@ -40,7 +43,7 @@ impl Activity {
     }
 
     /// The least activity.
-    pub fn least(&self) -> f64 {
+    fn least(&self) -> f64 {
         if self.low_infinite > 0 {
             f64::NEG_INFINITY
         } else {
@@ -49,7 +52,7 @@ impl Activity {
     }
 
     /// The largest activity.
-    pub fn most(&self) -> f64 {
+    fn most(&self) -> f64 {
         if self.high_infinite > 0 {
             f64::INFINITY
         } else {
@@ -58,7 +61,7 @@ impl Activity {
     }
 
     /// What rounding may have done to it.
-    pub fn slack(&self) -> f64 {
+    fn slack(&self) -> f64 {
         FEASIBLE * self.size.max(1.0)
     }
 }
@@ -67,10 +70,17 @@ impl Activity {
 pub struct Propagator {
     queue: VecDeque<u32>,
     queued: Vec<bool>,
+    /// The objective, as a row behind the others.
+    objective: Vec<(usize, f64)>,
+    /// Only points count whose objective is not above this.
+    pub cutoff: f64,
     /// Bounds of continuous columns are tightened as well, where they were infinite or shrink to a half.
     pub continuous: bool,
     /// Columns whose bounds the last run moved.
     pub moved: Vec<usize>,
+    /// Entries of rows that were looked at so far.
+    pub work: usize,
+    has_thresholds: bool,
 }
 
 impl Propagator {
@@ -78,18 +88,35 @@ impl Propagator {
     pub fn new(mip: &Mip) -> Self {
         Self {
             queue: VecDeque::new(),
-            queued: vec![false; mip.problem.m()],
+            queued: vec![false; mip.problem.m() + 1],
+            objective: mip.costs().collect(),
+            cutoff: f64::INFINITY,
             continuous: false,
             moved: Vec::new(),
+            work: 0,
+            has_thresholds: mip.threshold.iter().any(|t| *t > 0.0),
         }
     }
 
     fn enqueue(&mut self, mip: &Mip, column: usize) {
         for (i, _) in mip.problem.columns.line(column) {
-            if !self.queued[i] {
-                self.queued[i] = true;
-                self.queue.push_back(i as u32);
-            }
+            self.enqueue_row(i);
+        }
+        if mip.problem.cost[column] != 0.0 {
+            self.enqueue_objective();
+        }
+    }
+
+    fn enqueue_row(&mut self, i: usize) {
+        if !self.queued[i] {
+            self.queued[i] = true;
+            self.queue.push_back(i as u32);
+        }
+    }
+
+    fn enqueue_objective(&mut self) {
+        if self.cutoff.is_finite() {
+            self.enqueue_row(self.queued.len() - 1);
         }
     }
 
@@ -104,21 +131,29 @@ impl Propagator {
         self.moved.clear();
         match columns {
             Some(columns) => columns.iter().for_each(|&j| self.enqueue(mip, j)),
-            None => {
-                self.queue.extend(0..mip.problem.m() as u32);
-                self.queued.fill(true);
-            }
+            None => (0..mip.problem.m()).for_each(|i| self.enqueue_row(i)),
         }
+        self.enqueue_objective();
         let mut fine = true;
-        let mut budget = 50 * mip.problem.rows.value.len() + 1000;
+        let most = self.work + 50 * mip.problem.rows.value.len() + 1000;
         loop {
             while let Some(i) = self.queue.pop_front() {
-                self.queued[i as usize] = false;
-                let length =
-                    mip.problem.rows.start[i as usize + 1] - mip.problem.rows.start[i as usize];
-                budget = budget.saturating_sub(length);
-                fine &= budget == 0 || self.row(mip, i as usize, lower, upper);
-                if !fine || budget == 0 {
+                let i = i as usize;
+                self.queued[i] = false;
+                let p = &mip.problem;
+                if i == p.m() {
+                    self.work += self.objective.len();
+                    let objective = std::mem::take(&mut self.objective);
+                    let sides = [f64::NEG_INFINITY, self.cutoff];
+                    let row = objective.iter().copied();
+                    fine &= self.work > most || self.row(mip, row, sides, lower, upper);
+                    self.objective = objective;
+                } else {
+                    let (row, sides) = (p.rows.line(i), [p.row_lower[i], p.row_upper[i]]);
+                    self.work += row.len();
+                    fine &= self.work > most || self.row(mip, row, sides, lower, upper);
+                }
+                if !fine || self.work > most {
                     self.queue
                         .drain(..)
                         .for_each(|i| self.queued[i as usize] = false);
@@ -131,7 +166,7 @@ impl Propagator {
                     .for_each(|i| self.queued[i as usize] = false);
                 return false;
             }
-            if self.moved.len() == before || budget == 0 {
+            if self.moved.len() == before || self.work > most {
                 self.queue
                     .drain(..)
                     .for_each(|i| self.queued[i as usize] = false);
@@ -140,10 +175,70 @@ impl Propagator {
         }
     }
 
-    fn row(&mut self, mip: &Mip, i: usize, lower: &mut [f64], upper: &mut [f64]) -> bool {
-        let p = &mip.problem;
-        let (least, most) = (p.row_lower[i], p.row_upper[i]);
-        let at = Activity::of(mip, i, lower, upper);
+    /// Tightens bounds by what either value of every binary column implies. None: nothing satisfies them;
+    /// otherwise whether bounds moved.
+    pub fn probe(&mut self, mip: &Mip, lower: &mut [f64], upper: &mut [f64]) -> Option<bool> {
+        let most = self.work + PROBING * (mip.problem.rows.value.len() + 1000);
+        let is_open = |j: usize, l: &[f64], u: &[f64]| mip.integer[j] && l[j] == 0.0 && u[j] == 1.0;
+        let (mut l, mut u) = (lower.to_vec(), upper.to_vec());
+        let mut changed = false;
+        for j in 0..lower.len() {
+            if !is_open(j, lower, upper) || self.work > most {
+                continue;
+            }
+            let mut sides = [None, None];
+            for (side, found) in [0.0, 1.0].into_iter().zip(&mut sides) {
+                (l[j], u[j]) = (side, side);
+                if self.run(mip, Some(&[j]), &mut l, &mut u) {
+                    let moved = self.moved.iter().map(|&k| (k, (l[k], u[k])));
+                    *found = Some(moved.collect::<BTreeMap<_, _>>());
+                }
+                for &k in self.moved.iter().chain([&j]) {
+                    (l[k], u[k]) = (lower[k], upper[k]);
+                }
+            }
+            let implied: Vec<(usize, f64, f64)> = match sides {
+                [None, None] => return None,
+                [None, Some(_)] => vec![(j, 1.0, 1.0)],
+                [Some(_), None] => vec![(j, 0.0, 0.0)],
+                [Some(zero), Some(one)] => {
+                    let both = |(k, a): (usize, (f64, f64))| {
+                        let b = one.get(&k)?;
+                        Some((k, a.0.min(b.0), a.1.max(b.1)))
+                    };
+                    zero.into_iter().filter_map(both).collect()
+                }
+            };
+            let mut columns = Vec::new();
+            for (k, low, high) in implied {
+                if low > lower[k] || high < upper[k] {
+                    (lower[k], upper[k]) = (low.max(lower[k]), high.min(upper[k]));
+                    columns.push(k);
+                }
+            }
+            if columns.is_empty() {
+                continue;
+            }
+            changed = true;
+            if !self.run(mip, Some(&columns), lower, upper) {
+                return None;
+            }
+            for &k in self.moved.iter().chain(&columns) {
+                (l[k], u[k]) = (lower[k], upper[k]);
+            }
+        }
+        Some(changed)
+    }
+
+    fn row(
+        &mut self,
+        mip: &Mip,
+        row: impl Iterator<Item = (usize, f64)> + Clone,
+        [least, most]: [f64; 2],
+        lower: &mut [f64],
+        upper: &mut [f64],
+    ) -> bool {
+        let at = Activity::of(row.clone(), lower, upper);
         if at.least() > most + at.slack() || at.most() < least - at.slack() {
             return false;
         }
@@ -152,7 +247,7 @@ impl Propagator {
         if idle_high && idle_low {
             return true;
         }
-        for (j, a) in p.rows.line(i) {
+        for (j, a) in row {
             let (l, u) = (lower[j], upper[j]);
             if l == u || a == 0.0 || !(mip.integer[j] || self.continuous) {
                 continue;
@@ -230,7 +325,8 @@ impl Propagator {
     }
 
     fn thresholds_and_sets(&mut self, mip: &Mip, lower: &mut [f64], upper: &mut [f64]) -> bool {
-        for j in 0..lower.len() {
+        let thresholds = if self.has_thresholds { lower.len() } else { 0 };
+        for j in 0..thresholds {
             let t = mip.threshold[j];
             if t > 0.0 && lower[j] < t {
                 if upper[j] < t - FEASIBLE * t.max(1.0) && upper[j] > 0.0 {

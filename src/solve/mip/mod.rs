@@ -392,7 +392,7 @@ fn convex_search(
     let begin = Begin {
         settings: Some(settings),
         convex: Some(convex),
-        start: None,
+        ..Begin::default()
     };
     let mut found = searched(&squared.instance, &form, &mip, aim, begin, control);
     // degenerate: the nonlinear solver at every node may know more

@@ -34,8 +34,9 @@ impl Reduced {
     }
 }
 
-/// The program that is left where these columns are fixed besides; None: it has no solution.
-pub fn reduce(mip: &Mip, fixed: &[Change]) -> Option<Reduced> {
+/// The program that is left where these columns are fixed besides and cost times columns is not above `cutoff`;
+/// None: it has no solution.
+pub fn reduce(mip: &Mip, fixed: &[Change], cutoff: f64) -> Option<Reduced> {
     let mut work = mip.clone();
     for c in fixed {
         (work.problem.lower[c.column], work.problem.upper[c.column]) = (c.lower, c.upper);
@@ -54,10 +55,14 @@ pub fn reduce(mip: &Mip, fixed: &[Change]) -> Option<Reduced> {
         let (mut lower, mut upper) = (work.problem.lower.clone(), work.problem.upper.clone());
         let mut propagator = Propagator::new(&work);
         propagator.continuous = round < 2;
+        propagator.cutoff = cutoff;
         if !propagator.run(&work, None, &mut lower, &mut upper) {
             return None;
         }
         changed |= !propagator.moved.is_empty();
+        if round == 1 && fixed.is_empty() {
+            changed |= propagator.probe(&work, &mut lower, &mut upper)?;
+        }
         (work.problem.lower, work.problem.upper) = (lower, upper);
         changed |= rows(&mut work, &mut idle);
         changed |= dual_fixing(&mut work, &idle, &stays);

@@ -72,6 +72,8 @@ pub enum End {
     Gap,
     /// `nodLim`.
     Nodes,
+    /// The program that is left is so much smaller that the search begins anew.
+    Smaller,
     /// Another limit, or the user.
     Stopped(Ended),
     /// The relaxation is unbounded.
@@ -151,6 +153,9 @@ impl<S> Ord for Node<S> {
     }
 }
 
+/// Whether the program is much smaller with solutions below a value only (in units of the instance).
+pub type Smaller<'n> = &'n dyn Fn(f64) -> bool;
+
 /// Finds solutions of the program that is left where columns are fixed.
 pub type Neighbourhood<'n> = &'n dyn Fn(&Mip, &[Change], f64, &mut Control) -> Option<Vec<f64>>;
 
@@ -182,6 +187,10 @@ pub struct Search<'a, R: Relaxation> {
     pub incomplete: bool,
     /// Solves the rest where some columns are fixed; None inside such a search.
     pub neighbourhood: Option<Neighbourhood<'a>>,
+    /// Asked when a young search has found a better solution; None: it does not begin anew.
+    pub smaller: Option<Smaller<'a>>,
+    /// A better solution was found since.
+    improved: bool,
     /// What may be left out; None: all that may.
     pub settings: Option<&'a Settings>,
     pub(super) dives: Dives,
@@ -220,6 +229,9 @@ enum Fixed {
     Empty,
 }
 
+/// A search of no more nodes may begin anew: little is lost.
+const YOUNG: u64 = 500;
+
 /// How many nodes may be divided without a value of their relaxation.
 const FAILURES: u32 = 200;
 
@@ -246,6 +258,8 @@ impl<'a, R: Relaxation> Search<'a, R> {
         let p = &mip.problem;
         let n = p.n();
         let (lower, upper) = (p.lower.clone(), p.upper.clone());
+        let mut propagator = Propagator::new(mip);
+        propagator.continuous = relaxation.is_linear();
         Self {
             step: mip.granularity(),
             mip,
@@ -255,7 +269,7 @@ impl<'a, R: Relaxation> Search<'a, R> {
             root: [lower.clone(), upper.clone()],
             lower,
             upper,
-            propagator: Propagator::new(mip),
+            propagator,
             open: BinaryHeap::new(),
             best: None,
             pseudo: vec![Default::default(); n],
@@ -264,6 +278,8 @@ impl<'a, R: Relaxation> Search<'a, R> {
             records: Vec::new(),
             incomplete: false,
             neighbourhood: None,
+            smaller: None,
+            improved: false,
             settings: None,
             dives: Dives::default(),
             next_log: 0.0,
@@ -429,9 +445,7 @@ impl<'a, R: Relaxation> Search<'a, R> {
             }
             columns.push(c.column);
         }
-        let fine = self
-            .propagator
-            .run(self.mip, Some(&columns), &mut self.lower, &mut self.upper);
+        let fine = self.propagate(&columns);
         self.send_bounds();
         fine
     }
@@ -457,6 +471,16 @@ impl<'a, R: Relaxation> Search<'a, R> {
         l <= u
     }
 
+    /// What follows from bounds of the present node that moved, and from the best solution's value. False: nothing is left.
+    fn propagate(&mut self, columns: &[usize]) -> bool {
+        self.propagator.cutoff = match self.relaxation.is_linear() {
+            true => self.cutoff(),
+            false => f64::INFINITY,
+        };
+        self.propagator
+            .run(self.mip, Some(columns), &mut self.lower, &mut self.upper)
+    }
+
     /// Applies changes and what follows from them. False: nothing is left.
     pub(super) fn apply(&mut self, changes: &[Change]) -> bool {
         for c in changes {
@@ -465,9 +489,7 @@ impl<'a, R: Relaxation> Search<'a, R> {
             }
         }
         let columns: Vec<usize> = changes.iter().map(|c| c.column).collect();
-        let fine = self
-            .propagator
-            .run(self.mip, Some(&columns), &mut self.lower, &mut self.upper);
+        let fine = self.propagate(&columns);
         for &column in columns.iter().chain(&self.propagator.moved) {
             let (lower, upper) = (self.lower[column], self.upper[column]);
             if lower <= upper {
@@ -505,6 +527,14 @@ impl<'a, R: Relaxation> Search<'a, R> {
                 }
                 Evaluated::Ended(end) => return self.put_back(node, end),
             };
+            if std::mem::take(&mut self.improved)
+                && self.nodes <= YOUNG
+                && self
+                    .smaller
+                    .is_some_and(|smaller| smaller(self.units.shown(self.cutoff())))
+            {
+                return self.put_back(node, End::Smaller);
+            }
             self.fate(node.number, "branched");
             node = self.descend(&node, branch)?;
             let least = self
@@ -872,6 +902,7 @@ impl<'a, R: Relaxation> Search<'a, R> {
             .map_or(f64::INFINITY, |c| self.units.inner(c));
         if value <= asked && self.best.as_ref().is_none_or(|b| value < b.0) {
             self.best = Some((value, x));
+            self.improved = true;
             if let Some(r) = self.records.get_mut(self.at as usize) {
                 r.solution = Some(value);
             }
