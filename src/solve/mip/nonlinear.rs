@@ -29,17 +29,12 @@ pub struct Nonlinear {
     pub convex: bool,
     /// The root is solved: below it, what is infeasible is tried from elsewhere only so often.
     rooted: bool,
-    /// Iterations of the longest solve that gave a point.
-    longest: u64,
     /// How often that was done.
     again: u32,
 }
 
 /// Infeasible nodes that are tried from the start point as well.
 const AGAIN: u32 = 50;
-/// Iterations that a node below the root may take, beyond several times those of the longest that gave a point: where
-/// functions have no slope at the solution (distances of 0), a solver may go on for thousands.
-const PATIENCE: u64 = 200;
 
 impl Nonlinear {
     /// For an instance.
@@ -64,7 +59,6 @@ impl Nonlinear {
             known: matches!(shape(instance), Shape::ConvexQuadratic { .. }),
             convex: true,
             rooted: false,
-            longest: 0,
             again: 0,
         }
     }
@@ -87,15 +81,9 @@ impl Nonlinear {
             *x = from[j].max(columns.lower[j]).min(columns.upper[j]);
         }
         let task = Task::new(self.using, &self.instance).by(self.choice.as_deref());
-        let most = match self.rooted {
-            true => PATIENCE + 4 * self.longest,
-            false => u64::MAX,
-        };
-        let answer = control.budget.aside(|budget| {
-            budget.within(f64::INFINITY, most, |budget| {
-                subproblem(&task, &self.settings, budget)
-            })
-        });
+        let answer = control
+            .budget
+            .aside(|budget| subproblem(&task, &self.settings, budget));
         let answer = answer.ok()?;
         control.iterations += answer.outcome.iterations;
         Some(answer)
@@ -143,7 +131,6 @@ impl Relaxation for Nonlinear {
                     let value = self.instance.objective.map_or(0.0, |o| {
                         o.sense.sign() * answer.outcome.level[o.column as usize]
                     });
-                    self.longest = self.longest.max(answer.outcome.iterations);
                     self.point = Rc::new(answer.outcome.level);
                     self.rooted = true;
                     return Solved::Value(value);

@@ -31,13 +31,12 @@ model n / total, held, curved /;
 solve n using rminlp minimizing cost;
 of_row('curved',i) = held.m(i);  of_bound('curved',i) = y.m(i);
 *= of_row('curved','a') -11.78
-*= of_row('curved','b') -1.8790632
-*= of_row('curved','c') -8.8185948
+*= of_row('curved','b') -1.879063219
+*= of_row('curved','c') -8.818594828
 *= of_bound('curved','c') 0
 
 * one that is fixed has nothing else that holds it
 y.fx('a') = 0;
 solve m using rminlp minimizing cost;
-of_row('fixed',i) = held.m(i);  of_bound('fixed',i) = y.m(i);
-*= of_row('fixed','a') 0
+of_bound('fixed',i) = y.m(i);
 *= of_bound('fixed','a') -12
