@@ -70,7 +70,10 @@ pub fn answer_with(
     if is_linear_program(task) && (gave_up || found.status == ModelStatus::Infeasible) {
         found = least_violation(backends, task, found, settings, budget);
     }
-    if !task.instance.is_linear() && !task.has_integers() && !task.has_pairs() {
+    use ProblemType as P;
+    let nonlinear =
+        !task.instance.is_linear() || matches!(task.using, P::Nlp | P::Dnlp | P::Rminlp);
+    if nonlinear && !task.has_integers() && !task.has_pairs() {
         equations_before_bounds(task.instance, &mut found.outcome);
     }
     noise::zero_below_roundoff(&mut found.outcome.column_marginal);
@@ -86,14 +89,13 @@ pub fn answer_with(
 /// varies (a decomposition reads its cuts there). What the two add up to stays, and with it all residuals.
 fn equations_before_bounds(instance: &Instance, outcome: &mut Outcome) {
     let (matrix, columns) = (&instance.matrix, &instance.columns);
-    let nonlinear = instance.nonlinear_rows();
-    for i in 0..instance.row_count() {
+    for (i, curved) in instance.nonlinear_rows().into_iter().enumerate() {
         let mut entries = matrix.row(i);
         let (Some((j, a)), None) = (entries.next(), entries.next()) else {
             continue;
         };
         let moves = instance.rows.relation[i] == Relation::Equal
-            && !nonlinear[i]
+            && !curved
             && columns.lower[j] < columns.upper[j];
         if moves && a != 0.0 {
             outcome.row_marginal[i] += std::mem::take(&mut outcome.column_marginal[j]) / a;

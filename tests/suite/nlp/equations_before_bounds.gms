@@ -40,3 +40,13 @@ y.fx('a') = 0;
 solve m using rminlp minimizing cost;
 of_bound('fixed',i) = y.m(i);
 *= of_bound('fixed','a') -12
+
+* also where all is linear, if it is solved as a nonlinear program; a linear one is solved to a vertex, which says who has it
+y.up('a') = 1;
+equation flat;
+flat.. cost =e= sum(i, 12*y(i) + ord(i)*x(i));
+model l / flat, held, enough /;
+solve l using rminlp minimizing cost;
+of_row('nlp',i) = held.m(i);  of_bound('nlp',i) = y.m(i);
+*= of_row('nlp','a') 9
+*= of_bound('nlp','a') 0
