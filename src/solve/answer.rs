@@ -70,12 +70,37 @@ pub fn answer_with(
     if is_linear_program(task) && (gave_up || found.status == ModelStatus::Infeasible) {
         found = least_violation(backends, task, found, settings, budget);
     }
+    use ProblemType as P;
+    let nonlinear =
+        !task.instance.is_linear() || matches!(task.using, P::Nlp | P::Dnlp | P::Rminlp);
+    if nonlinear && !task.has_integers() && !task.has_pairs() {
+        equations_before_bounds(task.instance, &mut found.outcome);
+    }
     noise::zero_below_roundoff(&mut found.outcome.column_marginal);
     if task.using != ProblemType::Mcp {
         // there they are levels
         noise::zero_below_roundoff(&mut found.outcome.row_marginal);
     }
     Ok(found)
+}
+
+/// A column at a bound that an equation of its own holds there as well has one marginal for both, which methods share out
+/// in any way, even to two huge numbers of opposite sign: the equation takes it, whose right side is what a modeller
+/// varies (a decomposition reads its cuts there). What the two add up to stays, and with it all residuals.
+fn equations_before_bounds(instance: &Instance, outcome: &mut Outcome) {
+    let (matrix, columns) = (&instance.matrix, &instance.columns);
+    for (i, curved) in instance.nonlinear_rows().into_iter().enumerate() {
+        let mut entries = matrix.row(i);
+        let (Some((j, a)), None) = (entries.next(), entries.next()) else {
+            continue;
+        };
+        let moves = instance.rows.relation[i] == Relation::Equal
+            && !curved
+            && columns.lower[j] < columns.upper[j];
+        if moves && a != 0.0 {
+            outcome.row_marginal[i] += std::mem::take(&mut outcome.column_marginal[j]) / a;
+        }
+    }
 }
 
 /// A program that a backend solves on its way, by any backend.

@@ -555,18 +555,20 @@ impl Simplex {
         self.tighten_to(&[(1e-11, 1e-11), (1e-13, 1e-12)], stop)
     }
 
-    /// The same for a sequence of primal and dual tolerances.
+    /// The same for a sequence of primal and dual tolerances. Without perturbations, and with reduced costs that are rounding
+    /// errors, pivots may go round in a circle: as many are made as there were before, and one for each row.
     pub fn tighten_to(
         &mut self,
         tolerances: &[(f64, f64)],
         stop: &mut dyn FnMut(u64) -> Option<Ended>,
     ) -> bool {
-        let usual = (self.tolerance, self.dual_tolerance);
+        let usual = (self.tolerance, self.dual_tolerance, self.limit);
+        let most = usual.2.min(2 * self.iterations + self.m as u64);
         for &(primal, dual) in tolerances {
             let basis = self.basis();
-            (self.tolerance, self.dual_tolerance) = (primal, dual);
+            (self.tolerance, self.dual_tolerance, self.limit) = (primal, dual, most);
             let ended = self.rounds(0, stop);
-            (self.tolerance, self.dual_tolerance) = usual;
+            (self.tolerance, self.dual_tolerance, self.limit) = usual;
             if ended != Ended::Solved {
                 self.set_basis(&basis);
                 return false;
