@@ -368,6 +368,15 @@ impl Compiler {
     }
 
     /// A name with attribute and arguments: symbol or function.
+    /// A set that is under control stands where a value is expected: `p(i) = i`, `put i`.
+    fn no_value(&mut self, name: &Ident, set: &Symbol, span: Span) -> Result<Node, Failed> {
+        let i = &name.name;
+        let d = Diagnostic::error("E0304", span, format!("the set `{i}` stands where a value is expected"))
+            .label("a set has no value of its own")
+            .other(set.declared, "declared here");
+        self.fail(d.help(format!("its element's position is `ord({i})`, its label `{i}.tl`, its number `{i}.val`")))
+    }
+
     fn apply(
         &mut self,
         name: &Ident,
@@ -408,8 +417,8 @@ impl Compiler {
                 self.used(s, span);
                 let key = match arguments {
                     None => {
-                        let parts = self.set_index(s, name)?;
-                        Key { parts }
+                        self.set_index(s, name)?;
+                        return self.no_value(name, &symbol, span);
                     }
                     Some(_) => self.key(s, indices, span)?,
                 };
@@ -650,7 +659,13 @@ impl Compiler {
             self.key(s, indices, span)?.parts
         };
         if parts.len() != 1 {
-            return self.wrong_dimension(s, span, parts.len());
+            let (name, n) = (&symbol.name, parts.len());
+            return self.fail(
+                Diagnostic::error("E0304", span, format!("`.{lower}` is of sets with one index; `{name}` has {n}"))
+                    .label(format!("{n} indices here"))
+                    .other(symbol.declared, "declared here")
+                    .help(format!("ask one of its indices: `i.{lower}`")),
+            );
         }
         Ok(Node::data(
             NodeKind::LabelAttribute(which, symbol.table, parts.remove(0)),

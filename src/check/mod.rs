@@ -33,7 +33,7 @@ pub(crate) use figure::kinds as figure_kinds;
 
 use crate::diag::{Diagnostic, Severity};
 use crate::host::Host;
-use crate::model::option::Solvers;
+use crate::model::option::{Refused, Solvers};
 use crate::source::{
     Ending, Known, PreprocessOptions, ReadData, SourceMap, Span, Switches, predefined,
 };
@@ -109,7 +109,7 @@ pub(crate) struct Compiler {
     shows_numbers: bool,
     next_slot: Slot,
     /// Indices of the loop that is read and of those around it that hold nothing else.
-    nest: Vec<Slot>,
+    nest: Vec<(Slot, node::TableId)>,
     slots: usize,
     in_equation: bool,
     /// Labels that are new may stand here.
@@ -431,6 +431,10 @@ impl Known for Compiler {
 
     fn is_function(&self, name: &str) -> bool {
         functions::callee(&name.to_lowercase()).is_some()
+    }
+
+    fn is_solver(&self, name: &str) -> bool {
+        !matches!(self.solvers.check("lp", name), Err(Refused::Solver(..)))
     }
 
     fn date(&self, function: &str, arguments: &[f64]) -> Option<f64> {

@@ -58,6 +58,15 @@ impl Key {
             .iter()
             .all(|p| matches!(p, Part::Slot(_) | Part::Label(_)))
     }
+
+    /// Whether an index comes twice.
+    pub fn repeats(&self) -> bool {
+        let again = |(n, p): (usize, &Part)| match p {
+            Part::Slot(s) => self.parts[..n].iter().any(|q| matches!(q, Part::Slot(t) if t == s)),
+            _ => false,
+        };
+        self.parts.iter().enumerate().any(again)
+    }
 }
 
 /// An expression.
@@ -217,6 +226,7 @@ pub enum DataFunction {
     HandleCollect,
     HandleStatus,
     HandleDelete,
+    HandleSubmit,
     /// `readyCollect(h)`: whether nothing is left to wait for; 0, for nothing ever is.
     ReadyCollect,
 }

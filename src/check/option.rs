@@ -105,7 +105,8 @@ impl Compiler {
                 let message = format!("the option `{name}` means nothing here");
                 if self.passed_over.insert(name) {
                     let d = Diagnostic::warning("E0329", item.name.span, message);
-                    self.report(d.label("passed over"));
+                    let help = "leave it out, or keep it for other systems: no result depends on it";
+                    self.report(d.label("passed over").help(help));
                 }
                 Ok(None)
             }

@@ -201,6 +201,17 @@ impl<'a> TableReader<'a> {
         }
         if line.starts_with('+') {
             let plus = stop - line.len();
+            if self.row.is_empty() {
+                let at = self.span(plus, plus + 1);
+                let d = Diagnostic::error("E0254", at, "a table goes on here that has no rows");
+                self.at = self.end;
+                return Err(Box::new(match self.columns.first() {
+                    Some(c) => d.other(c.span, "these columns have no row").help(
+                        "a line that begins with `+` holds further columns, below the rows of those before",
+                    ),
+                    None => d.help("its first line holds the labels of its columns"),
+                }));
+            }
             self.offset = column_after(&self.text[line_start..plus + 1], 0);
             from = plus + 1;
             self.header = true;
@@ -278,6 +289,7 @@ impl<'a> TableReader<'a> {
 
     fn read_header(&mut self) -> Result<(), Box<Diagnostic>> {
         self.columns.clear();
+        self.row.clear();
         self.reader.set_arity(usize::MAX);
         while self.reader.more() {
             let from = self.reader.position();

@@ -1,0 +1,3 @@
+* Neither a domain nor data say how many indices there are.
+parameter p / /;
+*! error 2
