@@ -204,7 +204,9 @@ impl Compiler {
             let s = self.lookup(name)?;
             let root = self.symbols.root(s);
             self.store.clear(self.symbols.get(root), None);
-            self.symbols.get_mut(root).has_data &= !kill;
+            let symbol = self.symbols.get_mut(root);
+            symbol.has_data &= !kill;
+            symbol.assigned &= !kill;
         }
         Ok(())
     }

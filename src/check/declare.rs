@@ -293,7 +293,12 @@ impl Compiler {
                 && let Some(body) = d.data
             {
                 if !explicit && new && map.text(body).trim().is_empty() {
-                    self.report(no_shape(&d.name));
+                    let message = format!("how many indices has `{}`?", d.name.name);
+                    self.report(
+                        Diagnostic::error("E0334", d.name.span, message)
+                            .label("neither a domain nor data say")
+                            .help(format!("write `{}(*)`, or leave the data out", d.name.name)),
+                    );
                     continue;
                 }
                 let _ = self.set_data(s, body, d.name.span, &d.defines(), map);
@@ -382,7 +387,6 @@ impl Compiler {
                 continue;
             }
             let kind = SymbolKind::Parameter { scalar: p.scalar };
-            let new = self.symbols.find(&p.symbol.name.name).is_none();
             let Ok(s) = self.declare(&p.symbol, kind, |c, n| c.store.add_table(n, 0.0)) else {
                 continue;
             };
@@ -390,11 +394,6 @@ impl Compiler {
             if !self.take_input(s, &defines, p.symbol.name.span)
                 && let Some(body) = p.symbol.data
             {
-                let shapeless = new && !p.scalar && p.symbol.domain.is_none();
-                if shapeless && map.text(body).trim().is_empty() {
-                    self.report(no_shape(&p.symbol.name));
-                    continue;
-                }
                 let _ = self.parameter_data(s, body, p.symbol.name.span, &defines, map);
             }
         }
@@ -684,12 +683,4 @@ impl Compiler {
         }
         Ok(())
     }
-}
-
-/// An error for data without a record, of a symbol without a domain.
-fn no_shape(name: &Ident) -> Diagnostic {
-    let message = format!("how many indices has `{}`?", name.name);
-    Diagnostic::error("E0334", name.span, message)
-        .label("neither a domain nor data say")
-        .help(format!("write `{}(*)`, or leave the data out", name.name))
 }

@@ -271,7 +271,10 @@ impl Compiler {
         if !key.parts[..fixed].iter().any(|p| self.turns(p)) {
             return None;
         }
-        let mut unless: Vec<Node> = self.one_turn(&key.parts[..fixed], span).into_iter().collect();
+        let mut unless: Vec<Node> = self
+            .one_turn(&key.parts[..fixed], span)
+            .into_iter()
+            .collect();
         let mut parts = key.parts.clone();
         if fixed == parts.len() {
             let kind = NodeKind::Data(table, Key { parts });

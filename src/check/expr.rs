@@ -371,10 +371,16 @@ impl Compiler {
     /// A set that is under control stands where a value is expected: `p(i) = i`, `put i`.
     fn no_value(&mut self, name: &Ident, set: &Symbol, span: Span) -> Result<Node, Failed> {
         let i = &name.name;
-        let d = Diagnostic::error("E0304", span, format!("the set `{i}` stands where a value is expected"))
-            .label("a set has no value of its own")
-            .other(set.declared, "declared here");
-        self.fail(d.help(format!("its element's position is `ord({i})`, its label `{i}.tl`, its number `{i}.val`")))
+        let d = Diagnostic::error(
+            "E0304",
+            span,
+            format!("the set `{i}` stands where a value is expected"),
+        )
+        .label("a set has no value of its own")
+        .other(set.declared, "declared here");
+        self.fail(d.help(format!(
+            "its element's position is `ord({i})`, its label `{i}.tl`, its number `{i}.val`"
+        )))
     }
 
     fn apply(
@@ -661,10 +667,14 @@ impl Compiler {
         if parts.len() != 1 {
             let (name, n) = (&symbol.name, parts.len());
             return self.fail(
-                Diagnostic::error("E0304", span, format!("`.{lower}` is of sets with one index; `{name}` has {n}"))
-                    .label(format!("{n} indices here"))
-                    .other(symbol.declared, "declared here")
-                    .help(format!("ask one of its indices: `i.{lower}`")),
+                Diagnostic::error(
+                    "E0304",
+                    span,
+                    format!("`.{lower}` is of sets with one index; `{name}` has {n}"),
+                )
+                .label(format!("{n} indices here"))
+                .other(symbol.declared, "declared here")
+                .help(format!("ask one of its indices: `i.{lower}`")),
             );
         }
         Ok(Node::data(

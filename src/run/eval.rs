@@ -459,9 +459,9 @@ impl Machine<'_> {
     fn apart(&self, n: &Node, frame: &mut Frame) -> bool {
         match &n.kind {
             NodeKind::SameAs(..) => self.eval(n, frame) == 0.0,
-            NodeKind::Product(factors) => {
-                factors.iter().any(|(divides, f)| !divides && self.apart(f, frame))
-            }
+            NodeKind::Product(factors) => factors
+                .iter()
+                .any(|(divides, f)| !divides && self.apart(f, frame)),
             NodeKind::Binary(BinaryOp::And, a, b) | NodeKind::Dollar(a, b) => {
                 self.apart(a, frame) || self.apart(b, frame)
             }

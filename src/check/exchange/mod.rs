@@ -13,9 +13,9 @@ mod json;
 mod records;
 mod write;
 
+use super::data::second_data;
 use super::node::{EquationDef, SymbolId};
 use super::symbols::{DomainPosition, Store, SymbolKind, Symbols, attribute};
-use super::data::second_data;
 use super::{Compiler, Failed};
 use crate::data::value::{EPS, NA, UNDF};
 use crate::diag::{Diagnostic, nearest};
@@ -445,7 +445,9 @@ impl Compiler {
             for (n, w) in items.iter().enumerate() {
                 let root = self.symbols.root(w.symbol);
                 let symbol = self.symbols.get(root);
-                let again = items[..n].iter().any(|v| self.symbols.root(v.symbol) == root);
+                let again = items[..n]
+                    .iter()
+                    .any(|v| self.symbols.root(v.symbol) == root);
                 if again || symbol.has_data || symbol.assigned {
                     return Err(Box::new(second_data(&symbol.name, w.span, symbol.declared)));
                 }

@@ -1,3 +1,0 @@
-* Neither a domain nor data say how many indices there are.
-parameter p / /;
-*! error 2
