@@ -368,21 +368,6 @@ impl Compiler {
     }
 
     /// A name with attribute and arguments: symbol or function.
-    /// A set that is under control stands where a value is expected: `p(i) = i`, `put i`.
-    fn no_value(&mut self, name: &Ident, set: &Symbol, span: Span) -> Result<Node, Failed> {
-        let i = &name.name;
-        let d = Diagnostic::error(
-            "E0304",
-            span,
-            format!("the set `{i}` stands where a value is expected"),
-        )
-        .label("a set has no value of its own")
-        .other(set.declared, "declared here");
-        self.fail(d.help(format!(
-            "its element's position is `ord({i})`, its label `{i}.tl`, its number `{i}.val`"
-        )))
-    }
-
     fn apply(
         &mut self,
         name: &Ident,
@@ -423,8 +408,8 @@ impl Compiler {
                 self.used(s, span);
                 let key = match arguments {
                     None => {
-                        self.set_index(s, name)?;
-                        return self.no_value(name, &symbol, span);
+                        let parts = self.set_index(s, name)?;
+                        Key { parts }
                     }
                     Some(_) => self.key(s, indices, span)?,
                 };

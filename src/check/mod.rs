@@ -108,6 +108,8 @@ pub(crate) struct Compiler {
     output: Option<(String, Span, Vec<exchange::Wanted>)>,
     shows_numbers: bool,
     next_slot: Slot,
+    /// Symbols whose `$load` failed.
+    not_loaded: rustc_hash::FxHashSet<SymbolId>,
     /// Indices of the loop that is read and of those around it that hold nothing else.
     nest: Vec<(Slot, node::TableId)>,
     slots: usize,
@@ -159,6 +161,7 @@ pub fn compile(
         match next {
             Ok(None) => break,
             Ok(Some(stmt)) => {
+                c.modes = stmt.modes.clone();
                 if let StmtKind::Exchange(x) = &stmt.kind
                     && !matches!(c.exchange_now(x, stmt.span, &mut parser), Ok(false))
                 {
@@ -246,6 +249,7 @@ impl Compiler {
             input: None,
             output: None,
             next_slot: 0,
+            not_loaded: rustc_hash::FxHashSet::default(),
             nest: Vec::new(),
             shows_numbers: false,
             slots: 0,

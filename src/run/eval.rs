@@ -241,9 +241,6 @@ impl Machine<'_> {
                 arithmetic::relate(*op, a, b)
             }
             NodeKind::Dollar(a, c) => {
-                if self.apart(a, frame) && c.has_random() {
-                    return 0.0;
-                }
                 if truth(self.eval(c, frame)) {
                     self.eval(a, frame)
                 } else {
@@ -452,20 +449,6 @@ impl Machine<'_> {
                     ),
                 }
             }
-        }
-    }
-
-    /// Whether labels that are not the same make it 0 (`sameas(i,'b')*q(i)`): random numbers beside it are not drawn then.
-    fn apart(&self, n: &Node, frame: &mut Frame) -> bool {
-        match &n.kind {
-            NodeKind::SameAs(..) => self.eval(n, frame) == 0.0,
-            NodeKind::Product(factors) => factors
-                .iter()
-                .any(|(divides, f)| !divides && self.apart(f, frame)),
-            NodeKind::Binary(BinaryOp::And, a, b) | NodeKind::Dollar(a, b) => {
-                self.apart(a, frame) || self.apart(b, frame)
-            }
-            _ => false,
         }
     }
 

@@ -400,6 +400,7 @@ impl Compiler {
             if let Some(s) = self.symbols.find(&item.name.name) {
                 let root = self.symbols.root(s);
                 self.symbols.get_mut(root).assigned = true;
+                self.not_loaded.insert(root);
             }
         }
         self.fail(d.as_error())
@@ -448,7 +449,8 @@ impl Compiler {
                 let again = items[..n]
                     .iter()
                     .any(|v| self.symbols.root(v.symbol) == root);
-                if again || symbol.has_data || symbol.assigned {
+                let filled = symbol.has_data || symbol.assigned && !self.not_loaded.contains(&root);
+                if again || filled {
                     return Err(Box::new(second_data(&symbol.name, w.span, symbol.declared)));
                 }
             }

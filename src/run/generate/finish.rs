@@ -405,7 +405,7 @@ impl Builder<'_, '_> {
 
     /// An error for a scale that rows and columns cannot be divided by.
     pub(super) fn bad_scale(&mut self, name: &str, scale: f64) {
-        let message = format!("the scale of {name} must be a number above 0, not {scale}");
+        let message = format!("the scale of {name} must be a number above 1e-20, not {scale:e}");
         self.m.note(
             Diagnostic::execution("E0413", self.m.options.at.get(), message)
                 .label("at this solve")
