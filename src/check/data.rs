@@ -145,6 +145,14 @@ fn looks_like_list(
     }
 }
 
+/// An error for data of a symbol that has some, or is assigned: data come before all assignments are carried out.
+pub(super) fn second_data(name: &str, span: Span, declared: Span) -> Diagnostic {
+    Diagnostic::error("E0340", span, format!("`{name}` has data already"))
+        .label("second data statement")
+        .other(declared, "first declared here")
+        .help("assign instead (`p(i) = …;`), or allow merging with `$onMulti`")
+}
+
 impl Compiler {
     /// The sets that data define, `p(i<)`, get theirs with them.
     pub(super) fn open_domains(
@@ -168,18 +176,13 @@ impl Compiler {
         let symbol = self.symbols.get(s);
         let modes = self.modes.at(span);
         let (had, declared, name, table) = (
-            symbol.has_data,
+            symbol.has_data || symbol.assigned,
             symbol.declared,
             symbol.name.clone(),
             symbol.table,
         );
         if had && !modes.multi {
-            return self.fail(
-                Diagnostic::error("E0340", span, format!("`{name}` has data already"))
-                    .label("second data statement")
-                    .other(declared, "first declared here")
-                    .help("assign instead (`p(i) = …;`), or allow merging with `$onMulti`"),
-            );
+            return self.fail(second_data(&name, span, declared));
         }
         if had && modes.multi_replace {
             self.store.table_mut(table).clear();
@@ -201,7 +204,9 @@ impl Compiler {
             let s = self.lookup(name)?;
             let root = self.symbols.root(s);
             self.store.clear(self.symbols.get(root), None);
-            self.symbols.get_mut(root).has_data &= !kill;
+            let symbol = self.symbols.get_mut(root);
+            symbol.has_data &= !kill;
+            symbol.assigned &= !kill;
         }
         Ok(())
     }

@@ -13,8 +13,8 @@ impl Compiler {
     /// where each turn assigns whole symbols: `p(i)`, not `p(i,j)` with j of the loop, `p(i,'a')`, `p(i+1)`, a
     /// subset, or `p(*)`.
     /// What the right side reads is searched by its first positions, up to the first that the loop does not
-    /// control: of `loop(j, p(i) = q(j,i))` the turns are those for which q has a record with this j. Where the first
-    /// position is the innermost index it alone is searched: j of `q(j,'a')`, but both of `q('a',j)`.
+    /// control: of `loop(j, p(i) = q(j,i))` the turns are those for which q has a record with this j.
+    /// An index over a set of one element does not drive.
     /// A loop that is all that another holds counts as one with it; indices of others around do not drive.
     /// An assignment under a `$`, its own or that of a loop within, counts by the condition, whatever it assigns and to
     /// what: `b(j)$q(i) = 5`, `b(j) $= q(i)`, `loop(k$q(i), s = 5)`.
@@ -70,12 +70,14 @@ impl Compiler {
     fn resting(&mut self, n: &Node, own: &[Slot]) -> Option<Vec<Node>> {
         match &n.kind {
             NodeKind::Const(0.0) => Some(Vec::new()),
-            NodeKind::Data(table, key) => Some(vec![self.begins_with(*table, key, own, n.span)?]),
+            NodeKind::Data(table, key) => self.begins_with(*table, key, own, n.span),
             NodeKind::SameAs(a, b)
                 if [a, b].iter().all(|p| is_fixed(p, own)) && (self.turns(a) || self.turns(b)) =>
             {
                 let same = NodeKind::SameAs(a.clone(), b.clone());
-                Some(vec![Node::membership(same, n.span)])
+                let mut unless = vec![Node::membership(same, n.span)];
+                unless.extend(self.one_turn(&[a.clone(), b.clone()], n.span));
+                Some(unless)
             }
             NodeKind::Negate(a) => self.resting(a, own),
             NodeKind::Sum(list) => self.together(list.iter().map(|(_, t)| t), own),
@@ -222,49 +224,62 @@ impl Compiler {
         own: &[Slot],
     ) -> Option<Vec<Node>> {
         let zero = factors.into_iter().filter_map(|f| self.resting(f, own));
-        let both = |a: Node, b: Node| {
-            let span = a.span;
-            Node::data(
-                NodeKind::Binary(BinaryOp::And, Box::new(a), Box::new(b)),
-                span,
-            )
-        };
         let all = zero.filter_map(|unless| unless.into_iter().reduce(either));
         Some(vec![all.reduce(both)?])
     }
 
     /// Whether it is an index that turns the loop.
     fn turns(&self, p: &Part) -> bool {
-        matches!(p, Part::Slot(s) if self.nest.contains(s))
+        matches!(p, Part::Slot(s) if self.nest.iter().any(|(t, _)| t == s))
+    }
+
+    /// Whether none of these indices turns in fact: a set of one element counts as its label.
+    fn one_turn(&self, parts: &[Part], span: Span) -> Option<Node> {
+        let turning = |p: &Part| match p {
+            Part::Slot(s) => self.nest.iter().find(|(t, _)| t == s).map(|(_, set)| *set),
+            _ => None,
+        };
+        let single = parts.iter().filter_map(turning).map(|set| {
+            let count = Box::new(Node::data(NodeKind::Card(set), span));
+            let one = Box::new(Node::data(NodeKind::Const(1.0), span));
+            Node::data(NodeKind::Binary(BinaryOp::Eq, count, one), span)
+        });
+        single.reduce(both)
     }
 
     /// Whether there is a record with these first positions, up to the first that the loop does not control.
-    fn begins_with(&mut self, table: TableId, key: &Key, own: &[Slot], span: Span) -> Option<Node> {
-        // An index that comes again is not searched for.
+    fn begins_with(
+        &mut self,
+        table: TableId,
+        key: &Key,
+        own: &[Slot],
+        span: Span,
+    ) -> Option<Vec<Node>> {
+        // An index that comes again behind one that turns the loop is not searched for.
         let mut seen: Vec<Slot> = Vec::new();
+        let mut turned = false;
         let searched = |p: &&Part| {
             let again = matches!(p, Part::Slot(s) if seen.contains(s));
             if let Part::Slot(s) = p {
                 seen.push(*s);
             }
-            !again && is_fixed(p, own)
+            let goes_on = !(again && turned) && is_fixed(p, own);
+            turned |= self.turns(p);
+            goes_on
         };
-        let mut fixed = key.parts.iter().take_while(searched).count();
+        let fixed = key.parts.iter().take_while(searched).count();
         if !key.parts[..fixed].iter().any(|p| self.turns(p)) {
             return None;
         }
-        let running = key.parts.iter().filter(|p| is_fixed(p, own));
-        let innermost = running.filter_map(|p| match p {
-            Part::Slot(s) => Some(*s),
-            _ => None,
-        });
-        if matches!(key.parts[0], Part::Slot(first) if innermost.max() == Some(first)) {
-            fixed = 1;
-        }
+        let mut unless: Vec<Node> = self
+            .one_turn(&key.parts[..fixed], span)
+            .into_iter()
+            .collect();
         let mut parts = key.parts.clone();
         if fixed == parts.len() {
             let kind = NodeKind::Data(table, Key { parts });
-            return Some(Node::data(kind, span));
+            unless.push(Node::data(kind, span));
+            return Some(unless);
         }
         let mut domain = Domain::default();
         for part in &mut parts[fixed..] {
@@ -278,7 +293,8 @@ impl Compiler {
         domain.members.push(Driver { table, key });
         let one = Box::new(Node::data(NodeKind::Const(1.0), span));
         let any = NodeKind::Aggregate(AggregateOp::Sor, Box::new(domain), one);
-        Some(Node::data(any, span))
+        unless.push(Node::data(any, span));
+        Some(unless)
     }
 }
 
@@ -456,6 +472,15 @@ fn is_fixed(p: &Part, own: &[Slot]) -> bool {
         Part::Label(_) => true,
         Part::Lag(_) | Part::Singleton(..) => false,
     }
+}
+
+/// `a and b`
+fn both(a: Node, b: Node) -> Node {
+    let span = a.span;
+    Node::data(
+        NodeKind::Binary(BinaryOp::And, Box::new(a), Box::new(b)),
+        span,
+    )
 }
 
 /// `a or b`

@@ -75,6 +75,7 @@ impl Visitor<'_> for Changes<'_> {
             }
             CodeKind::Match(target, _)
             | CodeKind::Permute(target, _)
+            | CodeKind::Shuffle(target, _)
             | CodeKind::Project { target, .. } => {
                 e.tables.insert(first(*target));
             }

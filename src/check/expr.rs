@@ -650,7 +650,17 @@ impl Compiler {
             self.key(s, indices, span)?.parts
         };
         if parts.len() != 1 {
-            return self.wrong_dimension(s, span, parts.len());
+            let (name, n) = (&symbol.name, parts.len());
+            return self.fail(
+                Diagnostic::error(
+                    "E0304",
+                    span,
+                    format!("`.{lower}` is of sets with one index; `{name}` has {n}"),
+                )
+                .label(format!("{n} indices here"))
+                .other(symbol.declared, "declared here")
+                .help(format!("ask one of its indices: `i.{lower}`")),
+            );
         }
         Ok(Node::data(
             NodeKind::LabelAttribute(which, symbol.table, parts.remove(0)),

@@ -18,7 +18,7 @@ const ONCE_PER_STATEMENT: [&[&str]; 6] = [
     // Data that cannot be read: what the rest of them mean is a guess.
     &[
         "E0241", "E0242", "E0243", "E0245", "E0247", "E0248", "E0250", "E0251", "E0252", "E0253",
-        "E0345",
+        "E0254", "E0345",
     ],
     &["E0310"],
     &["E0333"],

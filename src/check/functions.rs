@@ -78,7 +78,7 @@ const FUNCTIONS: &[(&str, Callee, usize, usize)] = {
         ("handledelete", Data(D::HandleDelete), 1, 1),
         ("handlestatus", Data(D::HandleStatus), 1, 1),
         ("readycollect", Data(D::ReadyCollect), 1, 2),
-        ("handlesubmit", Data(D::Zero), 1, 1),
+        ("handlesubmit", Data(D::HandleSubmit), 1, 1),
         ("sleep", Data(D::Sleep), 1, 1),
     ]
 };

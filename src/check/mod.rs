@@ -33,7 +33,7 @@ pub(crate) use figure::kinds as figure_kinds;
 
 use crate::diag::{Diagnostic, Severity};
 use crate::host::Host;
-use crate::model::option::Solvers;
+use crate::model::option::{Refused, Solvers};
 use crate::source::{
     Ending, Known, PreprocessOptions, ReadData, SourceMap, Span, Switches, predefined,
 };
@@ -108,8 +108,10 @@ pub(crate) struct Compiler {
     output: Option<(String, Span, Vec<exchange::Wanted>)>,
     shows_numbers: bool,
     next_slot: Slot,
+    /// Symbols whose `$load` failed.
+    not_loaded: rustc_hash::FxHashSet<SymbolId>,
     /// Indices of the loop that is read and of those around it that hold nothing else.
-    nest: Vec<Slot>,
+    nest: Vec<(Slot, node::TableId)>,
     slots: usize,
     in_equation: bool,
     /// Labels that are new may stand here.
@@ -159,6 +161,7 @@ pub fn compile(
         match next {
             Ok(None) => break,
             Ok(Some(stmt)) => {
+                c.modes = stmt.modes.clone();
                 if let StmtKind::Exchange(x) = &stmt.kind
                     && !matches!(c.exchange_now(x, stmt.span, &mut parser), Ok(false))
                 {
@@ -246,6 +249,7 @@ impl Compiler {
             input: None,
             output: None,
             next_slot: 0,
+            not_loaded: rustc_hash::FxHashSet::default(),
             nest: Vec::new(),
             shows_numbers: false,
             slots: 0,
@@ -431,6 +435,10 @@ impl Known for Compiler {
 
     fn is_function(&self, name: &str) -> bool {
         functions::callee(&name.to_lowercase()).is_some()
+    }
+
+    fn is_solver(&self, name: &str) -> bool {
+        !matches!(self.solvers.check("lp", name), Err(Refused::Solver(..)))
     }
 
     fn date(&self, function: &str, arguments: &[f64]) -> Option<f64> {

@@ -58,6 +58,17 @@ impl Key {
             .iter()
             .all(|p| matches!(p, Part::Slot(_) | Part::Label(_)))
     }
+
+    /// Whether an index comes twice.
+    pub fn repeats(&self) -> bool {
+        let again = |(n, p): (usize, &Part)| match p {
+            Part::Slot(s) => self.parts[..n]
+                .iter()
+                .any(|q| matches!(q, Part::Slot(t) if t == s)),
+            _ => false,
+        };
+        self.parts.iter().enumerate().any(again)
+    }
 }
 
 /// An expression.
@@ -217,6 +228,7 @@ pub enum DataFunction {
     HandleCollect,
     HandleStatus,
     HandleDelete,
+    HandleSubmit,
     /// `readyCollect(h)`: whether nothing is left to wait for; 0, for nothing ever is.
     ReadyCollect,
 }
@@ -470,6 +482,8 @@ pub enum CodeKind {
     Option(Box<str>, Box<str>),
     /// `option clear = p`, `option clear = x.lo`: the offset of the attribute
     Clear(SymbolId, Option<u32>),
+    /// `option shuffle = p`: the parameter, and the set of its index
+    Shuffle(SymbolId, TableId),
     /// `option p:d:r:c`
     Format(SymbolId, Vec<i64>),
     /// `option p < q`

@@ -2,7 +2,7 @@
 
 use super::functions;
 use super::node::*;
-use super::symbols::{DomainPosition, SymbolKind};
+use super::symbols::{DomainPosition, SymbolKind, UNIVERSE};
 use super::{Compiler, Failed};
 use crate::diag::Diagnostic;
 use crate::model::language;
@@ -70,6 +70,9 @@ impl Compiler {
                 self.symbols.get_mut(root).assigned = true;
                 Ok(Some(CodeKind::Clear(s, offset)))
             }
+            OptionForm::Assign(OptionValue::Text(t, span)) if lower == "shuffle" => {
+                self.shuffled(t, *span)
+            }
             OptionForm::Assign(v) => self.value(item, lower, v),
             OptionForm::Flag => {
                 if FLAGS.contains(&lower.as_str()) {
@@ -105,7 +108,9 @@ impl Compiler {
                 let message = format!("the option `{name}` means nothing here");
                 if self.passed_over.insert(name) {
                     let d = Diagnostic::warning("E0329", item.name.span, message);
-                    self.report(d.label("passed over"));
+                    let help =
+                        "leave it out, or keep it for other systems: no result depends on it";
+                    self.report(d.label("passed over").help(help));
                 }
                 Ok(None)
             }
@@ -238,6 +243,30 @@ impl Compiler {
         let symbol = self.symbols.get_mut(root);
         symbol.assigned = true;
         symbol.dynamic |= symbol.is_set();
+    }
+
+    /// `option shuffle = p`
+    fn shuffled(&mut self, name: &str, span: Span) -> Result<Option<CodeKind>, Failed> {
+        let name = name.into();
+        let p = self.lookup(&Ident { name, span })?;
+        let symbol = self.symbols.get(p);
+        let (SymbolKind::Parameter { .. }, [index]) = (&symbol.kind, symbol.domain.as_slice())
+        else {
+            let (declared, kind) = (symbol.declared, symbol.a_kind());
+            return self.fail(
+                Diagnostic::error("E0330", span, "`option shuffle` takes a parameter with one index")
+                    .label(format!("this is {kind}"))
+                    .other(declared, "declared here")
+                    .help("declare `parameter p(i);` for it: it gets the positions of the elements, shuffled"),
+            );
+        };
+        let set = match index {
+            DomainPosition::Set(s) => *s,
+            DomainPosition::Universe | DomainPosition::Relaxed(_) => UNIVERSE,
+        };
+        let set = self.symbols.get(set).table;
+        self.symbols.get_mut(p).assigned = true;
+        Ok(Some(CodeKind::Shuffle(p, set)))
     }
 
     fn project(

@@ -172,9 +172,25 @@ impl Compiler {
             attribute: None,
             arguments: None,
         } = &value.kind
-            && let Some(s) = self.file(name)
         {
-            return Ok(PutCode::File(s));
+            if let Some(s) = self.file(name) {
+                return Ok(PutCode::File(s));
+            }
+            if let Some(s) = self.symbols.find(&name.name)
+                && self.symbols.get(s).is_set()
+            {
+                let (i, declared) = (&name.name, self.symbols.get(s).declared);
+                let d = Diagnostic::error(
+                    "E0304",
+                    name.span,
+                    format!("the set `{i}` has no value to write"),
+                )
+                .label("what of it?")
+                .other(declared, "declared here");
+                return self.fail(d.help(format!(
+                    "write its element's label, `{i}.tl`, its text, `{i}.te({i})`, or its position, `ord({i})`"
+                )));
+            }
         }
         let value = match &value.kind {
             ExprKind::Apply {

@@ -79,7 +79,13 @@ impl Compiler {
             StmtKind::Loop(d, body) => self.scoped(|c| {
                 let mut domain = c.domain(d)?;
                 let mut nest = std::mem::take(&mut c.nest);
-                nest.extend(&domain.slots);
+                nest.extend(
+                    domain
+                        .slots
+                        .iter()
+                        .copied()
+                        .zip(domain.sets.iter().copied()),
+                );
                 if holds_one_loop(body) {
                     c.nest.clone_from(&nest);
                 }

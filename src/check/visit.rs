@@ -183,6 +183,7 @@ impl Code {
             | CodeKind::Project { .. }
             | CodeKind::Match(..)
             | CodeKind::Permute(..)
+            | CodeKind::Shuffle(..)
             | CodeKind::Exchange(_)
             | CodeKind::Draw(..) => {}
         }

@@ -109,6 +109,7 @@ pub const CODES: &[Code] = &[
     row("E0251", Error, "value under two columns", "move it under one of them"),
     row("E0252", Error, "row label under a column", "the label of a row reaches under the first column"),
     row("E0253", Error, "two values under one column", "a column takes one value per row"),
+    row("E0254", Error, "table without rows", "a line with `+` stands below the rows of the columns before"),
 
     row("E0300", Error, "too many errors", "the rest of the text was not checked"),
     row("E0301", Error, "unknown name", "names are declared above the place where they are used"),
@@ -209,7 +210,7 @@ pub const CODES: &[Code] = &[
     row("E0410", Execution, "empty row", "a row without variables cannot hold"),
     row("E0411", Execution, "coefficient not finite", "look for `inf`, `na` or `undf` in the data of the equation"),
     row("E0412", Execution, "column matched twice", "a column is matched with two rows"),
-    row("E0413", Execution, "impossible bounds", "a bound or level is not a number, or the lower bound lies above the upper"),
+    row("E0413", Execution, "impossible bounds", "a bound, level or scale is not a number, or the lower bound lies above the upper"),
     row("E0414", Execution, "empty row with a partner", "a row in which no variable is left has a partner that is not fixed"),
     row("E0415", Execution, "partner in no row", "the partner of a row stands in no row"),
     row("E0416", Warning, "equation with a bounded partner", "`=e=` need not hold where its partner is at a bound"),

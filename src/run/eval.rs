@@ -228,6 +228,14 @@ impl Machine<'_> {
                 }
                 self.call(Function::RPower, &[a, b], n.span)
             }
+            NodeKind::Binary(
+                op @ (BinaryOp::Lt | BinaryOp::Le | BinaryOp::Gt | BinaryOp::Ge),
+                a,
+                b,
+            ) => {
+                let x = self.no_acronym(self.eval(a, frame), a.span);
+                arithmetic::relate(*op, x, self.no_acronym(self.eval(b, frame), b.span))
+            }
             NodeKind::Binary(op, a, b) => {
                 let (a, b) = (self.eval(a, frame), self.eval(b, frame));
                 arithmetic::relate(*op, a, b)
@@ -446,7 +454,7 @@ impl Machine<'_> {
 
     /// Records of a symbol. A variable or an equation has one where any attribute is not at its default, and for each column or
     /// row of the last solve until levels or marginals are assigned.
-    fn count(&self, table: TableId) -> usize {
+    pub(super) fn count(&self, table: TableId) -> usize {
         let first = self.store.table(table);
         let symbol = self.table_symbol(table).map(|s| (s, self.symbols.get(s)));
         let Some((s, symbol)) = symbol.filter(|(_, s)| s.has_attributes() && s.dim() > 0) else {
@@ -548,7 +556,18 @@ impl Machine<'_> {
             D::Sleep => a[0],
             D::HandleCollect => self.grid.collect(a[0]),
             D::HandleStatus => self.grid.status(a[0]),
-            D::HandleDelete => self.grid.delete(a[0]),
+            D::HandleDelete | D::HandleSubmit => {
+                let (name, found) = match f {
+                    D::HandleDelete => ("handleDelete", self.grid.delete(a[0])),
+                    _ => ("handleSubmit", self.grid.submit_again(a[0])),
+                };
+                if found != 0.0 {
+                    let message = format!("{name}: no solve has the handle {}", a[0]);
+                    let help = "`m.handle` is the number of the last solve with `m.solveLink = 3`";
+                    self.execution_error("E0403", span, message, help);
+                }
+                found
+            }
             D::ErrorLevel | D::Zero | D::ReadyCollect => 0.0,
             D::One => 1.0,
             D::GamsVersion => 546.0,

@@ -163,6 +163,7 @@ impl Machine<'_> {
                 source,
                 positions,
             } => self.project(*target, *source, positions),
+            CodeKind::Shuffle(p, set) => self.shuffle(self.symbols.get(*p).table, *set),
             CodeKind::Permute(target, [numbers, set]) => {
                 self.permute(*target, *numbers, *set, c.span);
             }
@@ -641,6 +642,29 @@ impl Machine<'_> {
         table.clear();
         for key in all.iter().flat_map(Tuples::rows).map(|r| r.labels) {
             table.set(key, 1.0);
+        }
+        table.tidy();
+    }
+
+    /// `option shuffle = p`: the values over all elements of its set change places, the last one first (Fisher and Yates);
+    /// without any, they are the positions.
+    fn shuffle(&mut self, p: TableId, set: TableId) {
+        let labels = |t: &Table| t.iter().map(|(k, _)| k[0]).collect::<Vec<Label>>();
+        self.store.table_mut(set).tidy();
+        let labels = labels(self.store.table(set));
+        let table = self.store.table_mut(p);
+        table.tidy();
+        let mut values: Vec<f64> = match table.is_empty() {
+            true => (1..=labels.len()).map(|n| n as f64).collect(),
+            false => labels.iter().map(|l| table.get(&[*l])).collect(),
+        };
+        for n in (1..values.len()).rev() {
+            let k = self.random.borrow_mut().uniform_int(0.0, n as f64) as usize;
+            values.swap(n, k);
+        }
+        let table = self.store.table_mut(p);
+        for (label, value) in labels.iter().zip(values) {
+            table.set(&[*label], value);
         }
         table.tidy();
     }

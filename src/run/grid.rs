@@ -51,9 +51,17 @@ impl Grid {
         }
     }
 
-    /// `handleDelete`: 0 where it was there, 1 for what is no handle, 2 for one that is gone.
+    /// `handleSubmit`: 0 where it is there, 2 for one that is not.
+    pub(super) fn submit_again(&self, handle: f64) -> f64 {
+        2.0 - self.status(handle)
+    }
+
+    /// `handleDelete`: 0 where it was there, 1 for what is no handle or before any solve, 2 for one that is gone.
     pub(super) fn delete(&self, handle: f64) -> f64 {
         let mut submitted = self.submitted.borrow_mut();
+        if submitted.is_empty() {
+            return 1.0;
+        }
         match Self::place(handle).map(|k| submitted.get_mut(k).and_then(Option::take)) {
             Some(Some(_)) => 0.0,
             Some(None) => 2.0,

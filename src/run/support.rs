@@ -36,6 +36,17 @@ pub(super) struct Sparse {
 }
 
 impl Sparse {
+    /// Where random numbers are drawn that need this to be other than 0: records that lags find, or an index that comes
+    /// twice, do not count, and for every tuple if there are no others.
+    fn drawn(mut self) -> Option<Self> {
+        for all in &mut self.support {
+            all.retain(|d| d.key.is_plain() && !d.key.repeats());
+        }
+        self.forced = true;
+        let found = !self.support.is_empty() && self.support.iter().all(|all| !all.is_empty());
+        found.then_some(self)
+    }
+
     /// Whether its records are found without lags.
     pub(super) fn is_plain(&self) -> bool {
         self.support.iter().flatten().all(|d| d.key.is_plain())
@@ -57,6 +68,8 @@ pub(super) enum Premise {
     Full(TableId),
     /// A scalar has this value (its bits).
     Scalar(TableId, u64),
+    /// So many are counted by `card`.
+    Count(TableId, usize),
 }
 
 /// How a factor behaves where another one is 0.
@@ -89,6 +102,7 @@ impl Machine<'_> {
             Premise::Filled(t) => !self.store.table(t).is_empty(),
             Premise::Full(t) => self.is_full(t),
             Premise::Scalar(t, bits) => self.store.table(t).get(&[]).to_bits() == bits,
+            Premise::Count(t, n) => self.count(t) == n,
         }
     }
 
@@ -207,6 +221,11 @@ impl<'m, 'h> Analysis<'m, 'h> {
         match &n.kind {
             NodeKind::Const(x) => Some(at_rest(*x)),
             NodeKind::Data(t, key) => self.data(*t, key),
+            NodeKind::Card(t) => {
+                let count = self.m.count(*t);
+                self.premise(Premise::Count(*t, count));
+                Some(at_rest(count as f64))
+            }
             NodeKind::Negate(a) => self.together(&[(symbolic, a)], |v| arithmetic::negate(v[0])),
             NodeKind::Not(a) => self.together(&[(false, a)], |v| arithmetic::not(v[0])),
             NodeKind::Sum(terms) => {
@@ -226,22 +245,27 @@ impl<'m, 'h> Analysis<'m, 'h> {
                 let condition = self.nonzero(c, false);
                 let value = self.nonzero(a, symbolic);
                 match (condition, value) {
-                    (Some(c), Some(a)) => Some(meet(c, a)),
+                    // A number that is 0 keeps nothing in `a` from being drawn.
+                    (Some(c), Some(v)) if c.support.is_empty() && a.has_random() => Some(v),
+                    (Some(c), Some(v)) => Some(meet(c, v)),
                     (Some(c), None) => Some(c),
-                    // Random numbers are drawn where the value can be other than 0; with a lag there, for every tuple.
-                    (None, Some(a)) if c.has_random() && !a.is_plain() => None,
-                    (None, Some(a)) => {
-                        let care = self.care(c);
-                        Some(Sparse {
-                            forced: a.forced || c.has_random() || care != Some(Care::Total),
-                            ..a
-                        })
-                    }
+                    (None, Some(v)) if c.has_random() => v.drawn(),
+                    (None, Some(v)) => Some(Sparse {
+                        forced: v.forced || self.care(c) != Some(Care::Total),
+                        ..v
+                    }),
                     (None, None) => None,
                 }
             }
-            // Both sides are evaluated: random numbers are drawn for every tuple.
-            NodeKind::Binary(BinaryOp::And, ..) if n.has_random() => None,
+            // Both sides are evaluated: random numbers are drawn for every tuple, or where their own side says.
+            NodeKind::Binary(BinaryOp::And, a, b) if n.has_random() => {
+                match (a.has_random(), b.has_random()) {
+                    (true, false) => self.nonzero(a, false),
+                    (false, true) => self.nonzero(b, false),
+                    _ => None,
+                }
+                .and_then(Sparse::drawn)
+            }
             NodeKind::Binary(BinaryOp::And, a, b) => self.both(n, a, b),
             NodeKind::Binary(BinaryOp::Power, a, b) => {
                 self.call(Function::RPower, &[(symbolic, a), (symbolic, b)])

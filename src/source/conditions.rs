@@ -166,7 +166,7 @@ impl Preprocessor<'_> {
             }
             "putopen" => Some(Ok((known.put_open(), len))),
             "uelexist" => one(&mut |n| known.is_label(n)),
-            "solver" => Some(Ok((false, len + term(after, false).1))),
+            "solver" => one(&mut |n| known.is_solver(n)),
             _ => {
                 let found = self.of_data_file(word.strip_prefix("gdx")?, after, known)?;
                 Some(found.map(|(truth, n)| (truth, len + n)))

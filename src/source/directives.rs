@@ -843,6 +843,7 @@ impl Preprocessor<'_> {
         let good = match word {
             "inlinecom" => !first.is_empty() && !second.is_empty(),
             "eolcom" => !first.is_empty(),
+            "comment" => first.len() == 1,
             _ => first.len() == 1 && !first[0].is_ascii_alphanumeric(),
         };
         if !good {

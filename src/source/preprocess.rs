@@ -73,6 +73,10 @@ pub trait Known {
     fn is_function(&self, _name: &str) -> bool {
         false
     }
+    /// Whether a solver has this name, here or in GAMS.
+    fn is_solver(&self, _name: &str) -> bool {
+        false
+    }
     /// Whether a text is a label of some data.
     fn is_label(&self, _text: &str) -> bool {
         false

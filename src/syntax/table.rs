@@ -85,6 +85,8 @@ pub struct TableReader<'a> {
     empty: bool,
     /// Column labels were read that were not given yet.
     headings: bool,
+    /// No row stands below the present columns.
+    bare: bool,
     /// Index positions of rows and columns together.
     dim: usize,
     /// Cells of a line under `$onDelim` that are still to be given: column and bytes, last first.
@@ -114,6 +116,7 @@ impl<'a> TableReader<'a> {
             in_row: false,
             empty: false,
             headings: false,
+            bare: true,
             dim,
             fields: Vec::new(),
         }
@@ -201,6 +204,17 @@ impl<'a> TableReader<'a> {
         }
         if line.starts_with('+') {
             let plus = stop - line.len();
+            if self.bare {
+                let at = Span::new(plus as u32, plus as u32 + 1);
+                let d = Diagnostic::error("E0254", at, "a table goes on here that has no rows");
+                self.at = self.end;
+                return Err(Box::new(match self.columns.first() {
+                    Some(c) => d.other(c.span, "these columns have no row").help(
+                        "a line that begins with `+` holds further columns, below the rows of those before",
+                    ),
+                    None => d.help("its first line holds the labels of its columns"),
+                }));
+            }
             self.offset = column_after(&self.text[line_start..plus + 1], 0);
             from = plus + 1;
             self.header = true;
@@ -246,8 +260,10 @@ impl<'a> TableReader<'a> {
                 });
             }
             self.headings = true;
+            self.bare = true;
             return;
         }
+        self.bare = false;
         self.row.clear();
         let mut first = None;
         while self.row.len() < rows {
@@ -278,6 +294,7 @@ impl<'a> TableReader<'a> {
 
     fn read_header(&mut self) -> Result<(), Box<Diagnostic>> {
         self.columns.clear();
+        self.bare = true;
         self.reader.set_arity(usize::MAX);
         while self.reader.more() {
             let from = self.reader.position();
@@ -298,6 +315,7 @@ impl<'a> TableReader<'a> {
     }
 
     fn read_row_label(&mut self) -> Result<(), Box<Diagnostic>> {
+        self.bare = false;
         self.row.clear();
         self.reader.more();
         let columns = self.columns.first().map_or(1, |c| width(&c.key));

@@ -13,6 +13,7 @@ mod json;
 mod records;
 mod write;
 
+use super::data::second_data;
 use super::node::{EquationDef, SymbolId};
 use super::symbols::{DomainPosition, Store, SymbolKind, Symbols, attribute};
 use super::{Compiler, Failed};
@@ -399,6 +400,7 @@ impl Compiler {
             if let Some(s) = self.symbols.find(&item.name.name) {
                 let root = self.symbols.root(s);
                 self.symbols.get_mut(root).assigned = true;
+                self.not_loaded.insert(root);
             }
         }
         self.fail(d.as_error())
@@ -418,13 +420,14 @@ impl Compiler {
         self.defined_domains(&file, &mut items);
         // `loadDC`, `loadM`, `loadDCR` …: what comes after `load`.
         let how = x.keyword.name.rsplit("load").next().unwrap_or_default();
+        let merges = self.merges(how, &items, span)?;
         let request = Request {
             file: &file,
             at,
             items: &items,
             point: false,
             strict: how.starts_with("dc"),
-            merge: matches!(how, "m" | "dcm"),
+            merge: merges,
             reading: true,
             span,
         };
@@ -432,6 +435,27 @@ impl Compiler {
         let warnings = load(&mut self.symbols, &mut self.store, &request, &mut read)?;
         warnings.into_iter().for_each(|d| self.report(d));
         Ok(())
+    }
+
+    /// Whether a load adds to what its symbols hold: `loadM`, or `$onMulti`. An error for one that has data or is
+    /// assigned, unless these or `loadR`, `$onMultiR` allow it.
+    fn merges(&self, how: &str, items: &[Wanted], span: Span) -> Loaded<bool> {
+        let modes = self.modes.at(span);
+        let plain = matches!(how, "" | "dc");
+        if plain && !modes.multi {
+            for (n, w) in items.iter().enumerate() {
+                let root = self.symbols.root(w.symbol);
+                let symbol = self.symbols.get(root);
+                let again = items[..n]
+                    .iter()
+                    .any(|v| self.symbols.root(v.symbol) == root);
+                let filled = symbol.has_data || symbol.assigned && !self.not_loaded.contains(&root);
+                if again || filled {
+                    return Err(Box::new(second_data(&symbol.name, w.span, symbol.declared)));
+                }
+            }
+        }
+        Ok(matches!(how, "m" | "dcm") || plain && modes.multi && !modes.multi_replace)
     }
 
     /// `parameter p(i<)`: with `p`, a GDX file also brings the labels of `i`.

@@ -394,7 +394,24 @@ impl Builder<'_, '_> {
                 );
                 self.failed = true;
             }
+            let scale = self.instance.columns.scale[i];
+            if !is_scale(scale) {
+                let name = blocks.of(i as u32);
+                let name = self.m.record_name(name.symbol, name.key(i as u32));
+                self.bad_scale(&name, scale);
+            }
         }
+    }
+
+    /// An error for a scale that rows and columns cannot be divided by.
+    pub(super) fn bad_scale(&mut self, name: &str, scale: f64) {
+        let message = format!("the scale of {name} must be a number above 1e-20, not {scale:e}");
+        self.m.note(
+            Diagnostic::execution("E0413", self.m.options.at.get(), message)
+                .label("at this solve")
+                .help("check the assignments to `.scale`"),
+        );
+        self.failed = true;
     }
 
     /// Nonzeros, and nonlinear ones, as pairs of row and column.
@@ -408,6 +425,11 @@ impl Builder<'_, '_> {
         let both = places.iter().filter(is_linear_too).count();
         (m.column.len() + places.len() - both, places.len())
     }
+}
+
+/// Whether rows and columns can be scaled by it.
+pub(super) fn is_scale(scale: f64) -> bool {
+    scale > 1e-20 && scale.is_finite()
 }
 
 /// What bounds of a discrete variable must not be, relaxed or not.

@@ -390,6 +390,10 @@ impl Builder<'_, '_> {
             1.0
         };
         rows.scale.push(scale);
+        if !finish::is_scale(scale) {
+            let name = self.m.record_name(e.symbol, key);
+            self.bad_scale(&name, scale);
+        }
         block.keys.extend_from_slice(key);
         self.row += 1;
     }

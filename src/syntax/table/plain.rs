@@ -42,6 +42,7 @@ impl<'a> TableReader<'a> {
             return None;
         }
         self.at = end + 1;
+        self.bare = false;
         Some(row)
     }
 
