@@ -87,11 +87,12 @@ impl Filling {
     }
 }
 
-/// How many lines a text has if they are as long as the first ones, whose labels are mostly the shortest.
+/// How many lines a text has if they are as long as the first ones, whose labels are mostly the shortest: what room to take.
 pub(super) fn lines_about(text: &str) -> usize {
     let first = &text.as_bytes()[..text.len().min(1 << 16)];
     let lines = memchr::memchr_iter(b'\n', first).count();
-    lines * text.len().div_ceil(first.len().max(1))
+    let all = lines.saturating_mul(text.len().div_ceil(first.len().max(1)));
+    all.min(text.len() / 4)
 }
 
 /// `i1-i5`, `1 to 5`, `t1 - t5`: what it is meant to run from and to.
