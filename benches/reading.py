@@ -3,9 +3,9 @@
 
 usage: benches/reading.py target/release/bmod [GAMS] [SHAPE…]
 
-Processor seconds, the least of three runs: the clock depends on what else the machine does.
+Processor seconds, medians of five runs in turn: the clock depends on what else the machine does.
 """
-import os, random, resource, subprocess, sys, tempfile
+import os, random, resource, statistics, subprocess, sys, tempfile
 
 random.seed(1)
 number = lambda: f"{random.uniform(0, 100):.4f}"
@@ -44,16 +44,13 @@ SHAPES = {
 }
 
 
-def least(command):
-    best = float("inf")
-    for _ in range(3):
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        done = subprocess.run(command, capture_output=True, cwd=SCRATCH)
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        if done.returncode != 0:
-            sys.exit(f"{' '.join(command)}: {done.stderr.decode()}")
-        best = min(best, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
-    return best
+def seconds(command):
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    done = subprocess.run(command, capture_output=True, cwd=SCRATCH)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    if done.returncode != 0:
+        sys.exit(f"{' '.join(command)}: {done.stderr.decode()}")
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
 if len(sys.argv) < 2:
@@ -66,9 +63,12 @@ with tempfile.TemporaryDirectory() as SCRATCH:
         with open(file, "w") as out:
             out.write(SHAPES[name]())
         size = os.path.getsize(file) / 1e6
-        mine = least([BMOD, "run", file, "--quiet"])
-        line = f"{name:18} {size:5.1f} MB   bmod {mine:6.2f}"
+        commands = [[BMOD, "run", file, "--quiet"]]
         if GAMS:
-            theirs = least([GAMS, file, "lo=0", "o=" + os.devnull])
-            line += f"   GAMS {theirs:6.2f}   {theirs / mine:5.1f} times as fast"
+            commands.append([GAMS, file, "lo=0", "o=" + os.devnull])
+        runs = [[seconds(command) for command in commands] for _ in range(5)]
+        mine, *theirs = (statistics.median(times) for times in zip(*runs))
+        line = f"{name:18} {size:5.1f} MB   bmod {mine:6.3f}"
+        for gams in theirs:
+            line += f"   GAMS {gams:6.3f}   ratio {mine / gams:5.3f}"
         print(line, flush=True)

@@ -87,6 +87,14 @@ impl Filling {
     }
 }
 
+/// How many lines a text has if they are as long as the first ones, whose labels are mostly the shortest: what room to take.
+pub(super) fn lines_about(text: &str) -> usize {
+    let first = &text.as_bytes()[..text.len().min(1 << 16)];
+    let lines = memchr::memchr_iter(b'\n', first).count();
+    let all = lines.saturating_mul(text.len().div_ceil(first.len().max(1)));
+    all.min(text.len() / 4)
+}
+
 /// `i1-i5`, `1 to 5`, `t1 - t5`: what it is meant to run from and to.
 pub(super) fn meant_range<'a>(label: &'a str, text: &'a str) -> Option<(&'a str, &'a str)> {
     let (from, to) = match text.strip_prefix("to ").or_else(|| text.strip_prefix("- ")) {
@@ -255,7 +263,7 @@ impl Compiler {
         let undf = self.modes.at(body).undf;
         let reader = DataReader::new(text, body.lo, kind, undf).with_arity(dim);
         // Mostly a record stands on a line.
-        let lines = memchr::memchr_iter(b'\n', text.as_bytes()).count();
+        let lines = lines_about(text);
         let table = self.symbols.get(s).table;
         self.store.table_mut(table).reserve(lines);
         let reader = match kind {
@@ -344,6 +352,9 @@ impl Compiler {
                 continue;
             }
             elements.unordered |= all_of_unordered && elements.symbol.dim() == 1 && keys.len() > 0;
+            if text.is_none() && self.append_elements(&mut elements, &keys) {
+                continue;
+            }
             for row in keys.rows() {
                 let both = together(row.text, text.unwrap_or_default());
                 let said = text.is_some() || !both.is_empty();
@@ -363,6 +374,19 @@ impl Compiler {
             self.doubtful.push((s, d));
         }
         Ok(())
+    }
+
+    /// Stores many elements of a data statement at once, if they are new and in order and have no texts.
+    fn append_elements(&mut self, to: &mut Elements, keys: &Tuples) -> bool {
+        let many = keys.len() > 1 && !keys.have_texts() && to.filling.own.is_none();
+        let singleton = matches!(to.symbol.kind, SymbolKind::Set { singleton: true });
+        let ones = std::iter::repeat_n(1.0, keys.len());
+        let table = self.store.table_mut(to.symbol.table);
+        let done = many && !singleton && table.append_all(&keys.labels, ones);
+        if done {
+            to.last = keys.labels.last().copied();
+        }
+        done
     }
 
     /// Stores an element of a data statement; an error if the statement gave it already.

@@ -83,6 +83,11 @@ impl Tuples {
         self.labels.len() / self.width.max(1)
     }
 
+    /// Whether data say more of them than that they are there.
+    pub(crate) fn have_texts(&self) -> bool {
+        !self.texts.is_empty()
+    }
+
     /// The tuples.
     pub(crate) fn rows(&self) -> impl Iterator<Item = Row<'_>> {
         let keys = self.labels.chunks_exact(self.width.max(1)).enumerate();

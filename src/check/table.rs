@@ -1,6 +1,6 @@
 //! `table` declarations.
 
-use super::data::{Familiar, Filling, Seen};
+use super::data::{Familiar, Filling, Seen, lines_about};
 use super::expansion::{Tuples, record_bytes, set_prefix};
 use super::node::SymbolId;
 use super::symbols::SymbolKind;
@@ -37,6 +37,7 @@ struct Lines {
     headings: Seen,
     rows: Seen,
     key: Vec<Label>,
+    values: Vec<f64>,
     familiar: Familiar,
     /// The positions whose sets the table defines.
     defines: Vec<bool>,
@@ -121,6 +122,7 @@ impl Compiler {
             headings: Seen::default(),
             rows: Seen::default(),
             key: Vec::new(),
+            values: Vec::new(),
             familiar: Familiar::new(&self.symbols, s),
             defines,
             filling,
@@ -143,7 +145,7 @@ impl Compiler {
         let (dim, table) = (symbol.dim(), symbol.table);
         let mut reader = self.table_reader(body, dim, map);
         let text = map.text(body);
-        let height = memchr::memchr_iter(b'\n', text.as_bytes()).count();
+        let height = lines_about(text);
         let mut cells = Vec::new();
         loop {
             while lines.single
@@ -201,29 +203,35 @@ impl Compiler {
     ) -> Result<(), Failed> {
         let symbol = self.symbols.get(s);
         let (dim, table, is_set) = (symbol.dim(), symbol.table, symbol.is_set());
-        let mut key = [0; 20];
-        let key = &mut key[..dim];
         let Some(Line::Labels(column)) = lines.columns.first() else {
             return Ok(());
         };
-        let width = dim - column.len();
-        key[..width].copy_from_slice(&lines.familiar.key[..width]);
-        if lines.rows.again(&key[..width]) {
-            self.comes_again(&key[..width], row, "row");
+        let labels = &lines.familiar.key[..dim - column.len()];
+        if lines.rows.again(labels) {
+            self.comes_again(labels, row, "row");
             return Ok(());
         }
         self.take(cells.len(), record_bytes(dim), row)?;
+        lines.key.clear();
+        lines.values.clear();
         for cell in cells {
             let Line::Labels(column) = &lines.columns[cell.place] else {
                 continue;
             };
-            key[width..].copy_from_slice(column);
-            let value = match is_set {
+            match (labels, &**column) {
+                (&[row], &[column]) => {
+                    lines.key.push(row);
+                    lines.key.push(column);
+                }
+                _ => lines.key.extend(labels.iter().chain(column)),
+            }
+            lines.values.push(match is_set {
                 true => f64::from(u8::from(truth(cell.value))),
                 false => self.stored(cell.value, cell.span),
-            };
-            self.store.tables[table as usize].set(key, value);
+            });
         }
+        // Neither its row nor its column comes twice, so none of them does.
+        self.store.tables[table as usize].set_all(&lines.key, &lines.values);
         Ok(())
     }
 

@@ -244,6 +244,10 @@ impl Table {
         debug_assert_eq!(key.len(), self.dim);
         match self.dim {
             0 => (!self.values.is_empty() && self.values[0] != self.default).then_some(0),
+            1 if self.is_run() => {
+                let record = key[0].wrapping_sub(self.keys[0]);
+                ((record as usize) < self.values.len()).then_some(record)
+            }
             _ => {
                 let r = self.visited.get();
                 if self.value_of(r).is_some_and(|v| v != self.default) && same(self.key(r), key) {
@@ -254,6 +258,13 @@ impl Table {
                     .find(key, &self.keys)
             }
         }
+    }
+
+    /// Whether the keys are labels that follow each other, as those of most sets: then no index is needed.
+    #[inline]
+    fn is_run(&self) -> bool {
+        let n = self.values.len();
+        n > 0 && self.is_tidy() && (self.keys[n - 1] - self.keys[0]) as usize == n - 1
     }
 
     #[inline]
@@ -305,6 +316,32 @@ impl Table {
         } else {
             self.set_among(key, value);
         }
+    }
+
+    /// Stores records one after the other: at once where they are in order and new.
+    pub fn set_all(&mut self, keys: &[Label], values: &[f64]) {
+        let plain = |v: &f64| v.is_finite() && *v != self.default;
+        if values.iter().all(plain) && self.append_all(keys, values.iter().copied()) {
+            return;
+        }
+        for (key, &value) in keys.chunks_exact(self.dim).zip(values) {
+            self.set(key, value);
+        }
+    }
+
+    /// Appends records whose values are finite and not the default, if they come after all others, in order.
+    pub fn append_all(&mut self, keys: &[Label], values: impl Iterator<Item = f64>) -> bool {
+        let each = || keys.chunks_exact(self.dim);
+        let behind = each().next().is_some_and(|k| self.is_after_last(k))
+            && each().is_sorted_by(|a, b| before(a, b));
+        if behind {
+            self.keys.extend_from_slice(keys);
+            self.values.extend(values);
+            self.sorted = self.values.len();
+            self.index.take();
+            self.moved();
+        }
+        behind
     }
 
     /// The same among the records that are there.
@@ -654,6 +691,39 @@ mod tests {
                 let want: Vec<u32> = m.keys().filter(|k| k.1 == b).map(|k| k.0).collect();
                 prop_assert_eq!(got, want);
             }
+        }
+
+        /// So is a table of labels, with gaps between them or without.
+        #[test]
+        fn a_table_of_labels_is_a_sorted_map(writes in prop::collection::vec((2u32..8, 0u8..3, any::<bool>()), 0..30)) {
+            let mut t = Table::new(1, 0.0);
+            let mut m = BTreeMap::new();
+            for (a, v, tidy) in writes {
+                t.set(&[a], f64::from(v));
+                m.insert(a, f64::from(v));
+                if tidy { t.tidy(); }
+                for l in 0..10 {
+                    prop_assert_eq!(t.get(&[l]), m.get(&l).copied().unwrap_or(0.0));
+                }
+            }
+        }
+
+        /// Storing records at once is the same as storing them one by one.
+        #[test]
+        fn all_at_once_is_one_by_one(rows in prop::collection::vec((0u32..9, prop::collection::vec((0u32..6, 0u8..9), 0..5), any::<bool>()), 0..20)) {
+            let mut a = Table::new(2, 0.0);
+            let mut b = a.clone();
+            for (row, cells, look) in rows {
+                let keys: Vec<u32> = cells.iter().flat_map(|c| [row, c.0]).collect();
+                let values: Vec<f64> = cells.iter().map(|c| if c.1 == 8 { f64::INFINITY } else { f64::from(c.1) }).collect();
+                a.set_all(&keys, &values);
+                for (k, &v) in keys.chunks_exact(2).zip(&values) { b.set(k, v); }
+                if look { prop_assert_eq!(a.get(&[row, 3]), b.get(&[row, 3])); }
+            }
+            prop_assert_eq!((a.len(), a.has_special()), (b.len(), b.has_special()));
+            a.tidy();
+            b.tidy();
+            prop_assert!(a.iter().eq(b.iter()));
         }
 
         /// Merging sorted records is the same as storing them one by one.

@@ -39,16 +39,14 @@ fn hash(label: &str) -> u32 {
         h.write_u64(fold(u64::from_le_bytes(*word)));
         rest = behind;
     }
-    // The last eight bytes once more are cheaper than fewer.
-    let last = match bytes.last_chunk::<8>() {
-        Some(word) => *word,
-        None => {
-            let mut word = [0u8; 8];
-            word[..bytes.len()].copy_from_slice(bytes);
-            word
-        }
+    // The last eight bytes once more, or the first four and the last, are cheaper than what is left.
+    let four = |word: &[u8; 4]| u64::from(u32::from_le_bytes(*word));
+    let last = match (bytes.last_chunk(), bytes.first_chunk(), bytes.last_chunk()) {
+        (Some(word), ..) => u64::from_le_bytes(*word),
+        (_, Some(first), Some(last)) => four(first) << 32 | four(last),
+        _ => bytes.iter().fold(0, |word, &b| word << 8 | u64::from(b)),
     };
-    h.write_u64(fold(u64::from_le_bytes(last)) ^ (bytes.len() as u64) << 56);
+    h.write_u64(fold(last) ^ (bytes.len() as u64) << 56);
     let h = h.finish();
     (h ^ h >> 32) as u32
 }

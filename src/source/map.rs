@@ -14,9 +14,12 @@ pub struct SourceFile {
     pub name: String,
     /// Whole text.
     pub text: String,
-    /// Byte offset of the start of each line.
-    lines: Vec<u32>,
+    /// Line ends before each block of [`BLOCK`] bytes.
+    ends_before: Vec<u32>,
 }
+
+/// Bytes of a text whose line ends are counted at once: to find a line takes the time for one block.
+const BLOCK: usize = 16 << 10;
 
 /// A place in an original file.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -57,6 +60,10 @@ pub struct SourceMap {
     pub(crate) title: Option<String>,
 }
 
+fn line_ends(text: &[u8]) -> u32 {
+    memchr::memchr_iter(b'\n', text).count() as u32
+}
+
 /// The bytes `lo..hi` of a text, widened to whole characters.
 pub(crate) fn whole_characters(text: &str, mut lo: usize, mut hi: usize) -> (usize, usize) {
     while !text.is_char_boundary(lo) {
@@ -88,12 +95,18 @@ impl SourceMap {
 
     /// Adds a file.
     pub fn add_file(&mut self, name: impl Into<String>, text: String) -> FileId {
-        let mut lines = vec![0];
-        lines.extend(memchr::memchr_iter(b'\n', text.as_bytes()).map(|i| i as u32 + 1));
+        // Mostly all of it is copied, under `$onDelim` with a mark a line: with room at once the copy never moves.
+        self.expanded.reserve(text.len() + text.len() / 16);
+        let blocks = text.as_bytes().chunks(BLOCK);
+        let ends_before = blocks.scan(0, |ends, block| {
+            let before = *ends;
+            *ends += line_ends(block);
+            Some(before)
+        });
         self.files.push(SourceFile {
             name: name.into(),
+            ends_before: ends_before.collect(),
             text,
-            lines,
         });
         FileId(self.files.len() as u32 - 1)
     }
@@ -270,24 +283,78 @@ impl SourceMap {
 impl SourceFile {
     /// Line (from 1) of a byte offset.
     pub fn line(&self, offset: u32) -> usize {
-        self.lines.partition_point(|&l| l <= offset)
+        let offset = self.text.len().min(offset as usize);
+        let block = (offset / BLOCK).min(self.ends_before.len().saturating_sub(1));
+        let before = self.ends_before.get(block).map_or(0, |&n| n as usize);
+        let behind = &self.text.as_bytes()[block * BLOCK..offset];
+        1 + before + line_ends(behind) as usize
+    }
+
+    /// Where a line (from 0) begins; the end of the text, if there is none.
+    fn line_start(&self, line: usize) -> usize {
+        let Some(end_before) = line.checked_sub(1) else {
+            return 0;
+        };
+        // The last block with fewer line ends before it.
+        let blocks = self.ends_before.partition_point(|&n| (n as usize) < line);
+        let Some(block) = blocks.checked_sub(1) else {
+            return self.text.len();
+        };
+        let inside = end_before - self.ends_before[block] as usize;
+        let text = &self.text.as_bytes()[block * BLOCK..];
+        let end = memchr::memchr_iter(b'\n', text).nth(inside);
+        end.map_or(self.text.len(), |n| block * BLOCK + n + 1)
     }
 
     /// Bytes of a line (from 0) without its line end.
     pub fn line_range(&self, line: usize) -> (usize, usize) {
-        let end = self.text.len();
-        let lo = self.lines.get(line).map_or(end, |&l| l as usize);
-        let next = self.lines.get(line + 1).map_or(end, |&l| l as usize - 1);
-        let hi = next.max(lo);
-        let cr = hi > lo && self.text.as_bytes()[hi - 1] == b'\r';
+        let lo = self.line_start(line);
+        let rest = &self.text.as_bytes()[lo..];
+        let hi = memchr::memchr(b'\n', rest).map_or(self.text.len(), |n| lo + n);
+        let cr = hi > lo && rest[hi - lo - 1] == b'\r';
         (lo, hi - usize::from(cr))
     }
 
     /// Line and column (both from 1, column in characters) of a byte offset.
     pub fn line_column(&self, offset: u32) -> (usize, usize) {
         let line = self.line(offset).max(1);
-        let start = self.lines[line - 1] as usize;
+        let start = self.line_start(line - 1);
         let upto = self.text.get(start..offset as usize).unwrap_or("");
         (line, upto.chars().count() + 1)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Lines of a text of several blocks, with blocks that end at a line end, in a line and between `\r` and `\n`.
+    #[test]
+    fn lines_are_found_in_blocks() {
+        for last in ["", "\n", "end", "\r\n\r\n"] {
+            for shift in 0..3 {
+                let line = |n: usize| "x".repeat(n * n % 800) + ["\n", "\r\n"][n % 2];
+                let text: String = (0..200).map(line).collect();
+                let text = "-".repeat(shift) + &text + last;
+                assert!(text.len() > 3 * BLOCK);
+                let mut map = SourceMap::default();
+                let id = map.add_file("f", text.clone());
+                let (mut at, mut count) = (0, 0);
+                for (n, line) in text.split_inclusive('\n').enumerate() {
+                    let shown = line.trim_end_matches('\n').trim_end_matches('\r');
+                    assert_eq!(map.file(id).line_range(n), (at, at + shown.len()));
+                    for offset in [at, at + line.len() - 1] {
+                        assert_eq!(map.file(id).line(offset as u32), n + 1);
+                        let column = offset - at + 1;
+                        let found = map.file(id).line_column(offset as u32);
+                        assert_eq!(found, (n + 1, column));
+                    }
+                    (at, count) = (at + line.len(), n + 1);
+                }
+                let end = count + usize::from(text.ends_with('\n'));
+                assert_eq!(map.file(id).line(at as u32), end);
+                assert_eq!(map.file(id).line_range(end + 1), (at, at));
+            }
+        }
     }
 }

@@ -34,6 +34,8 @@ const LONGEST: usize = 3 << 30;
 const LONGEST_LINE: usize = 4 << 20;
 /// Bytes copied before the parser is asked to look.
 const CHUNK: usize = 4 << 20;
+/// Bytes looked through and copied at once: they are in the cache for the second.
+const WINDOW: usize = 512 << 10;
 
 /// Kind of a symbol, as `$if setType x` and its kin name it: `set`, `parameter`, `variable`,
 /// `equation`, `model`, `file`, `acronym`, `alias`, `macro`.
@@ -202,8 +204,8 @@ pub(super) struct Frame {
     pub(super) arguments: Option<Vec<String>>,
     /// Jumps to a label.
     pub(super) jumps: FxHashMap<String, usize>,
-    /// Next `%`, end-of-line mark, inline mark, slash mark, `$$`, line end before a directive or a comment; as far as known.
-    ahead: [usize; 7],
+    /// None of these stands before: `%` or a line of a directive or a comment, end-of-line mark, inline mark, slash mark.
+    ahead: [usize; 4],
     /// Where the file was asked for.
     pub(super) asked: Span,
 }
@@ -211,7 +213,7 @@ pub(super) struct Frame {
 impl Frame {
     /// The next marks are looked for again: reading goes on elsewhere.
     pub(super) fn forget_marks(&mut self) {
-        self.ahead = [0; 7];
+        self.ahead = [0; 4];
     }
 }
 
@@ -318,7 +320,8 @@ impl<'h> Preprocessor<'h> {
         asked: Span,
     ) {
         // Files of old machines end their lines with a carriage return alone.
-        let text = if text.contains('\r') && !text.contains('\n') {
+        let has = |byte| memchr::memchr(byte, text.as_bytes()).is_some();
+        let text = if !has(b'\n') && has(b'\r') {
             text.replace('\r', "\n")
         } else {
             text
@@ -336,7 +339,7 @@ impl<'h> Preprocessor<'h> {
             ifs: Vec::new(),
             arguments,
             jumps: FxHashMap::default(),
-            ahead: [0; 7],
+            ahead: [0; 4],
             asked,
         });
         self.set_listed(listed);
@@ -633,37 +636,35 @@ impl<'h> Preprocessor<'h> {
         };
         let bytes = self.map.file(frame.file).text.as_bytes();
         let marks = &self.marks;
-        let find = |needle: &[u8]| {
-            memchr::memmem::find(&bytes[pos..], needle).map_or(usize::MAX, |n| pos + n)
-        };
+        let far = bytes.len().min(pos + WINDOW);
+        let end = memchr::memchr(b'\n', &bytes[far..]).map_or(bytes.len(), |n| far + n + 1);
+        let find =
+            |needle: &[u8]| memchr::memmem::find(&bytes[pos..end], needle).map_or(end, |n| pos + n);
         for (i, at) in frame.ahead.iter_mut().enumerate() {
-            if *at >= pos && *at != 0 {
+            if *at > pos {
                 continue;
             }
             *at = match i {
-                0 => memchr::memchr(b'%', &bytes[pos..]).map_or(usize::MAX, |n| pos + n),
+                0 => memchr::memchr3_iter(b'%', marks.dollar, marks.comment, &bytes[pos..end])
+                    .map(|n| pos + n)
+                    .find(|&at| {
+                        let doubled = || bytes.get(at + 1) == Some(&marks.dollar);
+                        bytes[at] == b'%'
+                            || bytes[at] == marks.dollar && doubled()
+                            || at > pos && bytes[at - 1] == b'\n'
+                    })
+                    .unwrap_or(end),
                 1 if marks.eol_on => find(&marks.eol),
                 2 if marks.inline_on => find(&marks.inline.0),
                 3 if marks.slashes => find(b"//"),
-                4 => find(&[marks.dollar, marks.dollar]),
-                5 => find(&[b'\n', marks.dollar]),
-                6 => find(&[b'\n', marks.comment]),
-                _ => usize::MAX,
+                _ => end,
             };
         }
-        let [marks @ .., directive, comment] = frame.ahead;
-        let mark = marks.into_iter().min().unwrap_or(usize::MAX);
-        let stop = if mark >= bytes.len() {
-            bytes.len()
-        } else {
-            memchr::memrchr(b'\n', &bytes[pos..mark]).map_or(pos, |n| pos + n + 1)
-        };
-        let stop = if stop - pos > CHUNK {
-            memchr::memchr(b'\n', &bytes[pos + CHUNK..stop]).map_or(stop, |n| pos + CHUNK + n + 1)
-        } else {
-            stop
-        };
-        stop.min(directive.min(comment).saturating_add(1))
+        let mark = frame.ahead.into_iter().min().unwrap_or(end);
+        if mark >= bytes.len() {
+            return bytes.len();
+        }
+        memchr::memrchr(b'\n', &bytes[pos..mark]).map_or(pos, |n| pos + n + 1)
     }
 
     /// Forgets where the next marks are: the marks have changed.

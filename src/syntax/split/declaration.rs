@@ -464,6 +464,10 @@ impl Splitter {
     /// In the lines of a table, up to `;` or a line that begins with a statement's keyword.
     fn table(&mut self, text: &str) -> bool {
         let bytes = text.as_bytes();
+        let next_mark = |from: usize| {
+            memchr::memchr3(b';', b'\'', b'"', &bytes[from..]).map_or(bytes.len(), |n| from + n)
+        };
+        let mut at = next_mark(self.pos);
         while self.pos < bytes.len() {
             let line = self.pos;
             let end = memchr::memchr(b'\n', &bytes[line..]).map_or(bytes.len(), |n| line + n + 1);
@@ -486,9 +490,7 @@ impl Splitter {
                     }
                 }
             }
-            let mut i = line;
-            while let Some(n) = memchr::memchr3(b';', b'\'', b'"', &bytes[i..end]) {
-                let at = i + n;
+            while at < end {
                 if bytes[at] == b';'
                     && memchr::memchr_iter(b';', &bytes[at..end]).count() > 1
                     && !text[line..end].contains('=')
@@ -535,7 +537,7 @@ impl Splitter {
                     self.pos = at + 1;
                     return true;
                 }
-                i = quoted_end(bytes, at).unwrap_or(at + 1).min(end);
+                at = next_mark(quoted_end(bytes, at).unwrap_or(at + 1).min(end));
             }
             self.pos = end;
         }
