@@ -270,17 +270,12 @@ impl Mip {
                     false => {
                         let rows = rows().map(|(i, a)| of_row(i, j, a, &step));
                         let common = step_of(rows.map(|s| if s > 0.0 { s } else { f64::NAN }));
-                        let bounds = [p.lower[j], p.upper[j]]
-                            .into_iter()
-                            .filter(|b| b.is_finite());
+                        let ends = [p.lower[j], p.upper[j]];
                         // presolve widens bounds that rows imply
                         let off = |b: f64| (b - (b / common).round() * common).abs();
-                        let fits = |b: f64| off(b) <= 1e-6 * b.abs().max(common);
-                        if bounds.map(fits).all(|f| f) {
-                            common
-                        } else {
-                            0.0
-                        }
+                        let fits =
+                            |&b: &f64| !b.is_finite() || off(b) <= 1e-6 * b.abs().max(common);
+                        if ends.iter().all(fits) { common } else { 0.0 }
                     }
                 };
             }
