@@ -68,7 +68,7 @@ impl Ended {
 }
 
 /// The solver of linear programs, `option lp = clarabel`: the simplex method, and where that takes long
-/// Clarabel's interior-point method and a finish by the simplex method.
+/// an interior-point method and a finish by the simplex method.
 ///
 /// Its options: [`OPTIONS`].
 #[derive(Clone, Copy, Debug, Default)]
@@ -115,7 +115,7 @@ impl Backend for Clarabel {
         About {
             name: "clarabel",
             aliases: &[],
-            version: "lp: interior point, Clarabel 0.11.1, with a simplex finish on feral 0.22.0",
+            version: "lp: interior point on faer 0.24.4, then Clarabel 0.11.1, with a simplex finish on feral 0.22.0",
             supports: SUPPORTS,
             options: &OPTIONS,
             option_files: &["clarabel"],
@@ -541,7 +541,7 @@ fn finished(p: &Problem, accuracy: Accuracy, strategies: Strategies, budget: &Bu
             let wide = crossover::is_wide(p, &answer.point) && strategies.run(Strategy::FaceVertex);
             let of_face = wide.then(|| {
                 let face = crossover::face(p, &answer.point);
-                barrier::solve(&face, [FINE, USEFUL], budget)
+                interior_point(&face, [FINE, USEFUL], budget)
             });
             let of_face = of_face.filter(|f| f.ended == Ended::Solved);
             if let Some(f) = &of_face {
