@@ -294,9 +294,8 @@ impl System {
     /// b − K x without the regularisation.
     fn residual(&self, p: &Program, b: &[f64], x: &[f64]) -> Vec<f64> {
         let mut r = b.to_vec();
-        for j in 0..p.n {
-            r[j] += self.diagonal[j] * x[j];
-        }
+        let columns = r.iter_mut().zip(&self.diagonal[..p.n]);
+        columns.zip(x).for_each(|((r, d), x)| *r += d * x);
         for i in 0..p.m {
             let (k, y) = (p.n + i, x[p.n + i]);
             let mut sum = self.diagonal[k] * y;
