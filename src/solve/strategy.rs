@@ -61,7 +61,7 @@ strategies! {
             "Andersen & Andersen 1995";
         SimplexFirst "simplex_first",
             "more than 600 rows and columns: the simplex method is tried before the interior point",
-            "the work of touching each nonzero 1400 times",
+            "the work of touching each nonzero 100 times",
             "Koberstein & Suhl 2007";
         FaceVertex "face_vertex",
             "an interior point in a face of 1500 dimensions: a second one, with a random objective, ends near a vertex of it",

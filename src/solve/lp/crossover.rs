@@ -80,7 +80,7 @@ pub fn is_wide(p: &Problem, point: &Point) -> bool {
 }
 
 /// The face on which the interior point is, with an objective that has one optimal point: what is
-/// at a bound stays there, and all else is drawn to its bound, with random weights that spare what is
+/// at a bound stays where it is, and all else is drawn to its bound, with random weights that spare what is
 /// near it already.
 pub fn face(p: &Problem, point: &Point) -> Problem {
     let mut face = p.clone();
@@ -95,11 +95,9 @@ pub fn face(p: &Problem, point: &Point) -> Problem {
                 Some(i) => (&mut face.row_lower[i], &mut face.row_upper[i]),
                 None => (&mut face.lower[j], &mut face.upper[j]),
             };
-            if v.is_low() {
-                *upper = *lower;
-            } else {
-                *lower = *upper;
-            }
+            // Where it is: with all of them at the bounds themselves the equations have no solution, by a little.
+            let at = v.value.max(*lower).min(*upper);
+            (*lower, *upper) = (at, at);
             continue;
         }
         let sign = if v.is_low() { 1.0 } else { -1.0 };

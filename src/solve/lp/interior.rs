@@ -1,4 +1,4 @@
-//! The interior-point method: Clarabel on a scaled [`Problem`].
+//! Clarabel on a scaled [`Problem`]: quadratic programs, and linear ones that [`super::barrier`] does not solve, as those without a solution.
 //!
 //! Clarabel solves `min ½xᵀPx + qᵀx, Ax + s = b, s ∈ K` with multipliers z ∈ K*, Px + q + Aᵀz = 0. Here
 //! P = 0 for linear programs, and K is a zero cone (equations) followed by a nonnegative orthant (sides of rows, then
@@ -6,18 +6,6 @@
 //! row's side: y = −z for an equation and an upper side, +z for a lower side; likewise for d.
 //!
 //! Clarabel trusts its input: a problem comes from [`super::form`], which has checked it.
-//!
-//! # Units
-//!
-//! Clarabel adds δ = 1e-8 to the diagonal of its KKT matrix, +δ for x and −δ for z, and takes back by
-//! refinement what it can. In the units x' = βx, z' = κz (costs times κ, right-hand sides times β) that is
-//! a term δx·β/κ in the dual equations and δz·κ/β in the primal ones: where |x| and |z| differ by
-//! orders of magnitude, as forces and displacements of a wall do, one of them drowns the
-//! equations. [`Aim::Digits`] therefore takes the units from a rough solution, κ/β = (|x|/|z|)²: then
-//! refinement reaches 1e-12, and an objective that was right to 5 digits is right to 10. (Balancing the two
-//! terms, κ/β = |x|/|z|, leaves an error some hundred times larger: measured on walls, where it is the
-//! larger side that must not be disturbed.) A few iterations tell |x|/|z|: on walls they are the rough solution; where the two
-//! are alike, as in most programs of Netlib, the units stay, and digits beyond 1e-8 are left to the simplex method.
 
 #[cfg(feature = "system")]
 use std::sync::{Mutex, mpsc};
@@ -30,7 +18,6 @@ use clarabel::solver::{
 
 use super::Ended;
 use super::form::{Point, Problem, Sparse};
-use super::scale::power_of_two;
 use crate::solve::budget::Size;
 use crate::solve::factor_size::symmetric_size;
 use crate::solve::{Budget, Progress, Stop};
@@ -51,33 +38,6 @@ pub struct Run {
     pub almost: bool,
 }
 
-/// What Clarabel is asked for.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub enum Aim {
-    /// This tolerance, in the units of the problem.
-    Tolerance(f64),
-    /// A point from which few pivots are left, in other units where those of the problem drown a side: see the module's text.
-    /// Only for linear programs.
-    Digits,
-}
-
-/// The tolerance for [`Aim::Digits`] in units of its own, and in those of the problem.
-const FINE: f64 = 1e-12;
-const USUAL: f64 = 1e-8;
-
-/// The rough solution before it: its tolerance, and its iterations at most (4 and 5 on walls).
-const ROUGH: f64 = 1e-4;
-const ROUGH_ITERATIONS: u32 = 6;
-
-/// The units stay where |x| and |z| differ by less than this (500 to 30 000 on walls of 20 × 20 to 80 × 80, less than 150 in most programs of Netlib).
-const ALIKE: f64 = 200.0;
-
-/// Iterations in which [`FINE`] is reached if it can be.
-const FINE_ITERATIONS: u32 = 100;
-
-/// The largest κ/β: beyond it the other side drowns.
-const STEEPEST: f64 = 1e8;
-
 /// One inequality or equation of Clarabel's.
 #[derive(Clone, Copy)]
 enum Source {
@@ -95,7 +55,7 @@ enum Source {
 
 /// Runs Clarabel, on ½xᵀPx + cᵀx where the upper triangle of a positive semidefinite P is given by
 /// columns. The budget is asked every few milliseconds; a factorisation that it does not afford is not begun.
-pub fn solve(p: &Problem, hessian: Option<&Sparse>, aim: Aim, budget: &Budget) -> Run {
+pub fn solve(p: &Problem, hessian: Option<&Sparse>, tolerance: f64, budget: &Budget) -> Run {
     let fixed: Vec<bool> = (0..p.n()).map(|j| p.lower[j] == p.upper[j]).collect();
     let number = numbers(&fixed);
     let free = fixed.iter().filter(|&&f| !f).count();
@@ -124,13 +84,7 @@ pub fn solve(p: &Problem, hessian: Option<&Sparse>, aim: Aim, budget: &Budget) -
     .into_iter()
     .filter(|c| !matches!(c, ZeroConeT(0) | NonnegativeConeT(0)))
     .collect();
-    let settings = settings(budget);
-    let asked = |tolerance| DefaultSettings {
-        tol_gap_abs: tolerance,
-        tol_gap_rel: tolerance,
-        tol_feas: tolerance,
-        ..settings.clone()
-    };
+    let settings = settings(tolerance, budget);
     let mut point = Point {
         x: (0..p.n())
             .map(|j| if fixed[j] { p.lower[j] } else { 0.0 })
@@ -153,14 +107,7 @@ pub fn solve(p: &Problem, hessian: Option<&Sparse>, aim: Aim, budget: &Budget) -
         Some(h) => reduced(p, h, &fixed, &number, &mut q),
     };
     let run = |mut stop: Question| {
-        let first = match aim {
-            Aim::Tolerance(t) => asked(t),
-            Aim::Digits => DefaultSettings {
-                max_iter: settings.max_iter.min(ROUGH_ITERATIONS),
-                ..asked(ROUGH)
-            },
-        };
-        let mut solver = DefaultSolver::new(&objective, &q, &a, &b, &cones, first).ok()?;
+        let mut solver = DefaultSolver::new(&objective, &q, &a, &b, &cones, settings).ok()?;
         solver.set_termination_callback(move |info: &DefaultInfo<f64>| {
             stop(Progress {
                 method: "interior point",
@@ -171,15 +118,6 @@ pub fn solve(p: &Problem, hessian: Option<&Sparse>, aim: Aim, budget: &Budget) -
             })
         });
         solver.solve();
-        let status = solver.solution.status;
-        let rough = matches!(status, SolverStatus::Solved | SolverStatus::MaxIterations);
-        let left = settings.max_iter.saturating_sub(ROUGH_ITERATIONS);
-        if aim == Aim::Digits && rough && left > 0 {
-            refine(&mut solver, [&q, &b], |tolerance| DefaultSettings {
-                max_iter: left,
-                ..asked(tolerance)
-            })?;
-        }
         Some(solver.solution)
     };
     let solution = asking(budget, run);
@@ -227,9 +165,12 @@ fn numbers(fixed: &[bool]) -> Vec<usize> {
     fixed.iter().scan(0, count).collect()
 }
 
-/// What is asked of Clarabel, its tolerances aside.
-fn settings(budget: &Budget) -> DefaultSettings<f64> {
+/// What is asked of Clarabel.
+fn settings(tolerance: f64, budget: &Budget) -> DefaultSettings<f64> {
     DefaultSettings {
+        tol_gap_abs: tolerance,
+        tol_gap_rel: tolerance,
+        tol_feas: tolerance,
         verbose: false,
         max_iter: u32::try_from(budget.iterations_left().min(500)).unwrap_or(500),
         time_limit: budget.seconds_left(),
@@ -304,50 +245,6 @@ fn reduced_costs(p: &Problem, hessian: Option<&Sparse>, point: &Point) -> Vec<f6
         }
     }
     d
-}
-
-/// Solves again in the units that suit the solution so far, for more digits; in the units of the problem
-/// where they suit it, and where that fails.
-fn refine(
-    solver: &mut DefaultSolver<f64>,
-    [q, b]: [&[f64]; 2],
-    asked: impl Fn(f64) -> DefaultSettings<f64>,
-) -> Option<()> {
-    let times = |v: &[f64], by: f64| v.iter().map(|v| v * by).collect::<Vec<f64>>();
-    let top = |v: &[f64]| v.iter().fold(0.0f64, |t, v| t.max(v.abs()));
-    let (x, z) = (top(&solver.solution.x), top(&solver.solution.z));
-    let steep = match x > 0.0 && z > 0.0 {
-        true => (x / z).powi(2).clamp(1.0 / STEEPEST, STEEPEST),
-        false => 1.0,
-    };
-    let beta = power_of_two(1.0 / x);
-    let adapted = (beta, power_of_two(beta * steep), FINE, FINE_ITERATIONS);
-    let alike = steep.max(1.0 / steep) < ALIKE * ALIKE;
-    let tries = [adapted, (1.0, 1.0, USUAL, u32::MAX)];
-    let mut before = solver.solution.iterations;
-    for &(beta, kappa, tolerance, most) in &tries[usize::from(alike)..] {
-        let mut settings = asked(tolerance);
-        settings.max_iter = settings.max_iter.min(most);
-        solver.update_settings(settings).ok()?;
-        solver.update_q(&times(q, kappa)).ok()?;
-        solver.update_b(&times(b, beta)).ok()?;
-        solver.solve();
-        let solution = &mut solver.solution;
-        solution.x.iter_mut().for_each(|v| *v /= beta);
-        solution.z.iter_mut().for_each(|v| *v /= kappa);
-        solution.iterations += before;
-        before = solution.iterations;
-        let failed = matches!(
-            solution.status,
-            SolverStatus::NumericalError
-                | SolverStatus::InsufficientProgress
-                | SolverStatus::MaxIterations
-        );
-        if !failed {
-            break;
-        }
-    }
-    Some(())
 }
 
 /// What the factors of Clarabel's KKT matrix [P Aᵀ; A −I] cost.

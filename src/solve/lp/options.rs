@@ -6,7 +6,7 @@ use crate::model::option::{Kind, OptionTable, row};
 #[rustfmt::skip]
 pub const OPTIONS: OptionTable = OptionTable {
     backend: "clarabel",
-    title: "lp, rmip and linear models of other types: Clarabel's interior-point method with crossover, and the simplex method",
+    title: "lp, rmip and linear models of other types: an interior-point method with crossover, and the simplex method",
     rows: &[
         row("method", Kind::Words(&["auto", "interior", "crossover", "simplex"]), "auto", "`auto` tries the simplex method first and takes `crossover` where that takes long; `interior` ends with the interior point; `crossover` goes from there to a vertex; `simplex` is the simplex method alone"),
         row("tolerance", Kind::Inside(0.0, 1.0), "1e-10", "with `method=interior`: relative residuals and gap at which the interior point ends"),

@@ -21,7 +21,7 @@ pub struct Scaling {
 }
 
 /// The power of two nearest to `x` (in ratio); 1 for 0 and for what is not finite.
-pub(super) fn power_of_two(x: f64) -> f64 {
+fn power_of_two(x: f64) -> f64 {
     if x > 0.0 && x.is_finite() {
         2f64.powi((x.log2().round() as i32).clamp(-500, 500))
     } else {

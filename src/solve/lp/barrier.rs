@@ -1,0 +1,590 @@
+//! A primal-dual interior-point method for linear programs: Mehrotra's predictor and corrector (Mehrotra 1992), and
+//! Gondzio's further correctors (Gondzio 1996) where a factorisation costs many solves.
+//!
+//! ```text
+//!     min cᵀx   subject to   A x − s = 0,   l ≤ (x, s) ≤ u
+//! ```
+//!
+//! Columns that are fixed are left out; an equation has a constant s. Every bound has a distance w > 0 and a
+//! multiplier z > 0. Each Newton step is one quasi-definite system
+//!
+//! ```text
+//!     [ −D − ρ   Aᵀ        ] [ Δx ]
+//!     [  A       D_s⁻¹ + δ ] [ Δy ]        D = Σ z/w over the bounds of a variable
+//! ```
+//!
+//! in the columns and the rows alone, whose factors exist for every order of the pivots (Vanderbei 1995): free and dense columns
+//! need no care. ρ and δ shorten the steps, but move no solution: what is solved for is a step, not the point.
+
+use super::Ended;
+use super::form::{Point, Problem, Sparse};
+use super::interior::Run;
+use crate::solve::budget::Size;
+use crate::solve::{Budget, Progress};
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::ldlt::factor::LdltRegularization;
+use faer::perm::PermRef;
+use faer::sparse::linalg::amd;
+use faer::sparse::linalg::cholesky::{
+    CholeskySymbolicParams, LdltRef, SymbolicCholesky, SymmetricOrdering,
+    factorize_symbolic_cholesky,
+};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::{Conj, MatMut, Par, Side};
+
+/// ρ and δ where primal and dual variables are alike.
+const REGULAR: f64 = 1e-9;
+
+/// Else they are this divided by, and times, the power of the variables' ratio, 10⁴ at most. (At a power of 0 the points on walls are right to
+/// 8 digits, at 1 to 10, at 1.5 to 11.)
+const STEEPER: f64 = 1.5;
+const STEEPEST: f64 = 1e4;
+
+/// Iterations at most, and those that may pass until residuals and gap are halved: of a point that is good, and of others.
+const MOST: u64 = 200;
+const PATIENCE: [u64; 2] = [4, 12];
+const GOOD: f64 = 1e-9;
+
+/// Correctors beyond Mehrotra's: one more for each of these ratios that the operations of a factorisation to those of a solve exceed.
+const CORRECTORS: [f64; 3] = [10.0, 30.0, 50.0];
+
+/// The part of the way to the next bound that a step goes.
+const SHORT: f64 = 0.995;
+
+/// The program without its fixed columns: variables are the columns that are left, then the rows.
+struct Program {
+    n: usize,
+    m: usize,
+    rows: Sparse,
+    cost: Vec<f64>,
+    /// Within the bounds, as near to 0 as they allow.
+    value: Vec<f64>,
+    /// The variable of each bound, +1 for a lower and −1 for an upper one, and where it is.
+    of: Vec<usize>,
+    sign: Vec<f64>,
+    side: Vec<f64>,
+    /// Whether a variable is constant: the rows that are equations.
+    constant: Vec<bool>,
+}
+
+impl Program {
+    fn new(p: &Problem) -> (Self, Vec<usize>) {
+        let kept: Vec<usize> = (0..p.n()).filter(|&j| p.lower[j] < p.upper[j]).collect();
+        let mut number = vec![usize::MAX; p.n()];
+        kept.iter().enumerate().for_each(|(k, &j)| number[j] = k);
+        let (n, m) = (kept.len(), p.m());
+        let mut rows = Sparse::new();
+        let mut cost: Vec<f64> = kept.iter().map(|&j| p.cost[j]).collect();
+        cost.resize(n + m, 0.0);
+        let mut limits: Vec<[f64; 2]> = kept.iter().map(|&j| [p.lower[j], p.upper[j]]).collect();
+        for i in 0..m {
+            let fixed = p.rows.line(i).filter(|e| number[e.0] == usize::MAX);
+            let moved: f64 = fixed.map(|(j, a)| a * p.lower[j]).sum();
+            limits.push([p.row_lower[i] - moved, p.row_upper[i] - moved]);
+            let kept = p.rows.line(i).filter(|e| number[e.0] != usize::MAX);
+            rows.push(kept.map(|(j, a)| (number[j], a)));
+        }
+        let mut out = Self {
+            n,
+            m,
+            rows,
+            cost,
+            value: Vec::with_capacity(n + m),
+            of: Vec::new(),
+            sign: Vec::new(),
+            side: Vec::new(),
+            constant: Vec::with_capacity(n + m),
+        };
+        for (k, &[l, u]) in limits.iter().enumerate() {
+            out.value.push(0.0f64.max(l).min(u));
+            out.constant.push(l == u);
+            for (side, sign) in [(l, 1.0), (u, -1.0)] {
+                if side.is_finite() && l < u {
+                    out.of.push(k);
+                    out.sign.push(sign);
+                    out.side.push(side);
+                }
+            }
+        }
+        (out, kept)
+    }
+
+    fn bounds(&self) -> usize {
+        self.of.len()
+    }
+
+    /// s − A x.
+    fn primal_residuals(&self, value: &[f64]) -> Vec<f64> {
+        let (x, s) = value.split_at(self.n);
+        let of = |i: usize| s[i] - self.rows.line(i).map(|(j, a)| a * x[j]).sum::<f64>();
+        (0..self.m).map(of).collect()
+    }
+
+    /// c − (A, −I)ᵀy − Σ ±z.
+    fn dual_residuals(&self, y: &[f64], z: &[f64]) -> Vec<f64> {
+        let mut r = self.cost.clone();
+        for (i, &y) in y.iter().enumerate() {
+            self.rows.line(i).for_each(|(j, a)| r[j] -= a * y);
+            r[self.n + i] += y;
+        }
+        for (b, &k) in self.of.iter().enumerate() {
+            r[k] -= self.sign[b] * z[b];
+        }
+        for (r, &constant) in r.iter_mut().zip(&self.constant) {
+            if constant {
+                *r = 0.0;
+            }
+        }
+        r
+    }
+}
+
+/// Where the method is, or a step from there.
+#[derive(Clone)]
+struct Iterate {
+    value: Vec<f64>,
+    y: Vec<f64>,
+    /// Of each bound: distance and multiplier.
+    w: Vec<f64>,
+    z: Vec<f64>,
+}
+
+impl Iterate {
+    /// Goes so much of a step, primal and dual.
+    fn advance(&mut self, step: &Self, [primal, dual]: [f64; 2]) {
+        let parts = [
+            (&mut self.value, &step.value, primal),
+            (&mut self.w, &step.w, primal),
+            (&mut self.y, &step.y, dual),
+            (&mut self.z, &step.z, dual),
+        ];
+        for (v, step, by) in parts {
+            v.iter_mut().zip(step).for_each(|(v, s)| *v += by * s);
+        }
+    }
+}
+
+/// The Newton system: the upper triangle by columns, and its factors.
+struct System {
+    start: Vec<usize>,
+    index: Vec<usize>,
+    entries: Vec<f64>,
+    signs: Vec<i8>,
+    symbolic: SymbolicCholesky<usize>,
+    factor: Vec<f64>,
+    memory: MemBuffer,
+    /// D of the columns, 1/D of the rows (0 for equations).
+    diagonal: Vec<f64>,
+    /// Added to D of the columns, and to the diagonal of the rows.
+    rho: f64,
+    delta: f64,
+    /// Operations of a factorisation for each of a solve.
+    ratio: f64,
+}
+
+impl System {
+    fn new(p: &Program, budget: &Budget) -> Result<Self, Ended> {
+        let order = p.n + p.m;
+        let (mut start, mut index, mut entries) = (vec![0], Vec::new(), Vec::new());
+        for k in 0..order {
+            if k >= p.n {
+                p.rows.line(k - p.n).for_each(|(j, a)| {
+                    index.push(j);
+                    entries.push(a);
+                });
+            }
+            index.push(k);
+            entries.push(0.0);
+            start.push(index.len());
+        }
+        let pattern = SymbolicSparseColMatRef::new_checked(order, order, &start, None, &index);
+        let (mut fwd, mut inv) = (vec![0usize; order], vec![0usize; order]);
+        let scratch = amd::order_maybe_unsorted_scratch::<usize>(order, index.len());
+        let mut memory = MemBuffer::new(scratch);
+        let control = amd::Control::default();
+        let stack = MemStack::new(&mut memory);
+        let count = amd::order_maybe_unsorted(&mut fwd, &mut inv, pattern, control, stack)
+            .map_err(|_| Ended::Failed)?;
+        let nonzeros = count.n_div + order as f64;
+        let size = || Size {
+            what: "the factor of the Newton system",
+            nonzeros,
+            operations: 2.0 * count.n_mult_subs_ldl,
+        };
+        budget.affords(size).map_err(Ended::TooLarge)?;
+        let by = SymmetricOrdering::Custom(PermRef::new_checked(&fwd, &inv, order));
+        let params = CholeskySymbolicParams::default();
+        let symbolic = factorize_symbolic_cholesky(pattern, Side::Upper, by, params)
+            .map_err(|_| Ended::Failed)?;
+        let numeric = symbolic.factorize_numeric_ldlt_scratch::<f64>(Par::Seq, Default::default());
+        let solve = symbolic.solve_in_place_scratch::<f64>(1, Par::Seq);
+        let memory = MemBuffer::try_new(numeric.or(solve)).map_err(|_| Ended::Failed)?;
+        let mut signs = vec![-1; p.n];
+        signs.resize(order, 1);
+        Ok(Self {
+            start,
+            index,
+            entries,
+            signs,
+            factor: vec![0.0; symbolic.len_val()],
+            symbolic,
+            memory,
+            diagonal: Vec::new(),
+            rho: REGULAR,
+            delta: REGULAR,
+            ratio: count.n_mult_subs_ldl / (2.0 * nonzeros),
+        })
+    }
+
+    /// Takes ρ and δ in the units of a point. Where primal and dual variables differ by orders of magnitude, as forces and displacements of a
+    /// wall do, one of the terms would drown the other equations.
+    fn suit(&mut self, at: &Iterate) {
+        let steep = largest(&at.value) / largest(&at.y).max(1e-10);
+        let steep = steep.powf(STEEPER).clamp(1.0 / STEEPEST, STEEPEST);
+        (self.rho, self.delta) = (REGULAR / steep, REGULAR * steep);
+    }
+
+    /// Factorises for D of all variables.
+    fn factorise(&mut self, p: &Program, d: &[f64]) -> Option<()> {
+        self.diagonal.clear();
+        for (k, &d) in d.iter().enumerate() {
+            let entry = match (k < p.n, p.constant[k]) {
+                (true, _) => d,
+                (_, true) => 0.0,
+                _ => 1.0 / d.max(1e-20),
+            };
+            self.diagonal.push(entry);
+            self.entries[self.start[k + 1] - 1] = if k < p.n {
+                -entry - self.rho
+            } else {
+                entry + self.delta
+            };
+        }
+        let order = d.len();
+        let (start, index) = (&self.start, &self.index);
+        let pattern = SymbolicSparseColMatRef::new_checked(order, order, start, None, index);
+        let matrix = SparseColMatRef::new(pattern, &self.entries);
+        let regularization = LdltRegularization {
+            dynamic_regularization_signs: Some(&self.signs),
+            dynamic_regularization_delta: REGULAR,
+            dynamic_regularization_epsilon: 1e-13,
+        };
+        let done = self.symbolic.factorize_numeric_ldlt(
+            &mut self.factor,
+            matrix,
+            Side::Upper,
+            regularization,
+            Par::Seq,
+            MemStack::new(&mut self.memory),
+            Default::default(),
+        );
+        done.ok().map(|_| ())
+    }
+
+    fn back(&mut self, b: &mut [f64]) {
+        let order = b.len();
+        LdltRef::new(&self.symbolic, &self.factor).solve_in_place_with_conj(
+            Conj::No,
+            MatMut::from_column_major_slice_mut(b, order, 1),
+            Par::Seq,
+            MemStack::new(&mut self.memory),
+        );
+    }
+
+    /// b − K x without the regularisation.
+    fn residual(&self, p: &Program, b: &[f64], x: &[f64]) -> Vec<f64> {
+        let mut r = b.to_vec();
+        let columns = r.iter_mut().zip(&self.diagonal[..p.n]);
+        columns.zip(x).for_each(|((r, d), x)| *r += d * x);
+        for i in 0..p.m {
+            let (k, y) = (p.n + i, x[p.n + i]);
+            let mut sum = self.diagonal[k] * y;
+            for (j, a) in p.rows.line(i) {
+                sum += a * x[j];
+                r[j] -= a * y;
+            }
+            r[k] -= sum;
+        }
+        r
+    }
+
+    /// K x = b, refined.
+    fn solve(&mut self, p: &Program, b: &[f64]) -> Vec<f64> {
+        let mut x = b.to_vec();
+        self.back(&mut x);
+        let top = largest(b);
+        let mut left = f64::INFINITY;
+        for _ in 0..3 {
+            let mut r = self.residual(p, b, &x);
+            let now = largest(&r);
+            if now <= 1e-12 * top || now > 0.5 * left {
+                break;
+            }
+            left = now;
+            self.back(&mut r);
+            x.iter_mut().zip(&r).for_each(|(x, r)| *x += r);
+        }
+        x
+    }
+
+    /// The step for residuals of the rows and columns and for what products of distance and multiplier are to change by.
+    fn step(&mut self, p: &Program, at: &Iterate, rp: &[f64], rd: &[f64], rc: &[f64]) -> Iterate {
+        let mut g = rd.to_vec();
+        for (b, &k) in p.of.iter().enumerate() {
+            g[k] -= p.sign[b] * rc[b] / at.w[b];
+        }
+        let mut right = g[..p.n].to_vec();
+        let rows = rp.iter().zip(&g[p.n..]).zip(&self.diagonal[p.n..]);
+        right.extend(rows.map(|((r, g), inverse)| r - g * inverse));
+        let mut value = self.solve(p, &right);
+        let y = value.split_off(p.n);
+        for (i, y) in y.iter().enumerate() {
+            let k = p.n + i;
+            value.push(-(y + g[k]) * self.diagonal[k]);
+        }
+        let w: Vec<f64> =
+            p.of.iter()
+                .zip(&p.sign)
+                .map(|(&k, s)| s * value[k])
+                .collect();
+        let z = (0..p.bounds()).map(|b| (rc[b] - at.z[b] * w[b]) / at.w[b]);
+        let z = z.collect();
+        Iterate { value, y, w, z }
+    }
+}
+
+fn largest(v: &[f64]) -> f64 {
+    v.iter().fold(0.0, |t: f64, v| t.max(v.abs()))
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// How much of a step keeps all positive, 1 at most.
+fn reach(at: &[f64], step: &[f64]) -> f64 {
+    let negative = at.iter().zip(step).filter(|e| *e.1 < 0.0);
+    negative.map(|(a, s)| -a / s).fold(1.0, f64::min)
+}
+
+/// Mehrotra's first point: the least changes that satisfy the equations, moved inside the bounds.
+fn begin(p: &Program, system: &mut System) -> Option<Iterate> {
+    let count = p.bounds();
+    let ones = Iterate {
+        value: p.value.clone(),
+        y: vec![0.0; p.m],
+        w: vec![1.0; count],
+        z: vec![1.0; count],
+    };
+    system.factorise(p, &vec![1.0; p.n + p.m])?;
+    let none = vec![0.0; p.n + p.m];
+    let rc = vec![0.0; count];
+    let primal = system.step(p, &ones, &p.primal_residuals(&p.value), &none, &rc);
+    let mut g = p.cost.clone();
+    g.iter_mut()
+        .zip(&p.constant)
+        .filter(|e| *e.1)
+        .for_each(|e| *e.0 = 0.0);
+    let dual = system.step(p, &ones, &none[..p.m], &g, &rc);
+    let mut at = ones;
+    at.y = dual.y;
+    at.value
+        .iter_mut()
+        .zip(&primal.value)
+        .for_each(|(v, s)| *v += s);
+    let wanted = p.dual_residuals(&at.y, &rc);
+    let mut boxed = vec![0u8; p.n + p.m];
+    p.of.iter().for_each(|&k| boxed[k] += 1);
+    let (mut low, mut down) = (0.0f64, 0.0f64);
+    for b in 0..count {
+        let k = p.of[b];
+        at.w[b] = p.sign[b] * (at.value[k] - p.side[b]);
+        at.z[b] = p.sign[b] * wanted[k];
+        if boxed[k] == 2 {
+            at.z[b] = at.z[b].max(0.0);
+        } else {
+            low = low.max(-1.5 * at.w[b]);
+        }
+        down = down.max(-1.5 * at.z[b]);
+    }
+    let shift = |at: &mut Iterate, low: f64, down: f64| {
+        for b in 0..count {
+            if boxed[p.of[b]] == 1 {
+                at.w[b] += low;
+            }
+            at.z[b] += down;
+        }
+    };
+    shift(&mut at, low.max(1e-3), down.max(1e-3));
+    let single = |b: &usize| boxed[p.of[*b]] == 1;
+    let product: f64 = (0..count).filter(single).map(|b| at.w[b] * at.z[b]).sum();
+    let low = 0.5 * product
+        / (0..count)
+            .filter(single)
+            .map(|b| at.z[b])
+            .sum::<f64>()
+            .max(1e-10);
+    let down = 0.5 * product
+        / (0..count)
+            .filter(single)
+            .map(|b| at.w[b])
+            .sum::<f64>()
+            .max(1e-10);
+    shift(&mut at, low, down);
+    for b in 0..count {
+        let k = p.of[b];
+        if boxed[k] == 1 {
+            at.value[k] = p.side[b] + p.sign[b] * at.w[b];
+        } else if p.sign[b] > 0.0 {
+            // the upper bound of this variable is the next one
+            let width = p.side[b + 1] - p.side[b];
+            let room = (0.25 * width).min(low.max(1e-3));
+            at.w[b] = at.w[b].clamp(room, width - room);
+            at.w[b + 1] = width - at.w[b];
+            at.value[k] = p.side[b] + at.w[b];
+        }
+    }
+    Some(at)
+}
+
+/// Solves a program until residuals and gap are below the first tolerance, relative to the sizes of sides, costs and objective, or
+/// until no iteration brings them down; a point within the second one is a solution then. Nothing is said about programs without one: [`Ended::Failed`].
+pub(super) fn solve(problem: &Problem, tolerances: [f64; 2], budget: &Budget) -> Run {
+    let [tolerance, enough] = tolerances;
+    let (p, kept) = Program::new(problem);
+    let mut run = Run {
+        point: Point {
+            x: problem.lower.clone(),
+            y: vec![0.0; problem.m()],
+            d: problem.cost.clone(),
+        },
+        ended: Ended::Failed,
+        iterations: 0,
+        almost: false,
+    };
+    let mut system = match System::new(&p, budget) {
+        Ok(system) => system,
+        Err(ended) => return Run { ended, ..run },
+    };
+    let Some(mut at) = begin(&p, &mut system) else {
+        return run;
+    };
+    let sides = p
+        .side
+        .iter()
+        .chain(&p.value)
+        .fold(1.0f64, |t, v| t.max(v.abs()));
+    let costs = 1.0 + largest(&p.cost);
+    let mut best = (f64::INFINITY, at.clone());
+    let mut halved = (f64::INFINITY, 0);
+    for iteration in 0..MOST {
+        run.iterations = iteration;
+        let rp = p.primal_residuals(&at.value);
+        let rd = p.dual_residuals(&at.y, &at.z);
+        let product = dot(&at.w, &at.z);
+        let objective = dot(&p.cost, &at.value);
+        let primal = largest(&rp) / sides;
+        let dual = largest(&rd) / costs;
+        let gap = product / (1.0 + objective.abs());
+        let worst = primal.max(dual).max(gap);
+        budget.tell(Progress {
+            method: "interior point",
+            iteration,
+            primal: Some(primal),
+            dual: Some(dual),
+            ..Progress::default()
+        });
+        if worst < 0.5 * halved.0 {
+            halved = (worst, iteration);
+        }
+        if worst < best.0 {
+            best = (worst, at.clone());
+        }
+        let patience = PATIENCE[usize::from(best.0 > GOOD)];
+        if worst <= tolerance || iteration > halved.1 + patience || !worst.is_finite() {
+            break;
+        }
+        if let Some(stop) = budget.stop() {
+            run.ended = stop.into();
+            break;
+        }
+        let mut d = vec![0.0; p.n + p.m];
+        for (b, &k) in p.of.iter().enumerate() {
+            d[k] += at.z[b] / at.w[b];
+        }
+        system.suit(&at);
+        if system.factorise(&p, &d).is_none() {
+            break;
+        }
+        let mu = product / p.bounds().max(1) as f64;
+        let Some((step, ways)) = whole_step(&p, &mut system, &at, &rp, &rd, mu) else {
+            break;
+        };
+        at.advance(&step, ways);
+    }
+    if run.ended == Ended::Failed && best.0 <= enough {
+        run.ended = Ended::Solved;
+    }
+    let at = best.1;
+    for (k, &j) in kept.iter().enumerate() {
+        run.point.x[j] = at.value[k];
+    }
+    run.point.y = at.y;
+    for j in 0..problem.n() {
+        let terms = problem.columns.line(j).map(|(i, a)| a * run.point.y[i]);
+        run.point.d[j] = problem.cost[j] - terms.sum::<f64>();
+    }
+    run
+}
+
+/// Predictor, corrector, and further correctors; the step and how much of it to go, primal and dual.
+fn whole_step(
+    p: &Program,
+    system: &mut System,
+    at: &Iterate,
+    rp: &[f64],
+    rd: &[f64],
+    mu: f64,
+) -> Option<(Iterate, [f64; 2])> {
+    let count = p.bounds();
+    let full: Vec<f64> = (0..count).map(|b| -at.w[b] * at.z[b]).collect();
+    let affine = system.step(p, at, rp, rd, &full);
+    let (first, second) = (reach(&at.w, &affine.w), reach(&at.z, &affine.z));
+    let left =
+        (0..count).map(|b| (at.w[b] + first * affine.w[b]) * (at.z[b] + second * affine.z[b]));
+    let after = left.sum::<f64>() / count.max(1) as f64;
+    let sigma = (after / mu).powi(3).clamp(1e-8, 1.0);
+    let target = if count == 0 { 0.0 } else { sigma * mu };
+    let rc = (0..count).map(|b| target + full[b] - affine.w[b] * affine.z[b]);
+    let rc: Vec<f64> = rc.collect();
+    let mut step = system.step(p, at, rp, rd, &rc);
+    let mut ways = [reach(&at.w, &step.w), reach(&at.z, &step.z)];
+    let most = CORRECTORS.iter().filter(|r| system.ratio > **r).count();
+    let none = [vec![0.0; p.m], vec![0.0; p.n + p.m]];
+    for _ in 0..most {
+        if ways[0].min(ways[1]) > 0.95 {
+            break;
+        }
+        let wish = ways.map(|w| (w + 0.2).min(1.0));
+        let correction = (0..count).map(|b| {
+            let v = (at.w[b] + wish[0] * step.w[b]) * (at.z[b] + wish[1] * step.z[b]);
+            let change = v.clamp(0.1 * target, 10.0 * target) - v;
+            change.max(-10.0 * target)
+        });
+        let correction: Vec<f64> = correction.collect();
+        let mut other = system.step(p, at, &none[0], &none[1], &correction);
+        other.advance(&step, [1.0; 2]);
+        let now = [reach(&at.w, &other.w), reach(&at.z, &other.z)];
+        let gain = now[0] + now[1] - ways[0] - ways[1];
+        if gain < 0.02 {
+            break;
+        }
+        (step, ways) = (other, now);
+    }
+    step.y
+        .iter()
+        .chain(&step.value)
+        .all(|v| v.is_finite())
+        .then_some(())?;
+    Some((step, ways.map(|w| if w < 1.0 { SHORT * w } else { 1.0 })))
+}
