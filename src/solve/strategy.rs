@@ -100,9 +100,9 @@ strategies! {
             "an evaluation and a factorisation",
             "Gill, Murray & Saunders 2005";
         SquareNewton "square_newton",
-            "at least as many equations as variables: Newton's method with Levenberg and Marquardt's damping",
-            "50 steps",
-            "Nocedal & Wright 2006, chapter 10";
+            "at least as many equations as variables: Newton's method with Levenberg and Marquardt's damping, then with steps that shorten the next one",
+            "twice 50 steps",
+            "Nocedal & Wright 2006, chapter 10; Deuflhard 2004, 3.3";
         DifferentiableStart "differentiable_start",
             "a row has no derivatives at the start, as √x at 0: its variables are moved by a hundredth",
             "100 evaluations of the derivatives",
