@@ -121,7 +121,13 @@ fn across(
         basis: None,
         ..*task
     };
-    let answer = solve(backends, &there, settings, budget).ok()?;
+    let answer = match bridge.iterations() {
+        u64::MAX => solve(backends, &there, settings, budget),
+        most => budget.within(f64::INFINITY, most, |b| {
+            solve(backends, &there, settings, b)
+        }),
+    };
+    let answer = answer.ok()?;
     let reply = bridge.restore(task.instance, &answer)?;
     let own = bridge.has_own_multipliers().then_some(answer.residuals);
     Some(certified(task, reply, own))

@@ -91,6 +91,10 @@ strategies! {
             "linear sums of 500 variables and more inside functions, others of 1000, become columns, so that second derivatives stay sparse",
             "a row and a column for each",
             "Griewank & Toint 1982";
+        VanishingSquares "vanishing_squares",
+            "the objective is a sum of squares, and these and the equations are as many as the variables: they are solved as equations",
+            "50 iterations",
+            "Nocedal & Wright 2006, chapters 10 and 11";
         ConvexQuadratic "convex_quadratic",
             "linear rows and a positive semidefinite Hessian of the objective: Clarabel solves it",
             "a Cholesky factorisation and one conic solve",
