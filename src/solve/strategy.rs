@@ -107,6 +107,10 @@ strategies! {
             "at least as many equations as variables: Newton's method with Levenberg and Marquardt's damping, then with steps that shorten the next one",
             "twice 50 steps",
             "Nocedal & Wright 2006, chapter 10; Deuflhard 2004, 3.3";
+        TruncatedNewton "truncated_newton",
+            "no constraints, and a factor of the Hessian would take 5·10⁹ operations: conjugate gradients in a trust region",
+            "1000 steps",
+            "Steihaug 1983; Lin & Moré 1999";
         DifferentiableStart "differentiable_start",
             "a row has no derivatives at the start, as √x at 0: its variables are moved by a hundredth",
             "100 evaluations of the derivatives",
