@@ -84,20 +84,28 @@ fn iterate(
     let mut x = nlp.start().to_vec();
     let mut here = System::at(nlp, &x)?;
     let (mut steps, mut halved) = (0, (0, here.size));
-    while steps < STEPS && steps - halved.0 < MOST_CREEPING && here.size > EXACT {
-        if stop(nlp.failures()) {
+    while steps < STEPS && here.size > EXACT {
+        let creeps = less == Less::Residual && steps - halved.0 >= MOST_CREEPING;
+        if creeps || stop(nlp.failures()) {
             break;
         }
         steps += 1;
-        let damping = match less {
-            Less::Residual => DAMPING * here.size.min(1.0).powi(2),
-            Less::NextStep => 0.0,
+        let damped = (DAMPING * here.size.min(1.0).powi(2)).max(LEAST_DAMPING);
+        let next = match less {
+            Less::Residual => here
+                .step(nlp, &x, damped)
+                .and_then(|(d, _)| shortened(nlp, &x, &d, &here)),
+            Less::NextStep => {
+                let light = here.step(nlp, &x, LEAST_DAMPING);
+                let next = light.and_then(|(d, factors)| nearer(nlp, &x, &d, &here, &factors));
+                // where columns are dependent, only damped steps lead on
+                next.or_else(|| {
+                    let (d, factors) = here.step(nlp, &x, damped)?;
+                    let next = nearer(nlp, &x, &d, &here, &factors);
+                    next.or_else(|| shortened(nlp, &x, &d, &here))
+                })
+            }
         };
-        let step = here.step(nlp, &x, damping.max(LEAST_DAMPING));
-        let next = step.and_then(|(d, factors)| match less {
-            Less::Residual => shortened(nlp, &x, &d, &here),
-            Less::NextStep => nearer(nlp, &x, &d, &here, &factors),
-        });
         let Some((next, there)) = next else { break };
         (x, here) = (next, there);
         if here.size <= 0.5 * halved.1 {
@@ -107,8 +115,7 @@ fn iterate(
     Some(((x, here), steps))
 }
 
-/// The first point along the step, halved again and again, from which the next step with the same matrix would be shorter; at the end
-/// of the step a residual that is less is enough.
+/// The first point along the step, halved again and again, from which the next step with the same matrix would be shorter.
 fn nearer(
     nlp: &mut dyn Nlp,
     x: &[f64],
@@ -121,12 +128,11 @@ fn nearer(
     for _ in 0..HALVINGS {
         let next = moved(nlp, x, d, length);
         if let Some(residual) = residuals(nlp, &next) {
-            let less = || here.norm(&residual) < (1.0 - 1e-4) * here.norm(&here.residual);
             let shorter = || {
                 let again = here.again(factors, &residual);
                 again.is_some_and(|d| here.length(&d) <= (1.0 - 0.25 * length) * size)
             };
-            if (length == 1.0 && less() || shorter())
+            if shorter()
                 && let Some(there) = System::at(nlp, &next)
             {
                 return Some((next, there));
