@@ -138,6 +138,73 @@ impl Block {
 
 /// Compiles the nonlinear part of an instance.
 pub(super) fn compile(instance: &Instance, wanted: Wanted) -> Vec<Block> {
+    groups(instance)
+        .into_iter()
+        .map(|(kernel, parts)| Block::new(&kernel, &parts, wanted))
+        .collect()
+}
+
+/// How many second derivatives there are at most: in all terms, and in programs, which are compiled.
+pub fn second_derivatives(instance: &Instance) -> (f64, f64) {
+    let of_groups = groups(instance).into_iter().map(|(kernel, parts)| {
+        let terms: usize = parts.iter().map(|p| p.row.len()).sum();
+        let each = curved(&kernel.ops, kernel.variables as usize);
+        (terms as f64 * each, each)
+    });
+    of_groups.fold((0.0, 0.0), |all, (a, b)| (all.0 + a, all.1 + b))
+}
+
+/// Second derivatives of an expression, at most: a triangle for the variables of each addend.
+fn curved(ops: &[Op], variables: usize) -> f64 {
+    let begin = begins(ops);
+    let mut seen = vec![usize::MAX; variables];
+    let (mut rest, mut sum) = (vec![ops.len() - 1], 0.0);
+    while let Some(end) = rest.pop() {
+        match ops[end] {
+            Op::Const(_) | Op::Var(_) | Op::Affine { .. } => {}
+            Op::Add | Op::AddN(_) | Op::Subtract | Op::Negate => {
+                let mut next = end;
+                for _ in 0..ops[end].arguments() {
+                    rest.push(next - 1);
+                    next = begin[next - 1];
+                }
+            }
+            _ => {
+                let mut distinct = 0.0;
+                let mut see = |k: u32| {
+                    if seen[k as usize] != end {
+                        seen[k as usize] = end;
+                        distinct += 1.0;
+                    }
+                };
+                for op in &ops[begin[end]..end] {
+                    match *op {
+                        Op::Var(k) => see(k),
+                        Op::Affine {
+                            variable, terms, ..
+                        } => (variable..variable + terms).for_each(&mut see),
+                        _ => {}
+                    }
+                }
+                sum += distinct * (distinct + 1.0) / 2.0;
+            }
+        }
+    }
+    sum
+}
+
+/// Where the subexpression that ends at each operation begins.
+fn begins(ops: &[Op]) -> Vec<usize> {
+    let mut begin: Vec<usize> = Vec::with_capacity(ops.len());
+    for (p, op) in ops.iter().enumerate() {
+        let first = (0..op.arguments()).fold(p, |end, _| begin[end - 1]);
+        begin.push(first);
+    }
+    begin
+}
+
+/// Terms by their programs.
+fn groups(instance: &Instance) -> Vec<(Kernel, Vec<KernelTerms>)> {
     let mut groups: Vec<(Kernel, Vec<KernelTerms>)> = Vec::new();
     let mut known: FxHashMap<u64, Vec<usize>> = FxHashMap::default();
     for terms in instance.nonlinear.iter().filter(|t| !t.row.is_empty()) {
@@ -153,9 +220,6 @@ pub(super) fn compile(instance: &Instance, wanted: Wanted) -> Vec<Block> {
         }
     }
     groups
-        .into_iter()
-        .map(|(kernel, parts)| Block::new(&kernel, &parts, wanted))
-        .collect()
 }
 
 /// Operations of one addend: a range of the program.

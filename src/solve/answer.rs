@@ -14,7 +14,7 @@ use super::registry::BACKENDS;
 use super::{
     Budget, Claim, ModelStatus, Outcome, Settings, SolveError, SolverStatus, lp, mip, noise,
 };
-use crate::autodiff::Evaluator;
+use crate::autodiff::{Evaluator, second_derivatives};
 use crate::model::instance::{Instance, Relation};
 use crate::model::problem_type::ProblemType;
 
@@ -146,7 +146,13 @@ fn across(
         basis: None,
         ..*task
     };
-    let answer = solve(backends, &there, settings, budget).ok()?;
+    let answer = match bridge.iterations() {
+        u64::MAX => solve(backends, &there, settings, budget),
+        most => budget.within(f64::INFINITY, most, |b| {
+            solve(backends, &there, settings, b)
+        }),
+    };
+    let answer = answer.ok()?;
     let reply = bridge.restore(task.instance, &answer)?;
     let own = bridge.has_own_multipliers().then_some(answer.residuals);
     Some(certified(task, reply, own))
@@ -336,19 +342,12 @@ const OPERATIONS_PER_DERIVATIVE: f64 = 3e3;
 
 /// Err where the second derivatives do not fit into the memory that is left: their pattern is made before anything else.
 fn affords_hessian(task: &Task, budget: &Budget) -> Result<(), SolveError> {
-    let entries = || {
-        let of_terms = task.instance.nonlinear.iter().map(|t| {
-            let v = f64::from(t.kernel.variables);
-            t.row.len() as f64 * v * (v + 1.0) / 2.0
-        });
-        of_terms.sum()
-    };
     let size = || {
-        let nonzeros = entries();
+        let (nonzeros, compiled) = second_derivatives(task.instance);
         Size {
             what: "the matrix of second derivatives",
             nonzeros,
-            operations: nonzeros * OPERATIONS_PER_DERIVATIVE,
+            operations: compiled * OPERATIONS_PER_DERIVATIVE,
         }
     };
     budget.affords(size).map_err(SolveError::new)

@@ -91,6 +91,10 @@ strategies! {
             "linear sums of 500 variables and more inside functions, others of 1000, become columns, so that second derivatives stay sparse",
             "a row and a column for each",
             "Griewank & Toint 1982";
+        VanishingSquares "vanishing_squares",
+            "the objective is a sum of squares, and these and the equations are as many as the variables: they are solved as equations",
+            "50 iterations",
+            "Nocedal & Wright 2006, chapters 10 and 11";
         ConvexQuadratic "convex_quadratic",
             "linear rows and a positive semidefinite Hessian of the objective: Clarabel solves it",
             "a Cholesky factorisation and one conic solve",
@@ -100,9 +104,13 @@ strategies! {
             "an evaluation and a factorisation",
             "Gill, Murray & Saunders 2005";
         SquareNewton "square_newton",
-            "at least as many equations as variables: Newton's method with Levenberg and Marquardt's damping",
-            "50 steps",
-            "Nocedal & Wright 2006, chapter 10";
+            "at least as many equations as variables: Newton's method with Levenberg and Marquardt's damping, then with steps that shorten the next one",
+            "twice 50 steps",
+            "Nocedal & Wright 2006, chapter 10; Deuflhard 2004, 3.3";
+        TruncatedNewton "truncated_newton",
+            "no constraints, and a factor of the Hessian would take 5·10⁹ operations: conjugate gradients in a trust region",
+            "1000 steps",
+            "Steihaug 1983; Lin & Moré 1999";
         DifferentiableStart "differentiable_start",
             "a row has no derivatives at the start, as √x at 0: its variables are moved by a hundredth",
             "100 evaluations of the derivatives",

@@ -4,6 +4,7 @@
 //! * [`elastic`]: rows that may be violated at a price;
 //! * [`epigraph`]: max, min and abs where they stand convexly, as columns and rows;
 //! * [`inner_sums`]: long sums inside functions, as columns and rows;
+//! * [`least_squares`]: a sum of as many squares as there are variables as equations;
 //! * [`kkt`]: the optimality conditions of a linear program as a complementarity problem;
 //! * [`products`]: pairs as nonlinear rows, for programs with equilibrium constraints;
 //! * [`squares`]: convex quadratic forms as columns, for programs with discrete columns.
@@ -14,6 +15,7 @@ pub mod elastic;
 pub mod epigraph;
 mod inner_sums;
 pub mod kkt;
+mod least_squares;
 mod parts;
 pub mod products;
 pub mod squares;
@@ -39,14 +41,20 @@ pub(super) trait Bridge {
     fn has_own_multipliers(&self) -> bool {
         false
     }
+
+    /// Iterations after which the original is solved as it is.
+    fn iterations(&self) -> u64 {
+        u64::MAX
+    }
 }
 
 /// Makes a bridge where it applies.
 type Build = fn(&[&dyn Backend], &Task, &Settings) -> Option<Box<dyn Bridge>>;
 
 /// What is tried before a task is given to a backend as it is.
-pub(super) const BEFORE: [Build; 3] = [
+pub(super) const BEFORE: [Build; 4] = [
     kkt::Kkt::bridge,
     epigraph::Epigraph::bridge,
+    least_squares::LeastSquares::bridge,
     inner_sums::InnerSums::bridge,
 ];

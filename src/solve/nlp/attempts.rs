@@ -9,6 +9,7 @@ use super::problem::Problem;
 use super::quadratic::Quadratic;
 use super::schedule::{FINEST, NEARER, ROUNDING};
 use super::trial::{Trial, polished};
+use super::truncated;
 use crate::solve::{SolveError, Strategy};
 use std::sync::{Arc, Mutex};
 
@@ -18,7 +19,28 @@ const SHARPLY: f64 = 1e-9;
 /// The part of a right-hand side by which such a point may miss it: one that has become smaller is meant so, however small it is.
 const SHARE: f64 = 1e-3;
 
+/// Operations of a factorisation from which on the Hessian is only multiplied: some seconds for each.
+const FILLED: f64 = 5e9;
+
 impl Driver<'_, '_> {
+    /// Without constraints and with a Hessian whose factors fill up: conjugate gradients. Whether that settles it.
+    pub(super) fn settle_by_products(&mut self) -> Result<bool, SolveError> {
+        let filled = self.size_of_factors().operations > FILLED;
+        if self.named || !filled || !self.settings.runs(Strategy::TruncatedNewton) {
+            return Ok(false);
+        }
+        self.multiplies = true;
+        let run = truncated::solve(&mut *lock(&*self.problem), self.budget);
+        if let Some(run) = run {
+            self.spend(run.steps);
+            let trial = self.judge(run.x, Vec::new(), Ended::Acceptable);
+            self.keep(trial);
+        }
+        let settled = self.is_settled_by("truncated")?;
+        self.multiplies = false;
+        Ok(settled)
+    }
+
     /// Where an earlier solve ended, and Newton's method where there is nothing to choose. Whether that settles it.
     pub(super) fn settle_at_once(&mut self) -> Result<bool, SolveError> {
         self.leave_saddles()?;

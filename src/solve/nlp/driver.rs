@@ -201,6 +201,8 @@ pub(super) struct Driver<'a, 'm> {
     pub(super) enough: f64,
     /// What factors of the KKT matrix cost, once that is known.
     factors: OnceCell<Size>,
+    /// Factors are too dear: the Hessian is only multiplied.
+    pub(super) multiplies: bool,
     /// Iterations one attempt may take.
     pub(super) attempt_iterations: u64,
     /// What is done about runs that lead far away.
@@ -236,6 +238,7 @@ impl<'a, 'm> Driver<'a, 'm> {
             violation_escapes: 0,
             enough: f64::INFINITY,
             factors: OnceCell::new(),
+            multiplies: false,
             attempt_iterations: FIRST_ATTEMPT_ITERATIONS,
             growth: Growth::Watched(0),
         }
@@ -258,6 +261,9 @@ impl Driver<'_, '_> {
                 self.solver = quadratic.name();
                 return Ok(self.finish());
             }
+        }
+        if m == 0 && self.settle_by_products()? {
+            return Ok(self.finish());
         }
         let again = self.attempt_again();
         if self.settle_at_once()? {
@@ -425,21 +431,10 @@ impl Driver<'_, '_> {
 
     /// Whether the budget leaves room for factors of the KKT matrix, which solvers make in one piece.
     pub(super) fn affords_factors(&mut self) -> bool {
-        let size = || {
-            *self.factors.get_or_init(|| {
-                let problem = lock(&*self.problem);
-                let (n, m) = problem.size();
-                let (rows, columns) = problem.jacobian_pattern();
-                let jacobian = rows.iter().zip(columns);
-                let jacobian = jacobian.map(|(&i, &j)| (n + i as usize, j as usize));
-                let (rows, columns) = problem.hessian_pattern();
-                let hessian = rows.iter().zip(columns);
-                let hessian = hessian.map(|(&i, &j)| (i as usize, j as usize));
-                let off_diagonal = jacobian.chain(hessian).filter(|(i, j)| i != j);
-                symmetric_size("the factor of the KKT matrix", n + m, off_diagonal)
-            })
-        };
-        match self.budget.affords(size) {
+        if self.multiplies {
+            return false;
+        }
+        match self.budget.affords(|| self.size_of_factors()) {
             Ok(()) => true,
             Err(why) => {
                 self.budget.log(&why);
@@ -449,6 +444,22 @@ impl Driver<'_, '_> {
                 false
             }
         }
+    }
+
+    /// What factors of the KKT matrix cost.
+    pub(super) fn size_of_factors(&self) -> Size {
+        *self.factors.get_or_init(|| {
+            let problem = lock(&*self.problem);
+            let (n, m) = problem.size();
+            let (rows, columns) = problem.jacobian_pattern();
+            let jacobian = rows.iter().zip(columns);
+            let jacobian = jacobian.map(|(&i, &j)| (n + i as usize, j as usize));
+            let (rows, columns) = problem.hessian_pattern();
+            let hessian = rows.iter().zip(columns);
+            let hessian = hessian.map(|(&i, &j)| (i as usize, j as usize));
+            let off_diagonal = jacobian.chain(hessian).filter(|(i, j)| i != j);
+            symmetric_size("the factor of the KKT matrix", n + m, off_diagonal)
+        })
     }
 
     /// Counts iterations.

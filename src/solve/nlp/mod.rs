@@ -29,6 +29,7 @@ mod sequence;
 mod slqp;
 mod symmetric;
 mod trial;
+mod truncated;
 mod verdict;
 
 use super::backend::{About, Backend, QuadraticEngine, Replied, Supports, Task, Terms, is_called};

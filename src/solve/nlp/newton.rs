@@ -13,12 +13,17 @@
 //! max(1, |xⱼ|) and rows in units of their largest entry. It has one solution whatever the rank of J; where the equations agree with
 //! each other convergence is quadratic, as δ falls with |r|². Variables at a bound that the step would leave stay there. The
 //! multipliers are those of least |∇f + Jᵀλ|. (Nocedal & Wright, Numerical Optimization, 2006, chapter 10.)
+//!
+//! A step that is too long is halved until the residual is less. Where that creeps, or ends, the method begins anew: then, with next to
+//! no damping, until the next step with the same matrix is shorter. |J⁻¹r|, unlike |r|, does not depend on the units of the equations,
+//! and steps stay long where these are ill-conditioned (Deuflhard, Newton Methods for Nonlinear Problems, 2004, 3.3). A driven cavity
+//! on a fine grid takes 9 steps so, one on a coarse grid may need the other.
 
 use super::polish::number;
 use super::problem::{Entry, Nlp};
 use super::symmetric::{Lower, Symmetric};
 
-/// Steps at most.
+/// Steps at most, of either kind.
 const STEPS: u64 = 50;
 /// δ at a residual of 1.
 const DAMPING: f64 = 1e-8;
@@ -28,6 +33,11 @@ const LEAST_DAMPING: f64 = 1e-14;
 const HALVINGS: u32 = 12;
 /// The residual, in its units, that is rounding.
 const EXACT: f64 = 1e-14;
+
+/// A residual, in its units, at which the equations are all but satisfied.
+const NEARLY: f64 = 1e-9;
+/// Steps that do not halve it.
+const MOST_CREEPING: u64 = 10;
 
 /// Where it ended.
 #[derive(Debug)]
@@ -40,22 +50,97 @@ pub(super) struct Run {
     pub steps: u64,
 }
 
+/// What is less at the end of a step.
+#[derive(Clone, Copy, PartialEq)]
+enum Less {
+    /// The residual.
+    Residual,
+    /// The next step with the same matrix.
+    NextStep,
+}
+
 /// Runs from the start point until told to stop, by the number of evaluations that failed. None where the start has no values
 /// or derivatives.
 pub(super) fn solve(nlp: &mut dyn Nlp, stop: &mut dyn FnMut(u64) -> bool) -> Option<Run> {
+    let (mut end, mut steps) = iterate(nlp, Less::Residual, stop)?;
+    if end.1.size > NEARLY && !stop(nlp.failures()) {
+        let (other, further) = iterate(nlp, Less::NextStep, stop)?;
+        steps += further;
+        if other.1.size < end.1.size {
+            end = other;
+        }
+    }
+    let (x, there) = end;
+    let lambda = there.multipliers(nlp, &x)?;
+    Some(Run { x, lambda, steps })
+}
+
+/// Steps from the start point while they lead on: the last point, and how many.
+fn iterate(
+    nlp: &mut dyn Nlp,
+    less: Less,
+    stop: &mut dyn FnMut(u64) -> bool,
+) -> Option<((Vec<f64>, System), u64)> {
     let mut x = nlp.start().to_vec();
     let mut here = System::at(nlp, &x)?;
-    let mut steps = 0;
-    while steps < STEPS && here.size > EXACT && !stop(nlp.failures()) {
-        steps += 1;
-        let Some(d) = here.step(nlp, &x) else { break };
-        let Some((next, there)) = shortened(nlp, &x, &d, &here) else {
+    let (mut steps, mut halved) = (0, (0, here.size));
+    while steps < STEPS && here.size > EXACT {
+        let creeps = less == Less::Residual && steps - halved.0 >= MOST_CREEPING;
+        if creeps || stop(nlp.failures()) {
             break;
+        }
+        steps += 1;
+        let damped = (DAMPING * here.size.min(1.0).powi(2)).max(LEAST_DAMPING);
+        let next = match less {
+            Less::Residual => here
+                .step(nlp, &x, damped)
+                .and_then(|(d, _)| shortened(nlp, &x, &d, &here)),
+            Less::NextStep => {
+                let light = here.step(nlp, &x, LEAST_DAMPING);
+                let next = light.and_then(|(d, factors)| nearer(nlp, &x, &d, &here, &factors));
+                // where columns are dependent, only damped steps lead on
+                next.or_else(|| {
+                    let (d, factors) = here.step(nlp, &x, damped)?;
+                    let next = nearer(nlp, &x, &d, &here, &factors);
+                    next.or_else(|| shortened(nlp, &x, &d, &here))
+                })
+            }
         };
+        let Some((next, there)) = next else { break };
         (x, here) = (next, there);
+        if here.size <= 0.5 * halved.1 {
+            halved = (steps, here.size);
+        }
     }
-    let lambda = here.multipliers(nlp, &x)?;
-    Some(Run { x, lambda, steps })
+    Some(((x, here), steps))
+}
+
+/// The first point along the step, halved again and again, from which the next step with the same matrix would be shorter.
+fn nearer(
+    nlp: &mut dyn Nlp,
+    x: &[f64],
+    d: &[f64],
+    here: &System,
+    factors: &Factors,
+) -> Option<(Vec<f64>, System)> {
+    let size = here.length(d);
+    let mut length = 1.0;
+    for _ in 0..HALVINGS {
+        let next = moved(nlp, x, d, length);
+        if let Some(residual) = residuals(nlp, &next) {
+            let shorter = || {
+                let again = here.again(factors, &residual);
+                again.is_some_and(|d| here.length(&d) <= (1.0 - 0.25 * length) * size)
+            };
+            if shorter()
+                && let Some(there) = System::at(nlp, &next)
+            {
+                return Some((next, there));
+            }
+        }
+        length *= 0.5;
+    }
+    None
 }
 
 /// The first point along the step, halved again and again, where the residual is less.
@@ -145,23 +230,40 @@ impl System {
         self.scaled(residual).map(|r| r * r).sum::<f64>().sqrt()
     }
 
-    /// The step, none of it out of the bounds that the point is at.
-    fn step(&self, nlp: &dyn Nlp, x: &[f64]) -> Option<Vec<f64>> {
+    /// Length of a step in the units of the variables.
+    fn length(&self, d: &[f64]) -> f64 {
+        let each = d
+            .iter()
+            .zip(&self.column_unit)
+            .map(|(d, u)| (d / u).powi(2));
+        each.sum::<f64>().sqrt()
+    }
+
+    /// The step with the same factors at another residual; none where other rows would count there.
+    fn again(&self, factors: &Factors, residual: &[f64]) -> Option<Vec<f64>> {
+        let counted = |(r, row): (&f64, &Option<usize>)| *r == 0.0 || row.is_some();
+        if !residual.iter().zip(&factors.rows).all(counted) {
+            return None;
+        }
+        let right = |i: usize| -residual[i] / self.row_unit[i];
+        Some(factors.solve(self, |_| 0.0, right)?.0)
+    }
+
+    /// The step, none of it out of the bounds that the point is at, and the factors that gave it.
+    fn step(&self, nlp: &dyn Nlp, x: &[f64], damping: f64) -> Option<(Vec<f64>, Factors)> {
         let (lower, upper) = nlp.bounds();
         let (a, b) = nlp.sides();
         let counts = |i: usize| a[i] == b[i] || self.residual[i] != 0.0;
         let mut stays = vec![false; x.len()];
-        let damping = (DAMPING * self.size * self.size).clamp(LEAST_DAMPING, DAMPING);
         loop {
             let right = |i: usize| -self.residual[i] / self.row_unit[i];
-            let d = self
-                .least_squares([damping, 1.0], &stays, counts, |_| 0.0, right)?
-                .0;
+            let factors = self.factors([damping, 1.0], &stays, counts)?;
+            let d = factors.solve(self, |_| 0.0, right)?.0;
             let leaves =
                 |j: usize| d[j] < 0.0 && x[j] <= lower[j] || d[j] > 0.0 && x[j] >= upper[j];
             let out: Vec<usize> = (0..x.len()).filter(|&j| !stays[j] && leaves(j)).collect();
             if out.is_empty() {
-                return Some(d);
+                return Some((d, factors));
             }
             out.into_iter().for_each(|j| stays[j] = true);
         }
@@ -177,54 +279,67 @@ impl System {
         let (a, b) = nlp.sides();
         let left = |j: usize| -gradient[j] * self.column_unit[j];
         let diagonal = [1.0, LEAST_DAMPING];
-        let y = self
-            .least_squares(diagonal, &at_bound, |i| a[i] == b[i], left, |_| 0.0)?
-            .1;
+        let factors = self.factors(diagonal, &at_bound, |i| a[i] == b[i])?;
+        let y = factors.solve(self, left, |_| 0.0)?.1;
         Some(y.iter().zip(&self.row_unit).map(|(y, u)| y / u).collect())
     }
 
-    /// Solves \[δI Jᵀ; J −γI\] for the variables that do not stay and the rows that count, in their units.
-    fn least_squares(
+    /// Factors of \[δI Jᵀ; J −γI\] for the variables that do not stay and the rows that count, in their units.
+    fn factors(
         &self,
         [delta, gamma]: [f64; 2],
         stays: &[bool],
         counts: impl Fn(usize) -> bool,
-        left: impl Fn(usize) -> f64,
-        right: impl Fn(usize) -> f64,
-    ) -> Option<(Vec<f64>, Vec<f64>)> {
+    ) -> Option<Factors> {
         let (n, m) = (self.column_unit.len(), self.row_unit.len());
         let (columns, free) = number(|j| !stays[j], n);
         let (rows, kept) = number(counts, m);
         let mut matrix = Lower::default();
-        let mut side = vec![0.0; free + kept];
-        for (j, p) in columns
-            .iter()
-            .enumerate()
-            .filter_map(|(j, p)| Some((j, (*p)?)))
-        {
-            matrix.push(p, p, delta);
-            side[p] = left(j);
-        }
-        for (i, p) in rows
-            .iter()
-            .enumerate()
-            .filter_map(|(i, p)| Some((i, (*p)?)))
-        {
-            matrix.push(free + p, free + p, -gamma);
-            side[free + p] = right(i);
-        }
+        (0..free).for_each(|p| matrix.push(p, p, delta));
+        (free..free + kept).for_each(|p| matrix.push(p, p, -gamma));
         for &(i, j, a) in &self.jacobian {
             if let (Some(p), Some(q)) = (rows[i], columns[j]) {
                 matrix.push(free + p, q, a);
             }
         }
-        let s = Symmetric::new(free + kept, &matrix)?.solve(&side)?;
-        let d = columns.iter().zip(&self.column_unit);
+        Some(Factors {
+            columns,
+            rows,
+            free,
+            factors: Symmetric::new(free + kept, &matrix)?,
+        })
+    }
+}
+
+/// Factors, and the place of each variable and row.
+struct Factors {
+    columns: Vec<Option<usize>>,
+    rows: Vec<Option<usize>>,
+    free: usize,
+    factors: Symmetric,
+}
+
+impl Factors {
+    /// The solution for right-hand sides in the units of the system: a step, and multipliers of the rows in their units.
+    fn solve(
+        &self,
+        system: &System,
+        left: impl Fn(usize) -> f64,
+        right: impl Fn(usize) -> f64,
+    ) -> Option<(Vec<f64>, Vec<f64>)> {
+        let kept = self.rows.iter().flatten().count();
+        let mut side = vec![0.0; self.free + kept];
+        for (j, p) in self.columns.iter().enumerate() {
+            p.iter().for_each(|p| side[*p] = left(j));
+        }
+        for (i, p) in self.rows.iter().enumerate() {
+            p.iter().for_each(|p| side[self.free + p] = right(i));
+        }
+        let s = self.factors.solve(&side)?;
+        let d = self.columns.iter().zip(&system.column_unit);
         let d = d.map(|(p, u)| p.map_or(0.0, |p| s[p] * u)).collect();
-        let y = rows
-            .iter()
-            .map(|p| p.map_or(0.0, |p| s[free + p]))
-            .collect();
+        let y = self.rows.iter();
+        let y = y.map(|p| p.map_or(0.0, |p| s[self.free + p])).collect();
         Some((d, y))
     }
 }
