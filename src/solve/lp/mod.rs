@@ -482,7 +482,10 @@ fn interior_point(p: &Problem, tolerances: [f64; 2], budget: &Budget) -> interio
 }
 
 fn interior_only(p: &Problem, tolerances: [f64; 2], budget: &Budget) -> Gave {
-    let run = interior_point(p, tolerances, budget);
+    given(interior_point(p, tolerances, budget))
+}
+
+fn given(run: interior::Run) -> Gave {
     Gave {
         point: run.point,
         ended: run.ended,
@@ -504,7 +507,7 @@ const WORK: f64 = 100.0;
 
 /// The interior point from which a crossover begins: its tolerance, each digit of which saves pushes, and where none can be had that good, the least.
 const FINE: f64 = 1e-11;
-const USEFUL: f64 = 1e-5;
+const USEFUL: f64 = 1e-8;
 
 /// The simplex method where it is likely to be the faster one; the interior point and its finish for large programs and for
 /// those that take it long.
@@ -533,9 +536,36 @@ fn auto(p: &Problem, accuracy: Accuracy, strategies: Strategies, budget: &Budget
     concluded(simplex, ended, accuracy, budget)
 }
 
-/// Interior point, then a basis from it, then the simplex method.
+/// Interior point, then a basis from it, then the simplex method. Clarabel's point comes second: where none of the first leads to a
+/// vertex, as in ill-conditioned programs and those without a solution.
 fn finished(p: &Problem, accuracy: Accuracy, strategies: Strategies, budget: &Budget) -> Gave {
-    let mut answer = interior_only(p, [FINE, USEFUL], budget);
+    let own = match trivial(p) {
+        None => given(barrier::solve(p, [FINE, USEFUL], budget)),
+        Some(run) => given(run),
+    };
+    let first = match own.ended == Ended::Failed {
+        true => Err(own),
+        false => finished_from(p, own, accuracy, strategies, budget),
+    };
+    first.unwrap_or_else(|own| {
+        let mut answer = given(interior::solve(p, None, 1e-10, budget));
+        answer.iterations += own.iterations;
+        let second = finished_from(p, answer, accuracy, strategies, budget);
+        second.unwrap_or_else(|answer| match answer.ended {
+            Ended::Failed | Ended::TooLarge(_) => own,
+            _ => answer,
+        })
+    })
+}
+
+/// A vertex and its basis, from an interior point. Err: the interior point is all there is.
+fn finished_from(
+    p: &Problem,
+    mut answer: Gave,
+    accuracy: Accuracy,
+    strategies: Strategies,
+    budget: &Budget,
+) -> Result<Gave, Gave> {
     let mut simplex = Simplex::new(p);
     let mut most = u64::MAX;
     match answer.ended {
@@ -567,12 +597,12 @@ fn finished(p: &Problem, accuracy: Accuracy, strategies: Strategies, budget: &Bu
         }
         // A direction is no point: the simplex method finds one from which it leads on.
         Ended::Unbounded(_) | Ended::Failed | Ended::TooLarge(_) => {}
-        Ended::Infeasible(ref y) if p.proves_infeasible(y) => return answer,
+        Ended::Infeasible(ref y) if p.proves_infeasible(y) => return Ok(answer),
         // An exact proof is worth some effort.
         Ended::Infeasible(_) => {
             most = 1000 + 2 * (p.m() + p.n()) as u64;
         }
-        _ => return answer,
+        _ => return Ok(answer),
     }
     let ended = simplex.solve(&mut watch(budget, most));
     let pivots = simplex.iterations;
@@ -587,16 +617,17 @@ fn finished(p: &Problem, accuracy: Accuracy, strategies: Strategies, budget: &Bu
         if answer.ended == Ended::Solved && cut_short {
             // The interior point is still the best there is.
             answer.ended = ended;
+            return Ok(answer);
         }
-        return answer;
+        return Err(answer);
     }
     let mut done = concluded(simplex, ended, accuracy, budget);
     if done.ended == Ended::Failed {
-        return answer;
+        return Err(answer);
     }
     done.iterations += answer.iterations;
     done.solver = "clarabel";
-    done
+    Ok(done)
 }
 
 /// Problems without a free column or without a constraint, which Clarabel does not take.

@@ -59,6 +59,9 @@ impl Driver<'_, '_> {
             Claim::Unfinished
         } else if self.impossible {
             Claim::Infeasible
+        } else if self.is_stopped() {
+            // further attempts would have begun elsewhere
+            Claim::Unfinished
         } else {
             let violations = violations(self.instance, &best.at.activity);
             let all = self.infeasibility.take().into_iter();
