@@ -539,33 +539,34 @@ fn auto(p: &Problem, accuracy: Accuracy, strategies: Strategies, budget: &Budget
 /// Interior point, then a basis from it, then the simplex method. Clarabel's point comes second: where none of the first leads to a
 /// vertex, as in ill-conditioned programs and those without a solution.
 fn finished(p: &Problem, accuracy: Accuracy, strategies: Strategies, budget: &Budget) -> Gave {
-    let own = match trivial(p) {
-        None => given(barrier::solve(p, [FINE, USEFUL], budget)),
-        Some(run) => given(run),
+    if let Some(run) = trivial(p) {
+        return finished_from(p, given(run), accuracy, strategies, budget).0;
+    }
+    let own = given(barrier::solve(p, [FINE, USEFUL], budget));
+    let own = match own.ended == Ended::Failed {
+        true => own,
+        false => match finished_from(p, own, accuracy, strategies, budget) {
+            (done, true) => return done,
+            (own, false) => own,
+        },
     };
-    let first = match own.ended == Ended::Failed {
-        true => Err(own),
-        false => finished_from(p, own, accuracy, strategies, budget),
-    };
-    first.unwrap_or_else(|own| {
-        let mut answer = given(interior::solve(p, None, 1e-10, budget));
-        answer.iterations += own.iterations;
-        let second = finished_from(p, answer, accuracy, strategies, budget);
-        second.unwrap_or_else(|answer| match answer.ended {
-            Ended::Failed | Ended::TooLarge(_) => own,
-            _ => answer,
-        })
-    })
+    let mut answer = given(interior::solve(p, None, 1e-10, budget));
+    answer.iterations += own.iterations;
+    let (second, _) = finished_from(p, answer, accuracy, strategies, budget);
+    match (&second.ended, &own.ended) {
+        (Ended::Failed | Ended::TooLarge(_), Ended::Solved) => own,
+        _ => second,
+    }
 }
 
-/// A vertex and its basis, from an interior point. Err: the interior point is all there is.
+/// A vertex and its basis, from an interior point; false: the interior point is all there is.
 fn finished_from(
     p: &Problem,
     mut answer: Gave,
     accuracy: Accuracy,
     strategies: Strategies,
     budget: &Budget,
-) -> Result<Gave, Gave> {
+) -> (Gave, bool) {
     let mut simplex = Simplex::new(p);
     let mut most = u64::MAX;
     match answer.ended {
@@ -597,12 +598,12 @@ fn finished_from(
         }
         // A direction is no point: the simplex method finds one from which it leads on.
         Ended::Unbounded(_) | Ended::Failed | Ended::TooLarge(_) => {}
-        Ended::Infeasible(ref y) if p.proves_infeasible(y) => return Ok(answer),
+        Ended::Infeasible(ref y) if p.proves_infeasible(y) => return (answer, true),
         // An exact proof is worth some effort.
         Ended::Infeasible(_) => {
             most = 1000 + 2 * (p.m() + p.n()) as u64;
         }
-        _ => return Ok(answer),
+        _ => return (answer, true),
     }
     let ended = simplex.solve(&mut watch(budget, most));
     let pivots = simplex.iterations;
@@ -617,17 +618,17 @@ fn finished_from(
         if answer.ended == Ended::Solved && cut_short {
             // The interior point is still the best there is.
             answer.ended = ended;
-            return Ok(answer);
+            return (answer, true);
         }
-        return Err(answer);
+        return (answer, false);
     }
     let mut done = concluded(simplex, ended, accuracy, budget);
     if done.ended == Ended::Failed {
-        return Err(answer);
+        return (answer, false);
     }
     done.iterations += answer.iterations;
     done.solver = "clarabel";
-    Ok(done)
+    (done, true)
 }
 
 /// Problems without a free column or without a constraint, which Clarabel does not take.
