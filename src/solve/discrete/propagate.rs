@@ -79,7 +79,7 @@ pub struct Propagator {
     /// Columns whose bounds the last run moved.
     pub moved: Vec<usize>,
     /// Entries of rows that were looked at so far.
-    pub work: usize,
+    work: usize,
     has_thresholds: bool,
 }
 

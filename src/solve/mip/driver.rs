@@ -192,7 +192,7 @@ fn renewed_search(mip: &Mip, aim: Aim, first: Found, begin: Begin, control: &mut
     found
 }
 
-/// Whether a tenth of the integers is decided or a tenth of the coefficients of binaries is a half of what it was.
+/// Whether a tenth of the integers is decided, or the coefficients of integers have lost three tenths of their sum.
 fn is_much_smaller(left: &Mip, before: &Mip) -> bool {
     let integers = |m: &Mip| m.integer.iter().filter(|i| **i).count() as f64;
     let weight = |m: &Mip| -> f64 {
