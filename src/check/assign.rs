@@ -325,13 +325,14 @@ impl<'a> Visitor<'a> for SelfReading<'a> {
 impl SelfReading<'_> {
     /// Whether the assignment goes element by element, each reading what those before have written: GAMS does
     /// where the left side has a lag, and all that is read has the same indices, behind the first position with lags
-    /// as far: `p(t+1) = p(t-1)`, `p(t--1,i+1) = p(t,i++1)`, not `p(t+1,i) = p(t,i+1)`.
-    /// Else the right side sees the values from before.
+    /// as far: `p(t+1) = p(t-1)`, `p(t--1,i+1) = p(t,i++1)`, not `p(t+1,i) = p(t,i+1)`. Records named by their labels
+    /// do not matter; they, and in other assignments all, have their values from before.
     fn is_recurrence(&self, written: &Key) -> bool {
         let lagged = written.parts.iter().any(|p| matches!(p, Part::Lag(_)));
+        let moving = || self.keys.iter().filter(|k| !k.is_fixed());
         lagged
-            && !self.keys.is_empty()
-            && self.keys.iter().all(|k| {
+            && moving().next().is_some()
+            && moving().all(|k| {
                 let mut pairs = k.parts.iter().zip(&written.parts).enumerate();
                 pairs.all(|(position, (a, b))| {
                     same_index(a, b) && (position == 0 || as_far(distance(a), distance(b)))

@@ -220,12 +220,22 @@ impl Compiler {
                     }
                 }
             }
-            ExprKind::Dollar(a, c) => {
+            ExprKind::Dollar(value, c) => {
                 let c = self.expr(c)?;
                 self.no_variable(&c, "a `$` condition")?;
-                let a = self.expr(a)?;
+                let a = self.expr(value)?;
                 let (v, l, member) = (a.has_var, a.linear, a.member);
-                let kind = NodeKind::Dollar(Box::new(a), Box::new(c));
+                let open = matches!(&value.kind, ExprKind::Dollar(first, _) if first.span.lo == value.span.lo);
+                let kind = match a.kind {
+                    // GAMS draws for `b` in `a$b$c` where `c` is false, too, as in `a$((b$1) and c)`.
+                    NodeKind::Dollar(a, b) if open && b.has_random() => {
+                        let one = Box::new(Node::number(1.0, b.span));
+                        let b = Node::data(NodeKind::Dollar(b, one), span);
+                        let both = NodeKind::Binary(BinaryOp::And, Box::new(b), Box::new(c));
+                        NodeKind::Dollar(a, Box::new(Node::data(both, span)))
+                    }
+                    _ => NodeKind::Dollar(Box::new(a), Box::new(c)),
+                };
                 let node = combine(kind, span, v, l);
                 Ok(Node { member, ..node })
             }

@@ -52,6 +52,12 @@ pub struct Key {
 }
 
 impl Key {
+    /// Whether it names one record by its labels.
+    pub fn is_fixed(&self) -> bool {
+        let label = |p: &Part| matches!(p, Part::Label(_));
+        !self.parts.is_empty() && self.parts.iter().all(label)
+    }
+
     /// Whether all parts are slots and labels.
     pub fn is_plain(&self) -> bool {
         self.parts

@@ -133,6 +133,48 @@ impl Node {
     }
 }
 
+impl Node {
+    /// Calls a function for this expression and all below (not those inside keys) that may change them.
+    pub fn change(&mut self, f: &mut dyn FnMut(&mut Node)) {
+        f(self);
+        match &mut self.kind {
+            NodeKind::Const(_)
+            | NodeKind::ObjectAttribute(..)
+            | NodeKind::Text(_)
+            | NodeKind::SymbolText(_)
+            | NodeKind::Data(..)
+            | NodeKind::ElementText(..)
+            | NodeKind::Var(..)
+            | NodeKind::Derived(..)
+            | NodeKind::RecordName(..)
+            | NodeKind::Ord(..)
+            | NodeKind::LabelAttribute(..)
+            | NodeKind::Card(_)
+            | NodeKind::SameAs(..)
+            | NodeKind::LabelText(_) => {}
+            NodeKind::Negate(a) | NodeKind::Not(a) => a.change(f),
+            NodeKind::Sum(list) | NodeKind::Product(list) => {
+                list.iter_mut().for_each(|(_, x)| x.change(f));
+            }
+            NodeKind::Binary(_, a, b) | NodeKind::Dollar(a, b) => {
+                a.change(f);
+                b.change(f);
+            }
+            NodeKind::Call(_, list) | NodeKind::DataCall(_, list) => {
+                list.iter_mut().for_each(|x| x.change(f));
+            }
+            NodeKind::Aggregate(_, d, body) => {
+                d.conditions.iter_mut().for_each(|c| c.change(f));
+                body.change(f);
+            }
+            NodeKind::OfText(text, at) => {
+                text.change(f);
+                at.iter_mut().for_each(|n| n.change(f));
+            }
+        }
+    }
+}
+
 impl Code {
     /// Visits expressions and statements inside.
     pub fn walk<'a, V: Visitor<'a> + ?Sized>(&'a self, v: &mut V) {

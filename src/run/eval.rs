@@ -4,6 +4,7 @@ use super::Machine;
 use super::arithmetic::{self, ArithmeticError};
 use super::plan::Wanted;
 use super::random;
+use super::support::SAME;
 use crate::autodiff::functions::{self, function_value};
 use crate::check::calendar;
 use crate::check::node::*;
@@ -107,11 +108,13 @@ impl Machine<'_> {
     pub(super) fn is_member(&self, table: TableId, key: &Key, frame: &mut Frame) -> bool {
         let mut k = [0; 20];
         self.key(key, frame, &mut k)
-            && self
-                .store
-                .table(table)
-                .find(&k[..key.parts.len()])
-                .is_some()
+            && match table {
+                SAME => k[0] == k[1],
+                _ => {
+                    let table = self.store.table(table);
+                    table.find(&k[..key.parts.len()]).is_some()
+                }
+            }
     }
 
     fn arithmetic(&self, r: Result<f64, ArithmeticError>, span: Span) -> f64 {

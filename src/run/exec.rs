@@ -201,7 +201,7 @@ impl Machine<'_> {
 
     /// `anew` are the conjuncts of the condition that are asked at every turn.
     fn run_loop(&mut self, d: &Domain, anew: &[Node], body: &[Code], frame: &mut Frame) -> Flow {
-        if !d.conditions.is_empty() && Analysis::new(self, &d.slots).any_undefined(anew) {
+        if !d.conditions.is_empty() && Analysis::new(self, &d.slots, false).any_undefined(anew) {
             // `na and 0` is `na`, which counts as true: none stands alone.
             let mut whole = d.clone();
             let mut all = std::mem::take(&mut whole.conditions);
@@ -224,7 +224,7 @@ impl Machine<'_> {
             }
             return Flow::Next;
         }
-        let tuples = self.tuples(d, frame);
+        let tuples = self.tuples(d, anew, frame);
         for t in tuples.chunks_exact(d.slots.len()) {
             for (&s, &l) in d.slots.iter().zip(t) {
                 frame[s as usize] = l;
@@ -358,6 +358,7 @@ impl Machine<'_> {
             stored: table
                 .filter(|_| !covers && !right.nonzero)
                 .map(|t| (t, key)),
+            ..Wanted::default()
         };
         let plan = self.plan(domain, wanted);
         for t in plan.scanned() {
@@ -398,8 +399,9 @@ impl Machine<'_> {
             true => attribute::COUNT,
             false => 1,
         };
+        let own = owner.table..owner.table + count;
         let mut first: Option<Label> = None;
-        for t in owner.table..owner.table + count {
+        for t in own.clone() {
             let table = &mut self.store.tables[t as usize];
             table.tidy();
             if !table.is_empty() {
@@ -411,7 +413,21 @@ impl Machine<'_> {
             conditions: Vec::new(),
             ..domain.clone()
         };
-        let tuples = self.tuples(&outer, frame);
+        let tuples = self.tuples(&outer, &[], frame);
+        let mut value = right.value.clone();
+        let mut conditions = domain.conditions.clone();
+        for n in conditions.iter_mut().chain([&mut value]) {
+            n.change(&mut |n| match &n.kind {
+                NodeKind::Data(t, key) if own.contains(t) && key.is_fixed() => {
+                    n.kind = NodeKind::Const(self.eval(n, frame));
+                }
+                _ => {}
+            });
+        }
+        let right = Right {
+            value: &value,
+            ..right
+        };
         let mut late = Records {
             keys: Vec::new(),
             values: Vec::new(),
@@ -423,7 +439,7 @@ impl Machine<'_> {
             if !self.keep_going() {
                 break;
             }
-            if !self.all_hold(&domain.conditions, frame) {
+            if !self.all_hold(&conditions, frame) {
                 continue;
             }
             let (at, before) = (late.keys.len(), late.values.len());

@@ -10,7 +10,7 @@
 //! label order ([`Branch::ordered`], or sorted after).
 
 use super::Machine;
-use super::support::{Analysis, Premise, Sparse, product};
+use super::support::{Analysis, Premise, SAME, Sparse, product};
 use crate::check::node::*;
 use crate::check::symbols::DomainPosition;
 use crate::check::visit::Visitor;
@@ -62,6 +62,8 @@ enum Step {
     },
     /// A record must be there.
     Member(TableId, Key),
+    /// One of the alternatives must have its records, each as far as the positions of a mask say.
+    Any(Box<[Vec<(Driver, u32)>]>),
     /// Conjuncts of the condition (by number) must be true together. Their own sums leave these slots changed,
     /// which scans around still read.
     Filter(Box<[usize]>, Box<[Slot]>),
@@ -86,6 +88,10 @@ pub(super) struct Wanted<'n> {
     pub rest: f64,
     /// And those that are stored now: an assignment changes them too.
     pub stored: Option<(TableId, &'n Key)>,
+    /// And those for which these conditions of a loop can hold, if they draw random numbers.
+    pub drawn: &'n [Node],
+    /// It is the domain of a sum, not of a statement.
+    pub inside: bool,
 }
 
 impl<'n> Wanted<'n> {
@@ -93,8 +99,15 @@ impl<'n> Wanted<'n> {
     pub(super) fn nonzero(value: Option<&'n Node>) -> Self {
         Self {
             value,
+            inside: true,
             ..Self::default()
         }
+    }
+
+    /// Whether random numbers are drawn.
+    fn draws(&self, d: &Domain) -> bool {
+        let all = d.conditions.iter().chain(self.value).chain(self.drawn);
+        all.into_iter().any(Node::has_random)
     }
 }
 
@@ -124,9 +137,13 @@ impl Plan {
     /// Tables that are scanned: they must be tidy.
     pub(super) fn scanned(&self) -> impl Iterator<Item = TableId> {
         let steps = self.branches.iter().flat_map(|b| &b.steps);
-        steps.filter_map(|s| match s {
-            Step::Scan { table, .. } => Some(*table),
-            _ => None,
+        steps.flat_map(|s| match s {
+            Step::Scan { table, .. } => vec![*table],
+            Step::Any(all) => {
+                let tables = all.iter().flatten().map(|(r, _)| r.table);
+                tables.filter(|&t| t != SAME).collect()
+            }
+            _ => Vec::new(),
         })
     }
 }
@@ -147,6 +164,15 @@ fn supports(d: &Domain, wanted: Wanted, analysis: &mut Analysis) -> Vec<Sparse> 
     let mut supports: Vec<Sparse> = Vec::new();
     if !d.slots.is_empty() {
         supports.extend(analysis.conjuncts(&d.conditions));
+        let drawn = wanted.drawn.iter().filter(|c| c.has_random());
+        supports.extend(drawn.filter_map(|c| {
+            let support = analysis.nonzero(c, false)?.support;
+            Some(Sparse {
+                rest: 0.0,
+                support,
+                forced: true,
+            })
+        }));
         if let Some(v) = wanted.value
             && let Some(mut s) = analysis.resting_at(wanted.rest, v, v.has_var)
         {
@@ -154,20 +180,44 @@ fn supports(d: &Domain, wanted: Wanted, analysis: &mut Analysis) -> Vec<Sparse> 
                 let key = key.clone();
                 vec![Driver { table, key }]
             }));
-            // Numbers are drawn where the value or what is stored can be other than 0.
-            let whole = |a: &Vec<Driver>| {
-                let found: Vec<Slot> = a.iter().flat_map(|m| slots_of_key(&m.key)).collect();
-                d.slots.iter().all(|s| found.contains(s))
-            };
-            s.forced |= d.conditions.iter().any(Node::has_random)
-                && !v.has_random()
-                && s.is_plain()
-                && s.support.iter().all(whole);
-            supports.push(s);
+            s.forced |= analysis.draws;
+            // A number that is 0 keeps nothing from being drawn.
+            supports.extend((!analysis.draws || !s.support.is_empty()).then_some(s));
         }
     }
     supports
 }
+
+/// Where random numbers are drawn, as in GAMS: every index is looked at by itself, in order, and tells of the records that
+/// each alternative needs what it can with those before. The records that all tuples need come first.
+fn levels(d: &Domain, supports: Vec<Sparse>, inside: bool) -> (Vec<Candidate>, Vec<Levels>) {
+    let (mut first, mut levels) = (Vec::new(), Vec::new());
+    for s in supports {
+        match s.support.as_slice() {
+            [one] => {
+                for r in one {
+                    let slots = slots_of_key(&r.key);
+                    if slots.iter().any(|&s| is_inner(s, d)) {
+                        levels.push(vec![vec![r.clone()]]);
+                    } else if !inside || slots.iter().any(|s| d.slots.contains(s)) {
+                        first.push(Candidate {
+                            table: r.table,
+                            key: r.key.clone(),
+                            required: s.forced,
+                            done: false,
+                        });
+                    }
+                }
+            }
+            _ if s.forced => levels.push(s.support),
+            _ => {}
+        }
+    }
+    (first, levels)
+}
+
+/// Alternatives, each of records.
+type Levels = Vec<Vec<Driver>>;
 
 /// Records that every tuple needs, which drive the first branch, and the alternatives that replace it where that is
 /// less work; those that must be are marked.
@@ -221,6 +271,11 @@ struct Nest<'a, 'h> {
     /// Slots as they were bound.
     order: Vec<Slot>,
     in_order: bool,
+    /// What tells where random numbers are drawn, and for how many slots of the order it is asked.
+    levels: &'a [Levels],
+    asked: usize,
+    /// Inside of a sum.
+    inside: bool,
 }
 
 impl<'a, 'h> Nest<'a, 'h> {
@@ -229,6 +284,7 @@ impl<'a, 'h> Nest<'a, 'h> {
         d: &'a Domain,
         filters: &'a [Box<[usize]>],
         drivers: &[Candidate],
+        (levels, inside): (&'a [Levels], bool),
     ) -> Self {
         let members = d.members.iter().map(|m| Candidate {
             table: m.table,
@@ -258,11 +314,46 @@ impl<'a, 'h> Nest<'a, 'h> {
             in_order: true,
             indices: free.clone(),
             free,
+            levels,
+            asked: 0,
+            inside,
         }
+    }
+
+    /// Asks the alternatives about each slot that was bound, and at first, in a statement, about what stands around it.
+    fn ask(&mut self) {
+        let around = (self.order.is_empty() && !self.inside).then_some(0);
+        for n in around.into_iter().chain(self.asked + 1..=self.order.len()) {
+            let bound = &self.order[..n];
+            let open = |s: &Slot| {
+                let later = self.domain.slots.contains(s) && !bound.contains(s);
+                later || is_inner(*s, self.domain)
+            };
+            let tells = |r: &Driver| {
+                // Records are in the order of their positions: only the first ones can be looked up.
+                let parts = r.key.parts.iter().map(slots_of_part);
+                let known: Vec<_> = parts.take_while(|p| !p.iter().any(open)).collect();
+                let whole = known.len() == r.key.parts.len();
+                let here = bound.last().map_or(whole, |s| known.concat().contains(s));
+                let asked = here && (r.table != SAME || whole);
+                asked.then(|| (r.clone(), (1 << known.len()) - 1))
+            };
+            for alternatives in self.levels {
+                let tests = alternatives.iter();
+                let tests: Vec<Vec<_>> = tests
+                    .map(|all| all.iter().filter_map(tells).collect())
+                    .collect();
+                if tests.iter().all(|all| !all.is_empty()) {
+                    self.steps.push(Step::Any(tests.into()));
+                }
+            }
+        }
+        self.asked = self.order.len();
     }
 
     /// Tests what can be tested with the slots that are bound.
     fn settle(&mut self) {
+        self.ask();
         let Self {
             machine,
             domain: d,
@@ -304,7 +395,7 @@ impl<'a, 'h> Nest<'a, 'h> {
     fn next(&self, pick: Pick, changing: Option<TableId>) -> Option<(f64, usize)> {
         let mut best: Option<(f64, f64, usize)> = None;
         let candidates = self.candidates.iter().enumerate();
-        for (i, c) in candidates.filter(|(_, c)| !c.done) {
+        for (i, c) in candidates.filter(|(_, c)| !c.done && c.table != SAME) {
             let Some(new) = binds(&c.key, &self.free) else {
                 continue;
             };
@@ -411,19 +502,21 @@ impl Machine<'_> {
     }
 
     fn make_plan(&self, d: &Domain, wanted: Wanted) -> Plan {
-        let pick = if d
-            .conditions
-            .iter()
-            .chain(wanted.value)
-            .any(Node::has_random)
-        {
-            Pick::InOrder
-        } else {
-            Pick::Cheapest
+        let draws = wanted.draws(d);
+        let pick = match draws {
+            true => Pick::InOrder,
+            false => Pick::Cheapest,
         };
-        let mut analysis = Analysis::new(self, &d.slots);
+        let mut analysis = Analysis::new(self, &d.slots, draws);
         let supports = supports(d, wanted, &mut analysis);
-        let (mut branches, mut open) = drivers(d, supports);
+        let (mut branches, mut open, mut asked) = (Vec::new(), Vec::new(), Vec::new());
+        if draws {
+            let (first, levels) = levels(d, supports, wanted.inside);
+            branches.push(first);
+            asked = levels;
+        } else {
+            (branches, open) = drivers(d, supports);
+        }
         // As in GAMS one condition is evaluated where another is false: an error in it is reported.
         let count = d.conditions.len();
         let filters: Vec<Box<[usize]>> = if d.conditions.iter().all(|c| analysis.is_safe(c)) {
@@ -441,13 +534,24 @@ impl Machine<'_> {
             let filters = if gathers(list) { &early } else { &filters };
             let branches = list.iter();
             branches
-                .map(|c| self.branch(d, filters, c, pick, wanted.stored.map(|s| s.0)))
+                .map(|c| {
+                    self.branch(
+                        d,
+                        filters,
+                        c,
+                        (&asked, wanted.inside),
+                        pick,
+                        wanted.stored.map(|s| s.0),
+                    )
+                })
                 .collect()
         };
         let mut premises = analysis.premises;
         let mut tables: Vec<TableId> = d.members.iter().map(|m| m.table).collect();
         let named = open.iter().flat_map(|(_, o)| o).chain(&branches).flatten();
         tables.extend(named.map(|c| c.table));
+        tables.extend(asked.iter().flatten().flatten().map(|r| r.table));
+        tables.retain(|&t| t != SAME);
         tables.sort_unstable();
         tables.dedup();
         premises.extend(
@@ -456,7 +560,6 @@ impl Machine<'_> {
                 .map(|&t| Premise::Size(t, self.store.table(t).len())),
         );
         let mut made = make(&branches);
-        open.retain(|(forced, _)| *forced || pick == Pick::Cheapest);
         open.sort_by_key(|(forced, _)| !forced);
         for (forced, alternatives) in open {
             let Some(wider) = product(&branches, &alternatives) else {
@@ -484,10 +587,11 @@ impl Machine<'_> {
         d: &Domain,
         filters: &[Box<[usize]>],
         drivers: &[Candidate],
+        levels: (&[Levels], bool),
         pick: Pick,
         changing: Option<TableId>,
     ) -> Branch {
-        let mut nest = Nest::new(self, d, filters, drivers);
+        let mut nest = Nest::new(self, d, filters, drivers, levels);
         let (mut rows_so_far, mut work) = (1.0, 1.0);
         nest.settle();
         while d.slots.iter().any(|s| nest.free.contains(s)) {
@@ -516,7 +620,7 @@ impl Machine<'_> {
     fn scanned_by(&self, condition: &Node, steps: &[Step]) -> bool {
         let (t, wanted) = match &condition.kind {
             NodeKind::Data(t, wanted) => (t, wanted),
-            NodeKind::Binary(BinaryOp::Or, a, b) => {
+            NodeKind::Binary(BinaryOp::Or, a, b) if !condition.has_random() => {
                 // `na` on one side is `na`, which counts as true as well.
                 return self.scanned_by(a, steps) || self.scanned_by(b, steps);
             }
@@ -630,6 +734,13 @@ impl Machine<'_> {
                 }
                 self.run_steps(d, rest, frame, f)
             }
+            Step::Any(alternatives) => {
+                let mut there = |(r, mask): &(Driver, u32)| self.has_record(r, *mask, frame);
+                if !alternatives.iter().any(|all| all.iter().all(&mut there)) {
+                    return true;
+                }
+                self.run_steps(d, rest, frame, f)
+            }
             Step::Scan {
                 table,
                 key,
@@ -685,9 +796,30 @@ impl Machine<'_> {
         }
     }
 
-    /// All tuples of a domain, flat, in label order.
-    pub(super) fn tuples(&self, d: &Domain, frame: &mut Vec<Label>) -> Vec<Label> {
-        let plan = self.plan(d, Wanted::default());
+    /// Whether there is a record with the labels at the positions of a mask.
+    fn has_record(&self, r: &Driver, mask: u32, frame: &mut Vec<Label>) -> bool {
+        let parts = &r.key.parts;
+        if mask.count_ones() as usize == parts.len() {
+            return self.is_member(r.table, &r.key, frame);
+        }
+        let mut k = [0; 20];
+        for (p, part) in parts.iter().enumerate().filter(|(p, _)| mask >> p & 1 == 1) {
+            match self.part(part, frame) {
+                Some(l) => k[p] = l,
+                None => return false,
+            }
+        }
+        let t = self.store.table(r.table);
+        t.group(&t.order(mask), &k[..parts.len()]).len() > 0
+    }
+
+    /// All tuples of a domain, flat, in label order; of a loop, with the conditions that are tested at each turn.
+    pub(super) fn tuples(&self, d: &Domain, drawn: &[Node], frame: &mut Vec<Label>) -> Vec<Label> {
+        let wanted = Wanted {
+            drawn,
+            ..Wanted::default()
+        };
+        let plan = self.plan(d, wanted);
         if plan.late.is_empty() {
             return self.gather(d, &plan, frame);
         }

@@ -82,7 +82,7 @@ impl Machine<'_> {
         let d = &equations[definition].domain;
         match d.slots.len() {
             0 => 1,
-            n => self.tuples(d, &mut vec![0; self.slots]).len() / n,
+            n => self.tuples(d, &[], &mut vec![0; self.slots]).len() / n,
         }
     }
 

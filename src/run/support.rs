@@ -22,6 +22,9 @@ use crate::model::instance::Function;
 /// Alternatives, each a conjunction of records that must be there.
 pub(super) type Alternatives = Vec<Vec<Driver>>;
 
+/// Stands for a table in a [`Driver`]: both labels of the key are the same one (`sameas`).
+pub(super) const SAME: TableId = TableId::MAX;
+
 /// More alternatives than this are not followed.
 const MAX_ALTERNATIVES: usize = 32;
 
@@ -33,24 +36,6 @@ pub(super) struct Sparse {
     pub support: Alternatives,
     /// Evaluation elsewhere could fail although the value is the rest.
     pub forced: bool,
-}
-
-impl Sparse {
-    /// Where random numbers are drawn that need this to be other than 0: records that lags find, or an index that comes
-    /// twice, do not count, and for every tuple if there are no others.
-    fn drawn(mut self) -> Option<Self> {
-        for all in &mut self.support {
-            all.retain(|d| d.key.is_plain() && !d.key.repeats());
-        }
-        self.forced = true;
-        let found = !self.support.is_empty() && self.support.iter().all(|all| !all.is_empty());
-        found.then_some(self)
-    }
-
-    /// Whether its records are found without lags.
-    pub(super) fn is_plain(&self) -> bool {
-        self.support.iter().flatten().all(|d| d.key.is_plain())
-    }
 }
 
 /// What a plan takes for granted.
@@ -87,6 +72,9 @@ pub(super) struct Analysis<'m, 'h> {
     pub premises: Vec<Premise>,
     /// Indices that are run over.
     indices: Vec<Slot>,
+    /// Random numbers are drawn: as in GAMS, records that lags find, an index that comes twice, `not`, and comparisons
+    /// of two things that vary do not tell where; the same labels do.
+    pub draws: bool,
 }
 
 impl Machine<'_> {
@@ -124,8 +112,9 @@ impl Machine<'_> {
 
 impl<'m, 'h> Analysis<'m, 'h> {
     /// Over the tuples of these indices.
-    pub(super) fn new(m: &'m Machine<'h>, indices: &[Slot]) -> Self {
+    pub(super) fn new(m: &'m Machine<'h>, indices: &[Slot], draws: bool) -> Self {
         Self {
+            draws,
             m,
             premises: Vec::new(),
             indices: indices.to_vec(),
@@ -141,7 +130,9 @@ impl<'m, 'h> Analysis<'m, 'h> {
 
     /// The support of an expression that rests at 0.
     pub(super) fn nonzero(&mut self, n: &Node, symbolic: bool) -> Option<Sparse> {
-        self.resting_at(0.0, n, symbolic)
+        let found = self.resting_at(0.0, n, symbolic);
+        // A number that is 0 keeps nothing from being drawn beside it.
+        found.filter(|s| !self.draws || !s.support.is_empty())
     }
 
     /// The support of an expression that rests at a value.
@@ -161,8 +152,12 @@ impl<'m, 'h> Analysis<'m, 'h> {
             return Vec::new();
         }
         let safe = conditions.len() < 2 || conditions.iter().all(|c| self.is_safe(c));
-        let conditions = conditions.iter();
-        let mut supports: Vec<Sparse> = conditions.filter_map(|c| self.nonzero(c, false)).collect();
+        let support = |c: &Node| {
+            let mut s = self.nonzero(c, false)?;
+            s.forced |= self.draws && c.has_random();
+            Some(s)
+        };
+        let mut supports: Vec<Sparse> = conditions.iter().filter_map(support).collect();
         // A number that is 0 stops nothing: errors in the others are reported.
         supports.retain(|s| safe || !s.support.is_empty());
         supports
@@ -221,12 +216,17 @@ impl<'m, 'h> Analysis<'m, 'h> {
         match &n.kind {
             NodeKind::Const(x) => Some(at_rest(*x)),
             NodeKind::Data(t, key) => self.data(*t, key),
+            NodeKind::SameAs(a, b) if self.draws => {
+                let parts = vec![a.clone(), b.clone()];
+                self.record(0.0, SAME, &Key { parts })
+            }
             NodeKind::Card(t) => {
                 let count = self.m.count(*t);
                 self.premise(Premise::Count(*t, count));
                 Some(at_rest(count as f64))
             }
             NodeKind::Negate(a) => self.together(&[(symbolic, a)], |v| arithmetic::negate(v[0])),
+            NodeKind::Not(_) if self.draws => None,
             NodeKind::Not(a) => self.together(&[(false, a)], |v| arithmetic::not(v[0])),
             NodeKind::Sum(terms) => {
                 let parts: Vec<(bool, &Node)> = terms.iter().map(|(_, t)| (symbolic, t)).collect();
@@ -245,11 +245,9 @@ impl<'m, 'h> Analysis<'m, 'h> {
                 let condition = self.nonzero(c, false);
                 let value = self.nonzero(a, symbolic);
                 match (condition, value) {
-                    // A number that is 0 keeps nothing in `a` from being drawn.
-                    (Some(c), Some(v)) if c.support.is_empty() && a.has_random() => Some(v),
                     (Some(c), Some(v)) => Some(meet(c, v)),
                     (Some(c), None) => Some(c),
-                    (None, Some(v)) if c.has_random() => v.drawn(),
+                    (None, Some(v)) if c.has_random() => Some(v),
                     (None, Some(v)) => Some(Sparse {
                         forced: v.forced || self.care(c) != Some(Care::Total),
                         ..v
@@ -257,23 +255,25 @@ impl<'m, 'h> Analysis<'m, 'h> {
                     (None, None) => None,
                 }
             }
-            // Both sides are evaluated: random numbers are drawn for every tuple, or where their own side says.
-            NodeKind::Binary(BinaryOp::And, a, b) if n.has_random() => {
-                match (a.has_random(), b.has_random()) {
-                    (true, false) => self.nonzero(a, false),
-                    (false, true) => self.nonzero(b, false),
-                    _ => None,
-                }
-                .and_then(Sparse::drawn)
-            }
             NodeKind::Binary(BinaryOp::And, a, b) => self.both(n, a, b),
             NodeKind::Binary(BinaryOp::Power, a, b) => {
                 self.call(Function::RPower, &[(symbolic, a), (symbolic, b)])
             }
-            NodeKind::Binary(op, a, b) => self.together(&[(false, a), (false, b)], |v| {
-                arithmetic::relate(*op, v[0], v[1])
-            }),
+            NodeKind::Binary(op, a, b) => {
+                let or = matches!(op, BinaryOp::Or);
+                if self.draws && !or && !self.is_fixed(a) && !self.is_fixed(b) {
+                    return None;
+                }
+                self.together(&[(false, a), (false, b)], |v| {
+                    arithmetic::relate(*op, v[0], v[1])
+                })
+            }
             NodeKind::Call(f, args) => {
+                let total = matches!(f, Function::Min | Function::Max) && self.draws;
+                let mut at_0 = |a| self.sparse(a, symbolic).is_some_and(|s| s.rest == 0.0);
+                if total && !args.iter().all(&mut at_0) {
+                    return None;
+                }
                 let args: Vec<(bool, &Node)> = args.iter().map(|a| (symbolic, a)).collect();
                 self.call(*f, &args)
             }
@@ -289,13 +289,16 @@ impl<'m, 'h> Analysis<'m, 'h> {
             self.premise(Premise::Scalar(t, value.to_bits()));
             return Some(at_rest(value));
         }
-        let rest = table.default_value();
-        Some(Sparse {
+        self.record(table.default_value(), t, key)
+    }
+
+    /// Something that is other than its rest only where there is a record.
+    fn record(&self, rest: f64, table: TableId, key: &Key) -> Option<Sparse> {
+        let key = key.clone();
+        let tells = !self.draws || key.is_plain() && !key.repeats();
+        tells.then(|| Sparse {
             rest,
-            support: vec![vec![Driver {
-                table: t,
-                key: key.clone(),
-            }]],
+            support: vec![vec![Driver { table, key }]],
             forced: false,
         })
     }
@@ -370,6 +373,11 @@ impl<'m, 'h> Analysis<'m, 'h> {
         out
     }
 
+    /// Whether an expression has the same ordinary value everywhere.
+    fn is_fixed(&mut self, n: &Node) -> bool {
+        self.sparse(n, false).is_some_and(|s| s.support.is_empty()) && self.care(n).is_some()
+    }
+
     /// Whether tuples can be found by its records: a scalar or `q('a')` that is 0 leaves out none, and what
     /// stands beside it is evaluated.
     fn drives(&self, s: &Sparse) -> bool {
@@ -395,7 +403,7 @@ impl<'m, 'h> Analysis<'m, 'h> {
                 });
             }
         }
-        if out.is_some() {
+        if out.is_some() || self.draws {
             return out;
         }
         let NodeKind::Binary(op, ..) = &n.kind else {
@@ -428,7 +436,7 @@ impl<'m, 'h> Analysis<'m, 'h> {
                 self.premise(Premise::Filled(m.table));
             }
         }
-        if d.conditions.iter().any(Node::has_random) {
+        if self.draws && !matches!(op, AggregateOp::Sum | AggregateOp::Sor) {
             return None;
         }
         let mut out = Sparse {
@@ -480,11 +488,15 @@ impl<'m, 'h> Analysis<'m, 'h> {
                 Some(self.cares([&**a, &**b])?.max(Care::MayFail))
             }
             NodeKind::Binary(_, a, b) => self.cares([&**a, &**b]),
+            // What is drawn under a condition does not count, a drawn condition does.
+            NodeKind::Dollar(_, c) if self.draws => self.care(c),
             NodeKind::Dollar(a, b) => self.cares([&**a, &**b]),
             NodeKind::Aggregate(op, d, b)
                 if !matches!(op, AggregateOp::Smin | AggregateOp::Smax) =>
             {
-                self.cares(d.conditions.iter().chain([&**b]))
+                let known = |c: &&Node| !self.draws || !c.has_random();
+                let conditions: Vec<&Node> = d.conditions.iter().filter(known).collect();
+                self.cares(conditions.into_iter().chain([&**b]))
             }
             NodeKind::Call(
                 Function::Abs

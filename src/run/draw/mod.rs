@@ -166,7 +166,7 @@ impl Machine<'_> {
                 ..none
             };
         }
-        let labels = self.tuples(d, frame);
+        let labels = self.tuples(d, &[], frame);
         let width = d.slots.len();
         Turns {
             element,

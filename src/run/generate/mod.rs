@@ -219,7 +219,7 @@ impl Builder<'_, '_> {
             }
             Vec::new()
         } else {
-            self.m.tuples(&e.domain, frame)
+            self.m.tuples(&e.domain, &[], frame)
         };
         // Which rows there are is not known then.
         if self.m.execution_error_count() > errors {
