@@ -810,7 +810,7 @@ impl Machine<'_> {
             }
         }
         let t = self.store.table(r.table);
-        t.group(&t.order(mask), &k[..parts.len()]).len() > 0
+        !t.group(&t.order(mask), &k[..parts.len()]).is_empty()
     }
 
     /// All tuples of a domain, flat, in label order; of a loop, with the conditions that are tested at each turn.
