@@ -68,9 +68,6 @@ const FARTHEST: f64 = 1e15;
 const SMALLEST: f64 = 1e-10;
 /// The conditions of first order hold.
 const SOLVED: f64 = 1e-11;
-/// Steps that are looked back on, and how many of them may be refused.
-const WINDOW: u32 = 30;
-const MOST_REFUSED: u32 = 15;
 /// A decrease of φ below this, relative to its size, is rounding.
 const ROUNDING: f64 = 1e-13;
 
@@ -238,8 +235,6 @@ enum Found {
 impl Method<'_, '_> {
     fn run(&mut self, mut working: Option<Working>, most: u64) -> (u64, End) {
         let mut steps = 0;
-        // one bit a step: whether it was refused
-        let mut refused = 0_u32;
         while steps < most && !self.budget.is_over() {
             if self.at.residual(&self.frame, &self.lambda) <= SOLVED {
                 return (steps, End::Solved);
@@ -259,17 +254,9 @@ impl Method<'_, '_> {
                 Found::Step(step) => step,
                 Found::End(end) => return (steps, end),
             };
-            let before = self.at.values.f;
             match self.step(step) {
                 Ok(next) => working = next,
                 Err(end) => return (steps, end),
-            }
-            refused = (refused << 1 | u32::from(self.at.values.f == before)) & ((1 << WINDOW) - 1);
-            if steps >= u64::from(WINDOW)
-                && refused.count_ones() >= MOST_REFUSED
-                && self.strategies.run(Strategy::RefusedSteps)
-            {
-                return (steps, End::Spent);
             }
             if self.at.is_flatter(&self.frame, FLATTER) {
                 return (steps, End::Outgrown);
