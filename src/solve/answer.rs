@@ -67,9 +67,12 @@ pub fn answer_with(
     // Rows that contradict each other by a rounding error neither hold nor prove that they cannot: the methods give up.
     let gave_up = found.outcome.claim == Claim::Unfinished
         && found.outcome.status == SolverStatus::TerminatedBySolver;
-    if is_linear_program(task) && (gave_up || found.status == ModelStatus::Infeasible) {
+    use ModelStatus::{Infeasible, IntegerInfeasible};
+    let contradicts = gave_up || matches!(found.status, Infeasible | IntegerInfeasible);
+    if contradicts && is_linear_program(task) {
         found = least_violation(backends, task, found, settings, budget);
     }
+    tell_of_rounding(&mut found);
     use ProblemType as P;
     let nonlinear =
         !task.instance.is_linear() || matches!(task.using, P::Nlp | P::Dnlp | P::Rminlp);
@@ -207,8 +210,17 @@ fn certified(task: &Task, reply: Reply, dual: Option<Residuals>) -> Answer {
 
 fn is_linear_program(task: &Task) -> bool {
     let instance = task.instance;
-    let continuous = !task.has_integers() && !task.has_pairs();
-    instance.is_linear() && instance.objective.is_some() && continuous
+    instance.is_linear() && instance.objective.is_some() && !task.has_pairs()
+}
+
+/// A remark where a row of a solution misses more than rounding, which the tolerance allows.
+fn tell_of_rounding(found: &mut Answer) {
+    let miss = found.residuals.primal_relative;
+    if found.status.is_solution() && miss > ROUNDED && found.outcome.message.is_none() {
+        found.outcome.message = Some(format!(
+            "a row is missed by {miss:.0e} of its terms, as rounded data are: that is within the tolerance"
+        ));
+    }
 }
 
 /// Residuals of an outcome, and the levels of the rows.
@@ -378,8 +390,14 @@ pub fn certify(instance: &Instance, answer: &Answer, budget: &Budget) -> Result<
     })
 }
 
-/// An infeasible linear program at its least violation; where that is within the tolerance, as after data that were
-/// rounded, the optimum with the rows moved by it.
+/// From here on, relative to the terms of a row, what it misses is worth a remark.
+const ROUNDED: f64 = 1e-8;
+
+/// What rows miss by the arithmetic alone.
+const ARITHMETIC: f64 = 1e-12;
+
+/// An infeasible linear program at its least violation (with integers: that of its relaxation); where that is within the
+/// tolerance, as after data that were rounded, the optimum with the rows moved by it.
 fn least_violation(
     backends: &[&dyn Backend],
     task: &Task,
@@ -393,31 +411,33 @@ fn least_violation(
     let Some(near) = across(backends, &elastic, &any, &Settings::default(), budget) else {
         return found;
     };
-    if near.residuals.is_feasible(TOLERANCE) {
+    let primal = |r: &Residuals| r.primal.unwrap_or(f64::INFINITY);
+    let integers = task.has_integers();
+    let moves = !integers || primal(&near.residuals) > ARITHMETIC;
+    if moves && near.residuals.is_feasible(TOLERANCE) {
         let moved = moved(instance, &near.activity);
-        let task = Task {
+        let inner = Task {
             instance: &moved,
             ..*task
         };
-        if let Ok(mut there) = solve(backends, &task, settings, budget) {
+        if let Ok(mut there) = solve(backends, &inner, settings, budget) {
             there.outcome.iterations += found.outcome.iterations + near.outcome.iterations;
-            let (residuals, activity) = program(instance, &there.outcome);
-            if residuals.is_optimal(TOLERANCE) {
-                let most = residuals.primal.unwrap_or(0.0);
+            let (residuals, activity) = measured(task, &there.outcome, there.search.as_ref());
+            if there.status.is_solution() && residuals.is_optimal(TOLERANCE) {
+                let most = primal(&residuals);
                 there.outcome.message = Some(format!(
                     "the rows contradict each other by a rounding error: they hold to {most:.0e}"
                 ));
                 return Answer {
                     residuals,
                     activity,
-                    status: ModelStatus::Optimal,
                     ..there
                 };
             }
         }
     }
-    let primal = |a: &Answer| a.residuals.primal.unwrap_or(f64::INFINITY);
-    if found.status != ModelStatus::Infeasible && primal(&found) <= primal(&near) {
+    let nearer = primal(&found.residuals) <= primal(&near.residuals);
+    if integers || found.status != ModelStatus::Infeasible && nearer {
         return found;
     }
     Answer {

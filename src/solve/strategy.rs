@@ -124,12 +124,12 @@ strategies! {
             "100 steps",
             "Byrd, Gould, Nocedal & Waltz 2004";
         InteriorFirst "interior_first",
-            "at least 50 constraints, and a quarter of all, are nonlinear equations: the interior point goes before the sequential method",
+            "a quarter of all constraints are nonlinear, and at least 50 of these are equations (ten inequalities count as one): the interior point goes before the sequential method",
             "a run of the interior point",
             "ablation";
         SecondOrderCorrection "second_order_correction",
-            "a step is refused: the curvature of the held rows is taken off",
-            "a solve with the factors and an evaluation",
+            "a step keeps less than half of its promise: the curvature of the held rows is taken off",
+            "four solves with the factors and evaluations",
             "Fletcher 1982";
         ActiveSetNewton "active_set_newton",
             "multipliers have the right signs: Newton's method on the working set without a linear program",
@@ -163,10 +163,6 @@ strategies! {
             "linear programs see no way to lessen what is violated: negative curvature of the violation is followed",
             "a factorisation, 60 products and the solve from there",
             "Moré & Sorensen 1979";
-        RefusedSteps "refused_steps",
-            "half of the last 30 steps of the sequential method were refused: the interior point takes over",
-            "nothing",
-            "ablation";
         UnboundedBoxes "unbounded_boxes",
             "a run diverges: the program in two boxes tells whether it is unbounded",
             "four solves",

@@ -392,10 +392,16 @@ impl Driver<'_, '_> {
         let degrees = problem.evaluator().degrees();
         let (lower, upper) = problem.sides();
         let sides = problem.rows.iter().zip(lower.iter().zip(upper));
-        let curved = sides
-            .filter(|(i, (l, u))| l == u && degrees[**i as usize] > Degree::Linear)
-            .count();
-        curved >= MANY_CURVED && 4 * curved >= problem.rows.len()
+        let (mut equations, mut inequalities) = (0, 0);
+        for (_, (l, u)) in sides.filter(|s| degrees[*s.0 as usize] > Degree::Linear) {
+            match l == u {
+                true => equations += 1,
+                false => inequalities += 1,
+            }
+        }
+        let curved = equations + inequalities;
+        // most inequalities do not hold as equations
+        equations + inequalities / 10 >= MANY_CURVED && 4 * curved >= problem.rows.len()
     }
 
     /// Whether there may be several local optima, and the user lets us look for them.

@@ -105,7 +105,7 @@ impl Driver<'_, '_> {
             slqp::End::Infeasible => Ended::Infeasible,
             slqp::End::Diverging => Ended::Diverging,
             slqp::End::Spent => Ended::Iterations,
-            slqp::End::Stuck => Ended::SmallStep,
+            slqp::End::Stuck | slqp::End::Outgrown => Ended::SmallStep,
         };
         if run.end == slqp::End::Infeasible
             && self.violation_escapes < MOST_ESCAPES

@@ -57,15 +57,17 @@ const MOST_PENALTY: f64 = 1e9;
 const HEAVY: f64 = 1e3;
 /// A step is taken from this part of the promised decrease on.
 const TAKEN: f64 = 0.05;
+/// A step that keeps less than this of its promise is corrected, so many times at most.
+const KEPT: f64 = 0.5;
+const CORRECTIONS: u32 = 4;
+/// A row this much flatter, in units, than where its unit was measured is measured anew.
+const FLATTER: f64 = 1e-4;
 /// A point with a larger number is a start for nothing.
 const FARTHEST: f64 = 1e15;
 /// A trust region this small is none.
 const SMALLEST: f64 = 1e-10;
 /// The conditions of first order hold.
 const SOLVED: f64 = 1e-11;
-/// Steps that are looked back on, and how many of them may be refused.
-const WINDOW: u32 = 30;
-const MOST_REFUSED: u32 = 15;
 /// A decrease of φ below this, relative to its size, is rounding.
 const ROUNDING: f64 = 1e-13;
 
@@ -82,6 +84,8 @@ pub(super) enum End {
     Spent,
     /// Steps get short.
     Stuck,
+    /// Where rows are much flatter than their units say.
+    Outgrown,
 }
 
 /// What is asked for besides.
@@ -125,6 +129,17 @@ pub(super) fn solve(nlp: &mut dyn Nlp, request: Request<'_>, budget: &Budget) ->
     {
         *x = x.max(l).min(u);
     }
+    solve_from(nlp, start, request, budget)
+}
+
+/// The same from a point within the bounds.
+fn solve_from(
+    nlp: &mut dyn Nlp,
+    start: Vec<f64>,
+    request: Request<'_>,
+    budget: &Budget,
+) -> Option<Run> {
+    let (n, m) = nlp.size();
     let mut frame = Frame::new(nlp, &start)?;
     frame.widen(request.width);
     let values = Values::at(nlp, &frame, &start)?;
@@ -152,6 +167,20 @@ pub(super) fn solve(nlp: &mut dyn Nlp, request: Request<'_>, budget: &Budget) ->
     };
     let working = lambda.and_then(|l| method.named_by(&l));
     let (steps, mut end) = method.run(working, request.effort.steps);
+    if end == End::Outgrown {
+        let effort = Effort {
+            steps: request.effort.steps - steps,
+            ..request.effort
+        };
+        let request = Request {
+            multipliers: None,
+            effort,
+            ..request
+        };
+        let mut run = solve_from(method.nlp, method.at.x, request, budget)?;
+        run.steps += steps;
+        return Some(run);
+    }
     let violated = method.frame.violation(&method.at.values.g) > 0.0;
     if violated && matches!(end, End::Solved | End::Stuck) {
         end = method.prove();
@@ -206,8 +235,6 @@ enum Found {
 impl Method<'_, '_> {
     fn run(&mut self, mut working: Option<Working>, most: u64) -> (u64, End) {
         let mut steps = 0;
-        // one bit a step: whether it was refused
-        let mut refused = 0_u32;
         while steps < most && !self.budget.is_over() {
             if self.at.residual(&self.frame, &self.lambda) <= SOLVED {
                 return (steps, End::Solved);
@@ -227,17 +254,12 @@ impl Method<'_, '_> {
                 Found::Step(step) => step,
                 Found::End(end) => return (steps, end),
             };
-            let before = self.at.values.f;
             match self.step(step) {
                 Ok(next) => working = next,
                 Err(end) => return (steps, end),
             }
-            refused = (refused << 1 | u32::from(self.at.values.f == before)) & ((1 << WINDOW) - 1);
-            if steps >= u64::from(WINDOW)
-                && refused.count_ones() >= MOST_REFUSED
-                && self.strategies.run(Strategy::RefusedSteps)
-            {
-                return (steps, End::Spent);
+            if self.at.is_flatter(&self.frame, FLATTER) {
+                return (steps, End::Outgrown);
             }
             if self.at.x.iter().any(|x| x.abs() > FARTHEST) {
                 return (steps, End::Diverging);
@@ -497,15 +519,20 @@ impl Method<'_, '_> {
         } else {
             ratio(&there, &self.frame)
         };
-        if gain < TAKEN
-            && let (Some(v), Some(q)) = (&there, &quadratic)
-            && let Some(other) = self.corrected(&next, v, &d, q)
-        {
+        let along = self.at.along(&d);
+        for _ in 0..CORRECTIONS {
+            let (Some(v), Some(q)) = (&there, &quadratic) else {
+                break;
+            };
+            let Some(other) = self.corrected(&next, v, &along, q).filter(|_| gain < KEPT) else {
+                break;
+            };
             let values = Values::at(self.nlp, &self.frame, &other);
             let corrected = ratio(&values, &self.frame);
-            if corrected > gain {
-                (next, there, gain) = (other, values, corrected);
+            if corrected <= gain {
+                break;
             }
+            (next, there, gain) = (other, values, corrected);
         }
         let length = self.at.length(&self.frame, &d);
         let first = self.at.length(&self.frame, &cauchy);
@@ -557,12 +584,17 @@ impl Method<'_, '_> {
         Ok(stays.then_some(working))
     }
 
-    /// Where a refused step had ended, without what the curvature of the held rows added on the way.
-    fn corrected(&self, next: &[f64], there: &Values, d: &[f64], q: &Equality) -> Option<Vec<f64>> {
+    /// Where a step had ended, without what the curvature of the held rows added to what they change by along it.
+    fn corrected(
+        &self,
+        next: &[f64],
+        there: &Values,
+        along: &[f64],
+        q: &Equality,
+    ) -> Option<Vec<f64>> {
         if !self.strategies.run(Strategy::SecondOrderCorrection) {
             return None;
         }
-        let along = self.at.along(d);
         let held = |i: usize| there.g[i] - self.at.values.g[i] - along[i];
         let curvature: Vec<f64> = (0..self.frame.m).map(held).collect();
         let mut other = sum(next, 1.0, &q.correction(&curvature)?);
@@ -597,13 +629,12 @@ impl Method<'_, '_> {
         }
     }
 
-    /// Trust regions after a step.
+    /// Trust regions after a step: as far as a parabola through what was promised and what came says.
     fn resize(&mut self, gain: f64, length: f64, cauchy: f64, whole: bool) {
-        self.radius = match gain {
-            0.9.. => self.radius.max(7.0 * length),
-            0.3.. => self.radius.max(2.0 * length),
-            TAKEN.. => self.radius,
-            _ => 0.5 * self.radius.min(length),
+        let part = 0.5 / (1.0 - gain).abs();
+        self.radius = match part >= 1.0 {
+            true => self.radius.max(part.min(7.0) * length),
+            false => part.max(0.2) * self.radius.min(length),
         };
         let near = (1.2 * length)
             .max(1.2 * cauchy)

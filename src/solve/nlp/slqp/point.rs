@@ -216,6 +216,15 @@ impl Point {
         each.map(|j| d[j].abs() / self.unit(j)).fold(0.0, f64::max)
     }
 
+    /// Whether a row has become so flat that what it misses would not be seen in its unit.
+    pub(super) fn is_flatter(&self, frame: &Frame, part: f64) -> bool {
+        let steepest = |i: usize| {
+            let entries = self.rows.line(i).map(|(j, a)| (a * self.unit(j)).abs());
+            entries.fold(1.0 / frame.row_unit[i], f64::max)
+        };
+        (0..frame.m).any(|i| steepest(i) < part)
+    }
+
     /// ∇f + Jᵀλ, and the largest term of each entry.
     fn reduced(&self, lambda: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let mut sum = self.gradient.clone();
