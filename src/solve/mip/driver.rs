@@ -6,8 +6,10 @@ use super::model::{Change, Mip, Units};
 use super::outer::{Convex, Outer};
 use super::presolve;
 use super::relaxation::{Control, Relaxation, Solved};
+use super::symmetry::Symmetry;
 use super::tree::{Aim, End, Record, Search, Smaller};
 use crate::solve::Settings;
+use crate::solve::strategy::Strategy;
 
 /// What a search gave, in columns of the instance, for a minimisation.
 pub(crate) struct Found {
@@ -111,8 +113,18 @@ pub(super) fn search_linear(mip: &Mip, aim: Aim, begin: Begin, control: &mut Con
         let left = presolve::reduce(mip, &[], cutoff - mip.problem.offset);
         left.is_none_or(|left| is_much_smaller(&left.mip, &reduced.mip))
     };
+    let alike = begin.convex.is_none()
+        && begin
+            .settings
+            .is_none_or(|s| s.runs(Strategy::OrbitalBranching));
+    let symmetry = alike.then(|| Symmetry::find(&reduced.mip)).flatten();
+    if let Some(symmetry) = &symmetry {
+        let line = format!("symmetries: {}", symmetry.count());
+        control.budget.log_timed(&line);
+    }
     let explore = Explore {
         mip: &scaled,
+        symmetry: symmetry.as_ref(),
         aim,
         units,
         start: begin.start.map(inner),
@@ -213,6 +225,7 @@ struct Explore<'e> {
     start: Option<Vec<f64>>,
     best: Option<(f64, Vec<f64>)>,
     smaller: Option<Smaller<'e>>,
+    symmetry: Option<&'e Symmetry>,
     settings: Option<&'e Settings>,
 }
 
@@ -225,6 +238,7 @@ impl Explore<'_> {
         search.neighbourhood = Some(&near);
         search.settings = self.settings;
         search.smaller = self.smaller;
+        search.symmetry = self.symmetry;
         let known = self.best.as_ref().map(|b| b.0);
         search.best = self.best;
         if let Some(x) = self.start {
