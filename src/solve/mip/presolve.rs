@@ -81,9 +81,12 @@ pub fn reduce(mip: &Mip, fixed: &[Change], cutoff: f64) -> Option<Reduced> {
         (work.problem.lower, work.problem.upper) = (lower, upper);
         changed |= rows(&mut work, &mut idle);
         changed |= dual_fixing(&mut work, &idle, &stays);
-        let more = pairs(&mut work, &mut idle, &stays)?;
-        changed |= !more.is_empty();
-        given.extend(more);
+        // Rows that come later know the program's columns.
+        if work.held.is_empty() {
+            let more = pairs(&mut work, &mut idle, &stays)?;
+            changed |= !more.is_empty();
+            given.extend(more);
+        }
         if !changed {
             break;
         }
