@@ -113,15 +113,7 @@ pub(super) fn search_linear(mip: &Mip, aim: Aim, begin: Begin, control: &mut Con
         let left = presolve::reduce(mip, &[], cutoff - mip.problem.offset);
         left.is_none_or(|left| is_much_smaller(&left.mip, &reduced.mip))
     };
-    let alike = begin.convex.is_none()
-        && begin
-            .settings
-            .is_none_or(|s| s.runs(Strategy::OrbitalBranching));
-    let symmetry = alike.then(|| Symmetry::find(&reduced.mip)).flatten();
-    if let Some(symmetry) = &symmetry {
-        let line = format!("symmetries: {}", symmetry.count());
-        control.budget.log_timed(&line);
-    }
+    let symmetry = symmetry(&reduced.mip, &begin, control);
     let explore = Explore {
         mip: &scaled,
         symmetry: symmetry.as_ref(),
@@ -189,6 +181,18 @@ pub(super) fn search_linear(mip: &Mip, aim: Aim, begin: Begin, control: &mut Con
         return renewed_search(mip, aim, found, begin, control);
     }
     found
+}
+
+/// Permutations that a search may use: of programs that have no more rows than these.
+fn symmetry(mip: &Mip, begin: &Begin, control: &Control) -> Option<Symmetry> {
+    let runs = |s: &Settings| s.runs(Strategy::OrbitalBranching);
+    if begin.convex.is_some() || !begin.settings.is_none_or(runs) {
+        return None;
+    }
+    let symmetry = Symmetry::find(mip)?;
+    let line = format!("symmetries: {}", symmetry.count());
+    control.budget.log_timed(&line);
+    Some(symmetry)
 }
 
 /// The search of what is left below the best solution of a first one, which ended early.

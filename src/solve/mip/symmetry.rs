@@ -26,10 +26,12 @@ const MOST: usize = 500;
 /// A row as a permutation sees it: sides, and entries in order.
 type Shape = ([u64; 2], Vec<(u32, u64)>);
 
+/// What a permutation moves and where to, in order.
+type Moves = Vec<(u32, u32)>;
+
 /// Permutations of the columns of a program.
 pub(super) struct Symmetry {
-    /// Of each, what it moves and where to, in order.
-    moves: Vec<Vec<(u32, u32)>>,
+    moves: Vec<Moves>,
     binary: Vec<bool>,
 }
 
@@ -69,7 +71,7 @@ impl Symmetry {
             let found = moves.binary_search_by_key(&(j as u32), |e| e.0);
             found.ok().map(|k| moves[k].1 as usize)
         };
-        let free = |m: &&Vec<(u32, u32)>| pinned.iter().all(|&j| moved(m, j).is_none());
+        let free = |m: &&Moves| pinned.iter().all(|&j| moved(m, j).is_none());
         let usable: Vec<_> = self.moves.iter().filter(free).collect();
         let mut orbit = vec![column];
         let mut next = 0;
@@ -107,7 +109,7 @@ struct Finder<'a> {
 }
 
 impl Finder<'_> {
-    fn search(&mut self, binary: &[bool]) -> Vec<Vec<(u32, u32)>> {
+    fn search(&mut self, binary: &[bool]) -> Vec<Moves> {
         let p = &self.mip.problem;
         let data = |j: usize| {
             let priority = self.mip.priority.get(j).map_or(0, |v| v.to_bits());
@@ -182,7 +184,7 @@ impl Finder<'_> {
     }
 
     /// A permutation that takes one column to another of its colour.
-    fn exchange(&mut self, colors: &[u64], from: usize, to: usize) -> Option<Vec<(u32, u32)>> {
+    fn exchange(&mut self, colors: &[u64], from: usize, to: usize) -> Option<Moves> {
         let mut sides = [colors.to_vec(), colors.to_vec()];
         let mut pair = (from, to);
         for _ in 0..4 {
@@ -254,7 +256,7 @@ impl Finder<'_> {
 
 /// What goes where, by colours on either side: what has its colour on both stays; and two columns that are to be marked
 /// should that be wrong.
-fn pairing(sides: &[Vec<u64>; 2]) -> (Vec<(u32, u32)>, Option<(usize, usize)>) {
+fn pairing(sides: &[Vec<u64>; 2]) -> (Moves, Option<(usize, usize)>) {
     let differ = |j: &usize| sides[0][*j] != sides[1][*j];
     let order = |side: usize| {
         let mut columns: Vec<usize> = (0..sides[0].len()).filter(differ).collect();
@@ -264,7 +266,7 @@ fn pairing(sides: &[Vec<u64>; 2]) -> (Vec<(u32, u32)>, Option<(usize, usize)>) {
     let pairs: Vec<(usize, usize)> = order(0).into_iter().zip(order(1)).collect();
     let of = |k: usize| sides[0][pairs[k].0];
     let open = (1..pairs.len()).find(|&k| of(k) == of(k - 1));
-    let mut moves: Vec<(u32, u32)> = pairs.iter().map(|&(a, b)| (a as u32, b as u32)).collect();
+    let mut moves: Moves = pairs.iter().map(|&(a, b)| (a as u32, b as u32)).collect();
     moves.sort_unstable();
     (moves, open.map(|k| pairs[k]))
 }

@@ -26,7 +26,9 @@ solve pack using mip minimizing z;
 solve grid using mip minimizing z;
 *= grid.modelstat 1
 *= grid.objval 23.1
-*= sum(k, abs(l.l(k) - back.l(k))) 0
+scalar apart;
+apart = sum(k, abs(l.l(k) - back.l(k)));
+*= apart 0
 solve share using mip minimizing z;
 *= share.modelstat 1
 *= share.objval 146
