@@ -211,6 +211,10 @@ strategies! {
             "no ordered sets or semicontinuous columns: solutions without linear programs, at the root and between plunges",
             "a tenth of the time",
             "Luteberget & Sartor 2023";
+        OrbitalBranching "orbital_branching",
+            "columns that are alike: where a binary one is branched down, so are those that permutations make of it",
+            "10⁷ entries of rows, and each of them 20 times",
+            "Ostrowski, Linderoth, Rossi & Smriglio 2011";
     }
 }
 

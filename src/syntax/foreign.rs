@@ -141,7 +141,7 @@ const IDIOMS: &[Idiom] = &[
 #[rustfmt::skip]
 const TRACES: &[(Language, &[&str])] = &[
     (Language::Python, &[
-        "concretemodel(", "abstractmodel(", "solverfactory(", "nonnegativereals", "pyo.", "np.array", "lambda ", "quicksum(", "addconstr(",
+        "concretemodel(", "abstractmodel(", "solverfactory(", "nonnegativereals", "pyo.", "np.array", "=lambda ", "= lambda ", "(lambda ", "quicksum(", "addconstr(",
         "addvar(", "setobjective(", "lpproblem(", "lpvariable(", "initialize=",
     ]),
     (Language::Julia, &["highs.", "dict(", "optimize!(", "set_objective(", ".optimizer"]),

@@ -6,8 +6,10 @@ use super::model::{Change, Mip, Units};
 use super::outer::{Convex, Outer};
 use super::presolve;
 use super::relaxation::{Control, Relaxation, Solved};
+use super::symmetry::Symmetry;
 use super::tree::{Aim, End, Record, Search, Smaller};
 use crate::solve::Settings;
+use crate::solve::strategy::Strategy;
 
 /// What a search gave, in columns of the instance, for a minimisation.
 pub(crate) struct Found {
@@ -111,8 +113,10 @@ pub(super) fn search_linear(mip: &Mip, aim: Aim, begin: Begin, control: &mut Con
         let left = presolve::reduce(mip, &[], cutoff - mip.problem.offset);
         left.is_none_or(|left| is_much_smaller(&left.mip, &reduced.mip))
     };
+    let symmetry = symmetry(&reduced.mip, &begin, control);
     let explore = Explore {
         mip: &scaled,
+        symmetry: symmetry.as_ref(),
         aim,
         units,
         start: begin.start.map(inner),
@@ -179,6 +183,18 @@ pub(super) fn search_linear(mip: &Mip, aim: Aim, begin: Begin, control: &mut Con
     found
 }
 
+/// Permutations that a search may use: of programs that have no more rows than these.
+fn symmetry(mip: &Mip, begin: &Begin, control: &Control) -> Option<Symmetry> {
+    let runs = |s: &Settings| s.runs(Strategy::OrbitalBranching);
+    if begin.convex.is_some() || !begin.settings.is_none_or(runs) {
+        return None;
+    }
+    let symmetry = Symmetry::find(mip)?;
+    let line = format!("symmetries: {}", symmetry.count());
+    control.budget.log_timed(&line);
+    Some(symmetry)
+}
+
 /// The search of what is left below the best solution of a first one, which ended early.
 fn renewed_search(mip: &Mip, aim: Aim, first: Found, begin: Begin, control: &mut Control) -> Found {
     let mut found = search_linear(mip, aim, begin, control);
@@ -213,6 +229,7 @@ struct Explore<'e> {
     start: Option<Vec<f64>>,
     best: Option<(f64, Vec<f64>)>,
     smaller: Option<Smaller<'e>>,
+    symmetry: Option<&'e Symmetry>,
     settings: Option<&'e Settings>,
 }
 
@@ -225,6 +242,7 @@ impl Explore<'_> {
         search.neighbourhood = Some(&near);
         search.settings = self.settings;
         search.smaller = self.smaller;
+        search.symmetry = self.symmetry;
         let known = self.best.as_ref().map(|b| b.0);
         search.best = self.best;
         if let Some(x) = self.start {

@@ -18,6 +18,7 @@ pub mod nonlinear;
 mod outer;
 pub mod presolve;
 mod relaxation;
+mod symmetry;
 pub mod tree;
 
 pub use tree::{Aim, Record};

@@ -63,11 +63,13 @@ impl Nonlinear {
         }
     }
 
-    /// A point inside of the bounds, a unit from one: at 0, where many models start, products have no slopes.
-    fn inside(&self) -> Vec<f64> {
+    /// A point inside of the bounds, halfway between them or `most` from the lower one, a unit from one alone: at 0, where
+    /// many models start, products have no slopes.
+    fn inside(&self, most: f64) -> Vec<f64> {
         let c = &self.instance.columns;
         let within = |(&l, &u): (&f64, &f64)| match (l.is_finite(), u.is_finite()) {
-            (true, _) => l + (0.5 * (u - l)).min(1.0),
+            (true, true) => l + (0.5 * (u - l)).min(most),
+            (true, false) => l + 1.0,
             (false, true) => u - 1.0,
             (false, false) => 0.0,
         };
@@ -105,7 +107,7 @@ impl Relaxation for Nonlinear {
         let mut solved = Solved::Failed;
         let mut starts = vec![self.point.clone(), Rc::new(self.first.clone())];
         if !self.rooted {
-            starts.push(Rc::new(self.inside()));
+            starts.extend([1.0, f64::INFINITY].map(|most| Rc::new(self.inside(most))));
         }
         for from in starts {
             let Some(answer) = self.answer(&from, control) else {

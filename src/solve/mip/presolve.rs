@@ -1,5 +1,5 @@
 //! A smaller program with the same best solutions: bounds that follow, rows that say nothing, columns that are
-//! decided, coefficients of binaries no larger than they need be.
+//! decided or that an equation makes of another, coefficients of binaries no larger than they need be.
 //!
 //! Values of columns alone lead back: marginals come from a linear program with the discrete columns fixed.
 
@@ -16,6 +16,17 @@ pub struct Reduced {
     pub columns: Vec<u32>,
     /// Values of all columns before; those of `columns` are put in.
     values: Vec<f64>,
+    /// Columns that others give, in the order in which they were found.
+    given: Vec<Given>,
+}
+
+/// A column that is `constant` + `factor` × another.
+#[derive(Clone, Copy)]
+struct Given {
+    column: usize,
+    by: usize,
+    constant: f64,
+    factor: f64,
 }
 
 impl Reduced {
@@ -24,6 +35,9 @@ impl Reduced {
         let mut out = self.values.clone();
         for (&j, &x) in self.columns.iter().zip(x) {
             out[j as usize] = x;
+        }
+        for g in self.given.iter().rev() {
+            out[g.column] = g.constant + g.factor * out[g.by];
         }
         out
     }
@@ -50,12 +64,13 @@ pub fn reduce(mip: &Mip, fixed: &[Change], cutoff: f64) -> Option<Reduced> {
         return None;
     }
     let mut idle = vec![false; work.problem.m()];
+    let mut given = Vec::new();
     for round in 0..6 {
         let mut changed = singletons(&mut work, &mut idle)?;
         let (mut lower, mut upper) = (work.problem.lower.clone(), work.problem.upper.clone());
         let mut propagator = Propagator::new(&work);
         propagator.continuous = round < 2;
-        propagator.cutoff = cutoff;
+        propagator.cutoff = cutoff - (work.problem.offset - mip.problem.offset);
         if !propagator.run(&work, None, &mut lower, &mut upper) {
             return None;
         }
@@ -66,11 +81,20 @@ pub fn reduce(mip: &Mip, fixed: &[Change], cutoff: f64) -> Option<Reduced> {
         (work.problem.lower, work.problem.upper) = (lower, upper);
         changed |= rows(&mut work, &mut idle);
         changed |= dual_fixing(&mut work, &idle, &stays);
+        // Rows that come later know the program's columns.
+        if work.held.is_empty() {
+            let more = pairs(&mut work, &mut idle, &stays)?;
+            changed |= !more.is_empty();
+            given.extend(more);
+        }
         if !changed {
             break;
         }
     }
-    Some(assemble(&work, &idle, &stays))
+    Some(Reduced {
+        given,
+        ..assemble(&work, &idle, &stays)
+    })
 }
 
 /// Whether a row asks for a number that no sum of integers times its coefficients is.
@@ -132,6 +156,104 @@ fn singletons(mip: &mut Mip, idle: &mut [bool]) -> Option<bool> {
         changed = true;
     }
     Some(changed)
+}
+
+/// Equations of two columns: one of them is put in for the other. None: their bounds contradict each other.
+fn pairs(mip: &mut Mip, idle: &mut [bool], stays: &[bool]) -> Option<Vec<Given>> {
+    let mut given: Vec<Given> = Vec::new();
+    let mut taken = vec![false; mip.problem.n()];
+    for (i, idle) in idle.iter_mut().enumerate() {
+        let p = &mut mip.problem;
+        if *idle || p.row_lower[i] != p.row_upper[i] {
+            continue;
+        }
+        let open = |&(j, a): &(usize, f64)| a != 0.0 && p.lower[j] < p.upper[j];
+        let mut entries = p.rows.line(i).filter(open);
+        let (Some(a), Some(b), None) = (entries.next(), entries.next(), entries.next()) else {
+            continue;
+        };
+        let decided = p.rows.line(i).filter(|e| e.0 != a.0 && e.0 != b.0);
+        let side = p.row_lower[i] - decided.map(|(j, v)| v * p.lower[j]).sum::<f64>();
+        // An integer column is given by an integer one, and at the same step.
+        let (gone, by) = if mip.integer[b.0] && !mip.integer[a.0] {
+            (a, b)
+        } else {
+            (b, a)
+        };
+        let (constant, factor) = (side / gone.1, -by.1 / gone.1);
+        let whole = factor.abs() == 1.0 && constant == constant.round();
+        let free = |j: usize| !taken[j] && !stays[j] && mip.threshold[j] == 0.0;
+        if !free(gone.0)
+            || !free(by.0)
+            || !(1e-3..=1e3).contains(&factor.abs())
+            || mip.integer[gone.0] && !(mip.integer[by.0] && whole)
+        {
+            continue;
+        }
+        let ends = [p.lower[gone.0], p.upper[gone.0]].map(|v| (v - constant) / factor);
+        let (mut l, mut u) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+        if mip.integer[by.0] {
+            (l, u) = ((l - FEASIBLE).ceil(), (u + FEASIBLE).floor());
+        }
+        let (l, u) = (l.max(p.lower[by.0]), u.min(p.upper[by.0]));
+        if l > u + FEASIBLE * l.abs().max(1.0) {
+            return None;
+        }
+        (p.lower[by.0], p.upper[by.0]) = if l > u { (u, u) } else { (l, u) };
+        if let Some(&first) = mip.priority.get(gone.0) {
+            mip.priority[by.0] = mip.priority[by.0].min(first);
+        }
+        (taken[gone.0], taken[by.0], *idle) = (true, true, true);
+        given.push(Given {
+            column: gone.0,
+            by: by.0,
+            constant,
+            factor,
+        });
+    }
+    put_in(&mut mip.problem, &given);
+    Some(given)
+}
+
+/// Columns in terms of those that give them, in rows and costs.
+fn put_in(p: &mut Problem, given: &[Given]) {
+    if given.is_empty() {
+        return;
+    }
+    let mut of = vec![None; p.n()];
+    for g in given {
+        of[g.column] = Some(g);
+        p.offset += g.constant * p.cost[g.column];
+        p.cost[g.by] += g.factor * p.cost[g.column];
+        p.cost[g.column] = 0.0;
+        (p.lower[g.column], p.upper[g.column]) = (0.0, 0.0);
+    }
+    let old = std::mem::replace(&mut p.rows, Sparse::new());
+    for i in 0..old.lines() {
+        let mut entries: Vec<(usize, f64)> = Vec::new();
+        for (j, a) in old.line(i) {
+            let Some(g) = of[j] else {
+                entries.push((j, a));
+                continue;
+            };
+            entries.push((g.by, a * g.factor));
+            p.row_lower[i] -= a * g.constant;
+            p.row_upper[i] -= a * g.constant;
+        }
+        entries.sort_by_key(|e| e.0);
+        entries.dedup_by(|next, first| {
+            let sum = next.1 + first.1;
+            let is_same = next.0 == first.0;
+            if is_same {
+                let nothing = sum.abs() <= 1e-12 * first.1.abs();
+                first.1 = if nothing { 0.0 } else { sum };
+            }
+            is_same
+        });
+        entries.retain(|e| e.1 != 0.0);
+        p.rows.push(entries);
+    }
+    p.columns = p.rows.transpose(p.cost.len());
 }
 
 /// Drops sides that bounds imply, and tightens coefficients of binaries.
@@ -314,5 +436,6 @@ fn assemble(work: &Mip, idle: &[bool], stays: &[bool]) -> Reduced {
         mip,
         columns,
         values,
+        given: Vec::new(),
     }
 }

@@ -14,6 +14,7 @@ use super::driver::Found;
 use super::model::{Change, INTEGRAL, Mip, Units};
 use super::propagate::Propagator;
 use super::relaxation::{Control, Relaxation, Solved};
+use super::symmetry::Symmetry;
 use crate::solve::lp::Ended;
 use crate::solve::{Progress, Settings};
 use std::collections::BinaryHeap;
@@ -104,6 +105,8 @@ const RECORDS: usize = 100_000;
 /// Bounds on the way to a node.
 struct Path {
     changes: Vec<Change>,
+    /// Columns that symmetries are to leave where they are from here on.
+    pinned: Vec<usize>,
     parent: Option<Rc<Path>>,
 }
 
@@ -187,6 +190,8 @@ pub struct Search<'a, R: Relaxation> {
     pub incomplete: bool,
     /// Solves the rest where some columns are fixed; None inside such a search.
     pub neighbourhood: Option<Neighbourhood<'a>>,
+    /// Permutations that leave the program as it is.
+    pub(super) symmetry: Option<&'a Symmetry>,
     /// Asked when a young search has found a better solution; None: it does not begin anew.
     pub smaller: Option<Smaller<'a>>,
     /// A better solution was found since.
@@ -278,6 +283,7 @@ impl<'a, R: Relaxation> Search<'a, R> {
             records: Vec::new(),
             incomplete: false,
             neighbourhood: None,
+            symmetry: None,
             smaller: None,
             improved: false,
             settings: None,
@@ -635,11 +641,16 @@ impl<'a, R: Relaxation> Search<'a, R> {
             match branch {
                 // One side is empty: the node goes on without it.
                 Some(Branch::Fixed(changes)) => {
+                    let changes = self.with_orbit(&changes, &node.path);
                     if !self.apply(&changes) {
                         return Evaluated::Leaf("infeasible");
                     }
-                    let parent = node.path.take();
-                    node.path = Some(Rc::new(Path { changes, parent }));
+                    let (pinned, parent) = (Vec::new(), node.path.take());
+                    node.path = Some(Rc::new(Path {
+                        changes,
+                        pinned,
+                        parent,
+                    }));
                     resolves += 1;
                     // Without finite bounds this may go on for ever: the others have their turn.
                     if resolves > self.longest {
@@ -728,6 +739,7 @@ impl<'a, R: Relaxation> Search<'a, R> {
         else {
             return None;
         };
+        let sides = sides.map(|side| self.with_orbit(&side, &node.path));
         let start = self.relaxation.start();
         let before = (self.lower.clone(), self.upper.clone());
         let child = |s: &mut Self, side: usize| {
@@ -737,6 +749,7 @@ impl<'a, R: Relaxation> Search<'a, R> {
                 depth: node.depth + 1,
                 number: s.note(Some(node.number), changes.first().copied(), node.bound),
                 path: Some(Rc::new(Path {
+                    pinned: s.pinned_by(&changes),
                     changes,
                     parent: node.path.clone(),
                 })),
@@ -757,6 +770,38 @@ impl<'a, R: Relaxation> Search<'a, R> {
         }
         self.fate(other.number, "infeasible");
         None
+    }
+
+    /// The bounds of one side of a branch; where they make a binary column 0, its orbit is 0 as well: of solutions that
+    /// permutations make of each other the other side has one.
+    fn with_orbit(&self, changes: &[Change], path: &Option<Rc<Path>>) -> Vec<Change> {
+        let (Some(symmetry), &[c]) = (self.symmetry, changes) else {
+            return changes.to_vec();
+        };
+        if !symmetry.is_binary(c.column) || c.upper != 0.0 {
+            return changes.to_vec();
+        }
+        let mut pinned = Vec::new();
+        let mut next = path.as_ref();
+        while let Some(p) = next {
+            pinned.extend(&p.pinned);
+            next = p.parent.as_ref();
+        }
+        let zero = |column| Change { column, ..c };
+        let orbit = symmetry.orbit(c.column, &pinned).into_iter();
+        orbit.map(zero).collect()
+    }
+
+    /// Columns that symmetries must not move below such a side of a branch: all but a binary one that is 0.
+    fn pinned_by(&self, changes: &[Change]) -> Vec<usize> {
+        let Some(symmetry) = self.symmetry else {
+            return Vec::new();
+        };
+        let is_zero = |c: &Change| symmetry.is_binary(c.column) && c.upper == 0.0;
+        match changes.iter().all(is_zero) {
+            true => Vec::new(),
+            false => changes.iter().map(|c| c.column).collect(),
+        }
     }
 
     /// Integer columns whose reduced costs keep them from going far. What that does to the node.
