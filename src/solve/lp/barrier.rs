@@ -25,9 +25,8 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::ldlt::factor::LdltRegularization;
 use faer::perm::PermRef;
 use faer::sparse::linalg::amd;
-use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LdltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
+    CholeskySymbolicParams, LdltRef, SymbolicCholesky, SymmetricOrdering,
     factorize_symbolic_cholesky,
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
@@ -36,17 +35,17 @@ use faer::{Conj, MatMut, Par, Side};
 /// ρ and δ where primal and dual variables are alike.
 const REGULAR: f64 = 1e-9;
 
+/// Else they are this divided by, and times, the power of the variables' ratio, 10⁴ at most. (At a power of 0 the points on walls are right to
+/// 8 digits, at 1 to 10, at 1.5 to 11. With a ratio below 1, which makes ρ larger, D2Q06C of Netlib keeps dual residuals of 3e-7.)
+const STEEPER: f64 = 1.5;
+const STEEPEST: f64 = 1e4;
+
 /// What is left of a right-hand side, against its largest entry, when a solution is refined no more: as many iterations as with 1e-12, and half the
 /// solves.
 const SOLVED: f64 = 1e-8;
 
-/// How often they are taken 100 times as large where a factor breaks down.
+/// How often ρ and δ are taken 100 times as large where a factor breaks down.
 const STABLER: usize = 3;
-
-/// Else they are this divided by, and times, the power of the variables' ratio, 10⁴ at most. (At a power of 0 the points on walls are right to
-/// 8 digits, at 1 to 10, at 1.5 to 11.)
-const STEEPER: f64 = 1.5;
-const STEEPEST: f64 = 1e4;
 
 /// Iterations at most, and those that may pass until residuals and gap are halved: of a point that is good, and of others.
 const MOST: u64 = 200;
@@ -293,14 +292,6 @@ impl System {
     }
 
     fn back(&mut self, b: &mut [f64]) {
-        let (symbolic, perm) = (self.symbolic.raw(), self.symbolic.perm());
-        if let (SymbolicCholeskyRaw::Supernodal(symbolic), Some(perm)) = (symbolic, perm) {
-            let order = perm.arrays().0;
-            let mut x: Vec<f64> = order.iter().map(|&i| b[i]).collect();
-            solve_supernodal(symbolic, &self.factor, &mut x);
-            order.iter().zip(&x).for_each(|(&i, x)| b[i] = *x);
-            return;
-        }
         let order = b.len();
         LdltRef::new(&self.symbolic, &self.factor).solve_in_place_with_conj(
             Conj::No,
@@ -376,54 +367,8 @@ fn largest(v: &[f64]) -> f64 {
     v.iter().fold(0.0, |t: f64, v| t.max(v.abs()))
 }
 
-/// In four sums, which the processor can do at once.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let (mut sums, (fours, others)) = ([0.0; 4], (a.chunks_exact(4), b.chunks_exact(4)));
-    let rest = fours.remainder().iter().zip(others.remainder());
-    let rest: f64 = rest.map(|(a, b)| a * b).sum();
-    for (a, b) in fours.zip(others) {
-        (0..4).for_each(|k| sums[k] += a[k] * b[k]);
-    }
-    sums.iter().sum::<f64>() + rest
-}
-
-/// Solves L D Lᵀ x = b in place, one column of L after the other. (For each supernode, most of which are one or two columns, faer's solve
-/// calls a general product of matrices.)
-fn solve_supernodal(symbolic: &SymbolicSupernodalCholesky<usize>, factor: &[f64], x: &mut [f64]) {
-    let count = symbolic.n_supernodes();
-    let (ends, places) = (symbolic.supernode_end(), symbolic.col_ptr_for_val());
-    let node = |s: usize| {
-        let node = symbolic.supernode(s);
-        let columns = node.start()..ends[s];
-        let height = columns.len() + node.pattern().len();
-        let factor = &factor[places[s]..places[s + 1]];
-        (columns, node.pattern(), factor.chunks(height))
-    };
-    let mut below = Vec::new();
-    for s in 0..count {
-        let (columns, rows, lines) = node(s);
-        below.clear();
-        below.resize(rows.len(), 0.0);
-        for (j, line) in columns.clone().zip(lines) {
-            let (inside, outside) = line.split_at(columns.len());
-            let v = x[j];
-            let of = |x: &mut [f64], l: &[f64]| x.iter_mut().zip(l).for_each(|(x, l)| *x -= l * v);
-            of(&mut x[j + 1..columns.end], &inside[j + 1 - columns.start..]);
-            of(&mut below, outside);
-        }
-        rows.iter().zip(&below).for_each(|(&i, b)| x[i] += b);
-    }
-    for s in (0..count).rev() {
-        let (columns, rows, lines) = node(s);
-        below.clear();
-        below.extend(rows.iter().map(|&i| x[i]));
-        for (j, line) in columns.clone().zip(lines).rev() {
-            let (inside, outside) = line.split_at(columns.len());
-            let inside = &inside[j - columns.start..];
-            let others = dot(&x[j + 1..columns.end], &inside[1..]) + dot(&below, outside);
-            x[j] = x[j] / inside[0] - others;
-        }
-    }
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// How much of a step keeps all positive, 1 at most.

@@ -510,9 +510,6 @@ const WORK: f64 = 12.0;
 const FINE: f64 = 1e-11;
 const USEFUL: f64 = 1e-7;
 
-/// The same on its face: a point there is corrected by the first one, and by the simplex method.
-const OF_FACE: f64 = 1e-6;
-
 /// Products of entries in the Newton system of an interior point: every entry of A meets those of its row, or of its column if these are fewer.
 fn products(p: &Problem) -> f64 {
     let lines = (0..p.m()).map(|i| p.rows.line(i));
@@ -588,7 +585,7 @@ fn finished_from(
             let wide = crossover::is_wide(p, &answer.point) && strategies.run(Strategy::FaceVertex);
             let of_face = wide.then(|| {
                 let face = crossover::face(p, &answer.point);
-                interior_point(&face, [FINE, OF_FACE], budget)
+                interior_point(&face, [FINE, USEFUL], budget)
             });
             let of_face = of_face.filter(|f| f.ended == Ended::Solved);
             if let Some(f) = &of_face {
