@@ -88,6 +88,9 @@ impl Simplex {
         // Slots that are passed over until the factor is fresh again, or until the next pivot.
         let mut refused = vec![false; self.m];
         let mut bad_rows = 0;
+        let mut violations = vec![0.0; self.m];
+        // Everything is looked at anew.
+        let mut renewed = None;
         loop {
             if self.iterations.is_multiple_of(32)
                 && let Some(why) = stop(self.iterations)
@@ -105,7 +108,16 @@ impl Simplex {
             }
             let fresh = self.is_fresh();
             let mut renew = false;
-            match self.leaving(&refused) {
+            if renewed.replace(self.renewals) == Some(self.renewals) {
+                for &k in &self.touched {
+                    violations[k as usize] = self.squared_violation(k as usize);
+                }
+            } else {
+                (0..self.m).for_each(|k| violations[k] = self.squared_violation(k));
+                (0..self.n + self.m).for_each(|j| self.side[j] = self.side_of(j));
+            }
+            self.touched.clear();
+            match self.leaving(&violations, &refused) {
                 None if fresh || self.is_trusted() && !refused.contains(&true) => {
                     return Stop::Done;
                 }
@@ -214,33 +226,50 @@ impl Simplex {
         }
     }
 
+    fn side_of(&self, j: usize) -> i8 {
+        let (l, u) = (self.work_lower[j], self.work_upper[j]);
+        match (l == u, l.is_infinite() && u.is_infinite()) {
+            (true, _) => 0,
+            (_, true) => 2,
+            _ if self.is_low(j) => 1,
+            _ => -1,
+        }
+    }
+
+    /// By how much the variable in a slot violates a bound, squared.
+    fn squared_violation(&self, slot: usize) -> f64 {
+        let j = self.head[slot] as usize;
+        let violation = (self.x[j] - self.work_upper[j]).max(self.work_lower[j] - self.x[j]);
+        match violation > self.tolerance {
+            true => violation * violation,
+            false => 0.0,
+        }
+    }
+
     /// The slot that leaves: largest violation relative to the steepest-edge weight; and whether it
     /// is above its upper bound.
-    fn leaving(&self, refused: &[bool]) -> Option<(usize, bool)> {
+    fn leaving(&self, violations: &[f64], refused: &[bool]) -> Option<(usize, bool)> {
         let mut best = (0.0, None);
-        for (k, &j) in self.head.iter().enumerate() {
-            let j = j as usize;
-            let x = self.x[j];
-            let above = x - self.work_upper[j];
-            let violation = above.max(self.work_lower[j] - x);
-            if violation > self.tolerance && !refused[k] {
-                let score = violation * violation / self.edge[k];
-                if score > best.0 {
-                    best = (score, Some((k, above > 0.0)));
-                }
+        for (k, (&v, &edge)) in violations.iter().zip(&self.edge).enumerate() {
+            if v > best.0 * edge && !refused[k] {
+                best = (v / edge, Some(k));
             }
         }
-        best.1
+        let slot = best.1?;
+        let j = self.head[slot] as usize;
+        Some((slot, self.x[j] > self.work_upper[j]))
     }
 
     fn dual_step(&mut self, slot: usize, above: bool) -> Step {
         let leaving = self.head[slot] as usize;
+        let [mut rho, mut column, mut tau] = std::mem::take(&mut self.solutions);
         let Some(factor) = self.factor.as_mut() else {
             return Step::Broken;
         };
-        let Some(rho) = factor.backward(&[(slot, 1.0)]).cloned() else {
+        if factor.backward(&[(slot, 1.0)]).is_none() {
             return Step::Broken;
-        };
+        }
+        factor.hand_over(&mut rho);
         self.pivot_row(&rho);
         let sign = if above { 1.0 } else { -1.0 };
         let bound = if above {
@@ -258,9 +287,7 @@ impl Simplex {
         };
         let pivot = self.row[entering];
         let fresh = self.is_fresh();
-        let entries = self.row_index.iter();
-        let top = entries.fold(0.0f64, |t, &j| t.max(self.row[j as usize].abs()));
-        let top = top.min(1.0);
+        let top = self.row_top.min(1.0);
         if pivot.abs() < SAFE_PIVOT * top && !fresh {
             return Step::Unsafe;
         }
@@ -271,18 +298,20 @@ impl Simplex {
         let Some(factor) = self.factor.as_mut() else {
             return Step::Broken;
         };
-        let Some(column) = factor.forward(&a_q).cloned() else {
+        if factor.forward(&a_q).is_none() {
             return Step::Broken;
-        };
+        }
+        factor.hand_over(&mut column);
         let alpha = column.iter().find(|e| e.0 == slot).map_or(0.0, |e| e.1);
         if (alpha - pivot).abs() > 1e-7 * (top + alpha.abs()) * if fresh { 100.0 } else { 1.0 } {
             return Step::Unsafe;
         }
         // Steepest edge: τ = B⁻¹ρ.
         let weight: f64 = rho.iter().map(|e| e.1 * e.1).sum();
-        let Some(tau) = factor.forward(&rho).cloned() else {
+        if factor.forward(&rho).is_none() {
             return Step::Broken;
-        };
+        }
+        factor.hand_over(&mut tau);
         // Flips change the basic values before the step is measured.
         if !flips.is_empty() {
             self.flip(&flips);
@@ -294,11 +323,14 @@ impl Simplex {
         for &(k, a) in &column {
             let j = self.head[k] as usize;
             self.x[j] -= step * a;
+            self.touched.push(k as u32);
         }
         self.x[entering] += step;
         self.x[leaving] = bound;
+        self.side[leaving] = self.side_of(leaving);
         self.update_weights(slot, alpha, weight, &column, &tau);
         self.add_work(self.m, rho.len() + column.len() + tau.len());
+        self.solutions = [rho, column, tau];
         self.iterations += 1;
         let worn = self.exchange(slot, entering);
         if worn.is_none() {
@@ -321,9 +353,11 @@ impl Simplex {
         if theta != 0.0 {
             for k in 0..self.row_index.len() {
                 let j = self.row_index[k] as usize;
+                let before = self.d[j];
                 self.d[j] -= theta * self.row[j];
-                let wrong = self.dual_violation(j);
-                if wrong > 0.0 && j != entering {
+                // All signs were right before.
+                let turned = before * self.d[j] <= 0.0;
+                if turned && j != entering && self.dual_violation(j) > 0.0 {
                     self.work_cost[j] -= self.d[j];
                     self.d[j] = 0.0;
                 }
@@ -360,53 +394,46 @@ impl Simplex {
     /// The entering variable and the variables that change bounds. None: no variable can enter.
     fn entering(&self, sign: f64, violation: f64) -> Option<(usize, Vec<u32>)> {
         // What is noise depends on the row: entries of one that is small throughout count.
-        let top = self
-            .row_index
-            .iter()
-            .fold(0.0f64, |t, &j| t.max(self.row[j as usize].abs()));
+        let top = self.row_top;
         let noise = PIVOT * top.min(1.0);
         // Candidates with their pivots, oriented so that a ratio is d/α ≥ 0.
         let mut candidates: Vec<(u32, f64, f64)> = Vec::new();
+        let (row, d, side) = (&self.row[..], &self.d[..], &self.side[..]);
         for &j in &self.row_index {
             let k = j as usize;
-            let (l, u) = (self.work_lower[k], self.work_upper[k]);
-            let alpha = sign * self.row[k];
-            if l == u || alpha.abs() <= noise {
-                continue;
-            }
-            let free = l.is_infinite() && u.is_infinite();
-            let at_lower = self.is_low(k);
-            let may = free || (alpha > 0.0) == at_lower;
-            if may {
-                candidates.push((j, alpha.abs(), if free { 0.0 } else { self.d[k].abs() }));
+            let (alpha, side) = (sign * row[k], side[k]);
+            let free = side == 2;
+            let may = free || side != 0 && (alpha > 0.0) == (side > 0);
+            if may && alpha.abs() > noise {
+                candidates.push((j, alpha.abs(), if free { 0.0 } else { d[k].abs() }));
             }
         }
-        // In the order of their ratios, each group by the ratios with slack: what is left has larger ones.
-        let mut queue: BinaryHeap<Reverse<Ratio>> = (candidates.iter().enumerate())
-            .map(|(k, c)| Reverse(Ratio(c.2 / c.1, k)))
-            .collect();
+        // In the order of their ratios, each group by the ratios with slack: what is left has larger ones. Mostly the first is all.
+        let slack = 0.5 * self.dual_tolerance;
+        let limits = candidates.iter().map(|c| (c.2 + slack) / c.1);
+        let first = limits.fold(f64::INFINITY, f64::min);
+        let (mut group, mut queue) = (Vec::new(), BinaryHeap::new());
+        let mut later = Vec::new();
+        for (k, c) in candidates.iter().enumerate() {
+            match c.2 / c.1 <= first {
+                true => group.push(k),
+                false => later.push(k),
+            }
+        }
         let mut slope = violation;
         let mut flips: Vec<u32> = Vec::new();
         let mut reserve: Option<(usize, usize)> = None;
-        let slack = 0.5 * self.dual_tolerance;
-        while !queue.is_empty() {
+        while !group.is_empty() {
             let before = flips.len();
-            let (mut limit, mut drop) = (f64::INFINITY, 0.0);
+            let mut drop = 0.0;
             let mut best = (0.0, usize::MAX);
-            while let Some(&Reverse(Ratio(ratio, k))) = queue.peek()
-                && ratio <= limit
-            {
-                queue.pop();
-                let (j, alpha, d) = candidates[k];
-                limit = limit.min((d + slack) / alpha);
+            for k in group.drain(..) {
+                let (j, alpha, _) = candidates[k];
                 drop += alpha * (self.work_upper[j as usize] - self.work_lower[j as usize]);
                 if alpha > best.0 || (alpha == best.0 && k < best.1) {
                     best = (alpha, k);
                 }
                 flips.push(j);
-            }
-            if flips.len() == before {
-                break; // what is left is not a number
             }
             let entering = candidates[best.1].0 as usize;
             let enough = best.0 >= SAFE_PIVOT * top.min(1.0);
@@ -422,6 +449,18 @@ impl Simplex {
                 reserve = Some((entering, before));
             }
             slope -= drop;
+            if !later.is_empty() {
+                let ratio = |k: usize| Reverse(Ratio(candidates[k].2 / candidates[k].1, k));
+                queue = later.drain(..).map(ratio).collect();
+            }
+            let mut limit = f64::INFINITY;
+            while let Some(&Reverse(Ratio(ratio, k))) = queue.peek()
+                && ratio <= limit
+            {
+                queue.pop();
+                limit = limit.min((candidates[k].2 + slack) / candidates[k].1);
+                group.push(k);
+            }
         }
         // Every candidate was passed, or only bad pivots were left: the last good one enters.
         let (entering, flipped) = reserve?;
@@ -442,6 +481,7 @@ impl Simplex {
             let to = if self.x[j] - l <= u - self.x[j] { u } else { l };
             let by = to - self.x[j];
             self.x[j] = to;
+            self.side[j] = -self.side[j];
             (self.column(j).iter()).for_each(|&(i, a)| change[i] += a * by);
         }
         let change = change.into_iter().enumerate();
@@ -452,6 +492,7 @@ impl Simplex {
             .and_then(|f| f.forward(&change).cloned())
         {
             for (k, v) in moved {
+                self.touched.push(k as u32);
                 self.x[self.head[k] as usize] -= v;
             }
         }

@@ -143,6 +143,11 @@ impl Factor {
         Some(&self.solution)
     }
 
+    /// Hands over what the last sparse solve gave, for room to put the next one in.
+    pub(crate) fn hand_over(&mut self, to: &mut Entries) {
+        std::mem::swap(&mut self.solution, to);
+    }
+
     /// Solves B x = a in place for a dense right-hand side.
     pub(crate) fn forward_dense(&mut self, a: &mut [f64]) -> Option<()> {
         self.lu.borrow_mut().ftran(a).ok()?;

@@ -102,7 +102,16 @@ pub struct Simplex {
     /// Pivot row, kept zero between uses.
     row: Vec<f64>,
     row_index: Vec<u32>,
-    row_mark: Vec<bool>,
+    /// Its largest entry.
+    row_top: f64,
+    /// Where the nonbasic variables are for the dual method: 1 at the lower bound, −1 at the upper one, 2 free, 0 fixed.
+    side: Vec<i8>,
+    /// Slots whose values a pivot of the dual method has changed.
+    touched: Vec<u32>,
+    /// How often the basis was factorised.
+    renewals: u64,
+    /// Room for the solutions of a dual pivot.
+    solutions: [Entries; 3],
     /// Largest violation of a bound that counts as none.
     pub tolerance: f64,
     /// Largest violation of a reduced cost's sign that counts as none.
@@ -160,7 +169,11 @@ impl Simplex {
             devex: vec![1.0; total],
             row: vec![0.0; total],
             row_index: Vec::new(),
-            row_mark: vec![false; total],
+            row_top: 0.0,
+            side: vec![0; total],
+            touched: Vec::new(),
+            renewals: 0,
+            solutions: Default::default(),
             tolerance: 1e-9,
             dual_tolerance: 1e-9,
             iterations: 0,
@@ -274,6 +287,7 @@ impl Simplex {
     /// Factorises the basis, replacing dependent columns by logicals, and computes values and
     /// reduced costs afresh. None: numbers broke down.
     fn refactor(&mut self) -> Option<()> {
+        self.renewals += 1;
         for _ in 0..20 {
             let columns: Vec<Entries> =
                 self.head.iter().map(|&j| self.column(j as usize)).collect();
@@ -697,24 +711,53 @@ impl Simplex {
     fn pivot_row(&mut self, rho: &[(usize, f64)]) {
         for &j in &self.row_index {
             self.row[j as usize] = 0.0;
-            self.row_mark[j as usize] = false;
         }
         self.row_index.clear();
+        let lengths = rho.iter().map(|e| self.rows.line(e.0).len());
+        let length: usize = lengths.sum();
+        self.work += length as f64;
+        match length > self.n {
+            true => self.full_pivot_row(rho),
+            false => self.sparse_pivot_row(rho),
+        }
+        let entries = self.row_index.iter().map(|&j| self.row[j as usize].abs());
+        self.row_top = entries.fold(0.0, f64::max);
+    }
+
+    fn sparse_pivot_row(&mut self, rho: &[(usize, f64)]) {
+        let (row, slot) = (&mut self.row[..], &self.slot[..]);
         for &(i, r) in rho {
-            self.work += self.rows.line(i).len() as f64;
             for (j, a) in self.rows.line(i) {
-                if self.slot[j] == NONBASIC {
-                    if !self.row_mark[j] {
-                        self.row_mark[j] = true;
+                if slot[j] == NONBASIC {
+                    let before = row[j];
+                    if before == 0.0 {
                         self.row_index.push(j as u32);
                     }
-                    self.row[j] += r * a;
+                    // What cancels stays marked as listed.
+                    let v = before + r * a;
+                    row[j] = if v == 0.0 { f64::MIN_POSITIVE } else { v };
                 }
             }
             let logical = self.n + i;
-            if self.slot[logical] == NONBASIC {
+            if slot[logical] == NONBASIC {
                 self.row_index.push(logical as u32);
-                self.row[logical] = -r;
+                row[logical] = -r;
+            }
+        }
+    }
+
+    /// The same where most entries of the row are met several times.
+    fn full_pivot_row(&mut self, rho: &[(usize, f64)]) {
+        let row = &mut self.row[..];
+        for &(i, r) in rho {
+            self.rows.line(i).for_each(|(j, a)| row[j] += r * a);
+            row[self.n + i] = -r;
+        }
+        for (j, (v, &slot)) in row.iter_mut().zip(&self.slot).enumerate() {
+            if slot != NONBASIC {
+                *v = 0.0;
+            } else if *v != 0.0 {
+                self.row_index.push(j as u32);
             }
         }
     }
