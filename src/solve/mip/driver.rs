@@ -108,15 +108,18 @@ pub(super) fn search_linear(mip: &Mip, aim: Aim, begin: Begin, control: &mut Con
         x.iter().zip(&scaling.column).map(|(x, c)| x / c).collect()
     };
     let is_first = begin.best.is_none();
-    let renews = begin.renewals < RENEWALS && begin.convex.is_none() && !aim.record;
+    let renews = begin.renewals < RENEWALS && begin.convex.is_none();
     let smaller = |cutoff: f64| {
         let left = presolve::reduce(mip, &[], cutoff - mip.problem.offset);
         left.is_none_or(|left| is_much_smaller(&left.mip, &reduced.mip))
     };
     let symmetry = symmetry(&reduced.mip, &begin, control);
+    // A search that ends soon without them had luck that they could spoil.
+    let waits = symmetry.is_some() && renews && begin.renewals == 0;
     let explore = Explore {
         mip: &scaled,
-        symmetry: symmetry.as_ref(),
+        symmetry: symmetry.as_ref().filter(|_| !waits),
+        waits,
         aim,
         units,
         start: begin.start.map(inner),
@@ -195,7 +198,7 @@ fn symmetry(mip: &Mip, begin: &Begin, control: &Control) -> Option<Symmetry> {
     Some(symmetry)
 }
 
-/// The search of what is left below the best solution of a first one, which ended early.
+/// The search of what is left below the best solution of a first one, which ended early; the tree is the last one's.
 fn renewed_search(mip: &Mip, aim: Aim, first: Found, begin: Begin, control: &mut Control) -> Found {
     let mut found = search_linear(mip, aim, begin, control);
     found.nodes += first.nodes;
@@ -230,6 +233,7 @@ struct Explore<'e> {
     best: Option<(f64, Vec<f64>)>,
     smaller: Option<Smaller<'e>>,
     symmetry: Option<&'e Symmetry>,
+    waits: bool,
     settings: Option<&'e Settings>,
 }
 
@@ -243,6 +247,7 @@ impl Explore<'_> {
         search.settings = self.settings;
         search.smaller = self.smaller;
         search.symmetry = self.symmetry;
+        search.ends_young = self.waits;
         let known = self.best.as_ref().map(|b| b.0);
         search.best = self.best;
         if let Some(x) = self.start {

@@ -73,7 +73,7 @@ pub enum End {
     Gap,
     /// `nodLim`.
     Nodes,
-    /// The program that is left is so much smaller that the search begins anew.
+    /// The search begins anew: the program that is left is much smaller, or symmetries are to be used from now on.
     Smaller,
     /// Another limit, or the user.
     Stopped(Ended),
@@ -192,6 +192,8 @@ pub struct Search<'a, R: Relaxation> {
     pub neighbourhood: Option<Neighbourhood<'a>>,
     /// Permutations that leave the program as it is.
     pub(super) symmetry: Option<&'a Symmetry>,
+    /// Whether it begins anew, with symmetries, when it is no longer young.
+    pub(super) ends_young: bool,
     /// Asked when a young search has found a better solution; None: it does not begin anew.
     pub smaller: Option<Smaller<'a>>,
     /// A better solution was found since.
@@ -284,6 +286,7 @@ impl<'a, R: Relaxation> Search<'a, R> {
             incomplete: false,
             neighbourhood: None,
             symmetry: None,
+            ends_young: false,
             smaller: None,
             improved: false,
             settings: None,
@@ -539,6 +542,9 @@ impl<'a, R: Relaxation> Search<'a, R> {
                     .smaller
                     .is_some_and(|smaller| smaller(self.units.shown(self.cutoff())))
             {
+                return self.put_back(node, End::Smaller);
+            }
+            if self.ends_young && self.nodes >= YOUNG {
                 return self.put_back(node, End::Smaller);
             }
             self.fate(node.number, "branched");
