@@ -414,20 +414,25 @@ impl Machine<'_> {
             ..domain.clone()
         };
         let tuples = self.tuples(&outer, &[], frame);
-        let mut value = right.value.clone();
-        let mut conditions = domain.conditions.clone();
-        for n in conditions.iter_mut().chain([&mut value]) {
-            n.change(&mut |n| match &n.kind {
-                NodeKind::Data(t, key) if own.contains(t) && key.is_fixed() => {
-                    n.kind = NodeKind::Const(self.eval(n, frame));
-                }
-                _ => {}
-            });
-        }
-        let right = Right {
-            value: &value,
-            ..right
+        let fixed = |n: &Node| matches!(&n.kind, NodeKind::Data(t, key) if own.contains(t) && key.is_fixed());
+        let mut nodes = domain.conditions.iter().chain([right.value]);
+        let copies = nodes.any(|n| n.any(fixed)).then(|| {
+            let mut value = right.value.clone();
+            let mut conditions = domain.conditions.clone();
+            for n in conditions.iter_mut().chain([&mut value]) {
+                n.change(&mut |n| {
+                    if fixed(n) {
+                        n.kind = NodeKind::Const(self.eval(n, frame));
+                    }
+                });
+            }
+            (value, conditions)
+        });
+        let (value, conditions) = match &copies {
+            Some((value, conditions)) => (value, conditions),
+            None => (right.value, &domain.conditions),
         };
+        let right = Right { value, ..right };
         let mut late = Records {
             keys: Vec::new(),
             values: Vec::new(),
@@ -439,7 +444,7 @@ impl Machine<'_> {
             if !self.keep_going() {
                 break;
             }
-            if !self.all_hold(&conditions, frame) {
+            if !self.all_hold(conditions, frame) {
                 continue;
             }
             let (at, before) = (late.keys.len(), late.values.len());

@@ -54,6 +54,12 @@ impl<'a> Visitor<'a> for Scans {
         }
     }
 
+    /// A condition of a loop that draws random numbers tells which turns count.
+    fn guard(&mut self, n: &'a Node) {
+        let driving = self.driving || n.has_random();
+        self.with(driving, |s| s.node(n));
+    }
+
     fn domain(&mut self, d: &'a Domain) {
         self.with(!d.slots.is_empty(), |s| d.walk(s));
     }
