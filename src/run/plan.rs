@@ -79,6 +79,17 @@ struct Candidate {
     done: bool,
 }
 
+impl Candidate {
+    fn new(r: &Driver, required: bool) -> Self {
+        Self {
+            table: r.table,
+            key: r.key.clone(),
+            required,
+            done: false,
+        }
+    }
+}
+
 /// Which tuples of a domain are wanted.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Wanted<'n> {
@@ -200,12 +211,7 @@ fn levels(d: &Domain, supports: Vec<Sparse>, inside: bool) -> (Vec<Candidate>, V
                     if slots.iter().any(|&s| is_inner(s, d)) {
                         levels.push(vec![vec![r.clone()]]);
                     } else if !inside || slots.iter().any(|s| d.slots.contains(s)) {
-                        first.push(Candidate {
-                            table: r.table,
-                            key: r.key.clone(),
-                            required: s.forced,
-                            done: false,
-                        });
+                        first.push(Candidate::new(r, s.forced));
                     }
                 }
             }
@@ -227,12 +233,7 @@ fn drivers(d: &Domain, supports: Vec<Sparse>) -> (Vec<Vec<Candidate>>, Vec<Alter
     for s in supports {
         let inner = |c: &Candidate| slots_of_key(&c.key).iter().any(|&s| is_inner(s, d));
         let candidate = |m: Driver| {
-            let mut c = Candidate {
-                table: m.table,
-                key: m.key,
-                required: false,
-                done: false,
-            };
+            let mut c = Candidate::new(&m, false);
             c.required = s.forced && !inner(&c);
             c
         };
@@ -286,12 +287,7 @@ impl<'a, 'h> Nest<'a, 'h> {
         drivers: &[Candidate],
         (levels, inside): (&'a [Levels], bool),
     ) -> Self {
-        let members = d.members.iter().map(|m| Candidate {
-            table: m.table,
-            key: m.key.clone(),
-            required: true,
-            done: false,
-        });
+        let members = d.members.iter().map(|m| Candidate::new(m, true));
         let free = run_over(d, drivers);
         let filters = filters.iter().map(|list| {
             let conditions = || list.iter().map(|&i| &d.conditions[i]);

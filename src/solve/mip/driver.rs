@@ -174,7 +174,7 @@ pub(super) fn search_linear(mip: &Mip, aim: Aim, begin: Begin, control: &mut Con
     }
     found.value = units.shown(found.value);
     found.bound = units.shown(found.bound);
-    if found.end == End::Smaller {
+    if found.end == End::Renewed {
         let begin = Begin {
             best: found.x.clone().map(|x| (found.value, x)),
             settings: begin.settings,

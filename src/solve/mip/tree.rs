@@ -74,7 +74,7 @@ pub enum End {
     /// `nodLim`.
     Nodes,
     /// The search begins anew: the program that is left is much smaller, or symmetries are to be used from now on.
-    Smaller,
+    Renewed,
     /// Another limit, or the user.
     Stopped(Ended),
     /// The relaxation is unbounded.
@@ -542,10 +542,10 @@ impl<'a, R: Relaxation> Search<'a, R> {
                     .smaller
                     .is_some_and(|smaller| smaller(self.units.shown(self.cutoff())))
             {
-                return self.put_back(node, End::Smaller);
+                return self.put_back(node, End::Renewed);
             }
             if self.ends_young && self.nodes >= YOUNG {
-                return self.put_back(node, End::Smaller);
+                return self.put_back(node, End::Renewed);
             }
             self.fate(node.number, "branched");
             node = self.descend(&node, branch)?;
