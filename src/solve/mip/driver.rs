@@ -113,13 +113,23 @@ pub(super) fn search_linear(mip: &Mip, aim: Aim, begin: Begin, control: &mut Con
         let left = presolve::reduce(mip, &[], cutoff - mip.problem.offset);
         left.is_none_or(|left| is_much_smaller(&left.mip, &reduced.mip))
     };
-    let symmetry = symmetry(&reduced.mip, &begin, control);
+    let runs = |s: &Settings| s.runs(Strategy::OrbitalBranching);
+    let uses_symmetry = begin.convex.is_none() && begin.settings.is_none_or(runs);
     // A search that ends soon without them had luck that they could spoil.
-    let waits = symmetry.is_some() && renews && begin.renewals == 0;
+    let waits = uses_symmetry && renews && begin.renewals == 0;
+    let symmetry = match uses_symmetry && !waits {
+        true => Symmetry::find(&reduced.mip),
+        false => None,
+    };
+    if let Some(symmetry) = &symmetry {
+        let line = format!("symmetries: {}", symmetry.count());
+        control.budget.log_timed(&line);
+    }
+    let has_symmetry = || Symmetry::find(&reduced.mip).is_some();
     let explore = Explore {
         mip: &scaled,
-        symmetry: symmetry.as_ref().filter(|_| !waits),
-        waits,
+        symmetry: symmetry.as_ref(),
+        grown: waits.then_some(&has_symmetry),
         aim,
         units,
         start: begin.start.map(inner),
@@ -186,18 +196,6 @@ pub(super) fn search_linear(mip: &Mip, aim: Aim, begin: Begin, control: &mut Con
     found
 }
 
-/// Permutations that a search may use: of programs that have no more rows than these.
-fn symmetry(mip: &Mip, begin: &Begin, control: &Control) -> Option<Symmetry> {
-    let runs = |s: &Settings| s.runs(Strategy::OrbitalBranching);
-    if begin.convex.is_some() || !begin.settings.is_none_or(runs) {
-        return None;
-    }
-    let symmetry = Symmetry::find(mip)?;
-    let line = format!("symmetries: {}", symmetry.count());
-    control.budget.log_timed(&line);
-    Some(symmetry)
-}
-
 /// The search of what is left below the best solution of a first one, which ended early; the tree is the last one's.
 fn renewed_search(mip: &Mip, aim: Aim, first: Found, begin: Begin, control: &mut Control) -> Found {
     let mut found = search_linear(mip, aim, begin, control);
@@ -233,7 +231,7 @@ struct Explore<'e> {
     best: Option<(f64, Vec<f64>)>,
     smaller: Option<Smaller<'e>>,
     symmetry: Option<&'e Symmetry>,
-    waits: bool,
+    grown: Option<&'e dyn Fn() -> bool>,
     settings: Option<&'e Settings>,
 }
 
@@ -247,7 +245,7 @@ impl Explore<'_> {
         search.settings = self.settings;
         search.smaller = self.smaller;
         search.symmetry = self.symmetry;
-        search.ends_young = self.waits;
+        search.grown = self.grown;
         let known = self.best.as_ref().map(|b| b.0);
         search.best = self.best;
         if let Some(x) = self.start {

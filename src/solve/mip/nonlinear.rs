@@ -21,6 +21,8 @@ pub struct Nonlinear {
     instance: Instance,
     choice: Option<String>,
     settings: Settings,
+    /// Columns that are to be whole in the end.
+    integer: Vec<bool>,
     first: Vec<f64>,
     point: Rc<Vec<f64>>,
     /// The program is convex: a local optimum is a global one.
@@ -36,6 +38,9 @@ pub struct Nonlinear {
 /// Infeasible nodes that are tried from the start point as well.
 const AGAIN: u32 = 50;
 
+/// Iterations times columns after which no better whole point is looked for at the root: only where that is cheap.
+const ELSEWHERE: u64 = 10_000;
+
 impl Nonlinear {
     /// For an instance.
     pub fn new(
@@ -48,7 +53,10 @@ impl Nonlinear {
         relaxed.columns.kind.fill(ColumnKind::Continuous);
         relaxed.discrete = Default::default();
         let level = &instance.columns.level;
+        let kinds = instance.columns.kind.iter();
+        let whole = |k: &ColumnKind| *k == ColumnKind::Integer;
         Self {
+            integer: kinds.map(whole).collect(),
             using,
             instance: relaxed,
             // of a convex quadratic program it says that its answer is a global one
@@ -76,16 +84,23 @@ impl Nonlinear {
         c.lower.iter().zip(&c.upper).map(within).collect()
     }
 
-    /// Solves from a point; None: a limit.
-    pub fn answer(&mut self, from: &[f64], control: &mut Control) -> Option<Answer> {
+    fn is_whole(&self, x: &[f64]) -> bool {
+        let mut all = x.iter().zip(&self.integer);
+        all.all(|(x, &integer)| !integer || (x - x.round()).abs() < 1e-6)
+    }
+
+    /// Solves from a point in so many iterations at most; None: a limit.
+    pub fn answer(&mut self, from: &[f64], most: u64, control: &mut Control) -> Option<Answer> {
         let columns = &mut self.instance.columns;
         for (j, x) in columns.level.iter_mut().enumerate() {
             *x = from[j].max(columns.lower[j]).min(columns.upper[j]);
         }
         let task = Task::new(self.using, &self.instance).by(self.choice.as_deref());
-        let answer = control
-            .budget
-            .aside(|budget| subproblem(&task, &self.settings, budget));
+        let answer = control.budget.aside(|b| {
+            b.within(f64::INFINITY, most, |b| {
+                subproblem(&task, &self.settings, b)
+            })
+        });
         let answer = answer.ok()?;
         control.iterations += answer.outcome.iterations;
         Some(answer)
@@ -105,12 +120,20 @@ impl Relaxation for Nonlinear {
             return Solved::Stopped(why);
         }
         let mut solved = Solved::Failed;
+        let (began, columns) = (control.iterations, self.integer.len() as u64);
+        let elsewhere = ELSEWHERE / columns.max(10);
+        let mut best: Option<(f64, Rc<Vec<f64>>)> = None;
         let mut starts = vec![self.point.clone(), Rc::new(self.first.clone())];
         if !self.rooted {
             starts.extend([1.0, f64::INFINITY].map(|most| Rc::new(self.inside(most))));
         }
+        starts.dedup();
         for from in starts {
-            let Some(answer) = self.answer(&from, control) else {
+            let left = match best {
+                Some(_) => elsewhere.saturating_sub(control.iterations - began),
+                None => u64::MAX,
+            };
+            let Some(answer) = self.answer(&from, left, control) else {
                 continue;
             };
             let stopped = match answer.outcome.status {
@@ -118,8 +141,10 @@ impl Relaxation for Nonlinear {
                 SolverStatus::ResourceInterrupt => Some(Ended::Time),
                 _ => None,
             };
-            if let Some(why) = stopped {
-                return Solved::Stopped(why);
+            match stopped {
+                Some(_) if best.is_some() => break,
+                Some(why) => return Solved::Stopped(why),
+                None => {}
             }
             use ModelStatus as S;
             let global = match answer.status {
@@ -133,10 +158,18 @@ impl Relaxation for Nonlinear {
                     let value = self.instance.objective.map_or(0.0, |o| {
                         o.sense.sign() * answer.outcome.level[o.column as usize]
                     });
-                    self.point = Rc::new(answer.outcome.level);
-                    self.rooted = true;
-                    return Solved::Value(value);
+                    let point = Rc::new(answer.outcome.level);
+                    if self.rooted || self.convex || !self.is_whole(&point) {
+                        self.point = point;
+                        self.rooted = true;
+                        return Solved::Value(value);
+                    }
+                    // The search would end here, at a local optimum: from elsewhere there may be a better one.
+                    if best.as_ref().is_none_or(|b| value < b.0) {
+                        best = Some((value, point));
+                    }
                 }
+                _ if best.is_some() => {}
                 S::Infeasible | S::InfeasibleNoSolution => return Solved::Infeasible,
                 S::Unbounded | S::UnboundedNoSolution => return Solved::Unbounded(Vec::new()),
                 // from elsewhere it may be feasible
@@ -150,7 +183,12 @@ impl Relaxation for Nonlinear {
                 _ => {}
             }
         }
-        solved
+        let Some((value, point)) = best else {
+            return solved;
+        };
+        self.point = point;
+        self.rooted = true;
+        Solved::Value(value)
     }
 
     fn x(&self) -> &[f64] {

@@ -86,7 +86,7 @@ impl<'s> Convex<'s> {
     /// The best point of the program for the present bounds, with the values of the squares.
     pub(super) fn best(&mut self, level: &[f64], control: &mut Control) -> Option<Vec<f64>> {
         use ModelStatus as S;
-        let answer = self.nonlinear.answer(level, control)?;
+        let answer = self.nonlinear.answer(level, u64::MAX, control)?;
         let solved = matches!(answer.status, S::Optimal | S::LocallyOptimal);
         solved.then(|| self.with_values(answer.outcome.level))
     }

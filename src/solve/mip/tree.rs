@@ -192,8 +192,8 @@ pub struct Search<'a, R: Relaxation> {
     pub neighbourhood: Option<Neighbourhood<'a>>,
     /// Permutations that leave the program as it is.
     pub(super) symmetry: Option<&'a Symmetry>,
-    /// Whether it begins anew, with symmetries, when it is no longer young.
-    pub(super) ends_young: bool,
+    /// Asked once, when it is no longer young: whether it begins anew, with symmetries.
+    pub(super) grown: Option<&'a dyn Fn() -> bool>,
     /// Asked when a young search has found a better solution; None: it does not begin anew.
     pub smaller: Option<Smaller<'a>>,
     /// A better solution was found since.
@@ -286,7 +286,7 @@ impl<'a, R: Relaxation> Search<'a, R> {
             incomplete: false,
             neighbourhood: None,
             symmetry: None,
-            ends_young: false,
+            grown: None,
             smaller: None,
             improved: false,
             settings: None,
@@ -544,7 +544,7 @@ impl<'a, R: Relaxation> Search<'a, R> {
             {
                 return self.put_back(node, End::Renewed);
             }
-            if self.ends_young && self.nodes >= YOUNG {
+            if self.nodes >= YOUNG && self.grown.take().is_some_and(|has_symmetry| has_symmetry()) {
                 return self.put_back(node, End::Renewed);
             }
             self.fate(node.number, "branched");
