@@ -17,7 +17,7 @@
 //! entry.
 
 use super::{Linearised, Residuals, primal, row_violation, units};
-use crate::autodiff::{EvalFailure, Evaluator, kinks};
+use crate::autodiff::{ErrorKind, EvalFailure, Evaluator, kinks};
 use crate::model::instance::{Instance, Relation};
 use crate::model::sum::Sum;
 
@@ -31,6 +31,9 @@ pub const CONSIDERABLE: f64 = 0.01;
 /// Products of multipliers and slopes beyond this lose a slope of 1e-3 by rounding: a reduced cost that is small
 /// beside them alone says nothing about the objective.
 const HIDING: f64 = 1e12;
+
+/// How far inside of a bound derivatives are taken that do not exist on it, relative to its size.
+const INSIDE: f64 = 1e-10;
 
 /// A row binds where its slack is at most this, relative to its size.
 const BINDING: f64 = 1e-6;
@@ -48,7 +51,11 @@ pub fn linearise(
     let mut activity = vec![0.0; m];
     evaluator.rows(x, &mut activity)?;
     let mut value = vec![0.0; evaluator.jacobian_pattern().1.len()];
-    evaluator.jacobian(x, &mut value)?;
+    let columns = &instance.columns;
+    if let Err(e) = evaluator.jacobian(x, &mut value) {
+        let inside = inside(&e, x, &columns.lower, &columns.upper).ok_or(e)?;
+        evaluator.jacobian(&inside, &mut value)?;
+    }
     let (start, column) = evaluator.jacobian_pattern();
     let (xi, eta) = units(instance);
     let mut reduced = vec![Sum::default(); n];
@@ -89,6 +96,18 @@ pub fn linearise(
         row_size,
         column_size,
     })
+}
+
+/// Where a derivative does not exist, as that of √x at 0: the point with what is at a bound moved inside by next to nothing. There the slope
+/// is steep, as the limit is. None where the failure is another.
+pub fn inside(failure: &EvalFailure, x: &[f64], lower: &[f64], upper: &[f64]) -> Option<Vec<f64>> {
+    let moved = |(&x, (&l, &u)): (&f64, (&f64, &f64))| match INSIDE * x.abs().max(1.0) {
+        by if x == l && u - l > 2.0 * by => x + by,
+        by if x == u && u - l > 2.0 * by => x - by,
+        _ => x,
+    };
+    let sides = lower.iter().zip(upper);
+    (failure.error.kind == ErrorKind::Derivative).then(|| x.iter().zip(sides).map(moved).collect())
 }
 
 /// The worst of a kind of residual.

@@ -13,6 +13,7 @@
 use crate::autodiff::{EvalFailure, Evaluator};
 use crate::model::instance::{Instance, Relation};
 use crate::solve::backend::Seen;
+use crate::solve::certificate::nonlinear::inside;
 
 /// What an interior-point solver needs of a nonlinear program.
 pub trait Nlp {
@@ -450,9 +451,14 @@ impl Problem {
         Ok(())
     }
 
-    /// The same; a failure is counted.
+    /// The same, with limits at bounds where there are no derivatives. A failure is counted.
     fn need_derivative(&mut self, x: &[f64]) -> Option<()> {
-        let evaluated = self.evaluate_derivative(x);
+        let mut evaluated = self.evaluate_derivative(x);
+        if let Err(e) = &evaluated
+            && let Some(inside) = inside(e, x, &self.lower, &self.upper)
+        {
+            evaluated = self.evaluate_derivative(&inside);
+        }
         evaluated.map_err(|e| self.fail(e)).ok()
     }
 }
@@ -546,9 +552,15 @@ impl Nlp for Problem {
         {
             self.lambda[row] = -sigma * self.sign / coefficient;
         }
-        let result = self
-            .evaluator
-            .hessian(&self.full, &self.lambda, &mut self.second);
+        let (evaluator, lambda) = (&mut self.evaluator, &self.lambda);
+        let mut result = evaluator.hessian(&self.full, lambda, &mut self.second);
+        if let Err(e) = &result
+            && let Some(inside) = inside(e, x, &self.lower, &self.upper)
+        {
+            self.place(&inside);
+            let (evaluator, lambda) = (&mut self.evaluator, &self.lambda);
+            result = evaluator.hessian(&self.full, lambda, &mut self.second);
+        }
         if let Err(e) = result {
             self.fail(e);
             return None;

@@ -7,7 +7,7 @@ use super::newton;
 use super::problem::Nlp;
 use super::schedule::From;
 use super::slqp::{self, Effort};
-use super::trial::Trial;
+use super::trial::{Trial, active_set};
 use crate::solve::certificate::TOLERANCE;
 use crate::solve::certificate::nonlinear::is_locally_infeasible;
 use crate::solve::{SolveError, Strategy};
@@ -124,7 +124,8 @@ impl Driver<'_, '_> {
             true => trial.residuals.primal_relative <= NEARLY,
             false => trial.is_feasible() && run.end != slqp::End::Spent,
         };
-        let irregular = ended && !regular && near;
+        let set = active_set(self.instance, &lock(&*self.problem), &trial, TOLERANCE);
+        let irregular = ended && !regular && near && set.binding.contains(&true);
         let trial = match irregular && self.settings.runs(Strategy::WidenedRows) {
             true => self.without_multipliers(trial),
             false => trial,

@@ -60,7 +60,7 @@ const TAKEN: f64 = 0.05;
 /// A step that keeps less than this of its promise is corrected, so many times at most.
 const KEPT: f64 = 0.5;
 const CORRECTIONS: u32 = 4;
-/// A row this much flatter, in units, than where its unit was measured is measured anew.
+/// A row or an objective this much flatter, in units, than where its unit was measured is measured anew.
 const FLATTER: f64 = 1e-4;
 /// A point with a larger number is a start for nothing.
 const FARTHEST: f64 = 1e15;
@@ -84,7 +84,7 @@ pub(super) enum End {
     Spent,
     /// Steps get short.
     Stuck,
-    /// Where rows are much flatter than their units say.
+    /// Where rows or the objective are much flatter than their units say.
     Outgrown,
 }
 
@@ -129,18 +129,19 @@ pub(super) fn solve(nlp: &mut dyn Nlp, request: Request<'_>, budget: &Budget) ->
     {
         *x = x.max(l).min(u);
     }
-    solve_from(nlp, start, request, budget)
+    solve_from(nlp, start, request, false, budget)
 }
 
-/// The same from a point within the bounds.
+/// The same from a point within the bounds; from the second time on, curvature counts for the unit of the objective.
 fn solve_from(
     nlp: &mut dyn Nlp,
     start: Vec<f64>,
     request: Request<'_>,
+    again: bool,
     budget: &Budget,
 ) -> Option<Run> {
     let (n, m) = nlp.size();
-    let mut frame = Frame::new(nlp, &start)?;
+    let mut frame = Frame::new(nlp, &start, again)?;
     frame.widen(request.width);
     let values = Values::at(nlp, &frame, &start)?;
     let at = Point::new(nlp, &frame, start, values)?;
@@ -167,6 +168,9 @@ fn solve_from(
     };
     let working = lambda.and_then(|l| method.named_by(&l));
     let (steps, mut end) = method.run(working, request.effort.steps);
+    if !again && end == End::Solved && method.at.is_level(method.nlp, &method.frame, FLATTER) {
+        end = End::Outgrown;
+    }
     if end == End::Outgrown {
         let effort = Effort {
             steps: request.effort.steps - steps,
@@ -177,7 +181,7 @@ fn solve_from(
             effort,
             ..request
         };
-        let mut run = solve_from(method.nlp, method.at.x, request, budget)?;
+        let mut run = solve_from(method.nlp, method.at.x, request, true, budget)?;
         run.steps += steps;
         return Some(run);
     }

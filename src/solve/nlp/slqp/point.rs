@@ -31,8 +31,8 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// Units are those of the point. None where it has no values or derivatives.
-    pub(super) fn new(nlp: &mut dyn Nlp, x: &[f64]) -> Option<Self> {
+    /// Units are those of the point, that of the objective with its curvature if wanted. None where it has no values or derivatives.
+    pub(super) fn new(nlp: &mut dyn Nlp, x: &[f64], curved: bool) -> Option<Self> {
         let (n, m) = nlp.size();
         let size = |j: usize| x[j].abs().max(1.0);
         let mut row_unit = vec![0.0_f64; m];
@@ -41,7 +41,10 @@ impl Frame {
         }
         let mut gradient = vec![0.0; n];
         nlp.gradient(x, &mut gradient)?;
-        let steepest = (0..n).fold(0.0_f64, |s, j| s.max((gradient[j] * size(j)).abs()));
+        let mut steepest = (0..n).fold(0.0_f64, |s, j| s.max((gradient[j] * size(j)).abs()));
+        if curved {
+            steepest = steepest.max(curvature(nlp, x));
+        }
         let unit = |u: f64, (low, high): (f64, f64)| match u > 0.0 && u.is_finite() {
             true => u.clamp(low, high),
             false => 1.0,
@@ -140,6 +143,15 @@ impl Frame {
     }
 }
 
+/// What second derivatives of the objective make of a step as long as its variables.
+fn curvature(nlp: &mut dyn Nlp, x: &[f64]) -> f64 {
+    let none = vec![0.0; nlp.size().1];
+    let size = |j: usize| x[j].abs().max(1.0);
+    let entries = nlp.hessian_entries(x, &none).unwrap_or_default();
+    let each = entries.iter().filter(|e| e.2.is_finite());
+    each.fold(0.0, |s, &(i, j, h)| s.max((h * size(i) * size(j)).abs()))
+}
+
 /// Values and first derivatives.
 pub(super) struct Point {
     pub(super) x: Vec<f64>,
@@ -223,6 +235,13 @@ impl Point {
             entries.fold(1.0 / frame.row_unit[i], f64::max)
         };
         (0..frame.m).any(|i| steepest(i) < part)
+    }
+
+    /// Whether the objective has become so flat that its slope would not be seen in its unit.
+    pub(super) fn is_level(&self, nlp: &mut dyn Nlp, frame: &Frame, part: f64) -> bool {
+        let slopes = self.gradient.iter().enumerate();
+        slopes.fold(0.0_f64, |s, (j, g)| s.max((g * self.unit(j)).abs())) < part
+            && curvature(nlp, &self.x) < part * frame.price
     }
 
     /// ∇f + Jᵀλ, and the largest term of each entry.
