@@ -99,15 +99,17 @@ pub fn linearise(
 }
 
 /// Where a derivative does not exist, as that of √x at 0: the point with what is at a bound moved inside by next to nothing. There the slope
-/// is steep, as the limit is. None where the failure is another.
+/// is steep, as the limit is; likewise beyond a bound, which an interior point relaxes a little. None where the failure is another.
 pub fn inside(failure: &EvalFailure, x: &[f64], lower: &[f64], upper: &[f64]) -> Option<Vec<f64>> {
     let moved = |(&x, (&l, &u)): (&f64, (&f64, &f64))| match INSIDE * x.abs().max(1.0) {
-        by if x == l && u - l > 2.0 * by => x + by,
-        by if x == u && u - l > 2.0 * by => x - by,
+        by if x <= l && u - l > 2.0 * by => l + by,
+        by if x >= u && u - l > 2.0 * by => u - by,
         _ => x,
     };
-    let sides = lower.iter().zip(upper);
-    (failure.error.kind == ErrorKind::Derivative).then(|| x.iter().zip(sides).map(moved).collect())
+    let all = x.iter().zip(lower.iter().zip(upper));
+    let is_beyond = |(x, (l, u)): (&f64, (&f64, &f64))| x < l || x > u;
+    let counts = failure.error.kind == ErrorKind::Derivative || all.clone().any(is_beyond);
+    counts.then(|| all.map(moved).collect())
 }
 
 /// The worst of a kind of residual.

@@ -417,7 +417,14 @@ impl Problem {
         }
         self.activity_at = None;
         self.place(x);
-        match self.evaluator.rows(&self.full, &mut self.activity) {
+        let mut evaluated = self.evaluator.rows(&self.full, &mut self.activity);
+        if let Err(e) = &evaluated
+            && let Some(inside) = inside(e, x, &self.lower, &self.upper)
+        {
+            self.place(&inside);
+            evaluated = self.evaluator.rows(&self.full, &mut self.activity);
+        }
+        match evaluated {
             Ok(()) => {
                 self.activity_at = Some(x.to_vec());
                 self.note(x);
