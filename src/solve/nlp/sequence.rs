@@ -43,6 +43,10 @@ impl Driver<'_, '_> {
             _ => self.start.clone(),
         };
         self.sequential(start, marginals.as_deref(), effort);
+        if self.was_moved && !again && self.is_settled() {
+            // slopes without limit may have held variables at 0 from which they were moved a little only
+            self.sequential(self.start_point(From::Middle), None, effort);
+        }
         let settled = self.is_settled_by("slqp")?;
         if settled {
             self.growth = Growth::Ignored;
@@ -124,7 +128,7 @@ impl Driver<'_, '_> {
             true => trial.residuals.primal_relative <= NEARLY,
             false => trial.is_feasible() && run.end != slqp::End::Spent,
         };
-        let set = active_set(self.instance, &lock(&*self.problem), &trial, TOLERANCE);
+        let set = active_set(self.instance, &lock(&*self.problem), &trial, NEARLY);
         let irregular = ended && !regular && near && set.binding.contains(&true);
         let trial = match irregular && self.settings.runs(Strategy::WidenedRows) {
             true => self.without_multipliers(trial),
