@@ -63,13 +63,7 @@ impl Driver<'_, '_> {
     /// Where nothing near the start is feasible: from halfway between the bounds. Whether that settles it.
     fn doubt(&mut self) -> Result<bool, SolveError> {
         let x = self.start_point(From::Middle);
-        if self.is_square() {
-            lock(&*self.problem).set_start(x.clone());
-            self.attempt_newton();
-        }
-        if !self.is_settled() {
-            self.sequential(x, None, Effort::FULL);
-        }
+        self.sequential(x, None, Effort::FULL);
         if self.best.as_ref().is_some_and(Trial::is_feasible) {
             return self.is_settled_by("slqp");
         }
