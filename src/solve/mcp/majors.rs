@@ -7,11 +7,12 @@
 //!   which moves the *checkpoint*;
 //! - as **O**, without any test, at most ten times in a row (the *watchdog*): on the way to a
 //!   solution Ψ often has to rise;
-//! - otherwise the run goes back to the checkpoint and searches along its direction (**B**), and ends if
-//!   that gives nothing.
+//! - otherwise the run goes back to the checkpoint and searches along its direction (**B**), and if
+//!   that gives nothing takes a projected gradient step from the best point (**G**).
 //!
 //! If the linear problem has no solution, a *proximal term* v·(y − x) is added to F, first small,
-//! then larger.
+//! then larger. With it every linear problem tends to have a solution, of length 1/v if it stands
+//! for a ray; in linear problems such a solution is only taken in reserve.
 
 use feral::SparseColMatrix;
 
@@ -20,6 +21,7 @@ use super::factor::shifted;
 use super::interior::interior;
 use super::linear::{Kind, LinearProblem};
 use super::log;
+use super::merit::{phi, phi_slopes};
 use super::path::{HARRIS, HARRIS_CLOSE, PathEnd, PathResult, Start, follow};
 use super::run::{Point, Run, StallCounter, Stop};
 
@@ -43,12 +45,16 @@ const STAGNATION: usize = 30;
 const STAGNATION_PIVOTS: (usize, usize) = (10_000, 40);
 /// The same where the residual would be accepted already, and the problem is large.
 const STAGNATION_NEAR: usize = 4;
+/// Steps in a row to solutions ~ 1/v before the run is called stuck: it follows a ray.
+const DOUBTFUL_LIMIT: usize = 8;
 /// Pivots on a path near a solution, or a share 1/10 of n.
 const NEAR_LIMIT: usize = 200;
 /// Pivots on a path from a solution to a better one, times n: a second or so where directions are full.
 const POLISH_WORK: usize = 6_000_000;
 /// Major iterations spent on that, as long as each takes a digit off the residual.
 const POLISH_STEPS: usize = 5;
+/// Gradient steps before the run is called stuck.
+const GRADIENT_LIMIT: usize = 6;
 
 /// What comes before the first major iteration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -97,6 +103,8 @@ struct Candidate {
     /// Final state of the path, a warm start if it was solved.
     kind: Option<Vec<Kind>>,
     prox: f64,
+    /// A solution of a linear problem for v > 0 that may stand for a ray.
+    doubtful: bool,
 }
 
 struct Majors {
@@ -107,6 +115,9 @@ struct Majors {
     prox: f64,
     warm: Option<Vec<Kind>>,
     untested: usize,
+    gradient_steps: usize,
+    /// Steps in a row to solutions that may stand for rays.
+    doubtful: usize,
     seed: u64,
 }
 
@@ -123,6 +134,8 @@ impl Majors {
             prox: run.settings.proximal_perturbation,
             warm: None,
             untested: 0,
+            gradient_steps: 0,
+            doubtful: 0,
             seed: 1,
         }
     }
@@ -166,7 +179,7 @@ impl Majors {
                 if polishing > 0 {
                     return Ok(());
                 }
-                if !self.back(run) {
+                if !self.back(run, None)? {
                     return Ok(());
                 }
                 continue;
@@ -193,12 +206,20 @@ impl Majors {
                     '-',
                     tries,
                 );
-                if !self.back(run) {
+                if !self.back(run, Some(&jacobian))? {
                     return Ok(());
                 }
                 continue;
             };
-            if !self.accept(run, candidate, run.pivots - pivots, tries) {
+            self.doubtful = if candidate.doubtful {
+                self.doubtful + 1
+            } else {
+                0
+            };
+            if self.doubtful > DOUBTFUL_LIMIT {
+                return Ok(());
+            }
+            if !self.accept(run, candidate, &jacobian, run.pivots - pivots, tries)? {
                 return Ok(());
             }
         }
@@ -249,7 +270,7 @@ impl Majors {
             0 => pivot_limit(run.n),
             given => given,
         };
-        let mut ray: Option<Candidate> = None;
+        let (mut reserve, mut ray): (Option<(Candidate, f64)>, Option<Candidate>) = (None, None);
         let mut tries = 0;
         for (level, &v) in prox.iter().enumerate() {
             let Some((m, q)) = self.linearised(jacobian, v) else {
@@ -282,14 +303,27 @@ impl Majors {
                 log::try_line(run, end, t, v, pivots, start.cover);
                 match end {
                     PathEnd::Solved => {
+                        let off = x.iter().zip(&self.point.x).map(|(a, b)| (a - b).powi(2));
+                        let length = off.sum::<f64>().sqrt();
                         let found = Candidate {
                             y: x,
                             end,
                             t: 1.0,
                             kind: Some(kind),
                             prox: v,
+                            doubtful: run.problem.is_linear() && v > 0.0 && v * length > 0.7 * r,
                         };
-                        return Ok((Some(found), tries));
+                        if !found.doubtful {
+                            return Ok((Some(found), tries));
+                        }
+                        // Of several, the one with the least merit.
+                        if let Some(point) = run.point(found.y.clone())
+                            && reserve
+                                .as_ref()
+                                .is_none_or(|(_, merit)| point.merit < *merit)
+                        {
+                            reserve = Some((found, point.merit));
+                        }
                     }
                     PathEnd::Ray | PathEnd::Limit | PathEnd::Numerical | PathEnd::Loop => {
                         let better =
@@ -301,6 +335,7 @@ impl Majors {
                                 t,
                                 kind: None,
                                 prox: v,
+                                doubtful: false,
                             });
                         }
                     }
@@ -308,7 +343,7 @@ impl Majors {
                 }
             }
         }
-        Ok((ray, tries))
+        Ok((reserve.map(|r| r.0).or(ray), tries))
     }
 
     /// The proximal terms to try, from the last one upwards, at a point of residual r.
@@ -365,11 +400,34 @@ impl Majors {
                 .collect(),
         };
         starts.push(Start {
-            kind: near,
+            kind: near.clone(),
             x: x.clone(),
             cover: false,
             tolerance: HARRIS,
         });
+        if level == 0 {
+            // The state of the normal map's variable z = x − F.
+            let kind: Vec<Kind> = (0..run.n)
+                .map(|i| {
+                    let z = x[i] - self.point.f[i];
+                    if z <= run.lower[i] {
+                        Kind::AtLower
+                    } else if z >= run.upper[i] {
+                        Kind::AtUpper
+                    } else {
+                        Kind::Between
+                    }
+                })
+                .collect();
+            if kind != near {
+                starts.push(Start {
+                    kind,
+                    x: x.clone(),
+                    cover: false,
+                    tolerance: HARRIS,
+                });
+            }
+        }
         // From the slacks the path is as long as the solution has variables off their bounds: the way
         // out where n is small, and the last resort where it is large.
         if if run.n <= SLACK_START {
@@ -399,7 +457,14 @@ impl Majors {
     }
 
     /// Takes the step to the candidate, or another one. False if there is none.
-    fn accept(&mut self, run: &mut Run, candidate: Candidate, pivots: usize, tries: usize) -> bool {
+    fn accept(
+        &mut self,
+        run: &mut Run,
+        candidate: Candidate,
+        jacobian: &SparseColMatrix,
+        pivots: usize,
+        tries: usize,
+    ) -> Result<bool, Stop> {
         let reference = self.reference(run);
         let direction: Vec<f64> = candidate
             .y
@@ -427,11 +492,12 @@ impl Majors {
                 }
                 if monotone {
                     self.new_checkpoint();
+                    self.gradient_steps = 0;
                 } else {
                     self.untested += 1;
                 }
                 self.reduce_prox(prox);
-                return true;
+                return Ok(true);
             }
         }
         log::major_line(
@@ -445,7 +511,7 @@ impl Majors {
             '-',
             tries,
         );
-        self.back(run)
+        self.back(run, Some(jacobian))
     }
 
     /// The proximal term of the next iteration, after a step with `used`.
@@ -466,8 +532,8 @@ impl Majors {
         self.untested = 0;
     }
 
-    /// Back to the checkpoint: line search along its direction. False if there is no such step.
-    fn back(&mut self, run: &mut Run) -> bool {
+    /// Back to the checkpoint: line search along its direction, else a gradient step.
+    fn back(&mut self, run: &mut Run, jacobian: Option<&SparseColMatrix>) -> Result<bool, Stop> {
         self.warm = None;
         let reference = self.reference(run);
         if let Some(direction) = self.checkpoint.direction.take() {
@@ -488,16 +554,87 @@ impl Majors {
                     log::step_line(run, &next, step, 'B');
                     self.point = next;
                     self.new_checkpoint();
-                    return true;
+                    return Ok(true);
                 }
                 step *= 0.5;
             }
         }
-        false
+        self.gradient_step(run, jacobian)
+    }
+
+    /// A step on the projected gradient arc of Ψ from the best point.
+    fn gradient_step(
+        &mut self,
+        run: &mut Run,
+        jacobian: Option<&SparseColMatrix>,
+    ) -> Result<bool, Stop> {
+        if self.gradient_steps >= GRADIENT_LIMIT {
+            return Ok(false);
+        }
+        self.gradient_steps += 1;
+        let from = self.best.clone();
+        let jacobian = match jacobian {
+            Some(j) if from.x == self.point.x => Some(j.clone()),
+            _ => run.jacobian(&from.x),
+        };
+        let Some(jacobian) = jacobian else {
+            return Ok(false);
+        };
+        let gradient = merit_gradient(run, &from, &jacobian);
+        let norm = gradient.iter().map(|g| g * g).sum::<f64>().sqrt();
+        if !(norm.is_finite() && norm > 0.0) {
+            return Ok(false);
+        }
+        let mut step = 1.0;
+        while step > 1e-12 {
+            let mut x: Vec<f64> = from
+                .x
+                .iter()
+                .zip(&gradient)
+                .map(|(x, g)| x - step * g)
+                .collect();
+            run.clip(&mut x);
+            let fall: f64 = x
+                .iter()
+                .zip(&from.x)
+                .zip(&gradient)
+                .map(|((y, x), g)| (x - y) * g)
+                .sum();
+            if let Some(next) = run.point(x)
+                && next.merit <= from.merit - ARMIJO * fall
+                && fall > 0.0
+            {
+                log::step_line(run, &next, step, 'G');
+                self.point = next;
+                if self.point.residual < self.best.residual {
+                    self.best = self.point.clone();
+                }
+                self.new_checkpoint();
+                return Ok(true);
+            }
+            step *= 0.3;
+        }
+        Ok(false)
     }
 }
 
 /// Pivots allowed on one path.
 pub(super) fn pivot_limit(n: usize) -> usize {
     (n / 4).max(1000)
+}
+
+/// Gradient of ½‖Φ‖²: DaΦ + Jᵀ(DbΦ).
+fn merit_gradient(run: &Run, point: &Point, jacobian: &SparseColMatrix) -> Vec<f64> {
+    let n = run.n;
+    let (mut along_x, mut along_f) = (vec![0.0; n], vec![0.0; n]);
+    for i in 0..n {
+        let (x, f, l, u) = (point.x[i], point.f[i], run.lower[i], run.upper[i]);
+        let (value, (a, b)) = (phi(x, f, l, u), phi_slopes(x, f, l, u));
+        along_x[i] = a * value;
+        along_f[i] = b * value;
+    }
+    let mut gradient = vec![0.0; n];
+    jacobian.matvec_transpose(&along_f, &mut gradient);
+    gradient.iter_mut().zip(&along_x).for_each(|(g, a)| *g += a);
+    gradient
 }

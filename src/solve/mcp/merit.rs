@@ -12,6 +12,8 @@
 //!
 //! is equivalent to the problem (Billups 1995), and Ψ = ½‖Φ‖² is continuously differentiable.
 
+use std::f64::consts::FRAC_1_SQRT_2;
+
 /// max |x − mid(l, u, x − F)| and where it is attained. Not-a-number counts as infinite.
 pub fn natural_residual(x: &[f64], f: &[f64], lower: &[f64], upper: &[f64]) -> (f64, usize) {
     let (mut worst, mut at) = (0.0, 0);
@@ -52,6 +54,16 @@ fn fischer_burmeister(a: f64, b: f64) -> f64 {
     }
 }
 
+/// An element of the generalised gradient of φ at (a, b).
+fn slopes(a: f64, b: f64) -> (f64, f64) {
+    let root = a.hypot(b);
+    match root > 0.0 {
+        true => (1.0 - a / root, 1.0 - b / root),
+        // At the kink: the element in the direction (1, 1).
+        false => (1.0 - FRAC_1_SQRT_2, 1.0 - FRAC_1_SQRT_2),
+    }
+}
+
 /// Φᵢ of one pair.
 pub(super) fn phi(x: f64, f: f64, l: f64, u: f64) -> f64 {
     match (l.is_finite(), u.is_finite()) {
@@ -59,6 +71,21 @@ pub(super) fn phi(x: f64, f: f64, l: f64, u: f64) -> f64 {
         (true, false) => fischer_burmeister(x - l, f),
         (false, true) => -fischer_burmeister(u - x, -f),
         (true, true) => fischer_burmeister(x - l, -fischer_burmeister(u - x, -f)),
+    }
+}
+
+/// (∂Φᵢ/∂xᵢ, ∂Φᵢ/∂Fᵢ): the entries of Da and Db in H = Da + Db·J.
+pub(super) fn phi_slopes(x: f64, f: f64, l: f64, u: f64) -> (f64, f64) {
+    match (l.is_finite(), u.is_finite()) {
+        (false, false) => (0.0, 1.0),
+        (true, false) => slopes(x - l, f),
+        (false, true) => slopes(u - x, -f),
+        (true, true) => {
+            let inner = fischer_burmeister(u - x, -f);
+            let (ia, ib) = slopes(u - x, -f);
+            let (oa, ob) = slopes(x - l, -inner);
+            (oa + ob * ia, ob * ib)
+        }
     }
 }
 
@@ -109,5 +136,22 @@ mod tests {
         assert_eq!(natural(-1.0, 0.0, 0.0, INF), 1.0);
         assert_eq!(natural(3.0, 0.0, 0.0, 2.0), 1.0);
         assert_eq!(natural_residual(&[0.0], &[f64::NAN], &[0.0], &[INF]).0, INF);
+    }
+
+    #[test]
+    fn slopes_are_derivatives() {
+        let points = [(0.3, 0.7), (2.0, -0.4), (-0.5, 0.2), (0.9, 1.5)];
+        let bounds = [(-INF, INF), (0.0, INF), (-INF, 1.0), (0.0, 1.0)];
+        for (x, f) in points {
+            for (l, u) in bounds {
+                let (dx, df) = phi_slopes(x, f, l, u);
+                let h = 1e-6;
+                let numeric = |a: f64, b: f64| (b - a) / (2.0 * h);
+                let nx = numeric(phi(x - h, f, l, u), phi(x + h, f, l, u));
+                let nf = numeric(phi(x, f - h, l, u), phi(x, f + h, l, u));
+                assert!((dx - nx).abs() < 1e-6, "{x} {f} {l} {u}: {dx} {nx}");
+                assert!((df - nf).abs() < 1e-6, "{x} {f} {l} {u}: {df} {nf}");
+            }
+        }
     }
 }
