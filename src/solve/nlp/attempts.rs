@@ -2,12 +2,12 @@
 //! for convex quadratic programs, and rounded kinks.
 
 use super::driver::Driver;
-use super::interior_point::{Ended, Solution, lock};
+use super::interior_point::Ended;
+use super::interior_point::lock;
 use super::newton;
 use super::problem::Problem;
 use super::quadratic::Quadratic;
 use super::schedule::{FINEST, NEARER, ROUNDING};
-use super::slqp::{self, Effort};
 use super::trial::{Trial, polished};
 use super::truncated;
 use crate::solve::{SolveError, Strategy};
@@ -114,10 +114,7 @@ impl Driver<'_, '_> {
             let mut problem = Problem::smoothed(self.instance, delta);
             problem.set_start(x.clone());
             let options = if k == 0 { &[][..] } else { NEARER };
-            let solution = match self.rounded_sequence(&mut problem) {
-                Some(solution) => solution,
-                None => self.call(Arc::new(Mutex::new(problem)), options)?,
-            };
+            let solution = self.call(Arc::new(Mutex::new(problem)), options)?;
             if solution.x.iter().all(|v| v.is_finite()) {
                 x.clone_from(&solution.x);
                 let trial = self.judge(solution.x, solution.lambda, solution.ended);
@@ -130,28 +127,6 @@ impl Driver<'_, '_> {
             }
         }
         Ok(())
-    }
-
-    /// The solution of sequential programs, if they lead to one.
-    fn rounded_sequence(&mut self, rounded: &mut Problem) -> Option<Solution> {
-        if self.named || !self.settings.runs(Strategy::SequentialQuadratic) {
-            return None;
-        }
-        let request = slqp::Request {
-            multipliers: None,
-            effort: Effort::FULL,
-            width: 0.0,
-            strategies: self.settings.strategies(),
-        };
-        let run = slqp::solve(rounded, request, self.budget)?;
-        self.spend(run.steps);
-        (run.end == slqp::End::Solved).then_some(Solution {
-            ended: Ended::Solved,
-            x: run.x,
-            lambda: run.lambda,
-            objective: f64::NAN,
-            iterations: run.steps,
-        })
     }
 
     /// The last digits of a solution with rounded kinks, which are not smooth enough for a solver's last steps.

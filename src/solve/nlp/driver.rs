@@ -76,13 +76,12 @@ pub fn solve(
     }
     let start = problem.start().to_vec();
     check_start(instance, &mut problem, &start)?;
-    let moved = match settings.runs(Strategy::DifferentiableStart) {
-        true => differentiable(&mut problem, &start),
-        false => None,
-    };
-    let was_moved = moved.is_some();
-    if let Some(start) = moved {
+    let mut was_moved = false;
+    if settings.runs(Strategy::DifferentiableStart)
+        && let Some(start) = differentiable(&mut problem, &start)
+    {
         problem.set_start(start);
+        was_moved = true;
     }
     let quadratic = match convexity {
         Convexity::Ignored => None,
