@@ -12,7 +12,7 @@
 //!
 //! If the linear problem has no solution, a *proximal term* v·(y − x) is added to F, first small,
 //! then larger. With it every linear problem tends to have a solution, of length 1/v if it stands
-//! for a ray; such a solution is only taken in reserve.
+//! for a ray; in linear problems such a solution is only taken in reserve.
 
 use feral::SparseColMatrix;
 
@@ -103,7 +103,7 @@ struct Candidate {
     /// Final state of the path, a warm start if it was solved.
     kind: Option<Vec<Kind>>,
     prox: f64,
-    /// A solution for v > 0 that may stand for a ray.
+    /// A solution of a linear problem for v > 0 that may stand for a ray.
     doubtful: bool,
 }
 
@@ -311,7 +311,7 @@ impl Majors {
                             t: 1.0,
                             kind: Some(kind),
                             prox: v,
-                            doubtful: v > 0.0 && v * length > 0.7 * r,
+                            doubtful: run.problem.is_linear() && v > 0.0 && v * length > 0.7 * r,
                         };
                         if !found.doubtful {
                             return Ok((Some(found), tries));

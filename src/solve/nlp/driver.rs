@@ -26,7 +26,7 @@ use super::schedule::{
 };
 use super::slqp::Effort;
 use super::trial::{Trial, clean, polished, residuals_at, tidy, without_noise};
-use crate::autodiff::{Degree, ErrorKind, EvalFailure, Evaluator, kinks};
+use crate::autodiff::{Degree, ErrorKind, EvalFailure, Evaluator};
 use crate::model::instance::Instance;
 use crate::solve::backend::Task;
 use crate::solve::budget::{Budget, Size};
@@ -76,10 +76,12 @@ pub fn solve(
     }
     let start = problem.start().to_vec();
     check_start(instance, &mut problem, &start)?;
+    let mut was_moved = false;
     if settings.runs(Strategy::DifferentiableStart)
         && let Some(start) = differentiable(&mut problem, &start)
     {
         problem.set_start(start);
+        was_moved = true;
     }
     let quadratic = match convexity {
         Convexity::Ignored => None,
@@ -95,6 +97,7 @@ pub fn solve(
             engine.name
         ));
     }
+    driver.was_moved = was_moved;
     driver.convex = quadratic.is_some().then_some(convexity);
     driver.named = matches!(convexity, Convexity::Ignored);
     driver.run(quadratic)
@@ -186,6 +189,8 @@ pub(super) struct Driver<'a, 'm> {
     /// What the user is to hear in any case.
     pub(super) message: Option<String>,
     pub(super) start: Vec<f64>,
+    /// The start had no derivatives, and was moved.
+    pub(super) was_moved: bool,
     pub(super) problem: Arc<Mutex<Problem>>,
     pub(super) iterations: u64,
     pub(super) best: Option<Trial>,
@@ -229,6 +234,7 @@ impl<'a, 'm> Driver<'a, 'm> {
             solver: interior_point.about().name,
             message: None,
             start: problem.start().to_vec(),
+            was_moved: false,
             problem: Arc::new(Mutex::new(problem)),
             iterations: 0,
             best: None,
@@ -308,8 +314,7 @@ impl Driver<'_, '_> {
             return Ok(self.finish());
         }
         self.attempt_iterations = MAX_ATTEMPT_ITERATIONS;
-        let kinks = kinks(self.instance);
-        if kinks.is_some() && self.settings.runs(Strategy::KinkSmoothing) {
+        if self.kinks.is_some() && self.settings.runs(Strategy::KinkSmoothing) {
             self.round_kinks()?;
         }
         let lacks_point = !self.best.as_ref().is_some_and(Trial::is_feasible);

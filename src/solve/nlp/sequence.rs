@@ -43,6 +43,10 @@ impl Driver<'_, '_> {
             _ => self.start.clone(),
         };
         self.sequential(start, marginals.as_deref(), effort);
+        if self.was_moved && !again && self.is_settled() {
+            // slopes without limit may have held variables at 0 from which they were moved a little only
+            self.sequential(self.start_point(From::Middle), None, effort);
+        }
         let settled = self.is_settled_by("slqp")?;
         if settled {
             self.growth = Growth::Ignored;
@@ -59,13 +63,7 @@ impl Driver<'_, '_> {
     /// Where nothing near the start is feasible: from halfway between the bounds. Whether that settles it.
     fn doubt(&mut self) -> Result<bool, SolveError> {
         let x = self.start_point(From::Middle);
-        if self.is_square() {
-            lock(&*self.problem).set_start(x.clone());
-            self.attempt_newton();
-        }
-        if !self.is_settled() {
-            self.sequential(x, None, Effort::FULL);
-        }
+        self.sequential(x, None, Effort::FULL);
         if self.best.as_ref().is_some_and(Trial::is_feasible) {
             return self.is_settled_by("slqp");
         }
@@ -124,7 +122,7 @@ impl Driver<'_, '_> {
             true => trial.residuals.primal_relative <= NEARLY,
             false => trial.is_feasible() && run.end != slqp::End::Spent,
         };
-        let set = active_set(self.instance, &lock(&*self.problem), &trial, TOLERANCE);
+        let set = active_set(self.instance, &lock(&*self.problem), &trial, NEARLY);
         let irregular = ended && !regular && near && set.binding.contains(&true);
         let trial = match irregular && self.settings.runs(Strategy::WidenedRows) {
             true => self.without_multipliers(trial),

@@ -159,10 +159,7 @@ fn solve_from(
         linear_radius: 1.0,
         budget,
         lowered: 0,
-        memory: Memory {
-            strategies: request.strategies,
-            ..Memory::default()
-        },
+        memory: Memory::default(),
         refused: None,
         strategies: request.strategies,
     };
@@ -554,7 +551,7 @@ impl Method<'_, '_> {
             return Ok(None);
         }
         let lambda = match (&quadratic, full) {
-            (Some(q), true) if !q.yields => q.lambda.clone(),
+            (Some(q), true) => q.lambda.clone(),
             _ => linear.lambda,
         };
         let point = there.and_then(|v| Point::new(self.nlp, &self.frame, next, v));
