@@ -13,7 +13,8 @@ use crate::syntax::ast::{Ident, OptionForm, OptionItem, OptionValue};
 /// Options without a value.
 #[rustfmt::skip]
 const FLAGS: &[&str] = &[
-    "dmpopt", "dmpsym", "dmpusersym", "eject", "measure", "memorystat", "shut", "stat", "subsystems",
+    "dmpopt", "dmpsym", "dmpusersym", "eject", "measure", "memorystat", "oldname", "shut", "stat",
+    "subsystems",
 ];
 
 impl Compiler {

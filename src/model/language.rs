@@ -51,7 +51,7 @@ pub static LANGUAGE: OptionTable = OptionTable {
         "forlim", "format", "gdxuels", "hessscale", "holdfixedasync", "idcprotect", "integer1", "integer2",
         "integer3", "integer4", "integer5", "intvarup", "maxgenericfiles", "mcprholdfx", "measure", "memorystat",
         "oldname", "on115", "prefixloadpath", "profile", "profiletol", "real1", "real2", "real3", "real4", "real5",
-        "reform", "replace", "requestmarginals", "solslack", "solver", "sparserun", "sparseval",
+        "reform", "replace", "requestmarginals", "solslack", "solver", "sparseopt", "sparserun", "sparseval",
         "subsystems", "sys10", "sys11", "sys12", "sys15", "sys16", "sys17", "sys18", "sys19", "threads",
         "threadsasync", "validation", "work", "workfactor", "workspace", "zerores", "zeroresrep", "zerotoeps",
     ],

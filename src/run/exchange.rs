@@ -101,6 +101,7 @@ impl Machine<'_> {
                 name: self.symbols.get(b.symbol).name.to_string(),
                 span,
                 part: Part::Whole,
+                into: None,
             })
             .collect();
         self.unload(&format!("{name}.gdx"), &items, span);

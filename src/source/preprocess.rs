@@ -726,7 +726,9 @@ impl<'h> Preprocessor<'h> {
             }
             let name_end = bytes[from + 1..]
                 .iter()
-                .position(|&c| !c.is_ascii_alphanumeric() && c != b'_' && c != b'.' && c != b' ')
+                .position(|&c| {
+                    !c.is_ascii_alphanumeric() && !matches!(c, b'_' | b'.' | b' ' | b'-')
+                })
                 .map_or(bytes.len(), |n| from + 1 + n);
             if bytes.get(name_end) == Some(&b'%') && name_end > from + 1 {
                 let (lo, _) = line.origin(from, name_end);
@@ -777,9 +779,9 @@ impl<'h> Preprocessor<'h> {
 
     /// What `%name%` stands for at byte `lo` of the present file.
     fn value(&mut self, name: &str, lo: u32) -> Option<String> {
-        if name.contains(' ') {
-            // `%solveStat.Capability Problems%`
-            return variables::constant(&name.replace(' ', "")).map(str::to_owned);
+        if name.contains([' ', '-']) {
+            // `%solveStat.Capability Problems%`, `%modelStat.Infeasible-No Solution%`
+            return variables::constant(name).map(str::to_owned);
         }
         if let Some(v) = self.names.get(name) {
             return Some(v.to_owned());

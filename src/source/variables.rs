@@ -104,7 +104,8 @@ impl Variables {
     }
 }
 
-/// The number behind a named constant such as `%modelStat.optimal%`.
+/// The number behind a named constant such as `%modelStat.optimal%`; blanks, `-` and `_` in it say
+/// nothing (`%modelStat.Infeasible-No Solution%`).
 pub(crate) fn constant(name: &str) -> Option<&'static str> {
     #[rustfmt::skip]
     const MODEL_STATUS: &[&str] = &[
@@ -136,7 +137,7 @@ pub(crate) fn constant(name: &str) -> Option<&'static str> {
         "0", "1", "2", "3", "4", "5", "6", "7", "8", "9", "10", "11", "12", "13", "14", "15", "16",
         "17", "18", "19",
     ];
-    let name = name.to_ascii_lowercase();
+    let name = name.to_ascii_lowercase().replace([' ', '-', '_'], "");
     let (group, member) = name.split_once('.')?;
     let (list, first) = match group {
         "modelstat" => (MODEL_STATUS, 1),
@@ -150,6 +151,11 @@ pub(crate) fn constant(name: &str) -> Option<&'static str> {
     let member = match member {
         "intermediatenonoptimal" => "feasiblesolution",
         "evaluationerrorlimit" => "evaluationinterrupt",
+        "setupfailure" => "setuperr",
+        "solverfailure" => "solvererr",
+        "internalsolverfailure" => "internalerr",
+        "solveprocessingskipped" => "skipped",
+        "systemfailure" => "systemerr",
         "off" if group == "solprint" => "summary",
         "on" if group == "solprint" => "report",
         "silent" if group == "solprint" => "quiet",
@@ -185,6 +191,8 @@ mod tests {
         assert_eq!(constant("solveStat.normalCompletion"), Some("1"));
         assert_eq!(constant("solveLink.loadLibrary"), Some("5"));
         assert_eq!(constant("solPrint.quiet"), Some("2"));
+        assert_eq!(constant("modelStat.Infeasible-No_Solution"), Some("19"));
+        assert_eq!(constant("solveStat.SystemFailure"), Some("13"));
         assert_eq!(constant("modelStat.nonsense"), None);
     }
 }

@@ -571,6 +571,8 @@ pub struct Exchange {
 pub struct ExchangeItem {
     /// The symbol.
     pub name: Ident,
+    /// The attribute of the symbol that is loaded: `x.l`, `x.l = p`.
+    pub into: Option<Ident>,
     /// Its name in the file; `*` for all labels.
     pub other: Option<Ident>,
     /// `l`, `dim2` …

@@ -173,6 +173,31 @@ impl Reader<'_> {
             loading.text(w.symbol, &inside.text);
         }
         let kind = inside.kind.name();
+        let other_dim = || {
+            let (inside, own) = (format!("it has {dim} index positions"), symbol.dim());
+            let what = format!("{inside} in the file; `{}` has {own}", symbol.name);
+            self.wrong(w, &what, "")
+        };
+        if w.into.is_some() {
+            let part = match (inside.kind, w.part) {
+                (Kind::Parameter, Part::Whole) => Some(Part::Whole),
+                (Kind::Variable(_) | Kind::Equation(_), Part::Whole) => {
+                    Some(Part::Attribute(attribute::L))
+                }
+                (Kind::Variable(_) | Kind::Equation(_), Part::Attribute(a)) if a < 5 => {
+                    Some(w.part)
+                }
+                _ => None,
+            };
+            return match part.filter(|_| symbol.has_attributes()) {
+                None => {
+                    let what = "an attribute is read from a parameter, or from another attribute";
+                    self.wrong(w, what, "")
+                }
+                Some(_) if dim != symbol.dim() => other_dim(),
+                Some(part) => self.values(w, records()?, inside, part, loading),
+            };
+        }
         match w.part {
             Part::LastPosition | Part::FirstPosition => self.wrong(
                 w,
@@ -208,15 +233,7 @@ impl Reader<'_> {
                     _ => "",
                 },
             ),
-            _ if dim != symbol.dim() => self.wrong(
-                w,
-                &format!(
-                    "it has {dim} index positions in the file; `{}` has {}",
-                    symbol.name,
-                    symbol.dim()
-                ),
-                "",
-            ),
+            _ if dim != symbol.dim() => other_dim(),
             _ if symbol.is_set() => self.set(w, records()?, dim, loading),
             part => self.values(w, records()?, inside, part, loading),
         }
@@ -389,8 +406,9 @@ impl Reader<'_> {
                     .help(format!("write `acronym {name};` before")),
             );
         }
-        let columns = match part {
-            Part::Attribute(_) => vec![0],
+        let columns = match (w.into, part) {
+            (Some(a), _) => vec![a],
+            (None, Part::Attribute(_)) => vec![0],
             _ => (0..width as u32).collect(),
         };
         Ok((out, columns))

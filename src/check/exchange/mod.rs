@@ -21,7 +21,7 @@ use crate::data::value::{EPS, NA, UNDF};
 use crate::diag::{Diagnostic, nearest};
 use crate::source::Span;
 use crate::syntax::Parser;
-use crate::syntax::ast::{Exchange, ExchangeBy, ExchangeItem};
+use crate::syntax::ast::{Exchange, ExchangeBy, ExchangeItem, Ident};
 use records::Loading;
 
 /// A diagnostic; boxed, because it is large and rare.
@@ -44,6 +44,8 @@ pub struct Wanted {
     pub span: Span,
     /// What of it is read.
     pub part: Part,
+    /// The attribute of the symbol that it becomes, by its place behind the first table: `x.l = p`.
+    pub into: Option<u32>,
 }
 
 /// What of a symbol in a file is read.
@@ -51,7 +53,7 @@ pub struct Wanted {
 pub enum Part {
     /// All of it.
     Whole,
-    /// An attribute, by its place behind the first table, into a parameter.
+    /// An attribute, by its place behind the first table, into a parameter or an attribute.
     Attribute(u32),
     /// The labels of an index position, into a set.
     Position(usize),
@@ -122,14 +124,27 @@ pub fn wanted(symbols: &Symbols, items: &[ExchangeItem]) -> Loaded<Vec<Wanted>> 
             name: shown,
             span: name.span,
             part: part_of(item)?,
+            into: into_of(item)?,
         });
     }
     Ok(out)
 }
 
+/// The attribute that an item fills.
+fn into_of(item: &ExchangeItem) -> Loaded<Option<u32>> {
+    let Some(into) = &item.into else {
+        return Ok(None);
+    };
+    match attribute_offset(&into.name) {
+        Some(a) if item.by == ExchangeBy::Name => Ok(Some(a)),
+        _ => Err(no_part(into)),
+    }
+}
+
 /// What of a symbol an item asks for.
 fn part_of(item: &ExchangeItem) -> Loaded<Part> {
-    let Some(suffix) = &item.suffix else {
+    let own = item.into.as_ref().filter(|_| item.other.is_none());
+    let Some(suffix) = item.suffix.as_ref().or(own) else {
         return Ok(match item.by {
             ExchangeBy::Name => Part::Whole,
             ExchangeBy::LastPosition => Part::LastPosition,
@@ -143,16 +158,15 @@ fn part_of(item: &ExchangeItem) -> Loaded<Part> {
         (_, Some(p @ 1..=20)) => Some(Part::Position(p - 1)),
         _ => None,
     };
-    found.ok_or_else(|| {
-        Box::new(
-            Diagnostic::execution(
-                "E0475",
-                suffix.span,
-                format!("`.{}` is not a part of a symbol in a file", suffix.name),
-            )
+    found.ok_or_else(|| no_part(suffix))
+}
+
+fn no_part(suffix: &Ident) -> Box<Diagnostic> {
+    let message = format!("`.{}` is not a part of a symbol in a file", suffix.name);
+    Box::new(
+        Diagnostic::execution("E0475", suffix.span, message)
             .help("`p = x.l` reads an attribute into a parameter, `i < p.dim1` the labels of a position into a set"),
-        )
-    })
+    )
 }
 
 /// The format of a file, by the ending of its name.
@@ -194,6 +208,7 @@ fn declared(symbols: &Symbols, names: &[String], point: bool, span: Span) -> Vec
                 name: n.clone(),
                 span,
                 part: Part::Whole,
+                into: None,
             });
         }
     }
@@ -230,7 +245,10 @@ pub fn load(
     let kind = format_of(request.file);
     let file = full_name(request.file);
     if kind != Kind::Gdx
-        && let Some(w) = request.items.iter().find(|w| w.part != Part::Whole)
+        && let Some(w) = request
+            .items
+            .iter()
+            .find(|w| w.part != Part::Whole || w.into.is_some())
     {
         return Err(Box::new(
             Diagnostic::execution(
@@ -364,6 +382,7 @@ fn everything(symbols: &Symbols, kind: Kind, span: Span) -> Vec<Wanted> {
         name: s.name.to_string(),
         span,
         part: Part::Whole,
+        into: None,
     })
     .collect()
 }

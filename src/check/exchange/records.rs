@@ -242,8 +242,17 @@ impl<'a> Loading<'a> {
                 .label("nothing was loaded"),
             ));
         }
+        // As in GAMS the records of the file are all that there is: the other attributes get their defaults.
+        if w.into.is_some() && dim > 0 && !self.request.point {
+            let others = (0..attribute::COUNT).filter(|o| !columns.contains(o));
+            for table in others.map(|o| symbol.table + o) {
+                let default = self.store.table(table).default_value();
+                self.out.tables.push((table, Table::new(dim, default)));
+            }
+        }
         for (c, &offset) in columns.iter().enumerate() {
-            if self.request.point && !matches!(offset, attribute::L | attribute::M) {
+            let of_point = matches!(offset, attribute::L | attribute::M) || w.into.is_some();
+            if self.request.point && !of_point {
                 continue;
             }
             let values: Vec<f64> = order.iter().map(|&k| r.values[k * width + c]).collect();

@@ -573,16 +573,20 @@ impl Builder<'_> {
         })
     }
 
-    /// `x`, `x = y`, `p = x.l`, `i < p.dim1`.
+    /// `x`, `x = y`, `p = x.l`, `x.l = p`, `i < p.dim1`.
     fn exchange_item(&self, pair: Pair<'_, Rule>) -> Option<ExchangeItem> {
-        let (mut name, mut other, mut suffix) = (None, None, None);
+        let (mut name, mut into, mut other, mut suffix) = (None, None, None, None);
         let mut by = ExchangeBy::Name;
         for p in pair.into_inner() {
             match p.as_rule() {
                 Rule::name if name.is_none() => name = Some(self.ident(&p)),
                 Rule::name | Rule::any_label => other = Some(self.ident(&p)),
-                Rule::attribute if other.is_some() => {
-                    suffix = p.into_inner().next().map(|q| self.ident(&q));
+                Rule::attribute => {
+                    let attribute = p.into_inner().next().map(|q| self.ident(&q));
+                    match other {
+                        Some(_) => suffix = attribute,
+                        None => into = attribute,
+                    }
                 }
                 Rule::load_from => {
                     by = match p.as_str() {
@@ -596,6 +600,7 @@ impl Builder<'_> {
         }
         Some(ExchangeItem {
             name: name?,
+            into,
             other,
             suffix,
             by,
