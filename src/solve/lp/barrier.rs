@@ -52,8 +52,14 @@ const MOST: u64 = 200;
 const PATIENCE: [u64; 2] = [4, 12];
 const GOOD: f64 = 1e-9;
 
+/// A gap of so much of the tolerance is none: the residuals that are left stay.
+const NOTHING: f64 = 1e-4;
+
 /// Correctors beyond Mehrotra's: one more for each of these ratios that the operations of a factorisation to those of a solve exceed.
 const CORRECTORS: [f64; 3] = [10.0, 30.0, 50.0];
+
+/// The least distance to a bound of a point that is inside.
+const LEAST: f64 = 1e-10;
 
 /// The part of the way to the next bound that a step goes.
 const SHORT: f64 = 0.995;
@@ -457,9 +463,49 @@ fn begin(p: &Program, system: &mut System) -> Option<Iterate> {
     Some(at)
 }
 
-/// Solves a program until residuals and gap are below the first tolerance, relative to the sizes of sides, costs and objective, or
+/// A given point that is inside the bounds, with multipliers of the rows for which reduced costs draw columns and rows to their nearest bounds.
+fn centre(p: &Program, point: &Point, kept: &[usize]) -> Iterate {
+    let mut value: Vec<f64> = kept.iter().map(|&j| point.x[j]).collect();
+    value.resize(p.n + p.m, 0.0);
+    let (x, s) = value.split_at_mut(p.n);
+    for (i, s) in s.iter_mut().enumerate() {
+        *s = match p.constant[p.n + i] {
+            true => p.value[p.n + i],
+            false => p.rows.line(i).map(|(j, a)| a * x[j]).sum(),
+        };
+    }
+    let none = vec![0.0; p.bounds()];
+    let mut left = p.dual_residuals(&point.y, &none);
+    let distance = |b: usize| (p.sign[b] * (value[p.of[b]] - p.side[b])).max(LEAST);
+    let w: Vec<f64> = (0..p.bounds()).map(distance).collect();
+    let mut z = none;
+    let drawn = |b: usize, left: &[f64]| p.sign[b] * left[p.of[b]] > 0.0;
+    let pushed: Vec<usize> = (0..p.bounds()).filter(|&b| !drawn(b, &left)).collect();
+    for b in pushed {
+        z[b] = 1.0 / w[b];
+        left[p.of[b]] -= p.sign[b] * z[b];
+    }
+    for b in 0..p.bounds() {
+        if z[b] == 0.0 {
+            z[b] = p.sign[b] * left[p.of[b]];
+        }
+    }
+    Iterate {
+        value,
+        y: point.y.clone(),
+        w,
+        z,
+    }
+}
+
+/// Solves a program, from a point inside if there is one that is [`centre`]d, until residuals and gap are below the first tolerance, relative to the sizes of sides, costs and objective, or
 /// until no iteration brings them down; a point within the second one is a solution then. Nothing is said about programs without one: [`Ended::Failed`].
-pub(super) fn solve(problem: &Problem, tolerances: [f64; 2], budget: &Budget) -> Run {
+pub(super) fn solve(
+    problem: &Problem,
+    from: Option<&Point>,
+    tolerances: [f64; 2],
+    budget: &Budget,
+) -> Run {
     let [tolerance, enough] = tolerances;
     let (p, kept) = Program::new(problem);
     let mut run = Run {
@@ -476,7 +522,11 @@ pub(super) fn solve(problem: &Problem, tolerances: [f64; 2], budget: &Budget) ->
         Ok(system) => system,
         Err(ended) => return Run { ended, ..run },
     };
-    let Some(mut at) = begin(&p, &mut system) else {
+    let first = match from {
+        Some(point) => Some(centre(&p, point, &kept)),
+        None => begin(&p, &mut system),
+    };
+    let Some(mut at) = first else {
         return run;
     };
     let sides = p
@@ -510,7 +560,10 @@ pub(super) fn solve(problem: &Problem, tolerances: [f64; 2], budget: &Budget) ->
         if worst < best.0 {
             best = (worst, at.clone());
         }
-        let patience = PATIENCE[usize::from(best.0 > GOOD)];
+        let patience = match gap > NOTHING * tolerance {
+            true => PATIENCE[usize::from(best.0 > GOOD)],
+            false => 1,
+        };
         if worst <= tolerance || iteration > halved.1 + patience || !worst.is_finite() {
             break;
         }
