@@ -31,6 +31,8 @@ use faer::sparse::linalg::cholesky::{
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
+use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// ρ and δ where primal and dual variables are alike.
 const REGULAR: f64 = 1e-9;
@@ -57,6 +59,10 @@ const NOTHING: f64 = 1e-4;
 
 /// Correctors beyond Mehrotra's: one more for each of these ratios that the operations of a factorisation to those of a solve exceed.
 const CORRECTORS: [f64; 3] = [10.0, 30.0, 50.0];
+
+/// Entries of a column that is long, and the columns of a block.
+const LONG: usize = 100;
+const BLOCK: usize = 64;
 
 /// The least distance to a bound of a point that is inside.
 const LEAST: f64 = 1e-10;
@@ -177,6 +183,32 @@ impl Iterate {
     }
 }
 
+/// For each column those before it in its block, where long columns have entries in the same rows: zeros between them make one block of the factor,
+/// which is eliminated by products of matrices, not column by column.
+fn alike(p: &Program) -> Vec<Vec<usize>> {
+    let mut pattern = vec![(0usize, 0u64); p.n];
+    for i in 0..p.m {
+        let mut row = DefaultHasher::new();
+        i.hash(&mut row);
+        let row = row.finish();
+        for (j, _) in p.rows.line(i) {
+            let (count, sum) = pattern[j];
+            pattern[j] = (count + 1, sum.wrapping_add(row));
+        }
+    }
+    let mut before = vec![Vec::new(); p.n];
+    let mut blocks: HashMap<(usize, u64), Vec<usize>> = HashMap::new();
+    for (j, &pattern) in pattern.iter().enumerate().filter(|e| e.1.0 >= LONG) {
+        let block = blocks.entry(pattern).or_default();
+        before[j].clone_from(block);
+        block.push(j);
+        if block.len() == BLOCK {
+            block.clear();
+        }
+    }
+    before
+}
+
 /// The Newton system: the upper triangle by columns, and its factors.
 struct System {
     start: Vec<usize>,
@@ -201,8 +233,12 @@ impl System {
     fn new(p: &Program, budget: &Budget) -> Result<Self, Ended> {
         let order = p.n + p.m;
         let (mut start, mut index, mut entries) = (vec![0], Vec::new(), Vec::new());
+        let alike = alike(p);
         for k in 0..order {
-            if k >= p.n {
+            if k < p.n {
+                index.extend(&alike[k]);
+                entries.resize(index.len(), 0.0);
+            } else {
                 p.rows.line(k - p.n).for_each(|(j, a)| {
                     index.push(j);
                     entries.push(a);
