@@ -24,7 +24,7 @@ use crate::solve::{Budget, Progress};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::ldlt::factor::LdltRegularization;
 use faer::perm::PermRef;
-use faer::sparse::linalg::amd;
+use faer::sparse::linalg::amd::{self, FlopCount};
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LdltRef, SymbolicCholesky, SymmetricOrdering,
     factorize_symbolic_cholesky,
@@ -63,6 +63,9 @@ const CORRECTORS: [f64; 3] = [10.0, 30.0, 50.0];
 /// Entries of a column that is long, and the columns of a block.
 const LONG: usize = 100;
 const BLOCK: usize = 64;
+
+/// So many short columns for each long one and each row are nearly all.
+const MANY: usize = 10;
 
 /// The least distance to a bound of a point that is inside.
 const LEAST: f64 = 1e-10;
@@ -209,6 +212,64 @@ fn alike(p: &Program) -> Vec<Vec<usize>> {
     before
 }
 
+/// The order of pivots by approximate minimum degree (Amestoy, Davis & Duff 1996), and what it costs.
+fn minimum_degree(pattern: SymbolicSparseColMatRef<usize>) -> Option<(Vec<usize>, FlopCount)> {
+    let order = pattern.ncols();
+    let (mut fwd, mut inv) = (vec![0; order], vec![0; order]);
+    let nonzeros = pattern.compute_nnz();
+    let mut memory = MemBuffer::new(amd::order_maybe_unsorted_scratch::<usize>(order, nonzeros));
+    let stack = MemStack::new(&mut memory);
+    let control = amd::Control::default();
+    let count = amd::order_maybe_unsorted(&mut fwd, &mut inv, pattern, control, stack);
+    Some((fwd, count.ok()?))
+}
+
+/// The same where nearly all columns have one or two entries, as in a transport of thousands of places to thousands: they have the least degree, and
+/// come first without a search. None: they are not that many.
+fn short_first(p: &Program) -> Option<Option<(Vec<usize>, FlopCount)>> {
+    let mut entries = vec![Vec::new(); p.n];
+    for i in 0..p.m {
+        p.rows.line(i).for_each(|(j, _)| entries[j].push(i));
+    }
+    let (short, long): (Vec<usize>, Vec<usize>) = (0..p.n).partition(|&j| entries[j].len() < 3);
+    let rest: Vec<usize> = long.into_iter().chain(p.n..p.n + p.m).collect();
+    if short.len() < MANY * rest.len() {
+        return None;
+    }
+    let mut met = vec![Vec::new(); rest.len()];
+    let long = rest.len() - p.m;
+    for &j in &short {
+        if let [i, k] = entries[j][..] {
+            met[long + k].push(long + i);
+        }
+    }
+    for i in 0..p.m {
+        let columns = p
+            .rows
+            .line(i)
+            .filter_map(|(j, _)| rest[..long].binary_search(&j).ok());
+        met[long + i].extend(columns);
+    }
+    let (mut start, mut index) = (vec![0], Vec::new());
+    for mut line in met {
+        line.sort_unstable();
+        line.dedup();
+        index.extend(line);
+        start.push(index.len());
+    }
+    let pattern =
+        SymbolicSparseColMatRef::new_checked(rest.len(), rest.len(), &start, None, &index);
+    let sum = |(order, count): (Vec<usize>, FlopCount)| {
+        let last = order.into_iter().map(|k| rest[k]);
+        let count = FlopCount {
+            n_div: count.n_div + 2.0 * short.len() as f64,
+            ..count
+        };
+        (short.iter().copied().chain(last).collect(), count)
+    };
+    Some(minimum_degree(pattern).map(sum))
+}
+
 /// The Newton system: the upper triangle by columns, and its factors.
 struct System {
     start: Vec<usize>,
@@ -249,13 +310,10 @@ impl System {
             start.push(index.len());
         }
         let pattern = SymbolicSparseColMatRef::new_checked(order, order, &start, None, &index);
-        let (mut fwd, mut inv) = (vec![0usize; order], vec![0usize; order]);
-        let scratch = amd::order_maybe_unsorted_scratch::<usize>(order, index.len());
-        let mut memory = MemBuffer::new(scratch);
-        let control = amd::Control::default();
-        let stack = MemStack::new(&mut memory);
-        let count = amd::order_maybe_unsorted(&mut fwd, &mut inv, pattern, control, stack)
-            .map_err(|_| Ended::Failed)?;
+        let ordered = short_first(p).unwrap_or_else(|| minimum_degree(pattern));
+        let (fwd, count) = ordered.ok_or(Ended::Failed)?;
+        let mut inv = vec![0; order];
+        fwd.iter().enumerate().for_each(|(k, &i)| inv[i] = k);
         let nonzeros = count.n_div + order as f64;
         let size = || Size {
             what: "the factor of the Newton system",
