@@ -142,6 +142,15 @@ impl Program {
         (0..self.m).map(of).collect()
     }
 
+    /// D = Σ z/w.
+    fn curvature(&self, at: &Iterate) -> Vec<f64> {
+        let mut d = vec![0.0; self.n + self.m];
+        for (b, &k) in self.of.iter().enumerate() {
+            d[k] += at.z[b] / at.w[b];
+        }
+        d
+    }
+
     /// c − (A, −I)ᵀy − Σ ±z.
     fn dual_residuals(&self, y: &[f64], z: &[f64]) -> Vec<f64> {
         let mut r = self.cost.clone();
@@ -616,11 +625,8 @@ pub(super) fn solve(
         Ok(system) => system,
         Err(ended) => return Run { ended, ..run },
     };
-    let first = match from {
-        Some(point) => Some(centre(&p, point, &kept)),
-        None => begin(&p, &mut system),
-    };
-    let Some(mut at) = first else {
+    let first = from.map(|point| centre(&p, point, &kept));
+    let Some(mut at) = first.or_else(|| begin(&p, &mut system)) else {
         return run;
     };
     let sides = p
@@ -665,10 +671,7 @@ pub(super) fn solve(
             run.ended = stop.into();
             break;
         }
-        let mut d = vec![0.0; p.n + p.m];
-        for (b, &k) in p.of.iter().enumerate() {
-            d[k] += at.z[b] / at.w[b];
-        }
+        let d = p.curvature(&at);
         let mu = product / p.bounds().max(1) as f64;
         let step = (0..STABLER).find_map(|_| {
             system.suit(&at);
