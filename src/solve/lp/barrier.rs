@@ -236,29 +236,25 @@ fn minimum_degree(pattern: SymbolicSparseColMatRef<usize>) -> Option<(Vec<usize>
 /// The same where nearly all columns have one or two entries, as in a transport of thousands of places to thousands: they have the least degree, and
 /// come first without a search. None: they are not that many.
 fn short_first(p: &Program) -> Option<Option<(Vec<usize>, FlopCount)>> {
-    let mut entries = vec![Vec::new(); p.n];
-    for i in 0..p.m {
-        p.rows.line(i).for_each(|(j, _)| entries[j].push(i));
-    }
-    let (short, long): (Vec<usize>, Vec<usize>) = (0..p.n).partition(|&j| entries[j].len() < 3);
-    let rest: Vec<usize> = long.into_iter().chain(p.n..p.n + p.m).collect();
-    if short.len() < MANY * rest.len() {
+    let mut entries = vec![0usize; p.n];
+    p.rows.index.iter().for_each(|&j| entries[j as usize] += 1);
+    let (short, long): (Vec<usize>, Vec<usize>) = (0..p.n).partition(|&j| entries[j] < 3);
+    if short.len() < MANY * (long.len() + p.m) {
         return None;
     }
-    let mut met = vec![Vec::new(); rest.len()];
-    let long = rest.len() - p.m;
-    for &j in &short {
-        if let [i, k] = entries[j][..] {
-            met[long + k].push(long + i);
+    let mut met = vec![Vec::new(); long.len() + p.m];
+    let mut first = vec![None; p.n];
+    for i in 0..p.m {
+        let row = long.len() + i;
+        for (j, _) in p.rows.line(i) {
+            if entries[j] >= 3 {
+                met[row].extend(long.binary_search(&j));
+            } else if let Some(other) = first[j].replace(row) {
+                met[row].push(other);
+            }
         }
     }
-    for i in 0..p.m {
-        let columns = p
-            .rows
-            .line(i)
-            .filter_map(|(j, _)| rest[..long].binary_search(&j).ok());
-        met[long + i].extend(columns);
-    }
+    let rest: Vec<usize> = long.into_iter().chain(p.n..p.n + p.m).collect();
     let (mut start, mut index) = (vec![0], Vec::new());
     for mut line in met {
         line.sort_unstable();
