@@ -24,13 +24,15 @@ use crate::solve::{Budget, Progress};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::ldlt::factor::LdltRegularization;
 use faer::perm::PermRef;
-use faer::sparse::linalg::amd;
+use faer::sparse::linalg::amd::{self, FlopCount};
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LdltRef, SymbolicCholesky, SymmetricOrdering,
     factorize_symbolic_cholesky,
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
+use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// ρ and δ where primal and dual variables are alike.
 const REGULAR: f64 = 1e-9;
@@ -52,8 +54,21 @@ const MOST: u64 = 200;
 const PATIENCE: [u64; 2] = [4, 12];
 const GOOD: f64 = 1e-9;
 
+/// A gap of so much of the tolerance is none: the residuals that are left stay.
+const NOTHING: f64 = 1e-4;
+
 /// Correctors beyond Mehrotra's: one more for each of these ratios that the operations of a factorisation to those of a solve exceed.
 const CORRECTORS: [f64; 3] = [10.0, 30.0, 50.0];
+
+/// Entries of a column that is long, and the columns of a block.
+const LONG: usize = 100;
+const BLOCK: usize = 64;
+
+/// So many short columns for each long one and each row are nearly all.
+const MANY: usize = 10;
+
+/// The least distance to a bound of a point that is inside.
+const LEAST: f64 = 1e-10;
 
 /// The part of the way to the next bound that a step goes.
 const SHORT: f64 = 0.995;
@@ -127,6 +142,15 @@ impl Program {
         (0..self.m).map(of).collect()
     }
 
+    /// D = Σ z/w.
+    fn curvature(&self, at: &Iterate) -> Vec<f64> {
+        let mut d = vec![0.0; self.n + self.m];
+        for (b, &k) in self.of.iter().enumerate() {
+            d[k] += at.z[b] / at.w[b];
+        }
+        d
+    }
+
     /// c − (A, −I)ᵀy − Σ ±z.
     fn dual_residuals(&self, y: &[f64], z: &[f64]) -> Vec<f64> {
         let mut r = self.cost.clone();
@@ -171,6 +195,86 @@ impl Iterate {
     }
 }
 
+/// For each column those before it in its block, where long columns have entries in the same rows: zeros between them make one block of the factor,
+/// which is eliminated by products of matrices, not column by column.
+fn alike(p: &Program) -> Vec<Vec<usize>> {
+    let mut pattern = vec![(0usize, 0u64); p.n];
+    for i in 0..p.m {
+        let mut row = DefaultHasher::new();
+        i.hash(&mut row);
+        let row = row.finish();
+        for (j, _) in p.rows.line(i) {
+            let (count, sum) = pattern[j];
+            pattern[j] = (count + 1, sum.wrapping_add(row));
+        }
+    }
+    let mut before = vec![Vec::new(); p.n];
+    let mut blocks: HashMap<(usize, u64), Vec<usize>> = HashMap::new();
+    for (j, &pattern) in pattern.iter().enumerate().filter(|e| e.1.0 >= LONG) {
+        let block = blocks.entry(pattern).or_default();
+        before[j].clone_from(block);
+        block.push(j);
+        if block.len() == BLOCK {
+            block.clear();
+        }
+    }
+    before
+}
+
+/// The order of pivots by approximate minimum degree (Amestoy, Davis & Duff 1996), and what it costs.
+fn minimum_degree(pattern: SymbolicSparseColMatRef<usize>) -> Option<(Vec<usize>, FlopCount)> {
+    let order = pattern.ncols();
+    let (mut fwd, mut inv) = (vec![0; order], vec![0; order]);
+    let nonzeros = pattern.compute_nnz();
+    let mut memory = MemBuffer::new(amd::order_maybe_unsorted_scratch::<usize>(order, nonzeros));
+    let stack = MemStack::new(&mut memory);
+    let control = amd::Control::default();
+    let count = amd::order_maybe_unsorted(&mut fwd, &mut inv, pattern, control, stack);
+    Some((fwd, count.ok()?))
+}
+
+/// The same where nearly all columns have one or two entries, as in a transport of thousands of places to thousands: they have the least degree, and
+/// come first without a search. None: they are not that many.
+fn short_first(p: &Program) -> Option<Option<(Vec<usize>, FlopCount)>> {
+    let mut entries = vec![0usize; p.n];
+    p.rows.index.iter().for_each(|&j| entries[j as usize] += 1);
+    let (short, long): (Vec<usize>, Vec<usize>) = (0..p.n).partition(|&j| entries[j] < 3);
+    if short.len() < MANY * (long.len() + p.m) {
+        return None;
+    }
+    let mut met = vec![Vec::new(); long.len() + p.m];
+    let mut first = vec![None; p.n];
+    for i in 0..p.m {
+        let row = long.len() + i;
+        for (j, _) in p.rows.line(i) {
+            if entries[j] >= 3 {
+                met[row].extend(long.binary_search(&j));
+            } else if let Some(other) = first[j].replace(row) {
+                met[row].push(other);
+            }
+        }
+    }
+    let rest: Vec<usize> = long.into_iter().chain(p.n..p.n + p.m).collect();
+    let (mut start, mut index) = (vec![0], Vec::new());
+    for mut line in met {
+        line.sort_unstable();
+        line.dedup();
+        index.extend(line);
+        start.push(index.len());
+    }
+    let pattern =
+        SymbolicSparseColMatRef::new_checked(rest.len(), rest.len(), &start, None, &index);
+    let sum = |(order, count): (Vec<usize>, FlopCount)| {
+        let last = order.into_iter().map(|k| rest[k]);
+        let count = FlopCount {
+            n_div: count.n_div + 2.0 * short.len() as f64,
+            ..count
+        };
+        (short.iter().copied().chain(last).collect(), count)
+    };
+    Some(minimum_degree(pattern).map(sum))
+}
+
 /// The Newton system: the upper triangle by columns, and its factors.
 struct System {
     start: Vec<usize>,
@@ -195,8 +299,12 @@ impl System {
     fn new(p: &Program, budget: &Budget) -> Result<Self, Ended> {
         let order = p.n + p.m;
         let (mut start, mut index, mut entries) = (vec![0], Vec::new(), Vec::new());
+        let alike = alike(p);
         for k in 0..order {
-            if k >= p.n {
+            if k < p.n {
+                index.extend(&alike[k]);
+                entries.resize(index.len(), 0.0);
+            } else {
                 p.rows.line(k - p.n).for_each(|(j, a)| {
                     index.push(j);
                     entries.push(a);
@@ -207,13 +315,10 @@ impl System {
             start.push(index.len());
         }
         let pattern = SymbolicSparseColMatRef::new_checked(order, order, &start, None, &index);
-        let (mut fwd, mut inv) = (vec![0usize; order], vec![0usize; order]);
-        let scratch = amd::order_maybe_unsorted_scratch::<usize>(order, index.len());
-        let mut memory = MemBuffer::new(scratch);
-        let control = amd::Control::default();
-        let stack = MemStack::new(&mut memory);
-        let count = amd::order_maybe_unsorted(&mut fwd, &mut inv, pattern, control, stack)
-            .map_err(|_| Ended::Failed)?;
+        let ordered = short_first(p).unwrap_or_else(|| minimum_degree(pattern));
+        let (fwd, count) = ordered.ok_or(Ended::Failed)?;
+        let mut inv = vec![0; order];
+        fwd.iter().enumerate().for_each(|(k, &i)| inv[i] = k);
         let nonzeros = count.n_div + order as f64;
         let size = || Size {
             what: "the factor of the Newton system",
@@ -457,9 +562,49 @@ fn begin(p: &Program, system: &mut System) -> Option<Iterate> {
     Some(at)
 }
 
-/// Solves a program until residuals and gap are below the first tolerance, relative to the sizes of sides, costs and objective, or
+/// A given point that is inside the bounds, with multipliers of the rows for which reduced costs draw columns and rows to their nearest bounds.
+fn centre(p: &Program, point: &Point, kept: &[usize]) -> Iterate {
+    let mut value: Vec<f64> = kept.iter().map(|&j| point.x[j]).collect();
+    value.resize(p.n + p.m, 0.0);
+    let (x, s) = value.split_at_mut(p.n);
+    for (i, s) in s.iter_mut().enumerate() {
+        *s = match p.constant[p.n + i] {
+            true => p.value[p.n + i],
+            false => p.rows.line(i).map(|(j, a)| a * x[j]).sum(),
+        };
+    }
+    let none = vec![0.0; p.bounds()];
+    let mut left = p.dual_residuals(&point.y, &none);
+    let distance = |b: usize| (p.sign[b] * (value[p.of[b]] - p.side[b])).max(LEAST);
+    let w: Vec<f64> = (0..p.bounds()).map(distance).collect();
+    let mut z = none;
+    let drawn = |b: usize, left: &[f64]| p.sign[b] * left[p.of[b]] > 0.0;
+    let pushed: Vec<usize> = (0..p.bounds()).filter(|&b| !drawn(b, &left)).collect();
+    for b in pushed {
+        z[b] = 1.0 / w[b];
+        left[p.of[b]] -= p.sign[b] * z[b];
+    }
+    for b in 0..p.bounds() {
+        if z[b] == 0.0 {
+            z[b] = p.sign[b] * left[p.of[b]];
+        }
+    }
+    Iterate {
+        value,
+        y: point.y.clone(),
+        w,
+        z,
+    }
+}
+
+/// Solves a program, from a point inside if there is one that is [`centre`]d, until residuals and gap are below the first tolerance, relative to the sizes of sides, costs and objective, or
 /// until no iteration brings them down; a point within the second one is a solution then. Nothing is said about programs without one: [`Ended::Failed`].
-pub(super) fn solve(problem: &Problem, tolerances: [f64; 2], budget: &Budget) -> Run {
+pub(super) fn solve(
+    problem: &Problem,
+    from: Option<&Point>,
+    tolerances: [f64; 2],
+    budget: &Budget,
+) -> Run {
     let [tolerance, enough] = tolerances;
     let (p, kept) = Program::new(problem);
     let mut run = Run {
@@ -476,7 +621,8 @@ pub(super) fn solve(problem: &Problem, tolerances: [f64; 2], budget: &Budget) ->
         Ok(system) => system,
         Err(ended) => return Run { ended, ..run },
     };
-    let Some(mut at) = begin(&p, &mut system) else {
+    let first = from.map(|point| centre(&p, point, &kept));
+    let Some(mut at) = first.or_else(|| begin(&p, &mut system)) else {
         return run;
     };
     let sides = p
@@ -510,7 +656,10 @@ pub(super) fn solve(problem: &Problem, tolerances: [f64; 2], budget: &Budget) ->
         if worst < best.0 {
             best = (worst, at.clone());
         }
-        let patience = PATIENCE[usize::from(best.0 > GOOD)];
+        let patience = match gap > NOTHING * tolerance {
+            true => PATIENCE[usize::from(best.0 > GOOD)],
+            false => 1,
+        };
         if worst <= tolerance || iteration > halved.1 + patience || !worst.is_finite() {
             break;
         }
@@ -518,10 +667,7 @@ pub(super) fn solve(problem: &Problem, tolerances: [f64; 2], budget: &Budget) ->
             run.ended = stop.into();
             break;
         }
-        let mut d = vec![0.0; p.n + p.m];
-        for (b, &k) in p.of.iter().enumerate() {
-            d[k] += at.z[b] / at.w[b];
-        }
+        let d = p.curvature(&at);
         let mu = product / p.bounds().max(1) as f64;
         let step = (0..STABLER).find_map(|_| {
             system.suit(&at);

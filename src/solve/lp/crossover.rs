@@ -81,10 +81,16 @@ pub fn is_wide(p: &Problem, point: &Point) -> bool {
 
 /// The face on which the interior point is, with an objective that has one optimal point: what is
 /// at a bound stays where it is, and all else is drawn to its bound, with random weights that spare what is
-/// near it already.
-pub fn face(p: &Problem, point: &Point) -> Problem {
+/// near it already. And the interior point with the multipliers that such an objective has: distance times multiplier is
+/// nearly the same everywhere, so that it is in the middle of the face's own path.
+pub fn face(p: &Problem, point: &Point) -> (Problem, Point) {
     let mut face = p.clone();
     face.cost.fill(0.0);
+    let mut centre = Point {
+        x: point.x.clone(),
+        y: vec![0.0; p.m()],
+        d: Vec::new(),
+    };
     for (j, v) in places(p, point).enumerate() {
         if v.is_free() || v.lower == v.upper {
             continue;
@@ -103,11 +109,14 @@ pub fn face(p: &Problem, point: &Point) -> Problem {
         let sign = if v.is_low() { 1.0 } else { -1.0 };
         let weight = sign * jitter(j) / v.distance().max(NEAR);
         match row {
-            Some(i) => p.rows.line(i).for_each(|(k, a)| face.cost[k] += a * weight),
+            Some(i) => {
+                centre.y[i] = weight;
+                p.rows.line(i).for_each(|(k, a)| face.cost[k] += a * weight);
+            }
             None => face.cost[j] += weight,
         }
     }
-    face
+    (face, centre)
 }
 
 /// A basis suggested by an interior point, and perhaps one of its face; and where all variables are.

@@ -474,7 +474,7 @@ fn simplex_answer(mut simplex: Simplex, ended: Ended) -> Gave {
 /// The interior point of a program, and how good it is: as [`barrier::solve`] has it, and where that fails as Clarabel has it, which
 /// tells programs without a solution.
 fn interior_point(p: &Problem, tolerances: [f64; 2], budget: &Budget) -> interior::Run {
-    let own = || Some(barrier::solve(p, tolerances, budget));
+    let own = || Some(barrier::solve(p, None, tolerances, budget));
     let run = trivial(p).or_else(own).filter(|r| r.ended != Ended::Failed);
     // Clarabel takes a hundred iterations more for a digit beyond these.
     let tolerance = tolerances[0].max(1e-10).min(tolerances[1]);
@@ -553,7 +553,7 @@ fn finished(p: &Problem, accuracy: Accuracy, strategies: Strategies, budget: &Bu
     if let Some(run) = trivial(p) {
         return finished_from(p, given(run), accuracy, strategies, budget).0;
     }
-    let own = given(barrier::solve(p, [FINE, USEFUL], budget));
+    let own = given(barrier::solve(p, None, [FINE, USEFUL], budget));
     let own = match own.ended == Ended::Failed {
         true => own,
         false => match finished_from(p, own, accuracy, strategies, budget) {
@@ -584,8 +584,8 @@ fn finished_from(
         Ended::Solved => {
             let wide = crossover::is_wide(p, &answer.point) && strategies.run(Strategy::FaceVertex);
             let of_face = wide.then(|| {
-                let face = crossover::face(p, &answer.point);
-                interior_point(&face, [FINE, USEFUL], budget)
+                let (face, centre) = crossover::face(p, &answer.point);
+                barrier::solve(&face, Some(&centre), [FINE, USEFUL], budget)
             });
             let of_face = of_face.filter(|f| f.ended == Ended::Solved);
             if let Some(f) = &of_face {

@@ -25,9 +25,9 @@ const OUTSIDE: f64 = 1e-6;
 /// Weight of a row whose logical may well be basic.
 const UNHELD: f64 = 1.0 / 4096.0;
 
-/// Entries of a column that only makes a matrix square. The search for pivots looks at the columns with the fewest
-/// entries first, so empty ones would be in its way at every step.
-const PADDING: usize = 4;
+/// Rows beyond those of the program, where the columns that only make a matrix square have their entries. The search for pivots looks at the columns
+/// with the fewest entries first, so empty ones would be in its way at every step; and entries in other rows would fill up.
+const PADDING: usize = 100;
 
 /// Such an entry: not 0, but too small for a pivot.
 const NO_PIVOT: f64 = 1e-200;
@@ -107,28 +107,23 @@ impl Simplex {
             column.map(|(i, a)| (i, a * weight(i))).collect()
         };
         let mut columns: Vec<Entries> = inside.iter().map(weighted).collect();
-        let padding = (0..self.m - columns.len()).map(|k| {
-            let rows = (k * PADDING..).take(PADDING.min(self.m));
-            rows.map(|i| (i % self.m, NO_PIVOT)).collect()
-        });
-        let padding: Vec<Entries> = padding.collect();
-        columns.extend(padding);
-        let left = match Factor::new(self.m, &columns) {
+        let rows = self.m + PADDING;
+        let padding = (self.m..rows).map(|i| (i, NO_PIVOT)).collect();
+        columns.resize(rows, padding);
+        let left = match Factor::new(rows, &columns) {
             Err(Failure::Dependent(left)) => left,
             // What is inside has hardly an entry: paddings were pivots.
             Ok(_) => return self.refactor(),
             Err(Failure::Numbers) => return None,
         };
-        let paddings = left.iter().filter(|l| l.0 >= inside.len()).count();
-        let taken = left.iter().any(|&(_, row)| start.inside[self.n + row]);
-        if paddings < self.m - inside.len() || taken {
+        let rows = left.iter().map(|l| l.1).filter(|&row| row < self.m);
+        let logicals: Vec<u32> = rows.map(|row| (self.n + row) as u32).collect();
+        let taken = logicals.iter().any(|&j| start.inside[j as usize]);
+        if inside.len() + logicals.len() != self.m || taken {
             return self.refactor();
         }
         self.head = inside;
-        self.head.resize(self.m, NONBASIC);
-        for (slot, row) in left {
-            self.head[slot] = (self.n + row) as u32;
-        }
+        self.head.extend(logicals);
         self.slot.fill(NONBASIC);
         for (slot, &j) in self.head.iter().enumerate() {
             self.slot[j as usize] = slot as u32;
