@@ -56,11 +56,11 @@ macro_rules! strategies {
 strategies! {
     "lp": {
         Presolve "presolve",
-            "more than 600 rows and columns: rows and columns that are decided, implied or multiples of others are taken out",
+            "more than 200 rows and columns: rows and columns that are decided, implied or multiples of others are taken out",
             "the nonzeros, some thirty times at most",
             "Andersen & Andersen 1995";
         SimplexFirst "simplex_first",
-            "more than 600 rows and columns: the simplex method is tried before the interior point",
+            "more than 200 rows and columns: the simplex method is tried before the interior point",
             "the work of touching each nonzero 100 times",
             "Koberstein & Suhl 2007";
         FaceVertex "face_vertex",

@@ -501,12 +501,11 @@ fn given(run: interior::Run) -> Gave {
     }
 }
 
-/// Columns and rows together up to which the simplex method is all that is needed, as a rule.
-const MAX_SMALL_SIZE: usize = 600;
+/// Columns and rows together up to which the simplex method is all that is needed, as a rule, and a presolve does not pay.
+const MAX_SMALL_SIZE: usize = 200;
 
-/// When the simplex method has touched so many times the numbers that the Newton system is made of, or is to do so in as many pivots as there are rows,
-/// an interior point is sooner there. (48 programs of Netlib that take HiGHS 0.01 to 1 s: at 15, 30 and 60 they take 6.0, 6.7 and 7.9 s; at 7 dense
-/// ones, WOOD1P and FIT2D, are given up that the simplex method solves at once.)
+/// When the simplex method has touched so many times the numbers that the Newton system is made of, or is to do so as it goes on,
+/// an interior point is sooner there.
 const WORK: f64 = 12.0;
 
 /// The interior point from which a crossover begins: its tolerance, each digit of which saves pushes, and where none can be had that good, the least.

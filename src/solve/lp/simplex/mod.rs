@@ -47,6 +47,13 @@ const PIVOT: f64 = 1e-9;
 /// A pivot smaller than this is taken only on a fresh factor.
 const SAFE_PIVOT: f64 = 1e-6;
 
+/// Pivots for each row that a solution takes, about, and after how many of them their work tells that of the others.
+const AHEAD: f64 = 1.5;
+const TELLING: u64 = 50;
+
+/// What a pivot costs beside the numbers that it touches, in these: always, and for each row.
+const PIVOT_WORK: [usize; 2] = [2000, 3];
+
 /// How a method ended.
 #[derive(Clone, Debug, PartialEq)]
 enum Stop {
@@ -126,7 +133,7 @@ pub struct Simplex {
     /// The dual method has a first phase in boxes; without it shifted costs, which the primal method mends, as soon in
     /// small programs and near a solution.
     pub boxes: bool,
-    /// Gives up, as at an iteration limit, when [`Simplex::work`] is more than this, or would be after as many pivots as there are rows.
+    /// Gives up, as at an iteration limit, when [`Simplex::work`] is more than this, or would be after [`AHEAD`] pivots for each row.
     pub most_work: f64,
     /// Numbers that the pivots have touched, about.
     work: f64,
@@ -764,9 +771,8 @@ impl Simplex {
 
     /// Whether this is as far as it may go.
     fn is_spent(&self) -> bool {
-        // The first pivots tell little.
-        let pivots = self.iterations.max(200) as f64;
-        let projected = self.work * (self.m as f64 / pivots).max(1.0);
+        let pivots = self.iterations.max(TELLING) as f64;
+        let projected = self.work * (AHEAD * self.m as f64 / pivots).max(1.0);
         self.iterations >= self.limit || projected > self.most_work
     }
 
@@ -774,6 +780,7 @@ impl Simplex {
     fn add_work(&mut self, passed: usize, entries: usize) {
         let factor = self.factor.as_ref().map_or(0, Factor::nonzeros) as f64;
         let solves = entries as f64 * (1.0 + factor / self.m as f64);
+        let passed = passed + PIVOT_WORK[0] + PIVOT_WORK[1] * self.m;
         self.work += (passed + self.row_index.len()) as f64 + solves;
     }
 
