@@ -61,7 +61,7 @@ strategies! {
             "Andersen & Andersen 1995";
         SimplexFirst "simplex_first",
             "more than 200 rows and columns: the simplex method is tried before the interior point",
-            "the work of touching each nonzero 100 times",
+            "what an interior point is likely to cost, at most",
             "Koberstein & Suhl 2007";
         FaceVertex "face_vertex",
             "an interior point in a face of 1500 dimensions: a second one, with a random objective, ends near a vertex of it",

@@ -504,9 +504,9 @@ fn given(run: interior::Run) -> Gave {
 /// Columns and rows together up to which the simplex method is all that is needed, as a rule, and a presolve does not pay.
 const MAX_SMALL_SIZE: usize = 200;
 
-/// When the simplex method has touched so many times the numbers that the Newton system is made of, or is to do so as it goes on,
-/// an interior point is sooner there.
-const WORK: f64 = 12.0;
+/// When the simplex method has touched so many numbers for each product in the Newton system, and for each row and column, or is likely to
+/// do so as it goes on, an interior point is sooner there.
+const WORK: [f64; 2] = [12.0, 1200.0];
 
 /// The interior point from which a crossover begins: its tolerance, each digit of which saves pushes, and where none can be had that good, the least.
 const FINE: f64 = 1e-11;
@@ -526,7 +526,7 @@ fn products(p: &Problem) -> f64 {
 /// those that take it long.
 fn auto(p: &Problem, accuracy: Accuracy, strategies: Strategies, budget: &Budget) -> Gave {
     let size = p.m() + p.n();
-    let work = WORK * products(p);
+    let work = WORK[0] * products(p) + WORK[1] * size as f64;
     let (effort, work) = match size {
         ..=MAX_SMALL_SIZE => (1000 + 20 * size as u64, f64::INFINITY),
         _ if strategies.run(Strategy::SimplexFirst) => (u64::MAX, work),
