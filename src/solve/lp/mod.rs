@@ -411,10 +411,10 @@ fn presolved(
             };
             gave
         }
-        (Ended::Iterations | Ended::Time | Ended::Interrupted, basis)
+        (Ended::Iterations | Ended::Time | Ended::Interrupted, _)
             if gave.point.x.len() == p.n() && gave.point.y.len() == p.m() =>
         {
-            let basis = basis.unwrap_or_else(|| vec![State::Basic; p.n() + p.m()]);
+            let basis = vec![State::Basic; p.n() + p.m()];
             let (point, _) = reduced.restore(&units.restore(gave.point), &basis);
             gave.point = scaling.carry(point);
             gave
