@@ -56,12 +56,12 @@ macro_rules! strategies {
 strategies! {
     "lp": {
         Presolve "presolve",
-            "more than 600 rows and columns: rows and columns that are decided, implied or multiples of others are taken out",
+            "more than 200 rows and columns: rows and columns that are decided, implied or multiples of others are taken out",
             "the nonzeros, some thirty times at most",
             "Andersen & Andersen 1995";
         SimplexFirst "simplex_first",
-            "more than 600 rows and columns: the simplex method is tried before the interior point",
-            "the work of touching each nonzero 100 times",
+            "more than 200 rows and columns: the simplex method is tried before the interior point",
+            "what an interior point is likely to cost, at most",
             "Koberstein & Suhl 2007";
         FaceVertex "face_vertex",
             "an interior point in a face of 1500 dimensions: a second one, with a random objective, ends near a vertex of it",

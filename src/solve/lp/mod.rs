@@ -187,12 +187,27 @@ struct Gave {
     iterations: u64,
     solver: &'static str,
     almost: bool,
-    /// What is not unique about the solution.
-    remark: Option<&'static str>,
+    /// The engine that gave it, at its last basis.
+    engine: Option<Simplex>,
+}
+
+impl Gave {
     /// Of a vertex.
-    basis: Option<Basis>,
-    /// For the log of a small program.
-    pivots: Vec<Pivot>,
+    fn basis(&self) -> Option<Basis> {
+        let engine = self.engine.as_ref().filter(|_| self.ended == Ended::Solved);
+        engine.map(Simplex::basis)
+    }
+
+    /// What is not unique about the solution.
+    fn remark(&mut self) -> Option<&'static str> {
+        let engine = self.engine.as_mut().filter(|_| self.ended == Ended::Solved);
+        match engine?.others() {
+            (true, true) => Some("neither the solution nor its marginals are unique"),
+            (true, false) => Some("the solution is not unique"),
+            (false, true) => Some("the marginals are not unique"),
+            (false, false) => None,
+        }
+    }
 }
 
 fn solve(
@@ -214,7 +229,7 @@ fn solve(
     let scaled = scaling.apply(&form.problem);
     budget.log_timed("scaling");
     let small = scaled.m() + scaled.n() <= MAX_SMALL_SIZE;
-    let answer = match (method, accuracy) {
+    let mut answer = match (method, accuracy) {
         (Method::Interior, _) => interior_only(&scaled, [tolerance.unwrap_or(1e-10); 2], budget),
         (Method::Auto, Accuracy::Fast(t)) if !small => {
             let answer = interior_only(&scaled, [t; 2], budget);
@@ -240,7 +255,9 @@ fn solve(
             restarted(&scaled, &basis, accuracy, strategies, budget)
         }
     };
-    log_pivots(&answer.pivots, &form, &scaling, budget);
+    let (basis, remark) = (answer.basis(), answer.remark());
+    let pivots = answer.engine.take().and_then(|e| e.pivots);
+    log_pivots(&pivots.unwrap_or_default(), &form, &scaling, budget);
     budget.spend(answer.iterations);
     let (claim, status) = match answer.ended {
         Ended::Solved if answer.almost => (Claim::Unfinished, SolverStatus::TerminatedBySolver),
@@ -255,7 +272,7 @@ fn solve(
     };
     let message = match &answer.ended {
         Ended::TooLarge(why) => Some(why.clone()),
-        _ => answer.remark.map(str::to_string),
+        _ => remark.map(str::to_string),
     };
     let ray = match answer.ended {
         Ended::Infeasible(mut y) => {
@@ -281,7 +298,7 @@ fn solve(
         solver: answer.solver,
         ray,
         message,
-        basis: answer.basis.map(|b| form.instance_basis(&b)),
+        basis: basis.map(|b| form.instance_basis(&b)),
     })
 }
 
@@ -365,7 +382,7 @@ fn presolved(
     budget.log_timed(&line);
     let units = Scaling::new(p);
     let mut gave = auto(&units.apply(p), Accuracy::Fast(0.0), strategies, budget);
-    match (gave.ended.clone(), gave.basis.take()) {
+    match (gave.ended.clone(), gave.basis()) {
         (Ended::Solved, Some(basis)) => {
             let (_, basis) = reduced.restore(&units.restore(gave.point), &basis);
             let mut done = restarted(scaled, &basis, accuracy, strategies, budget);
@@ -394,10 +411,10 @@ fn presolved(
             };
             gave
         }
-        (Ended::Iterations | Ended::Time | Ended::Interrupted, basis)
+        (Ended::Iterations | Ended::Time | Ended::Interrupted, _)
             if gave.point.x.len() == p.n() && gave.point.y.len() == p.m() =>
         {
-            let basis = basis.unwrap_or_else(|| vec![State::Basic; p.n() + p.m()]);
+            let basis = vec![State::Basic; p.n() + p.m()];
             let (point, _) = reduced.restore(&units.restore(gave.point), &basis);
             gave.point = scaling.carry(point);
             gave
@@ -445,11 +462,6 @@ fn tighten(simplex: &mut Simplex, accuracy: Accuracy, budget: &Budget) {
 
 fn simplex_answer(mut simplex: Simplex, ended: Ended) -> Gave {
     let point = simplex.point();
-    let others = match (&ended, &point) {
-        (Ended::Solved, Some(_)) => simplex.others(),
-        _ => (false, false),
-    };
-    let basis = (ended == Ended::Solved).then(|| simplex.basis());
     Gave {
         ended: if point.is_none() {
             Ended::Failed
@@ -460,14 +472,7 @@ fn simplex_answer(mut simplex: Simplex, ended: Ended) -> Gave {
         iterations: simplex.iterations,
         solver: "simplex",
         almost: false,
-        basis,
-        pivots: simplex.pivots.take().unwrap_or_default(),
-        remark: match others {
-            (true, true) => Some("neither the solution nor its marginals are unique"),
-            (true, false) => Some("the solution is not unique"),
-            (false, true) => Some("the marginals are not unique"),
-            (false, false) => None,
-        },
+        engine: Some(simplex),
     }
 }
 
@@ -492,19 +497,16 @@ fn given(run: interior::Run) -> Gave {
         iterations: run.iterations,
         solver: "clarabel",
         almost: run.almost,
-        remark: None,
-        basis: None,
-        pivots: Vec::new(),
+        engine: None,
     }
 }
 
-/// Columns and rows together up to which the simplex method is all that is needed, as a rule.
-const MAX_SMALL_SIZE: usize = 600;
+/// Columns and rows together up to which the simplex method is all that is needed, as a rule, and a presolve does not pay.
+const MAX_SMALL_SIZE: usize = 200;
 
-/// When the simplex method has touched so many times the numbers that the Newton system is made of, or is to do so in as many pivots as there are rows,
-/// an interior point is sooner there. (48 programs of Netlib that take HiGHS 0.01 to 1 s: at 15, 30 and 60 they take 6.0, 6.7 and 7.9 s; at 7 dense
-/// ones, WOOD1P and FIT2D, are given up that the simplex method solves at once.)
-const WORK: f64 = 12.0;
+/// When the simplex method has touched so many numbers for each product in the Newton system, and for each row and column, or is likely to
+/// do so as it goes on, an interior point is sooner there.
+const WORK: [f64; 2] = [12.0, 1200.0];
 
 /// The interior point from which a crossover begins: its tolerance, each digit of which saves pushes, and where none can be had that good, the least.
 const FINE: f64 = 1e-11;
@@ -524,7 +526,7 @@ fn products(p: &Problem) -> f64 {
 /// those that take it long.
 fn auto(p: &Problem, accuracy: Accuracy, strategies: Strategies, budget: &Budget) -> Gave {
     let size = p.m() + p.n();
-    let work = WORK * products(p);
+    let work = WORK[0] * products(p) + WORK[1] * size as f64;
     let (effort, work) = match size {
         ..=MAX_SMALL_SIZE => (1000 + 20 * size as u64, f64::INFINITY),
         _ if strategies.run(Strategy::SimplexFirst) => (u64::MAX, work),

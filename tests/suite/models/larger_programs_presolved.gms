@@ -1,4 +1,4 @@
-* Programs of more than 600 rows and columns of which nothing is left when what is decided is taken out: rows of one column,
+* Programs so large that they are presolved, of which nothing is left when what is decided is taken out: rows of one column,
 * equations in two, chains; and what has no point or no bound at all is said of the program as given.
 set i / i1*i400 /;
 variable z, x(i), y(i);

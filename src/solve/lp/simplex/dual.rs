@@ -91,6 +91,7 @@ impl Simplex {
         let mut violations = vec![0.0; self.m];
         // Everything is looked at anew.
         let mut renewed = None;
+        let mut largest = 0.0f64;
         loop {
             if self.iterations.is_multiple_of(32)
                 && let Some(why) = stop(self.iterations)
@@ -117,6 +118,12 @@ impl Simplex {
                 (0..self.n + self.m).for_each(|j| self.side[j] = self.side_of(j));
             }
             self.touched.clear();
+            let own_bounds = || self.work_lower == self.lower;
+            if self.most_work.is_finite() && self.iterations.is_multiple_of(16) && own_bounds() {
+                let sum: f64 = violations.iter().map(|v| v.sqrt()).sum();
+                largest = largest.max(sum);
+                self.left = if largest > 0.0 { sum / largest } else { 1.0 };
+            }
             match self.leaving(&violations, &refused) {
                 None if fresh || self.is_trusted() && !refused.contains(&true) => {
                     return Stop::Done;

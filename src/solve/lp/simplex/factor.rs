@@ -8,12 +8,22 @@
 //! B = B₀ E₁ ⋯ E_k with E_i a unit matrix but for one column, so that many short runs from one basis cost
 //! neither a copy nor an update of the LU.
 
-use feral::lu::{LuParams, LuSingularAction, SparseColMatrix, SparseLu};
+use crate::solve::lp::form::Sparse;
+use feral::lu::{
+    LuParams, LuPivoting, LuSingularAction, SparseColMatrix, SparseLu, SparseLuSymbolic,
+};
 use std::cell::RefCell;
 use std::rc::Rc;
 
 /// Stands in U where no pivot was found. A number that no data gives.
 const MARK: f64 = 0.987_654_321_012_345_6;
+
+/// An entry that only makes a matrix square: not 0, but too small for a pivot.
+pub(super) const NO_PIVOT: f64 = 1e-200;
+
+/// Where rows and columns of one entry leave at most one column of so many, an order of the columns is as good as a search for pivots. (Of two
+/// columns in ten some bases of DEGEN3 of Netlib fill up.)
+const TRIANGULAR: usize = 10;
 
 /// Updates before a fresh factorisation.
 const MOST_UPDATES: usize = 150;
@@ -79,8 +89,11 @@ impl Factor {
     ) -> Result<Self, Failure> {
         let matrix =
             SparseColMatrix::from_sparse_columns(m, columns).map_err(|_| Failure::Numbers)?;
-        let lu =
-            SparseLu::factor_markowitz(&matrix, parameters(zero)).map_err(|_| Failure::Numbers)?;
+        let lu = match Self::nearly_triangular(m, columns, &matrix, zero) {
+            Some(lu) => lu,
+            None => SparseLu::factor_markowitz(&matrix, parameters(zero))
+                .map_err(|_| Failure::Numbers)?,
+        };
         let dependent: Vec<(usize, usize)> = (0..m)
             .filter(|&k| lu.u_dense(k, k).abs() == MARK)
             .map(|k| (lu.qcol()[k], lu.perm()[k]))
@@ -95,6 +108,42 @@ impl Factor {
             solution: Vec::new(),
             work: vec![0.0; m],
         })
+    }
+
+    /// The factor where rows and columns of one entry, taken away one after the other, leave little. None: much is left, or a
+    /// column is dependent.
+    fn nearly_triangular(
+        m: usize,
+        columns: &[Entries],
+        matrix: &SparseColMatrix,
+        zero: f64,
+    ) -> Option<SparseLu> {
+        let mut lines = Sparse::new();
+        for column in columns {
+            lines.push(column.iter().filter(|e| e.1.abs() > NO_PIVOT).copied());
+        }
+        let rows = lines.transpose(m);
+        let left = &mut [vec![true; m], vec![true; m]];
+        let first = peel(&lines, &rows, left);
+        left.swap(0, 1);
+        let last = peel(&rows, &lines, left);
+        let rest = (0..m).filter(|&j| left[1][j]);
+        let (empty, mut rest): (Vec<usize>, Vec<usize>) =
+            rest.partition(|&j| lines.line(j).len() == 0);
+        if TRIANGULAR * rest.len() > m {
+            return None;
+        }
+        rest.sort_by_key(|&j| lines.line(j).len());
+        let order = first.into_iter().map(|e| e.0).chain(rest);
+        let order = order.chain(last.into_iter().rev().map(|e| e.1));
+        let order = SparseLuSymbolic::with_order(m, order.chain(empty.iter().copied()).collect());
+        let params = LuParams {
+            pivoting: LuPivoting::GilbertPeierls,
+            ..parameters(zero)
+        };
+        let lu = SparseLu::factor(matrix, &order.ok()?, params).ok()?;
+        let marked = (0..m - empty.len()).any(|k| lu.u_dense(k, k).abs() == MARK);
+        (!marked).then_some(lu)
     }
 
     /// Solves B x = a. None if the factor has broken down.
@@ -204,6 +253,33 @@ impl Factor {
             || lu.should_refactor_growth()
             || self.nonzeros() > 3 * self.fresh + 1000
     }
+}
+
+/// Takes lines away that have one entry where lines of the other kind are left, with the line in which it is, as long as there are any: both.
+fn peel(lines: &Sparse, across: &Sparse, left: &mut [Vec<bool>; 2]) -> Vec<(usize, usize)> {
+    let [left, across_left] = left;
+    let mut count: Vec<usize> = (0..lines.lines())
+        .map(|k| lines.line(k).filter(|e| across_left[e.0]).count())
+        .collect();
+    let mut single: Vec<usize> = (0..count.len())
+        .filter(|&k| left[k] && count[k] == 1)
+        .collect();
+    let mut gone = Vec::new();
+    while let Some(k) = single.pop() {
+        // None: another one took it.
+        let Some((i, _)) = lines.line(k).find(|e| across_left[e.0]) else {
+            continue;
+        };
+        (left[k], across_left[i]) = (false, false);
+        gone.push((k, i));
+        for (other, _) in across.line(i) {
+            count[other] -= 1;
+            if count[other] == 1 && left[other] {
+                single.push(other);
+            }
+        }
+    }
+    gone
 }
 
 impl Eta {

@@ -47,6 +47,13 @@ const PIVOT: f64 = 1e-9;
 /// A pivot smaller than this is taken only on a fresh factor.
 const SAFE_PIVOT: f64 = 1e-6;
 
+/// Pivots for each row that a solution takes, at most, mostly, and after how many of them their work tells that of the others.
+const AHEAD: f64 = 2.0;
+const TELLING: u64 = 50;
+
+/// What a pivot costs beside the numbers that it touches, in these: always, and for each row.
+const PIVOT_WORK: [usize; 2] = [2000, 3];
+
 /// How a method ended.
 #[derive(Clone, Debug, PartialEq)]
 enum Stop {
@@ -126,10 +133,12 @@ pub struct Simplex {
     /// The dual method has a first phase in boxes; without it shifted costs, which the primal method mends, as soon in
     /// small programs and near a solution.
     pub boxes: bool,
-    /// Gives up, as at an iteration limit, when [`Simplex::work`] is more than this, or would be after as many pivots as there are rows.
+    /// Gives up, as at an iteration limit, when [`Simplex::work`] is more than this, or is likely to be.
     pub most_work: f64,
     /// Numbers that the pivots have touched, about.
     work: f64,
+    /// The part of the sum of violations that is left of the largest in the dual method.
+    left: f64,
     /// A factor that was updated at most so often counts as fresh.
     pub trusted: usize,
     /// The pivots, where they are asked for.
@@ -182,6 +191,7 @@ impl Simplex {
             boxes: false,
             most_work: f64::INFINITY,
             work: 0.0,
+            left: 1.0,
             trusted: 0,
             pivots: None,
             perturb: true,
@@ -764,16 +774,16 @@ impl Simplex {
 
     /// Whether this is as far as it may go.
     fn is_spent(&self) -> bool {
-        // The first pivots tell little.
-        let pivots = self.iterations.max(200) as f64;
-        let projected = self.work * (self.m as f64 / pivots).max(1.0);
-        self.iterations >= self.limit || projected > self.most_work
+        let pivots = self.iterations.max(TELLING) as f64;
+        let ahead = (AHEAD * self.m as f64 / pivots - 1.0).max(0.0);
+        self.iterations >= self.limit || self.work * (1.0 + ahead * self.left) > self.most_work
     }
 
     /// Adds the work of a pivot: `passed` numbers, and sparse solves whose solutions have so many `entries`.
     fn add_work(&mut self, passed: usize, entries: usize) {
         let factor = self.factor.as_ref().map_or(0, Factor::nonzeros) as f64;
         let solves = entries as f64 * (1.0 + factor / self.m as f64);
+        let passed = passed + PIVOT_WORK[0] + PIVOT_WORK[1] * self.m;
         self.work += (passed + self.row_index.len()) as f64 + solves;
     }
 

@@ -15,7 +15,7 @@
 //! nonbasic variable would change its sign first, the variable enters the basis for one of them, which is at
 //! its bound: the vertex stays where it is. After some steps, again, one after the other.
 
-use super::factor::{Entries, Factor, Failure, ZERO};
+use super::factor::{Entries, Factor, Failure, NO_PIVOT, ZERO};
 use super::{Basis, NONBASIC, PIVOT, SAFE_PIVOT, Simplex};
 use crate::solve::lp::Ended;
 
@@ -28,9 +28,6 @@ const UNHELD: f64 = 1.0 / 4096.0;
 /// Rows beyond those of the program, where the columns that only make a matrix square have their entries. The search for pivots looks at the columns
 /// with the fewest entries first, so empty ones would be in its way at every step; and entries in other rows would fill up.
 const PADDING: usize = 100;
-
-/// Such an entry: not 0, but too small for a pivot.
-const NO_PIVOT: f64 = 1e-200;
 
 /// Where a crossover begins: one entry per column, then one per row.
 #[derive(Clone, Debug)]
