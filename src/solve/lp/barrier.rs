@@ -299,16 +299,14 @@ impl System {
     fn new(p: &Program, budget: &Budget) -> Result<Self, Ended> {
         let order = p.n + p.m;
         let (mut start, mut index, mut entries) = (vec![0], Vec::new(), Vec::new());
-        let alike = alike(p);
-        for k in 0..order {
-            if k < p.n {
-                index.extend(&alike[k]);
-                entries.resize(index.len(), 0.0);
-            } else {
-                p.rows.line(k - p.n).for_each(|(j, a)| {
-                    index.push(j);
-                    entries.push(a);
-                });
+        let columns = alike(p).into_iter();
+        let columns = columns.map(|alike| alike.into_iter().map(|j| (j, 0.0)).collect());
+        let rows = (0..p.m).map(|i| p.rows.line(i).collect());
+        for (k, line) in columns.chain(rows).enumerate() {
+            let line: Vec<(usize, f64)> = line;
+            for (j, a) in line {
+                index.push(j);
+                entries.push(a);
             }
             index.push(k);
             entries.push(0.0);
