@@ -135,6 +135,10 @@ strategies! {
             "multipliers have the right signs: Newton's method on the working set without a linear program",
             "a factorisation a step",
             "Fletcher & Sainz de la Maza 1989";
+        DependentRows "dependent_rows",
+            "rows of the working set depend on each other: they give way by 1e-7 times their multipliers",
+            "nothing",
+            "Friedlander & Orban 2012";
         RoundedData "rounded_data",
             "rows contradict each other by less than 5e-7 of their size: they are moved to where they agree best",
             "nothing",

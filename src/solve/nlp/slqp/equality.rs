@@ -12,6 +12,7 @@ use super::point::{Frame, Point};
 use crate::solve::nlp::polish::number;
 use crate::solve::nlp::problem::Entry;
 use crate::solve::nlp::symmetric::{Lower, Symmetric};
+use crate::solve::strategy::{Strategies, Strategy};
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 
@@ -40,6 +41,8 @@ pub(super) const ANY: usize = SHIFTS.len() - 1;
 
 /// The squared sine of the angle to what is held from which on something may join.
 const INDEPENDENT: f64 = 1e-10;
+/// What dependent rows give way by, in units, for a multiplier of 1.
+const YIELDING: f64 = 1e-7;
 
 /// What one program leaves to the next.
 #[derive(Default)]
@@ -48,6 +51,8 @@ pub(super) struct Memory {
     pub(super) shift: usize,
     /// Factors whose order may serve again.
     pub(super) factors: Option<Symmetric>,
+    /// What of it runs.
+    pub(super) strategies: Strategies,
 }
 
 /// What joined the set after the factorisation: its entries in the matrix, what they add up to, and A⁻¹ times the entries.
@@ -77,6 +82,8 @@ pub(super) struct Equality {
     joined: Vec<Joined>,
     /// The shift that it took.
     pub(super) shifted: bool,
+    /// The rows depend on each other, nearly, and give way a little: the multipliers are worth nothing.
+    pub(super) yields: bool,
 }
 
 impl Equality {
@@ -142,6 +149,7 @@ impl Equality {
             curvature: 0.0,
             joined: Vec::new(),
             shifted: false,
+            yields: false,
         };
         if free == 0 {
             return (held == 0).then_some(out);
@@ -157,8 +165,9 @@ impl Equality {
                 }
             }
             let mut factors = memory.factors.take().unwrap_or_else(Symmetric::empty);
+            let give = if out.yields { YIELDING } else { 0.0 };
             for k in free..free + held {
-                matrix.push(k, k, 0.0);
+                matrix.push(k, k, -give);
             }
             let regular = factors.factor(free + held, &matrix);
             let inertia = factors.inertia().filter(|_| regular);
@@ -167,6 +176,9 @@ impl Equality {
                 false => None,
             };
             let Some(s) = solution else {
+                // fewer negative eigenvalues than rows: these are dependent whatever the shift
+                let dependent = out.yields || inertia.is_some_and(|i| i.1 < held);
+                out.yields = dependent && memory.strategies.run(Strategy::DependentRows);
                 memory.factors = Some(factors);
                 continue;
             };
@@ -174,7 +186,7 @@ impl Equality {
             out.alone = s;
             out.curvature = largest + tau;
             out.factors = Some(factors);
-            out.shifted = k > 0;
+            out.shifted = k > 0 || out.yields;
             if k > 0 {
                 memory.shift = k;
             }

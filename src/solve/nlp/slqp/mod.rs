@@ -159,7 +159,10 @@ fn solve_from(
         linear_radius: 1.0,
         budget,
         lowered: 0,
-        memory: Memory::default(),
+        memory: Memory {
+            strategies: request.strategies,
+            ..Memory::default()
+        },
         refused: None,
         strategies: request.strategies,
     };
@@ -551,7 +554,7 @@ impl Method<'_, '_> {
             return Ok(None);
         }
         let lambda = match (&quadratic, full) {
-            (Some(q), true) => q.lambda.clone(),
+            (Some(q), true) if !q.yields => q.lambda.clone(),
             _ => linear.lambda,
         };
         let point = there.and_then(|v| Point::new(self.nlp, &self.frame, next, v));
