@@ -32,7 +32,7 @@ pub const CONSIDERABLE: f64 = 0.01;
 /// beside them alone says nothing about the objective.
 const HIDING: f64 = 1e12;
 
-/// How far inside of a bound derivatives are taken that do not exist on it, relative to its size.
+/// How far inside of a bound values and derivatives are taken that do not exist on it or just beyond, relative to its size.
 const INSIDE: f64 = 1e-10;
 
 /// A row binds where its slack is at most this, relative to its size.
@@ -98,8 +98,9 @@ pub fn linearise(
     })
 }
 
-/// Where a derivative does not exist, as that of √x at 0: the point with what is at a bound moved inside by next to nothing. There the slope
-/// is steep, as the limit is; likewise beyond a bound, which an interior point relaxes a little. None where the failure is another.
+/// Where a derivative does not exist, as that of √x at 0: the point with what is at a bound moved inside by next to nothing.
+/// There the slope is steep, as the limit is. Where something is beyond a bound, which an interior point relaxes a little, the
+/// same for any failure. None where the failure is another.
 pub fn inside(failure: &EvalFailure, x: &[f64], lower: &[f64], upper: &[f64]) -> Option<Vec<f64>> {
     let moved = |(&x, (&l, &u)): (&f64, (&f64, &f64))| match INSIDE * x.abs().max(1.0) {
         by if x <= l && u - l > 2.0 * by => l + by,

@@ -595,8 +595,9 @@ fn centre(p: &Program, point: &Point, kept: &[usize]) -> Iterate {
     }
 }
 
-/// Solves a program, from a point inside if there is one that is [`centre`]d, until residuals and gap are below the first tolerance, relative to the sizes of sides, costs and objective, or
-/// until no iteration brings them down; a point within the second one is a solution then. Nothing is said about programs without one: [`Ended::Failed`].
+/// Solves a program, from a point inside if there is one, which is [`centre`]d, until residuals and gap are below the first
+/// tolerance, relative to the sizes of sides, costs and objective, or until no iteration brings them down; a point within the
+/// second one is a solution then. Nothing is said about programs without one: [`Ended::Failed`].
 pub(super) fn solve(
     problem: &Problem,
     from: Option<&Point>,
