@@ -259,9 +259,8 @@ impl Compiler {
                                 !gone.rows.iter().any(|g| g.definition == r.definition)
                             };
                             listed.rows.retain(left);
-                            let left = |u: &(SymbolId, Span)| {
-                                !gone.undefined.iter().any(|g| g.0 == u.0)
-                            };
+                            let left =
+                                |u: &(SymbolId, Span)| !gone.undefined.iter().any(|g| g.0 == u.0);
                             listed.undefined.retain(left);
                         }
                         SymbolKind::Equation(Some(d)) => {
