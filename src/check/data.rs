@@ -252,6 +252,7 @@ impl Compiler {
         kind: DataKind,
         map: &'m SourceMap,
     ) -> Result<(Filling, DataReader<'m>), Failed> {
+        self.store.phantom.clone_from(&map.phantom);
         let open = self.symbols.get(s).open;
         let filling = self.open_data(s, name)?;
         self.open_domains(s, defines, name)?;
@@ -779,6 +780,7 @@ impl Familiar {
         let next = before.wrapping_add(1);
         let label = match self.sets[position] {
             _ if spelled(next) => Some(next),
+            None if store.is_phantom(text) => None,
             None => Some(store.universe.intern(text)),
             Some(_) => store.universe.get(text),
         };

@@ -97,6 +97,11 @@ impl Compiler {
         }
         let domain = self.positions(&names)?;
         if let Some(s) = self.symbols.find(&d.name.name) {
+            // `alias(i,j); set j / … /;` gives i its elements.
+            let s = match kind {
+                SymbolKind::Set { .. } => self.symbols.root(s),
+                _ => s,
+            };
             return self.declare_again(s, d, &kind, domain);
         }
         let dim = domain.len();

@@ -305,7 +305,11 @@ impl Compiler {
         let spelled_out = [parts].into_iter().find_map(set_prefix);
         let parts = spelled_out.as_deref().unwrap_or(parts);
         // One label per position is what data mostly are.
-        if parts.iter().all(|p| matches!(p, KeyPart::Label { .. })) {
+        let store = &self.store;
+        if parts
+            .iter()
+            .all(|p| matches!(p, KeyPart::Label { text, .. } if !store.is_phantom(text)))
+        {
             if parts.len() != dim {
                 return self.wrong_record(s, span, parts.len());
             }
@@ -395,6 +399,9 @@ impl Compiler {
         defines: &[bool],
     ) -> Result<Tuples, Failed> {
         match part {
+            KeyPart::Label { text, .. } if self.store.is_phantom(text) => {
+                Ok(Tuples::single(Vec::new()))
+            }
             KeyPart::Label { text, span, .. } => {
                 let label = self.data_label(s, position, text, *span, defines)?;
                 Ok(Tuples::single(vec![label]))

@@ -9,6 +9,16 @@ use crate::model::problem_type::{Discrete, ProblemType};
 use crate::source::{Known, Span};
 use crate::syntax::ast::{Ident, ModelItem, Solve, VariableKind};
 
+/// What the list of a model names.
+#[derive(Default)]
+struct Listed {
+    rows: Vec<ModelRow>,
+    /// Declared, not defined so far: a later item may take them out.
+    undefined: Vec<(SymbolId, Span)>,
+    /// Sets that limit variables.
+    limits: Vec<(SymbolId, SymbolId)>,
+}
+
 impl Compiler {
     pub(super) fn solve(&mut self, s: &Solve, span: Span) -> Result<CodeKind, Failed> {
         let model = self.lookup_model(&s.model)?;
@@ -29,9 +39,12 @@ impl Compiler {
             return self.no_problem_type(&s.using);
         };
         let items = info.items.clone().unwrap_or_default();
-        let mut rows: Vec<ModelRow> = Vec::new();
-        let mut limits = Vec::new();
-        self.collect(&items, &mut rows, &mut limits, 0)?;
+        let mut listed = Listed::default();
+        self.collect(&items, &mut listed, 0)?;
+        self.not_defined(&listed.undefined)?;
+        let Listed {
+            mut rows, limits, ..
+        } = listed;
         rows.sort_by_key(|r| self.equations[r.definition].symbol);
         // Its list, or a declaration of equations, was wrong: that was said.
         if rows.is_empty() && (info.items.is_none() && self.errors() > 0 || self.lacks_something())
@@ -201,12 +214,11 @@ impl Compiler {
         Ok(s)
     }
 
-    /// Rows of a list of model items, in order, and the sets that limit variables.
+    /// What a list of model items names, in order.
     fn collect(
         &mut self,
         items: &[ModelItem],
-        rows: &mut Vec<ModelRow>,
-        limits: &mut Vec<(SymbolId, SymbolId)>,
+        listed: &mut Listed,
         depth: usize,
     ) -> Result<(), Failed> {
         if depth > 50 {
@@ -220,7 +232,7 @@ impl Compiler {
                 ModelItem::Limit(variable, sets) => {
                     let v = self.lookup(variable)?;
                     for s in sets {
-                        limits.push((v, self.lookup_set(s)?));
+                        listed.limits.push((v, self.lookup_set(s)?));
                     }
                 }
                 ModelItem::Add(name) => {
@@ -231,21 +243,30 @@ impl Compiler {
                     match self.symbols.get(id).kind.clone() {
                         SymbolKind::Model(m) => {
                             let inner = m.items.clone().unwrap_or_default();
-                            failed |= self.collect(&inner, rows, limits, depth + 1).is_err();
+                            failed |= self.collect(&inner, listed, depth + 1).is_err();
                         }
-                        _ => failed |= self.add_row(id, None, name.span, rows).is_err(),
+                        _ => self.add_row(id, None, name.span, listed),
                     }
                 }
                 ModelItem::Remove(name) => {
                     let id = self.lookup(name)?;
                     match self.symbols.get(id).kind.clone() {
                         SymbolKind::Model(m) => {
-                            let mut gone = Vec::new();
+                            let mut gone = Listed::default();
                             let inner = m.items.clone().unwrap_or_default();
-                            self.collect(&inner, &mut gone, &mut Vec::new(), depth + 1)?;
-                            rows.retain(|r| !gone.iter().any(|g| g.definition == r.definition));
+                            self.collect(&inner, &mut gone, depth + 1)?;
+                            let left = |r: &ModelRow| {
+                                !gone.rows.iter().any(|g| g.definition == r.definition)
+                            };
+                            listed.rows.retain(left);
+                            let left =
+                                |u: &(SymbolId, Span)| !gone.undefined.iter().any(|g| g.0 == u.0);
+                            listed.undefined.retain(left);
                         }
-                        SymbolKind::Equation(Some(d)) => rows.retain(|r| r.definition != d),
+                        SymbolKind::Equation(Some(d)) => {
+                            listed.rows.retain(|r| r.definition != d);
+                        }
+                        SymbolKind::Equation(None) => listed.undefined.retain(|u| u.0 != id),
                         _ => {}
                     }
                 }
@@ -256,9 +277,7 @@ impl Compiler {
                     let v = self.lookup(column)?;
                     for n in names {
                         let e = self.lookup(n)?;
-                        failed |= self
-                            .add_row(e, Some(v), n.span.to(column.span), rows)
-                            .is_err();
+                        self.add_row(e, Some(v), n.span.to(column.span), listed);
                     }
                 }
             }
@@ -266,26 +285,37 @@ impl Compiler {
         if failed { Err(Failed) } else { Ok(()) }
     }
 
-    /// Puts an equation into a list of rows; a pair of one that is there already becomes its.
-    fn add_row(
-        &mut self,
-        e: SymbolId,
-        pair: Option<SymbolId>,
-        at: Span,
-        rows: &mut Vec<ModelRow>,
-    ) -> Result<(), Failed> {
+    /// Puts an equation into a list; a pair of one that is there already becomes its.
+    fn add_row(&self, e: SymbolId, pair: Option<SymbolId>, span: Span, listed: &mut Listed) {
         let SymbolKind::Equation(defined) = self.symbols.get(e).kind else {
-            return Ok(());
+            return;
         };
         let Some(definition) = defined else {
+            return listed.undefined.push((e, span));
+        };
+        let of_it = |r: &&mut ModelRow| r.definition == definition;
+        let mut there = listed.rows.iter_mut().filter(of_it);
+        match there.find(|r| r.pair.is_none() || pair.is_none() || r.pair == pair) {
+            Some(r) => r.pair = r.pair.or(pair),
+            None => listed.rows.push(ModelRow {
+                definition,
+                pair,
+                span,
+            }),
+        }
+    }
+
+    /// Refuses equations that no `..` defines and that nothing takes out of the model.
+    fn not_defined(&mut self, undefined: &[(SymbolId, Span)]) -> Result<(), Failed> {
+        for &(e, at) in undefined {
             let (name, declared) = (
                 self.symbols.get(e).name.clone(),
                 self.symbols.get(e).declared,
             );
             if self.is_lost(&name) || self.lacks_equations() {
-                return Err(Failed);
+                continue;
             }
-            return self.fail(
+            let _ = self.fail::<()>(
                 Diagnostic::error(
                     "E0356",
                     at,
@@ -297,25 +327,8 @@ impl Compiler {
                     "define it: `{name}.. left =e= right;`, or take it out of the model"
                 )),
             );
-        };
-        match rows
-            .iter()
-            .position(|r| r.definition == definition && r.pair == pair)
-        {
-            Some(_) => {}
-            None => match rows
-                .iter_mut()
-                .find(|r| r.definition == definition && (r.pair.is_none() || pair.is_none()))
-            {
-                Some(r) => r.pair = r.pair.or(pair),
-                None => rows.push(ModelRow {
-                    definition,
-                    pair,
-                    span: at,
-                }),
-            },
         }
-        Ok(())
+        undefined.is_empty().then_some(()).ok_or(Failed)
     }
 
     fn objective(

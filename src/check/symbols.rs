@@ -167,9 +167,17 @@ pub struct Store {
     pub texts: FxHashMap<TableId, FxHashMap<Box<[Label]>, Box<str>>>,
     /// Names of acronyms.
     pub acronyms: Vec<Box<str>>,
+    /// The label of `$phantom`, which stands for no element.
+    pub phantom: Option<Box<str>>,
 }
 
 impl Store {
+    /// Whether a label in data stands for no element.
+    pub(super) fn is_phantom(&self, label: &str) -> bool {
+        let is = |p: &str| p.eq_ignore_ascii_case(label);
+        self.phantom.as_deref().is_some_and(is)
+    }
+
     /// A table.
     pub fn table(&self, id: TableId) -> &Table {
         &self.tables[id as usize]

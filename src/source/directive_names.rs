@@ -7,7 +7,7 @@ pub(super) const SILENT_SWITCHES: &[&str] = &[
     "global", "local", "log", "expand", "macro", "ident", "recurse", "embedded", "checkerrorlevel",
     "filtered", "suffixdlvars", "suffixalgebravars", "dollar", "dotscale", "hidden", "external", "save",
     "externalinput", "externaloutput", "verbatim", "strictdomain", "case", "localvars", "margin", "float",
-    "textmode", "prefix", "fold", "idcprotect",
+    "textmode", "prefix", "fold", "idcprotect", "epstozero",
 ];
 
 /// Directives that change nothing here, with nothing or one word behind them.

@@ -347,14 +347,7 @@ impl Preprocessor<'_> {
                 self.environment.remove(&rest.trim().to_lowercase());
             }
             "prefixpath" => {}
-            "phantom" => {
-                let span = self.place(lo, hi);
-                return refuse(
-                    Diagnostic::error("E0107", span, "phantom elements are not known here")
-                        .label("not done")
-                        .help("leave the element out of the sets, and write `$onEmpty` where one has no other"),
-                );
-            }
+            "phantom" => self.map.phantom = Some(argument(rest).0.into()),
             "setargs" => {
                 let values = self
                     .frames

@@ -58,6 +58,8 @@ pub struct SourceMap {
     pub(crate) written: BTreeMap<String, (String, Vec<u8>)>,
     /// What `$title` said last.
     pub(crate) title: Option<String>,
+    /// The label of `$phantom`: data leave out the records that have it.
+    pub(crate) phantom: Option<Box<str>>,
 }
 
 fn line_ends(text: &[u8]) -> u32 {

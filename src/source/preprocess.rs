@@ -962,10 +962,7 @@ impl<'h> Preprocessor<'h> {
                         opened_at = None;
                         self.in_comment = None;
                     }
-                    None => {
-                        blanks.push((start, bytes.len()));
-                        i = bytes.len();
-                    }
+                    None => i = bytes.len(),
                 }
                 continue;
             }
@@ -982,6 +979,7 @@ impl<'h> Preprocessor<'h> {
             }
             i = past_text(bytes, i, directive);
         }
+        blanks.extend(open.map(|start| (start, bytes.len())));
         if let (Some(_), Some(at)) = (open, opened_at) {
             let (lo, hi) = line.origin(at, at + m.inline.0.len());
             let file = self.frames.last().map_or(FileId(0), |f| f.file);

@@ -381,7 +381,20 @@ fn presolved(
     let line = format!("presolve: {} rows and {} columns are left", p.m(), p.n());
     budget.log_timed(&line);
     let units = Scaling::new(p);
-    let mut gave = auto(&units.apply(p), Accuracy::Fast(0.0), strategies, budget);
+    let mut gave = match reduced.proof.clone() {
+        Some(mut y) => {
+            units.carry_multipliers(&mut y);
+            Gave {
+                point: Point::default(),
+                ended: Ended::Infeasible(y),
+                iterations: 0,
+                solver: "clarabel",
+                almost: false,
+                engine: None,
+            }
+        }
+        None => auto(&units.apply(p), Accuracy::Fast(0.0), strategies, budget),
+    };
     match (gave.ended.clone(), gave.basis()) {
         (Ended::Solved, Some(basis)) => {
             let (_, basis) = reduced.restore(&units.restore(gave.point), &basis);

@@ -57,7 +57,7 @@ impl Work {
             // The rows of a column that may go on for ever at no cost hold anyway.
             _ if self.cost[j] == 0.0 && self.column_count[j] > 0 => return Ok(false),
             _ if self.cost[j] == 0.0 => State::Free,
-            _ => return Err(Hopeless),
+            _ => return Err(Hopeless(None)),
         };
         self.fix(j, state)?;
         Ok(true)
@@ -276,7 +276,7 @@ impl Work {
             _ => self.row_lower[i],
         };
         if !side.is_finite() {
-            return Err(Hopeless);
+            return Err(Hopeless(None));
         }
         let Some(a) = self.entry(i, j) else {
             return Ok(());

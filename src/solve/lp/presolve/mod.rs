@@ -123,10 +123,12 @@ pub(super) struct Presolved {
     steps: Vec<Step>,
     /// Of the program before.
     size: [usize; 2],
+    /// Multipliers that prove the smaller program infeasible: of a row that bounds contradict.
+    pub proof: Option<Vec<f64>>,
 }
 
-/// Why there is no smaller program: no point or no bound. The program itself shows it.
-struct Hopeless;
+/// Why there is no smaller program: no point, since bounds contradict this row if it is known, or no bound.
+struct Hopeless(Option<u32>);
 
 /// The program while it shrinks. What has gone is marked; entries of it are passed over.
 struct Work {
@@ -236,8 +238,20 @@ fn term(a: f64, [l, u]: [f64; 2]) -> [f64; 2] {
 /// The smaller program. None: nothing came of it, or it was found to have no solution, which the program itself proves.
 pub(super) fn presolve(p: &Problem) -> Option<Presolved> {
     let mut work = Work::new(p);
-    work.run().ok()?;
-    (!work.steps.is_empty()).then(|| work.assemble(p))
+    let contradicted = match work.run() {
+        Ok(()) if work.steps.is_empty() => return None,
+        Ok(()) => return Some(work.assemble(p)),
+        Err(Hopeless(row)) => row?,
+    };
+    let mut reduced = work.assemble(p);
+    let at = reduced.rows.binary_search(&contradicted).ok()?;
+    reduced.proof = [1.0, -1.0].into_iter().find_map(|y| {
+        let mut proof = vec![0.0; reduced.rows.len()];
+        proof[at] = y;
+        let proved = reduced.problem.proves_infeasible(&proof);
+        proved.then_some(proof)
+    });
+    reduced.proof.is_some().then_some(reduced)
 }
 
 impl Work {
@@ -375,7 +389,7 @@ impl Work {
             _ => self.lower[j],
         };
         if !value.is_finite() {
-            return Err(Hopeless);
+            return Err(Hopeless(None));
         }
         let entries: Entries = self.column_entries(j).map(|(i, a)| (i as u32, a)).collect();
         for &(i, a) in &entries {
@@ -398,7 +412,7 @@ impl Work {
         let from_row = [l > self.lower[j], u < self.upper[j]];
         let (l, u) = (l.max(self.lower[j]), u.min(self.upper[j]));
         let (l, u) = match l > u {
-            true if l - u > 1e-9 * l.abs().max(1.0) => return Err(Hopeless),
+            true if l - u > 1e-9 * l.abs().max(1.0) => return Err(Hopeless(None)),
             true if from_row[0] => (u, u),
             true => (l, l),
             false => (l, u),
@@ -450,6 +464,7 @@ impl Work {
             rows,
             steps: self.steps,
             size: [p.m(), p.n()],
+            proof: None,
         }
     }
 }

@@ -51,7 +51,7 @@ impl Work {
                 high.min(self.row_upper[kept]),
             );
             if low > high + 1e-9 * low.abs().max(1.0) {
-                return Err(Hopeless);
+                return Err(Hopeless(None));
             }
             (self.row_lower[kept], self.row_upper[kept]) = match low > high {
                 true if from_gone[0] => (high, high),

@@ -26,7 +26,7 @@ impl Work {
     fn empty_row(&mut self, i: usize) -> Result<(), Hopeless> {
         let [low, high] = self.sides(i);
         if low > 1e-9 || high < -1e-9 {
-            return Err(Hopeless);
+            return Err(Hopeless(Some(i as u32)));
         }
         self.drop_row(i);
         Ok(())
@@ -38,7 +38,9 @@ impl Work {
         };
         let [low, high] = self.sides(i);
         let ends = [low / a, high / a];
-        let mut from_row = self.narrow(j, if a > 0.0 { ends } else { [ends[1], ends[0]] })?;
+        let ends = if a > 0.0 { ends } else { [ends[1], ends[0]] };
+        let contradicted = |_| Hopeless(Some(i as u32));
+        let mut from_row = self.narrow(j, ends).map_err(contradicted)?;
         if low == high {
             from_row = [true, true];
         }
@@ -64,7 +66,7 @@ impl Work {
         };
         let slack = [size(side_low), size(side_high)];
         if low > side_high + 1e3 * slack[1] || high < side_low - 1e3 * slack[0] {
-            return Err(Hopeless);
+            return Err(Hopeless(Some(i as u32)));
         }
         let forced = [high <= side_low + slack[0], low >= side_high - slack[1]];
         if forced[0] && high.is_finite() || forced[1] && low.is_finite() {

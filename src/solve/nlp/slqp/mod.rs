@@ -53,6 +53,11 @@ const LARGEST: usize = 10_000;
 /// The penalty ν at first, and at most.
 const FIRST_PENALTY: f64 = 10.0;
 const MOST_PENALTY: f64 = 1e9;
+/// Where no row is violated by more, so many steps without half the residual are a zigzag: another method goes on.
+/// Steps in few variables cost next to nothing.
+const NEARLY: f64 = 1e-6;
+const PATIENCE: u64 = 25;
+const FEW: usize = 10;
 /// Multipliers, in units, that rows of an ordinary program do not have.
 const HEAVY: f64 = 1e3;
 /// A step is taken from this part of the promised decrease on.
@@ -239,9 +244,17 @@ enum Found {
 impl Method<'_, '_> {
     fn run(&mut self, mut working: Option<Working>, most: u64) -> (u64, End) {
         let mut steps = 0;
+        let mut halved = (0, f64::INFINITY);
         while steps < most && !self.budget.is_over() {
-            if self.at.residual(&self.frame, &self.lambda) <= SOLVED {
+            let residual = self.at.residual(&self.frame, &self.lambda);
+            if residual <= SOLVED {
                 return (steps, End::Solved);
+            }
+            let violated = self.frame.violation(&self.at.values.g) > NEARLY;
+            if self.at.x.len() < FEW || violated || residual < 0.5 * halved.1 {
+                halved = (steps, residual);
+            } else if steps - halved.0 >= PATIENCE {
+                break;
             }
             if self.radius.min(self.linear_radius) <= SMALLEST {
                 return (steps, End::Stuck);
