@@ -25,6 +25,9 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::ldlt::factor::LdltRegularization;
 use faer::perm::PermRef;
 use faer::sparse::linalg::amd::{self, FlopCount};
+use faer::sparse::linalg::cholesky::simplicial::{
+    prefactorize_symbolic_cholesky, prefactorize_symbolic_cholesky_scratch,
+};
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LdltRef, SymbolicCholesky, SymmetricOrdering,
     factorize_symbolic_cholesky,
@@ -64,6 +67,13 @@ const CORRECTORS: [f64; 3] = [10.0, 30.0, 50.0];
 const LONG: usize = 100;
 const BLOCK: usize = 64;
 
+/// Operations for each entry from which on a second order of pivots is looked for. (Below, the search takes longer than what it saves: a fifth of the time on
+/// MAROS-R7 and PILOT87 of Netlib, which have 1400.)
+const DEAR: f64 = 10_000.0;
+
+/// Lines with more entries than this times the root of their number come last, unsorted, as a rule; none where they make most of what is left.
+const DENSE: f64 = 10.0;
+
 /// So many short columns for each long one and each row are nearly all.
 const MANY: usize = 10;
 
@@ -78,6 +88,7 @@ struct Program {
     n: usize,
     m: usize,
     rows: Sparse,
+    columns: Sparse,
     cost: Vec<f64>,
     /// Within the bounds, as near to 0 as they allow.
     value: Vec<f64>,
@@ -109,6 +120,7 @@ impl Program {
         let mut out = Self {
             n,
             m,
+            columns: rows.transpose(n),
             rows,
             cost,
             value: Vec::with_capacity(n + m),
@@ -195,25 +207,31 @@ impl Iterate {
     }
 }
 
-/// For each column those before it in its block, where long columns have entries in the same rows: zeros between them make one block of the factor,
-/// which is eliminated by products of matrices, not column by column.
-fn alike(p: &Program) -> Vec<Vec<usize>> {
-    let mut pattern = vec![(0usize, 0u64); p.n];
-    for i in 0..p.m {
-        let mut row = DefaultHasher::new();
-        i.hash(&mut row);
-        let row = row.finish();
-        for (j, _) in p.rows.line(i) {
-            let (count, sum) = pattern[j];
-            pattern[j] = (count + 1, sum.wrapping_add(row));
+/// For each variable those before it in its block, where variables have entries with the same others: zeros between them make one block of the factor,
+/// which is eliminated by products of matrices, not one by one.
+fn alike(start: &[usize], index: &[usize]) -> Vec<Vec<usize>> {
+    let order = start.len() - 1;
+    let hash = |k: usize| {
+        let mut hasher = DefaultHasher::new();
+        k.hash(&mut hasher);
+        hasher.finish()
+    };
+    let hashes: Vec<u64> = (0..order).map(hash).collect();
+    let mut pattern = vec![(0usize, 0u64); order];
+    for k in 0..order {
+        for &i in &index[start[k]..start[k + 1] - 1] {
+            for (k, i) in [(k, i), (i, k)] {
+                let (count, sum) = pattern[k];
+                pattern[k] = (count + 1, sum.wrapping_add(hashes[i]));
+            }
         }
     }
-    let mut before = vec![Vec::new(); p.n];
+    let mut before = vec![Vec::new(); order];
     let mut blocks: HashMap<(usize, u64), Vec<usize>> = HashMap::new();
-    for (j, &pattern) in pattern.iter().enumerate().filter(|e| e.1.0 >= LONG) {
+    for (k, &pattern) in pattern.iter().enumerate().filter(|e| e.1.0 >= LONG) {
         let block = blocks.entry(pattern).or_default();
-        before[j].clone_from(block);
-        block.push(j);
+        before[k].clone_from(block);
+        block.push(k);
         if block.len() == BLOCK {
             block.clear();
         }
@@ -222,61 +240,132 @@ fn alike(p: &Program) -> Vec<Vec<usize>> {
 }
 
 /// The order of pivots by approximate minimum degree (Amestoy, Davis & Duff 1996), and what it costs.
-fn minimum_degree(pattern: SymbolicSparseColMatRef<usize>) -> Option<(Vec<usize>, FlopCount)> {
+fn minimum_degree(
+    pattern: SymbolicSparseColMatRef<usize>,
+    dense: f64,
+) -> Option<(Vec<usize>, FlopCount)> {
     let order = pattern.ncols();
     let (mut fwd, mut inv) = (vec![0; order], vec![0; order]);
     let nonzeros = pattern.compute_nnz();
     let mut memory = MemBuffer::new(amd::order_maybe_unsorted_scratch::<usize>(order, nonzeros));
     let stack = MemStack::new(&mut memory);
-    let control = amd::Control::default();
+    let control = amd::Control {
+        dense,
+        ..amd::Control::default()
+    };
     let count = amd::order_maybe_unsorted(&mut fwd, &mut inv, pattern, control, stack);
     Some((fwd, count.ok()?))
 }
 
-/// The same where nearly all columns have one or two entries, as in a transport of thousands of places to thousands: they have the least degree, and
-/// come first without a search. None: they are not that many.
-fn short_first(p: &Program) -> Option<Option<(Vec<usize>, FlopCount)>> {
-    let mut entries = vec![0usize; p.n];
-    p.rows.index.iter().for_each(|&j| entries[j as usize] += 1);
-    let (short, long): (Vec<usize>, Vec<usize>) = (0..p.n).partition(|&j| entries[j] < 3);
-    if short.len() < MANY * (long.len() + p.m) {
-        return None;
+/// The order of pivots by nested dissection (Karypis & Kumar 1998), and what it costs.
+fn nested_dissection(pattern: SymbolicSparseColMatRef<usize>) -> Option<(Vec<usize>, FlopCount)> {
+    let order = pattern.ncols();
+    let pairs = || (0..order).flat_map(|k| pattern.row_idx_of_col(k).map(move |i| (i, k)));
+    let both = |&(i, k): &(usize, usize)| i != k;
+    let mut start = vec![0i32; order + 1];
+    for (i, k) in pairs().filter(both) {
+        start[i + 1] += 1;
+        start[k + 1] += 1;
     }
-    let mut met = vec![Vec::new(); long.len() + p.m];
-    let mut first = vec![None; p.n];
-    for i in 0..p.m {
-        let row = long.len() + i;
-        for (j, _) in p.rows.line(i) {
-            if entries[j] >= 3 {
-                met[row].extend(long.binary_search(&j));
-            } else if let Some(other) = first[j].replace(row) {
-                met[row].push(other);
-            }
+    (0..order).for_each(|k| start[k + 1] += start[k]);
+    let mut next = start.clone();
+    let mut index = vec![0i32; start[order] as usize];
+    for (i, k) in pairs().filter(both) {
+        for (i, k) in [(i, k), (k, i)] {
+            index[next[k] as usize] = i as i32;
+            next[k] += 1;
         }
     }
-    let rest: Vec<usize> = long.into_iter().chain(p.n..p.n + p.m).collect();
+    (0..order).for_each(|k| index[start[k] as usize..start[k + 1] as usize].sort_unstable());
+    let whole = feral_metis::CscPattern::new(order, &start, &index)?;
+    let fwd: Vec<usize> = feral_metis::metis_order(&whole)
+        .ok()?
+        .into_iter()
+        .map(|i| i as usize)
+        .collect();
+    let mut inv = vec![0; order];
+    fwd.iter().enumerate().for_each(|(k, &i)| inv[i] = k);
+    let mut upper = vec![Vec::new(); order];
+    for (i, k) in pairs() {
+        upper[inv[i].max(inv[k])].push(inv[i].min(inv[k]));
+    }
     let (mut start, mut index) = (vec![0], Vec::new());
-    for mut line in met {
-        line.sort_unstable();
-        line.dedup();
-        index.extend(line);
+    for mut column in upper {
+        column.sort_unstable();
+        index.extend(column);
         start.push(index.len());
     }
-    let pattern =
-        SymbolicSparseColMatRef::new_checked(rest.len(), rest.len(), &start, None, &index);
-    let sum = |(order, count): (Vec<usize>, FlopCount)| {
-        let last = order.into_iter().map(|k| rest[k]);
-        let count = FlopCount {
-            n_div: count.n_div + 2.0 * short.len() as f64,
-            ..count
-        };
-        (short.iter().copied().chain(last).collect(), count)
+    let permuted = SymbolicSparseColMatRef::new_checked(order, order, &start, None, &index);
+    let (mut tree, mut counts) = (vec![0isize; order], vec![0usize; order]);
+    let scratch = prefactorize_symbolic_cholesky_scratch::<usize>(order, index.len());
+    let mut memory = MemBuffer::new(scratch);
+    let stack = MemStack::new(&mut memory);
+    prefactorize_symbolic_cholesky(&mut tree, &mut counts, permuted, stack);
+    let below = counts.iter().map(|c| (c - 1) as f64);
+    let count = FlopCount {
+        n_div: below.clone().sum(),
+        n_mult_subs_ldl: below.map(|c| c * (c + 1.0) / 2.0).sum(),
+        n_mult_subs_lu: 0.0,
     };
-    Some(minimum_degree(pattern).map(sum))
+    Some((fwd, count))
 }
 
-/// The Newton system: the upper triangle by columns, and its factors.
+/// The cheaper of both orders, where the search for the second one may pay.
+fn pivots(pattern: SymbolicSparseColMatRef<usize>, dense: f64) -> Option<(Vec<usize>, FlopCount)> {
+    let first = minimum_degree(pattern, dense)?;
+    let nonzeros = pattern.compute_nnz();
+    // The search counts in 32 bits, and looks at a clock, which a browser lacks.
+    let able = nonzeros < 1 << 30 && cfg!(not(target_family = "wasm"));
+    if !able || first.1.n_mult_subs_ldl < DEAR * nonzeros as f64 {
+        return Some(first);
+    }
+    let second = nested_dissection(pattern);
+    let second = second.filter(|s| s.1.n_mult_subs_ldl < first.1.n_mult_subs_ldl);
+    Some(second.unwrap_or(first))
+}
+
+/// A matrix with zeros in these places too.
+fn with_zeros(
+    start: &[usize],
+    index: &[usize],
+    entries: &[f64],
+    zeros: &[Vec<usize>],
+) -> (Vec<usize>, Vec<usize>, Vec<f64>) {
+    let (mut starts, mut indices, mut values) = (vec![0], Vec::new(), Vec::new());
+    for (k, zeros) in zeros.iter().enumerate() {
+        let line = start[k]..start[k + 1];
+        let given = index[line.clone()].iter().zip(&entries[line]);
+        let mut line: Vec<(usize, f64)> = given.map(|(&i, &v)| (i, v)).collect();
+        line.extend(zeros.iter().map(|&i| (i, 0.0)));
+        line.sort_unstable_by_key(|e| e.0);
+        indices.extend(line.iter().map(|e| e.0));
+        values.extend(line.iter().map(|e| e.1));
+        starts.push(indices.len());
+    }
+    (starts, indices, values)
+}
+
+/// Which columns are eliminated one by one, before the factor is begun: those with bounds and few entries, where they are most of the program.
+/// None: they are not that many.
+fn short(p: &Program) -> Option<Vec<bool>> {
+    let mut bounded = vec![false; p.n + p.m];
+    p.of.iter().for_each(|&k| bounded[k] = true);
+    let short = |j: usize| bounded[j] && p.columns.line(j).len() < LONG;
+    let short: Vec<bool> = (0..p.n).map(short).collect();
+    let count = short.iter().filter(|s| **s).count();
+    (count >= MANY * (p.n - count + p.m)).then_some(short)
+}
+
+/// The Newton system: the upper triangle by columns, and its factors, without the columns that are eliminated before: −D x + Aᵀy = b gives them, and what
+/// they leave is A D⁻¹Aᵀ in the rows, D with ρ.
 struct System {
+    /// The variables that are not eliminated, how many of them are columns, and whether a column is eliminated.
+    kept: Vec<usize>,
+    long: usize,
+    short: Option<Vec<bool>>,
+    /// 1/(D + ρ) of the columns, and room for a row.
+    inverse: Vec<f64>,
+    room: Vec<f64>,
     start: Vec<usize>,
     index: Vec<usize>,
     entries: Vec<f64>,
@@ -297,31 +386,57 @@ struct System {
 
 impl System {
     fn new(p: &Program, budget: &Budget) -> Result<Self, Ended> {
-        let order = p.n + p.m;
+        let short = short(p);
+        let is_kept = |k: &usize| short.as_ref().is_none_or(|s| *k >= p.n || !s[*k]);
+        let kept: Vec<usize> = (0..p.n + p.m).filter(is_kept).collect();
+        let (order, long) = (kept.len(), kept.len() - p.m);
+        let mut place = vec![usize::MAX; p.n];
+        kept[..long]
+            .iter()
+            .enumerate()
+            .for_each(|(k, &j)| place[j] = k);
         let (mut start, mut index, mut entries) = (vec![0], Vec::new(), Vec::new());
-        let columns = alike(p).into_iter();
-        let columns = columns.map(|alike| alike.into_iter().map(|j| (j, 0.0)).collect());
-        let rows = (0..p.m).map(|i| p.rows.line(i).collect());
-        for (k, line) in columns.chain(rows).enumerate() {
-            let line: Vec<(usize, f64)> = line;
-            for (j, a) in line {
-                index.push(j);
-                entries.push(a);
+        let mut met = vec![false; p.m];
+        let mut operations = 0.0;
+        for (k, &v) in kept.iter().enumerate() {
+            if v >= p.n {
+                let line = p.rows.line(v - p.n);
+                for (j, a) in line.clone().filter(|e| place[e.0] != usize::MAX) {
+                    index.push(place[j]);
+                    entries.push(a);
+                }
+                let first = index.len();
+                for (j, _) in line.filter(|e| place[e.0] == usize::MAX) {
+                    for (i, _) in p.columns.line(j).take_while(|e| e.0 < v - p.n) {
+                        operations += 1.0;
+                        if !met[i] {
+                            met[i] = true;
+                            index.push(long + i);
+                        }
+                    }
+                }
+                index[first..].sort_unstable();
+                index[first..].iter().for_each(|&i| met[i - long] = false);
             }
             index.push(k);
-            entries.push(0.0);
+            entries.resize(index.len(), 0.0);
             start.push(index.len());
         }
+        let before = alike(&start, &index);
+        if before.iter().any(|b| !b.is_empty()) {
+            (start, index, entries) = with_zeros(&start, &index, &entries, &before);
+        }
         let pattern = SymbolicSparseColMatRef::new_checked(order, order, &start, None, &index);
-        let ordered = short_first(p).unwrap_or_else(|| minimum_degree(pattern));
-        let (fwd, count) = ordered.ok_or(Ended::Failed)?;
+        let dense = if short.is_some() { -1.0 } else { DENSE };
+        let (fwd, count) = pivots(pattern, dense).ok_or(Ended::Failed)?;
         let mut inv = vec![0; order];
         fwd.iter().enumerate().for_each(|(k, &i)| inv[i] = k);
         let nonzeros = count.n_div + order as f64;
+        operations += count.n_mult_subs_ldl;
         let size = || Size {
             what: "the factor of the Newton system",
             nonzeros,
-            operations: 2.0 * count.n_mult_subs_ldl,
+            operations: 2.0 * operations,
         };
         budget.affords(size).map_err(Ended::TooLarge)?;
         let by = SymmetricOrdering::Custom(PermRef::new_checked(&fwd, &inv, order));
@@ -331,8 +446,13 @@ impl System {
         let numeric = symbolic.factorize_numeric_ldlt_scratch::<f64>(Par::Seq, Default::default());
         let solve = symbolic.solve_in_place_scratch::<f64>(1, Par::Seq);
         let memory = MemBuffer::try_new(numeric.or(solve)).map_err(|_| Ended::Failed)?;
-        let mut signs = vec![-1; p.n];
+        let mut signs = vec![-1; long];
         signs.resize(order, 1);
+        let eliminated = if short.is_some() {
+            p.rows.value.len()
+        } else {
+            0
+        };
         Ok(Self {
             start,
             index,
@@ -345,7 +465,12 @@ impl System {
             regular: REGULAR,
             rho: REGULAR,
             delta: REGULAR,
-            ratio: count.n_mult_subs_ldl / (2.0 * nonzeros),
+            ratio: operations / (2.0 * (nonzeros + eliminated as f64)),
+            kept,
+            long,
+            short,
+            inverse: Vec::new(),
+            room: vec![0.0; p.m],
         })
     }
 
@@ -367,13 +492,15 @@ impl System {
                 _ => 1.0 / d.max(1e-20),
             };
             self.diagonal.push(entry);
-            self.entries[self.start[k + 1] - 1] = if k < p.n {
-                -entry - self.rho
-            } else {
-                entry + self.delta
+        }
+        for (k, &v) in self.kept.iter().enumerate() {
+            self.entries[self.start[k + 1] - 1] = match v < p.n {
+                true => -self.diagonal[v] - self.rho,
+                false => self.diagonal[v] + self.delta,
             };
         }
-        let order = d.len();
+        self.add_short(p);
+        let order = self.kept.len();
         let (start, index) = (&self.start, &self.index);
         let pattern = SymbolicSparseColMatRef::new_checked(order, order, start, None, index);
         let matrix = SparseColMatRef::new(pattern, &self.entries);
@@ -394,14 +521,49 @@ impl System {
         done.ok().map(|_| ())
     }
 
-    fn back(&mut self, b: &mut [f64]) {
-        let order = b.len();
+    /// Adds what the eliminated columns leave in the rows.
+    fn add_short(&mut self, p: &Program) {
+        let Some(short) = &self.short else {
+            return;
+        };
+        let inverse = self.diagonal[..p.n].iter().map(|d| 1.0 / (d + self.rho));
+        self.inverse = inverse.collect();
+        for i in 0..p.m {
+            for (j, a) in p.rows.line(i).filter(|e| short[e.0]) {
+                let factor = a * self.inverse[j];
+                let column = p.columns.line(j).take_while(|e| e.0 <= i);
+                column.for_each(|(i, a)| self.room[i] += factor * a);
+            }
+            let line = self.start[self.long + i]..self.start[self.long + i + 1];
+            self.entries[line.end - 1] += std::mem::take(&mut self.room[i]);
+            for e in line.start..line.end - 1 {
+                if self.index[e] >= self.long {
+                    self.entries[e] = std::mem::take(&mut self.room[self.index[e] - self.long]);
+                }
+            }
+        }
+    }
+
+    fn back(&mut self, p: &Program, b: &mut [f64]) {
+        let order = self.kept.len();
+        let short = self.short.as_ref();
+        let short = short.map_or(Vec::new(), |s| (0..p.n).filter(|&j| s[j]).collect());
+        for &j in &short {
+            let by = b[j] * self.inverse[j];
+            p.columns.line(j).for_each(|(i, a)| b[p.n + i] += a * by);
+        }
+        let mut x: Vec<f64> = self.kept.iter().map(|&k| b[k]).collect();
         LdltRef::new(&self.symbolic, &self.factor).solve_in_place_with_conj(
             Conj::No,
-            MatMut::from_column_major_slice_mut(b, order, 1),
+            MatMut::from_column_major_slice_mut(&mut x, order, 1),
             Par::Seq,
             MemStack::new(&mut self.memory),
         );
+        self.kept.iter().zip(&x).for_each(|(&k, x)| b[k] = *x);
+        for &j in &short {
+            let terms = p.columns.line(j).map(|(i, a)| a * b[p.n + i]);
+            b[j] = (terms.sum::<f64>() - b[j]) * self.inverse[j];
+        }
     }
 
     /// b − K x without the regularisation.
@@ -424,7 +586,7 @@ impl System {
     /// K x = b, refined.
     fn solve(&mut self, p: &Program, b: &[f64]) -> Vec<f64> {
         let mut x = b.to_vec();
-        self.back(&mut x);
+        self.back(p, &mut x);
         let top = largest(b);
         let mut left = f64::INFINITY;
         for _ in 0..3 {
@@ -434,7 +596,7 @@ impl System {
                 break;
             }
             left = now;
-            self.back(&mut r);
+            self.back(p, &mut r);
             x.iter_mut().zip(&r).for_each(|(x, r)| *x += r);
         }
         x
