@@ -275,6 +275,54 @@ fn short_first(p: &Program) -> Option<Option<(Vec<usize>, FlopCount)>> {
     Some(minimum_degree(pattern).map(sum))
 }
 
+/// The order of the pivots of a program's Newton system, and what its factor costs.
+pub(super) struct Order {
+    pivots: Vec<usize>,
+    count: FlopCount,
+}
+
+impl Order {
+    pub(super) fn new(problem: &Problem) -> Option<Self> {
+        let p = Program::new(problem).0;
+        let (start, index, _) = upper_triangle(&p);
+        Self::of(&p, &start, &index)
+    }
+
+    fn of(p: &Program, start: &[usize], index: &[usize]) -> Option<Self> {
+        let order = p.n + p.m;
+        let pattern = SymbolicSparseColMatRef::new_checked(order, order, start, None, index);
+        let ordered = short_first(p).unwrap_or_else(|| minimum_degree(pattern));
+        ordered.map(|(pivots, count)| Self { pivots, count })
+    }
+
+    pub(super) fn nonzeros(&self) -> f64 {
+        self.count.n_div + self.pivots.len() as f64
+    }
+
+    pub(super) fn products(&self) -> f64 {
+        self.count.n_mult_subs_ldl
+    }
+}
+
+/// The columns of the Newton system's upper triangle: where they begin, the rows of their entries, the entries.
+fn upper_triangle(p: &Program) -> (Vec<usize>, Vec<usize>, Vec<f64>) {
+    let (mut start, mut index, mut entries) = (vec![0], Vec::new(), Vec::new());
+    let columns = alike(p).into_iter();
+    let columns = columns.map(|alike| alike.into_iter().map(|j| (j, 0.0)).collect());
+    let rows = (0..p.m).map(|i| p.rows.line(i).collect());
+    for (k, line) in columns.chain(rows).enumerate() {
+        let line: Vec<(usize, f64)> = line;
+        for (j, a) in line {
+            index.push(j);
+            entries.push(a);
+        }
+        index.push(k);
+        entries.push(0.0);
+        start.push(index.len());
+    }
+    (start, index, entries)
+}
+
 /// The Newton system: the upper triangle by columns, and its factors.
 struct System {
     start: Vec<usize>,
@@ -296,35 +344,23 @@ struct System {
 }
 
 impl System {
-    fn new(p: &Program, budget: &Budget) -> Result<Self, Ended> {
+    fn new(p: &Program, known: Option<Order>, budget: &Budget) -> Result<Self, Ended> {
         let order = p.n + p.m;
-        let (mut start, mut index, mut entries) = (vec![0], Vec::new(), Vec::new());
-        let columns = alike(p).into_iter();
-        let columns = columns.map(|alike| alike.into_iter().map(|j| (j, 0.0)).collect());
-        let rows = (0..p.m).map(|i| p.rows.line(i).collect());
-        for (k, line) in columns.chain(rows).enumerate() {
-            let line: Vec<(usize, f64)> = line;
-            for (j, a) in line {
-                index.push(j);
-                entries.push(a);
-            }
-            index.push(k);
-            entries.push(0.0);
-            start.push(index.len());
-        }
+        let (start, index, entries) = upper_triangle(p);
+        let known = known.or_else(|| Order::of(p, &start, &index));
+        let pivots = known.ok_or(Ended::Failed)?;
         let pattern = SymbolicSparseColMatRef::new_checked(order, order, &start, None, &index);
-        let ordered = short_first(p).unwrap_or_else(|| minimum_degree(pattern));
-        let (fwd, count) = ordered.ok_or(Ended::Failed)?;
-        let mut inv = vec![0; order];
-        fwd.iter().enumerate().for_each(|(k, &i)| inv[i] = k);
-        let nonzeros = count.n_div + order as f64;
+        let mut inverse = vec![0; order];
+        (pivots.pivots.iter().enumerate()).for_each(|(k, &i)| inverse[i] = k);
+        let nonzeros = pivots.nonzeros();
         let size = || Size {
             what: "the factor of the Newton system",
             nonzeros,
-            operations: 2.0 * count.n_mult_subs_ldl,
+            operations: 2.0 * pivots.products(),
         };
         budget.affords(size).map_err(Ended::TooLarge)?;
-        let by = SymmetricOrdering::Custom(PermRef::new_checked(&fwd, &inv, order));
+        let by = PermRef::new_checked(&pivots.pivots, &inverse, order);
+        let by = SymmetricOrdering::Custom(by);
         let params = CholeskySymbolicParams::default();
         let symbolic = factorize_symbolic_cholesky(pattern, Side::Upper, by, params)
             .map_err(|_| Ended::Failed)?;
@@ -345,7 +381,7 @@ impl System {
             regular: REGULAR,
             rho: REGULAR,
             delta: REGULAR,
-            ratio: count.n_mult_subs_ldl / (2.0 * nonzeros),
+            ratio: pivots.products() / (2.0 * nonzeros),
         })
     }
 
@@ -597,10 +633,11 @@ fn centre(p: &Program, point: &Point, kept: &[usize]) -> Iterate {
 
 /// Solves a program, from a point inside if there is one, which is [`centre`]d, until residuals and gap are below the first
 /// tolerance, relative to the sizes of sides, costs and objective, or until no iteration brings them down; a point within the
-/// second one is a solution then. Nothing is said about programs without one: [`Ended::Failed`].
+/// second one is a solution then. The order of the pivots may be known. Nothing is said about programs without one: [`Ended::Failed`].
 pub(super) fn solve(
     problem: &Problem,
     from: Option<&Point>,
+    order: Option<Order>,
     tolerances: [f64; 2],
     budget: &Budget,
 ) -> Run {
@@ -616,7 +653,7 @@ pub(super) fn solve(
         iterations: 0,
         almost: false,
     };
-    let mut system = match System::new(&p, budget) {
+    let mut system = match System::new(&p, order, budget) {
         Ok(system) => system,
         Err(ended) => return Run { ended, ..run },
     };
