@@ -34,8 +34,9 @@ pub(crate) struct Factor {
     lu: Rc<RefCell<SparseLu>>,
     /// Replacements since the LU is shared.
     etas: Vec<Eta>,
-    /// Nonzeros of the factor when it was fresh.
+    /// Nonzeros of the factor when it was fresh, and what [`Factor::nonzeros`] is now: to count them takes a pass over the rows.
     fresh: usize,
+    nonzeros: usize,
     /// What the last sparse solve gave.
     solution: Entries,
     /// A dense vector, 0 between uses.
@@ -100,6 +101,7 @@ impl Factor {
         }
         Ok(Self {
             fresh: lu.factor_nnz(),
+            nonzeros: lu.factor_nnz(),
             lu: Rc::new(RefCell::new(lu)),
             etas: Vec::new(),
             solution: Vec::new(),
@@ -199,6 +201,14 @@ impl Factor {
 
     /// Replaces the column in a slot. False: factorise afresh.
     pub(crate) fn replace(&mut self, slot: usize, column: &[(usize, f64)]) -> bool {
+        let replaced = self.replace_column(slot, column);
+        let lu = self.lu.borrow();
+        let etas: usize = self.etas.iter().map(|e| 1 + e.others.len()).sum();
+        self.nonzeros = etas + lu.eta_ops() + lu.factor_nnz();
+        replaced
+    }
+
+    fn replace_column(&mut self, slot: usize, column: &[(usize, f64)]) -> bool {
         if self.etas.is_empty()
             && let Some(lu) = Rc::get_mut(&mut self.lu)
         {
@@ -221,9 +231,7 @@ impl Factor {
 
     /// Numbers that a solve with a full right-hand side touches.
     pub(crate) fn nonzeros(&self) -> usize {
-        let lu = self.lu.borrow();
-        let etas: usize = self.etas.iter().map(|e| 1 + e.others.len()).sum();
-        etas + lu.eta_ops() + lu.factor_nnz()
+        self.nonzeros
     }
 
     /// Number of updates since the factorisation.
