@@ -356,36 +356,27 @@ fn short(p: &Program) -> Option<Vec<bool>> {
     (count >= MANY * (p.n - count + p.m)).then_some(short)
 }
 
-/// The Newton system: the upper triangle by columns, and its factors, without the columns that are eliminated before: −D x + Aᵀy = b gives them, and what
-/// they leave is A D⁻¹Aᵀ in the rows, D with ρ.
-struct System {
-    /// The variables that are not eliminated, how many of them are columns, and whether a column is eliminated.
+/// Where the entries of a program's Newton system are, the order of its pivots, and what a factor costs.
+pub(super) struct Layout {
+    /// The variables that are not eliminated before, how many of them are columns, and whether a column is eliminated.
     kept: Vec<usize>,
     long: usize,
     short: Option<Vec<bool>>,
-    /// 1/(D + ρ) of the columns, and room for a row.
-    inverse: Vec<f64>,
-    room: Vec<f64>,
     start: Vec<usize>,
     index: Vec<usize>,
     entries: Vec<f64>,
-    signs: Vec<i8>,
-    symbolic: SymbolicCholesky<usize>,
-    factor: Vec<f64>,
-    memory: MemBuffer,
-    /// D of the columns, 1/D of the rows (0 for equations).
-    diagonal: Vec<f64>,
-    /// ρ and δ where primal and dual variables are alike.
-    regular: f64,
-    /// Added to D of the columns, and to the diagonal of the rows.
-    rho: f64,
-    delta: f64,
-    /// Operations of a factorisation for each of a solve.
-    ratio: f64,
+    pivots: Vec<usize>,
+    /// Of a factor.
+    pub(super) nonzeros: f64,
+    pub(super) operations: f64,
 }
 
-impl System {
-    fn new(p: &Program, budget: &Budget) -> Result<Self, Ended> {
+impl Layout {
+    pub(super) fn new(problem: &Problem) -> Option<Self> {
+        Self::of(&Program::new(problem).0)
+    }
+
+    fn of(p: &Program) -> Option<Self> {
         let short = short(p);
         let is_kept = |k: &usize| short.as_ref().is_none_or(|s| *k >= p.n || !s[*k]);
         let kept: Vec<usize> = (0..p.n + p.m).filter(is_kept).collect();
@@ -428,35 +419,73 @@ impl System {
         }
         let pattern = SymbolicSparseColMatRef::new_checked(order, order, &start, None, &index);
         let dense = if short.is_some() { -1.0 } else { DENSE };
-        let (fwd, count) = pivots(pattern, dense).ok_or(Ended::Failed)?;
-        let mut inv = vec![0; order];
-        fwd.iter().enumerate().for_each(|(k, &i)| inv[i] = k);
-        let nonzeros = count.n_div + order as f64;
-        operations += count.n_mult_subs_ldl;
+        let (fwd, count) = pivots(pattern, dense)?;
+        Some(Self {
+            operations: operations + count.n_mult_subs_ldl,
+            nonzeros: count.n_div + order as f64,
+            pivots: fwd,
+            kept,
+            long,
+            short,
+            start,
+            index,
+            entries,
+        })
+    }
+}
+
+/// The Newton system: the upper triangle by columns, and its factors, without the columns that are eliminated before: −D x + Aᵀy = b gives them, and what
+/// they leave is A D⁻¹Aᵀ in the rows, D with ρ.
+struct System {
+    layout: Layout,
+    /// 1/(D + ρ) of the columns, and room for a row.
+    inverse: Vec<f64>,
+    room: Vec<f64>,
+    signs: Vec<i8>,
+    symbolic: SymbolicCholesky<usize>,
+    factor: Vec<f64>,
+    memory: MemBuffer,
+    /// D of the columns, 1/D of the rows (0 for equations).
+    diagonal: Vec<f64>,
+    /// ρ and δ where primal and dual variables are alike.
+    regular: f64,
+    /// Added to D of the columns, and to the diagonal of the rows.
+    rho: f64,
+    delta: f64,
+    /// Operations of a factorisation for each of a solve.
+    ratio: f64,
+}
+
+impl System {
+    fn new(p: &Program, known: Option<Layout>, budget: &Budget) -> Result<Self, Ended> {
+        let known = known.or_else(|| Layout::of(p));
+        let layout = known.ok_or(Ended::Failed)?;
+        let (order, nonzeros) = (layout.kept.len(), layout.nonzeros);
         let size = || Size {
             what: "the factor of the Newton system",
             nonzeros,
-            operations: 2.0 * operations,
+            operations: 2.0 * layout.operations,
         };
         budget.affords(size).map_err(Ended::TooLarge)?;
-        let by = SymmetricOrdering::Custom(PermRef::new_checked(&fwd, &inv, order));
+        let (start, index) = (&layout.start, &layout.index);
+        let pattern = SymbolicSparseColMatRef::new_checked(order, order, start, None, index);
+        let mut inverse = vec![0; order];
+        (layout.pivots.iter().enumerate()).for_each(|(k, &i)| inverse[i] = k);
+        let by = PermRef::new_checked(&layout.pivots, &inverse, order);
+        let by = SymmetricOrdering::Custom(by);
         let params = CholeskySymbolicParams::default();
         let symbolic = factorize_symbolic_cholesky(pattern, Side::Upper, by, params)
             .map_err(|_| Ended::Failed)?;
         let numeric = symbolic.factorize_numeric_ldlt_scratch::<f64>(Par::Seq, Default::default());
         let solve = symbolic.solve_in_place_scratch::<f64>(1, Par::Seq);
         let memory = MemBuffer::try_new(numeric.or(solve)).map_err(|_| Ended::Failed)?;
-        let mut signs = vec![-1; long];
+        let mut signs = vec![-1; layout.long];
         signs.resize(order, 1);
-        let eliminated = if short.is_some() {
-            p.rows.value.len()
-        } else {
-            0
+        let eliminated = match layout.short {
+            Some(_) => p.rows.value.len(),
+            None => 0,
         };
         Ok(Self {
-            start,
-            index,
-            entries,
             signs,
             factor: vec![0.0; symbolic.len_val()],
             symbolic,
@@ -465,10 +494,8 @@ impl System {
             regular: REGULAR,
             rho: REGULAR,
             delta: REGULAR,
-            ratio: operations / (2.0 * (nonzeros + eliminated as f64)),
-            kept,
-            long,
-            short,
+            ratio: layout.operations / (2.0 * (nonzeros + eliminated as f64)),
+            layout,
             inverse: Vec::new(),
             room: vec![0.0; p.m],
         })
@@ -493,17 +520,17 @@ impl System {
             };
             self.diagonal.push(entry);
         }
-        for (k, &v) in self.kept.iter().enumerate() {
-            self.entries[self.start[k + 1] - 1] = match v < p.n {
+        for (k, &v) in self.layout.kept.iter().enumerate() {
+            self.layout.entries[self.layout.start[k + 1] - 1] = match v < p.n {
                 true => -self.diagonal[v] - self.rho,
                 false => self.diagonal[v] + self.delta,
             };
         }
         self.add_short(p);
-        let order = self.kept.len();
-        let (start, index) = (&self.start, &self.index);
+        let order = self.layout.kept.len();
+        let (start, index) = (&self.layout.start, &self.layout.index);
         let pattern = SymbolicSparseColMatRef::new_checked(order, order, start, None, index);
-        let matrix = SparseColMatRef::new(pattern, &self.entries);
+        let matrix = SparseColMatRef::new(pattern, &self.layout.entries);
         let regularization = LdltRegularization {
             dynamic_regularization_signs: Some(&self.signs),
             dynamic_regularization_delta: REGULAR,
@@ -523,7 +550,7 @@ impl System {
 
     /// Adds what the eliminated columns leave in the rows.
     fn add_short(&mut self, p: &Program) {
-        let Some(short) = &self.short else {
+        let Some(short) = &self.layout.short else {
             return;
         };
         let inverse = self.diagonal[..p.n].iter().map(|d| 1.0 / (d + self.rho));
@@ -534,32 +561,32 @@ impl System {
                 let column = p.columns.line(j).take_while(|e| e.0 <= i);
                 column.for_each(|(i, a)| self.room[i] += factor * a);
             }
-            let line = self.start[self.long + i]..self.start[self.long + i + 1];
-            self.entries[line.end - 1] += std::mem::take(&mut self.room[i]);
+            let line = self.layout.start[self.layout.long + i]..self.layout.start[self.layout.long + i + 1];
+            self.layout.entries[line.end - 1] += std::mem::take(&mut self.room[i]);
             for e in line.start..line.end - 1 {
-                if self.index[e] >= self.long {
-                    self.entries[e] = std::mem::take(&mut self.room[self.index[e] - self.long]);
+                if self.layout.index[e] >= self.layout.long {
+                    self.layout.entries[e] = std::mem::take(&mut self.room[self.layout.index[e] - self.layout.long]);
                 }
             }
         }
     }
 
     fn back(&mut self, p: &Program, b: &mut [f64]) {
-        let order = self.kept.len();
-        let short = self.short.as_ref();
+        let order = self.layout.kept.len();
+        let short = self.layout.short.as_ref();
         let short = short.map_or(Vec::new(), |s| (0..p.n).filter(|&j| s[j]).collect());
         for &j in &short {
             let by = b[j] * self.inverse[j];
             p.columns.line(j).for_each(|(i, a)| b[p.n + i] += a * by);
         }
-        let mut x: Vec<f64> = self.kept.iter().map(|&k| b[k]).collect();
+        let mut x: Vec<f64> = self.layout.kept.iter().map(|&k| b[k]).collect();
         LdltRef::new(&self.symbolic, &self.factor).solve_in_place_with_conj(
             Conj::No,
             MatMut::from_column_major_slice_mut(&mut x, order, 1),
             Par::Seq,
             MemStack::new(&mut self.memory),
         );
-        self.kept.iter().zip(&x).for_each(|(&k, x)| b[k] = *x);
+        self.layout.kept.iter().zip(&x).for_each(|(&k, x)| b[k] = *x);
         for &j in &short {
             let terms = p.columns.line(j).map(|(i, a)| a * b[p.n + i]);
             b[j] = (terms.sum::<f64>() - b[j]) * self.inverse[j];
@@ -759,10 +786,11 @@ fn centre(p: &Program, point: &Point, kept: &[usize]) -> Iterate {
 
 /// Solves a program, from a point inside if there is one, which is [`centre`]d, until residuals and gap are below the first
 /// tolerance, relative to the sizes of sides, costs and objective, or until no iteration brings them down; a point within the
-/// second one is a solution then. Nothing is said about programs without one: [`Ended::Failed`].
+/// second one is a solution then. The layout of its system may be known. Nothing is said about programs without one: [`Ended::Failed`].
 pub(super) fn solve(
     problem: &Problem,
     from: Option<&Point>,
+    layout: Option<Layout>,
     tolerances: [f64; 2],
     budget: &Budget,
 ) -> Run {
@@ -778,7 +806,7 @@ pub(super) fn solve(
         iterations: 0,
         almost: false,
     };
-    let mut system = match System::new(&p, budget) {
+    let mut system = match System::new(&p, layout, budget) {
         Ok(system) => system,
         Err(ended) => return Run { ended, ..run },
     };

@@ -23,6 +23,8 @@ use form::{Form, Point, Problem};
 pub use options::OPTIONS;
 use scale::Scaling;
 use simplex::{Basis, Pivot, Simplex, State};
+use std::cell::RefCell;
+use std::rc::Rc;
 
 /// Clarabel's interior-point method for convex quadratic programs; the active set found there is solved for afterwards.
 pub(super) const QUADRATIC: QuadraticEngine = QuadraticEngine {
@@ -236,10 +238,10 @@ fn solve(
             match answer.ended {
                 // Whatever is no solution is looked at more closely.
                 Ended::Solved | Ended::Time | Ended::Interrupted => answer,
-                _ => finished(&scaled, accuracy, strategies, budget),
+                _ => finished(&scaled, None, accuracy, strategies, budget),
             }
         }
-        (Method::Crossover, _) => finished(&scaled, accuracy, strategies, budget),
+        (Method::Crossover, _) => finished(&scaled, None, accuracy, strategies, budget),
         (Method::Simplex, _) => simplex_only(&scaled, accuracy, budget),
         (Method::Auto, _) if !small && strategies.run(Strategy::Presolve) => presolved(
             &form.problem,
@@ -492,7 +494,7 @@ fn simplex_answer(mut simplex: Simplex, ended: Ended) -> Gave {
 /// The interior point of a program, and how good it is: as [`barrier::solve`] has it, and where that fails as Clarabel has it, which
 /// tells programs without a solution.
 fn interior_point(p: &Problem, tolerances: [f64; 2], budget: &Budget) -> interior::Run {
-    let own = || Some(barrier::solve(p, None, tolerances, budget));
+    let own = || Some(barrier::solve(p, None, None, tolerances, budget));
     let run = trivial(p).or_else(own).filter(|r| r.ended != Ended::Failed);
     // Clarabel takes a hundred iterations more for a digit beyond these.
     let tolerance = tolerances[0].max(1e-10).min(tolerances[1]);
@@ -521,6 +523,10 @@ const MAX_SMALL_SIZE: usize = 200;
 /// do so as it goes on, an interior point is sooner there.
 const WORK: [f64; 2] = [12.0, 1200.0];
 
+/// The same for each product in its factorisation and each nonzero of the factor, once the order of its pivots is known: in networks the factor is
+/// a hundred times the system.
+const FACTOR_WORK: [f64; 2] = [0.5, 50.0];
+
 /// The interior point from which a crossover begins: its tolerance, each digit of which saves pushes, and where none can be had that good, the least.
 const FINE: f64 = 1e-11;
 const USEFUL: f64 = 1e-7;
@@ -543,11 +549,21 @@ fn auto(p: &Problem, accuracy: Accuracy, strategies: Strategies, budget: &Budget
     let (effort, work) = match size {
         ..=MAX_SMALL_SIZE => (1000 + 20 * size as u64, f64::INFINITY),
         _ if strategies.run(Strategy::SimplexFirst) => (u64::MAX, work),
-        _ => return finished(p, accuracy, strategies, budget),
+        _ => return finished(p, None, accuracy, strategies, budget),
     };
     let mut simplex = Simplex::new(p);
     (simplex.most_work, simplex.boxes) = (work, size > MAX_SMALL_SIZE);
     simplex.pivots = logged(p, budget);
+    let layout = Rc::new(RefCell::new(None));
+    let known = layout.clone();
+    simplex.appeal = Some(Rc::new(move |simplex| {
+        let layout = barrier::Layout::new(&simplex.problem_by_rows());
+        let factor = layout
+            .as_ref()
+            .map(|l| FACTOR_WORK[0] * l.operations + FACTOR_WORK[1] * l.nonzeros);
+        known.replace(layout);
+        work.max(factor.unwrap_or(0.0) + WORK[1] * size as f64)
+    }));
     let left = budget.iterations_left();
     let ended = simplex.solve(&mut watch(budget, effort));
     simplex.most_work = f64::INFINITY;
@@ -556,19 +572,26 @@ fn auto(p: &Problem, accuracy: Accuracy, strategies: Strategies, budget: &Budget
     let word = if given_up { "given up" } else { ended.word() };
     let line = format!("simplex: {word} after {} iterations", simplex.iterations);
     budget.log_timed(&line);
+    simplex.appeal = None;
     if stuck {
-        return finished(p, accuracy, strategies, budget);
+        return finished(p, layout.take(), accuracy, strategies, budget);
     }
     concluded(simplex, ended, accuracy, budget)
 }
 
 /// Interior point, then a basis from it, then the simplex method. Clarabel's point comes second: where none of the first leads to a
 /// vertex, as in ill-conditioned programs and those without a solution.
-fn finished(p: &Problem, accuracy: Accuracy, strategies: Strategies, budget: &Budget) -> Gave {
+fn finished(
+    p: &Problem,
+    layout: Option<barrier::Layout>,
+    accuracy: Accuracy,
+    strategies: Strategies,
+    budget: &Budget,
+) -> Gave {
     if let Some(run) = trivial(p) {
         return finished_from(p, given(run), accuracy, strategies, budget).0;
     }
-    let own = given(barrier::solve(p, None, [FINE, USEFUL], budget));
+    let own = given(barrier::solve(p, None, layout, [FINE, USEFUL], budget));
     let own = match own.ended == Ended::Failed {
         true => own,
         false => match finished_from(p, own, accuracy, strategies, budget) {
@@ -600,7 +623,7 @@ fn finished_from(
             let wide = crossover::is_wide(p, &answer.point) && strategies.run(Strategy::FaceVertex);
             let of_face = wide.then(|| {
                 let (face, centre) = crossover::face(p, &answer.point);
-                barrier::solve(&face, Some(&centre), [FINE, USEFUL], budget)
+                barrier::solve(&face, Some(&centre), None, [FINE, USEFUL], budget)
             });
             let of_face = of_face.filter(|f| f.ended == Ended::Solved);
             if let Some(f) = &of_face {

@@ -18,9 +18,6 @@ use std::rc::Rc;
 /// Stands in U where no pivot was found. A number that no data gives.
 const MARK: f64 = 0.987_654_321_012_345_6;
 
-/// An entry that only makes a matrix square: not 0, but too small for a pivot.
-pub(super) const NO_PIVOT: f64 = 1e-200;
-
 /// Where rows and columns of one entry leave at most one column of so many, an order of the columns is as good as a search for pivots. (Of two
 /// columns in ten some bases of DEGEN3 of Netlib fill up.)
 const TRIANGULAR: usize = 10;
@@ -37,8 +34,9 @@ pub(crate) struct Factor {
     lu: Rc<RefCell<SparseLu>>,
     /// Replacements since the LU is shared.
     etas: Vec<Eta>,
-    /// Nonzeros of the factor when it was fresh.
+    /// Nonzeros of the factor when it was fresh, and what [`Factor::nonzeros`] is now: to count them takes a pass over the rows.
     fresh: usize,
+    nonzeros: usize,
     /// What the last sparse solve gave.
     solution: Entries,
     /// A dense vector, 0 between uses.
@@ -95,7 +93,7 @@ impl Factor {
                 .map_err(|_| Failure::Numbers)?,
         };
         let dependent: Vec<(usize, usize)> = (0..m)
-            .filter(|&k| lu.u_dense(k, k).abs() == MARK)
+            .filter(|&k| is_marked(&lu, k))
             .map(|k| (lu.qcol()[k], lu.perm()[k]))
             .collect();
         if !dependent.is_empty() {
@@ -103,6 +101,7 @@ impl Factor {
         }
         Ok(Self {
             fresh: lu.factor_nnz(),
+            nonzeros: lu.factor_nnz(),
             lu: Rc::new(RefCell::new(lu)),
             etas: Vec::new(),
             solution: Vec::new(),
@@ -118,32 +117,22 @@ impl Factor {
         matrix: &SparseColMatrix,
         zero: f64,
     ) -> Option<SparseLu> {
-        let mut lines = Sparse::new();
-        for column in columns {
-            lines.push(column.iter().filter(|e| e.1.abs() > NO_PIVOT).copied());
-        }
-        let rows = lines.transpose(m);
-        let left = &mut [vec![true; m], vec![true; m]];
-        let first = peel(&lines, &rows, left);
-        left.swap(0, 1);
-        let last = peel(&rows, &lines, left);
-        let rest = (0..m).filter(|&j| left[1][j]);
-        let (empty, mut rest): (Vec<usize>, Vec<usize>) =
-            rest.partition(|&j| lines.line(j).len() == 0);
-        if TRIANGULAR * rest.len() > m {
+        let (order, left) = triangular_order(m, columns);
+        if TRIANGULAR * left > m {
             return None;
         }
-        rest.sort_by_key(|&j| lines.line(j).len());
-        let order = first.into_iter().map(|e| e.0).chain(rest);
-        let order = order.chain(last.into_iter().rev().map(|e| e.1));
-        let order = SparseLuSymbolic::with_order(m, order.chain(empty.iter().copied()).collect());
-        let params = LuParams {
-            pivoting: LuPivoting::GilbertPeierls,
-            ..parameters(zero)
-        };
-        let lu = SparseLu::factor(matrix, &order.ok()?, params).ok()?;
-        let marked = (0..m - empty.len()).any(|k| lu.u_dense(k, k).abs() == MARK);
+        let lu = in_order(matrix, order, zero)?;
+        let marked = (0..m).any(|k| is_marked(&lu, k));
         (!marked).then_some(lu)
+    }
+
+    /// Rows in which no column has its pivot, the larger ones in each coming first. None: numbers that are not finite.
+    pub(crate) fn rows_without_pivots(m: usize, mut columns: Vec<Entries>) -> Option<Vec<usize>> {
+        columns.resize(m, Vec::new());
+        let matrix = SparseColMatrix::from_sparse_columns(m, &columns).ok()?;
+        let lu = in_order(&matrix, triangular_order(m, &columns).0, ZERO)?;
+        let left = (0..m).filter(|&k| is_marked(&lu, k));
+        Some(left.map(|k| lu.perm()[k]).collect())
     }
 
     /// Solves B x = a. None if the factor has broken down.
@@ -212,6 +201,14 @@ impl Factor {
 
     /// Replaces the column in a slot. False: factorise afresh.
     pub(crate) fn replace(&mut self, slot: usize, column: &[(usize, f64)]) -> bool {
+        let replaced = self.replace_column(slot, column);
+        let lu = self.lu.borrow();
+        let etas: usize = self.etas.iter().map(|e| 1 + e.others.len()).sum();
+        self.nonzeros = etas + lu.eta_ops() + lu.factor_nnz();
+        replaced
+    }
+
+    fn replace_column(&mut self, slot: usize, column: &[(usize, f64)]) -> bool {
         if self.etas.is_empty()
             && let Some(lu) = Rc::get_mut(&mut self.lu)
         {
@@ -234,9 +231,7 @@ impl Factor {
 
     /// Numbers that a solve with a full right-hand side touches.
     pub(crate) fn nonzeros(&self) -> usize {
-        let lu = self.lu.borrow();
-        let etas: usize = self.etas.iter().map(|e| 1 + e.others.len()).sum();
-        etas + lu.eta_ops() + lu.factor_nnz()
+        self.nonzeros
     }
 
     /// Number of updates since the factorisation.
@@ -253,6 +248,42 @@ impl Factor {
             || lu.should_refactor_growth()
             || self.nonzeros() > 3 * self.fresh + 1000
     }
+}
+
+/// Whether there was no pivot in this step.
+fn is_marked(lu: &SparseLu, k: usize) -> bool {
+    lu.u_dense(k, k).abs() == MARK
+}
+
+/// An order of the columns in which those go first, and last, that rows and columns of one entry give, taken away one after the other,
+/// short ones before long ones between them, and empty ones at the very end; and how many are between.
+fn triangular_order(m: usize, columns: &[Entries]) -> (Vec<usize>, usize) {
+    let mut lines = Sparse::new();
+    for column in columns {
+        lines.push(column.iter().copied());
+    }
+    let rows = lines.transpose(m);
+    let left = &mut [vec![true; m], vec![true; m]];
+    let first = peel(&lines, &rows, left);
+    left.swap(0, 1);
+    let last = peel(&rows, &lines, left);
+    let rest = (0..m).filter(|&j| left[1][j]);
+    let (empty, mut rest): (Vec<usize>, Vec<usize>) = rest.partition(|&j| lines.line(j).len() == 0);
+    rest.sort_by_key(|&j| lines.line(j).len());
+    let between = rest.len();
+    let order = first.into_iter().map(|e| e.0).chain(rest);
+    let order = order.chain(last.into_iter().rev().map(|e| e.1));
+    (order.chain(empty).collect(), between)
+}
+
+/// The factor with the columns in this order, the largest pivot in each.
+fn in_order(matrix: &SparseColMatrix, order: Vec<usize>, zero: f64) -> Option<SparseLu> {
+    let symbolic = SparseLuSymbolic::with_order(order.len(), order).ok()?;
+    let params = LuParams {
+        pivoting: LuPivoting::GilbertPeierls,
+        ..parameters(zero)
+    };
+    SparseLu::factor(matrix, &symbolic, params).ok()
 }
 
 /// Takes lines away that have one entry where lines of the other kind are left, with the line in which it is, as long as there are any: both.

@@ -135,6 +135,8 @@ pub struct Simplex {
     pub boxes: bool,
     /// Gives up, as at an iteration limit, when [`Simplex::work`] is more than this, or is likely to be.
     pub most_work: f64,
+    /// Asked once, when that is reached: what the most is.
+    pub appeal: Option<Rc<dyn Fn(&Self) -> f64>>,
     /// Numbers that the pivots have touched, about.
     work: f64,
     /// The part of the sum of violations that is left of the largest in the dual method.
@@ -190,6 +192,7 @@ impl Simplex {
             limit: u64::MAX,
             boxes: false,
             most_work: f64::INFINITY,
+            appeal: None,
             work: 0.0,
             left: 1.0,
             trusted: 0,
@@ -773,10 +776,31 @@ impl Simplex {
     }
 
     /// Whether this is as far as it may go.
-    fn is_spent(&self) -> bool {
+    fn is_spent(&mut self) -> bool {
         let pivots = self.iterations.max(TELLING) as f64;
         let ahead = (AHEAD * self.m as f64 / pivots - 1.0).max(0.0);
-        self.iterations >= self.limit || self.work * (1.0 + ahead * self.left) > self.most_work
+        let work = self.work * (1.0 + ahead * self.left);
+        if work > self.most_work
+            && let Some(appeal) = self.appeal.take()
+        {
+            self.most_work = appeal(self);
+        }
+        self.iterations >= self.limit || work > self.most_work
+    }
+
+    /// The program that it is for, by rows alone.
+    pub fn problem_by_rows(&self) -> Problem {
+        let part = |v: &[f64]| v.split_at(self.n).0.to_vec();
+        let rest = |v: &[f64]| v.split_at(self.n).1.to_vec();
+        Problem {
+            cost: part(&self.cost),
+            lower: part(&self.lower),
+            upper: part(&self.upper),
+            row_lower: rest(&self.lower),
+            row_upper: rest(&self.upper),
+            rows: (*self.rows).clone(),
+            ..Problem::default()
+        }
     }
 
     /// Adds the work of a pivot: `passed` numbers, and sparse solves whose solutions have so many `entries`.

@@ -15,7 +15,7 @@
 //! nonbasic variable would change its sign first, the variable enters the basis for one of them, which is at
 //! its bound: the vertex stays where it is. After some steps, again, one after the other.
 
-use super::factor::{Entries, Factor, Failure, NO_PIVOT, ZERO};
+use super::factor::{Entries, Factor, ZERO};
 use super::{Basis, NONBASIC, PIVOT, SAFE_PIVOT, Simplex};
 use crate::solve::lp::Ended;
 
@@ -24,10 +24,6 @@ const OUTSIDE: f64 = 1e-6;
 
 /// Weight of a row whose logical may well be basic.
 const UNHELD: f64 = 1.0 / 4096.0;
-
-/// Rows beyond those of the program, where the columns that only make a matrix square have their entries. The search for pivots looks at the columns
-/// with the fewest entries first, so empty ones would be in its way at every step; and entries in other rows would fill up.
-const PADDING: usize = 100;
 
 /// Where a crossover begins: one entry per column, then one per row.
 #[derive(Clone, Debug)]
@@ -103,17 +99,8 @@ impl Simplex {
             let column = self.column(j as usize).into_iter();
             column.map(|(i, a)| (i, a * weight(i))).collect()
         };
-        let mut columns: Vec<Entries> = inside.iter().map(weighted).collect();
-        let rows = self.m + PADDING;
-        let padding = (self.m..rows).map(|i| (i, NO_PIVOT)).collect();
-        columns.resize(rows, padding);
-        let left = match Factor::new(rows, &columns) {
-            Err(Failure::Dependent(left)) => left,
-            // What is inside has hardly an entry: paddings were pivots.
-            Ok(_) => return self.refactor(),
-            Err(Failure::Numbers) => return None,
-        };
-        let rows = left.iter().map(|l| l.1).filter(|&row| row < self.m);
+        let columns: Vec<Entries> = inside.iter().map(weighted).collect();
+        let rows = Factor::rows_without_pivots(self.m, columns)?.into_iter();
         let logicals: Vec<u32> = rows.map(|row| (self.n + row) as u32).collect();
         let taken = logicals.iter().any(|&j| start.inside[j as usize]);
         if inside.len() + logicals.len() != self.m || taken {
