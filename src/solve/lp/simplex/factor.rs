@@ -22,6 +22,15 @@ const MARK: f64 = 0.987_654_321_012_345_6;
 /// columns in ten some bases of DEGEN3 of Netlib fill up.)
 const TRIANGULAR: usize = 10;
 
+/// Twice that, or so many columns, where only the rows without pivots are asked for. (Larger ones fill up on walls: 45 s instead of 1.)
+const SMALL_BUMP: usize = 300;
+
+/// Rows beyond those of the program, where the columns that only make a matrix square have their entries: not 0, but too small for a pivot. The
+/// search for pivots looks at the columns with the fewest entries first, so empty ones would be in its way at every step; and entries in other
+/// rows would fill up. (The time of the search grows with the square of the number of these columns all the same.)
+const PADDING: usize = 100;
+const NO_PIVOT: f64 = 1e-200;
+
 /// Updates before a fresh factorisation.
 const MOST_UPDATES: usize = 150;
 
@@ -126,13 +135,24 @@ impl Factor {
         (!marked).then_some(lu)
     }
 
-    /// Rows in which no column has its pivot, the larger ones in each coming first. None: numbers that are not finite.
+    /// Rows in which none of these columns has its pivot. None: numbers that are not finite.
     pub(crate) fn rows_without_pivots(m: usize, mut columns: Vec<Entries>) -> Option<Vec<usize>> {
         columns.resize(m, Vec::new());
-        let matrix = SparseColMatrix::from_sparse_columns(m, &columns).ok()?;
-        let lu = in_order(&matrix, triangular_order(m, &columns).0, ZERO)?;
-        let left = (0..m).filter(|&k| is_marked(&lu, k));
-        Some(left.map(|k| lu.perm()[k]).collect())
+        let (order, between) = triangular_order(m, &columns);
+        let lu = if between <= SMALL_BUMP.max(2 * m / TRIANGULAR) {
+            let matrix = SparseColMatrix::from_sparse_columns(m, &columns).ok()?;
+            in_order(&matrix, order, ZERO)?
+        } else {
+            let rows = m + PADDING;
+            let padding: Entries = (m..rows).map(|i| (i, NO_PIVOT)).collect();
+            columns.retain(|c| !c.is_empty());
+            columns.resize(rows, padding);
+            let matrix = SparseColMatrix::from_sparse_columns(rows, &columns).ok()?;
+            SparseLu::factor_markowitz(&matrix, parameters(ZERO)).ok()?
+        };
+        let left = (0..columns.len()).filter(|&k| is_marked(&lu, k));
+        let rows = left.map(|k| lu.perm()[k]);
+        Some(rows.filter(|&i| i < m).collect())
     }
 
     /// Solves B x = a. None if the factor has broken down.
