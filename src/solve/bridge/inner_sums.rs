@@ -31,9 +31,9 @@ const GAIN: usize = 4;
 
 /// Second derivatives from which on sums so many times shorter are replaced; one in a program, which is compiled, takes
 /// the memory of so many that the program is run for.
-const MANY: f64 = 2e7;
+const MANY: f64 = 2e8;
 const SHORTER: usize = 10;
-const COMPILED: f64 = 30.0;
+const COMPILED: f64 = 200.0;
 
 /// A program without long sums inside functions in place of one with some.
 pub(super) struct InnerSums {

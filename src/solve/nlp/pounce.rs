@@ -63,6 +63,11 @@ impl InteriorPoint for Pounce {
 
     fn solve(&self, nlp: Shared, control: &mut Control<'_>) -> Result<Solution, String> {
         let mut options = control.all_options();
+        let ordering = "feral_ordering";
+        if control.fills && !options.iter().any(|o| o.0 == ordering) {
+            // minimum fill, minimum degree and nested dissection: the least of what they promise
+            options.push((ordering.into(), "auto_race".into()));
+        }
         if let Some(s) = control.seconds {
             options.push(("max_wall_time".into(), format!("{s:.6}")));
         }
