@@ -2,6 +2,7 @@
 
 use super::driver::{Driver, UNBOUNDED};
 use super::interior_point::{Control, Ended, Progress, Shared, Solution, lock};
+use super::problem::Nlp;
 use super::schedule::{BASE, From};
 use crate::solve::SolveError;
 use crate::solve::budget::{self, Stop};
