@@ -8,7 +8,7 @@
 use super::derive;
 use super::graph::Graph;
 use super::program::{Operands, Program};
-use crate::model::instance::{Instance, Kernel, KernelTerms, Op};
+use crate::model::instance::{Function, Instance, Kernel, KernelTerms, Op};
 use rustc_hash::{FxHashMap, FxHasher};
 use std::hash::{Hash, Hasher};
 
@@ -119,13 +119,16 @@ impl Block {
             let inactive = |o: &derive::Output| !code.steps.list[o.step as usize].active;
             code.checks.is_empty() && code.outputs.iter().all(inactive)
         };
+        // its Hessian is 0, and it is no polynomial
+        let kink = |op: &Op| matches!(op, Op::Call(Function::Abs, _));
+        let kinked = kernel.ops.iter().any(kink);
         Self {
             value: Program::new(&value),
             gradient: Program::new(&gradient),
             hessian: Program::new(&hessian),
             gradient_slots: gradient.outputs.iter().map(|o| o.slots[0]).collect(),
             hessian_slots: hessian.outputs.iter().map(|o| o.slots).collect(),
-            quadratic: wanted.second && constant(&hessian),
+            quadratic: wanted.second && !kinked && constant(&hessian),
             linear: constant(&gradient),
             graph,
             row,

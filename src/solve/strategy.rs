@@ -88,7 +88,7 @@ strategies! {
             "one solve of the larger program",
             "Boyd & Vandenberghe 2004, 4.1.3";
         InnerSums "inner_sums",
-            "linear sums of 500 variables and more inside functions, others of 1000, become columns, so that second derivatives stay sparse",
+            "linear sums of 500 variables and more inside functions, others of 1000 (a tenth of these where second derivatives or their programs would fill the memory), become columns, so that second derivatives stay sparse",
             "a row and a column for each",
             "Griewank & Toint 1982";
         VanishingSquares "vanishing_squares",

@@ -11,6 +11,7 @@
 use super::Bridge;
 use super::builder::Builder;
 use super::parts::{Parts, expressions};
+use crate::autodiff::second_derivatives;
 use crate::model::instance::{Instance, KernelTerms, Relation};
 use crate::model::problem_type::ProblemType;
 use crate::solve::answer::Answer;
@@ -28,6 +29,12 @@ const LEAST_CURVED: usize = 1000;
 /// How many times fewer second derivatives there must be.
 const GAIN: usize = 4;
 
+/// Second derivatives from which on sums so many times shorter are replaced; one in a program, which is compiled, takes
+/// the memory of so many that the program is run for.
+const MANY: f64 = 2e8;
+const SHORTER: usize = 10;
+const COMPILED: f64 = 200.0;
+
 /// A program without long sums inside functions in place of one with some.
 pub(super) struct InnerSums {
     instance: Instance,
@@ -36,14 +43,18 @@ pub(super) struct InnerSums {
 impl InnerSums {
     /// None where there is nothing to replace.
     fn new(instance: &Instance) -> Option<Self> {
-        let is_long = |t: &KernelTerms| t.kernel.variables as usize >= LEAST;
+        let shorter = match has_many(instance) {
+            true => SHORTER,
+            false => 1,
+        };
+        let is_long = |t: &KernelTerms| t.kernel.variables as usize * shorter >= LEAST;
         if !instance.nonlinear.iter().any(is_long) {
             return None;
         }
         let mut builder = Builder::new(instance);
         for (row, coefficient, term) in expressions(instance) {
-            match term.columns.len() >= LEAST {
-                true => place(&mut builder, row, term.parts(coefficient)),
+            match term.columns.len() * shorter >= LEAST {
+                true => place(&mut builder, row, term.parts(coefficient), shorter),
                 false => builder.push_term(row, coefficient, term),
             }
         }
@@ -68,18 +79,31 @@ impl InnerSums {
     }
 }
 
+/// Whether the second derivatives fill the memory, or their programs do.
+fn has_many(instance: &Instance) -> bool {
+    let most = |t: &KernelTerms| {
+        let square = 0.5 * f64::from(t.kernel.variables).powi(2);
+        square * (t.row.len() as f64 + COMPILED)
+    };
+    if instance.nonlinear.iter().map(most).sum::<f64>() <= MANY {
+        return false;
+    }
+    let (all, compiled) = second_derivatives(instance);
+    all + COMPILED * compiled > MANY
+}
+
 /// Puts parts into the left side of a row, and the long sums inside them into rows of their own.
-fn place(builder: &mut Builder, row: usize, parts: Parts) {
+fn place(builder: &mut Builder, row: usize, parts: Parts, shorter: usize) {
     for (weight, part) in builder.place_linear(row, parts) {
-        let part = part.without_sums(LEAST, &mut |sum| {
-            if !pays(&sum) {
+        let part = part.without_sums(LEAST / shorter, &mut |sum| {
+            if !pays(&sum, shorter) {
                 return None;
             }
             let column = builder.columns.push(f64::NEG_INFINITY, f64::INFINITY) as u32;
             let row = builder.push_row(Relation::Equal);
             builder.entries.push((row, column, -1.0));
             builder.lifted.push((column as usize, row..row + 1, true));
-            place(builder, row, sum);
+            place(builder, row, sum, shorter);
             Some(column)
         });
         builder.push_term(row, weight, part);
@@ -87,7 +111,7 @@ fn place(builder: &mut Builder, row: usize, parts: Parts) {
 }
 
 /// Whether the terms of a sum have few second derivatives beside the square of its variables.
-fn pays(sum: &Parts) -> bool {
+fn pays(sum: &Parts, shorter: usize) -> bool {
     let mut all: FxHashSet<u32> = sum.linear.iter().map(|l| l.0).collect();
     let mut after = 0;
     for (_, part) in &sum.nonlinear {
@@ -100,7 +124,7 @@ fn pays(sum: &Parts) -> bool {
         [] => LEAST,
         _ => LEAST_CURVED,
     };
-    all >= least && GAIN * after <= all * all
+    all * shorter >= least && GAIN * after <= all * all
 }
 
 impl Bridge for InnerSums {

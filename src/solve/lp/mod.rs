@@ -541,14 +541,22 @@ fn products(p: &Problem) -> f64 {
     met.sum::<usize>() as f64
 }
 
+/// Numbers that the simplex method may touch before an interior point is likely to be there.
+pub(in crate::solve) fn simplex_work(p: &Problem) -> f64 {
+    match p.m() + p.n() {
+        ..=MAX_SMALL_SIZE => f64::INFINITY,
+        size => WORK[0] * products(p) + WORK[1] * size as f64,
+    }
+}
+
 /// The simplex method where it is likely to be the faster one; the interior point and its finish for large programs and for
 /// those that take it long.
 fn auto(p: &Problem, accuracy: Accuracy, strategies: Strategies, budget: &Budget) -> Gave {
     let size = p.m() + p.n();
-    let work = WORK[0] * products(p) + WORK[1] * size as f64;
-    let (effort, work) = match size {
-        ..=MAX_SMALL_SIZE => (1000 + 20 * size as u64, f64::INFINITY),
-        _ if strategies.run(Strategy::SimplexFirst) => (u64::MAX, work),
+    let work = simplex_work(p);
+    let effort = match size {
+        ..=MAX_SMALL_SIZE => 1000 + 20 * size as u64,
+        _ if strategies.run(Strategy::SimplexFirst) => u64::MAX,
         _ => return finished(p, None, accuracy, strategies, budget),
     };
     let mut simplex = Simplex::new(p);

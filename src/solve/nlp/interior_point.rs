@@ -79,6 +79,8 @@ pub struct Control<'c> {
     pub iterations: u64,
     /// Seconds left, if there is a limit.
     pub seconds: Option<f64>,
+    /// Factors fill up: the order of the elimination is worth some search.
+    pub fills: bool,
     /// Called once per iteration; false stops.
     pub watch: &'c mut dyn FnMut(&Progress) -> bool,
 }

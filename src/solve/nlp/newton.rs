@@ -83,6 +83,7 @@ fn iterate(
 ) -> Option<((Vec<f64>, System), u64)> {
     let mut x = nlp.start().to_vec();
     let mut here = System::at(nlp, &x)?;
+    let mut order = None;
     let (mut steps, mut halved) = (0, (0, here.size));
     while steps < STEPS && here.size > EXACT {
         let creeps = less == Less::Residual && steps - halved.0 >= MOST_CREEPING;
@@ -92,16 +93,22 @@ fn iterate(
         steps += 1;
         let damped = (DAMPING * here.size.min(1.0).powi(2)).max(LEAST_DAMPING);
         let next = match less {
-            Less::Residual => here
-                .step(nlp, &x, damped)
-                .and_then(|(d, _)| shortened(nlp, &x, &d, &here)),
+            Less::Residual => here.step(nlp, &x, damped, &mut order).and_then(|(d, f)| {
+                order = Some(f.factors);
+                shortened(nlp, &x, &d, &here)
+            }),
             Less::NextStep => {
-                let light = here.step(nlp, &x, LEAST_DAMPING);
-                let next = light.and_then(|(d, factors)| nearer(nlp, &x, &d, &here, &factors));
+                let light = here.step(nlp, &x, LEAST_DAMPING, &mut order);
+                let next = light.and_then(|(d, f)| {
+                    let next = nearer(nlp, &x, &d, &here, &f);
+                    order = Some(f.factors);
+                    next
+                });
                 // where columns are dependent, only damped steps lead on
                 next.or_else(|| {
-                    let (d, factors) = here.step(nlp, &x, damped)?;
-                    let next = nearer(nlp, &x, &d, &here, &factors);
+                    let (d, f) = here.step(nlp, &x, damped, &mut order)?;
+                    let next = nearer(nlp, &x, &d, &here, &f);
+                    order = Some(f.factors);
                     next.or_else(|| shortened(nlp, &x, &d, &here))
                 })
             }
@@ -249,15 +256,22 @@ impl System {
         Some(factors.solve(self, |_| 0.0, right)?.0)
     }
 
-    /// The step, none of it out of the bounds that the point is at, and the factors that gave it.
-    fn step(&self, nlp: &dyn Nlp, x: &[f64], damping: f64) -> Option<(Vec<f64>, Factors)> {
+    /// The step, none of it out of the bounds that the point is at, and the factors that gave it; `order`: factors whose order
+    /// may serve again.
+    fn step(
+        &self,
+        nlp: &dyn Nlp,
+        x: &[f64],
+        damping: f64,
+        order: &mut Option<Symmetric>,
+    ) -> Option<(Vec<f64>, Factors)> {
         let (lower, upper) = nlp.bounds();
         let (a, b) = nlp.sides();
         let counts = |i: usize| a[i] == b[i] || self.residual[i] != 0.0;
         let mut stays = vec![false; x.len()];
         loop {
             let right = |i: usize| -self.residual[i] / self.row_unit[i];
-            let factors = self.factors([damping, 1.0], &stays, counts)?;
+            let factors = self.factors([damping, 1.0], &stays, counts, order.take())?;
             let d = factors.solve(self, |_| 0.0, right)?.0;
             let leaves =
                 |j: usize| d[j] < 0.0 && x[j] <= lower[j] || d[j] > 0.0 && x[j] >= upper[j];
@@ -265,6 +279,7 @@ impl System {
             if out.is_empty() {
                 return Some((d, factors));
             }
+            *order = Some(factors.factors);
             out.into_iter().for_each(|j| stays[j] = true);
         }
     }
@@ -279,7 +294,7 @@ impl System {
         let (a, b) = nlp.sides();
         let left = |j: usize| -gradient[j] * self.column_unit[j];
         let diagonal = [1.0, LEAST_DAMPING];
-        let factors = self.factors(diagonal, &at_bound, |i| a[i] == b[i])?;
+        let factors = self.factors(diagonal, &at_bound, |i| a[i] == b[i], None)?;
         let y = factors.solve(self, left, |_| 0.0)?.1;
         Some(y.iter().zip(&self.row_unit).map(|(y, u)| y / u).collect())
     }
@@ -290,6 +305,7 @@ impl System {
         [delta, gamma]: [f64; 2],
         stays: &[bool],
         counts: impl Fn(usize) -> bool,
+        order: Option<Symmetric>,
     ) -> Option<Factors> {
         let (n, m) = (self.column_unit.len(), self.row_unit.len());
         let (columns, free) = number(|j| !stays[j], n);
@@ -302,11 +318,12 @@ impl System {
                 matrix.push(free + p, q, a);
             }
         }
-        Some(Factors {
+        let mut factors = order.unwrap_or_else(Symmetric::empty);
+        factors.factor(free + kept, &matrix).then_some(Factors {
             columns,
             rows,
             free,
-            factors: Symmetric::new(free + kept, &matrix)?,
+            factors,
         })
     }
 }

@@ -31,7 +31,15 @@ use std::cell::RefCell;
 use std::rc::Rc;
 use std::sync::OnceLock;
 #[cfg(feature = "system")]
-use std::sync::mpsc::channel;
+use std::sync::mpsc::{RecvTimeoutError, channel};
+#[cfg(feature = "system")]
+use std::time::{Duration, Instant};
+
+/// Seconds after the limit in which a run must have ended by itself; and no limit at all.
+#[cfg(feature = "system")]
+const GRACE: f64 = 0.5;
+#[cfg(feature = "system")]
+const A_LIFETIME: f64 = 1e9;
 
 /// `option nlp = pounce`.
 #[derive(Clone, Copy, Debug, Default)]
@@ -55,6 +63,11 @@ impl InteriorPoint for Pounce {
 
     fn solve(&self, nlp: Shared, control: &mut Control<'_>) -> Result<Solution, String> {
         let mut options = control.all_options();
+        let ordering = "feral_ordering";
+        if control.fills && !options.iter().any(|o| o.0 == ordering) {
+            // minimum fill, minimum degree and nested dissection: the least of what they promise
+            options.push((ordering.into(), "auto_race".into()));
+        }
         if let Some(s) = control.seconds {
             options.push(("max_wall_time".into(), format!("{s:.6}")));
         }
@@ -88,22 +101,34 @@ fn on_a_thread(
             })
             .map_err(|e| format!("no thread could be started: {e}"))?
     };
-    for progress in receive {
-        // Nobody listens: the run has ended by itself.
-        let _ = reply.send((control.watch)(&progress));
+    let left = Duration::from_secs_f64(control.seconds.unwrap_or(A_LIFETIME) + GRACE);
+    let deadline = Instant::now() + left;
+    let mut iterations = 0;
+    let gone = |ended, iterations| {
+        let nlp = lock(&nlp);
+        Ok(Solution {
+            ended,
+            x: nlp.latest().to_vec(),
+            lambda: vec![0.0; nlp.size().1],
+            objective: f64::NAN,
+            iterations,
+        })
+    };
+    loop {
+        match receive.recv_timeout(deadline.saturating_duration_since(Instant::now())) {
+            Ok(progress) => {
+                iterations = progress.iteration;
+                // Nobody listens: the run has ended by itself.
+                let _ = reply.send((control.watch)(&progress));
+            }
+            Err(RecvTimeoutError::Disconnected) => break,
+            // In a factorisation that cannot be stopped: the thread ends with its next message, which nobody hears.
+            Err(RecvTimeoutError::Timeout) => return gone(Ended::Time, iterations),
+        }
     }
     match thread.join() {
         Ok(result) => result,
-        Err(_) => {
-            let nlp = lock(&nlp);
-            Ok(Solution {
-                ended: Ended::Broken,
-                x: nlp.start().to_vec(),
-                lambda: vec![0.0; nlp.size().1],
-                objective: f64::NAN,
-                iterations: 0,
-            })
-        }
+        Err(_) => gone(Ended::Broken, 0),
     }
 }
 

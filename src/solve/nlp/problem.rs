@@ -45,6 +45,8 @@ pub trait Nlp {
     fn hessian(&mut self, x: &[f64], sigma: f64, lambda: &[f64], out: &mut [f64]) -> Option<()>;
     /// Number of evaluations that failed so far.
     fn failures(&self) -> u64;
+    /// The last point at which derivatives were evaluated: where a run is, or the start.
+    fn latest(&self) -> &[f64];
 
     /// Start multipliers of the lower and upper bounds; 1 where nothing is known.
     fn start_bounds(&self, lower: &mut [f64], upper: &mut [f64]) {
@@ -580,6 +582,10 @@ impl Nlp for Problem {
 
     fn failures(&self) -> u64 {
         self.failure_count
+    }
+
+    fn latest(&self) -> &[f64] {
+        self.derivative_at.as_deref().unwrap_or(&self.start)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::driver::{Driver, UNBOUNDED};
 use super::interior_point::{Control, Ended, Progress, Shared, Solution, lock};
+use super::problem::Nlp;
 use super::schedule::{BASE, From};
 use crate::solve::SolveError;
 use crate::solve::budget::{self, Stop};
@@ -45,6 +46,11 @@ impl Standstill {
         !p.restoration && (self.short.count_ones() >= MOST_SHORT || self.nearly >= STALL_ITERATIONS)
     }
 }
+
+/// Operations of a factorisation from which on some search for a better order pays: a tenth of a second.
+const FILLS: f64 = 2e8;
+/// Variables and constraints up to which it does not, whatever they take.
+const SMALL: usize = 2000;
 
 impl Driver<'_, '_> {
     /// One run of the interior-point solver, judged and kept if it is the best so far. The objective of the point if
@@ -108,6 +114,8 @@ impl Driver<'_, '_> {
         for (k, v) in self.settings.of(self.interior_point.about().options) {
             put(k, v);
         }
+        let (n, m) = lock(&*self.problem).size();
+        let fills = n + m > SMALL && self.size_of_factors().operations > FILLS;
         let left = self.budget.iterations_left();
         let cap = if options.iter().any(|(k, _)| k == "max_iter") {
             u64::MAX
@@ -162,6 +170,7 @@ impl Driver<'_, '_> {
             options,
             iterations: left.min(cap),
             seconds: seconds.map(|s| s.max(1e-3)),
+            fills,
             watch: &mut watch,
         };
         let result = self.interior_point.solve(nlp.clone(), &mut control);

@@ -72,7 +72,7 @@ impl Driver<'_, '_> {
 
     /// Sequential programs from a point, judged and kept; with multipliers, from the active set that they name.
     pub(super) fn sequential(&mut self, x: Vec<f64>, multipliers: Option<&[f64]>, effort: Effort) {
-        if !self.settings.runs(Strategy::SequentialQuadratic) {
+        if !self.settings.runs(Strategy::SequentialQuadratic) || !self.affords_factors() {
             return;
         }
         let mut problem = lock(&*self.problem);

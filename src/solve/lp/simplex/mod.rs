@@ -78,6 +78,9 @@ pub struct Pivot {
     pub objective: f64,
 }
 
+/// How much work is the most after all.
+type Appeal = dyn Fn(&Simplex) -> f64;
+
 /// The engine. A clone is a state to come back to: it costs far less than to factorise again.
 #[derive(Clone)]
 pub struct Simplex {
@@ -136,7 +139,7 @@ pub struct Simplex {
     /// Gives up, as at an iteration limit, when [`Simplex::work`] is more than this, or is likely to be.
     pub most_work: f64,
     /// Asked once, when that is reached: what the most is.
-    pub appeal: Option<Rc<dyn Fn(&Self) -> f64>>,
+    pub appeal: Option<Rc<Appeal>>,
     /// Numbers that the pivots have touched, about.
     work: f64,
     /// The part of the sum of violations that is left of the largest in the dual method.

@@ -11,6 +11,10 @@ use crate::solve::lp::Ended;
 use crate::solve::lp::form::{self, Problem, Sparse};
 use crate::solve::lp::scale::Scaling;
 use crate::solve::lp::simplex::{Basis, Simplex, State};
+use crate::solve::lp::simplex_work;
+
+/// Where a program takes so many times as much as its solution by an interior point would, one goes for the whole.
+const MOST_WORK: f64 = 2.0;
 
 /// What is left of a violation counts from here on.
 const SHORT: f64 = 1e-9;
@@ -133,6 +137,7 @@ impl Linear {
         for from in [from, Basis::new()] {
             let mut simplex = Simplex::new(&scaled);
             simplex.limit = self.pivots;
+            simplex.most_work = MOST_WORK * simplex_work(&scaled);
             let ended = simplex.solve_from_basis(&from, &mut |_| budget.stop().map(Ended::from));
             self.pivots = self.pivots.saturating_sub(simplex.iterations);
             match ended {
