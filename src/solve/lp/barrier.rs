@@ -561,11 +561,13 @@ impl System {
                 let column = p.columns.line(j).take_while(|e| e.0 <= i);
                 column.for_each(|(i, a)| self.room[i] += factor * a);
             }
-            let line = self.layout.start[self.layout.long + i]..self.layout.start[self.layout.long + i + 1];
+            let line = self.layout.start[self.layout.long + i]
+                ..self.layout.start[self.layout.long + i + 1];
             self.layout.entries[line.end - 1] += std::mem::take(&mut self.room[i]);
             for e in line.start..line.end - 1 {
                 if self.layout.index[e] >= self.layout.long {
-                    self.layout.entries[e] = std::mem::take(&mut self.room[self.layout.index[e] - self.layout.long]);
+                    self.layout.entries[e] =
+                        std::mem::take(&mut self.room[self.layout.index[e] - self.layout.long]);
                 }
             }
         }
@@ -586,7 +588,11 @@ impl System {
             Par::Seq,
             MemStack::new(&mut self.memory),
         );
-        self.layout.kept.iter().zip(&x).for_each(|(&k, x)| b[k] = *x);
+        self.layout
+            .kept
+            .iter()
+            .zip(&x)
+            .for_each(|(&k, x)| b[k] = *x);
         for &j in &short {
             let terms = p.columns.line(j).map(|(i, a)| a * b[p.n + i]);
             b[j] = (terms.sum::<f64>() - b[j]) * self.inverse[j];
