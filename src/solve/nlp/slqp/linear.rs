@@ -13,8 +13,9 @@ use crate::solve::lp::scale::Scaling;
 use crate::solve::lp::simplex::{Basis, Simplex, State};
 use crate::solve::lp::simplex_work;
 
-/// Where a program takes so many times as much as its solution by an interior point would, one goes for the whole.
-const MOST_WORK: f64 = 2.0;
+/// Where a program takes so many times as much as its solution by an interior point would, one goes for the whole. (At twice as much the
+/// relaxations of models/walls/loop.blk end at points that are only feasible.)
+const MOST_WORK: f64 = 20.0;
 
 /// What is left of a violation counts from here on.
 const SHORT: f64 = 1e-9;
