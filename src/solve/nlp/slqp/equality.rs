@@ -9,7 +9,6 @@
 //! part of it.
 
 use super::point::{Frame, Point};
-use crate::solve::Budget;
 use crate::solve::nlp::polish::number;
 use crate::solve::nlp::problem::Entry;
 use crate::solve::nlp::symmetric::{Lower, Symmetric};
@@ -96,7 +95,6 @@ impl Equality {
         working: &Working,
         most: usize,
         memory: &mut Memory,
-        budget: &Budget,
     ) -> Option<Self> {
         let (column, free) = number(|j| working.column[j].is_none(), frame.n);
         let (row, held) = number(|i| working.row[i].is_some(), frame.m);
@@ -159,9 +157,6 @@ impl Equality {
         let largest = if largest > 0.0 { largest } else { 1.0 };
         let before = memory.shift.saturating_sub(1).max(1);
         for k in std::iter::once(0).chain(before..=most) {
-            if k > 0 && budget.is_over() {
-                return None;
-            }
             let tau = SHIFTS[k] * largest;
             let mut matrix = base.clone();
             for (j, p) in out.column.iter().enumerate() {

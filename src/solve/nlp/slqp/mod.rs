@@ -353,7 +353,7 @@ impl Method<'_, '_> {
     fn newton(&mut self, working: Working) -> Option<Working> {
         let hessian = self.at.hessian(self.nlp, &self.frame, &self.lambda);
         let (frame, memory) = (&self.frame, &mut self.memory);
-        let quadratic = Equality::new(frame, &self.at, &hessian, &working, 0, memory, self.budget)?;
+        let quadratic = Equality::new(frame, &self.at, &hessian, &working, 0, memory)?;
         let zero = vec![0.0; self.frame.n];
         let model = Model {
             frame: &self.frame,
@@ -487,8 +487,7 @@ impl Method<'_, '_> {
                 }
                 let hessian = self.at.hessian(self.nlp, &self.frame, lambda);
                 let (frame, memory) = (&self.frame, &mut self.memory);
-                let new =
-                    Equality::new(frame, &self.at, &hessian, working, ANY, memory, self.budget);
+                let new = Equality::new(frame, &self.at, &hessian, working, ANY, memory);
                 (hessian, new)
             }
         }
@@ -588,15 +587,7 @@ impl Method<'_, '_> {
             }
             self.at = point;
             let (frame, memory) = (&self.frame, &mut self.memory);
-            let again = Equality::new(
-                frame,
-                &self.at,
-                &hessian,
-                &working,
-                ANY,
-                memory,
-                self.budget,
-            );
+            let again = Equality::new(frame, &self.at, &hessian, &working, ANY, memory);
             let last = [again, quadratic].into_iter().flatten().map(|q| q.lambda);
             self.choose(last.chain([lambda]));
             return Err(End::Solved);
