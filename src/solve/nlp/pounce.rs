@@ -101,7 +101,8 @@ fn on_a_thread(
             })
             .map_err(|e| format!("no thread could be started: {e}"))?
     };
-    let left = Duration::from_secs_f64(control.seconds.unwrap_or(A_LIFETIME) + GRACE);
+    let seconds = control.seconds.unwrap_or(A_LIFETIME).min(A_LIFETIME);
+    let left = Duration::from_secs_f64(seconds + GRACE);
     let deadline = Instant::now() + left;
     let mut iterations = 0;
     let gone = |ended, iterations| {
