@@ -153,13 +153,13 @@ impl Compiler {
                     let what = symbol.kind_name();
                     // `z = 3*x;` is meant as the definition of an equation, which is missing then.
                     self.lose_definition();
-                    let d = Diagnostic::error(
-                        "E0310",
-                        t.span,
-                        format!("the {what} `{}` cannot be assigned itself", symbol.name),
-                    )
-                    .label("which of its numbers?")
-                    .other(symbol.declared, "declared here");
+                    let d = Diagnostic::wrong("E0310", t.span)
+                        .says(format!(
+                            "the {what} `{}` cannot be assigned itself",
+                            symbol.name
+                        ))
+                        .label("which of its numbers?")
+                        .other(symbol.declared, "declared here");
                     if what == "equation" {
                         self.lose(&t.name.name);
                     }
@@ -181,12 +181,12 @@ impl Compiler {
                     Some(functions::RecordAttribute::Fix) => Target::Fix(s),
                     Some(functions::RecordAttribute::Derived(_)) => {
                         return self.fail(
-                            Diagnostic::error(
-                                "E0314",
-                                attr.span,
-                                format!("`.{}` is computed and cannot be assigned", attr.name),
-                            )
-                            .label("read only"),
+                            Diagnostic::wrong("E0314", attr.span)
+                                .says(format!(
+                                    "`.{}` is computed and cannot be assigned",
+                                    attr.name
+                                ))
+                                .label("read only"),
                         );
                     }
                     None => {
@@ -205,17 +205,14 @@ impl Compiler {
             }
             _ => {
                 return self.fail(
-                    Diagnostic::error(
-                        "E0325",
-                        t.span,
-                        format!(
+                    Diagnostic::wrong("E0325", t.span)
+                        .says(format!(
                             "`{}` is {} and cannot be assigned",
                             symbol.name,
                             symbol.a_kind()
-                        ),
-                    )
-                    .label("not assignable")
-                    .other(symbol.declared, "declared here"),
+                        ))
+                        .label("not assignable")
+                        .other(symbol.declared, "declared here"),
                 );
             }
         };
@@ -223,20 +220,17 @@ impl Compiler {
         let root = self.symbols.root(s);
         if is_set && (self.symbols.get(root).is_domain || root == super::symbols::UNIVERSE) {
             return self.fail(
-                Diagnostic::error(
-                    "E0320",
-                    t.span,
-                    format!(
+                Diagnostic::wrong("E0320", t.span)
+                    .says(format!(
                         "the set `{}` cannot be assigned: it is the domain of other symbols",
                         symbol.name
-                    ),
-                )
-                .label("a domain must stay as it is")
-                .other(symbol.declared, "declared here")
-                .help(format!(
-                    "declare a subset, `set sub({});`, and assign that",
-                    symbol.name
-                )),
+                    ))
+                    .label("a domain must stay as it is")
+                    .other(symbol.declared, "declared here")
+                    .help(format!(
+                        "declare a subset, `set sub({});`, and assign that",
+                        symbol.name
+                    )),
             );
         }
         Ok(target)

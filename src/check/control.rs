@@ -37,13 +37,10 @@ impl Compiler {
             None => format!("let `{name}` run alone, with a condition on its elements"),
         };
         self.fail(
-            Diagnostic::error(
-                "E0309",
-                span,
-                format!("{what} needs a set that runs itself; `{name}` stands here for what `{name}(…)` found"),
-            )
-            .label("not running")
-            .help(help),
+            Diagnostic::wrong("E0309", span)
+                .says(format!("{what} needs a set that runs itself; `{name}` stands here for what `{name}(…)` found"))
+                .label("not running")
+                .help(help),
         )
     }
 
@@ -122,13 +119,12 @@ impl Compiler {
             return Ok(());
         }
         self.fail(
-            Diagnostic::error(
-                "E0311",
-                node.span,
-                format!("{place} may not depend on a variable"),
-            )
-            .label("a variable stands in it")
-            .help("use the level of the last solve (`x.l`), a parameter, or a binary formulation"),
+            Diagnostic::wrong("E0311", node.span)
+                .says(format!("{place} may not depend on a variable"))
+                .label("a variable stands in it")
+                .help(
+                    "use the level of the last solve (`x.l`), a parameter, or a binary formulation",
+                ),
         )
     }
 
@@ -186,11 +182,9 @@ impl Compiler {
     /// `sum(sameas(i,j), …)`: a set that is not under control yet takes the element of the other.
     fn equal_item(&mut self, indices: &[Expr], span: Span, out: &mut Domain) -> Result<(), Failed> {
         let [a, b] = indices else {
-            return self.fail(Diagnostic::error(
-                "E0317",
-                span,
-                "`sameas` compares two single indices",
-            ));
+            return self.fail(
+                Diagnostic::wrong("E0317", span).says("`sameas` compares two single indices"),
+            );
         };
         let free = |c: &Self, e: &Expr| match &e.kind {
             ExprKind::Apply {

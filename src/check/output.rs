@@ -32,19 +32,16 @@ impl Compiler {
                     let symbol = self.symbols.get(s).clone();
                     if !r.indices.is_empty() {
                         return self.fail(
-                            Diagnostic::error(
-                                "E0328",
-                                r.span,
-                                "`display` takes whole symbols, without indices",
-                            )
-                            .label("indices here")
-                            .help(format!(
-                                "write `display {}{}`; or copy the part you want into a parameter",
-                                r.name.name,
-                                r.attribute
-                                    .as_ref()
-                                    .map_or(String::new(), |a| format!(".{}", a.name))
-                            )),
+                            Diagnostic::wrong("E0328", r.span)
+                                .says("`display` takes whole symbols, without indices")
+                                .label("indices here")
+                                .help(format!(
+                                    "write `display {}{}`; or copy the part you want into a parameter",
+                                    r.name.name,
+                                    r.attribute
+                                        .as_ref()
+                                        .map_or(String::new(), |a| format!(".{}", a.name))
+                                )),
                         );
                     }
                     let attr = match (&symbol.kind, &r.attribute) {
@@ -180,13 +177,10 @@ impl Compiler {
                 && self.symbols.get(s).is_set()
             {
                 let (i, declared) = (&name.name, self.symbols.get(s).declared);
-                let d = Diagnostic::error(
-                    "E0304",
-                    name.span,
-                    format!("the set `{i}` has no value to write"),
-                )
-                .label("what of it?")
-                .other(declared, "declared here");
+                let d = Diagnostic::wrong("E0304", name.span)
+                    .says(format!("the set `{i}` has no value to write"))
+                    .label("what of it?")
+                    .other(declared, "declared here");
                 return self.fail(d.help(format!(
                     "write its element's label, `{i}.tl`, its text, `{i}.te({i})`, or its position, `ord({i})`"
                 )));

@@ -204,24 +204,20 @@ impl Compiler {
                 if !matches!(self.symbols.get(s).kind, SymbolKind::Figure(_)) {
                     let declared = self.symbols.get(s).declared;
                     return self.fail(
-                        Diagnostic::error(
-                            "E0323",
-                            name.span,
-                            format!("`{}` is not a figure", name.name),
-                        )
-                        .label("a figure is expected")
-                        .other(declared, "declared here"),
+                        Diagnostic::wrong("E0323", name.span)
+                            .says(format!("`{}` is not a figure", name.name))
+                            .label("a figure is expected")
+                            .other(declared, "declared here"),
                     );
                 }
                 let file = match file.as_ref().map(|f| (&f.kind, f.span)) {
                     None => None,
                     Some((ExprKind::Text(t), _)) => Some(t.clone()),
                     Some((_, span)) => {
-                        return self.fail(Diagnostic::error(
-                            "E0323",
-                            span,
-                            "`draw` takes a file name in quotes",
-                        ));
+                        return self.fail(
+                            Diagnostic::wrong("E0323", span)
+                                .says("`draw` takes a file name in quotes"),
+                        );
                     }
                 };
                 CodeKind::Draw(s, file)
@@ -251,13 +247,10 @@ impl Compiler {
             _ => return Ok(()),
         };
         self.fail(
-            Diagnostic::error(
-                "E0324",
-                stmt.span,
-                format!("a {what} may not stand inside a loop or an if"),
-            )
-            .label("inside a loop or an if")
-            .help("move it before the loop"),
+            Diagnostic::wrong("E0324", stmt.span)
+                .says(format!("a {what} may not stand inside a loop or an if"))
+                .label("inside a loop or an if")
+                .help("move it before the loop"),
         )
     }
 
@@ -282,28 +275,26 @@ impl Compiler {
         let symbol = self.symbols.get(s).clone();
         let SymbolKind::Equation(defined) = symbol.kind else {
             return self.fail(
-                Diagnostic::error(
-                    "E0326",
-                    e.name.span,
-                    format!("`{}` is {}, not an equation", symbol.name, symbol.a_kind()),
-                )
-                .label("an equation is expected before `..`")
-                .other(symbol.declared, "declared here")
-                .help(format!("declare it: `equation {};`", e.name.name)),
+                Diagnostic::wrong("E0326", e.name.span)
+                    .says(format!(
+                        "`{}` is {}, not an equation",
+                        symbol.name,
+                        symbol.a_kind()
+                    ))
+                    .label("an equation is expected before `..`")
+                    .other(symbol.declared, "declared here")
+                    .help(format!("declare it: `equation {};`", e.name.name)),
             );
         };
         if let Some(d) = defined {
             let first = self.equations[d].span;
             if !self.modes.at(e.name.span).multi_replace {
                 return self.fail(
-                    Diagnostic::error(
-                        "E0327",
-                        e.name.span,
-                        format!("the equation `{}` is defined twice", symbol.name),
-                    )
-                    .label("second definition")
-                    .other(first, "first definition")
-                    .help("give the second one another name"),
+                    Diagnostic::wrong("E0327", e.name.span)
+                        .says(format!("the equation `{}` is defined twice", symbol.name))
+                        .label("second definition")
+                        .other(first, "first definition")
+                        .help("give the second one another name"),
                 );
             }
         }

@@ -272,19 +272,16 @@ impl Splitter {
             _ => '}',
         };
         self.problems.push(
-            Diagnostic::error(
-                "E0202",
-                span(open.at, open.at + 1),
-                format!("this `{}` is never closed", open.byte as char),
-            )
-            .label(format!("its `{close}` is missing"))
-            .help(if open.block {
-                format!("close the block with `{close};` before the next statement")
-            } else if open.byte == b'{' {
-                "braces are parentheses here; statements that belong together stand in `loop(i, … );`, `if(c, … );`".to_string()
-            } else {
-                format!("write `{close}` before the `;`")
-            }),
+            Diagnostic::wrong("E0202", span(open.at, open.at + 1))
+                .says(format!("this `{}` is never closed", open.byte as char))
+                .label(format!("its `{close}` is missing"))
+                .help(if open.block {
+                    format!("close the block with `{close};` before the next statement")
+                } else if open.byte == b'{' {
+                    "braces are parentheses here; statements that belong together stand in `loop(i, … );`, `if(c, … );`".to_string()
+                } else {
+                    format!("write `{close}` before the `;`")
+                }),
         );
     }
 
@@ -305,13 +302,10 @@ impl Splitter {
             false => "data stand between two slashes: `/ a 1, b 2 /`",
         };
         self.problems.push(
-            Diagnostic::error(
-                "E0203",
-                span(at.saturating_sub(1), at),
-                "the data that begin here are never closed by `/`",
-            )
-            .label("opened here")
-            .help(help),
+            Diagnostic::wrong("E0203", span(at.saturating_sub(1), at))
+                .says("the data that begin here are never closed by `/`")
+                .label("opened here")
+                .help(help),
         );
         self.last_end = end;
     }
@@ -536,12 +530,11 @@ impl Splitter {
     /// Nested too deeply: reports it and passes over the statement.
     fn too_deep(&mut self, bytes: &[u8], i: usize) -> bool {
         self.problems.push(
-            Diagnostic::error(
-                "E0204",
-                span(i - 1, i),
-                format!("parentheses are nested more than {DEEPEST} deep here"),
-            )
-            .help("split the expression: give its parts names of their own"),
+            Diagnostic::wrong("E0204", span(i - 1, i))
+                .says(format!(
+                    "parentheses are nested more than {DEEPEST} deep here"
+                ))
+                .help("split the expression: give its parts names of their own"),
         );
         let end = memchr::memchr(b';', &bytes[i..]).map_or(bytes.len(), |n| i + n);
         self.last_end = end;

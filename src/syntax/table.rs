@@ -412,14 +412,11 @@ impl<'a> TableReader<'a> {
                 Err(Box::new(d))
             }
             _ => {
-                let d = Diagnostic::error(
-                    "E0251",
-                    span,
-                    "this value stands under more than one column",
-                )
-                .other(self.columns[first].span, "one")
-                .other(self.columns[first + 1].span, "another")
-                .help("write the column labels further apart");
+                let d = Diagnostic::wrong("E0251", span)
+                    .says("this value stands under more than one column")
+                    .other(self.columns[first].span, "one")
+                    .other(self.columns[first + 1].span, "another")
+                    .help("write the column labels further apart");
                 Err(Box::new(d))
             }
         }

@@ -123,11 +123,9 @@ impl Builder<'_> {
         let span = self.span(&pair);
         let mut inner = parts(pair);
         let Some(name) = inner.next() else {
-            return Err(Box::new(Diagnostic::error(
-                "E0210",
-                span,
-                "a name was expected",
-            )));
+            return Err(Box::new(
+                Diagnostic::wrong("E0210", span).says("a name was expected"),
+            ));
         };
         let mut d = SymbolDecl {
             name: self.free_name(&name)?,
@@ -196,11 +194,9 @@ impl Builder<'_> {
         let span = self.span(&pair);
         let mut inner = parts(pair);
         let Some(name) = inner.next() else {
-            return Err(Box::new(Diagnostic::error(
-                "E0210",
-                span,
-                "a name was expected",
-            )));
+            return Err(Box::new(
+                Diagnostic::wrong("E0210", span).says("a name was expected"),
+            ));
         };
         let mut model = ModelDecl {
             name: self.free_name(&name)?,
@@ -275,12 +271,9 @@ impl Builder<'_> {
                     }
                     if minus {
                         return Err(Box::new(
-                            Diagnostic::error(
-                                "E0215",
-                                place,
-                                "a pair cannot be taken out of a model",
-                            )
-                            .help("write `- equation` to take an equation out"),
+                            Diagnostic::wrong("E0215", place)
+                                .says("a pair cannot be taken out of a model")
+                                .help("write `- equation` to take an equation out"),
                         ));
                     }
                     match <[Ident; 1]>::try_from(columns) {
@@ -312,11 +305,9 @@ impl Builder<'_> {
                     arguments: None,
                 } => names.push(name),
                 _ => {
-                    return Err(Box::new(Diagnostic::error(
-                        "E0214",
-                        e.span,
-                        "a set was expected here",
-                    )));
+                    return Err(Box::new(
+                        Diagnostic::wrong("E0214", e.span).says("a set was expected here"),
+                    ));
                 }
             }
         }

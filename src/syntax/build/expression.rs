@@ -119,12 +119,11 @@ impl Stack {
 }
 
 fn too_deep(at: Span) -> Diagnostic {
-    Diagnostic::error(
-        "E0204",
-        at,
-        format!("this expression is nested more than {DEEPEST} levels deep"),
-    )
-    .help("give its parts names of their own; long sums and products are no problem")
+    Diagnostic::wrong("E0204", at)
+        .says(format!(
+            "this expression is nested more than {DEEPEST} levels deep"
+        ))
+        .help("give its parts names of their own; long sums and products are no problem")
 }
 
 fn join(left: Node, op: BinaryOp, right: Node) -> Node {
@@ -288,11 +287,7 @@ impl Builder<'_> {
             s.reduce()?;
         }
         s.nodes.pop().ok_or_else(|| {
-            Box::new(Diagnostic::error(
-                "E0210",
-                place,
-                "an expression was expected",
-            ))
+            Box::new(Diagnostic::wrong("E0210", place).says("an expression was expected"))
         })
     }
 
@@ -311,11 +306,9 @@ impl Builder<'_> {
                 let mut node = match pair.into_inner().next() {
                     Some(inner) => self.chain(inner)?,
                     None => {
-                        return Err(Box::new(Diagnostic::error(
-                            "E0210",
-                            span,
-                            "an expression was expected",
-                        )));
+                        return Err(Box::new(
+                            Diagnostic::wrong("E0210", span).says("an expression was expected"),
+                        ));
                     }
                 };
                 node.expr.span = span;
@@ -362,11 +355,9 @@ impl Builder<'_> {
         let span = self.span(&pair);
         let mut inner = pair.into_inner();
         let Some(name) = inner.next() else {
-            return Err(Box::new(Diagnostic::error(
-                "E0210",
-                span,
-                "a name was expected",
-            )));
+            return Err(Box::new(
+                Diagnostic::wrong("E0210", span).says("a name was expected"),
+            ));
         };
         let name = self.ident(&name);
         let (mut attribute, mut arguments, mut depth) = (None, None, 0);
@@ -432,11 +423,9 @@ impl Builder<'_> {
                 },
                 open: false,
             }),
-            _ => Err(Box::new(Diagnostic::error(
-                "E0210",
-                span,
-                "an index and an expression were expected",
-            ))),
+            _ => Err(Box::new(
+                Diagnostic::wrong("E0210", span).says("an index and an expression were expected"),
+            )),
         }
     }
 

@@ -16,11 +16,7 @@ fn need<'i>(
     what: &str,
 ) -> Built<Pair<'i, Rule>> {
     pairs.next().ok_or_else(|| {
-        Box::new(Diagnostic::error(
-            "E0210",
-            at,
-            format!("{what} was expected"),
-        ))
+        Box::new(Diagnostic::wrong("E0210", at).says(format!("{what} was expected")))
     })
 }
 
@@ -173,12 +169,9 @@ impl Builder<'_> {
                     let right = self.expression(need(&mut sides, at, "an expression")?)?;
                     if let Some(a) = target.attribute {
                         return Err(Box::new(
-                            Diagnostic::error(
-                                "E0211",
-                                a.span,
-                                "an equation is defined by its name, without an attribute",
-                            )
-                            .help(format!("write `{}..`", target.name.name)),
+                            Diagnostic::wrong("E0211", a.span)
+                                .says("an equation is defined by its name, without an attribute")
+                                .help(format!("write `{}..`", target.name.name)),
                         ));
                     }
                     return Ok(StmtKind::Equate(Equate {
@@ -205,11 +198,9 @@ impl Builder<'_> {
                 }
             }
         }
-        Err(Box::new(Diagnostic::error(
-            "E0210",
-            at,
-            "`=` or `..` was expected",
-        )))
+        Err(Box::new(
+            Diagnostic::wrong("E0210", at).says("`=` or `..` was expected"),
+        ))
     }
 
     fn relation(&self, pair: &Pair<'_, Rule>) -> Built<Relation> {
@@ -278,12 +269,9 @@ impl Builder<'_> {
                 _ => {
                     loops = p.as_str().parse().ok().filter(|n| *n > 0).ok_or_else(|| {
                         Box::new(
-                            Diagnostic::error(
-                                "E0217",
-                                self.span(&p),
-                                "the number of loops to leave is a whole number from 1 on",
-                            )
-                            .help("`break;` leaves one loop, `break 2;` two"),
+                            Diagnostic::wrong("E0217", self.span(&p))
+                                .says("the number of loops to leave is a whole number from 1 on")
+                                .help("`break;` leaves one loop, `break 2;` two"),
                         )
                     })?;
                 }
@@ -392,11 +380,9 @@ impl Builder<'_> {
                 Rule::using => {
                     let name = parts(p).next().map(|n| self.ident(&n));
                     if using.is_some() {
-                        return Err(Box::new(Diagnostic::error(
-                            "E0218",
-                            place,
-                            "`using` stands here twice",
-                        )));
+                        return Err(Box::new(
+                            Diagnostic::wrong("E0218", place).says("`using` stands here twice"),
+                        ));
                     }
                     using = name;
                 }
@@ -432,18 +418,15 @@ impl Builder<'_> {
                 scenario,
             })),
             None => Err(Box::new(
-                Diagnostic::error(
-                    "E0218",
-                    at,
-                    format!(
+                Diagnostic::wrong("E0218", at)
+                    .says(format!(
                         "`solve {}` does not say which type of model it is",
                         model.name
-                    ),
-                )
-                .help(format!(
-                    "write `solve {} using lp minimizing z;`",
-                    model.name
-                )),
+                    ))
+                    .help(format!(
+                        "write `solve {} using lp minimizing z;`",
+                        model.name
+                    )),
             )),
         }
     }
