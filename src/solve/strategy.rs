@@ -69,10 +69,6 @@ strategies! {
             "Mehrotra 1991";
     }
     "mcp": {
-        PairPresolve "pair_presolve",
-            "rows of one variable become bounds",
-            "the nonzeros, a few times",
-            "Ferris & Munson 2000";
         InteriorCrash "interior_crash",
             "many variables: an interior point method leads to the first basis",
             "its iterations",
