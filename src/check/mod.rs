@@ -86,6 +86,7 @@ impl Program {
 }
 
 /// The state of checking.
+#[derive(Default)]
 pub(crate) struct Compiler {
     symbols: Symbols,
     store: Store,
@@ -240,35 +241,7 @@ impl Compiler {
         Self {
             symbols,
             store,
-            equations: Vec::new(),
-            diagnostics: Vec::new(),
-            scope: Vec::new(),
-            maps: Vec::new(),
-            defining: rustc_hash::FxHashMap::default(),
-            input: None,
-            output: None,
-            next_slot: 0,
-            not_loaded: rustc_hash::FxHashSet::default(),
-            nest: Vec::new(),
-            shows_numbers: false,
-            slots: 0,
-            in_equation: false,
-            reads: Vec::new(),
-            without_data: Vec::new(),
-            running: Vec::new(),
-            new_labels: false,
-            texts_allowed: false,
-            doubtful: Vec::new(),
-            nesting: 0,
-            put_named: None,
-            max_memory: None,
-            taken: 0,
-            inputs: input::Inputs::default(),
-            asked_for_data: Cell::new(false),
-            solvers: &Solvers::NONE,
-            passed_over: rustc_hash::FxHashSet::default(),
-            modes: Switches::default(),
-            lost: follow::Lost::default(),
+            ..Self::default()
         }
     }
 }

@@ -60,9 +60,10 @@ pub(super) enum Cut {
 }
 
 /// Position in a declaration.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 enum Declare {
     /// Before a name.
+    #[default]
     Name,
     /// After a name or its domain, on the same line.
     AfterName,
@@ -86,6 +87,7 @@ struct Open {
 }
 
 /// See the module.
+#[derive(Default)]
 pub(super) struct Splitter {
     /// Everything before this has been looked at.
     pos: usize,
@@ -124,29 +126,6 @@ fn span(lo: usize, hi: usize) -> Span {
 }
 
 impl Splitter {
-    pub(super) fn new() -> Self {
-        Self {
-            pos: 0,
-            start: None,
-            class: Class::Other,
-            declare: Declare::Name,
-            opens: Vec::new(),
-            blocks: 0,
-            holes: Vec::new(),
-            problems: Vec::new(),
-            body_start: 0,
-            new_line: false,
-            last_name: 0,
-            last_end: 0,
-            after_dot: false,
-            control: false,
-            figure: false,
-            controls: false,
-            names: 0,
-            searched: 0,
-        }
-    }
-
     /// Goes on at a byte that was passed over: a `;` was missing before it.
     pub(super) fn back_to(&mut self, at: usize) {
         self.pos = at;

@@ -4,7 +4,7 @@ use crate::diag::Diagnostic;
 use crate::source::Span;
 
 /// The kinds of statements that the splitter tells apart.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub(crate) enum Class {
     Set,
     Parameter,
@@ -20,6 +20,7 @@ pub(crate) enum Class {
     /// An assignment, an equation, or what cannot be told.
     Algebra,
     /// Any other keyword.
+    #[default]
     Other,
 }
 
