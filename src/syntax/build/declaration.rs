@@ -2,7 +2,7 @@
 
 use pest::iterators::Pair;
 
-use super::{Builder, Built, parts};
+use super::{Builder, Built, need, parts};
 use crate::diag::Diagnostic;
 use crate::syntax::ast::*;
 use crate::syntax::grammar::Rule;
@@ -122,11 +122,7 @@ impl Builder<'_> {
     fn declaration(&self, pair: Pair<'_, Rule>) -> Built<SymbolDecl> {
         let span = self.span(&pair);
         let mut inner = parts(pair);
-        let Some(name) = inner.next() else {
-            return Err(Box::new(
-                Diagnostic::wrong("E0210", span).says("a name was expected"),
-            ));
-        };
+        let name = need(&mut inner, span, "a name")?;
         let mut d = SymbolDecl {
             name: self.free_name(&name)?,
             domain: None,
@@ -193,11 +189,7 @@ impl Builder<'_> {
     fn model(&self, pair: Pair<'_, Rule>) -> Built<ModelDecl> {
         let span = self.span(&pair);
         let mut inner = parts(pair);
-        let Some(name) = inner.next() else {
-            return Err(Box::new(
-                Diagnostic::wrong("E0210", span).says("a name was expected"),
-            ));
-        };
+        let name = need(&mut inner, span, "a name")?;
         let mut model = ModelDecl {
             name: self.free_name(&name)?,
             text: None,

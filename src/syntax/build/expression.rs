@@ -3,7 +3,7 @@
 
 use pest::iterators::Pair;
 
-use super::{Builder, Built, DEEPEST};
+use super::{Builder, Built, DEEPEST, expected, need};
 use crate::data::value;
 use crate::diag::Diagnostic;
 use crate::source::Span;
@@ -286,9 +286,8 @@ impl Builder<'_> {
         while !s.ops.is_empty() {
             s.reduce()?;
         }
-        s.nodes.pop().ok_or_else(|| {
-            Box::new(Diagnostic::wrong("E0210", place).says("an expression was expected"))
-        })
+        let node = s.nodes.pop();
+        node.ok_or_else(|| expected(place, "an expression"))
     }
 
     /// One operand.
@@ -303,14 +302,8 @@ impl Builder<'_> {
             Rule::number | Rule::signed => Ok(leaf(ExprKind::Number(number(pair.as_str())))),
             Rule::quoted => Ok(leaf(ExprKind::Text(Self::unquote(&pair)))),
             Rule::group => {
-                let mut node = match pair.into_inner().next() {
-                    Some(inner) => self.chain(inner)?,
-                    None => {
-                        return Err(Box::new(
-                            Diagnostic::wrong("E0210", span).says("an expression was expected"),
-                        ));
-                    }
-                };
+                let inner = need(&mut pair.into_inner(), span, "an expression")?;
+                let mut node = self.chain(inner)?;
                 node.expr.span = span;
                 node.depth += 1;
                 node.open = false;
@@ -354,11 +347,7 @@ impl Builder<'_> {
     fn apply(&self, pair: Pair<'_, Rule>) -> Built<Node> {
         let span = self.span(&pair);
         let mut inner = pair.into_inner();
-        let Some(name) = inner.next() else {
-            return Err(Box::new(
-                Diagnostic::wrong("E0210", span).says("a name was expected"),
-            ));
-        };
+        let name = need(&mut inner, span, "a name")?;
         let name = self.ident(&name);
         let (mut attribute, mut arguments, mut depth) = (None, None, 0);
         for p in inner {
@@ -423,9 +412,7 @@ impl Builder<'_> {
                 },
                 open: false,
             }),
-            _ => Err(Box::new(
-                Diagnostic::wrong("E0210", span).says("an index and an expression were expected"),
-            )),
+            _ => Err(expected(span, "an index and an expression")),
         }
     }
 
@@ -483,8 +470,7 @@ impl Builder<'_> {
             }
             operand = Some(self.operand(p)?);
         }
-        operand
-            .ok_or_else(|| Box::new(Diagnostic::error("E0210", span, "a condition was expected")))
+        operand.ok_or_else(|| expected(span, "a condition"))
     }
 }
 

@@ -3,22 +3,11 @@
 use pest::iterators::Pair;
 
 use super::expression::number;
-use super::{Builder, Built, parts};
+use super::{Builder, Built, expected, need, parts};
 use crate::diag::Diagnostic;
 use crate::source::Span;
 use crate::syntax::ast::*;
 use crate::syntax::grammar::Rule;
-
-/// The next pair, which the grammar promises.
-fn need<'i>(
-    pairs: &mut impl Iterator<Item = Pair<'i, Rule>>,
-    at: Span,
-    what: &str,
-) -> Built<Pair<'i, Rule>> {
-    pairs.next().ok_or_else(|| {
-        Box::new(Diagnostic::wrong("E0210", at).says(format!("{what} was expected")))
-    })
-}
 
 impl Builder<'_> {
     /// A statement that is no declaration.
@@ -198,9 +187,7 @@ impl Builder<'_> {
                 }
             }
         }
-        Err(Box::new(
-            Diagnostic::wrong("E0210", at).says("`=` or `..` was expected"),
-        ))
+        Err(expected(at, "`=` or `..`"))
     }
 
     fn relation(&self, pair: &Pair<'_, Rule>) -> Built<Relation> {
