@@ -22,7 +22,7 @@ impl Compiler {
             && self.symbols.find(&t.name.name).is_none()
         {
             let value = self.expr(&a.value)?;
-            let kind = CodeKind::Assign {
+            let assignment = Assignment {
                 domain: Domain::default(),
                 target,
                 key: Key::default(),
@@ -31,7 +31,7 @@ impl Compiler {
                 nonzero: a.nonzero,
                 in_turn: false,
             };
-            out.push(Code::new(kind, span));
+            out.push(Code::new(CodeKind::Assign(assignment), span));
             return Ok(());
         }
         let s = self.lookup(&t.name)?;
@@ -79,7 +79,7 @@ impl Compiler {
         if covers && whole && reading.counted && !reading.read {
             out.push(Code::new(CodeKind::Clear(root, None), span));
         }
-        let kind = CodeKind::Assign {
+        let assignment = Assignment {
             in_turn: reading.is_recurrence(&key),
             domain,
             target,
@@ -88,7 +88,7 @@ impl Compiler {
             nonzero: a.nonzero,
             key,
         };
-        out.push(Code::new(kind, span));
+        out.push(Code::new(CodeKind::Assign(assignment), span));
         Ok(())
     }
 

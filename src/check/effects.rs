@@ -54,7 +54,7 @@ impl Visitor<'_> for Changes<'_> {
         let first = |s: SymbolId| self.symbols.get(s).table;
         let e = &mut *self.effects;
         match &c.kind {
-            CodeKind::Assign { target, .. } => match *target {
+            CodeKind::Assign(a) => match a.target {
                 Target::Table(t) | Target::Set(t) | Target::Singleton(t) => {
                     e.tables.insert(t);
                 }

@@ -424,26 +424,30 @@ pub struct FigureCode {
     pub elements: Vec<FigureElementCode>,
 }
 
+/// An assignment.
+#[derive(Debug)]
+pub struct Assignment {
+    /// What it runs over (slots not controlled outside).
+    pub domain: Domain,
+    /// What is written.
+    pub target: Target,
+    /// Key of the record.
+    pub key: Key,
+    /// Right side.
+    pub value: Node,
+    /// Whether the domain covers every record the target can have.
+    pub covers: bool,
+    /// `$=`: what is 0 is not assigned.
+    pub nonzero: bool,
+    /// Element by element: the right side reads what was written before.
+    pub in_turn: bool,
+}
+
 /// The kinds of statements.
 #[derive(Debug)]
 pub enum CodeKind {
     /// Assignment.
-    Assign {
-        /// What it runs over (slots not controlled outside).
-        domain: Domain,
-        /// What is written.
-        target: Target,
-        /// Key of the record.
-        key: Key,
-        /// Right side.
-        value: Node,
-        /// Whether the domain covers every record the target can have.
-        covers: bool,
-        /// `$=`: what is 0 is not assigned.
-        nonzero: bool,
-        /// Element by element: the right side reads what was written before.
-        in_turn: bool,
-    },
+    Assign(Assignment),
     /// `loop`: conjuncts of its condition that the body may change stand apart.
     Loop(Domain, Vec<Node>, Vec<Code>),
     /// `while`

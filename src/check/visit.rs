@@ -179,12 +179,10 @@ impl Code {
     /// Visits expressions and statements inside.
     pub fn walk<'a, V: Visitor<'a> + ?Sized>(&'a self, v: &mut V) {
         match &self.kind {
-            CodeKind::Assign {
-                domain, key, value, ..
-            } => {
-                v.domain(domain);
-                key.walk(v);
-                v.node(value);
+            CodeKind::Assign(a) => {
+                v.domain(&a.domain);
+                a.key.walk(v);
+                v.node(&a.value);
             }
             CodeKind::Loop(d, anew, body) => {
                 v.domain(d);
