@@ -118,7 +118,7 @@ impl Compiler {
             _ => Some(&**left),
         };
         if let Some(ExprKind::Dollar(_, c)) = last.map(|l| &l.kind)
-            && let ExprKind::Apply { .. } = &c.kind
+            && let ExprKind::Apply(_, _, _) = &c.kind
         {
             let message = "`$` takes only what stands directly behind it; the comparison is made with all that stands on the left";
             let d = Diagnostic::warning("E0379", c.span, message)

@@ -187,11 +187,7 @@ impl Compiler {
             );
         };
         let free = |c: &Self, e: &Expr| match &e.kind {
-            ExprKind::Apply {
-                name,
-                attribute: None,
-                arguments: None,
-            } => c.symbols.find(&name.name).filter(|&s| {
+            ExprKind::Apply(name, None, None) => c.symbols.find(&name.name).filter(|&s| {
                 let set = c.symbols.get(s);
                 set.is_set() && set.dim() == 1 && c.controlled(s).is_none()
             }),
@@ -268,21 +264,13 @@ impl Compiler {
         out: &mut Domain,
     ) -> Result<Vec<Part>, Failed> {
         match &index.kind {
-            ExprKind::Apply {
-                name,
-                attribute: Some(a),
-                arguments: None,
-            } if a.name.eq_ignore_ascii_case("local") => {
+            ExprKind::Apply(name, Some(a), None) if a.name.eq_ignore_ascii_case("local") => {
                 let s = self.lookup_set(name)?;
                 self.used(s, name.span);
                 self.fits(s, of, position, index.span)?;
                 Ok(self.run_over(s, out))
             }
-            ExprKind::Apply {
-                name,
-                attribute: None,
-                arguments: None,
-            } => {
+            ExprKind::Apply(name, None, None) => {
                 let free = self.symbols.find(&name.name).filter(|&s| {
                     let singleton = matches!(
                         self.symbols.get(self.symbols.root(s)).kind,
@@ -298,14 +286,11 @@ impl Compiler {
                     None => self.index(index, of, position),
                 }
             }
-            ExprKind::Apply {
-                name,
-                attribute: None,
-                arguments: Some(inner),
-            } if self
-                .symbols
-                .find(&name.name)
-                .is_some_and(|s| self.symbols.get(s).is_set()) =>
+            ExprKind::Apply(name, None, Some(inner))
+                if self
+                    .symbols
+                    .find(&name.name)
+                    .is_some_and(|s| self.symbols.get(s).is_set()) =>
             {
                 let s = self.lookup_set(name)?;
                 if self.symbols.get(s).dim() == 1 {
@@ -368,22 +353,13 @@ impl Compiler {
     }
 
     fn control_lag_base(&mut self, base: &Expr, out: &mut Domain) -> Result<(), Failed> {
-        if let ExprKind::Apply {
-            name,
-            attribute: Some(a),
-            arguments: None,
-        } = &base.kind
+        if let ExprKind::Apply(name, Some(a), None) = &base.kind
             && a.name.eq_ignore_ascii_case("local")
         {
             let s = self.lookup_set(name)?;
             self.used(s, name.span);
             self.run_over(s, out);
-        } else if let ExprKind::Apply {
-            name,
-            attribute: None,
-            arguments: None,
-        } = &base.kind
-        {
+        } else if let ExprKind::Apply(name, None, None) = &base.kind {
             let free = self
                 .symbols
                 .find(&name.name)

@@ -123,11 +123,9 @@ impl Compiler {
                 }
                 Ok(Node::data(NodeKind::Text(t.clone()), span))
             }
-            ExprKind::Apply {
-                name,
-                attribute,
-                arguments,
-            } => self.apply(name, attribute.as_ref(), arguments.as_deref(), span),
+            ExprKind::Apply(name, attribute, arguments) => {
+                self.apply(name, attribute.as_ref(), arguments.as_deref(), span)
+            }
             ExprKind::Unary(op, a) => {
                 let a = self.expr(a)?;
                 let member = a.member;
@@ -749,12 +747,7 @@ impl Compiler {
                     .label("only `ord('text', n)` has a position"),
             );
         }
-        let ExprKind::Apply {
-            name: n,
-            attribute: None,
-            arguments: None,
-        } = &args[0].kind
-        else {
+        let ExprKind::Apply(n, None, None) = &args[0].kind else {
             return self.fail(
                 Diagnostic::wrong("E0317", args[0].span)
                     .says(format!("`{name}` takes the name of a set"))
@@ -818,9 +811,7 @@ impl Compiler {
     fn text_argument(&mut self, e: &Expr) -> Result<Option<Node>, Failed> {
         let is_text = match &e.kind {
             ExprKind::Text(_) => true,
-            ExprKind::Apply {
-                attribute: Some(a), ..
-            } => ["tl", "te", "ts", "tn"]
+            ExprKind::Apply(_, Some(a), _) => ["tl", "te", "ts", "tn"]
                 .iter()
                 .any(|t| a.name.eq_ignore_ascii_case(t)),
             _ => false,
@@ -838,7 +829,7 @@ impl Compiler {
     fn arguments_help(&self, callee: Callee, lower: &str, low: usize, args: &[Expr]) -> String {
         // `max(p)`: over which sets `p` runs.
         let over = args.first().and_then(|e| {
-            let ExprKind::Apply { name: n, .. } = &e.kind else {
+            let ExprKind::Apply(n, _, _) = &e.kind else {
                 return None;
             };
             let s = self.symbols.get(self.symbols.find(&n.name)?);
@@ -941,11 +932,7 @@ impl Compiler {
 /// A name and nothing else.
 fn bare(e: &Expr) -> Option<&Ident> {
     match &e.kind {
-        ExprKind::Apply {
-            name,
-            attribute: None,
-            arguments: None,
-        } => Some(name),
+        ExprKind::Apply(name, None, None) => Some(name),
         _ => None,
     }
 }
@@ -967,12 +954,7 @@ const DECLARE_FIRST: &str =
 fn divisor(written: &Expr, node: Node) -> (bool, Node) {
     let once = match (&written.kind, &node.kind) {
         (ExprKind::Number(_), NodeKind::Const(_)) => true,
-        (
-            ExprKind::Apply {
-                attribute: None, ..
-            },
-            NodeKind::Data(_, key),
-        ) => key.parts.is_empty(),
+        (ExprKind::Apply(_, None, _), NodeKind::Data(_, key)) => key.parts.is_empty(),
         _ => false,
     };
     if !once {

@@ -100,11 +100,9 @@ impl Compiler {
             for (name, value) in &e.arguments {
                 // A bare word that names nothing is a word: `fill = none`.
                 let node = match &value.kind {
-                    ExprKind::Apply {
-                        name: word,
-                        attribute: None,
-                        arguments: None,
-                    } if self.symbols.find(&word.name).is_none() => {
+                    ExprKind::Apply(word, None, None)
+                        if self.symbols.find(&word.name).is_none() =>
+                    {
                         Node::data(NodeKind::Text(word.name.clone()), value.span)
                     }
                     _ => self.expr(value)?,

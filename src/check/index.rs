@@ -163,11 +163,7 @@ impl Compiler {
         }
         // A tuple set stands for all its positions.
         let positions = |e: &Expr| match &e.kind {
-            ExprKind::Apply {
-                name,
-                attribute: None,
-                ..
-            } => self
+            ExprKind::Apply(name, None, _) => self
                 .symbols
                 .find(&name.name)
                 .map(|i| self.symbols.get(i))
@@ -230,11 +226,7 @@ impl Compiler {
     /// Behind an index that failed: whether the others are bound.
     fn others_bound(&mut self, indices: &[Expr]) {
         for e in indices {
-            if let ExprKind::Apply {
-                name,
-                attribute: None,
-                arguments: None,
-            } = &e.kind
+            if let ExprKind::Apply(name, None, None) = &e.kind
                 && let Some(s) = self.symbols.find(&name.name)
                 && self.symbols.get(s).is_set()
             {
@@ -252,7 +244,7 @@ impl Compiler {
     ) -> Result<Vec<Part>, Failed> {
         match &e.kind {
             ExprKind::Text(label) => Ok(vec![Part::Label(self.label(label, of, position, e.span)?)]),
-            ExprKind::Apply { name, attribute: None, arguments: None } => {
+            ExprKind::Apply(name, None, None) => {
                 let Some(s) = self.symbols.find(&name.name) else {
                     return self.unknown_index(name);
                 };
@@ -266,7 +258,7 @@ impl Compiler {
                 self.fits(s, of, position, e.span)?;
                 Ok(part)
             }
-            ExprKind::Apply { name, attribute: None, arguments: Some(inner) } => {
+            ExprKind::Apply(name, None, Some(inner)) => {
                 // p(arc(i,j)): all controlled.
                 let s = self.lookup_set(name)?;
                 let key = self.key(s, inner, e.span)?;
@@ -538,14 +530,11 @@ impl Compiler {
         position: usize,
     ) -> Result<(Part, TableId), Failed> {
         match &base.kind {
-            ExprKind::Apply {
-                name,
-                attribute,
-                arguments: None,
-            } if attribute
-                .as_ref()
-                // `i.local` was put under control before.
-                .is_none_or(|a| a.name.eq_ignore_ascii_case("local")) =>
+            ExprKind::Apply(name, attribute, None)
+                if attribute
+                    .as_ref()
+                    // `i.local` was put under control before.
+                    .is_none_or(|a| a.name.eq_ignore_ascii_case("local")) =>
             {
                 let Some(s) = self.symbols.find(&name.name) else {
                     return self.unknown_index(name);

@@ -164,12 +164,7 @@ impl Compiler {
         value: &Expr,
         (align, width, decimals): (Option<char>, Option<Node>, Option<Node>),
     ) -> Result<PutCode, Failed> {
-        if let ExprKind::Apply {
-            name,
-            attribute: None,
-            arguments: None,
-        } = &value.kind
-        {
+        if let ExprKind::Apply(name, None, None) = &value.kind {
             if let Some(s) = self.file(name) {
                 return Ok(PutCode::File(s));
             }
@@ -187,11 +182,7 @@ impl Compiler {
             }
         }
         let value = match &value.kind {
-            ExprKind::Apply {
-                name,
-                attribute,
-                arguments: None,
-            } if is_system(name) => {
+            ExprKind::Apply(name, attribute, None) if is_system(name) => {
                 let what = attribute.as_ref().map_or("", |a| &*a.name).to_lowercase();
                 Node::data(
                     NodeKind::Text(format!("%system.{what}%").into()),
@@ -213,12 +204,7 @@ impl Compiler {
 
     /// A variable or an equation without attribute stands for its name: `put x(i) ' ' x.l(i)`.
     fn record_name(&mut self, value: &Expr) -> Result<Option<Node>, Failed> {
-        let ExprKind::Apply {
-            name,
-            attribute: None,
-            arguments,
-        } = &value.kind
-        else {
+        let ExprKind::Apply(name, None, arguments) = &value.kind else {
             return Ok(None);
         };
         let found = self.symbols.find(&name.name).filter(|&s| {
@@ -241,12 +227,7 @@ impl Compiler {
             let kind = ExprKind::Dollar(Box::new(last), condition.clone());
             return Some((first, Expr { kind, span }));
         }
-        let ExprKind::Apply {
-            name,
-            attribute,
-            arguments: Some(arguments),
-        } = &value.kind
-        else {
+        let ExprKind::Apply(name, attribute, Some(arguments)) = &value.kind else {
             return None;
         };
         let [last] = arguments.as_slice() else {
@@ -272,11 +253,7 @@ impl Compiler {
             (_, None) => false,
         };
         let first = Expr {
-            kind: special.unwrap_or_else(|| ExprKind::Apply {
-                name: name.clone(),
-                attribute: attribute.clone(),
-                arguments: None,
-            }),
+            kind: special.unwrap_or_else(|| ExprKind::Apply(name.clone(), attribute.clone(), None)),
             span: name.span,
         };
         without.then(|| (first, last.clone()))
@@ -287,7 +264,7 @@ impl Compiler {
         match &e.kind {
             ExprKind::Text(_) => true,
             ExprKind::Binary(_, a, _) => self.is_index(a),
-            ExprKind::Apply { name, .. } => {
+            ExprKind::Apply(name, _, _) => {
                 let set = self.symbols.find(&name.name);
                 set.is_some_and(|s| self.symbols.get(s).is_set())
             }

@@ -347,15 +347,9 @@ pub enum ExprKind {
     Membership(bool),
     /// A quoted text: a label in an index position, a text in `put`.
     Text(Box<str>),
-    /// A name, perhaps with attribute and arguments: symbol, function or index, told apart later.
-    Apply {
-        /// Name.
-        name: Ident,
-        /// `.l`, `.val` …
-        attribute: Option<Ident>,
-        /// Arguments; None where no parentheses stand.
-        arguments: Option<Vec<Expr>>,
-    },
+    /// A name, perhaps with an attribute (`.l`, `.val`), and with arguments where parentheses stand: symbol, function or index, told
+    /// apart later.
+    Apply(Ident, Option<Ident>, Option<Vec<Expr>>),
     /// A prefix operator.
     Unary(UnaryOp, Box<Expr>),
     /// An infix operator.

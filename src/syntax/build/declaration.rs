@@ -291,11 +291,7 @@ impl Builder<'_> {
         let mut names = Vec::new();
         for e in self.arguments(pair)? {
             match e.kind {
-                ExprKind::Apply {
-                    name,
-                    attribute: None,
-                    arguments: None,
-                } => names.push(name),
+                ExprKind::Apply(name, None, None) => names.push(name),
                 _ => {
                     return Err(Box::new(
                         Diagnostic::wrong("E0214", e.span).says("a set was expected here"),

@@ -372,11 +372,7 @@ impl Builder<'_> {
         }
         self.not_too_deep(Node {
             expr: Expr {
-                kind: ExprKind::Apply {
-                    name,
-                    attribute,
-                    arguments,
-                },
+                kind: ExprKind::Apply(name, attribute, arguments),
                 span,
             },
             depth: depth + 1,
@@ -438,13 +434,10 @@ impl Builder<'_> {
         let node = self.apply(pair)?;
         let span = node.expr.span;
         match node.expr.kind {
-            ExprKind::Apply {
-                name,
-                attribute,
-                arguments,
-            } if attribute
-                .as_ref()
-                .is_none_or(|a| a.name.eq_ignore_ascii_case("local") && arguments.is_none()) =>
+            ExprKind::Apply(name, attribute, arguments)
+                if attribute.as_ref().is_none_or(|a| {
+                    a.name.eq_ignore_ascii_case("local") && arguments.is_none()
+                }) =>
             {
                 Ok(DomainItem {
                     set: name,
