@@ -7,7 +7,7 @@ use crate::data::universe::Label;
 use crate::model::instance::Function;
 use crate::model::problem_type::ProblemType;
 use crate::source::Span;
-pub use crate::syntax::ast::{AggregateOp, BinaryOp, Relation, Sense};
+pub use crate::syntax::ast::{AggregateOp, BinaryOp, For, Relation, Sense, Written};
 use std::any::Any;
 use std::sync::{Arc, Mutex, OnceLock};
 
@@ -390,16 +390,7 @@ pub enum PutCode {
     /// Selects a file.
     File(SymbolId),
     /// Writes.
-    Item {
-        /// What.
-        value: Node,
-        /// Alignment.
-        align: Option<char>,
-        /// Width.
-        width: Option<Node>,
-        /// Decimals.
-        decimals: Option<Node>,
-    },
+    Item(Written<Node>),
 }
 
 /// One element of a figure.
@@ -453,20 +444,7 @@ pub enum CodeKind {
     /// `while`
     While(Node, Vec<Code>),
     /// `for`
-    For {
-        /// The scalar.
-        table: TableId,
-        /// First.
-        from: Node,
-        /// Down.
-        down: bool,
-        /// Limit.
-        to: Node,
-        /// Step.
-        by: Option<Node>,
-        /// Statements.
-        body: Vec<Code>,
-    },
+    For(For<TableId, Node, Code>),
     /// `repeat`
     Repeat(Vec<Code>, Node),
     /// `if`
@@ -477,15 +455,8 @@ pub enum CodeKind {
     Continue(Option<Node>),
     /// `display`
     Display(Option<Node>, Vec<Shown>),
-    /// `abort`
-    Abort {
-        /// Condition.
-        condition: Option<Node>,
-        /// What to show.
-        items: Vec<Shown>,
-        /// `abort.noError`
-        no_error: bool,
-    },
+    /// `abort`: condition, what to show, `abort.noError`
+    Abort(Option<Node>, Vec<Shown>, bool),
     /// `solve`
     Solve(Box<SolveCode>),
     /// `option name = value`

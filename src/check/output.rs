@@ -135,23 +135,18 @@ impl Compiler {
                 PutItem::NewLine => PutCode::NewLine,
                 PutItem::Column(e) => PutCode::Column(self.expr(e)?),
                 PutItem::Row(e) => PutCode::Row(self.expr(e)?),
-                PutItem::Item {
-                    value,
-                    align,
-                    width,
-                    decimals,
-                } => {
-                    let apart = self.two_items(value);
+                PutItem::Item(w) => {
+                    let apart = self.two_items(&w.value);
                     let last = match &apart {
                         Some((first, last)) => {
                             out.push(self.put_item(first, (None, None, None))?);
                             last
                         }
-                        None => value,
+                        None => &w.value,
                     };
-                    let width = self.optional(width.as_ref())?;
-                    let decimals = self.optional(decimals.as_ref())?;
-                    self.put_item(last, (*align, width, decimals))?
+                    let width = self.optional(w.width.as_ref())?;
+                    let decimals = self.optional(w.decimals.as_ref())?;
+                    self.put_item(last, (w.align, width, decimals))?
                 }
             };
             out.push(code);
@@ -194,12 +189,12 @@ impl Compiler {
                 None => self.expr(value)?,
             },
         };
-        Ok(PutCode::Item {
+        Ok(PutCode::Item(Written {
             value,
             align,
             width,
             decimals,
-        })
+        }))
     }
 
     /// A variable or an equation without attribute stands for its name: `put x(i) ' ' x.l(i)`.

@@ -38,7 +38,7 @@ impl Compiler {
             StmtKind::Loop(_, body)
             | StmtKind::While(_, body)
             | StmtKind::Repeat(body, _)
-            | StmtKind::For { body, .. } => bodies.push(body),
+            | StmtKind::For(For { body, .. }) => bodies.push(body),
             StmtKind::If(arms, otherwise) => {
                 bodies.extend(arms.iter().map(|(_, body)| &body[..]));
                 bodies.push(otherwise);
@@ -109,14 +109,8 @@ impl Compiler {
             StmtKind::Repeat(body, until) => {
                 CodeKind::Repeat(self.body(body, map)?, self.expr(until)?)
             }
-            StmtKind::For {
-                variable,
-                from,
-                down,
-                to,
-                by,
-                body,
-            } => {
+            StmtKind::For(f) => {
+                let variable = &f.variable;
                 let s = self.lookup(&variable.name)?;
                 let symbol = self.symbols.get(s);
                 if !matches!(symbol.kind, SymbolKind::Parameter { .. })
@@ -132,17 +126,17 @@ impl Compiler {
                     );
                 }
                 let table = symbol.table;
-                let (from, to) = (self.expr(from)?, self.expr(to)?);
-                let by = by.as_ref().map(|b| self.expr(b)).transpose()?;
+                let (from, to) = (self.expr(&f.from)?, self.expr(&f.to)?);
+                let by = self.optional(f.by.as_ref())?;
                 self.symbols.get_mut(s).assigned = true;
-                CodeKind::For {
-                    table,
+                CodeKind::For(For {
+                    variable: table,
                     from,
-                    down: *down,
+                    down: f.down,
                     to,
                     by,
-                    body: self.body(body, map)?,
-                }
+                    body: self.body(&f.body, map)?,
+                })
             }
             StmtKind::If(arms, otherwise) => {
                 let mut checked = Vec::new();
@@ -157,17 +151,10 @@ impl Compiler {
                 span = from_first_item(items, span);
                 CodeKind::Display(self.optional(c.as_ref())?, self.shown(items)?)
             }
-            StmtKind::Abort {
-                condition,
-                items,
-                no_error,
-            } => {
+            StmtKind::Abort(c, items, no_error) => {
                 span = from_first_item(items, span);
-                CodeKind::Abort {
-                    condition: self.optional(condition.as_ref())?,
-                    items: self.shown(items)?,
-                    no_error: *no_error,
-                }
+                let condition = self.optional(c.as_ref())?;
+                CodeKind::Abort(condition, self.shown(items)?, *no_error)
             }
             StmtKind::Option(items) => {
                 for item in items {

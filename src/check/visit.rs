@@ -193,13 +193,11 @@ impl Code {
                 v.guard(condition);
                 body.iter().for_each(|c| v.code(c));
             }
-            CodeKind::For {
-                from, to, by, body, ..
-            } => {
-                v.node(from);
-                v.node(to);
-                by.iter().for_each(|n| v.node(n));
-                body.iter().for_each(|c| v.code(c));
+            CodeKind::For(f) => {
+                v.node(&f.from);
+                v.node(&f.to);
+                f.by.iter().for_each(|n| v.node(n));
+                f.body.iter().for_each(|c| v.code(c));
             }
             CodeKind::If(arms, otherwise) => {
                 for (condition, body) in arms {
@@ -211,7 +209,7 @@ impl Code {
             CodeKind::Break(condition, _)
             | CodeKind::Continue(condition)
             | CodeKind::Display(condition, _)
-            | CodeKind::Abort { condition, .. } => condition.iter().for_each(|c| v.guard(c)),
+            | CodeKind::Abort(condition, ..) => condition.iter().for_each(|c| v.guard(c)),
             CodeKind::Put(_, condition, items) => {
                 condition.iter().for_each(|c| v.guard(c));
                 items.iter().for_each(|i| i.walk(v));
@@ -235,14 +233,9 @@ impl PutCode {
         match self {
             Self::NewLine | Self::File(_) => {}
             Self::Column(n) | Self::Row(n) => v.node(n),
-            Self::Item {
-                value,
-                width,
-                decimals,
-                ..
-            } => {
-                v.node(value);
-                width.iter().chain(decimals).for_each(|n| v.node(n));
+            Self::Item(w) => {
+                v.node(&w.value);
+                w.width.iter().chain(&w.decimals).for_each(|n| v.node(n));
             }
         }
     }

@@ -80,16 +80,7 @@ impl Machine<'_> {
                     break;
                 }
             },
-            CodeKind::For {
-                table,
-                from,
-                down,
-                to,
-                by,
-                body,
-            } => {
-                return self.run_for(c.span, *table, (from, *down, to, by.as_ref()), body, frame);
-            }
+            CodeKind::For(f) => return self.run_for(c.span, f, frame),
             CodeKind::If(arms, otherwise) => {
                 for (cond, body) in arms {
                     if truth(self.eval(cond, frame)) {
@@ -113,11 +104,7 @@ impl Machine<'_> {
                     self.display(items, c.span);
                 }
             }
-            CodeKind::Abort {
-                condition,
-                items,
-                no_error,
-            } => {
+            CodeKind::Abort(condition, items, no_error) => {
                 // Behind a solve that was not made (`bmod list`) an abort judges numbers that are not there.
                 let judges = self.options.list.is_none() || self.report().solves.is_empty();
                 if judges && self.holds(condition.as_ref(), frame) {
@@ -218,15 +205,10 @@ impl Machine<'_> {
         Flow::Next
     }
 
-    fn run_for(
-        &mut self,
-        span: Span,
-        table: TableId,
-        (from, down, to, by): (&Node, bool, &Node, Option<&Node>),
-        body: &[Code],
-        frame: &mut Frame,
-    ) -> Flow {
-        let (from, to) = (number(self.eval(from, frame)), number(self.eval(to, frame)));
+    fn run_for(&mut self, span: Span, f: &For<TableId, Node, Code>, frame: &mut Frame) -> Flow {
+        let (table, down) = (f.variable, f.down);
+        let [from, to] = [&f.from, &f.to].map(|n| number(self.eval(n, frame)));
+        let by = f.by.as_ref();
         let by = by.map_or(1.0, |b| number(self.eval(b, frame)));
         let sane = by > 0.0 && !from.is_nan() && !to.is_nan();
         let mistake = |m: &Self| {
@@ -249,7 +231,7 @@ impl Machine<'_> {
             if (down && k < to) || (!down && k > to) || k.is_nan() {
                 return Flow::Next;
             }
-            if let ControlFlow::Break(flow) = self.turn(body, frame) {
+            if let ControlFlow::Break(flow) = self.turn(&f.body, frame) {
                 return flow;
             }
             // As in GAMS the step is looked at when it is taken.

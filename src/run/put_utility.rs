@@ -17,8 +17,9 @@ impl Machine<'_> {
             match item {
                 PutCode::File(s) => self.open_put_file(*s),
                 PutCode::NewLine => lines.new_line(Part::Body),
-                item => {
-                    if let Some((item, format)) = self.put_formatted(item, frame) {
+                PutCode::Column(_) | PutCode::Row(_) => {}
+                PutCode::Item(w) => {
+                    if let Some((item, format)) = self.put_formatted(w, frame) {
                         // What does not fit is marked in the text.
                         let _ = lines.item(Part::Body, &item, format);
                     }

@@ -73,11 +73,7 @@ impl Builder<'_> {
             }
             Rule::abort_statement => {
                 let (condition, items, no_error) = self.display(pair)?;
-                Ok(StmtKind::Abort {
-                    condition,
-                    items,
-                    no_error,
-                })
+                Ok(StmtKind::Abort(condition, items, no_error))
             }
             Rule::option_statement => {
                 let items = parts(pair)
@@ -236,14 +232,14 @@ impl Builder<'_> {
                 _ => body = self.body(p)?,
             }
         }
-        Ok(StmtKind::For {
+        Ok(StmtKind::For(For {
             variable,
             from,
             down,
             to,
             by,
             body,
-        })
+        }))
     }
 
     /// The condition of `break` and `continue`, and the number of loops.
@@ -482,12 +478,12 @@ impl Builder<'_> {
                 span,
             };
         }
-        Ok(PutItem::Item {
+        Ok(PutItem::Item(Written {
             value,
             align,
             width,
             decimals,
-        })
+        }))
     }
 
     /// A width or decimals: digits, a scalar, or an expression in parentheses.
