@@ -8,7 +8,7 @@ use crate::source::Span;
 use crate::syntax::ast::{DisplayItem, Expr, ExprKind, Ident, Put, PutItem};
 
 /// `` `x`, `y` ``
-fn listed(names: &[(Ident, &str)]) -> String {
+fn listed(names: &[(Ident, String)]) -> String {
     let names: Vec<String> = names.iter().map(|(n, _)| format!("`{}`", n.name)).collect();
     names.join(", ")
 }
@@ -16,7 +16,7 @@ fn listed(names: &[(Ident, &str)]) -> String {
 impl Compiler {
     pub(super) fn shown(&mut self, items: &[DisplayItem]) -> Result<Vec<Shown>, Failed> {
         let mut out = Vec::new();
-        let mut bare: Vec<(Ident, &'static str)> = Vec::new();
+        let mut bare: Vec<(Ident, String)> = Vec::new();
         for item in items {
             match item {
                 DisplayItem::Text(t, _) => out.push(Shown::Text(t.clone())),
