@@ -56,7 +56,7 @@ macro_rules! strategies {
 strategies! {
     "lp": {
         Presolve "presolve",
-            "more than 200 rows and columns: rows and columns that are decided, implied or multiples of others are taken out",
+            "more than 200 rows and columns: rows and columns that are decided or implied by others are taken out",
             "the nonzeros, some thirty times at most",
             "Andersen & Andersen 1995";
         SimplexFirst "simplex_first",
