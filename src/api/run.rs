@@ -40,7 +40,7 @@ use crate::source::SourceMap;
 /// }
 /// # Ok::<(), bmod::Error>(())
 /// ```
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Run {
     status: RunStatus,
     solves: Vec<Solve>,
@@ -188,14 +188,22 @@ impl Run {
         let diagnostics = Diagnostic::all(found, map);
         Self {
             status,
+            solves: Vec::new(),
             messages: diagnostics::render(found, map, Look::plain()),
+            printed: String::new(),
+            files: Vec::new(),
+            data: Data::default(),
             report: Report {
                 status,
                 diagnostics: diagnostics.clone(),
                 ..Report::new(name)
             },
             diagnostics,
-            ..Self::default()
+            solution: None,
+            stopped: false,
+            claims: Vec::new(),
+            reads: String::new(),
+            unused_defines: Vec::new(),
         }
     }
 
