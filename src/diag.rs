@@ -76,6 +76,27 @@ impl Diagnostic {
         Self::new(Severity::Execution, code, span, message)
     }
 
+    /// A compile error whose message follows with [`Diagnostic::says`].
+    pub fn wrong(code: &'static str, span: Span) -> Self {
+        Self::error(code, span, "")
+    }
+
+    /// A warning whose message follows with [`Diagnostic::says`].
+    pub fn doubtful(code: &'static str, span: Span) -> Self {
+        Self::warning(code, span, "")
+    }
+
+    /// An execution error whose message follows with [`Diagnostic::says`].
+    pub fn failed(code: &'static str, span: Span) -> Self {
+        Self::execution(code, span, "")
+    }
+
+    /// The problem, with its values.
+    pub fn says(mut self, message: impl Into<String>) -> Self {
+        self.message = message.into();
+        self
+    }
+
     /// The same found while the text is read.
     pub fn as_error(mut self) -> Self {
         self.severity = Severity::Error;

@@ -77,7 +77,7 @@ struct Places {
 }
 
 /// Values and exact derivatives of an instance. It keeps what it needs of the instance.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Evaluator {
     columns: usize,
     blocks: Vec<Block>,
@@ -95,9 +95,10 @@ pub struct Evaluator {
 }
 
 /// The terms without their fixed columns.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 enum Unfixed {
     /// Not needed: there are none.
+    #[default]
     None,
     /// Not compiled yet, and how they are to be.
     Terms(Box<Instance>, Wanted),
@@ -168,15 +169,7 @@ impl Evaluator {
         let mut e = Self {
             columns: instance.column_count(),
             blocks,
-            work: Workspace::default(),
-            jacobian_start: Vec::new(),
-            jacobian_column: Vec::new(),
-            jacobian_linear: Vec::new(),
-            jacobian_places: Vec::new(),
-            hessian_row: Vec::new(),
-            hessian_column: Vec::new(),
-            hessian_places: Vec::new(),
-            unfixed: Unfixed::None,
+            ..Self::default()
         };
         e.find_jacobian(instance);
         e.find_hessian();

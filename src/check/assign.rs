@@ -22,7 +22,7 @@ impl Compiler {
             && self.symbols.find(&t.name.name).is_none()
         {
             let value = self.expr(&a.value)?;
-            let kind = CodeKind::Assign {
+            let assignment = Assignment {
                 domain: Domain::default(),
                 target,
                 key: Key::default(),
@@ -31,7 +31,7 @@ impl Compiler {
                 nonzero: a.nonzero,
                 in_turn: false,
             };
-            out.push(Code::new(kind, span));
+            out.push(Code::new(CodeKind::Assign(assignment), span));
             return Ok(());
         }
         let s = self.lookup(&t.name)?;
@@ -79,7 +79,7 @@ impl Compiler {
         if covers && whole && reading.counted && !reading.read {
             out.push(Code::new(CodeKind::Clear(root, None), span));
         }
-        let kind = CodeKind::Assign {
+        let assignment = Assignment {
             in_turn: reading.is_recurrence(&key),
             domain,
             target,
@@ -88,7 +88,7 @@ impl Compiler {
             nonzero: a.nonzero,
             key,
         };
-        out.push(Code::new(kind, span));
+        out.push(Code::new(CodeKind::Assign(assignment), span));
         Ok(())
     }
 
@@ -118,7 +118,7 @@ impl Compiler {
             _ => Some(&**left),
         };
         if let Some(ExprKind::Dollar(_, c)) = last.map(|l| &l.kind)
-            && let ExprKind::Apply { .. } = &c.kind
+            && let ExprKind::Apply(_, _, _) = &c.kind
         {
             let message = "`$` takes only what stands directly behind it; the comparison is made with all that stands on the left";
             let d = Diagnostic::warning("E0379", c.span, message)
@@ -153,13 +153,13 @@ impl Compiler {
                     let what = symbol.kind_name();
                     // `z = 3*x;` is meant as the definition of an equation, which is missing then.
                     self.lose_definition();
-                    let d = Diagnostic::error(
-                        "E0310",
-                        t.span,
-                        format!("the {what} `{}` cannot be assigned itself", symbol.name),
-                    )
-                    .label("which of its numbers?")
-                    .other(symbol.declared, "declared here");
+                    let d = Diagnostic::wrong("E0310", t.span)
+                        .says(format!(
+                            "the {what} `{}` cannot be assigned itself",
+                            symbol.name
+                        ))
+                        .label("which of its numbers?")
+                        .other(symbol.declared, "declared here");
                     if what == "equation" {
                         self.lose(&t.name.name);
                     }
@@ -181,12 +181,12 @@ impl Compiler {
                     Some(functions::RecordAttribute::Fix) => Target::Fix(s),
                     Some(functions::RecordAttribute::Derived(_)) => {
                         return self.fail(
-                            Diagnostic::error(
-                                "E0314",
-                                attr.span,
-                                format!("`.{}` is computed and cannot be assigned", attr.name),
-                            )
-                            .label("read only"),
+                            Diagnostic::wrong("E0314", attr.span)
+                                .says(format!(
+                                    "`.{}` is computed and cannot be assigned",
+                                    attr.name
+                                ))
+                                .label("read only"),
                         );
                     }
                     None => {
@@ -205,17 +205,14 @@ impl Compiler {
             }
             _ => {
                 return self.fail(
-                    Diagnostic::error(
-                        "E0325",
-                        t.span,
-                        format!(
+                    Diagnostic::wrong("E0325", t.span)
+                        .says(format!(
                             "`{}` is {} and cannot be assigned",
                             symbol.name,
                             symbol.a_kind()
-                        ),
-                    )
-                    .label("not assignable")
-                    .other(symbol.declared, "declared here"),
+                        ))
+                        .label("not assignable")
+                        .other(symbol.declared, "declared here"),
                 );
             }
         };
@@ -223,20 +220,17 @@ impl Compiler {
         let root = self.symbols.root(s);
         if is_set && (self.symbols.get(root).is_domain || root == super::symbols::UNIVERSE) {
             return self.fail(
-                Diagnostic::error(
-                    "E0320",
-                    t.span,
-                    format!(
+                Diagnostic::wrong("E0320", t.span)
+                    .says(format!(
                         "the set `{}` cannot be assigned: it is the domain of other symbols",
                         symbol.name
-                    ),
-                )
-                .label("a domain must stay as it is")
-                .other(symbol.declared, "declared here")
-                .help(format!(
-                    "declare a subset, `set sub({});`, and assign that",
-                    symbol.name
-                )),
+                    ))
+                    .label("a domain must stay as it is")
+                    .other(symbol.declared, "declared here")
+                    .help(format!(
+                        "declare a subset, `set sub({});`, and assign that",
+                        symbol.name
+                    )),
             );
         }
         Ok(target)

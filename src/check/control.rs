@@ -37,13 +37,10 @@ impl Compiler {
             None => format!("let `{name}` run alone, with a condition on its elements"),
         };
         self.fail(
-            Diagnostic::error(
-                "E0309",
-                span,
-                format!("{what} needs a set that runs itself; `{name}` stands here for what `{name}(…)` found"),
-            )
-            .label("not running")
-            .help(help),
+            Diagnostic::wrong("E0309", span)
+                .says(format!("{what} needs a set that runs itself; `{name}` stands here for what `{name}(…)` found"))
+                .label("not running")
+                .help(help),
         )
     }
 
@@ -122,13 +119,12 @@ impl Compiler {
             return Ok(());
         }
         self.fail(
-            Diagnostic::error(
-                "E0311",
-                node.span,
-                format!("{place} may not depend on a variable"),
-            )
-            .label("a variable stands in it")
-            .help("use the level of the last solve (`x.l`), a parameter, or a binary formulation"),
+            Diagnostic::wrong("E0311", node.span)
+                .says(format!("{place} may not depend on a variable"))
+                .label("a variable stands in it")
+                .help(
+                    "use the level of the last solve (`x.l`), a parameter, or a binary formulation",
+                ),
         )
     }
 
@@ -186,18 +182,12 @@ impl Compiler {
     /// `sum(sameas(i,j), …)`: a set that is not under control yet takes the element of the other.
     fn equal_item(&mut self, indices: &[Expr], span: Span, out: &mut Domain) -> Result<(), Failed> {
         let [a, b] = indices else {
-            return self.fail(Diagnostic::error(
-                "E0317",
-                span,
-                "`sameas` compares two single indices",
-            ));
+            return self.fail(
+                Diagnostic::wrong("E0317", span).says("`sameas` compares two single indices"),
+            );
         };
         let free = |c: &Self, e: &Expr| match &e.kind {
-            ExprKind::Apply {
-                name,
-                attribute: None,
-                arguments: None,
-            } => c.symbols.find(&name.name).filter(|&s| {
+            ExprKind::Apply(name, None, None) => c.symbols.find(&name.name).filter(|&s| {
                 let set = c.symbols.get(s);
                 set.is_set() && set.dim() == 1 && c.controlled(s).is_none()
             }),
@@ -274,21 +264,13 @@ impl Compiler {
         out: &mut Domain,
     ) -> Result<Vec<Part>, Failed> {
         match &index.kind {
-            ExprKind::Apply {
-                name,
-                attribute: Some(a),
-                arguments: None,
-            } if a.name.eq_ignore_ascii_case("local") => {
+            ExprKind::Apply(name, Some(a), None) if a.name.eq_ignore_ascii_case("local") => {
                 let s = self.lookup_set(name)?;
                 self.used(s, name.span);
                 self.fits(s, of, position, index.span)?;
                 Ok(self.run_over(s, out))
             }
-            ExprKind::Apply {
-                name,
-                attribute: None,
-                arguments: None,
-            } => {
+            ExprKind::Apply(name, None, None) => {
                 let free = self.symbols.find(&name.name).filter(|&s| {
                     let singleton = matches!(
                         self.symbols.get(self.symbols.root(s)).kind,
@@ -304,14 +286,11 @@ impl Compiler {
                     None => self.index(index, of, position),
                 }
             }
-            ExprKind::Apply {
-                name,
-                attribute: None,
-                arguments: Some(inner),
-            } if self
-                .symbols
-                .find(&name.name)
-                .is_some_and(|s| self.symbols.get(s).is_set()) =>
+            ExprKind::Apply(name, None, Some(inner))
+                if self
+                    .symbols
+                    .find(&name.name)
+                    .is_some_and(|s| self.symbols.get(s).is_set()) =>
             {
                 let s = self.lookup_set(name)?;
                 if self.symbols.get(s).dim() == 1 {
@@ -374,22 +353,13 @@ impl Compiler {
     }
 
     fn control_lag_base(&mut self, base: &Expr, out: &mut Domain) -> Result<(), Failed> {
-        if let ExprKind::Apply {
-            name,
-            attribute: Some(a),
-            arguments: None,
-        } = &base.kind
+        if let ExprKind::Apply(name, Some(a), None) = &base.kind
             && a.name.eq_ignore_ascii_case("local")
         {
             let s = self.lookup_set(name)?;
             self.used(s, name.span);
             self.run_over(s, out);
-        } else if let ExprKind::Apply {
-            name,
-            attribute: None,
-            arguments: None,
-        } = &base.kind
-        {
+        } else if let ExprKind::Apply(name, None, None) = &base.kind {
             let free = self
                 .symbols
                 .find(&name.name)

@@ -669,12 +669,9 @@ impl Compiler {
             };
             let Tail::Number(v, _) = record.value else {
                 self.report(
-                    Diagnostic::error(
-                        "E0345",
-                        record.span,
-                        "a number is expected behind the attribute",
-                    )
-                    .label("no number"),
+                    Diagnostic::wrong("E0345", record.span)
+                        .says("a number is expected behind the attribute")
+                        .label("no number"),
                 );
                 continue;
             };

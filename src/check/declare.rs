@@ -25,17 +25,14 @@ impl Compiler {
             if symbol.dim() != 1 {
                 let declared = symbol.declared;
                 return self.fail(
-                    Diagnostic::error(
-                        "E0334",
-                        d.name.span,
-                        format!(
+                    Diagnostic::wrong("E0334", d.name.span)
+                        .says(format!(
                             "`{}` has several positions; a domain is one-dimensional",
                             d.name.name
-                        ),
-                    )
-                    .label("not one-dimensional")
-                    .other(declared, "declared here")
-                    .help("name a set for each index; in the data of a set a range is written `1*5`, and `1:5` or `1.5` is a pair"),
+                        ))
+                        .label("not one-dimensional")
+                        .other(declared, "declared here")
+                        .help("name a set for each index; in the data of a set a range is written `1*5`, and `1:5` or `1.5` is a pair"),
                 );
             }
             if root == UNIVERSE {
@@ -45,17 +42,14 @@ impl Compiler {
             if symbol.dynamic {
                 let declared = symbol.declared;
                 return self.fail(
-                    Diagnostic::error(
-                        "E0339",
-                        d.name.span,
-                        format!(
+                    Diagnostic::wrong("E0339", d.name.span)
+                        .says(format!(
                             "`{}` is changed by an assignment; it cannot be a domain",
                             d.name.name
-                        ),
-                    )
-                    .label("a domain must stay as it is")
-                    .other(declared, "declared here")
-                    .help("use the set that it is a subset of as the domain"),
+                        ))
+                        .label("a domain must stay as it is")
+                        .other(declared, "declared here")
+                        .help("use the set that it is a subset of as the domain"),
                 );
             }
             self.symbols.get_mut(root).is_domain = true;
@@ -106,14 +100,10 @@ impl Compiler {
         }
         let dim = domain.len();
         if dim > 20 {
-            return self.fail(Diagnostic::error(
-                "E0336",
-                d.name.span,
-                format!(
-                    "`{}` has {dim} index positions; there may be 20",
-                    d.name.name
-                ),
-            ));
+            return self.fail(Diagnostic::wrong("E0336", d.name.span).says(format!(
+                "`{}` has {dim} index positions; there may be 20",
+                d.name.name
+            )));
         }
         let table = tables(self, dim);
         let open = d
@@ -173,23 +163,21 @@ impl Compiler {
                 (false, n) => format!(" with {n} ind{}", if n == 1 { "ex" } else { "ices" }),
             };
             return self.fail(
-                Diagnostic::error(
-                    "E0333",
-                    d.name.span,
-                    format!(
+                Diagnostic::wrong("E0333", d.name.span)
+                    .says(format!(
                         "`{}` is declared already, as {}{shape}",
                         d.name.name,
                         old.a_kind()
-                    ),
-                )
-                .label("declared again")
-                .other(old.declared, "first declared here")
-                .help(match listed {
-                    true => {
-                        "the equations of a model stand between slashes: `model m / e, f /;`".into()
-                    }
-                    false => format!("choose another name{capitals}"),
-                }),
+                    ))
+                    .label("declared again")
+                    .other(old.declared, "first declared here")
+                    .help(match listed {
+                        true => {
+                            "the equations of a model stand between slashes: `model m / e, f /;`"
+                                .into()
+                        }
+                        false => format!("choose another name{capitals}"),
+                    }),
             );
         }
         if old.open && d.domain.is_some() && domain.len() <= 20 {
@@ -209,13 +197,13 @@ impl Compiler {
             });
             if !compatible {
                 return self.fail(
-                    Diagnostic::error(
-                        "E0335",
-                        d.name.span,
-                        format!("`{}` is declared already over other sets", d.name.name),
-                    )
-                    .label("declared again")
-                    .other(old.declared, "first declared here"),
+                    Diagnostic::wrong("E0335", d.name.span)
+                        .says(format!(
+                            "`{}` is declared already over other sets",
+                            d.name.name
+                        ))
+                        .label("declared again")
+                        .other(old.declared, "first declared here"),
                 );
             }
         }
@@ -340,13 +328,10 @@ impl Compiler {
                     Some(s) => {
                         let declared = self.symbols.get(s).declared;
                         let _ = self.fail::<()>(
-                            Diagnostic::error(
-                                "E0333",
-                                n.span,
-                                format!("`{}` is declared already", n.name),
-                            )
-                            .label("declared again")
-                            .other(declared, "first declared here"),
+                            Diagnostic::wrong("E0333", n.span)
+                                .says(format!("`{}` is declared already", n.name))
+                                .label("declared again")
+                                .other(declared, "first declared here"),
                         );
                     }
                     None => {
@@ -462,14 +447,11 @@ impl Compiler {
             }
             _ => ("has another kind already", "a second kind"),
         };
-        let d = Diagnostic::error(
-            "E0348",
-            at,
-            format!("the variable `{}` {message}", symbol.name),
-        )
-        .label(label)
-        .other(symbol.declared, "declared here")
-        .help("a variable has one kind from its first use on; assign its bounds `.lo` and `.up` to narrow it");
+        let d = Diagnostic::wrong("E0348", at)
+            .says(format!("the variable `{}` {message}", symbol.name))
+            .label(label)
+            .other(symbol.declared, "declared here")
+            .help("a variable has one kind from its first use on; assign its bounds `.lo` and `.up` to narrow it");
         self.fail(d)
     }
 
@@ -581,18 +563,15 @@ impl Compiler {
                 SymbolKind::Equation(_) => Ok(()),
                 SymbolKind::Model(_) if model_too => Ok(()),
                 _ => c.fail(
-                    Diagnostic::error(
-                        "E0338",
-                        n.span,
-                        format!(
+                    Diagnostic::wrong("E0338", n.span)
+                        .says(format!(
                             "`{}` is {}; a model is made of equations",
                             n.name,
                             symbol.a_kind()
-                        ),
-                    )
-                    .label("not an equation")
-                    .other(symbol.declared, "declared here")
-                    .help("list equations, or `model m / all /;` for all of them; variables are found in them; a pair of a complementarity problem is `e.x`"),
+                        ))
+                        .label("not an equation")
+                        .other(symbol.declared, "declared here")
+                        .help("list equations, or `model m / all /;` for all of them; variables are found in them; a pair of a complementarity problem is `e.x`"),
                 ),
             }
         };
@@ -609,17 +588,14 @@ impl Compiler {
                 let symbol = self.symbols.get(v).clone();
                 if !matches!(symbol.kind, SymbolKind::Variable(_)) {
                     return self.fail(
-                        Diagnostic::error(
-                            "E0338",
-                            column.span,
-                            format!(
+                        Diagnostic::wrong("E0338", column.span)
+                            .says(format!(
                                 "`{}` is {}; an equation is paired with a variable",
                                 column.name,
                                 symbol.a_kind()
-                            ),
-                        )
-                        .label("not a variable")
-                        .other(symbol.declared, "declared here"),
+                            ))
+                            .label("not a variable")
+                            .other(symbol.declared, "declared here"),
                     );
                 }
                 Ok(())
@@ -645,16 +621,13 @@ impl Compiler {
         }
         let [set] = sets else {
             return self.fail(
-                Diagnostic::error(
-                    "E0338",
-                    variable.span,
-                    "one set says which columns there are",
-                )
-                .label("not one set")
-                .help(format!(
-                    "write `{}(s)` with a set `s` of the dimension of `{0}`",
-                    symbol.name
-                )),
+                Diagnostic::wrong("E0338", variable.span)
+                    .says("one set says which columns there are")
+                    .label("not one set")
+                    .help(format!(
+                        "write `{}(s)` with a set `s` of the dimension of `{0}`",
+                        symbol.name
+                    )),
             );
         };
         let s = self.lookup_set(set)?;

@@ -348,28 +348,21 @@ fn driven<'b>(body: &'b [Code], around: &Around, out: &mut Found<'b>) -> bool {
             around.conditional |= !domain.conditions.is_empty() || !late.is_empty();
             driven(body, &around, out)
         }
-        CodeKind::Assign {
-            domain,
-            target,
-            value,
-            nonzero,
-            covers,
-            ..
-        } => {
-            let conditional = *nonzero || !domain.conditions.is_empty();
+        CodeKind::Assign(a) => {
+            let conditional = a.nonzero || !a.domain.conditions.is_empty();
             let mut guards = around.guards.clone();
-            guards.extend(domain.conditions.iter().cloned());
-            guards.extend(nonzero.then(|| value.clone()));
-            let whole = *covers && !conditional && !domain.slots.is_empty();
+            guards.extend(a.domain.conditions.iter().cloned());
+            guards.extend(a.nonzero.then(|| a.value.clone()));
+            let whole = a.covers && !conditional && !a.domain.slots.is_empty();
             out.assigned.push(Assigned {
-                value: whole.then_some(value),
+                value: whole.then_some(&a.value),
                 guards,
-                own: [&around.slots[..], &domain.slots].concat(),
-                table: match target {
-                    Target::Table(t) | Target::Set(t) => Some(*t),
+                own: [&around.slots[..], &a.domain.slots].concat(),
+                table: match a.target {
+                    Target::Table(t) | Target::Set(t) => Some(t),
                     _ => None,
                 },
-                set: matches!(target, Target::Set(_)),
+                set: matches!(a.target, Target::Set(_)),
             });
             true
         }

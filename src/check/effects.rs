@@ -54,7 +54,7 @@ impl Visitor<'_> for Changes<'_> {
         let first = |s: SymbolId| self.symbols.get(s).table;
         let e = &mut *self.effects;
         match &c.kind {
-            CodeKind::Assign { target, .. } => match *target {
+            CodeKind::Assign(a) => match a.target {
                 Target::Table(t) | Target::Set(t) | Target::Singleton(t) => {
                     e.tables.insert(t);
                 }
@@ -66,8 +66,8 @@ impl Visitor<'_> for Changes<'_> {
                 Target::Object(..) => e.objects = true,
                 Target::Seed | Target::Errors | Target::MostErrors | Target::Ignored => {}
             },
-            CodeKind::For { table, .. } => {
-                e.tables.insert(*table);
+            CodeKind::For(f) => {
+                e.tables.insert(f.variable);
             }
             CodeKind::Clear(s, _) => {
                 let t = first(*s);
@@ -87,7 +87,7 @@ impl Visitor<'_> for Changes<'_> {
             | CodeKind::Break(..)
             | CodeKind::Continue(_)
             | CodeKind::Display(..)
-            | CodeKind::Abort { .. }
+            | CodeKind::Abort(..)
             | CodeKind::Option(..)
             | CodeKind::Format(..)
             | CodeKind::Put(..)

@@ -370,13 +370,10 @@ impl Compiler {
             let before = rows.as_ref().map_or(1, Tuples::len);
             if before.saturating_mul(choices.len()) > MAX_EXPANSION {
                 return self.fail(
-                    Diagnostic::error(
-                        "E0343",
-                        span,
-                        format!("this stands for more than {MAX_EXPANSION} records"),
-                    )
-                    .label("too many")
-                    .help("make the set by an assignment with a condition"),
+                    Diagnostic::wrong("E0343", span)
+                        .says(format!("this stands for more than {MAX_EXPANSION} records"))
+                        .label("too many")
+                        .help("make the set by an assignment with a condition"),
                 );
             }
             let labels = choices.width + rows.as_ref().map_or(0, |r| r.width);
@@ -430,13 +427,10 @@ impl Compiler {
                             false => "for instance `i1*i10` or `1990*2000`; other labels are listed, with commas between them".into(),
                         };
                         return self.fail(
-                            Diagnostic::error(
-                                "E0344",
-                                *span,
-                                format!("`{from}*{to}` is not a range"),
-                            )
-                            .label("the labels must differ in one number")
-                            .help(help),
+                            Diagnostic::wrong("E0344", *span)
+                                .says(format!("`{from}*{to}` is not a range"))
+                                .label("the labels must differ in one number")
+                                .help(help),
                         );
                     }
                 };
@@ -540,13 +534,12 @@ impl Compiler {
             return Ok(());
         };
         let (count, second) = (labels.count, labels.iter().nth(1).unwrap_or_default());
-        let mut d = Diagnostic::warning(
-            "E0344",
-            span,
-            format!("`{from}*{to}` counts letters: it stands for {count} labels"),
-        )
-        .label(format!("`{from}`, `{second}`, …"))
-        .help("list the labels, with commas between them");
+        let mut d = Diagnostic::doubtful("E0344", span)
+            .says(format!(
+                "`{from}*{to}` counts letters: it stands for {count} labels"
+            ))
+            .label(format!("`{from}`, `{second}`, …"))
+            .help("list the labels, with commas between them");
         if let Some(DomainPosition::Set(set)) = self.symbols.get(s).domain.get(position)
             && defines.get(position) != Some(&true)
             && !self.modes.at(span).warnings

@@ -62,12 +62,9 @@ impl Compiler {
             .iter()
             .filter(|(_, s)| matches!(s.kind, SymbolKind::Equation(None)));
         let near = nearest(&id.name, open.map(|(_, s)| &*s.name)).map(str::to_string);
-        let d = Diagnostic::error(
-            "E0301",
-            id.span,
-            format!("the equation `{}` is not declared", id.name),
-        )
-        .label("unknown equation");
+        let d = Diagnostic::wrong("E0301", id.span)
+            .says(format!("the equation `{}` is not declared", id.name))
+            .label("unknown equation");
         let d = match &near {
             Some(n) => d.help(format!("did you mean `{n}`?")),
             None => d.help(format!(
@@ -126,11 +123,9 @@ impl Compiler {
                 }
                 Ok(Node::data(NodeKind::Text(t.clone()), span))
             }
-            ExprKind::Apply {
-                name,
-                attribute,
-                arguments,
-            } => self.apply(name, attribute.as_ref(), arguments.as_deref(), span),
+            ExprKind::Apply(name, attribute, arguments) => {
+                self.apply(name, attribute.as_ref(), arguments.as_deref(), span)
+            }
             ExprKind::Unary(op, a) => {
                 let a = self.expr(a)?;
                 let member = a.member;
@@ -193,13 +188,10 @@ impl Compiler {
                     }
                     BinaryOp::Multiply => self.product(vec![(false, a), (false, b)], span),
                     BinaryOp::CircularPlus | BinaryOp::CircularMinus => self.fail(
-                        Diagnostic::error(
-                            "E0313",
-                            span,
-                            "`++` and `--` stand between an index and a number only",
-                        )
-                        .label("not in an index position")
-                        .help("two operators in a row need parentheses: `a - (-b)`"),
+                        Diagnostic::wrong("E0313", span)
+                            .says("`++` and `--` stand between an index and a number only")
+                            .label("not in an index position")
+                            .help("two operators in a row need parentheses: `a - (-b)`"),
                     ),
                     _ => {
                         let logical = matches!(
@@ -292,13 +284,10 @@ impl Compiler {
             None => "`1$(…)` makes a number of it; with another membership, `+` is union, `*` intersection, `-` difference".into(),
         };
         self.fail(
-            Diagnostic::error(
-                "E0375",
-                n.span,
-                "a membership stands where a number is expected",
-            )
-            .label("in the set or not: no number")
-            .help(help),
+            Diagnostic::wrong("E0375", n.span)
+                .says("a membership stands where a number is expected")
+                .label("in the set or not: no number")
+                .help(help),
         )
     }
 
@@ -428,20 +417,17 @@ impl Compiler {
             SymbolKind::Parameter { .. } => {
                 if let Some(attr) = attr {
                     return self.fail(
-                        Diagnostic::error(
-                            "E0314",
-                            attr.span,
-                            format!("a parameter has no attribute `.{}`", attr.name),
-                        )
-                        .help(format!(
-                            "a parameter is its values: write `{}`",
-                            symbol.name
-                        ))
-                        .label("not there")
-                        .other(
-                            symbol.declared,
-                            format!("`{}` is {}", symbol.name, symbol.a_kind()),
-                        ),
+                        Diagnostic::wrong("E0314", attr.span)
+                            .says(format!("a parameter has no attribute `.{}`", attr.name))
+                            .help(format!(
+                                "a parameter is its values: write `{}`",
+                                symbol.name
+                            ))
+                            .label("not there")
+                            .other(
+                                symbol.declared,
+                                format!("`{}` is {}", symbol.name, symbol.a_kind()),
+                            ),
                     );
                 }
                 let key = self.key(s, indices, span)?;
@@ -470,35 +456,29 @@ impl Compiler {
                         ))
                     }
                     None => self.fail(
-                        Diagnostic::error(
-                            "E0310",
-                            name.span,
-                            format!(
+                        Diagnostic::wrong("E0310", name.span)
+                            .says(format!(
                                 "`{}` is {}; outside equations it needs an attribute",
                                 symbol.name,
                                 symbol.a_kind()
-                            ),
-                        )
-                        .label("which of its numbers?")
-                        .other(symbol.declared, "declared here")
-                        .help(format!(
-                            "its level is `{0}.l`, its marginal `{0}.m`",
-                            name.name
-                        )),
+                            ))
+                            .label("which of its numbers?")
+                            .other(symbol.declared, "declared here")
+                            .help(format!(
+                                "its level is `{0}.l`, its marginal `{0}.m`",
+                                name.name
+                            )),
                     ),
                 }
             }
             SymbolKind::Model(_) | SymbolKind::File(_) => {
                 let Some(a) = attr else {
                     return self.fail(
-                        Diagnostic::error(
-                            "E0315",
-                            name.span,
-                            format!("{} is not a number", symbol.a_kind()),
-                        )
-                        .label("an attribute is expected")
-                        .other(symbol.declared, "declared here")
-                        .help(format!("for instance `{}.modelstat`", name.name)),
+                        Diagnostic::wrong("E0315", name.span)
+                            .says(format!("{} is not a number", symbol.a_kind()))
+                            .label("an attribute is expected")
+                            .other(symbol.declared, "declared here")
+                            .help(format!("for instance `{}.modelstat`", name.name)),
                     );
                 };
                 let attribute = self.object_attribute(s, a)?;
@@ -579,12 +559,12 @@ impl Compiler {
             Some((at, _)) => format!("{}, …", &known[..at]),
             None => known.to_string(),
         };
-        let d = Diagnostic::error(
-            "E0314",
-            a.span,
-            format!("the {kind} `{name}` has no attribute `.{}`", a.name),
-        )
-        .label("not an attribute");
+        let d = Diagnostic::wrong("E0314", a.span)
+            .says(format!(
+                "the {kind} `{name}` has no attribute `.{}`",
+                a.name
+            ))
+            .label("not an attribute");
         const KINDS: [&str; 7] = [
             "type", "kind", "binary", "integer", "positive", "free", "bin",
         ];
@@ -662,14 +642,13 @@ impl Compiler {
         if parts.len() != 1 {
             let (name, n) = (&symbol.name, parts.len());
             return self.fail(
-                Diagnostic::error(
-                    "E0304",
-                    span,
-                    format!("`.{lower}` is of sets with one index; `{name}` has {n}"),
-                )
-                .label(format!("{n} indices here"))
-                .other(symbol.declared, "declared here")
-                .help(format!("ask one of its indices: `i.{lower}`")),
+                Diagnostic::wrong("E0304", span)
+                    .says(format!(
+                        "`.{lower}` is of sets with one index; `{name}` has {n}"
+                    ))
+                    .label(format!("{n} indices here"))
+                    .other(symbol.declared, "declared here")
+                    .help(format!("ask one of its indices: `i.{lower}`")),
             );
         }
         Ok(Node::data(
@@ -705,13 +684,10 @@ impl Compiler {
                 (l, h) => format!("{l} to {}", count(h)),
             };
             return self.fail(
-                Diagnostic::error(
-                    "E0316",
-                    span,
-                    format!("`{lower}` takes {wanted}, not {}", args.len()),
-                )
-                .label("wrong number of arguments")
-                .help(self.arguments_help(callee, &lower, low, args)),
+                Diagnostic::wrong("E0316", span)
+                    .says(format!("`{lower}` takes {wanted}, not {}", args.len()))
+                    .label("wrong number of arguments")
+                    .help(self.arguments_help(callee, &lower, low, args)),
             );
         }
         match callee {
@@ -728,11 +704,9 @@ impl Compiler {
                 }
                 let v = nodes.iter().any(|n| n.has_var);
                 if v && functions::first_argument_must_be_data(f) && nodes[0].has_var {
-                    return self.fail(Diagnostic::error(
-                        "E0318",
-                        nodes[0].span,
-                        format!("the first argument of `{lower}` may not depend on a variable"),
-                    ));
+                    return self.fail(Diagnostic::wrong("E0318", nodes[0].span).says(format!(
+                        "the first argument of `{lower}` may not depend on a variable"
+                    )));
                 }
                 Ok(combine(NodeKind::Call(f, nodes), span, v, false))
             }
@@ -744,12 +718,9 @@ impl Compiler {
                     let n = self.expr(a)?;
                     if n.has_var {
                         return self.fail(
-                            Diagnostic::error(
-                                "E0318",
-                                n.span,
-                                format!("`{lower}` may not depend on a variable"),
-                            )
-                            .label("a variable stands in it"),
+                            Diagnostic::wrong("E0318", n.span)
+                                .says(format!("`{lower}` may not depend on a variable"))
+                                .label("a variable stands in it"),
                         );
                     }
                     nodes.push(n);
@@ -776,20 +747,12 @@ impl Compiler {
                     .label("only `ord('text', n)` has a position"),
             );
         }
-        let ExprKind::Apply {
-            name: n,
-            attribute: None,
-            arguments: None,
-        } = &args[0].kind
-        else {
+        let ExprKind::Apply(n, None, None) = &args[0].kind else {
             return self.fail(
-                Diagnostic::error(
-                    "E0317",
-                    args[0].span,
-                    format!("`{name}` takes the name of a set"),
-                )
-                .label("not a name")
-                .help(format!("for instance `{name}(i)`")),
+                Diagnostic::wrong("E0317", args[0].span)
+                    .says(format!("`{name}` takes the name of a set"))
+                    .label("not a name")
+                    .help(format!("for instance `{name}(i)`")),
             );
         };
         let s = self.lookup(n)?;
@@ -831,11 +794,9 @@ impl Compiler {
             });
         }
         if parts.len() != 2 {
-            return self.fail(Diagnostic::error(
-                "E0317",
-                span,
-                "`sameas` compares two single indices",
-            ));
+            return self.fail(
+                Diagnostic::wrong("E0317", span).says("`sameas` compares two single indices"),
+            );
         }
         let b = parts.remove(1);
         let kind = NodeKind::SameAs(parts.remove(0), b);
@@ -850,9 +811,7 @@ impl Compiler {
     fn text_argument(&mut self, e: &Expr) -> Result<Option<Node>, Failed> {
         let is_text = match &e.kind {
             ExprKind::Text(_) => true,
-            ExprKind::Apply {
-                attribute: Some(a), ..
-            } => ["tl", "te", "ts", "tn"]
+            ExprKind::Apply(_, Some(a), _) => ["tl", "te", "ts", "tn"]
                 .iter()
                 .any(|t| a.name.eq_ignore_ascii_case(t)),
             _ => false,
@@ -870,7 +829,7 @@ impl Compiler {
     fn arguments_help(&self, callee: Callee, lower: &str, low: usize, args: &[Expr]) -> String {
         // `max(p)`: over which sets `p` runs.
         let over = args.first().and_then(|e| {
-            let ExprKind::Apply { name: n, .. } = &e.kind else {
+            let ExprKind::Apply(n, _, _) = &e.kind else {
                 return None;
             };
             let s = self.symbols.get(self.symbols.find(&n.name)?);
@@ -973,11 +932,7 @@ impl Compiler {
 /// A name and nothing else.
 fn bare(e: &Expr) -> Option<&Ident> {
     match &e.kind {
-        ExprKind::Apply {
-            name,
-            attribute: None,
-            arguments: None,
-        } => Some(name),
+        ExprKind::Apply(name, None, None) => Some(name),
         _ => None,
     }
 }
@@ -999,12 +954,7 @@ const DECLARE_FIRST: &str =
 fn divisor(written: &Expr, node: Node) -> (bool, Node) {
     let once = match (&written.kind, &node.kind) {
         (ExprKind::Number(_), NodeKind::Const(_)) => true,
-        (
-            ExprKind::Apply {
-                attribute: None, ..
-            },
-            NodeKind::Data(_, key),
-        ) => key.parts.is_empty(),
+        (ExprKind::Apply(_, None, _), NodeKind::Data(_, key)) => key.parts.is_empty(),
         _ => false,
     };
     if !once {

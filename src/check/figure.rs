@@ -81,12 +81,9 @@ impl Compiler {
     fn figure_element(&mut self, e: &FigureElement) -> Result<FigureElementCode, Failed> {
         let kind = e.kind.name.to_lowercase();
         if !kinds().any(|k| k == kind) {
-            let d = Diagnostic::error(
-                "E0332",
-                e.kind.span,
-                format!("a figure has no element `{}`", e.kind.name),
-            )
-            .label("unknown element");
+            let d = Diagnostic::wrong("E0332", e.kind.span)
+                .says(format!("a figure has no element `{}`", e.kind.name))
+                .label("unknown element");
             return self.fail(match nearest(&kind, kinds()) {
                 Some(n) => d.help(format!("did you mean `{n}`?")),
                 None => d.help(format!(
@@ -103,24 +100,19 @@ impl Compiler {
             for (name, value) in &e.arguments {
                 // A bare word that names nothing is a word: `fill = none`.
                 let node = match &value.kind {
-                    ExprKind::Apply {
-                        name: word,
-                        attribute: None,
-                        arguments: None,
-                    } if self.symbols.find(&word.name).is_none() => {
+                    ExprKind::Apply(word, None, None)
+                        if self.symbols.find(&word.name).is_none() =>
+                    {
                         Node::data(NodeKind::Text(word.name.clone()), value.span)
                     }
                     _ => self.expr(value)?,
                 };
                 if node.has_var {
                     return self.fail(
-                        Diagnostic::error(
-                            "E0310",
-                            node.span,
-                            "a variable is not a number; a figure shows its level",
-                        )
-                        .label("which of its numbers?")
-                        .help("write `.l` behind the variable's name"),
+                        Diagnostic::wrong("E0310", node.span)
+                            .says("a variable is not a number; a figure shows its level")
+                            .label("which of its numbers?")
+                            .help("write `.l` behind the variable's name"),
                     );
                 }
                 arguments.push((name.as_ref().map(|n| n.name.to_lowercase().into()), node));
@@ -208,13 +200,10 @@ impl Compiler {
             && !(name == "x" && matches!(kind, "line" | "bar" | "errorbar"))
         {
             return self.fail(
-                Diagnostic::error(
-                    "E0371",
-                    value.span,
-                    format!("`{name}` of `{kind}` is a number"),
-                )
-                .label("this is a text")
-                .help(format!("give an expression, for instance `{name} = p(i)`")),
+                Diagnostic::wrong("E0371", value.span)
+                    .says(format!("`{name}` of `{kind}` is a number"))
+                    .label("this is a text")
+                    .help(format!("give an expression, for instance `{name} = p(i)`")),
             );
         }
         if let ("fill" | "stroke", NodeKind::Text(t)) = (name, &value.kind)
@@ -268,25 +257,19 @@ impl Compiler {
     fn bare_value(&mut self, kind: &str, bare: bool, value: &Node) -> Result<(), Failed> {
         if !bare {
             return self.fail(
-                Diagnostic::error(
-                    "E0370",
-                    value.span,
-                    format!("`{kind}` takes values with names"),
-                )
-                .label("which argument?")
-                .help("for instance `x = p(i)`"),
+                Diagnostic::wrong("E0370", value.span)
+                    .says(format!("`{kind}` takes values with names"))
+                    .label("which argument?")
+                    .help("for instance `x = p(i)`"),
             );
         }
         let words = WORDS.iter().find(|w| w.0 == kind).map_or(&[][..], |w| w.1);
         if let ("axes", NodeKind::Text(t)) = (kind, &value.kind)
             && !words.contains(&t.to_lowercase().as_str())
         {
-            let d = Diagnostic::error(
-                "E0370",
-                value.span,
-                format!("`axes` does not know the word `{t}`"),
-            )
-            .label("unknown word");
+            let d = Diagnostic::wrong("E0370", value.span)
+                .says(format!("`axes` does not know the word `{t}`"))
+                .label("unknown word");
             return self.fail(match nearest(t, words.iter().copied()) {
                 Some(n) => d.help(format!("did you mean `{n}`?")),
                 None => d.help(format!(
@@ -297,12 +280,9 @@ impl Compiler {
         }
         if kind == "size" && is_text(value) {
             return self.fail(
-                Diagnostic::error(
-                    "E0371",
-                    value.span,
-                    "`size` takes numbers: width and height in pixels",
-                )
-                .label("this is a text"),
+                Diagnostic::wrong("E0371", value.span)
+                    .says("`size` takes numbers: width and height in pixels")
+                    .label("this is a text"),
             );
         }
         Ok(())

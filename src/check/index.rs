@@ -87,18 +87,15 @@ impl Compiler {
             )
         };
         self.fail(
-            Diagnostic::error(
-                "E0306",
-                span,
-                format!(
+            Diagnostic::wrong("E0306", span)
+                .says(format!(
                     "`{an}` may not stand at position {} of `{on}`, which runs over `{dn}`",
                     position + 1
-                ),
-            )
-            .label(why)
-            .other(declared, format!("`{on}` is declared here"))
-            .other(a_root, format!("`{an}` is declared here"))
-            .help(help),
+                ))
+                .label(why)
+                .other(declared, format!("`{on}` is declared here"))
+                .other(a_root, format!("`{an}` is declared here"))
+                .help(help),
         )
     }
 
@@ -129,10 +126,8 @@ impl Compiler {
             format!("{}({})", s.name, names.join(","))
         };
         self.fail(
-            Diagnostic::error(
-                "E0304",
-                span,
-                format!(
+            Diagnostic::wrong("E0304", span)
+                .says(format!(
                     "`{}` has {}, but {} given here",
                     s.name,
                     plural(s.dim()),
@@ -141,19 +136,18 @@ impl Compiler {
                         1 => "1 is".to_string(),
                         n => format!("{n} are"),
                     }
-                ),
-            )
-            .label(format!("{} here", plural(given)))
-            .other(
-                s.declared,
-                format!("declared with {} here", plural(s.dim())),
-            )
-            .help(match (s.dim(), &s.kind) {
-                (0, SymbolKind::Parameter { .. } | SymbolKind::Variable(_)) if given == 1 => {
-                    format!("write `{shape}`; a product is `{shape}*(…)`")
-                }
-                _ => format!("write `{shape}`"),
-            }),
+                ))
+                .label(format!("{} here", plural(given)))
+                .other(
+                    s.declared,
+                    format!("declared with {} here", plural(s.dim())),
+                )
+                .help(match (s.dim(), &s.kind) {
+                    (0, SymbolKind::Parameter { .. } | SymbolKind::Variable(_)) if given == 1 => {
+                        format!("write `{shape}`; a product is `{shape}*(…)`")
+                    }
+                    _ => format!("write `{shape}`"),
+                }),
         )
     }
 
@@ -169,11 +163,7 @@ impl Compiler {
         }
         // A tuple set stands for all its positions.
         let positions = |e: &Expr| match &e.kind {
-            ExprKind::Apply {
-                name,
-                attribute: None,
-                ..
-            } => self
+            ExprKind::Apply(name, None, _) => self
                 .symbols
                 .find(&name.name)
                 .map(|i| self.symbols.get(i))
@@ -236,11 +226,7 @@ impl Compiler {
     /// Behind an index that failed: whether the others are bound.
     fn others_bound(&mut self, indices: &[Expr]) {
         for e in indices {
-            if let ExprKind::Apply {
-                name,
-                attribute: None,
-                arguments: None,
-            } = &e.kind
+            if let ExprKind::Apply(name, None, None) = &e.kind
                 && let Some(s) = self.symbols.find(&name.name)
                 && self.symbols.get(s).is_set()
             {
@@ -258,7 +244,7 @@ impl Compiler {
     ) -> Result<Vec<Part>, Failed> {
         match &e.kind {
             ExprKind::Text(label) => Ok(vec![Part::Label(self.label(label, of, position, e.span)?)]),
-            ExprKind::Apply { name, attribute: None, arguments: None } => {
+            ExprKind::Apply(name, None, None) => {
                 let Some(s) = self.symbols.find(&name.name) else {
                     return self.unknown_index(name);
                 };
@@ -272,7 +258,7 @@ impl Compiler {
                 self.fits(s, of, position, e.span)?;
                 Ok(part)
             }
-            ExprKind::Apply { name, attribute: None, arguments: Some(inner) } => {
+            ExprKind::Apply(name, None, Some(inner)) => {
                 // p(arc(i,j)): all controlled.
                 let s = self.lookup_set(name)?;
                 let key = self.key(s, inner, e.span)?;
@@ -464,17 +450,16 @@ impl Compiler {
             ),
             None => format!("add `{quote}{text}{quote}` to `{set_name}`, or correct the label"),
         };
-        let mut d = Diagnostic::error(
-            "E0308",
-            span,
-            format!("`{quote}{text}{quote}` is not a member of the set `{set_name}`"),
-        )
-        .label(format!(
-            "position {} of `{name}` runs over `{set_name}`",
-            position + 1
-        ))
-        .other(set.declared, format!("`{set_name}` is declared here"))
-        .help(help);
+        let mut d = Diagnostic::wrong("E0308", span)
+            .says(format!(
+                "`{quote}{text}{quote}` is not a member of the set `{set_name}`"
+            ))
+            .label(format!(
+                "position {} of `{name}` runs over `{set_name}`",
+                position + 1
+            ))
+            .other(set.declared, format!("`{set_name}` is declared here"))
+            .help(help);
         self.doubtful.retain(|(s, _)| *s != set_id);
         if self.modes.at(span).warnings {
             d.severity = Severity::Warning;
@@ -545,14 +530,11 @@ impl Compiler {
         position: usize,
     ) -> Result<(Part, TableId), Failed> {
         match &base.kind {
-            ExprKind::Apply {
-                name,
-                attribute,
-                arguments: None,
-            } if attribute
-                .as_ref()
-                // `i.local` was put under control before.
-                .is_none_or(|a| a.name.eq_ignore_ascii_case("local")) =>
+            ExprKind::Apply(name, attribute, None)
+                if attribute
+                    .as_ref()
+                    // `i.local` was put under control before.
+                    .is_none_or(|a| a.name.eq_ignore_ascii_case("local")) =>
             {
                 let Some(s) = self.symbols.find(&name.name) else {
                     return self.unknown_index(name);
@@ -574,13 +556,10 @@ impl Compiler {
                 }
             }
             ExprKind::Text(label) => self.fail(
-                Diagnostic::error(
-                    "E0309",
-                    base.span,
-                    format!("the label `'{label}'` takes no lag or lead"),
-                )
-                .label("a label is one element")
-                .help("write the label you mean, or use an index that runs"),
+                Diagnostic::wrong("E0309", base.span)
+                    .says(format!("the label `'{label}'` takes no lag or lead"))
+                    .label("a label is one element")
+                    .help("write the label you mean, or use an index that runs"),
             ),
             _ => self.fail(
                 Diagnostic::error("E0307", base.span, "this is not an index")
@@ -640,36 +619,31 @@ impl Compiler {
         let (declared, name) = (root.declared, root.name.clone());
         if matches!(root.kind, SymbolKind::Set { singleton: true }) {
             return self.fail(
-                Diagnostic::error(
-                    "E0309",
-                    span,
-                    format!("{what} needs an ordered set; `{name}` is a singleton"),
-                )
-                .other(declared, "declared here"),
+                Diagnostic::wrong("E0309", span)
+                    .says(format!(
+                        "{what} needs an ordered set; `{name}` is a singleton"
+                    ))
+                    .other(declared, "declared here"),
             );
         }
         if root.dynamic {
             return self.fail(
-                Diagnostic::error(
-                    "E0309",
-                    span,
-                    format!("{what} needs an ordered set; `{name}` is changed by an assignment"),
-                )
-                .label("a dynamic set has no order")
-                .other(declared, "declared here")
-                .help("use the set that it is a subset of, or `$offOrder`"),
+                Diagnostic::wrong("E0309", span)
+                    .says(format!(
+                        "{what} needs an ordered set; `{name}` is changed by an assignment"
+                    ))
+                    .label("a dynamic set has no order")
+                    .other(declared, "declared here")
+                    .help("use the set that it is a subset of, or `$offOrder`"),
             );
         }
         if root.unordered {
             return self.fail(
-                Diagnostic::error(
-                    "E0309",
-                    span,
-                    format!("{what} needs an ordered set; the labels of `{name}` appeared earlier in another order"),
-                )
-                .label("not ordered")
-                .other(declared, "declared here")
-                .help("declare the set with its labels in the wanted order before they appear elsewhere"),
+                Diagnostic::wrong("E0309", span)
+                    .says(format!("{what} needs an ordered set; the labels of `{name}` appeared earlier in another order"))
+                    .label("not ordered")
+                    .other(declared, "declared here")
+                    .help("declare the set with its labels in the wanted order before they appear elsewhere"),
             );
         }
         Ok(())

@@ -77,47 +77,38 @@ impl Compiler {
         if let Some(what) = wrong_kind {
             let (kind, name) = (symbol.kind_name(), &symbol.name);
             return self.fail(
-                Diagnostic::error(
-                    "E0376",
-                    span,
-                    format!("`{name}` is a {kind}; {what} were given for it"),
-                )
-                .label("declared here")
-                .help("give members to sets, and numbers to parameters"),
+                Diagnostic::wrong("E0376", span)
+                    .says(format!("`{name}` is a {kind}; {what} were given for it"))
+                    .label("declared here")
+                    .help("give members to sets, and numbers to parameters"),
             );
         }
         let dim = symbol.dim();
         let given = input.data.keys();
         if let Some((n, key)) = given.unlike(dim) {
             return self.fail(
-                Diagnostic::error(
-                    "E0377",
-                    span,
-                    format!(
+                Diagnostic::wrong("E0377", span)
+                    .says(format!(
                         "`{}` has {dim} index position{}; {} given for it has {}",
                         symbol.name,
                         if dim == 1 { "" } else { "s" },
                         record(&symbol.name, &key, n),
                         key.len()
-                    ),
-                )
-                .label("declared here"),
+                    ))
+                    .label("declared here"),
             );
         }
         if let SymbolKind::Set { singleton: true } = symbol.kind
             && given.len() > 1
         {
             return self.fail(
-                Diagnostic::error(
-                    "E0377",
-                    span,
-                    format!(
+                Diagnostic::wrong("E0377", span)
+                    .says(format!(
                         "`{}` is a singleton; {} members were given",
                         symbol.name,
                         given.len()
-                    ),
-                )
-                .label("declared here"),
+                    ))
+                    .label("declared here"),
             );
         }
         Ok(())
@@ -208,17 +199,14 @@ impl Compiler {
         let members = members.map(|&l| self.store.universe.name(l));
         let near = nearest(key[position], members).map(str::to_string);
         let (set_name, declared) = (domain.name.clone(), domain.declared);
-        let d = Diagnostic::error(
-            "E0377",
-            span,
-            format!(
+        let d = Diagnostic::wrong("E0377", span)
+            .says(format!(
                 "{} was given from outside, but `{}` is not a member of `{set_name}`",
                 record(name, &key, r),
                 key[position]
-            ),
-        )
-        .label("declared here")
-        .other(declared, format!("`{set_name}` is declared here"));
+            ))
+            .label("declared here")
+            .other(declared, format!("`{set_name}` is declared here"));
         self.fail(match near {
             Some(near) => d.help(format!("did you mean `{near}`?")),
             None => d.help(format!(

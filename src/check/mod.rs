@@ -86,6 +86,7 @@ impl Program {
 }
 
 /// The state of checking.
+#[derive(Default)]
 pub(crate) struct Compiler {
     symbols: Symbols,
     store: Store,
@@ -183,11 +184,10 @@ pub fn compile(
         }
         if c.errors() - parser.cleared_errors() >= MAX_ERRORS {
             let at = c.diagnostics.last().map_or_else(Span::default, |d| d.span);
-            c.diagnostics.push(Diagnostic::error(
-                "E0300",
-                at,
-                format!("more than {MAX_ERRORS} errors; the rest of the text was not checked"),
-            ));
+            c.diagnostics
+                .push(Diagnostic::wrong("E0300", at).says(format!(
+                    "more than {MAX_ERRORS} errors; the rest of the text was not checked"
+                )));
             break;
         }
     }
@@ -241,35 +241,7 @@ impl Compiler {
         Self {
             symbols,
             store,
-            equations: Vec::new(),
-            diagnostics: Vec::new(),
-            scope: Vec::new(),
-            maps: Vec::new(),
-            defining: rustc_hash::FxHashMap::default(),
-            input: None,
-            output: None,
-            next_slot: 0,
-            not_loaded: rustc_hash::FxHashSet::default(),
-            nest: Vec::new(),
-            shows_numbers: false,
-            slots: 0,
-            in_equation: false,
-            reads: Vec::new(),
-            without_data: Vec::new(),
-            running: Vec::new(),
-            new_labels: false,
-            texts_allowed: false,
-            doubtful: Vec::new(),
-            nesting: 0,
-            put_named: None,
-            max_memory: None,
-            taken: 0,
-            inputs: input::Inputs::default(),
-            asked_for_data: Cell::new(false),
-            solvers: &Solvers::NONE,
-            passed_over: rustc_hash::FxHashSet::default(),
-            modes: Switches::default(),
-            lost: follow::Lost::default(),
+            ..Self::default()
         }
     }
 }
@@ -281,13 +253,10 @@ impl Compiler {
         self.taken = self.taken.saturating_add(records.saturating_mul(bytes));
         match self.max_memory {
             Some(limit) if self.taken > limit => self.fail(
-                Diagnostic::error(
-                    "E0491",
-                    span,
-                    format!("the memory limit of {} MB is used up", limit >> 20),
-                )
-                .label("by the data up to here")
-                .help("raise it with `--max-memory`, or make the set by an assignment with a condition"),
+                Diagnostic::wrong("E0491", span)
+                    .says(format!("the memory limit of {} MB is used up", limit >> 20))
+                    .label("by the data up to here")
+                    .help("raise it with `--max-memory`, or make the set by an assignment with a condition"),
             ),
             _ => Ok(()),
         }
@@ -334,37 +303,31 @@ impl Compiler {
         });
         let next = next.map(|n| n.name.clone());
         let d = match s.kind {
-            SymbolKind::Variable(_) | SymbolKind::Equation(_) => Diagnostic::error(
-                "E0319",
-                span,
-                format!("the {kind} `{name}` has no values yet"),
-            )
-            .label(follow::NOTHING_SOLVED)
-            .other(declared, "declared here")
-            .help(format!(
-                "solve a model with `{name}` first, or assign `{name}.l`"
-            )),
-            _ => Diagnostic::error(
-                "E0319",
-                span,
-                format!(
+            SymbolKind::Variable(_) | SymbolKind::Equation(_) => Diagnostic::wrong("E0319", span)
+                .says(format!("the {kind} `{name}` has no values yet"))
+                .label(follow::NOTHING_SOLVED)
+                .other(declared, "declared here")
+                .help(format!(
+                    "solve a model with `{name}` first, or assign `{name}.l`"
+                )),
+            _ => Diagnostic::wrong("E0319", span)
+                .says(format!(
                     "the {kind} `{name}` has no {}",
                     if kind == "set" { "elements" } else { "values" }
-                ),
-            )
-            .label("never assigned above")
-            .other(declared, "declared without data here")
-            .help(match s.kind {
-                SymbolKind::Set { .. } => {
-                    format!("give it elements: `{name} / a, b /`, or `{name}(…) = yes;`")
-                }
-                _ => match next {
-                    Some(next) => format!(
-                        "the data stand behind `{next}`: a comma ends a text without quotes; quote the text"
-                    ),
-                    None => format!("give it data: `{name} / … /`, or assign it before"),
-                },
-            }),
+                ))
+                .label("never assigned above")
+                .other(declared, "declared without data here")
+                .help(match s.kind {
+                    SymbolKind::Set { .. } => {
+                        format!("give it elements: `{name} / a, b /`, or `{name}(…) = yes;`")
+                    }
+                    _ => match next {
+                        Some(next) => format!(
+                            "the data stand behind `{next}`: a comma ends a text without quotes; quote the text"
+                        ),
+                        None => format!("give it data: `{name} / … /`, or assign it before"),
+                    },
+                }),
         };
         self.report(d);
         // One such message per symbol.

@@ -25,14 +25,15 @@ impl Compiler {
         let symbol = self.symbols.get(model).clone();
         let SymbolKind::Model(info) = &symbol.kind else {
             return self.fail(
-                Diagnostic::error(
-                    "E0350",
-                    s.model.span,
-                    format!("`{}` is {}, not a model", symbol.name, symbol.a_kind()),
-                )
-                .label("a model is expected")
-                .other(symbol.declared, "declared here")
-                .help("declare one: `model m / all /;`"),
+                Diagnostic::wrong("E0350", s.model.span)
+                    .says(format!(
+                        "`{}` is {}, not a model",
+                        symbol.name,
+                        symbol.a_kind()
+                    ))
+                    .label("a model is expected")
+                    .other(symbol.declared, "declared here")
+                    .help("declare one: `model m / all /;`"),
             );
         };
         let Some(using) = ProblemType::from_name(&s.using.name) else {
@@ -53,14 +54,11 @@ impl Compiler {
         }
         if rows.is_empty() {
             return self.fail(
-                Diagnostic::error(
-                    "E0353",
-                    s.model.span,
-                    format!("the model `{}` has no equations", symbol.name),
-                )
-                .label("nothing to solve")
-                .other(symbol.declared, "declared here")
-                .help("list equations in it: `model m / all /;`"),
+                Diagnostic::wrong("E0353", s.model.span)
+                    .says(format!("the model `{}` has no equations", symbol.name))
+                    .label("nothing to solve")
+                    .other(symbol.declared, "declared here")
+                    .help("list equations in it: `model m / all /;`"),
             );
         }
         let has_objective = using.has_objective();
@@ -68,13 +66,10 @@ impl Compiler {
             Some((sense, name)) if has_objective => Some((*sense, self.objective(name, &rows)?)),
             Some((_, name)) => {
                 return self.fail(
-                    Diagnostic::error(
-                        "E0354",
-                        name.span,
-                        format!("a model of type `{using}` has no objective"),
-                    )
-                    .label("not expected here")
-                    .help(format!("write `solve {} using {using};`", symbol.name)),
+                    Diagnostic::wrong("E0354", name.span)
+                        .says(format!("a model of type `{using}` has no objective"))
+                        .label("not expected here")
+                        .help(format!("write `solve {} using {using};`", symbol.name)),
                 );
             }
             None if has_objective => {
@@ -125,13 +120,10 @@ impl Compiler {
         let all = name.name.eq_ignore_ascii_case("all");
         let is_model = |(_, s): (SymbolId, &Symbol)| matches!(s.kind, SymbolKind::Model(_));
         if !all && self.named(name).is_none() && !self.symbols.iter().any(is_model) {
-            let d = Diagnostic::error(
-                "E0301",
-                name.span,
-                format!("the model `{}` is not declared", name.name),
-            )
-            .label("unknown model")
-            .help(format!("declare it before: `model {} / all /;`", name.name));
+            let d = Diagnostic::wrong("E0301", name.span)
+                .says(format!("the model `{}` is not declared", name.name))
+                .label("unknown model")
+                .help(format!("declare it before: `model {} / all /;`", name.name));
             return self.unknown(name, d);
         }
         if !all {
@@ -163,13 +155,10 @@ impl Compiler {
         };
         let there_are = names.join(", ");
         self.fail(
-            Diagnostic::error(
-                "E0351",
-                name.span,
-                format!("there is no problem type `{}`", name.name),
-            )
-            .label("unknown problem type")
-            .help(format!("did you mean `{near}`? there are: {there_are}")),
+            Diagnostic::wrong("E0351", name.span)
+                .says(format!("there is no problem type `{}`", name.name))
+                .label("unknown problem type")
+                .help(format!("did you mean `{near}`? there are: {there_are}")),
         )
     }
 
@@ -316,16 +305,15 @@ impl Compiler {
                 continue;
             }
             let _ = self.fail::<()>(
-                Diagnostic::error(
-                    "E0356",
-                    at,
-                    format!("the equation `{name}` is in the model but is not defined"),
-                )
-                .label("in this model")
-                .other(declared, "declared here, and defined nowhere")
-                .help(format!(
-                    "define it: `{name}.. left =e= right;`, or take it out of the model"
-                )),
+                Diagnostic::wrong("E0356", at)
+                    .says(format!(
+                        "the equation `{name}` is in the model but is not defined"
+                    ))
+                    .label("in this model")
+                    .other(declared, "declared here, and defined nowhere")
+                    .help(format!(
+                        "define it: `{name}.. left =e= right;`, or take it out of the model"
+                    )),
             );
         }
         undefined.is_empty().then_some(()).ok_or(Failed)
@@ -348,32 +336,26 @@ impl Compiler {
         };
         if symbol.dim() > 0 {
             return self.fail(
-                Diagnostic::error(
-                    "E0358",
-                    name.span,
-                    format!(
+                Diagnostic::wrong("E0358", name.span)
+                    .says(format!(
                         "the objective must be a single number; `{}` is indexed",
                         symbol.name
-                    ),
-                )
-                .label("indexed")
-                .other(symbol.declared, "declared with indices here")
-                .help("declare a free scalar variable and define it in an equation"),
+                    ))
+                    .label("indexed")
+                    .other(symbol.declared, "declared with indices here")
+                    .help("declare a free scalar variable and define it in an equation"),
             );
         }
         if !matches!(kind, VariableKind::Free | VariableKind::Unstated) {
             return self.fail(
-                Diagnostic::error(
-                    "E0359",
-                    name.span,
-                    format!("the objective `{}` must be a free variable", symbol.name),
-                )
-                .label("restricted in sign")
-                .other(symbol.declared, "declared here")
-                .help(format!(
-                    "declare it by `free variable {0};`, and bound it by an equation if it must be",
-                    symbol.name
-                )),
+                Diagnostic::wrong("E0359", name.span)
+                    .says(format!("the objective `{}` must be a free variable", symbol.name))
+                    .label("restricted in sign")
+                    .other(symbol.declared, "declared here")
+                    .help(format!(
+                        "declare it by `free variable {0};`, and bound it by an equation if it must be",
+                        symbol.name
+                    )),
             );
         }
         let mentioned = rows.iter().any(|r| {
@@ -383,20 +365,17 @@ impl Compiler {
         // An equation that failed to compile may be the one that mentions it.
         if !mentioned && self.errors() == 0 {
             return self.fail(
-                Diagnostic::error(
-                    "E0360",
-                    name.span,
-                    format!(
+                Diagnostic::wrong("E0360", name.span)
+                    .says(format!(
                         "the objective `{}` stands in no equation of the model",
                         symbol.name
-                    ),
-                )
-                .label("in no equation")
-                .other(symbol.declared, "declared here")
-                .help(format!(
-                    "define it in an equation of the model: `cost.. {} =e= …;`",
-                    symbol.name
-                )),
+                    ))
+                    .label("in no equation")
+                    .other(symbol.declared, "declared here")
+                    .help(format!(
+                        "define it in an equation of the model: `cost.. {} =e= …;`",
+                        symbol.name
+                    )),
             );
         }
         Ok(v)
@@ -563,18 +542,17 @@ impl Compiler {
         );
         let relaxed = using.relaxation();
         self.fail(
-            Diagnostic::error(
-                "E0363",
-                at,
-                format!("`{name}` is a discrete variable, but the model is solved as `{using}`"),
-            )
-            .label("discrete")
-            .other(declared, "declared here")
-            .other(solve, "solved here")
-            .help(format!(
-                "`solve … using {}` decides it; `using {relaxed}` solves the relaxation",
-                &relaxed.name()[1..]
-            )),
+            Diagnostic::wrong("E0363", at)
+                .says(format!(
+                    "`{name}` is a discrete variable, but the model is solved as `{using}`"
+                ))
+                .label("discrete")
+                .other(declared, "declared here")
+                .other(solve, "solved here")
+                .help(format!(
+                    "`solve … using {}` decides it; `using {relaxed}` solves the relaxation",
+                    &relaxed.name()[1..]
+                )),
         )
     }
 
@@ -598,15 +576,12 @@ impl Compiler {
                 );
                 failed |= self
                     .fail::<()>(
-                        Diagnostic::error(
-                            "E0368",
-                            span,
-                            format!(
+                        Diagnostic::wrong("E0368", span)
+                            .says(format!(
                                 "the variable `{name}` of a pair stands in no equation of the model"
-                            ),
-                        )
-                        .label("paired, but in no equation")
-                        .other(declared, "declared here"),
+                            ))
+                            .label("paired, but in no equation")
+                            .other(declared, "declared here"),
                     )
                     .is_err();
             }
@@ -636,14 +611,11 @@ impl Compiler {
             {
                 failed |= self
                     .fail::<()>(
-                        Diagnostic::error(
-                            "E0367",
-                            r.span,
-                            format!("the equation `{}` is paired twice", eq.name),
-                        )
-                        .label("second pair")
-                        .other(other.span, "first pair")
-                        .help("an equation has one partner: take one of the pairs out"),
+                        Diagnostic::wrong("E0367", r.span)
+                            .says(format!("the equation `{}` is paired twice", eq.name))
+                            .label("second pair")
+                            .other(other.span, "first pair")
+                            .help("an equation has one partner: take one of the pairs out"),
                     )
                     .is_err();
             }
@@ -656,20 +628,17 @@ impl Compiler {
         let (eq, var) = (self.symbols.get(e).clone(), self.symbols.get(v).clone());
         if eq.dim() != var.dim() {
             return self.fail(
-                Diagnostic::error(
-                    "E0365",
-                    at,
-                    format!(
+                Diagnostic::wrong("E0365", at)
+                    .says(format!(
                         "`{}` has {} indices and `{}` has {}: they cannot be paired",
                         eq.name,
                         eq.dim(),
                         var.name,
                         var.dim()
-                    ),
-                )
-                .label("different dimensions")
-                .other(eq.declared, "the equation")
-                .other(var.declared, "the variable"),
+                    ))
+                    .label("different dimensions")
+                    .other(eq.declared, "the equation")
+                    .other(var.declared, "the variable"),
             );
         }
         let same = eq
@@ -684,17 +653,14 @@ impl Compiler {
             });
         if !same {
             return self.fail(
-                Diagnostic::error(
-                    "E0366",
-                    at,
-                    format!(
+                Diagnostic::wrong("E0366", at)
+                    .says(format!(
                         "`{}` and `{}` run over different sets, or the same in another order",
                         eq.name, var.name
-                    ),
-                )
-                .label("domains differ")
-                .other(eq.declared, "the equation")
-                .other(var.declared, "the variable"),
+                    ))
+                    .label("domains differ")
+                    .other(eq.declared, "the equation")
+                    .other(var.declared, "the variable"),
             );
         }
         Ok(())

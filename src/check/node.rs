@@ -7,7 +7,7 @@ use crate::data::universe::Label;
 use crate::model::instance::Function;
 use crate::model::problem_type::ProblemType;
 use crate::source::Span;
-pub use crate::syntax::ast::{AggregateOp, BinaryOp, Relation, Sense};
+pub use crate::syntax::ast::{AggregateOp, BinaryOp, For, Relation, Sense, Written};
 use std::any::Any;
 use std::sync::{Arc, Mutex, OnceLock};
 
@@ -390,16 +390,7 @@ pub enum PutCode {
     /// Selects a file.
     File(SymbolId),
     /// Writes.
-    Item {
-        /// What.
-        value: Node,
-        /// Alignment.
-        align: Option<char>,
-        /// Width.
-        width: Option<Node>,
-        /// Decimals.
-        decimals: Option<Node>,
-    },
+    Item(Written<Node>),
 }
 
 /// One element of a figure.
@@ -424,45 +415,36 @@ pub struct FigureCode {
     pub elements: Vec<FigureElementCode>,
 }
 
+/// An assignment.
+#[derive(Debug)]
+pub struct Assignment {
+    /// What it runs over (slots not controlled outside).
+    pub domain: Domain,
+    /// What is written.
+    pub target: Target,
+    /// Key of the record.
+    pub key: Key,
+    /// Right side.
+    pub value: Node,
+    /// Whether the domain covers every record the target can have.
+    pub covers: bool,
+    /// `$=`: what is 0 is not assigned.
+    pub nonzero: bool,
+    /// Element by element: the right side reads what was written before.
+    pub in_turn: bool,
+}
+
 /// The kinds of statements.
 #[derive(Debug)]
 pub enum CodeKind {
     /// Assignment.
-    Assign {
-        /// What it runs over (slots not controlled outside).
-        domain: Domain,
-        /// What is written.
-        target: Target,
-        /// Key of the record.
-        key: Key,
-        /// Right side.
-        value: Node,
-        /// Whether the domain covers every record the target can have.
-        covers: bool,
-        /// `$=`: what is 0 is not assigned.
-        nonzero: bool,
-        /// Element by element: the right side reads what was written before.
-        in_turn: bool,
-    },
+    Assign(Assignment),
     /// `loop`: conjuncts of its condition that the body may change stand apart.
     Loop(Domain, Vec<Node>, Vec<Code>),
     /// `while`
     While(Node, Vec<Code>),
     /// `for`
-    For {
-        /// The scalar.
-        table: TableId,
-        /// First.
-        from: Node,
-        /// Down.
-        down: bool,
-        /// Limit.
-        to: Node,
-        /// Step.
-        by: Option<Node>,
-        /// Statements.
-        body: Vec<Code>,
-    },
+    For(For<TableId, Node, Code>),
     /// `repeat`
     Repeat(Vec<Code>, Node),
     /// `if`
@@ -473,15 +455,8 @@ pub enum CodeKind {
     Continue(Option<Node>),
     /// `display`
     Display(Option<Node>, Vec<Shown>),
-    /// `abort`
-    Abort {
-        /// Condition.
-        condition: Option<Node>,
-        /// What to show.
-        items: Vec<Shown>,
-        /// `abort.noError`
-        no_error: bool,
-    },
+    /// `abort`: condition, what to show, `abort.noError`
+    Abort(Option<Node>, Vec<Shown>, bool),
     /// `solve`
     Solve(Box<SolveCode>),
     /// `option name = value`

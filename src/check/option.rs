@@ -282,16 +282,13 @@ impl Compiler {
         let (target, from) = (self.symbols.get(t).clone(), self.symbols.get(s).clone());
         if !target.is_set() && !matches!(target.kind, SymbolKind::Parameter { .. }) {
             return self.fail(
-                Diagnostic::error(
-                    "E0331",
-                    item.name.span,
-                    format!(
+                Diagnostic::wrong("E0331", item.name.span)
+                    .says(format!(
                         "`{}` is {}: only sets and parameters are projected to",
                         item.name.name,
                         target.a_kind()
-                    ),
-                )
-                .other(target.declared, "declared here"),
+                    ))
+                    .other(target.declared, "declared here"),
             );
         }
         let positions: Vec<usize> = match (&item.indices, source_indices) {
@@ -304,11 +301,10 @@ impl Compiler {
                     {
                         Some(i) => p.push(i),
                         None => {
-                            return self.fail(Diagnostic::error(
-                                "E0331",
-                                name.span,
-                                format!("`{}` is not an index of the right side", name.name),
-                            ));
+                            return self.fail(Diagnostic::wrong("E0331", name.span).says(format!(
+                                "`{}` is not an index of the right side",
+                                name.name
+                            )));
                         }
                     }
                 }
@@ -332,13 +328,10 @@ impl Compiler {
         };
         if positions.len() != target.dim() {
             return self.fail(
-                Diagnostic::error(
-                    "E0331",
-                    item.name.span,
-                    "the right side does not have the index sets of the left",
-                )
-                .other(target.declared, "left side declared here")
-                .other(from.declared, "right side declared here"),
+                Diagnostic::wrong("E0331", item.name.span)
+                    .says("the right side does not have the index sets of the left")
+                    .other(target.declared, "left side declared here")
+                    .other(from.declared, "right side declared here"),
             );
         }
         self.changes_set(t);

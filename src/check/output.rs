@@ -8,7 +8,7 @@ use crate::source::Span;
 use crate::syntax::ast::{DisplayItem, Expr, ExprKind, Ident, Put, PutItem};
 
 /// `` `x`, `y` ``
-fn listed(names: &[(Ident, &str)]) -> String {
+fn listed(names: &[(Ident, String)]) -> String {
     let names: Vec<String> = names.iter().map(|(n, _)| format!("`{}`", n.name)).collect();
     names.join(", ")
 }
@@ -16,7 +16,7 @@ fn listed(names: &[(Ident, &str)]) -> String {
 impl Compiler {
     pub(super) fn shown(&mut self, items: &[DisplayItem]) -> Result<Vec<Shown>, Failed> {
         let mut out = Vec::new();
-        let mut bare: Vec<(Ident, &'static str)> = Vec::new();
+        let mut bare: Vec<(Ident, String)> = Vec::new();
         for item in items {
             match item {
                 DisplayItem::Text(t, _) => out.push(Shown::Text(t.clone())),
@@ -32,19 +32,16 @@ impl Compiler {
                     let symbol = self.symbols.get(s).clone();
                     if !r.indices.is_empty() {
                         return self.fail(
-                            Diagnostic::error(
-                                "E0328",
-                                r.span,
-                                "`display` takes whole symbols, without indices",
-                            )
-                            .label("indices here")
-                            .help(format!(
-                                "write `display {}{}`; or copy the part you want into a parameter",
-                                r.name.name,
-                                r.attribute
-                                    .as_ref()
-                                    .map_or(String::new(), |a| format!(".{}", a.name))
-                            )),
+                            Diagnostic::wrong("E0328", r.span)
+                                .says("`display` takes whole symbols, without indices")
+                                .label("indices here")
+                                .help(format!(
+                                    "write `display {}{}`; or copy the part you want into a parameter",
+                                    r.name.name,
+                                    r.attribute
+                                        .as_ref()
+                                        .map_or(String::new(), |a| format!(".{}", a.name))
+                                )),
                         );
                     }
                     let attr = match (&symbol.kind, &r.attribute) {
@@ -138,23 +135,18 @@ impl Compiler {
                 PutItem::NewLine => PutCode::NewLine,
                 PutItem::Column(e) => PutCode::Column(self.expr(e)?),
                 PutItem::Row(e) => PutCode::Row(self.expr(e)?),
-                PutItem::Item {
-                    value,
-                    align,
-                    width,
-                    decimals,
-                } => {
-                    let apart = self.two_items(value);
+                PutItem::Item(w) => {
+                    let apart = self.two_items(&w.value);
                     let last = match &apart {
                         Some((first, last)) => {
                             out.push(self.put_item(first, (None, None, None))?);
                             last
                         }
-                        None => value,
+                        None => &w.value,
                     };
-                    let width = self.optional(width.as_ref())?;
-                    let decimals = self.optional(decimals.as_ref())?;
-                    self.put_item(last, (*align, width, decimals))?
+                    let width = self.optional(w.width.as_ref())?;
+                    let decimals = self.optional(w.decimals.as_ref())?;
+                    self.put_item(last, (w.align, width, decimals))?
                 }
             };
             out.push(code);
@@ -167,12 +159,7 @@ impl Compiler {
         value: &Expr,
         (align, width, decimals): (Option<char>, Option<Node>, Option<Node>),
     ) -> Result<PutCode, Failed> {
-        if let ExprKind::Apply {
-            name,
-            attribute: None,
-            arguments: None,
-        } = &value.kind
-        {
+        if let ExprKind::Apply(name, None, None) = &value.kind {
             if let Some(s) = self.file(name) {
                 return Ok(PutCode::File(s));
             }
@@ -180,24 +167,17 @@ impl Compiler {
                 && self.symbols.get(s).is_set()
             {
                 let (i, declared) = (&name.name, self.symbols.get(s).declared);
-                let d = Diagnostic::error(
-                    "E0304",
-                    name.span,
-                    format!("the set `{i}` has no value to write"),
-                )
-                .label("what of it?")
-                .other(declared, "declared here");
+                let d = Diagnostic::wrong("E0304", name.span)
+                    .says(format!("the set `{i}` has no value to write"))
+                    .label("what of it?")
+                    .other(declared, "declared here");
                 return self.fail(d.help(format!(
                     "write its element's label, `{i}.tl`, its text, `{i}.te({i})`, or its position, `ord({i})`"
                 )));
             }
         }
         let value = match &value.kind {
-            ExprKind::Apply {
-                name,
-                attribute,
-                arguments: None,
-            } if is_system(name) => {
+            ExprKind::Apply(name, attribute, None) if is_system(name) => {
                 let what = attribute.as_ref().map_or("", |a| &*a.name).to_lowercase();
                 Node::data(
                     NodeKind::Text(format!("%system.{what}%").into()),
@@ -209,22 +189,17 @@ impl Compiler {
                 None => self.expr(value)?,
             },
         };
-        Ok(PutCode::Item {
+        Ok(PutCode::Item(Written {
             value,
             align,
             width,
             decimals,
-        })
+        }))
     }
 
     /// A variable or an equation without attribute stands for its name: `put x(i) ' ' x.l(i)`.
     fn record_name(&mut self, value: &Expr) -> Result<Option<Node>, Failed> {
-        let ExprKind::Apply {
-            name,
-            attribute: None,
-            arguments,
-        } = &value.kind
-        else {
+        let ExprKind::Apply(name, None, arguments) = &value.kind else {
             return Ok(None);
         };
         let found = self.symbols.find(&name.name).filter(|&s| {
@@ -247,12 +222,7 @@ impl Compiler {
             let kind = ExprKind::Dollar(Box::new(last), condition.clone());
             return Some((first, Expr { kind, span }));
         }
-        let ExprKind::Apply {
-            name,
-            attribute,
-            arguments: Some(arguments),
-        } = &value.kind
-        else {
+        let ExprKind::Apply(name, attribute, Some(arguments)) = &value.kind else {
             return None;
         };
         let [last] = arguments.as_slice() else {
@@ -278,11 +248,7 @@ impl Compiler {
             (_, None) => false,
         };
         let first = Expr {
-            kind: special.unwrap_or_else(|| ExprKind::Apply {
-                name: name.clone(),
-                attribute: attribute.clone(),
-                arguments: None,
-            }),
+            kind: special.unwrap_or_else(|| ExprKind::Apply(name.clone(), attribute.clone(), None)),
             span: name.span,
         };
         without.then(|| (first, last.clone()))
@@ -293,7 +259,7 @@ impl Compiler {
         match &e.kind {
             ExprKind::Text(_) => true,
             ExprKind::Binary(_, a, _) => self.is_index(a),
-            ExprKind::Apply { name, .. } => {
+            ExprKind::Apply(name, _, _) => {
                 let set = self.symbols.find(&name.name);
                 set.is_some_and(|s| self.symbols.get(s).is_set())
             }

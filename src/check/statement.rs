@@ -38,7 +38,7 @@ impl Compiler {
             StmtKind::Loop(_, body)
             | StmtKind::While(_, body)
             | StmtKind::Repeat(body, _)
-            | StmtKind::For { body, .. } => bodies.push(body),
+            | StmtKind::For(For { body, .. }) => bodies.push(body),
             StmtKind::If(arms, otherwise) => {
                 bodies.extend(arms.iter().map(|(_, body)| &body[..]));
                 bodies.push(otherwise);
@@ -109,14 +109,8 @@ impl Compiler {
             StmtKind::Repeat(body, until) => {
                 CodeKind::Repeat(self.body(body, map)?, self.expr(until)?)
             }
-            StmtKind::For {
-                variable,
-                from,
-                down,
-                to,
-                by,
-                body,
-            } => {
+            StmtKind::For(f) => {
+                let variable = &f.variable;
                 let s = self.lookup(&variable.name)?;
                 let symbol = self.symbols.get(s);
                 if !matches!(symbol.kind, SymbolKind::Parameter { .. })
@@ -132,17 +126,17 @@ impl Compiler {
                     );
                 }
                 let table = symbol.table;
-                let (from, to) = (self.expr(from)?, self.expr(to)?);
-                let by = by.as_ref().map(|b| self.expr(b)).transpose()?;
+                let (from, to) = (self.expr(&f.from)?, self.expr(&f.to)?);
+                let by = self.optional(f.by.as_ref())?;
                 self.symbols.get_mut(s).assigned = true;
-                CodeKind::For {
-                    table,
+                CodeKind::For(For {
+                    variable: table,
                     from,
-                    down: *down,
+                    down: f.down,
                     to,
                     by,
-                    body: self.body(body, map)?,
-                }
+                    body: self.body(&f.body, map)?,
+                })
             }
             StmtKind::If(arms, otherwise) => {
                 let mut checked = Vec::new();
@@ -157,17 +151,10 @@ impl Compiler {
                 span = from_first_item(items, span);
                 CodeKind::Display(self.optional(c.as_ref())?, self.shown(items)?)
             }
-            StmtKind::Abort {
-                condition,
-                items,
-                no_error,
-            } => {
+            StmtKind::Abort(c, items, no_error) => {
                 span = from_first_item(items, span);
-                CodeKind::Abort {
-                    condition: self.optional(condition.as_ref())?,
-                    items: self.shown(items)?,
-                    no_error: *no_error,
-                }
+                let condition = self.optional(c.as_ref())?;
+                CodeKind::Abort(condition, self.shown(items)?, *no_error)
             }
             StmtKind::Option(items) => {
                 for item in items {
@@ -204,24 +191,20 @@ impl Compiler {
                 if !matches!(self.symbols.get(s).kind, SymbolKind::Figure(_)) {
                     let declared = self.symbols.get(s).declared;
                     return self.fail(
-                        Diagnostic::error(
-                            "E0323",
-                            name.span,
-                            format!("`{}` is not a figure", name.name),
-                        )
-                        .label("a figure is expected")
-                        .other(declared, "declared here"),
+                        Diagnostic::wrong("E0323", name.span)
+                            .says(format!("`{}` is not a figure", name.name))
+                            .label("a figure is expected")
+                            .other(declared, "declared here"),
                     );
                 }
                 let file = match file.as_ref().map(|f| (&f.kind, f.span)) {
                     None => None,
                     Some((ExprKind::Text(t), _)) => Some(t.clone()),
                     Some((_, span)) => {
-                        return self.fail(Diagnostic::error(
-                            "E0323",
-                            span,
-                            "`draw` takes a file name in quotes",
-                        ));
+                        return self.fail(
+                            Diagnostic::wrong("E0323", span)
+                                .says("`draw` takes a file name in quotes"),
+                        );
                     }
                 };
                 CodeKind::Draw(s, file)
@@ -251,13 +234,10 @@ impl Compiler {
             _ => return Ok(()),
         };
         self.fail(
-            Diagnostic::error(
-                "E0324",
-                stmt.span,
-                format!("a {what} may not stand inside a loop or an if"),
-            )
-            .label("inside a loop or an if")
-            .help("move it before the loop"),
+            Diagnostic::wrong("E0324", stmt.span)
+                .says(format!("a {what} may not stand inside a loop or an if"))
+                .label("inside a loop or an if")
+                .help("move it before the loop"),
         )
     }
 
@@ -282,28 +262,26 @@ impl Compiler {
         let symbol = self.symbols.get(s).clone();
         let SymbolKind::Equation(defined) = symbol.kind else {
             return self.fail(
-                Diagnostic::error(
-                    "E0326",
-                    e.name.span,
-                    format!("`{}` is {}, not an equation", symbol.name, symbol.a_kind()),
-                )
-                .label("an equation is expected before `..`")
-                .other(symbol.declared, "declared here")
-                .help(format!("declare it: `equation {};`", e.name.name)),
+                Diagnostic::wrong("E0326", e.name.span)
+                    .says(format!(
+                        "`{}` is {}, not an equation",
+                        symbol.name,
+                        symbol.a_kind()
+                    ))
+                    .label("an equation is expected before `..`")
+                    .other(symbol.declared, "declared here")
+                    .help(format!("declare it: `equation {};`", e.name.name)),
             );
         };
         if let Some(d) = defined {
             let first = self.equations[d].span;
             if !self.modes.at(e.name.span).multi_replace {
                 return self.fail(
-                    Diagnostic::error(
-                        "E0327",
-                        e.name.span,
-                        format!("the equation `{}` is defined twice", symbol.name),
-                    )
-                    .label("second definition")
-                    .other(first, "first definition")
-                    .help("give the second one another name"),
+                    Diagnostic::wrong("E0327", e.name.span)
+                        .says(format!("the equation `{}` is defined twice", symbol.name))
+                        .label("second definition")
+                        .other(first, "first definition")
+                        .help("give the second one another name"),
                 );
             }
         }

@@ -127,19 +127,14 @@ impl Symbol {
     }
 
     /// The same with its article.
-    pub fn a_kind(&self) -> &'static str {
-        match self.kind {
-            SymbolKind::Set { .. } => "a set",
-            SymbolKind::Alias(_) => "an alias",
-            SymbolKind::Parameter { scalar: true } => "a scalar",
-            SymbolKind::Parameter { scalar: false } => "a parameter",
-            SymbolKind::Variable(_) => "a variable",
-            SymbolKind::Equation(_) => "an equation",
-            SymbolKind::Model(_) => "a model",
-            SymbolKind::File(_) => "a file",
-            SymbolKind::Acronym(_) => "an acronym",
-            SymbolKind::Figure(_) => "a figure",
-        }
+    pub fn a_kind(&self) -> String {
+        let kind = self.kind_name();
+        let article = if kind.starts_with(['a', 'e']) {
+            "an"
+        } else {
+            "a"
+        };
+        format!("{article} {kind}")
     }
 
     /// Whether it has levels, marginals and bounds.

@@ -392,12 +392,9 @@ impl Compiler {
     fn comes_again(&mut self, key: &[Label], at: Span, what: &str) {
         let label = self.key_text(key);
         self.report(
-            Diagnostic::error(
-                "E0341",
-                at,
-                format!("the {what} {label} appears twice in this table"),
-            )
-            .label("second time"),
+            Diagnostic::wrong("E0341", at)
+                .says(format!("the {what} {label} appears twice in this table"))
+                .label("second time"),
         );
     }
 }

@@ -179,12 +179,10 @@ impl Code {
     /// Visits expressions and statements inside.
     pub fn walk<'a, V: Visitor<'a> + ?Sized>(&'a self, v: &mut V) {
         match &self.kind {
-            CodeKind::Assign {
-                domain, key, value, ..
-            } => {
-                v.domain(domain);
-                key.walk(v);
-                v.node(value);
+            CodeKind::Assign(a) => {
+                v.domain(&a.domain);
+                a.key.walk(v);
+                v.node(&a.value);
             }
             CodeKind::Loop(d, anew, body) => {
                 v.domain(d);
@@ -195,13 +193,11 @@ impl Code {
                 v.guard(condition);
                 body.iter().for_each(|c| v.code(c));
             }
-            CodeKind::For {
-                from, to, by, body, ..
-            } => {
-                v.node(from);
-                v.node(to);
-                by.iter().for_each(|n| v.node(n));
-                body.iter().for_each(|c| v.code(c));
+            CodeKind::For(f) => {
+                v.node(&f.from);
+                v.node(&f.to);
+                f.by.iter().for_each(|n| v.node(n));
+                f.body.iter().for_each(|c| v.code(c));
             }
             CodeKind::If(arms, otherwise) => {
                 for (condition, body) in arms {
@@ -213,7 +209,7 @@ impl Code {
             CodeKind::Break(condition, _)
             | CodeKind::Continue(condition)
             | CodeKind::Display(condition, _)
-            | CodeKind::Abort { condition, .. } => condition.iter().for_each(|c| v.guard(c)),
+            | CodeKind::Abort(condition, ..) => condition.iter().for_each(|c| v.guard(c)),
             CodeKind::Put(_, condition, items) => {
                 condition.iter().for_each(|c| v.guard(c));
                 items.iter().for_each(|i| i.walk(v));
@@ -237,14 +233,9 @@ impl PutCode {
         match self {
             Self::NewLine | Self::File(_) => {}
             Self::Column(n) | Self::Row(n) => v.node(n),
-            Self::Item {
-                value,
-                width,
-                decimals,
-                ..
-            } => {
-                v.node(value);
-                width.iter().chain(decimals).for_each(|n| v.node(n));
+            Self::Item(w) => {
+                v.node(&w.value);
+                w.width.iter().chain(&w.decimals).for_each(|n| v.node(n));
             }
         }
     }

@@ -18,7 +18,7 @@ use std::hash::Hasher;
 use std::sync::Arc;
 
 /// Records of `dim` labels with a value each.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Table {
     dim: usize,
     default: f64,
@@ -37,8 +37,9 @@ pub struct Table {
 }
 
 /// What kind of special values there may be; each includes those before it.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug, Default)]
 enum Special {
+    #[default]
     None,
     /// Infinite, `eps`.
     Extreme,
@@ -121,27 +122,13 @@ fn hash_at(key: &[Label], positions: &[usize]) -> u64 {
     h.finish()
 }
 
-impl Default for Table {
-    fn default() -> Self {
-        Self::new(0, 0.0)
-    }
-}
-
 impl Table {
     /// An empty table.
     pub fn new(dim: usize, default: f64) -> Self {
         Self {
             dim,
             default,
-            keys: Vec::new(),
-            values: Vec::new(),
-            sorted: 0,
-            dead: 0,
-            index: OnceCell::new(),
-            orders: RefCell::default(),
-            distinct: OnceCell::new(),
-            special: Special::None,
-            visited: Cell::new(0),
+            ..Self::default()
         }
     }
 

@@ -31,7 +31,7 @@ pub(super) struct Piece {
 }
 
 /// A text taken apart into lines.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Lines {
     /// The text with blanks in the place of what is no statement.
     pub code: String,
@@ -85,12 +85,7 @@ fn taken_out_up_to(word: &str) -> Option<&'static str> {
 impl Lines {
     /// Takes a text apart; `slashes`: `//` begins a comment, as in a `.blk`.
     pub(super) fn of(text: &str, slashes: bool) -> Self {
-        let mut lines = Self {
-            code: String::new(),
-            starts: Vec::new(),
-            kinds: Vec::new(),
-            comments: Vec::new(),
-        };
+        let mut lines = Self::default();
         let mut marks = Marks {
             comment: b'*',
             dollar: b'$',

@@ -46,6 +46,7 @@ use project::Document;
 use rustc_hash::FxHashMap;
 
 /// The texts that are open, and what is known about them. See the module.
+#[derive(Default)]
 pub struct Editor {
     open: FxHashMap<String, Document>,
     /// Files that open ones include.
@@ -61,11 +62,8 @@ impl Editor {
     /// Nothing is open. `files` has what models include beside it; without it only open texts are known.
     pub fn new(files: Option<Box<dyn Files>>) -> Self {
         Self {
-            open: FxHashMap::default(),
-            included: FxHashMap::default(),
             files,
-            analyses: FxHashMap::default(),
-            mains: FxHashMap::default(),
+            ..Self::default()
         }
     }
 

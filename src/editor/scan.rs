@@ -88,7 +88,7 @@ pub(super) struct Statement {
 }
 
 /// A text, taken apart.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Scan {
     /// Its lines.
     pub lines: Lines,
@@ -116,9 +116,10 @@ fn is_word_here(word: &str, first: &str) -> bool {
     }
 }
 
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 enum Phase {
     /// Between statements.
+    #[default]
     Start,
     /// Code.
     Code,
@@ -150,6 +151,7 @@ struct Frame {
     outside: usize,
 }
 
+#[derive(Default)]
 struct Scanner<'a> {
     text: &'a str,
     code: &'a str,
@@ -184,21 +186,9 @@ impl Scan {
             code: &code,
             scan: Scan {
                 lines,
-                tokens: Vec::new(),
-                statements: Vec::new(),
+                ..Scan::default()
             },
-            phase: Phase::Start,
-            class: Class::Other,
-            frames: Vec::new(),
-            open: Vec::new(),
-            expects: false,
-            control: false,
-            word: String::new(),
-            new_line: false,
-            record: false,
-            depth: 0,
-            names: 0,
-            read: 0,
+            ..Scanner::default()
         };
         for line in 0..s.scan.lines.kinds.len() {
             s.line(line);

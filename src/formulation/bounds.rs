@@ -57,18 +57,10 @@ pub fn assigned(
     let mut lowering = Lowering::new(symbols, &owner);
     lowering.indices = std::mem::take(&mut f.indices);
     let mut each = |c: &Code, depth: usize| {
-        let CodeKind::Assign {
-            domain,
-            target,
-            key,
-            value,
-            covers,
-            ..
-        } = &c.kind
-        else {
+        let CodeKind::Assign(a) = &c.kind else {
             return;
         };
-        let (v, offsets) = match *target {
+        let (v, offsets) = match a.target {
             Target::Fix(s) => (s, vec![attribute::LO, attribute::UP]),
             Target::Table(t) => {
                 let Some(s) = owner(t) else { return };
@@ -80,14 +72,14 @@ pub fn assigned(
         if !own.contains(&v) || !offsets.iter().all(is_bound) {
             return;
         }
-        let whole = *covers || symbols.get(v).dim() == 0;
+        let whole = a.covers || symbols.get(v).dim() == 0;
         if depth == 0 {
-            let binder = lowering.domain(domain);
-            let node = Node::data(NodeKind::Var(v, key.clone()), c.span);
+            let binder = lowering.domain(&a.domain);
+            let node = Node::data(NodeKind::Var(v, a.key.clone()), c.span);
             let Expr::Variable(_, key) = lowering.expr(&node) else {
                 return;
             };
-            let value = lowering.expr(value);
+            let value = lowering.expr(&a.value);
             for offset in offsets {
                 out.retain(|a| !(whole && (a.variable, a.offset) == (v, offset)));
                 out.push(Assigned {

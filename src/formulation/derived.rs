@@ -336,26 +336,24 @@ fn refuse_kkt(
     (equation, why): kkt::Refusal,
 ) -> Diagnostic {
     let Some(k) = equation else {
-        return Diagnostic::execution(
-            "E0432",
-            studied.span,
-            format!("the optimality conditions cannot be derived: {why}"),
-        )
-        .label("of this solve")
-        .help("they belong to a model with an objective, solved `using nlp`, `qcp` or `lp`");
+        return Diagnostic::failed("E0432", studied.span)
+            .says(format!(
+                "the optimality conditions cannot be derived: {why}"
+            ))
+            .label("of this solve")
+            .help("they belong to a model with an objective, solved `using nlp`, `qcp` or `lp`");
     };
     let symbol = primal.equations[k].symbol;
     let def = definition(m, symbol);
     let place = def.and_then(kink).or(def.map(|d| d.span));
     let name = &m.symbols.get(symbol).name;
-    Diagnostic::execution(
-        "E0432",
-        place.unwrap_or(studied.span),
-        format!("the optimality conditions cannot be derived: in `{name}`, {why}"),
-    )
-    .label("here")
-    .other(studied.span, "at this solve")
-    .help("reformulate it with additional variables and inequalities")
+    Diagnostic::failed("E0432", place.unwrap_or(studied.span))
+        .says(format!(
+            "the optimality conditions cannot be derived: in `{name}`, {why}"
+        ))
+        .label("here")
+        .other(studied.span, "at this solve")
+        .help("reformulate it with additional variables and inequalities")
 }
 
 /// The first place in an equation that is not smooth.

@@ -10,7 +10,7 @@ use super::{
 const OLD_DIMENSION: usize = 10;
 
 /// A GDX file that was opened: its index.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct File<'a> {
     bytes: &'a [u8],
     /// Version of the format.
@@ -80,11 +80,7 @@ impl<'a> File<'a> {
             library,
             producer,
             packed,
-            labels: Vec::new(),
-            texts: Vec::new(),
-            acronyms: Vec::new(),
-            symbols: Vec::new(),
-            places: Vec::new(),
+            ..Self::default()
         };
         file.labels = file.list(labels, "_UEL_", "labels", Input::text)?;
         file.texts = file.list(texts, "_SETT_", "texts", Input::text)?;

@@ -109,6 +109,12 @@ impl Solvers {
     };
 }
 
+impl Default for &Solvers {
+    fn default() -> Self {
+        &Solvers::NONE
+    }
+}
+
 /// Why an option is refused.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Refused {

@@ -17,23 +17,15 @@ use crate::source::Span;
 use std::ops::ControlFlow;
 
 /// Sorted records to be written.
+#[derive(Default)]
 struct Records {
     keys: Vec<Label>,
     values: Vec<f64>,
 }
 
-/// The right side of an assignment.
-#[derive(Clone, Copy)]
-struct Right<'n> {
-    value: &'n Node,
-    /// `$=`: what is 0 is not assigned.
-    nonzero: bool,
-}
-
-impl Right<'_> {
-    fn skips(self, value: f64) -> bool {
-        self.nonzero && !truth(value)
-    }
+/// Whether the assignment passes over this value of its right side.
+fn skips(a: &Assignment, value: f64) -> bool {
+    a.nonzero && !truth(value)
 }
 
 impl Machine<'_> {
@@ -66,24 +58,10 @@ impl Machine<'_> {
         self.take_collected();
         self.tidy(c);
         match &c.kind {
-            CodeKind::Assign {
-                domain,
-                target,
-                key,
-                value,
-                covers,
-                nonzero,
-                in_turn,
-            } => {
-                let right = Right {
-                    value,
-                    nonzero: *nonzero,
-                };
-                match in_turn {
-                    true => self.assign_in_turn(domain, *target, key, right, frame),
-                    false => self.assign(domain, *target, key, right, *covers, frame),
-                }
-            }
+            CodeKind::Assign(a) => match a.in_turn {
+                true => self.assign_in_turn(a, frame),
+                false => self.assign(a, a.covers, frame),
+            },
             CodeKind::Loop(d, anew, body) => return self.run_loop(d, anew, body, frame),
             CodeKind::While(cond, body) => {
                 while truth(self.eval(cond, frame)) {
@@ -102,16 +80,7 @@ impl Machine<'_> {
                     break;
                 }
             },
-            CodeKind::For {
-                table,
-                from,
-                down,
-                to,
-                by,
-                body,
-            } => {
-                return self.run_for(c.span, *table, (from, *down, to, by.as_ref()), body, frame);
-            }
+            CodeKind::For(f) => return self.run_for(c.span, f, frame),
             CodeKind::If(arms, otherwise) => {
                 for (cond, body) in arms {
                     if truth(self.eval(cond, frame)) {
@@ -135,11 +104,7 @@ impl Machine<'_> {
                     self.display(items, c.span);
                 }
             }
-            CodeKind::Abort {
-                condition,
-                items,
-                no_error,
-            } => {
+            CodeKind::Abort(condition, items, no_error) => {
                 // Behind a solve that was not made (`bmod list`) an abort judges numbers that are not there.
                 let judges = self.options.list.is_none() || self.report().solves.is_empty();
                 if judges && self.holds(condition.as_ref(), frame) {
@@ -240,15 +205,10 @@ impl Machine<'_> {
         Flow::Next
     }
 
-    fn run_for(
-        &mut self,
-        span: Span,
-        table: TableId,
-        (from, down, to, by): (&Node, bool, &Node, Option<&Node>),
-        body: &[Code],
-        frame: &mut Frame,
-    ) -> Flow {
-        let (from, to) = (number(self.eval(from, frame)), number(self.eval(to, frame)));
+    fn run_for(&mut self, span: Span, f: &For<TableId, Node, Code>, frame: &mut Frame) -> Flow {
+        let (table, down) = (f.variable, f.down);
+        let [from, to] = [&f.from, &f.to].map(|n| number(self.eval(n, frame)));
+        let by = f.by.as_ref();
         let by = by.map_or(1.0, |b| number(self.eval(b, frame)));
         let sane = by > 0.0 && !from.is_nan() && !to.is_nan();
         let mistake = |m: &Self| {
@@ -271,7 +231,7 @@ impl Machine<'_> {
             if (down && k < to) || (!down && k > to) || k.is_nan() {
                 return Flow::Next;
             }
-            if let ControlFlow::Break(flow) = self.turn(body, frame) {
+            if let ControlFlow::Break(flow) = self.turn(&f.body, frame) {
                 return flow;
             }
             // As in GAMS the step is looked at when it is taken.
@@ -298,16 +258,8 @@ impl Machine<'_> {
         }
     }
 
-    fn assign(
-        &mut self,
-        domain: &Domain,
-        target: Target,
-        key: &Key,
-        right: Right,
-        covers: bool,
-        frame: &mut Frame,
-    ) {
-        let value = right.value;
+    fn assign(&mut self, a: &Assignment, covers: bool, frame: &mut Frame) {
+        let (domain, target, key, value) = (&a.domain, a.target, &a.key, &a.value);
         let symbol = self.target_table(target).and_then(|t| self.table_symbol(t));
         if let (Some(s), Target::Table(t)) = (symbol, target)
             && [attribute::L, attribute::M].contains(&(t - self.symbols.get(s).table))
@@ -316,19 +268,18 @@ impl Machine<'_> {
         }
         if domain.slots.is_empty() {
             if let Some(s) = symbol {
-                self.assign_one(s, domain, target, key, right, frame);
+                self.assign_one(s, a, frame);
                 return;
             }
             if !self.all_hold(&domain.conditions, frame) {
                 return;
             }
-            let text = if let NodeKind::Text(t) = &value.kind {
-                Some(t.to_string())
-            } else {
-                None
+            let text = match &value.kind {
+                NodeKind::Text(t) => Some(t.to_string()),
+                _ => None,
             };
             let v = self.eval(value, frame);
-            if right.skips(v) {
+            if skips(a, v) {
                 return;
             }
             match target {
@@ -353,23 +304,18 @@ impl Machine<'_> {
         let wanted = Wanted {
             value: table.map(|_| value),
             rest: table
-                .filter(|_| !right.nonzero)
+                .filter(|_| !a.nonzero)
                 .map_or(0.0, |t| self.store.table(t).default_value()),
-            stored: table
-                .filter(|_| !covers && !right.nonzero)
-                .map(|t| (t, key)),
+            stored: table.filter(|_| !covers && !a.nonzero).map(|t| (t, key)),
             ..Wanted::default()
         };
         let plan = self.plan(domain, wanted);
         for t in plan.scanned() {
             self.store.tables[t as usize].tidy();
         }
-        let mut out = Records {
-            keys: Vec::new(),
-            values: Vec::new(),
-        };
+        let mut out = Records::default();
         self.run_plan(domain, &plan, frame, &mut |f| {
-            self.evaluate(symbol, key, right, f, &mut out);
+            self.evaluate(symbol, a, value, f, &mut out);
             self.keep_going()
         });
         *self.current.borrow_mut() = None;
@@ -382,17 +328,11 @@ impl Machine<'_> {
 
     /// Each element reads what those before it have written. As in GAMS what has its first label before that of the
     /// symbol's first record is not seen before the end.
-    fn assign_in_turn(
-        &mut self,
-        domain: &Domain,
-        target: Target,
-        key: &Key,
-        right: Right,
-        frame: &mut Frame,
-    ) {
+    fn assign_in_turn(&mut self, a: &Assignment, frame: &mut Frame) {
+        let (domain, target) = (&a.domain, a.target);
         let symbol = self.target_table(target).and_then(|t| self.table_symbol(t));
         let Some(symbol) = symbol.filter(|_| !domain.slots.is_empty()) else {
-            return self.assign(domain, target, key, right, false, frame);
+            return self.assign(a, false, frame);
         };
         let owner = self.symbols.get(symbol);
         let count = match owner.has_attributes() {
@@ -415,9 +355,9 @@ impl Machine<'_> {
         };
         let tuples = self.tuples(&outer, &[], frame);
         let fixed = |n: &Node| matches!(&n.kind, NodeKind::Data(t, key) if own.contains(t) && key.is_fixed());
-        let mut nodes = domain.conditions.iter().chain([right.value]);
+        let mut nodes = domain.conditions.iter().chain([&a.value]);
         let copies = nodes.any(|n| n.any(fixed)).then(|| {
-            let mut value = right.value.clone();
+            let mut value = a.value.clone();
             let mut conditions = domain.conditions.clone();
             for n in conditions.iter_mut().chain([&mut value]) {
                 n.change(&mut |n| {
@@ -430,13 +370,9 @@ impl Machine<'_> {
         });
         let (value, conditions) = match &copies {
             Some((value, conditions)) => (value, conditions),
-            None => (right.value, &domain.conditions),
+            None => (&a.value, &domain.conditions),
         };
-        let right = Right { value, ..right };
-        let mut late = Records {
-            keys: Vec::new(),
-            values: Vec::new(),
-        };
+        let mut late = Records::default();
         for t in tuples.chunks_exact(domain.slots.len()) {
             for (&s, &l) in domain.slots.iter().zip(t) {
                 frame[s as usize] = l;
@@ -448,7 +384,7 @@ impl Machine<'_> {
                 continue;
             }
             let (at, before) = (late.keys.len(), late.values.len());
-            self.evaluate(symbol, key, right, frame, &mut late);
+            self.evaluate(symbol, a, value, frame, &mut late);
             if late.values.len() > before && first.is_some_and(|f| late.keys[at] >= f) {
                 let one = Records {
                     keys: late.keys.split_off(at),
@@ -462,20 +398,13 @@ impl Machine<'_> {
         }
         *self.current.borrow_mut() = None;
         if !self.stopped() {
-            tidy_records(&mut late, key.parts.len());
+            tidy_records(&mut late, a.key.parts.len());
             self.write(target, late, false);
         }
     }
 
-    fn assign_one(
-        &mut self,
-        s: SymbolId,
-        domain: &Domain,
-        target: Target,
-        key: &Key,
-        right: Right,
-        frame: &mut Frame,
-    ) {
+    fn assign_one(&mut self, s: SymbolId, a: &Assignment, frame: &mut Frame) {
+        let (domain, target) = (&a.domain, a.target);
         if !self.all_hold(&domain.conditions, frame)
             || !domain
                 .members
@@ -486,26 +415,18 @@ impl Machine<'_> {
             return;
         }
         let mut k = [0; 20];
-        let n = key.parts.len();
-        if !self.key(key, frame, &mut k) {
+        let n = a.key.parts.len();
+        if !self.key(&a.key, frame, &mut k) {
             self.empty_singleton(target);
             return;
         }
         if n > 0 {
-            let mut current = self.current.borrow_mut();
-            match &mut *current {
-                Some((cs, ck)) => {
-                    *cs = s;
-                    ck.clear();
-                    ck.extend_from_slice(&k[..n]);
-                }
-                none => *none = Some((s, k[..n].to_vec())),
-            }
+            self.at_record(s, &k[..n]);
         } else {
             *self.current.borrow_mut() = None;
         }
-        let v = self.eval(right.value, frame);
-        if right.skips(v) {
+        let v = self.eval(&a.value, frame);
+        if skips(a, v) {
             return;
         }
         match target {
@@ -528,34 +449,37 @@ impl Machine<'_> {
         }
     }
 
+    /// Notes the record that is assigned, for messages.
+    #[inline]
+    fn at_record(&self, symbol: SymbolId, key: &[Label]) {
+        match &mut *self.current.borrow_mut() {
+            Some((of, labels)) => {
+                *of = symbol;
+                labels.clear();
+                labels.extend_from_slice(key);
+            }
+            none => *none = Some((symbol, key.to_vec())),
+        }
+    }
+
     /// Evaluates the right side for the labels in the frame.
     #[inline]
     fn evaluate(
         &self,
         symbol: SymbolId,
-        key: &Key,
-        right: Right,
+        a: &Assignment,
+        value: &Node,
         frame: &mut Frame,
         out: &mut Records,
     ) {
         let mut k = [0; 20];
-        let n = key.parts.len();
-        if !self.key(key, frame, &mut k) {
+        let n = a.key.parts.len();
+        if !self.key(&a.key, frame, &mut k) {
             return;
         }
-        {
-            let mut current = self.current.borrow_mut();
-            match &mut *current {
-                Some((cs, ck)) => {
-                    *cs = symbol;
-                    ck.clear();
-                    ck.extend_from_slice(&k[..n]);
-                }
-                none => *none = Some((symbol, k[..n].to_vec())),
-            }
-        }
-        let v = self.eval(right.value, frame);
-        if right.skips(v) {
+        self.at_record(symbol, &k[..n]);
+        let v = self.eval(value, frame);
+        if skips(a, v) {
             return;
         }
         out.keys.extend_from_slice(&k[..n]);

@@ -85,11 +85,7 @@ impl Machine<'_> {
 
 fn refused(code: &'static str, what: &str, name: &str, e: &HostError, span: Span) -> Diagnostic {
     let d = |why: String| {
-        Diagnostic::execution(
-            code,
-            span,
-            format!("the file `{name}` cannot be {what}: {why}"),
-        )
+        Diagnostic::failed(code, span).says(format!("the file `{name}` cannot be {what}: {why}"))
     };
     match e {
         HostError::NotFound => {

@@ -296,13 +296,13 @@ impl<'h> Machine<'h> {
             self.stop.set(true);
             drop(host);
             self.note(
-                Diagnostic::execution(
-                    "E0490",
-                    self.options.at.get(),
-                    format!("the time limit of {} s is used up", self.options.time_limit),
-                )
-                .label("stopped here")
-                .help("raise it with `--time-limit`, or look for a loop that does not end"),
+                Diagnostic::failed("E0490", self.options.at.get())
+                    .says(format!(
+                        "the time limit of {} s is used up",
+                        self.options.time_limit
+                    ))
+                    .label("stopped here")
+                    .help("raise it with `--time-limit`, or look for a loop that does not end"),
             );
             return false;
         }
@@ -312,13 +312,10 @@ impl<'h> Machine<'h> {
             self.stop.set(true);
             drop(host);
             self.note(
-                Diagnostic::execution(
-                    "E0491",
-                    self.options.at.get(),
-                    format!("the memory limit of {} MB is used up", limit >> 20),
-                )
-                .label("stopped here")
-                .help("raise it with `--max-memory`, or add a condition that keeps the set sparse"),
+                Diagnostic::failed("E0491", self.options.at.get())
+                    .says(format!("the memory limit of {} MB is used up", limit >> 20))
+                    .label("stopped here")
+                    .help("raise it with `--max-memory`, or add a condition that keeps the set sparse"),
             );
             return false;
         }

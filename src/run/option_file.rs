@@ -125,12 +125,11 @@ impl Machine<'_> {
         if !ignored.is_empty() && self.passed_over.insert(file.to_string()) {
             let names = ignored.join("`, `");
             self.note(
-                Diagnostic::warning(
-                    "E0426",
-                    span,
-                    format!("`{file}`: `{names}` mean nothing here and are passed over"),
-                )
-                .label("at this solve"),
+                Diagnostic::doubtful("E0426", span)
+                    .says(format!(
+                        "`{file}`: `{names}` mean nothing here and are passed over"
+                    ))
+                    .label("at this solve"),
             );
         }
         Some(taken)

@@ -6,7 +6,7 @@
 
 use super::{Frame, Machine};
 use crate::check::calendar;
-use crate::check::node::{DataFunction, Node, NodeKind, PutCode, SymbolId};
+use crate::check::node::{DataFunction, Node, NodeKind, PutCode, SymbolId, Written};
 use crate::check::symbols::SymbolKind;
 use crate::data::value::{is_eps, number, special_text, truth};
 use crate::diag::Diagnostic;
@@ -77,43 +77,34 @@ impl Machine<'_> {
                     let r = f.text.row(part, row);
                     self.put_trouble(r, place);
                 }
-                PutCode::Item { value, .. } => {
-                    let Some((item, format)) = self.put_formatted(item, frame) else {
+                PutCode::Item(w) => {
+                    let Some((item, format)) = self.put_formatted(w, frame) else {
                         continue;
                     };
                     let Some(f) = self.put_file(span) else { return };
                     let r = f.text.item(part, &item, format);
-                    self.put_trouble(r, value.span);
+                    self.put_trouble(r, w.value.span);
                 }
             }
         }
     }
 
-    /// `x:<10:2`; None for what is no item, or hidden by a condition.
+    /// `x:<10:2`; None for what is hidden by a condition.
     pub(super) fn put_formatted(
         &self,
-        code: &PutCode,
+        w: &Written<Node>,
         frame: &mut Frame,
     ) -> Option<(Item, Format)> {
-        let PutCode::Item {
-            value,
-            align,
-            width,
-            decimals,
-        } = code
-        else {
-            return None;
-        };
-        let [width, decimals] = [width, decimals].map(|n| {
+        let [width, decimals] = [&w.width, &w.decimals].map(|n| {
             let x = number(self.eval(n.as_ref()?, frame));
             Some(x.round().clamp(0.0, WIDEST) as i64)
         });
         let format = Format {
-            align: *align,
+            align: w.align,
             width,
             decimals,
         };
-        Some((self.put_item(value, frame)?, format))
+        Some((self.put_item(&w.value, frame)?, format))
     }
 
     /// Makes a file the current one; one that was closed begins again.
@@ -149,24 +140,15 @@ impl Machine<'_> {
     fn put_trouble(&mut self, r: Result<(), Overflow>, span: Span) {
         let d = match r {
             Ok(()) => return,
-            Err(Overflow::Number) => Diagnostic::warning(
-                "E0473",
-                span,
-                "the number is too wide for its place; asterisks were written",
-            )
-            .help("give it a greater width, `x:12:2`, or width 0, `x:0:2`"),
-            Err(Overflow::Line) => Diagnostic::warning(
-                "E0473",
-                span,
-                "the line is longer than the file's `.pw`; the rest of it was lost",
-            )
-            .help("end the line with `/`, or assign a greater `.pw`"),
-            Err(Overflow::Row) => Diagnostic::warning(
-                "E0473",
-                span,
-                "the row lies below the page; the last row was taken",
-            )
-            .help("assign a greater `.ps`"),
+            Err(Overflow::Number) => Diagnostic::doubtful("E0473", span)
+                .says("the number is too wide for its place; asterisks were written")
+                .help("give it a greater width, `x:12:2`, or width 0, `x:0:2`"),
+            Err(Overflow::Line) => Diagnostic::doubtful("E0473", span)
+                .says("the line is longer than the file's `.pw`; the rest of it was lost")
+                .help("end the line with `/`, or assign a greater `.pw`"),
+            Err(Overflow::Row) => Diagnostic::doubtful("E0473", span)
+                .says("the row lies below the page; the last row was taken")
+                .help("assign a greater `.ps`"),
         };
         self.note(d);
     }

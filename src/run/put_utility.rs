@@ -17,8 +17,9 @@ impl Machine<'_> {
             match item {
                 PutCode::File(s) => self.open_put_file(*s),
                 PutCode::NewLine => lines.new_line(Part::Body),
-                item => {
-                    if let Some((item, format)) = self.put_formatted(item, frame) {
+                PutCode::Column(_) | PutCode::Row(_) => {}
+                PutCode::Item(w) => {
+                    if let Some((item, format)) = self.put_formatted(w, frame) {
                         // What does not fit is marked in the text.
                         let _ = lines.item(Part::Body, &item, format);
                     }
@@ -65,13 +66,10 @@ impl Machine<'_> {
             "gdxout" => self.transfer.unload_to = Some(argument.trim().into()),
             "gdxin" => self.transfer.load_from = Some(argument.trim().into()),
             _ => self.note(
-                Diagnostic::warning(
-                    "E0474",
-                    span,
-                    format!("`{command}` of `put_utility` is not carried out"),
-                )
-                .label("asks for what is outside of the model")
-                .help("`log`, `msg`, `ren`, `inc`, `gdxOut` and `gdxIn` are known"),
+                Diagnostic::doubtful("E0474", span)
+                    .says(format!("`{command}` of `put_utility` is not carried out"))
+                    .label("asks for what is outside of the model")
+                    .help("`log`, `msg`, `ren`, `inc`, `gdxOut` and `gdxIn` are known"),
             ),
         }
     }

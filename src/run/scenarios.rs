@@ -137,13 +137,14 @@ impl Machine<'_> {
 
     fn no_plan(&self, why: String, span: Span) -> Flow {
         self.note(
-            Diagnostic::execution(
-                "E0424",
-                span,
-                format!("the dictionary of the scenarios cannot be used: {why}"),
-            )
-            .label("not solved")
-            .help("its records look like `s.scenario.''`, `demand.param.demands`, `x.level.xs`"),
+            Diagnostic::failed("E0424", span)
+                .says(format!(
+                    "the dictionary of the scenarios cannot be used: {why}"
+                ))
+                .label("not solved")
+                .help(
+                    "its records look like `s.scenario.''`, `demand.param.demands`, `x.level.xs`",
+                ),
         );
         Flow::Stop
     }

@@ -636,8 +636,6 @@ impl Machine<'_> {
         let r = &a.residuals;
         let objective = g.instance.objective;
         let solve = json::SolveReport {
-            model: self.symbols.get(s.model).name.to_string(),
-            using: s.using,
             sense: s.objective.map(|(sense, _)| sense),
             objective_name: s
                 .objective
@@ -652,10 +650,6 @@ impl Machine<'_> {
                 .search
                 .as_ref()
                 .map(|found| self.search_report(g, a, found)),
-            rows: g.instance.row_count(),
-            columns: g.columns(),
-            nonzeros: g.origin.nonzeros,
-            nonlinear_nonzeros: g.origin.nonlinear_nonzeros,
             iterations: a.outcome.iterations,
             seconds,
             residual: r.into(),
@@ -667,6 +661,7 @@ impl Machine<'_> {
             message: self.solve_message(g, a),
             hint: self.hint(s.using, g, a),
             why: self.options.why.then(|| self.explanation(s, g, a)),
+            ..self.not_solved(s, g)
         };
         if !self.options.quiet {
             let mut text = summary::solve(&solve, self.options.color);

@@ -30,7 +30,6 @@ struct Square<'a> {
     index: Vec<usize>,
     /// Where each entry of the pattern stands in the evaluator's Jacobian.
     from: Vec<usize>,
-    constant: Vec<bool>,
 }
 
 impl<'a> Square<'a> {
@@ -63,7 +62,6 @@ impl<'a> Square<'a> {
         }
         let (row_start, row_column) = evaluator.jacobian_pattern();
         let (row_start, row_column) = (row_start.to_vec(), row_column.to_vec());
-        let nonlinear = instance.nonlinear_places();
         let mut entries: Vec<(u32, u32, usize)> = Vec::with_capacity(row_column.len());
         for i in 0..instance.row_count() {
             if at[i] != usize::MAX {
@@ -80,13 +78,6 @@ impl<'a> Square<'a> {
         for j in 0..n {
             start[j + 1] += start[j];
         }
-        let constant = entries
-            .iter()
-            .map(|e| {
-                let row = row_of[e.1 as usize].expect("an entry's row has a column");
-                nonlinear.binary_search(&(row, e.0)).is_err()
-            })
-            .collect();
         Ok(Self {
             instance,
             evaluator,
@@ -98,7 +89,6 @@ impl<'a> Square<'a> {
             start,
             index: entries.iter().map(|e| e.1 as usize).collect(),
             from: entries.iter().map(|e| e.2).collect(),
-            constant,
         })
     }
 }
@@ -154,10 +144,6 @@ impl mcp::Problem for Square<'_> {
 
     fn is_linear(&self) -> bool {
         self.instance.is_linear()
-    }
-
-    fn is_constant(&self, k: usize) -> bool {
-        self.constant[k]
     }
 }
 

@@ -56,7 +56,7 @@ macro_rules! strategies {
 strategies! {
     "lp": {
         Presolve "presolve",
-            "more than 200 rows and columns: rows and columns that are decided, implied or multiples of others are taken out",
+            "more than 200 rows and columns: rows and columns that are decided or implied by others are taken out",
             "the nonzeros, some thirty times at most",
             "Andersen & Andersen 1995";
         SimplexFirst "simplex_first",
@@ -69,10 +69,6 @@ strategies! {
             "Mehrotra 1991";
     }
     "mcp": {
-        PairPresolve "pair_presolve",
-            "rows of one variable become bounds",
-            "the nonzeros, a few times",
-            "Ferris & Munson 2000";
         InteriorCrash "interior_crash",
             "many variables: an interior point method leads to the first basis",
             "its iterations",

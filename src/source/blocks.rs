@@ -71,12 +71,11 @@ impl Preprocessor<'_> {
             frame.ifs.clear();
             let span = self.place(lo, hi);
             return refuse(
-                Diagnostic::error(
-                    "E0116",
-                    span,
-                    format!("`$goto {label}` was followed {limit} times: it does not end"),
-                )
-                .help("`$maxGoto n` allows more"),
+                Diagnostic::wrong("E0116", span)
+                    .says(format!(
+                        "`$goto {label}` was followed {limit} times: it does not end"
+                    ))
+                    .help("`$maxGoto n` allows more"),
             );
         }
         let text = &self.map.file(frame.file).text;
@@ -101,12 +100,9 @@ impl Preprocessor<'_> {
         }
         let span = self.place(lo, hi);
         refuse(
-            Diagnostic::error(
-                "E0116",
-                span,
-                format!("there is no `$label {label}` in this file"),
-            )
-            .help("labels are looked for in the file of the `$goto` only"),
+            Diagnostic::wrong("E0116", span)
+                .says(format!("there is no `$label {label}` in this file"))
+                .help("labels are looked for in the file of the `$goto` only"),
         )
     }
 

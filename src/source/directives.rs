@@ -159,14 +159,11 @@ impl Preprocessor<'_> {
                 let (lo, hi) = line.origin(0, text.len().max(1));
                 let span = self.place(lo, hi);
                 return refuse(
-                    Diagnostic::error(
-                        "E0107",
-                        span,
-                        "a `$` in the first column begins a directive, but no name follows",
-                    )
-                    .help(
-                        "a `$` condition must not begin in the first column: put a blank before it",
-                    ),
+                    Diagnostic::wrong("E0107", span)
+                        .says("a `$` in the first column begins a directive, but no name follows")
+                        .help(
+                            "a `$` condition must not begin in the first column: put a blank before it",
+                        ),
                 );
             }
             if self.switch(&word) || SILENT.contains(&word.as_str()) {
@@ -309,12 +306,9 @@ impl Preprocessor<'_> {
                 }
                 return outcome.map_err(|d| match (word, d.code) {
                     ("libinclude" | "sysinclude", "E0103") => Box::new(
-                        Diagnostic::error(
-                            "E0112",
-                            d.span,
-                            format!("`{name}` belongs to the library of a GAMS installation, which is not there"),
-                        )
-                        .help("put the file beside the model, or do without it"),
+                        Diagnostic::wrong("E0112", d.span)
+                            .says(format!("`{name}` belongs to the library of a GAMS installation, which is not there"))
+                            .help("put the file beside the model, or do without it"),
                     ),
                     _ => d,
                 });
@@ -523,13 +517,12 @@ impl Preprocessor<'_> {
                     && self.host.exists(&made, from.as_deref())
                 {
                     self.warnings.push(
-                        Diagnostic::warning(
-                            "E0113",
-                            span,
-                            format!("`${word}` starts no program: `{made}` is read as it is there"),
-                        )
-                        .label("not run")
-                        .help("run the program again yourself where its source has changed"),
+                        Diagnostic::doubtful("E0113", span)
+                            .says(format!(
+                                "`${word}` starts no program: `{made}` is read as it is there"
+                            ))
+                            .label("not run")
+                            .help("run the program again yourself where its source has changed"),
                     );
                     return Ok(());
                 }
@@ -600,12 +593,9 @@ impl Preprocessor<'_> {
 
     fn bad_condition(&mut self, word: &str, why: String, lo: u32, hi: u32) -> Diagnostic {
         let span = self.place(lo, hi);
-        Diagnostic::error(
-            "E0114",
-            span,
-            format!("the condition of `${word}` cannot be read: {why}"),
-        )
-        .help("for example `$if set x`, `$if not exist 'data.inc'`, `$if %n% == 3`, `$ifE %n% > 3`")
+        Diagnostic::wrong("E0114", span)
+            .says(format!("the condition of `${word}` cannot be read: {why}"))
+            .help("for example `$if set x`, `$if not exist 'data.inc'`, `$if %n% == 3`, `$ifE %n% > 3`")
     }
 
     /// What follows a true condition: a directive, a text, or nothing.
@@ -643,12 +633,11 @@ impl Preprocessor<'_> {
         let Some(open) = self.frames.last_mut().and_then(|f| f.ifs.last_mut()) else {
             let span = self.place(lo, hi);
             return refuse(
-                Diagnostic::error(
-                    "E0106",
-                    span,
-                    format!("`${word}` without an `$ifThen` before it in this file"),
-                )
-                .help("`$if` on one line needs no `$endIf`; blocks begin with `$ifThen`"),
+                Diagnostic::wrong("E0106", span)
+                    .says(format!(
+                        "`${word}` without an `$ifThen` before it in this file"
+                    ))
+                    .help("`$if` on one line needs no `$endIf`; blocks begin with `$ifThen`"),
             );
         };
         if open.tag != tag {
@@ -660,17 +649,16 @@ impl Preprocessor<'_> {
             }
             let span = self.place(lo, hi);
             return refuse(
-                Diagnostic::error(
-                    "E0106",
-                    span,
-                    format!("`${word}.{tag}` does not belong to the innermost open `$ifThen`"),
-                )
-                .other(at, "which is this one")
-                .help(if expected.is_empty() {
-                    format!("write `${word}`")
-                } else {
-                    format!("write `${word}.{expected}`")
-                }),
+                Diagnostic::wrong("E0106", span)
+                    .says(format!(
+                        "`${word}.{tag}` does not belong to the innermost open `$ifThen`"
+                    ))
+                    .other(at, "which is this one")
+                    .help(if expected.is_empty() {
+                        format!("write `${word}`")
+                    } else {
+                        format!("write `${word}.{expected}`")
+                    }),
             );
         }
         match word.as_str() {

@@ -458,12 +458,9 @@ impl<'h> Preprocessor<'h> {
             let file = FileId(0);
             let span = self.map.push_substitute("\n", file, at, at);
             return Err(vec![
-                Diagnostic::error(
-                    "E0108",
-                    span,
-                    "the text is longer than 3 GB with all its includes",
-                )
-                .help("split the model, or read the data with `execute_load`"),
+                Diagnostic::wrong("E0108", span)
+                    .says("the text is longer than 3 GB with all its includes")
+                    .help("split the model, or read the data with `execute_load`"),
             ]);
         }
         loop {
@@ -765,12 +762,9 @@ impl<'h> Preprocessor<'h> {
             let (lo, hi) = line.origin(0, line.text.len());
             let span = self.place(lo, hi);
             return refuse(
-                Diagnostic::error(
-                    "E0108",
-                    span,
-                    "with its `%name%` filled in, this line is longer than 4 MB",
-                )
-                .help("a name that stands for itself twice doubles with each `$set`"),
+                Diagnostic::wrong("E0108", span)
+                    .says("with its `%name%` filled in, this line is longer than 4 MB")
+                    .help("a name that stands for itself twice doubles with each `$set`"),
             );
         }
         line.replace(&changes);
@@ -1066,31 +1060,24 @@ fn unreadable(name: &str, e: &HostError, span: Span) -> Diagnostic {
             Diagnostic::error("E0103", span, format!("the file `{name}` is not there"))
                 .help("paths are relative to the file that asks, then to the current directory")
         }
-        HostError::Outside(p) => Diagnostic::error(
-            "E0104",
-            span,
-            format!(
+        HostError::Outside(p) => Diagnostic::wrong("E0104", span)
+            .says(format!(
                 "the file `{name}` lies outside the folders that may be read ({})",
                 p.display()
-            ),
-        )
-        .help("put it beside the model, or allow its folder: `--allow-read DIR`"),
-        HostError::NotUtf8(at) => Diagnostic::error(
-            "E0102",
-            span,
-            format!("the file `{name}` is not UTF-8 text: byte {at} is not part of a character"),
-        )
-        .help("save it as UTF-8, for example with `iconv -f LATIN1 -t UTF-8`"),
+            ))
+            .help("put it beside the model, or allow its folder: `--allow-read DIR`"),
+        HostError::NotUtf8(at) => Diagnostic::wrong("E0102", span)
+            .says(format!(
+                "the file `{name}` is not UTF-8 text: byte {at} is not part of a character"
+            ))
+            .help("save it as UTF-8, for example with `iconv -f LATIN1 -t UTF-8`"),
         HostError::Compressed => {
             let message = format!("the file `{name}` was compressed by GAMS");
             Diagnostic::error("E0102", span, message)
                 .help("GAMS unpacks it: `$decompress FILE PLAIN`; bmod reads the plain text")
         }
-        HostError::Other(why) => Diagnostic::error(
-            "E0103",
-            span,
-            format!("the file `{name}` cannot be read: {why}"),
-        )
-        .help("check the path and the permissions"),
+        HostError::Other(why) => Diagnostic::wrong("E0103", span)
+            .says(format!("the file `{name}` cannot be read: {why}"))
+            .help("check the path and the permissions"),
     }
 }

@@ -66,20 +66,7 @@ pub enum StmtKind {
     /// `while(c, …);`
     While(Expr, Vec<Stmt>),
     /// `for(k = a to|downto b by s, …);`
-    For {
-        /// The scalar that counts.
-        variable: Reference,
-        /// First value.
-        from: Expr,
-        /// `downto`.
-        down: bool,
-        /// Limit.
-        to: Expr,
-        /// Step, 1 where none is given.
-        by: Option<Expr>,
-        /// Statements.
-        body: Vec<Stmt>,
-    },
+    For(For<Reference, Expr, Stmt>),
     /// `repeat(… until c);`
     Repeat(Vec<Stmt>, Expr),
     /// `if(c, … elseif c, … else …);`
@@ -91,14 +78,7 @@ pub enum StmtKind {
     /// `display$c 'text', p, x.l;`
     Display(Option<Expr>, Vec<DisplayItem>),
     /// `abort$c 'text', p;` `no_error` for `abort.noError`.
-    Abort {
-        /// Condition.
-        condition: Option<Expr>,
-        /// What to show.
-        items: Vec<DisplayItem>,
-        /// Ends the run with exit status 0.
-        no_error: bool,
-    },
+    Abort(Option<Expr>, Vec<DisplayItem>, bool),
     /// `option …;`
     Option(Vec<OptionItem>),
     /// `put`, `putclose`, `puttl`, `puthd`, `putpage`.
@@ -347,15 +327,9 @@ pub enum ExprKind {
     Membership(bool),
     /// A quoted text: a label in an index position, a text in `put`.
     Text(Box<str>),
-    /// A name, perhaps with attribute and arguments: symbol, function or index, told apart later.
-    Apply {
-        /// Name.
-        name: Ident,
-        /// `.l`, `.val` …
-        attribute: Option<Ident>,
-        /// Arguments; None where no parentheses stand.
-        arguments: Option<Vec<Expr>>,
-    },
+    /// A name, perhaps with an attribute (`.l`, `.val`), and with arguments where parentheses stand: symbol, function or index, told
+    /// apart later.
+    Apply(Ident, Option<Ident>, Option<Vec<Expr>>),
     /// A prefix operator.
     Unary(UnaryOp, Box<Expr>),
     /// An infix operator.
@@ -533,6 +507,23 @@ pub struct Put {
     pub items: Vec<PutItem>,
 }
 
+/// `for(k = from to limit by step, …);` as it is written, and as it is checked.
+#[derive(Clone, Debug)]
+pub struct For<V, E, S> {
+    /// The scalar that counts.
+    pub variable: V,
+    /// First value.
+    pub from: E,
+    /// `downto`.
+    pub down: bool,
+    /// Limit.
+    pub to: E,
+    /// Step, 1 where none is given.
+    pub by: Option<E>,
+    /// Statements.
+    pub body: Vec<S>,
+}
+
 /// One item of a `put`.
 #[derive(Clone, Debug)]
 pub enum PutItem {
@@ -542,17 +533,21 @@ pub enum PutItem {
     Column(Expr),
     /// `# n`: to a line.
     Row(Expr),
-    /// Something to write, with `:<width:decimals`.
-    Item {
-        /// What.
-        value: Expr,
-        /// `<` left, `>` right, `=` centred (`<>`).
-        align: Option<char>,
-        /// Width.
-        width: Option<Expr>,
-        /// Decimals.
-        decimals: Option<Expr>,
-    },
+    /// Something to write.
+    Item(Written<Expr>),
+}
+
+/// Something that `put` writes, with `:<width:decimals`.
+#[derive(Clone, Debug)]
+pub struct Written<E> {
+    /// What.
+    pub value: E,
+    /// `<` left, `>` right, `=` centred (`<>`).
+    pub align: Option<char>,
+    /// Width.
+    pub width: Option<E>,
+    /// Decimals.
+    pub decimals: Option<E>,
 }
 
 /// Data exchange with files.

@@ -17,9 +17,10 @@ use crate::diag::Diagnostic;
 use crate::source::{Known, Span};
 
 /// What the data belong to: only texts of sets are read to the end of the line.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum DataKind {
     /// Elements, perhaps with explanatory texts.
+    #[default]
     Set,
     /// Keys with values; scalars; attributes of variables and equations.
     Values,
@@ -89,6 +90,7 @@ pub struct Record<'r, 'a> {
 }
 
 /// Reads the records of one body.
+#[derive(Default)]
 pub struct DataReader<'a> {
     text: &'a str,
     base: u32,
@@ -138,15 +140,10 @@ impl<'a> DataReader<'a> {
         Self {
             text,
             base,
-            at: 0,
             kind,
             undf,
             arity: usize::MAX,
-            key: Vec::with_capacity(8),
-            factors: false,
-            excused: false,
-            shown: 0,
-            constants: Constants::default(),
+            ..Self::default()
         }
     }
 

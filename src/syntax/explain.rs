@@ -90,7 +90,12 @@ impl<'a> Failure<'a> {
         len: usize,
         message: impl Into<String>,
     ) -> Diagnostic {
-        Diagnostic::error(code, self.span(lo, lo + len), message)
+        self.wrong(code, lo, len).says(message)
+    }
+
+    /// An error whose message follows with [`Diagnostic::says`].
+    pub(super) fn wrong(&self, code: &'static str, lo: usize, len: usize) -> Diagnostic {
+        Diagnostic::wrong(code, self.span(lo, lo + len))
     }
 }
 
@@ -217,12 +222,8 @@ fn other_end(f: &Failure<'_>) -> Option<Explanation> {
         return None;
     }
     let missing = f
-        .error(
-            "E0201",
-            f.at,
-            1,
-            format!("`;` ends a statement, not `{token}`"),
-        )
+        .wrong("E0201", f.at, 1)
+        .says(format!("`;` ends a statement, not `{token}`"))
         .label("write `;`");
     let mut found = Explanation::of(missing);
     let end = f.span(first.len().saturating_sub(1), first.len()).hi;
@@ -311,13 +312,9 @@ fn slip(f: &Failure<'_>) -> Option<Diagnostic> {
     match first {
         Some('\'' | '"') if f.raw.class == Class::File => {
             return Some(
-                f.error(
-                    "E0210",
-                    f.at,
-                    1,
-                    "a file has a name in the text, and one outside of it",
-                )
-                .help("write `file out / 'out.txt' /;`, and `put out 'text' /;`"),
+                f.wrong("E0210", f.at, 1)
+                    .says("a file has a name in the text, and one outside of it")
+                    .help("write `file out / 'out.txt' /;`, and `put out 'text' /;`"),
             );
         }
         Some('\'' | '"') => {
@@ -376,13 +373,9 @@ fn slip(f: &Failure<'_>) -> Option<Diagnostic> {
                 }
             };
             return Some(
-                f.error(
-                    "E0209",
-                    f.at,
-                    c.len_utf8(),
-                    format!("`{c}` cannot stand here"),
-                )
-                .help(help),
+                f.wrong("E0209", f.at, c.len_utf8())
+                    .says(format!("`{c}` cannot stand here"))
+                    .help(help),
             );
         }
         Some(c) if c.is_ascii_digit() => {
@@ -395,25 +388,17 @@ fn slip(f: &Failure<'_>) -> Option<Diagnostic> {
                     "names begin with a letter; between a number and a name an operator is missing"
                 };
                 return Some(
-                    f.error(
-                        "E0209",
-                        f.at,
-                        end - f.at,
-                        format!("`{token}` is neither a number nor a name"),
-                    )
-                    .help(help),
+                    f.wrong("E0209", f.at, end - f.at)
+                        .says(format!("`{token}` is neither a number nor a name"))
+                        .help(help),
                 );
             }
         }
         Some('_') => {
             return Some(
-                f.error(
-                    "E0209",
-                    f.at,
-                    token.len(),
-                    format!("the name `{token}` begins with `_`"),
-                )
-                .help("names begin with a letter"),
+                f.wrong("E0209", f.at, token.len())
+                    .says(format!("the name `{token}` begins with `_`"))
+                    .help("names begin with a letter"),
             );
         }
         _ => {}
@@ -437,15 +422,11 @@ fn in_declaration(f: &Failure<'_>, token: &str) -> Option<Diagnostic> {
     let here = f.span(f.at, f.at).lo as usize;
     if f.raw.class == Class::Equation && f.expanded[here..].starts_with("..") {
         return Some(
-            f.error(
-                "E0221",
-                f.at,
-                2,
-                "an equation is declared in one statement and defined in another",
-            )
-            .help(format!(
-                "write `equation {name};` and then `{name}.. left =e= right;`"
-            )),
+            f.wrong("E0221", f.at, 2)
+                .says("an equation is declared in one statement and defined in another")
+                .help(format!(
+                    "write `equation {name};` and then `{name}.. left =e= right;`"
+                )),
         );
     }
     if let Some(d) = declared_attribute(f, token, name) {
@@ -453,13 +434,9 @@ fn in_declaration(f: &Failure<'_>, token: &str) -> Option<Diagnostic> {
     }
     if matches!(token, "-" | ".") && before_is_name(f.text, f.at) {
         return Some(
-            f.error(
-                "E0209",
-                f.at,
-                1,
-                format!("`{token}` cannot stand in a name"),
-            )
-            .help("names consist of letters, digits and `_`: `unit_cost`"),
+            f.wrong("E0209", f.at, 1)
+                .says(format!("`{token}` cannot stand in a name"))
+                .help("names consist of letters, digits and `_`: `unit_cost`"),
         );
     }
     if f.raw.class == Class::Variable
@@ -475,13 +452,9 @@ fn in_declaration(f: &Failure<'_>, token: &str) -> Option<Diagnostic> {
         && f.text[..f.at].trim_end().ends_with(['(', ','])
     {
         return Some(
-            f.error(
-                "E0220",
-                f.at,
-                token.len(),
-                "an index position is a set, not a number",
-            )
-            .help(format!("declare `set i / 1*{token} /;` and write `x(i)`")),
+            f.wrong("E0220", f.at, token.len())
+                .says("an index position is a set, not a number")
+                .help(format!("declare `set i / 1*{token} /;` and write `x(i)`")),
         );
     }
     if matches!(token, "=" | ":") {
@@ -498,14 +471,10 @@ fn in_declaration(f: &Failure<'_>, token: &str) -> Option<Diagnostic> {
             _ => format!("write `scalar {name} / 5 /;`, or declare it first and assign then: `scalar {name}; {name} = 5;`"),
         };
         return Some(
-            f.error(
-                "E0220",
-                f.at,
-                1,
-                "a declaration gives values between slashes",
-            )
-            .label("`=` cannot stand here".replace('=', token))
-            .help(help),
+            f.wrong("E0220", f.at, 1)
+                .says("a declaration gives values between slashes")
+                .label("`=` cannot stand here".replace('=', token))
+                .help(help),
         );
     }
     if matches!(token, "<" | ">") {

@@ -170,7 +170,8 @@ pub(super) fn statement(f: &Failure<'_>) -> Option<Explanation> {
     }
     if text.to_ascii_lowercase().starts_with("s.t.") {
         let d = f
-            .error("E0231", lead, 4, "constraints are equations here")
+            .wrong("E0231", lead, 4)
+            .says("constraints are equations here")
             .help(CONSTRAINT);
         return Some(said(d, Language::Ampl));
     }
@@ -404,8 +405,8 @@ fn blocks(f: &Failure<'_>, word: &str, rest: &str, lead: usize) -> Option<Explan
             Some(found)
         }
         ("solve", "minimize" | "maximize" | "satisfy") => {
-            let d = f
-                .error("E0231", lead, 5, "`solve` names a model first")
+            let d = f.wrong("E0231", lead, 5)
+                .says("`solve` names a model first")
                 .help("write `model m / all /; solve m using lp minimizing z;`");
             Some(said(d, Language::MiniZinc))
         }
@@ -416,13 +417,8 @@ fn blocks(f: &Failure<'_>, word: &str, rest: &str, lead: usize) -> Option<Explan
             ))
         }
         ("set" | "sets", "of") => {
-            let d = f
-                .error(
-                    "E0231",
-                    lead,
-                    word.len(),
-                    "the elements of a set stand between slashes",
-                )
+            let d = f.wrong("E0231", lead, word.len())
+                .says("the elements of a set stand between slashes")
                 .help("write `set i / a, b, c /;` or `set t / 1*10 /;`");
             Some(said(d, Language::MiniZinc))
         }
@@ -477,12 +473,9 @@ fn trace(line: &str, place: &dyn Fn(usize, usize) -> Span) -> Option<Explanation
         Language::Matlab => "a MATLAB program",
         _ => "a Python program",
     };
-    let d = Diagnostic::error(
-        "E0231",
-        place(at, len),
-        format!("this is {name}, not a model"),
-    )
-    .help(PROGRAM);
+    let d = Diagnostic::wrong("E0231", place(at, len))
+        .says(format!("this is {name}, not a model"))
+        .help(PROGRAM);
     Some(said(d, language))
 }
 
@@ -541,12 +534,9 @@ fn misspelled(f: &Failure<'_>, word: &str, rest: &str, lead: usize) -> Option<Ex
             "semiint",
         ];
         let meant = nearest(word, KINDS).unwrap_or("positive");
-        let d = f.error(
-            "E0219",
-            lead,
-            word.len(),
-            format!("`{word}` is no kind of variable"),
-        );
+        let d = f
+            .wrong("E0219", lead, word.len())
+            .says(format!("`{word}` is no kind of variable"));
         return Some(Explanation::of(
             d.label(format!("write `{meant}`"))
                 .help(format!("there are: {}", KINDS.join(", "))),
@@ -562,13 +552,9 @@ fn misspelled(f: &Failure<'_>, word: &str, rest: &str, lead: usize) -> Option<Ex
         _ => meant,
     };
     Some(Explanation::of(
-        f.error(
-            "E0219",
-            lead,
-            word.len(),
-            format!("`{word}` is not a statement"),
-        )
-        .label(format!("write `{meant}`")),
+        f.wrong("E0219", lead, word.len())
+            .says(format!("`{word}` is not a statement"))
+            .label(format!("write `{meant}`")),
     ))
 }
 
@@ -589,12 +575,9 @@ pub(super) fn keyword_inside(f: &Failure<'_>) -> Option<Explanation> {
     {
         words::reserved(word, span)
     } else if word.eq_ignore_ascii_case("if") && f.raw.class == Class::Algebra {
-        Diagnostic::error(
-            "E0231",
-            span,
-            "`if` is a statement; it cannot stand in an expression",
-        )
-        .help("write `ifThen(c, a, b)`, or `a$(c) + b$(not c)`")
+        Diagnostic::wrong("E0231", span)
+            .says("`if` is a statement; it cannot stand in an expression")
+            .help("write `ifThen(c, a, b)`, or `a$(c) + b$(not c)`")
     } else {
         return None;
     };

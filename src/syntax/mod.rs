@@ -79,7 +79,7 @@ impl<'h> Parser<'h> {
         match Preprocessor::new(host, path, options) {
             Ok(text) => Ok(Self {
                 text,
-                splitter: Splitter::new(),
+                splitter: Splitter::default(),
                 ended: false,
                 errors: 0,
                 pending: None,

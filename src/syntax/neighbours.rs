@@ -43,13 +43,9 @@ fn after_dots(f: &Failure<'_>, lead: usize, dots: usize) -> Option<Diagnostic> {
     let name = f.text[lead..dots].trim();
     match bytes.get(dots + 2) {
         Some(b'.') => Some(
-            f.error(
-                "E0221",
-                dots,
-                3,
-                "two dots stand behind the name of an equation, not three",
-            )
-            .help(format!("write `{name}.. left =e= right;`")),
+            f.wrong("E0221", dots, 3)
+                .says("two dots stand behind the name of an equation, not three")
+                .help(format!("write `{name}.. left =e= right;`")),
         ),
         Some(b'(') => {
             let close = closing(bytes, dots + 2)?;
@@ -61,13 +57,9 @@ fn after_dots(f: &Failure<'_>, lead: usize, dots: usize) -> Option<Diagnostic> {
                 .trim_start()
                 .starts_with(|c: char| c.is_ascii_alphanumeric() || c == '(');
             (simple && next && !name.ends_with(')')).then(|| {
-                f.error(
-                    "E0221",
-                    dots + 2,
-                    close - dots - 1,
-                    "the indices of an equation stand before the dots",
-                )
-                .help(format!("write `{name}({indices}).. left =e= right;`"))
+                f.wrong("E0221", dots + 2, close - dots - 1)
+                    .says("the indices of an equation stand before the dots")
+                    .help(format!("write `{name}({indices}).. left =e= right;`"))
             })
         }
         _ => None,
@@ -107,14 +99,12 @@ fn without_dots(f: &Failure<'_>, lead: usize, relation: usize) -> Option<Diagnos
         _ => (lead, end - lead),
     };
     Some(
-        f.error(
-            "E0221",
-            at,
-            len,
-            format!("two dots stand behind the name of an equation: `{name}..`"),
-        )
-        .label("`..` is missing here")
-        .help(format!("write `{name}.. left {sign} right;`")),
+        f.wrong("E0221", at, len)
+            .says(format!(
+                "two dots stand behind the name of an equation: `{name}..`"
+            ))
+            .label("`..` is missing here")
+            .help(format!("write `{name}.. left {sign} right;`")),
     )
 }
 
@@ -148,15 +138,10 @@ fn bound(f: &Failure<'_>, lead: usize) -> Option<Diagnostic> {
         && (indices.is_empty()
             || indices.starts_with('(')
                 && closing(indices.as_bytes(), 0) == Some(indices.len() - 1));
-    let d = f.error(
-        "E0222",
-        at,
-        len,
-        format!(
-            "`{}` compares known numbers; it states no constraint",
-            &f.text[at..at + len]
-        ),
-    );
+    let d = f.wrong("E0222", at, len).says(format!(
+        "`{}` compares known numbers; it states no constraint",
+        &f.text[at..at + len]
+    ));
     let equation = format!("declare `equation e;` and write `e.. left {sign} right;`");
     Some(match simple && !is_sum(&left[..word]) {
         true => d.help(format!(
@@ -184,12 +169,9 @@ fn without_relation(f: &Failure<'_>, dots: usize) -> Option<Diagnostic> {
     });
     let Some(at) = compare else {
         let end = f.text.trim_end().len();
-        let said = f.error(
-            "E0222",
-            end.saturating_sub(1),
-            1,
-            "this equation has no relation",
-        );
+        let said = f
+            .wrong("E0222", end.saturating_sub(1), 1)
+            .says("this equation has no relation");
         return (f.at >= end)
             .then(|| said.help("write `=e=`, `=l=`, `=g=` or `=n=` between its sides"));
     };
@@ -224,15 +206,11 @@ fn without_relation(f: &Failure<'_>, dots: usize) -> Option<Diagnostic> {
     };
     let twice = top_level(bytes, at + len, |b| matches!(b[0], b'<' | b'>')).is_some();
     let d = f
-        .error(
-            "E0222",
-            at,
-            len,
-            format!(
-                "an equation relates its sides by `{meant}`, not by `{}`",
-                &rest[..len]
-            ),
-        )
+        .wrong("E0222", at, len)
+        .says(format!(
+            "an equation relates its sides by `{meant}`, not by `{}`",
+            &rest[..len]
+        ))
         .label(format!("write `{meant}`"));
     Some(match twice {
         true => d.help(

@@ -110,13 +110,9 @@ fn sum_condition(f: &Failure<'_>) -> Option<Diagnostic> {
         f.text[dollar + 1..end].trim(),
     );
     Some(
-        f.error(
-            "E0235",
-            dollar,
-            end - dollar,
-            "a condition with an operator stands in parentheses",
-        )
-        .help(format!("write `{word}({index}$({condition}), …)`")),
+        f.wrong("E0235", dollar, end - dollar)
+            .says("a condition with an operator stands in parentheses")
+            .help(format!("write `{word}({index}$({condition}), …)`")),
     )
 }
 
@@ -188,13 +184,9 @@ fn operator(f: &Failure<'_>) -> Option<Diagnostic> {
     }
     if is_here(f, "...") {
         return Some(
-            f.error(
-                "E0232",
-                f.at,
-                3,
-                "a statement goes over several lines without a sign",
-            )
-            .help("leave `...` out"),
+            f.wrong("E0232", f.at, 3)
+                .says("a statement goes over several lines without a sign")
+                .help("leave `...` out"),
         );
     }
     if let Some(at) = found("//") {
@@ -312,29 +304,21 @@ fn missing_operator(f: &Failure<'_>) -> Option<Diagnostic> {
     }
     match token.to_ascii_lowercase().as_str() {
         "where" | "if" | "for" | "when" => Some(
-            f.error(
-                "E0232",
-                f.at,
-                token.len(),
-                format!("`{token}` is not an operator"),
-            )
-            .help("a condition stands behind `$`: `e(i)$(a(i) > 0).. …`, `x$(a > 0)`"),
+            f.wrong("E0232", f.at, token.len())
+                .says(format!("`{token}` is not an operator"))
+                .help("a condition stands behind `$`: `e(i)$(a(i) > 0).. …`, `x$(a > 0)`"),
         ),
         "in" => Some(
             f.error("E0232", f.at, 2, "`in` is not an operator")
                 .help("write `a >= 0 and a <= 2`; whether an element is in a set says `s(i)`"),
         ),
         "div" | "mod" => Some(
-            f.error(
-                "E0232",
-                f.at,
-                token.len(),
-                format!("`{token}` is not an operator"),
-            )
-            .help(match token.len() {
-                3 if token.eq_ignore_ascii_case("mod") => "write `mod(x, y)`",
-                _ => "write `floor(x/y)`",
-            }),
+            f.wrong("E0232", f.at, token.len())
+                .says(format!("`{token}` is not an operator"))
+                .help(match token.len() {
+                    3 if token.eq_ignore_ascii_case("mod") => "write `mod(x, y)`",
+                    _ => "write `floor(x/y)`",
+                }),
         ),
         "," if before.ends_with(|c: char| c.is_ascii_digit())
             && f.text[f.at + 1..].starts_with(|c: char| c.is_ascii_digit()) =>
@@ -347,26 +331,18 @@ fn missing_operator(f: &Failure<'_>) -> Option<Diagnostic> {
         t if t != "(" && is_function(last_word(before)) => {
             let name = last_word(before);
             Some(
-                f.error(
-                    "E0212",
-                    f.at,
-                    token.len(),
-                    format!("`{name}` takes its argument in parentheses"),
-                )
-                .help(format!("write `{name}({token})`")),
+                f.wrong("E0212", f.at, token.len())
+                    .says(format!("`{name}` takes its argument in parentheses"))
+                    .help(format!("write `{name}({token})`")),
             )
         }
         t if t == "(" || t.starts_with(|c: char| c.is_ascii_alphanumeric()) => {
             let help = "write `*` between factors, `+` or `-` between terms";
             (f.at > 0 && (before.contains('=') || before.contains(".."))).then(|| {
-                f.error(
-                    "E0212",
-                    f.at,
-                    token.len(),
-                    format!("an operator is missing before `{token}`"),
-                )
-                .label("missing operator")
-                .help(help)
+                f.wrong("E0212", f.at, token.len())
+                    .says(format!("an operator is missing before `{token}`"))
+                    .label("missing operator")
+                    .help(help)
             })
         }
         _ => None,
@@ -381,13 +357,9 @@ fn direction(f: &Failure<'_>, before: &str) -> Option<Diagnostic> {
         .iter()
         .any(|w| word.eq_ignore_ascii_case(w));
     (directs && before[..at].trim_end().ends_with("..")).then(|| {
-        f.error(
-            "E0231",
-            at,
-            word.len(),
-            "the direction stands in the `solve`",
-        )
-        .help("write `o.. z =e= …;` and `solve m using lp minimizing z;`")
+        f.wrong("E0231", at, word.len())
+            .says("the direction stands in the `solve`")
+            .help("write `o.. z =e= …;` and `solve m using lp minimizing z;`")
     })
 }
 
@@ -406,13 +378,11 @@ fn no_name(f: &Failure<'_>) -> Option<Diagnostic> {
         c.is_ascii_digit() || matches!(c, '(' | '[' | '=' | '\'' | '"' | '+' | '-')
     });
     (f.raw.class == Class::Algebra && f.at == lead && sign).then(|| {
-        f.error(
-            "E0210",
-            lead,
-            first.len(),
-            "a statement begins with a keyword, or with the name of what it assigns or defines",
-        )
-        .help("write `a = 3;` for an assignment, `e.. x =l= 3;` for an equation")
+        f.wrong("E0210", lead, first.len())
+            .says(
+                "a statement begins with a keyword, or with the name of what it assigns or defines",
+            )
+            .help("write `a = 3;` for an assignment, `e.. x =l= 3;` for an equation")
     })
 }
 
@@ -515,16 +485,12 @@ fn condition(f: &Failure<'_>, lead: usize, token: &str) -> Option<Diagnostic> {
     };
     let condition = f.text[dollar + 1..end].trim();
     Some(
-        f.error(
-            "E0210",
-            dollar,
-            end - dollar,
-            "a condition with an operator stands in parentheses",
-        )
-        .help(format!(
-            "write `{}$({condition})`",
-            f.text[lead..dollar].trim_end()
-        )),
+        f.wrong("E0210", dollar, end - dollar)
+            .says("a condition with an operator stands in parentheses")
+            .help(format!(
+                "write `{}$({condition})`",
+                f.text[lead..dollar].trim_end()
+            )),
     )
 }
 
@@ -620,14 +586,10 @@ fn operand(f: &Failure<'_>) -> Option<Diagnostic> {
             let (at, _) = enclosing?;
             let closes = matches!((bytes[at], token), (b'(', ")") | (b'[', "]") | (b'{', "}"));
             (!closes).then(|| {
-                f.error(
-                    "E0202",
-                    f.at,
-                    1,
-                    format!("`{}` is closed by `{token}`", bytes[at] as char),
-                )
-                .other(f.span(at, at + 1), "opened here")
-                .help("the closing parenthesis is of the kind of the opening one")
+                f.wrong("E0202", f.at, 1)
+                    .says(format!("`{}` is closed by `{token}`", bytes[at] as char))
+                    .other(f.span(at, at + 1), "opened here")
+                    .help("the closing parenthesis is of the kind of the opening one")
             })
         }
         "=" if is_relation(&bytes[f.at..]) && before.ends_with(['+', '-', '*', '/']) => say(
@@ -714,13 +676,9 @@ fn control(f: &Failure<'_>) -> Option<Diagnostic> {
     if let Some((at, written)) = split.filter(|(at, _)| word == "if" && !lower[*at..].contains(';'))
     {
         return Some(
-            f.error(
-                "E0236",
-                at,
-                written.len(),
-                format!("`elseif` is written for `{written}`"),
-            )
-            .help("write `if(a > 0, … ; elseif a < 0, … ; else … );`"),
+            f.wrong("E0236", at, written.len())
+                .says(format!("`elseif` is written for `{written}`"))
+                .help("write `if(a > 0, … ; elseif a < 0, … ; else … );`"),
         );
     }
     match word.as_str() {
@@ -783,37 +741,25 @@ fn display(f: &Failure<'_>) -> Option<Diagnostic> {
     if rest.starts_with('(') && closing(rest.as_bytes(), 0) == Some(len - 1) {
         let inside = rest[1..len - 1].trim();
         return Some(
-            f.error(
-                "E0328",
-                lo,
-                len,
-                "`display` takes its symbols without parentheses",
-            )
-            .help(format!("write `display {inside};`")),
+            f.wrong("E0328", lo, len)
+                .says("`display` takes its symbols without parentheses")
+                .help(format!("write `display {inside};`")),
         );
     }
     if rest.starts_with(['\'', '"']) && f.token(f.at) == "+" {
         return Some(
-            f.error(
-                "E0328",
-                f.at,
-                1,
-                "`display` takes texts and symbols, with commas between them",
-            )
-            .help("write `display 'total', z.l;`"),
+            f.wrong("E0328", f.at, 1)
+                .says("`display` takes texts and symbols, with commas between them")
+                .help("write `display 'total', z.l;`"),
         );
     }
     let expression = is_sum(&rest[..words::word_end(rest.as_bytes(), 0)])
         || matches!(f.token(f.at), "*" | "+" | "-" | "/" | "(")
         || rest.starts_with(|c: char| c.is_ascii_digit());
     expression.then(|| {
-        f.error(
-            "E0328",
-            lo.max(lead),
-            len,
-            "`display` takes symbols, not expressions",
-        )
-        .help("assign it first: `parameter total; total = …; display total;`")
+        f.wrong("E0328", lo.max(lead), len)
+            .says("`display` takes symbols, not expressions")
+            .help("assign it first: `parameter total; total = …; display total;`")
     })
 }
 
@@ -858,12 +804,9 @@ fn solve(f: &Failure<'_>) -> Option<Diagnostic> {
     let from = words::word_end(f.text.as_bytes(), at);
     let rest = f.text[from..].trim();
     let lo = from + f.text[from..].len() - f.text[from..].trim_start().len();
-    let d = f.error(
-        "E0357",
-        lo,
-        rest.len(),
-        "the objective is the name of a variable",
-    );
+    let d = f
+        .wrong("E0357", lo, rest.len())
+        .says("the objective is the name of a variable");
     Some(match rest.strip_prefix('(').and_then(|r| r.strip_suffix(')')) {
         Some(name) if is_name(name.trim()) => d.help(format!("write `minimizing {}`", name.trim())),
         _ if rest.starts_with(|c: char| c.is_ascii_alphabetic() || c == '(' || c.is_ascii_digit()) && rest.contains(['(', '*', '+', '-']) => {

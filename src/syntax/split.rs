@@ -60,9 +60,10 @@ pub(super) enum Cut {
 }
 
 /// Position in a declaration.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 enum Declare {
     /// Before a name.
+    #[default]
     Name,
     /// After a name or its domain, on the same line.
     AfterName,
@@ -86,6 +87,7 @@ struct Open {
 }
 
 /// See the module.
+#[derive(Default)]
 pub(super) struct Splitter {
     /// Everything before this has been looked at.
     pos: usize,
@@ -124,29 +126,6 @@ fn span(lo: usize, hi: usize) -> Span {
 }
 
 impl Splitter {
-    pub(super) fn new() -> Self {
-        Self {
-            pos: 0,
-            start: None,
-            class: Class::Other,
-            declare: Declare::Name,
-            opens: Vec::new(),
-            blocks: 0,
-            holes: Vec::new(),
-            problems: Vec::new(),
-            body_start: 0,
-            new_line: false,
-            last_name: 0,
-            last_end: 0,
-            after_dot: false,
-            control: false,
-            figure: false,
-            controls: false,
-            names: 0,
-            searched: 0,
-        }
-    }
-
     /// Goes on at a byte that was passed over: a `;` was missing before it.
     pub(super) fn back_to(&mut self, at: usize) {
         self.pos = at;
@@ -272,19 +251,16 @@ impl Splitter {
             _ => '}',
         };
         self.problems.push(
-            Diagnostic::error(
-                "E0202",
-                span(open.at, open.at + 1),
-                format!("this `{}` is never closed", open.byte as char),
-            )
-            .label(format!("its `{close}` is missing"))
-            .help(if open.block {
-                format!("close the block with `{close};` before the next statement")
-            } else if open.byte == b'{' {
-                "braces are parentheses here; statements that belong together stand in `loop(i, … );`, `if(c, … );`".to_string()
-            } else {
-                format!("write `{close}` before the `;`")
-            }),
+            Diagnostic::wrong("E0202", span(open.at, open.at + 1))
+                .says(format!("this `{}` is never closed", open.byte as char))
+                .label(format!("its `{close}` is missing"))
+                .help(if open.block {
+                    format!("close the block with `{close};` before the next statement")
+                } else if open.byte == b'{' {
+                    "braces are parentheses here; statements that belong together stand in `loop(i, … );`, `if(c, … );`".to_string()
+                } else {
+                    format!("write `{close}` before the `;`")
+                }),
         );
     }
 
@@ -305,13 +281,10 @@ impl Splitter {
             false => "data stand between two slashes: `/ a 1, b 2 /`",
         };
         self.problems.push(
-            Diagnostic::error(
-                "E0203",
-                span(at.saturating_sub(1), at),
-                "the data that begin here are never closed by `/`",
-            )
-            .label("opened here")
-            .help(help),
+            Diagnostic::wrong("E0203", span(at.saturating_sub(1), at))
+                .says("the data that begin here are never closed by `/`")
+                .label("opened here")
+                .help(help),
         );
         self.last_end = end;
     }
@@ -536,12 +509,11 @@ impl Splitter {
     /// Nested too deeply: reports it and passes over the statement.
     fn too_deep(&mut self, bytes: &[u8], i: usize) -> bool {
         self.problems.push(
-            Diagnostic::error(
-                "E0204",
-                span(i - 1, i),
-                format!("parentheses are nested more than {DEEPEST} deep here"),
-            )
-            .help("split the expression: give its parts names of their own"),
+            Diagnostic::wrong("E0204", span(i - 1, i))
+                .says(format!(
+                    "parentheses are nested more than {DEEPEST} deep here"
+                ))
+                .help("split the expression: give its parts names of their own"),
         );
         let end = memchr::memchr(b';', &bytes[i..]).map_or(bytes.len(), |n| i + n);
         self.last_end = end;

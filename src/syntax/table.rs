@@ -56,6 +56,7 @@ struct Column<'a> {
 }
 
 /// Reads the values of a table, row by row.
+#[derive(Default)]
 pub struct TableReader<'a> {
     text: &'a str,
     /// Next byte to read as a line.
@@ -101,24 +102,13 @@ impl<'a> TableReader<'a> {
             text: expanded,
             at: lo.min(hi),
             end: hi,
-            columns: Vec::new(),
             header: true,
-            row: Vec::new(),
             row_span: body,
-            offset: 0,
             even: true,
-            passed: 0,
-            filled: 0,
-            line: "",
-            line_base: 0,
-            known: (0, 0),
             reader: DataReader::new(&expanded[lo.min(hi)..hi], body.lo, DataKind::Values, undf),
-            in_row: false,
-            empty: false,
-            headings: false,
             bare: true,
             dim,
-            fields: Vec::new(),
+            ..Self::default()
         }
     }
 
@@ -412,14 +402,11 @@ impl<'a> TableReader<'a> {
                 Err(Box::new(d))
             }
             _ => {
-                let d = Diagnostic::error(
-                    "E0251",
-                    span,
-                    "this value stands under more than one column",
-                )
-                .other(self.columns[first].span, "one")
-                .other(self.columns[first + 1].span, "another")
-                .help("write the column labels further apart");
+                let d = Diagnostic::wrong("E0251", span)
+                    .says("this value stands under more than one column")
+                    .other(self.columns[first].span, "one")
+                    .other(self.columns[first + 1].span, "another")
+                    .help("write the column labels further apart");
                 Err(Box::new(d))
             }
         }

@@ -4,7 +4,7 @@ use crate::diag::Diagnostic;
 use crate::source::Span;
 
 /// The kinds of statements that the splitter tells apart.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub(crate) enum Class {
     Set,
     Parameter,
@@ -20,6 +20,7 @@ pub(crate) enum Class {
     /// An assignment, an equation, or what cannot be told.
     Algebra,
     /// Any other keyword.
+    #[default]
     Other,
 }
 
@@ -265,10 +266,9 @@ pub(crate) fn is_reserved(name: &str) -> bool {
 
 /// A word of the language stands where a name is declared.
 pub(crate) fn reserved(word: &str, span: Span) -> Diagnostic {
-    Diagnostic::error(
-        "E0205",
-        span,
-        format!("`{word}` is a word of the language and cannot be a name"),
-    )
-    .help("choose another name; as a label it can stand in quotes")
+    Diagnostic::wrong("E0205", span)
+        .says(format!(
+            "`{word}` is a word of the language and cannot be a name"
+        ))
+        .help("choose another name; as a label it can stand in quotes")
 }

@@ -126,16 +126,13 @@ pub(super) fn read(
 
 fn short(file: &str, line: usize, w: &Wanted, have: usize, need: usize) -> Box<Diagnostic> {
     Box::new(
-        Diagnostic::execution(
-            "E0478",
-            w.span,
-            format!(
+        Diagnostic::failed("E0478", w.span)
+            .says(format!(
                 "{file}:{line}: {have} columns, but `{}` needs {need}",
                 w.name
-            ),
-        )
-        .label("nothing was loaded")
-        .help("the columns are the labels, in the order of the indices, then the value"),
+            ))
+            .label("nothing was loaded")
+            .help("the columns are the labels, in the order of the indices, then the value"),
     )
 }
 
@@ -170,12 +167,12 @@ fn long(file: &str, rows: &Rows, w: &Wanted, loading: &mut Loading<'_>) -> Loade
         };
         let Some(offset) = offset else {
             return Err(Box::new(
-                Diagnostic::execution(
-                    "E0478",
-                    w.span,
-                    format!("{file}:{line}: `{}` is not known", row.get(0).unwrap_or("")),
-                )
-                .help("attributes are l, m, lo, up and scale, of variables and equations"),
+                Diagnostic::failed("E0478", w.span)
+                    .says(format!(
+                        "{file}:{line}: `{}` is not known",
+                        row.get(0).unwrap_or("")
+                    ))
+                    .help("attributes are l, m, lo, up and scale, of variables and equations"),
             ));
         };
         if row.len() <= dim {

@@ -71,16 +71,13 @@ impl Reader<'_> {
             }
         };
         Err(Box::new(
-            Diagnostic::execution(
-                "E0478",
-                self.w.span,
-                format!("{}: `{}`: {what}", self.file, self.w.name),
-            )
-            .label("nothing was loaded")
-            .help(format!(
-                "a {} with {dim} indices is written as `{example}`",
-                self.symbol.kind_name()
-            )),
+            Diagnostic::failed("E0478", self.w.span)
+                .says(format!("{}: `{}`: {what}", self.file, self.w.name))
+                .label("nothing was loaded")
+                .help(format!(
+                    "a {} with {dim} indices is written as `{example}`",
+                    self.symbol.kind_name()
+                )),
         ))
     }
 

@@ -98,21 +98,20 @@ pub fn wanted(symbols: &Symbols, items: &[ExchangeItem]) -> Loaded<Vec<Wanted>> 
     for item in items {
         let ExchangeItem { name, other, .. } = item;
         let Some(symbol) = symbols.find(&name.name) else {
-            return Err(Box::new(Diagnostic::execution(
-                "E0475",
-                name.span,
-                format!("`{}` is not known", name.name),
-            )));
+            return Err(Box::new(
+                Diagnostic::failed("E0475", name.span)
+                    .says(format!("`{}` is not known", name.name)),
+            ));
         };
         if !has_data(&symbols.get(symbol).kind) {
             let kind = symbols.get(symbol).a_kind();
             return Err(Box::new(
-                Diagnostic::execution(
-                    "E0475",
-                    name.span,
-                    format!("`{}` is {kind}; it has no data to exchange", name.name),
-                )
-                .label("a set, parameter, variable or equation is expected"),
+                Diagnostic::failed("E0475", name.span)
+                    .says(format!(
+                        "`{}` is {kind}; it has no data to exchange",
+                        name.name
+                    ))
+                    .label("a set, parameter, variable or equation is expected"),
             ));
         }
         let shown = other.as_ref().map_or_else(
@@ -251,12 +250,12 @@ pub fn load(
             .find(|w| w.part != Part::Whole || w.into.is_some())
     {
         return Err(Box::new(
-            Diagnostic::execution(
-                "E0475",
-                w.span,
-                format!("a part of `{}` is read from GDX files only", w.name),
-            )
-            .help("read the whole symbol, and take its part in an assignment"),
+            Diagnostic::failed("E0475", w.span)
+                .says(format!(
+                    "a part of `{}` is read from GDX files only",
+                    w.name
+                ))
+                .help("read the whole symbol, and take its part in an assignment"),
         ));
     }
     let mut files = Vec::new();
@@ -327,12 +326,9 @@ fn text_of<'a>(file: &str, bytes: &'a [u8], at: Span) -> Loaded<&'a str> {
     match std::str::from_utf8(bytes) {
         Ok(text) => Ok(text.strip_prefix('\u{feff}').unwrap_or(text)),
         Err(e) => Err(Box::new(
-            Diagnostic::execution(
-                "E0478",
-                at,
-                format!("{file}: byte {} is not UTF-8", e.valid_up_to() + 1),
-            )
-            .help("save the file as UTF-8"),
+            Diagnostic::failed("E0478", at)
+                .says(format!("{file}: byte {} is not UTF-8", e.valid_up_to() + 1))
+                .help("save the file as UTF-8"),
         )),
     }
 }
@@ -585,11 +581,8 @@ fn parse_value(text: &str, acronyms: &[Box<str>]) -> Option<f64> {
 
 /// No symbol of that name in the file.
 fn missing(file: &str, w: &Wanted, there: &[String]) -> Box<Diagnostic> {
-    let d = Diagnostic::execution(
-        "E0477",
-        w.span,
-        format!("the file `{file}` has no symbol `{}`", w.name),
-    );
+    let d = Diagnostic::failed("E0477", w.span)
+        .says(format!("the file `{file}` has no symbol `{}`", w.name));
     Box::new(match nearest(&w.name, there.iter().map(String::as_str)) {
         Some(n) => d.help(format!("did you mean `{n}`? write `{} = {n}`", w.name)),
         None if there.is_empty() => d.help("the file holds no symbols"),

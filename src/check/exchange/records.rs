@@ -94,13 +94,10 @@ impl<'a> Loading<'a> {
     pub(super) fn value(&self, text: &str, file: &str, place: usize, w: &Wanted) -> Loaded<f64> {
         parse_value(text, &self.store.acronyms).ok_or_else(|| {
             Box::new(
-                Diagnostic::execution(
-                    "E0478",
-                    w.span,
-                    format!("{file}:{place}: `{text}` is not a number"),
-                )
-                .label(format!("while loading `{}`", w.name))
-                .help("numbers, EPS, NA, INF, -INF, UNDF, yes and no are values"),
+                Diagnostic::failed("E0478", w.span)
+                    .says(format!("{file}:{place}: `{text}` is not a number"))
+                    .label(format!("while loading `{}`", w.name))
+                    .help("numbers, EPS, NA, INF, -INF, UNDF, yes and no are values"),
             )
         })
     }
@@ -156,25 +153,22 @@ impl<'a> Loading<'a> {
                     .map(|row| self.store.universe.name(table.key(row)[0])),
             )
             .map(str::to_string);
-            let d = Diagnostic::execution(
-                "E0479",
-                w.span,
-                format!(
+            let d = Diagnostic::failed("E0479", w.span)
+                .says(format!(
                     "{file}:{place}: `{}` is not a member of the set `{}`{others}",
                     self.name(first),
                     set_symbol.name
-                ),
-            )
-            .label(format!(
-                "position {} of `{}` runs over `{}`",
-                p + 1,
-                symbol.name,
-                set_symbol.name
-            ))
-            .other(
-                set_symbol.declared,
-                format!("`{}` is declared here", set_symbol.name),
-            );
+                ))
+                .label(format!(
+                    "position {} of `{}` runs over `{}`",
+                    p + 1,
+                    symbol.name,
+                    set_symbol.name
+                ))
+                .other(
+                    set_symbol.declared,
+                    format!("`{}` is declared here", set_symbol.name),
+                );
             return Err(Box::new(match near {
                 Some(n) => d.help(format!("did you mean `{n}`?")),
                 None => d.help(format!(
@@ -212,16 +206,13 @@ impl<'a> Loading<'a> {
                     format!("the record `{}`", labels.join("."))
                 };
                 return Err(Box::new(
-                    Diagnostic::execution(
-                        "E0478",
-                        w.span,
-                        format!(
+                    Diagnostic::failed("E0478", w.span)
+                        .says(format!(
                             "{file}:{}: {what} of `{}` was given before, at {}",
                             r.places[pair[1]], w.name, r.places[pair[0]]
-                        ),
-                    )
-                    .label("given twice; nothing was loaded")
-                    .help("keep one of the two"),
+                        ))
+                        .label("given twice; nothing was loaded")
+                        .help("keep one of the two"),
                 ));
             }
         }
@@ -231,15 +222,12 @@ impl<'a> Loading<'a> {
             && count > 1
         {
             return Err(Box::new(
-                Diagnostic::execution(
-                    "E0478",
-                    w.span,
-                    format!(
+                Diagnostic::failed("E0478", w.span)
+                    .says(format!(
                         "`{}` is a singleton; the file has {count} elements for it",
                         w.name
-                    ),
-                )
-                .label("nothing was loaded"),
+                    ))
+                    .label("nothing was loaded"),
             ));
         }
         // As in GAMS the records of the file are all that there is: the other attributes get their defaults.

@@ -243,14 +243,10 @@ impl Machine<'_> {
             .map_or(8.0, |n| self.number_of(n, frame));
         if !(1.0..=MAX_LEVELS).contains(&count) {
             let span = t.argument("levels").map_or(t.element.span, |n| n.span);
-            self.note(Diagnostic::execution(
-                "E0483",
-                span,
-                format!(
-                    "{} is not a number of levels from 1 to {MAX_LEVELS}",
-                    self.shown(count)
-                ),
-            ));
+            self.note(Diagnostic::failed("E0483", span).says(format!(
+                "{} is not a number of levels from 1 to {MAX_LEVELS}",
+                self.shown(count)
+            )));
             return Err(Failed);
         }
         let style = self.style(t, frame)?;

@@ -87,11 +87,9 @@ impl Machine<'_> {
             Ok(bytes) => {
                 self.write_file(&file, &bytes, span);
             }
-            Err(e) => self.note(Diagnostic::execution(
-                "E0481",
-                span,
-                format!("the figure cannot be drawn: {e}"),
-            )),
+            Err(e) => self.note(
+                Diagnostic::failed("E0481", span).says(format!("the figure cannot be drawn: {e}")),
+            ),
         }
     }
 
@@ -214,13 +212,10 @@ impl Machine<'_> {
                     key => format!(" at `{}`", self.turn_name(key)),
                 };
                 self.note(
-                    Diagnostic::warning(
-                        "E0482",
-                        n.span,
-                        format!("`{name}` is {} {at}", self.shown(*v)).replace("  ", " "),
-                    )
-                    .label("left out of the figure")
-                    .help("give it a value, or leave it out with a condition, `polygon(i,j)$c(i)`"),
+                    Diagnostic::doubtful("E0482", n.span)
+                        .says(format!("`{name}` is {} {at}", self.shown(*v)).replace("  ", " "))
+                        .label("left out of the figure")
+                        .help("give it a value, or leave it out with a condition, `polygon(i,j)$c(i)`"),
                 );
                 return None;
             }
@@ -442,12 +437,9 @@ impl Machine<'_> {
                             "middle" | "center" | "centre" => Anchor::Middle,
                             other => {
                                 self.note(
-                                    Diagnostic::execution(
-                                        "E0483",
-                                        n.span,
-                                        format!("`{other}` is not an alignment"),
-                                    )
-                                    .help("there are: start, middle, end"),
+                                    Diagnostic::failed("E0483", n.span)
+                                        .says(format!("`{other}` is not an alignment"))
+                                        .help("there are: start, middle, end"),
                                 );
                                 return Err(Failed);
                             }
@@ -472,11 +464,10 @@ impl Machine<'_> {
             if &*e.kind == "size" {
                 let v = self.number_of(n, frame);
                 let Some(v) = v.is_finite().then_some(v).filter(|v| *v > 0.0) else {
-                    self.note(Diagnostic::execution(
-                        "E0483",
-                        n.span,
-                        format!("{} is not a size in pixels", self.shown(v)),
-                    ));
+                    self.note(
+                        Diagnostic::failed("E0483", n.span)
+                            .says(format!("{} is not a size in pixels", self.shown(v))),
+                    );
                     return Err(Failed);
                 };
                 match name.as_deref() {

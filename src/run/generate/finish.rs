@@ -142,15 +142,12 @@ impl Builder<'_, '_> {
                 };
                 let (column, a, b) = (name(columns, c), name(rows, other), name(rows, r));
                 self.m.note(
-                    Diagnostic::execution(
-                        "E0412",
-                        self.span,
-                        format!("the column {column} is matched twice: with {a} and with {b}"),
-                    )
-                    .label("in this model")
-                    .help(
-                        "each column has one row; restrict one of the equations by a `$` condition",
-                    ),
+                    Diagnostic::failed("E0412", self.span)
+                        .says(format!("the column {column} is matched twice: with {a} and with {b}"))
+                        .label("in this model")
+                        .help(
+                            "each column has one row; restrict one of the equations by a `$` condition",
+                        ),
                 );
                 self.failed = true;
             }

@@ -493,16 +493,17 @@ fn simplex_answer(mut simplex: Simplex, ended: Ended) -> Gave {
 
 /// The interior point of a program, and how good it is: as [`barrier::solve`] has it, and where that fails as Clarabel has it, which
 /// tells programs without a solution.
-fn interior_point(p: &Problem, tolerances: [f64; 2], budget: &Budget) -> interior::Run {
-    let own = || Some(barrier::solve(p, None, None, tolerances, budget));
-    let run = trivial(p).or_else(own).filter(|r| r.ended != Ended::Failed);
+fn interior_only(p: &Problem, tolerances: [f64; 2], budget: &Budget) -> Gave {
+    if is_trivial(p) {
+        return simplex_only(p, Accuracy::Standard, budget);
+    }
+    let own = barrier::solve(p, None, None, tolerances, budget);
+    if own.ended != Ended::Failed {
+        return given(own);
+    }
     // Clarabel takes a hundred iterations more for a digit beyond these.
     let tolerance = tolerances[0].max(1e-10).min(tolerances[1]);
-    run.unwrap_or_else(|| interior::solve(p, None, tolerance, budget))
-}
-
-fn interior_only(p: &Problem, tolerances: [f64; 2], budget: &Budget) -> Gave {
-    given(interior_point(p, tolerances, budget))
+    given(interior::solve(p, None, tolerance, budget))
 }
 
 fn given(run: interior::Run) -> Gave {
@@ -596,8 +597,8 @@ fn finished(
     strategies: Strategies,
     budget: &Budget,
 ) -> Gave {
-    if let Some(run) = trivial(p) {
-        return finished_from(p, given(run), accuracy, strategies, budget).0;
+    if is_trivial(p) {
+        return simplex_only(p, accuracy, budget);
     }
     let own = given(barrier::solve(p, None, layout, [FINE, USEFUL], budget));
     let own = match own.ended == Ended::Failed {
@@ -688,46 +689,11 @@ fn finished_from(
     (done, true)
 }
 
-/// Problems without a free column or without a constraint, which Clarabel does not take.
-fn trivial(p: &Problem) -> Option<interior::Run> {
+/// Whether a program has no free column, or no constraint: the simplex method ends at once, and Clarabel does not take it.
+fn is_trivial(p: &Problem) -> bool {
     let all_fixed = (0..p.n()).all(|j| p.lower[j] == p.upper[j]);
-    let unconstrained =
-        p.m() == 0 && (0..p.n()).all(|j| p.lower[j].is_infinite() && p.upper[j].is_infinite());
-    if !all_fixed && !unconstrained {
-        return None;
-    }
-    let x: Vec<f64> = p
-        .lower
-        .iter()
-        .map(|&l| if l.is_finite() { l } else { 0.0 })
-        .collect();
-    let mut ended = Ended::Solved;
-    for i in 0..p.m() {
-        let terms = p.rows.line(i).map(|(j, a)| a * x[j]);
-        let (value, size) = terms.fold((0.0, 1.0), |(v, s): (f64, f64), t| (v + t, s + t.abs()));
-        let mut y = vec![0.0; p.m()];
-        if value < p.row_lower[i] - 1e-9 * size {
-            y[i] = 1.0;
-            ended = Ended::Infeasible(y);
-        } else if value > p.row_upper[i] + 1e-9 * size {
-            y[i] = -1.0;
-            ended = Ended::Infeasible(y);
-        }
-    }
-    if ended == Ended::Solved && !all_fixed && p.cost.iter().any(|&c| c != 0.0) {
-        ended = Ended::Unbounded(p.cost.iter().map(|&c| -c).collect());
-    }
-    let point = Point {
-        x,
-        y: vec![0.0; p.m()],
-        d: p.cost.clone(),
-    };
-    Some(interior::Run {
-        point,
-        ended,
-        iterations: 0,
-        almost: false,
-    })
+    let mut sides = p.lower.iter().chain(&p.upper);
+    all_fixed || p.m() == 0 && sides.all(|b| b.is_infinite())
 }
 
 #[cfg(test)]

@@ -12,8 +12,8 @@
 //!
 //! The method is that of Dirkse & Ferris (1995): a stabilised Newton method on the nonsmooth
 //! equation of the problem, whose subproblem, the linear MCP of the linearised F, is solved by
-//! following a piecewise linear path with Lemke-type pivots ([`path`]). Around it: a presolve
-//! ([`presolve`]), a crash by projected Newton steps ([`crash`]) or, where there are many variables, by interior steps
+//! following a piecewise linear path with Lemke-type pivots ([`path`]). Around it: fixed variables leave
+//! ([`fixed`]), a crash by projected Newton steps ([`crash`]) or, where there are many variables, by interior steps
 //! ([`interior`]), a watchdog on the Fischer–Burmeister merit function ([`majors`], [`merit`]), and random restarts
 //! ([`portfolio`]). Sources:
 //!
@@ -28,6 +28,7 @@
 mod basis;
 mod crash;
 mod factor;
+mod fixed;
 mod interior;
 mod linear;
 mod log;
@@ -36,7 +37,6 @@ mod merit;
 mod options;
 mod path;
 mod portfolio;
-mod presolve;
 mod random;
 mod run;
 
@@ -64,11 +64,6 @@ pub trait Problem {
     fn jacobian(&mut self, x: &[f64], values: &mut [f64]) -> Result<(), EvalError>;
     /// True when F is affine: one linearisation is exact.
     fn is_linear(&self) -> bool;
-    /// True when the Jacobian entry at position `k` of the pattern is the same for every x. Lets the
-    /// presolve use single linear rows of nonlinear problems.
-    fn is_constant(&self, _k: usize) -> bool {
-        self.is_linear()
-    }
 }
 
 /// A function or derivative that cannot be evaluated at a point.
@@ -112,8 +107,6 @@ pub struct Settings {
     pub restart_limit: Option<usize>,
     /// Seconds. Default: no limit but the budget's.
     pub time_limit: f64,
-    /// Whether simple rows are turned into bounds and fixed variables removed first. Default true.
-    pub preprocess: bool,
     /// Whether random restarts are made when all else fails. Default true.
     pub fallbacks: bool,
     /// Whether the log, if one is wanted, has the iterations of crashes. Default true.
@@ -144,7 +137,6 @@ impl Default for Settings {
             nms_memory_size: 10,
             restart_limit: None,
             time_limit: f64::INFINITY,
-            preprocess: true,
             fallbacks: true,
             output_crash_iterations: true,
             output_major_iterations: true,

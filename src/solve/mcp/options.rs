@@ -21,7 +21,6 @@ pub const OPTIONS: OptionTable = OptionTable {
         row("nms_memory_size", LIMIT, "10", "memory of the nonmonotone line search"),
         row("restart_limit", LIMIT, "30", "random restarts after all methods have failed; without the option they also end where they would cost more than what went before"),
         row("time_limit", Kind::Real(0.0, f64::INFINITY), "inf", "seconds; `reslim` and `--time-limit` hold as well"),
-        row("preprocess", Kind::Switch, "yes", "whether simple rows become bounds and fixed variables leave the problem first"),
         row("output", Kind::Switch, "yes", "with `log=1`: all parts of the log"),
         row("output_crash_iterations", Kind::Switch, "yes", "with `log=1`: crash iterations"),
         row("output_major_iterations", Kind::Switch, "yes", "with `log=1`: major iterations"),
@@ -42,7 +41,7 @@ pub const OPTIONS: OptionTable = OptionTable {
         "output_linear_model", "output_listing", "output_major_iterations_frequency", "output_memory",
         "output_minor_iterations_frequency", "output_model_statistics", "output_options",
         "output_preprocess_level", "output_restart_log", "output_time", "output_timing", "output_warnings",
-        "return_best_point", "singularity_tolerance", "use_basics", "use_start",
+        "preprocess", "return_best_point", "singularity_tolerance", "use_basics", "use_start",
     ],
 };
 
@@ -56,7 +55,6 @@ impl Settings {
             let whole = number.min(1e15) as usize;
             match name.to_lowercase().as_str() {
                 "crash_method" => s.crash_method = !value.eq_ignore_ascii_case("none"),
-                "preprocess" => s.preprocess = yes,
                 "output" => {
                     s.output_crash_iterations = yes;
                     s.output_major_iterations = yes;

@@ -3,10 +3,10 @@
 //! Where the path from the given start fails, it is followed from random ones: problems that are linear and not monotone
 //! (bimatrix games) often yield to one path from the right start.
 
+use super::fixed::Reduced;
 use super::log;
 use super::majors::{Crash, INTERIOR, majors};
 use super::merit::natural_residual;
-use super::presolve::Reduced;
 use super::random::Random;
 use super::run::{Point, Run, Stop, bound};
 use super::{Help, Outcome, Problem, Settings, Status};
@@ -24,18 +24,13 @@ pub(super) fn solve(
         return outcome;
     }
     let statistics = budget.wants_log() && settings.output_final_statistics;
-    // Without iterations the start is judged as it is, which the presolve would move.
-    let preprocess = settings.preprocess
-        && settings.cumulative_iteration_limit > 0
-        && settings.strategies.run(Strategy::PairPresolve);
-    let mut reduced = Reduced::new(problem, preprocess);
+    let mut reduced = Reduced::new(problem);
     if statistics {
         let line = format!(
-            "{} variables, {} nonzeros; after presolve {} (rows turned into bounds: {})",
+            "{} variables, {} nonzeros; {} variables are not fixed",
             reduced.total(),
             reduced.total_nonzeros(),
-            reduced.kept.len(),
-            reduced.dropped()
+            reduced.kept.len()
         );
         budget.log(&line);
     }
@@ -64,7 +59,6 @@ pub(super) fn solve(
     };
     run.clip(&mut x);
     let x = reduced.postsolve(&x);
-    drop(reduced);
     let worst = judge(problem, x, settings, end, evaluated, &mut outcome);
     if let (Some(error), true) = (error, outcome.status == Status::EvaluationFailed) {
         let at = error

@@ -902,26 +902,17 @@ impl<'a, R: Relaxation> Search<'a, R> {
         let start = self.relaxation.start();
         for (column, &y) in y.iter().enumerate() {
             let t = self.mip.threshold[column];
-            if self.mip.integer[column] {
-                self.relaxation.set_bounds(Change {
-                    column,
-                    lower: y,
-                    upper: y,
-                });
-            } else if t > 0.0 && y == 0.0 {
-                self.relaxation.set_bounds(Change {
-                    column,
-                    lower: 0.0,
-                    upper: 0.0,
-                });
-            } else if t > 0.0 {
-                let (lower, upper) = (self.lower[column].max(t), self.upper[column]);
-                self.relaxation.set_bounds(Change {
-                    column,
-                    lower,
-                    upper,
-                });
-            }
+            let (lower, upper) = match (self.mip.integer[column], t > 0.0) {
+                (true, _) => (y, y),
+                (false, true) if y == 0.0 => (0.0, 0.0),
+                (false, true) => (self.lower[column].max(t), self.upper[column]),
+                (false, false) => continue,
+            };
+            self.relaxation.set_bounds(Change {
+                column,
+                lower,
+                upper,
+            });
         }
         let mip = self.mip;
         for column in mip.sets.iter().flat_map(|s| mip.outside(s, y)) {

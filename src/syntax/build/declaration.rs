@@ -2,7 +2,7 @@
 
 use pest::iterators::Pair;
 
-use super::{Builder, Built, parts};
+use super::{Builder, Built, need, parts};
 use crate::diag::Diagnostic;
 use crate::syntax::ast::*;
 use crate::syntax::grammar::Rule;
@@ -122,13 +122,7 @@ impl Builder<'_> {
     fn declaration(&self, pair: Pair<'_, Rule>) -> Built<SymbolDecl> {
         let span = self.span(&pair);
         let mut inner = parts(pair);
-        let Some(name) = inner.next() else {
-            return Err(Box::new(Diagnostic::error(
-                "E0210",
-                span,
-                "a name was expected",
-            )));
-        };
+        let name = need(&mut inner, span, "a name")?;
         let mut d = SymbolDecl {
             name: self.free_name(&name)?,
             domain: None,
@@ -195,13 +189,7 @@ impl Builder<'_> {
     fn model(&self, pair: Pair<'_, Rule>) -> Built<ModelDecl> {
         let span = self.span(&pair);
         let mut inner = parts(pair);
-        let Some(name) = inner.next() else {
-            return Err(Box::new(Diagnostic::error(
-                "E0210",
-                span,
-                "a name was expected",
-            )));
-        };
+        let name = need(&mut inner, span, "a name")?;
         let mut model = ModelDecl {
             name: self.free_name(&name)?,
             text: None,
@@ -275,12 +263,9 @@ impl Builder<'_> {
                     }
                     if minus {
                         return Err(Box::new(
-                            Diagnostic::error(
-                                "E0215",
-                                place,
-                                "a pair cannot be taken out of a model",
-                            )
-                            .help("write `- equation` to take an equation out"),
+                            Diagnostic::wrong("E0215", place)
+                                .says("a pair cannot be taken out of a model")
+                                .help("write `- equation` to take an equation out"),
                         ));
                     }
                     match <[Ident; 1]>::try_from(columns) {
@@ -306,17 +291,11 @@ impl Builder<'_> {
         let mut names = Vec::new();
         for e in self.arguments(pair)? {
             match e.kind {
-                ExprKind::Apply {
-                    name,
-                    attribute: None,
-                    arguments: None,
-                } => names.push(name),
+                ExprKind::Apply(name, None, None) => names.push(name),
                 _ => {
-                    return Err(Box::new(Diagnostic::error(
-                        "E0214",
-                        e.span,
-                        "a set was expected here",
-                    )));
+                    return Err(Box::new(
+                        Diagnostic::wrong("E0214", e.span).says("a set was expected here"),
+                    ));
                 }
             }
         }

@@ -3,7 +3,7 @@
 
 use pest::iterators::Pair;
 
-use super::{Builder, Built, DEEPEST};
+use super::{Builder, Built, DEEPEST, expected, need};
 use crate::data::value;
 use crate::diag::Diagnostic;
 use crate::source::Span;
@@ -119,12 +119,11 @@ impl Stack {
 }
 
 fn too_deep(at: Span) -> Diagnostic {
-    Diagnostic::error(
-        "E0204",
-        at,
-        format!("this expression is nested more than {DEEPEST} levels deep"),
-    )
-    .help("give its parts names of their own; long sums and products are no problem")
+    Diagnostic::wrong("E0204", at)
+        .says(format!(
+            "this expression is nested more than {DEEPEST} levels deep"
+        ))
+        .help("give its parts names of their own; long sums and products are no problem")
 }
 
 fn join(left: Node, op: BinaryOp, right: Node) -> Node {
@@ -287,13 +286,8 @@ impl Builder<'_> {
         while !s.ops.is_empty() {
             s.reduce()?;
         }
-        s.nodes.pop().ok_or_else(|| {
-            Box::new(Diagnostic::error(
-                "E0210",
-                place,
-                "an expression was expected",
-            ))
-        })
+        let node = s.nodes.pop();
+        node.ok_or_else(|| expected(place, "an expression"))
     }
 
     /// One operand.
@@ -308,16 +302,8 @@ impl Builder<'_> {
             Rule::number | Rule::signed => Ok(leaf(ExprKind::Number(number(pair.as_str())))),
             Rule::quoted => Ok(leaf(ExprKind::Text(Self::unquote(&pair)))),
             Rule::group => {
-                let mut node = match pair.into_inner().next() {
-                    Some(inner) => self.chain(inner)?,
-                    None => {
-                        return Err(Box::new(Diagnostic::error(
-                            "E0210",
-                            span,
-                            "an expression was expected",
-                        )));
-                    }
-                };
+                let inner = need(&mut pair.into_inner(), span, "an expression")?;
+                let mut node = self.chain(inner)?;
                 node.expr.span = span;
                 node.depth += 1;
                 node.open = false;
@@ -361,13 +347,7 @@ impl Builder<'_> {
     fn apply(&self, pair: Pair<'_, Rule>) -> Built<Node> {
         let span = self.span(&pair);
         let mut inner = pair.into_inner();
-        let Some(name) = inner.next() else {
-            return Err(Box::new(Diagnostic::error(
-                "E0210",
-                span,
-                "a name was expected",
-            )));
-        };
+        let name = need(&mut inner, span, "a name")?;
         let name = self.ident(&name);
         let (mut attribute, mut arguments, mut depth) = (None, None, 0);
         for p in inner {
@@ -392,11 +372,7 @@ impl Builder<'_> {
         }
         self.not_too_deep(Node {
             expr: Expr {
-                kind: ExprKind::Apply {
-                    name,
-                    attribute,
-                    arguments,
-                },
+                kind: ExprKind::Apply(name, attribute, arguments),
                 span,
             },
             depth: depth + 1,
@@ -432,11 +408,7 @@ impl Builder<'_> {
                 },
                 open: false,
             }),
-            _ => Err(Box::new(Diagnostic::error(
-                "E0210",
-                span,
-                "an index and an expression were expected",
-            ))),
+            _ => Err(expected(span, "an index and an expression")),
         }
     }
 
@@ -462,13 +434,10 @@ impl Builder<'_> {
         let node = self.apply(pair)?;
         let span = node.expr.span;
         match node.expr.kind {
-            ExprKind::Apply {
-                name,
-                attribute,
-                arguments,
-            } if attribute
-                .as_ref()
-                .is_none_or(|a| a.name.eq_ignore_ascii_case("local") && arguments.is_none()) =>
+            ExprKind::Apply(name, attribute, arguments)
+                if attribute.as_ref().is_none_or(|a| {
+                    a.name.eq_ignore_ascii_case("local") && arguments.is_none()
+                }) =>
             {
                 Ok(DomainItem {
                     set: name,
@@ -494,8 +463,7 @@ impl Builder<'_> {
             }
             operand = Some(self.operand(p)?);
         }
-        operand
-            .ok_or_else(|| Box::new(Diagnostic::error("E0210", span, "a condition was expected")))
+        operand.ok_or_else(|| expected(span, "a condition"))
     }
 }
 

@@ -107,6 +107,20 @@ impl Condensed {
     }
 }
 
+/// The next pair, which the grammar promises.
+fn need<'i>(
+    pairs: &mut impl Iterator<Item = Pair<'i, Rule>>,
+    at: Span,
+    what: &str,
+) -> Built<Pair<'i, Rule>> {
+    pairs.next().ok_or_else(|| expected(at, what))
+}
+
+/// Something is missing.
+fn expected(at: Span, what: &str) -> Box<Diagnostic> {
+    Box::new(Diagnostic::wrong("E0210", at).says(format!("{what} was expected")))
+}
+
 /// The pairs inside a pair, without those of bare keywords.
 fn parts<'i>(pair: Pair<'i, Rule>) -> impl Iterator<Item = Pair<'i, Rule>> {
     pair.into_inner().filter(|p| !is_keyword(p.as_rule()))

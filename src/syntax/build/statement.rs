@@ -3,26 +3,11 @@
 use pest::iterators::Pair;
 
 use super::expression::number;
-use super::{Builder, Built, parts};
+use super::{Builder, Built, expected, need, parts};
 use crate::diag::Diagnostic;
 use crate::source::Span;
 use crate::syntax::ast::*;
 use crate::syntax::grammar::Rule;
-
-/// The next pair, which the grammar promises.
-fn need<'i>(
-    pairs: &mut impl Iterator<Item = Pair<'i, Rule>>,
-    at: Span,
-    what: &str,
-) -> Built<Pair<'i, Rule>> {
-    pairs.next().ok_or_else(|| {
-        Box::new(Diagnostic::error(
-            "E0210",
-            at,
-            format!("{what} was expected"),
-        ))
-    })
-}
 
 impl Builder<'_> {
     /// A statement that is no declaration.
@@ -88,11 +73,7 @@ impl Builder<'_> {
             }
             Rule::abort_statement => {
                 let (condition, items, no_error) = self.display(pair)?;
-                Ok(StmtKind::Abort {
-                    condition,
-                    items,
-                    no_error,
-                })
+                Ok(StmtKind::Abort(condition, items, no_error))
             }
             Rule::option_statement => {
                 let items = parts(pair)
@@ -173,12 +154,9 @@ impl Builder<'_> {
                     let right = self.expression(need(&mut sides, at, "an expression")?)?;
                     if let Some(a) = target.attribute {
                         return Err(Box::new(
-                            Diagnostic::error(
-                                "E0211",
-                                a.span,
-                                "an equation is defined by its name, without an attribute",
-                            )
-                            .help(format!("write `{}..`", target.name.name)),
+                            Diagnostic::wrong("E0211", a.span)
+                                .says("an equation is defined by its name, without an attribute")
+                                .help(format!("write `{}..`", target.name.name)),
                         ));
                     }
                     return Ok(StmtKind::Equate(Equate {
@@ -205,11 +183,7 @@ impl Builder<'_> {
                 }
             }
         }
-        Err(Box::new(Diagnostic::error(
-            "E0210",
-            at,
-            "`=` or `..` was expected",
-        )))
+        Err(expected(at, "`=` or `..`"))
     }
 
     fn relation(&self, pair: &Pair<'_, Rule>) -> Built<Relation> {
@@ -258,14 +232,14 @@ impl Builder<'_> {
                 _ => body = self.body(p)?,
             }
         }
-        Ok(StmtKind::For {
+        Ok(StmtKind::For(For {
             variable,
             from,
             down,
             to,
             by,
             body,
-        })
+        }))
     }
 
     /// The condition of `break` and `continue`, and the number of loops.
@@ -278,12 +252,9 @@ impl Builder<'_> {
                 _ => {
                     loops = p.as_str().parse().ok().filter(|n| *n > 0).ok_or_else(|| {
                         Box::new(
-                            Diagnostic::error(
-                                "E0217",
-                                self.span(&p),
-                                "the number of loops to leave is a whole number from 1 on",
-                            )
-                            .help("`break;` leaves one loop, `break 2;` two"),
+                            Diagnostic::wrong("E0217", self.span(&p))
+                                .says("the number of loops to leave is a whole number from 1 on")
+                                .help("`break;` leaves one loop, `break 2;` two"),
                         )
                     })?;
                 }
@@ -392,11 +363,9 @@ impl Builder<'_> {
                 Rule::using => {
                     let name = parts(p).next().map(|n| self.ident(&n));
                     if using.is_some() {
-                        return Err(Box::new(Diagnostic::error(
-                            "E0218",
-                            place,
-                            "`using` stands here twice",
-                        )));
+                        return Err(Box::new(
+                            Diagnostic::wrong("E0218", place).says("`using` stands here twice"),
+                        ));
                     }
                     using = name;
                 }
@@ -432,18 +401,15 @@ impl Builder<'_> {
                 scenario,
             })),
             None => Err(Box::new(
-                Diagnostic::error(
-                    "E0218",
-                    at,
-                    format!(
+                Diagnostic::wrong("E0218", at)
+                    .says(format!(
                         "`solve {}` does not say which type of model it is",
                         model.name
-                    ),
-                )
-                .help(format!(
-                    "write `solve {} using lp minimizing z;`",
-                    model.name
-                )),
+                    ))
+                    .help(format!(
+                        "write `solve {} using lp minimizing z;`",
+                        model.name
+                    )),
             )),
         }
     }
@@ -512,12 +478,12 @@ impl Builder<'_> {
                 span,
             };
         }
-        Ok(PutItem::Item {
+        Ok(PutItem::Item(Written {
             value,
             align,
             width,
             decimals,
-        })
+        }))
     }
 
     /// A width or decimals: digits, a scalar, or an expression in parentheses.

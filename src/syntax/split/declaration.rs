@@ -113,12 +113,9 @@ impl Splitter {
                     && memchr::memchr(b'}', &bytes[i..]).is_some() =>
                 {
                     self.problems.push(
-                        Diagnostic::error(
-                            "E0220",
-                            span(i, i + 1),
-                            "data stand between two slashes",
-                        )
-                        .help("write `/ a 1, b 2 /`"),
+                        Diagnostic::wrong("E0220", span(i, i + 1))
+                            .says("data stand between two slashes")
+                            .help("write `/ a 1, b 2 /`"),
                     );
                     self.pos = i + memchr::memchr(b'}', &bytes[i..]).map_or(1, |n| n + 1);
                     self.last_end = self.pos;
@@ -298,16 +295,13 @@ impl Splitter {
         let end = start + before.len();
         let name_end = words::word_end(bytes, self.last_name);
         self.problems.push(
-            Diagnostic::error(
-                "E0201",
-                span(end.saturating_sub(1).max(start), end),
-                "`;` is missing at the end of this declaration",
-            )
-            .label("missing `;`")
-            .other(
-                span(self.last_name, name_end),
-                "the next statement begins here",
-            ),
+            Diagnostic::wrong("E0201", span(end.saturating_sub(1).max(start), end))
+                .says("`;` is missing at the end of this declaration")
+                .label("missing `;`")
+                .other(
+                    span(self.last_name, name_end),
+                    "the next statement begins here",
+                ),
         );
         self.pos = self.last_name;
         self.last_end = end;
@@ -520,13 +514,10 @@ impl Splitter {
                 };
                 if rows > 0 {
                     self.problems.push(
-                        Diagnostic::error(
-                            "E0248",
-                            span(at, at + 1),
-                            "`;` ends a table; rows follow behind it",
-                        )
-                        .label("the table ends here")
-                        .help("write `;` behind the last row only"),
+                        Diagnostic::wrong("E0248", span(at, at + 1))
+                            .says("`;` ends a table; rows follow behind it")
+                            .label("the table ends here")
+                            .help("write `;` behind the last row only"),
                     );
                     self.end_table(bytes, end + rows);
                     self.pos = self.last_end;
@@ -612,13 +603,10 @@ fn separates_records(text: &str) -> bool {
 
 /// A text's quote that has no partner on its line.
 fn unclosed_quote(at: usize) -> Diagnostic {
-    Diagnostic::error(
-        "E0206",
-        span(at, at + 1),
-        "this quote is not closed on its line",
-    )
-    .label("opened here")
-    .help("a text stands between two quotes of one kind: `'text'`, `\"it's\"`")
+    Diagnostic::wrong("E0206", span(at, at + 1))
+        .says("this quote is not closed on its line")
+        .label("opened here")
+        .help("a text stands between two quotes of one kind: `'text'`, `\"it's\"`")
 }
 
 /// A quote that begins a file's name and does not end it.

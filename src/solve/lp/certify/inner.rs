@@ -16,7 +16,7 @@
 
 use super::super::Ended;
 use super::super::form::{Problem, Sparse};
-use super::super::interior_point;
+use super::super::interior_only;
 use super::polyhedron::Polyhedron;
 use crate::solve::Budget;
 
@@ -142,7 +142,7 @@ fn search(
         p.row_upper.push(limit);
     }
     p.columns = p.rows.transpose(p.cost.len());
-    let run = interior_point(&p, [1e-9; 2], budget);
+    let run = interior_only(&p, [1e-9; 2], budget);
     if run.ended != Ended::Solved {
         return None;
     }

@@ -1,6 +1,8 @@
 //! Columns that are decided, that are slacks, and that equations give by others.
 
-use super::{Doubleton, Entries, Hopeless, ROUNDING, Range, State, Step, Work, term};
+use super::{
+    Doubleton, Entries, Hopeless, ROUNDING, Range, Slack, State, Step, Substituted, Work, term,
+};
 
 /// Rows of a column that is substituted, at most.
 const LONGEST: u32 = 6;
@@ -182,7 +184,7 @@ impl Work {
         for &(k, _) in &entries {
             self.new_columns.push(k as usize);
         }
-        self.steps.push(Step::Slack {
+        self.steps.push(Step::Slack(Slack {
             row: i as u32,
             column: j as u32,
             a,
@@ -190,7 +192,7 @@ impl Work {
             bounds,
             sides,
             entries,
-        });
+        }));
     }
 
     /// Substitutes a column whose bounds its rows imply, by an equation.
@@ -301,7 +303,7 @@ impl Work {
             self.row_lower[r as usize] -= v * side / a;
             self.row_upper[r as usize] -= v * side / a;
         }
-        self.steps.push(Step::Substituted {
+        self.steps.push(Step::Substituted(Substituted {
             row: i as u32,
             column: j as u32,
             a,
@@ -311,7 +313,7 @@ impl Work {
             entries,
             others,
             doubleton,
-        });
+        }));
         Ok(())
     }
 

@@ -82,7 +82,7 @@ pub struct Pivot {
 type Appeal = dyn Fn(&Simplex) -> f64;
 
 /// The engine. A clone is a state to come back to: it costs far less than to factorise again.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub struct Simplex {
     m: usize,
     n: usize,
@@ -178,30 +178,18 @@ impl Simplex {
             d: vec![0.0; total],
             head: (n as u32..total as u32).collect(),
             slot: vec![NONBASIC; total],
-            factor: None,
             edge: vec![1.0; m],
             devex: vec![1.0; total],
             row: vec![0.0; total],
-            row_index: Vec::new(),
-            row_top: 0.0,
             side: vec![0; total],
-            touched: Vec::new(),
-            renewals: 0,
-            solutions: Default::default(),
             tolerance: 1e-9,
             dual_tolerance: 1e-9,
-            iterations: 0,
             cutoff: f64::INFINITY,
             limit: u64::MAX,
-            boxes: false,
             most_work: f64::INFINITY,
-            appeal: None,
-            work: 0.0,
             left: 1.0,
-            trusted: 0,
-            pivots: None,
             perturb: true,
-            crossing: None,
+            ..Self::default()
         };
         for i in 0..m {
             s.slot[n + i] = i as u32;
