@@ -1,8 +1,6 @@
 //! Columns that are decided, that are slacks, and that equations give by others.
 
-use super::{
-    Doubleton, Entries, Hopeless, ROUNDING, Range, Slack, State, Step, Substituted, Work, term,
-};
+use super::{Doubleton, Entries, Hopeless, ROUNDING, Range, State, Step, Work, term};
 
 /// Rows of a column that is substituted, at most.
 const LONGEST: u32 = 6;
@@ -184,7 +182,7 @@ impl Work {
         for &(k, _) in &entries {
             self.new_columns.push(k as usize);
         }
-        self.steps.push(Step::Slack(Slack {
+        self.steps.push(Step::Slack {
             row: i as u32,
             column: j as u32,
             a,
@@ -192,7 +190,7 @@ impl Work {
             bounds,
             sides,
             entries,
-        }));
+        });
     }
 
     /// Substitutes a column whose bounds its rows imply, by an equation.
@@ -303,7 +301,7 @@ impl Work {
             self.row_lower[r as usize] -= v * side / a;
             self.row_upper[r as usize] -= v * side / a;
         }
-        self.steps.push(Step::Substituted(Substituted {
+        self.steps.push(Step::Substituted {
             row: i as u32,
             column: j as u32,
             a,
@@ -313,7 +311,7 @@ impl Work {
             entries,
             others,
             doubleton,
-        }));
+        });
         Ok(())
     }
 

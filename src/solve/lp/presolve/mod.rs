@@ -6,12 +6,14 @@
 //! * a row of one column becomes bounds; a row that bounds imply goes; one that only one point can hold fixes it (*forcing*);
 //! * a column whose reduced cost has one sign at every dual feasible point is fixed (*dominated*);
 //! * a column of one row is the slack of that row;
-//! * an equation gives a column as a combination of others where its bounds follow from theirs, or where there is but one other.
+//! * an equation gives a column as a combination of others where its bounds follow from theirs, or where there is but one other;
+//! * of rows, or columns, that are multiples of each other one stays.
 //!
 //! The data of the smaller program are rounded. That is harmless: the basis is what comes back, and the simplex method goes
 //! on from it in the program as it was given.
 
 mod columns;
+mod parallel;
 mod restore;
 mod rows;
 #[cfg(test)]
@@ -57,38 +59,47 @@ enum Step {
         entries: Entries,
     },
     /// A column of one row that was taken for its slack: its bounds, and the sides of the row.
-    Slack(Slack),
+    Slack {
+        row: u32,
+        column: u32,
+        a: f64,
+        cost: f64,
+        bounds: [f64; 2],
+        sides: [f64; 2],
+        /// The row without the column.
+        entries: Entries,
+    },
     /// A column that a row at its side gives by the others.
-    Substituted(Substituted),
-}
-
-/// A column of one row that was taken for its slack: its bounds, and the sides of the row.
-#[derive(Debug)]
-struct Slack {
-    row: u32,
-    column: u32,
-    a: f64,
-    cost: f64,
-    bounds: [f64; 2],
-    sides: [f64; 2],
-    /// The row without the column.
-    entries: Entries,
-}
-
-/// A column that a row at its side gives by the others.
-#[derive(Debug)]
-struct Substituted {
-    row: u32,
-    column: u32,
-    a: f64,
-    cost: f64,
-    side: f64,
-    at: State,
-    /// The row without the column.
-    entries: Entries,
-    /// The column without the row.
-    others: Entries,
-    doubleton: Option<Doubleton>,
+    Substituted {
+        row: u32,
+        column: u32,
+        a: f64,
+        cost: f64,
+        side: f64,
+        at: State,
+        /// The row without the column.
+        entries: Entries,
+        /// The column without the row.
+        others: Entries,
+        doubleton: Option<Doubleton>,
+    },
+    /// A row that is `ratio` times another; which sides of the one that stays are its own.
+    Row {
+        kept: u32,
+        gone: u32,
+        ratio: f64,
+        from_gone: [bool; 2],
+        /// The sides are one.
+        fixed: bool,
+    },
+    /// A column that is `ratio` times another; the bounds of both.
+    Column {
+        kept: u32,
+        gone: u32,
+        ratio: f64,
+        kept_bounds: [f64; 2],
+        gone_bounds: [f64; 2],
+    },
 }
 
 /// The other column of an equation in two, and which of its bounds stem from the one that went.
@@ -279,6 +290,7 @@ impl Work {
     }
 
     fn run(&mut self) -> Result<(), Hopeless> {
+        let mut parallel = 0;
         for _ in 0..ROUNDS {
             for i in self.new_rows.take() {
                 if self.row_alive[i as usize] {
@@ -293,6 +305,11 @@ impl Work {
             if self.new_rows.list.is_empty() && self.new_columns.list.is_empty() {
                 let before = self.steps.len();
                 self.dominated()?;
+                if parallel < 3 {
+                    parallel += 1;
+                    self.parallel_rows()?;
+                    self.parallel_columns();
+                }
                 if self.steps.len() == before {
                     break;
                 }

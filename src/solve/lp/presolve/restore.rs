@@ -2,7 +2,7 @@
 
 use super::super::form::Point;
 use super::super::simplex::{Basis, State};
-use super::{Presolved, Slack, Step, Substituted};
+use super::{Doubleton, Presolved, Step};
 
 /// A point of the program before, as far as the way back has come. Reduced costs are for the rows that are there again.
 struct Back {
@@ -169,8 +169,24 @@ impl Back {
                 upper,
                 entries,
             } => self.forcing(*row as usize, *upper, entries),
-            Step::Slack(s) => self.slack(s),
-            Step::Substituted(s) => self.substituted(s),
+            Step::Slack { .. } => self.slack(step),
+            Step::Substituted { .. } => self.substituted(step),
+            Step::Row {
+                kept,
+                gone,
+                ratio,
+                from_gone,
+                fixed,
+            } => {
+                let (kept, gone) = (*kept as usize, *gone as usize);
+                let state = self.row_state(kept, *fixed);
+                if is_at(state, *from_gone) {
+                    self.rows[gone] = if *ratio > 0.0 { state } else { opposite(state) };
+                    self.rows[kept] = State::Basic;
+                    self.y[gone] = std::mem::take(&mut self.y[kept]) / ratio;
+                }
+            }
+            Step::Column { .. } => self.column(step),
         }
     }
 
@@ -195,17 +211,28 @@ impl Back {
         self.columns[basic] = State::Basic;
     }
 
-    fn slack(&mut self, s: &Slack) {
-        let (i, j) = (s.row as usize, s.column as usize);
-        let (a, bounds, sides) = (s.a, s.bounds, s.sides);
-        let rest = Self::sum(&s.entries, &self.x);
+    fn slack(&mut self, step: &Step) {
+        let Step::Slack {
+            row,
+            column,
+            a,
+            cost,
+            bounds,
+            sides,
+            entries,
+        } = step
+        else {
+            return;
+        };
+        let (i, j) = (*row as usize, *column as usize);
+        let rest = Self::sum(entries, &self.x);
         let fixed = sides[0] == sides[1] && bounds[0] == bounds[1];
         let state = self.row_state(i, fixed);
         self.d[j] = -a * self.y[i];
-        self.y[i] += self.cost(s.cost) / a;
+        self.y[i] += self.cost(*cost) / a;
         if state != State::Basic {
             // The row's lower side is the column's end that adds most.
-            self.columns[j] = if a > 0.0 { opposite(state) } else { state };
+            self.columns[j] = if *a > 0.0 { opposite(state) } else { state };
             self.x[j] = match self.columns[j] {
                 State::Upper => bounds[1],
                 _ => bounds[0],
@@ -215,10 +242,10 @@ impl Back {
             }
             return;
         }
-        for (bound, state) in bounds.into_iter().zip([State::Lower, State::Upper]) {
+        for (bound, state) in bounds.iter().zip([State::Lower, State::Upper]) {
             let activity = rest + a * bound;
             if sides[0] < activity && activity < sides[1] {
-                (self.x[j], self.columns[j]) = (bound, state);
+                (self.x[j], self.columns[j]) = (*bound, state);
                 return;
             }
         }
@@ -234,23 +261,107 @@ impl Back {
         self.rows[i] = if low { State::Lower } else { State::Upper };
     }
 
-    fn substituted(&mut self, s: &Substituted) {
-        let (i, j) = (s.row as usize, s.column as usize);
-        self.y[i] = (self.cost(s.cost) - Self::sum(&s.others, &self.y)) / s.a;
-        self.x[j] = (s.side - Self::sum(&s.entries, &self.x)) / s.a;
-        self.d[j] = 0.0;
-        self.columns[j] = State::Basic;
-        self.rows[i] = s.at;
-        let Some(two) = &s.doubleton else {
+    fn substituted(&mut self, step: &Step) {
+        let Step::Substituted {
+            row,
+            column,
+            a,
+            cost,
+            side,
+            at,
+            entries,
+            others,
+            doubleton,
+        } = step
+        else {
             return;
         };
-        let k = two.other as usize;
-        if is_at(self.column_state(k, two.fixed), two.from_gone) {
+        let (i, j) = (*row as usize, *column as usize);
+        self.y[i] = (self.cost(*cost) - Self::sum(others, &self.y)) / a;
+        self.x[j] = (side - Self::sum(entries, &self.x)) / a;
+        self.d[j] = 0.0;
+        self.columns[j] = State::Basic;
+        self.rows[i] = *at;
+        let Some(Doubleton {
+            other,
+            b,
+            from_gone,
+            fixed,
+            bounds,
+        }) = doubleton
+        else {
+            return;
+        };
+        let k = *other as usize;
+        if is_at(self.column_state(k, *fixed), *from_gone) {
             let d = std::mem::take(&mut self.d[k]);
-            self.y[i] += d / two.b;
-            self.d[j] = -s.a * d / two.b;
+            self.y[i] += d / b;
+            self.d[j] = -a * d / b;
             self.columns[k] = State::Basic;
-            self.columns[j] = nearest(self.x[j], two.bounds);
+            self.columns[j] = nearest(self.x[j], *bounds);
         }
+    }
+
+    fn column(&mut self, step: &Step) {
+        let Step::Column {
+            kept,
+            gone,
+            ratio,
+            kept_bounds,
+            gone_bounds,
+        } = step
+        else {
+            return;
+        };
+        let (kept, gone) = (*kept as usize, *gone as usize);
+        self.d[gone] = ratio * self.d[kept];
+        let along = |s: State| if *ratio > 0.0 { s } else { opposite(s) };
+        let value = |s: State, [l, u]: [f64; 2]| match s {
+            State::Upper => u,
+            State::Lower => l,
+            _ => 0.0,
+        };
+        let (state, total) = (self.columns[kept], self.x[kept]);
+        if state != State::Basic {
+            self.columns[gone] = along(state);
+            self.x[gone] = value(self.columns[gone], *gone_bounds);
+            self.x[kept] = value(self.columns[kept], *kept_bounds);
+            return;
+        }
+        // One of them at a bound from which the other fills the rest.
+        for at in [free(*gone_bounds), opposite(free(*gone_bounds))] {
+            let x = value(at, *gone_bounds);
+            let rest = total - ratio * x;
+            if x.is_finite() && kept_bounds[0] <= rest && rest <= kept_bounds[1] {
+                (self.columns[gone], self.x[gone], self.x[kept]) = (at, x, rest);
+                return;
+            }
+        }
+        let rest = |x: f64| (total - x) / ratio;
+        let fits = |x: f64| {
+            x.is_finite() && {
+                let r = rest(x);
+                gone_bounds[0] <= r && r <= gone_bounds[1]
+            }
+        };
+        let at = match fits(kept_bounds[0])
+            || !kept_bounds[1].is_finite() && kept_bounds[0].is_finite()
+        {
+            true => State::Lower,
+            false if kept_bounds[1].is_finite() => State::Upper,
+            false => State::Free,
+        };
+        let x = value(at, *kept_bounds);
+        (self.columns[kept], self.x[kept]) = (at, x);
+        (self.columns[gone], self.x[gone]) = (State::Basic, rest(x));
+    }
+}
+
+/// A bound at which a column may rest.
+fn free([l, u]: [f64; 2]) -> State {
+    match (l.is_finite(), u.is_finite()) {
+        (true, _) => State::Lower,
+        (false, true) => State::Upper,
+        (false, false) => State::Free,
     }
 }
