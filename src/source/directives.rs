@@ -550,8 +550,8 @@ impl Preprocessor<'_> {
                 self.warnings.push(d);
             }
             "gdxin" | "gdxout" | "gdxload" | "gdxloadall" | "gdxunload" | "load" | "loaddc"
-            | "loadm" | "loadr" | "loaddcm" | "loaddcr" | "loadfiltered" | "loadidx" | "unload" | "kill"
-            | "clear" => {
+            | "loadm" | "loadr" | "loaddcm" | "loaddcr" | "loadfiltered" | "loadidx" | "unload"
+            | "kill" | "clear" => {
                 // The parser reads these; the line goes into the text as a statement.
                 let line = line.clone();
                 let end = line.text.len();
