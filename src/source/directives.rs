@@ -542,9 +542,9 @@ impl Preprocessor<'_> {
                 }
                 self.warnings.push(d);
             }
-            "gdxin" | "gdxout" | "gdxload" | "gdxunload" | "load" | "loaddc" | "loadm"
-            | "loadr" | "loaddcm" | "loaddcr" | "loadfiltered" | "loadidx" | "unload" | "kill"
-            | "clear" => {
+            "gdxin" | "gdxout" | "gdxload" | "gdxloadall" | "gdxunload" | "load" | "loaddc"
+            | "loadm" | "loadr" | "loaddcm" | "loaddcr" | "loadfiltered" | "loadidx" | "unload"
+            | "kill" | "clear" => {
                 // The parser reads these; the line goes into the text as a statement.
                 let line = line.clone();
                 let end = line.text.len();

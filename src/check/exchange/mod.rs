@@ -188,10 +188,22 @@ fn full_name(file: &str) -> String {
     format!("{file}{}", if bare { ".gdx" } else { "" })
 }
 
-/// The symbols of the program among names in a file.
-fn declared(symbols: &Symbols, names: &[String], point: bool, span: Span) -> Vec<Wanted> {
+/// The symbols of the program that a file has.
+fn declared_in(
+    kind: Kind,
+    file: &str,
+    bytes: &[u8],
+    symbols: &Symbols,
+    point: bool,
+    span: Span,
+) -> Loaded<Vec<Wanted>> {
+    let names = match kind {
+        Kind::Gdx => gdx::names(file, bytes, span, symbols)?,
+        Kind::Json => json::names(text_of(file, bytes, span)?),
+        _ => csv::names(text_of(file, bytes, span)?),
+    };
     let mut out: Vec<Wanted> = Vec::new();
-    for n in names {
+    for n in &names {
         let Some(symbol) = symbols.find(n) else {
             continue;
         };
@@ -211,7 +223,7 @@ fn declared(symbols: &Symbols, names: &[String], point: bool, span: Span) -> Vec
             });
         }
     }
-    out
+    Ok(out)
 }
 
 /// What is to be loaded.
@@ -279,12 +291,7 @@ pub fn load(
             _ => text_of(&name, &bytes, request.at)?,
         };
         if items.is_empty() {
-            let found = match kind {
-                Kind::Gdx => gdx::names(&name, &bytes, request.at, symbols)?,
-                Kind::Json => json::names(text),
-                _ => csv::names(text),
-            };
-            items = declared(symbols, &found, request.point, request.span);
+            items = declared_in(kind, &name, &bytes, symbols, request.point, request.span)?;
         }
         // What is found at an index position first, then sets: they may be the domains of the others.
         items.sort_by_key(|w| {
@@ -406,7 +413,9 @@ impl Compiler {
             "gdxunload" => self
                 .unload_listed(x, span)
                 .and_then(|()| self.finish_unload(parser)),
-            k if k.starts_with("load") || k == "gdxload" => self.load_listed(x, span, parser),
+            k if k.starts_with("load") || k.starts_with("gdxload") => {
+                self.load_listed(x, span, parser)
+            }
             _ => return Ok(false),
         };
         let Err(d) = done else { return Ok(true) };
@@ -428,13 +437,22 @@ impl Compiler {
         let Some((file, at)) = named.or_else(|| self.input.clone()) else {
             return Err(no_file(span, "$gdxIn data.gdx"));
         };
+        // `loadDC`, `loadM`, `loadDCR` …: what comes after `load`.
+        let how = x.keyword.name.rsplit("load").next().unwrap_or_default();
+        let how = match how {
+            "all" => {
+                let (kind, file) = (format_of(&file), full_name(&file));
+                let bytes = parser.read(&file, at)?;
+                items = declared_in(kind, &file, &bytes, &self.symbols, false, at)?;
+                ""
+            }
+            how => how,
+        };
         // `$load` alone lists a file in GAMS; there is nothing to do.
         if items.is_empty() {
             return Ok(());
         }
         self.defined_domains(&file, &mut items);
-        // `loadDC`, `loadM`, `loadDCR` …: what comes after `load`.
-        let how = x.keyword.name.rsplit("load").next().unwrap_or_default();
         let merges = self.merges(how, &items, span)?;
         let request = Request {
             file: &file,

@@ -76,7 +76,7 @@ fn prove(
             level,
             row_marginal,
             column_marginal,
-            ..super::nothing(&node)
+            ..super::nothing(&node, None)
         };
         let proof = budget.aside(|budget| lp::certify::certify(&node, &outcome, budget));
         let proof = proof.ok()?;

@@ -33,6 +33,8 @@ pub(crate) struct Found {
     pub records: Vec<Record>,
     /// Nodes made.
     pub made: u32,
+    /// A point of an infeasible program, as its relaxation has one.
+    pub failed: Option<Vec<f64>>,
 }
 
 impl Found {
@@ -49,6 +51,7 @@ impl Found {
             relaxed: false,
             records: Vec::new(),
             made: 0,
+            failed: None,
         }
     }
 

@@ -206,7 +206,7 @@ pub(super) fn concluded(task: &Task, found: Found, settings: &Settings, budget: 
     let instance = task.instance;
     let (mut outcome, complete) = match &found.x {
         Some(x) => (solution(task, x, settings, budget), true),
-        None => (nothing(instance), false),
+        None => (nothing(instance, found.failed.as_ref()), false),
     };
     // With integers rounded it may be another than the search had.
     let value = match (complete, instance.objective) {
@@ -447,7 +447,11 @@ fn nonlinear_search(
     };
     let mut search = Search::new(&mip, relaxation, aim, units);
     let end = search.run(control);
-    Ok(search.found(end))
+    let failed = search.relaxation.failed.take();
+    Ok(Found {
+        failed,
+        ..search.found(end)
+    })
 }
 
 /// The program with its discrete columns fixed where a point has them.
@@ -512,9 +516,9 @@ const SAME: f64 = 1e-6;
 /// Seconds for the marginals of a solution when the time is used up.
 const GRACE: f64 = 1.5;
 
-/// Without a solution levels and marginals stay as they were.
-fn nothing(instance: &Instance) -> Outcome {
-    let level = instance.columns.level.clone();
+/// Without a solution levels and marginals stay as they were; levels are those of an infeasible relaxation that has a point.
+fn nothing(instance: &Instance, failed: Option<&Vec<f64>>) -> Outcome {
+    let level = failed.unwrap_or(&instance.columns.level).clone();
     Outcome {
         row_marginal: instance.rows.marginal.clone(),
         column_marginal: instance.columns.marginal.clone(),

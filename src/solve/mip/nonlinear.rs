@@ -33,6 +33,8 @@ pub struct Nonlinear {
     rooted: bool,
     /// How often that was done.
     again: u32,
+    /// Where the nonlinear solver stopped at an infeasible root.
+    pub failed: Option<Vec<f64>>,
 }
 
 /// Infeasible nodes that are tried from the start point as well.
@@ -68,6 +70,7 @@ impl Nonlinear {
             convex: true,
             rooted: false,
             again: 0,
+            failed: None,
         }
     }
 
@@ -153,6 +156,10 @@ impl Relaxation for Nonlinear {
                 _ => self.known,
             };
             self.convex &= global && !self.using.has_pairs();
+            if !self.rooted && matches!(answer.status, S::Infeasible | S::LocallyInfeasible) {
+                self.failed
+                    .get_or_insert_with(|| answer.outcome.level.clone());
+            }
             match answer.status {
                 S::Optimal | S::LocallyOptimal | S::Feasible => {
                     let value = self.instance.objective.map_or(0.0, |o| {

@@ -7,6 +7,7 @@ use super::model::{Change, FEASIBLE, Mip};
 use super::propagate::Propagator;
 use crate::model::instance::OrderedSet;
 use crate::solve::lp::form::{Problem, Sparse};
+use std::collections::HashMap;
 
 /// The way back from a presolved program.
 pub struct Reduced {
@@ -20,13 +21,11 @@ pub struct Reduced {
     given: Vec<Given>,
 }
 
-/// A column that is `constant` + `factor` × another.
-#[derive(Clone, Copy)]
+/// A column that is a constant and multiples of others.
 struct Given {
     column: usize,
-    by: usize,
     constant: f64,
-    factor: f64,
+    terms: Vec<(usize, f64)>,
 }
 
 impl Reduced {
@@ -37,7 +36,8 @@ impl Reduced {
             out[j as usize] = x;
         }
         for g in self.given.iter().rev() {
-            out[g.column] = g.constant + g.factor * out[g.by];
+            let terms = g.terms.iter().map(|&(k, factor)| factor * out[k]);
+            out[g.column] = g.constant + terms.sum::<f64>();
         }
         out
     }
@@ -64,7 +64,11 @@ pub fn reduce(mip: &Mip, fixed: &[Change], cutoff: f64) -> Option<Reduced> {
         return None;
     }
     let mut idle = vec![false; work.problem.m()];
-    let mut given = Vec::new();
+    // Before bounds follow from rows: what is free now is not kept free by a row that bounds make superfluous.
+    let mut given = match work.held.is_empty() {
+        true => definitions(&mut work, &mut idle, &stays),
+        false => Vec::new(),
+    };
     for round in 0..6 {
         let mut changed = singletons(&mut work, &mut idle)?;
         let (mut lower, mut upper) = (work.problem.lower.clone(), work.problem.upper.clone());
@@ -84,6 +88,9 @@ pub fn reduce(mip: &Mip, fixed: &[Change], cutoff: f64) -> Option<Reduced> {
         // Rows that come later know the program's columns.
         if work.held.is_empty() {
             let more = pairs(&mut work, &mut idle, &stays)?;
+            changed |= !more.is_empty();
+            given.extend(more);
+            let more = twins(&mut work, &mut idle, &stays);
             changed |= !more.is_empty();
             given.extend(more);
         }
@@ -206,25 +213,183 @@ fn pairs(mip: &mut Mip, idle: &mut [bool], stays: &[bool]) -> Option<Vec<Given>>
         (taken[gone.0], taken[by.0], *idle) = (true, true, true);
         given.push(Given {
             column: gone.0,
-            by: by.0,
             constant,
-            factor,
+            terms: vec![(by.0, factor)],
         });
     }
     put_in(&mut mip.problem, &given);
     Some(given)
 }
 
-/// Columns in terms of those that give them, in rows and costs.
+/// Free columns in one row only: an equation defines them, or an inequality that their costs make tight. What they cost is
+/// what the others in that row cost: models name parts of their objective so, and chains of such names end here.
+fn definitions(mip: &mut Mip, idle: &mut [bool], stays: &[bool]) -> Vec<Given> {
+    let p = &mut mip.problem;
+    let mut given = Vec::new();
+    let free =
+        |p: &Problem, j: usize| p.lower[j] == f64::NEG_INFINITY && p.upper[j] == f64::INFINITY;
+    let mut open: Vec<usize> = (0..p.n())
+        .filter(|&j| free(p, j) && !mip.integer[j] && !stays[j] && mip.threshold[j] == 0.0)
+        .collect();
+    loop {
+        let before = given.len();
+        open.retain(|&j| {
+            let mut rows = p.columns.line(j).filter(|e| e.1 != 0.0 && !idle[e.0]);
+            let (Some((i, a)), None) = (rows.next(), rows.next()) else {
+                return true;
+            };
+            let cost = p.cost[j];
+            let sides = [p.row_lower[i], p.row_upper[i]];
+            let side = match cost * a {
+                v if v > 0.0 => sides[0],
+                v if v < 0.0 => sides[1],
+                _ if sides[0].is_finite() => sides[0],
+                _ => sides[1],
+            };
+            if !side.is_finite() {
+                return true;
+            }
+            let others = p.rows.line(i).filter(|e| e.0 != j && e.1 != 0.0);
+            let terms: Vec<(usize, f64)> = others.map(|(k, b)| (k, -b / a)).collect();
+            for &(k, factor) in &terms {
+                p.cost[k] += factor * cost;
+            }
+            p.offset += side / a * cost;
+            p.cost[j] = 0.0;
+            (p.lower[j], p.upper[j], idle[i]) = (0.0, 0.0, true);
+            (p.row_lower[i], p.row_upper[i]) = (f64::NEG_INFINITY, f64::INFINITY);
+            given.push(Given {
+                column: j,
+                constant: side / a,
+                terms,
+            });
+            false
+        });
+        if given.len() == before {
+            return given;
+        }
+    }
+}
+
+/// Multiples of coefficients and sides that agree to this part are the same.
+const SAME: f64 = 1e-12;
+
+/// Entries of rows that are compared for twins, at most.
+const COMPARED: usize = 10_000_000;
+
+/// Columns without a common row, with costs of one sign, whose rows are the same but for them: whatever the other columns
+/// are, the same values are open to both, and what is best for one is best for the other. One of them is put in for the other.
+fn twins(mip: &mut Mip, idle: &mut [bool], stays: &[bool]) -> Vec<Given> {
+    let p = &mip.problem;
+    let hash = |v: u64| (v ^ v >> 29).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    let hash = |v: u64| hash(hash(v.wrapping_add(1)));
+    let rows = |j: usize| p.columns.line(j).filter(|e| e.1 != 0.0 && !idle[e.0]);
+    let row_key: Vec<u64> = (0..p.m())
+        .map(|i| others(p, i, usize::MAX).fold(0, |k: u64, e| k.wrapping_add(hash(e.0 as u64))))
+        .collect();
+    let mut seen: HashMap<u64, Vec<usize>> = HashMap::new();
+    let mut touched = vec![false; p.n()];
+    let mut given = Vec::new();
+    let (mut left, mut gone_rows) = (COMPARED, Vec::new());
+    for j in 0..p.n() {
+        if p.lower[j] >= p.upper[j] || stays[j] || mip.threshold[j] > 0.0 {
+            continue;
+        }
+        let own = hash(j as u64);
+        let key = rows(j).fold(0, |k: u64, (i, _)| {
+            k.wrapping_add(hash(row_key[i].wrapping_sub(own)))
+        });
+        let group = seen.entry(key).or_default();
+        let alike = |k: &&usize| {
+            let bounds = p.lower[j] == p.lower[**k] && p.upper[j] == p.upper[**k];
+            let cost = p.cost[j] * p.cost[**k] > 0.0 || p.cost[j] == p.cost[**k];
+            bounds && cost && mip.integer[j] == mip.integer[**k]
+        };
+        let twin = group.iter().filter(alike).copied().find(|&k| {
+            let mut free: Vec<(usize, f64)> = rows(k).collect();
+            let mut same = |(i, a): (usize, f64)| {
+                let size = p.rows.line(i).len() * free.len();
+                left = left.saturating_sub(size);
+                let like = |&(r, b): &(usize, f64)| is_multiple(p, [i, r], [j, k], [a, b]);
+                let found = free.iter().position(like).filter(|_| left > 0);
+                found.map(|f| free.swap_remove(f)).is_some()
+            };
+            !touched[j] && !touched[k] && rows(j).all(&mut same) && free.is_empty()
+        });
+        let Some(by) = twin else {
+            group.push(j);
+            continue;
+        };
+        for i in rows(j).chain(rows(by)).map(|e| e.0) {
+            p.rows.line(i).for_each(|e| touched[e.0] = true);
+        }
+        (touched[j], touched[by]) = (true, true);
+        gone_rows.extend(rows(j).map(|e| e.0));
+        given.push(Given {
+            column: j,
+            constant: 0.0,
+            terms: vec![(by, 1.0)],
+        });
+    }
+    gone_rows.into_iter().for_each(|i| idle[i] = true);
+    for g in &given {
+        let by = g.terms[0].0;
+        if let Some(&first) = mip.priority.get(g.column) {
+            mip.priority[by] = mip.priority[by].min(first);
+        }
+    }
+    put_in(&mut mip.problem, &given);
+    given
+}
+
+/// The entries of a row in columns that are not decided, without one column.
+fn others(p: &Problem, row: usize, but: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+    let open = move |e: &(usize, f64)| e.1 != 0.0 && e.0 != but && p.lower[e.0] < p.upper[e.0];
+    p.rows.line(row).filter(open)
+}
+
+/// Whether the second row is a multiple of the first, with the second column, whose coefficients are these, for the first.
+fn is_multiple(p: &Problem, rows: [usize; 2], columns: [usize; 2], own: [f64; 2]) -> bool {
+    let same = |x: f64, y: f64| x == y || (x - y).abs() <= SAME * x.abs().max(y.abs());
+    let mut one = others(p, rows[0], columns[0]);
+    let mut two = others(p, rows[1], columns[1]);
+    let ratio = own[1] / own[0];
+    loop {
+        match (one.next(), two.next()) {
+            (None, None) => break,
+            (Some(a), Some(b)) if a.0 == b.0 && same(b.1, ratio * a.1) => {}
+            _ => return false,
+        }
+    }
+    let decided = |row: usize, but: usize| {
+        let line = p.rows.line(row);
+        let decided = line.filter(|e| e.0 != but && p.lower[e.0] >= p.upper[e.0]);
+        decided.map(|(k, a)| a * p.lower[k]).sum::<f64>()
+    };
+    let sides = |n: usize| {
+        let moved = decided(rows[n], columns[n]);
+        [p.row_lower[rows[n]] - moved, p.row_upper[rows[n]] - moved]
+    };
+    let (first, second) = (sides(0), sides(1));
+    let [low, high] = first.map(|s| s * ratio);
+    let [low, high] = if ratio < 0.0 {
+        [high, low]
+    } else {
+        [low, high]
+    };
+    same(second[0], low) && same(second[1], high)
+}
+
+/// Columns in terms of the one that gives each, in rows and costs.
 fn put_in(p: &mut Problem, given: &[Given]) {
     if given.is_empty() {
         return;
     }
     let mut of = vec![None; p.n()];
     for g in given {
-        of[g.column] = Some(g);
+        of[g.column] = Some((g, g.terms[0]));
         p.offset += g.constant * p.cost[g.column];
-        p.cost[g.by] += g.factor * p.cost[g.column];
+        p.cost[g.terms[0].0] += g.terms[0].1 * p.cost[g.column];
         p.cost[g.column] = 0.0;
         (p.lower[g.column], p.upper[g.column]) = (0.0, 0.0);
     }
@@ -232,11 +397,11 @@ fn put_in(p: &mut Problem, given: &[Given]) {
     for i in 0..old.lines() {
         let mut entries: Vec<(usize, f64)> = Vec::new();
         for (j, a) in old.line(i) {
-            let Some(g) = of[j] else {
+            let Some((g, (by, factor))) = of[j] else {
                 entries.push((j, a));
                 continue;
             };
-            entries.push((g.by, a * g.factor));
+            entries.push((by, a * factor));
             p.row_lower[i] -= a * g.constant;
             p.row_upper[i] -= a * g.constant;
         }

@@ -363,6 +363,7 @@ impl<'a, R: Relaxation> Search<'a, R> {
             end,
             records: self.records,
             made: self.made,
+            failed: None,
         }
     }
 

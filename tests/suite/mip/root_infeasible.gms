@@ -12,11 +12,7 @@ model m / o, none /, n / o, far /;
 solve m using minlp minimizing z;
 *= m.modelstat 4
 *= m.solvestat 1
-scalar kept;
-kept = x.l;
-*= kept 1
 x.lo = 0;
 x.l = 2;
 solve n using minlp minimizing z;
 *= n.modelstat 5
-*= x.l 2
