@@ -83,6 +83,10 @@ strategies! {
             "PATH's restarts, Ferris & Munson 2000";
     }
     "nlp": {
+        TriangularRows "triangular_rows",
+            "an equation has one column that is not fixed, and linearly, or a free column that stands nowhere else: it is solved for that column before, or after",
+            "the nonzeros",
+            "Drud 1994";
         ConvexEpigraph "convex_epigraph",
             "kinks on the side where they are convex are replaced by a column and a row for each argument",
             "one solve of the larger program",
