@@ -36,6 +36,7 @@ struct Pivot {
 pub(super) struct Triangular {
     instance: Instance,
     using: ProblemType,
+    pattern: Pattern,
     before: Vec<Pivot>,
     after: Vec<Pivot>,
     /// A row has no derivatives, and its multiplier is 0: the original cannot be judged.
@@ -117,15 +118,15 @@ impl Pattern {
         })
     }
 
-    /// What is left of a row's right-hand side without column j, and the coefficient of j. None where j does not stand linearly, or
-    /// functions have no value.
-    fn solved_for(
+    /// What is left of a row's right-hand side without column j, the coefficient of j, and the sum of the sizes that it is made of. None where j
+    /// does not stand linearly, or functions have no value.
+    fn without(
         &self,
         instance: &Instance,
         i: usize,
         j: usize,
         level: &[f64],
-    ) -> Option<(f64, f64)> {
+    ) -> Option<(f64, f64, f64)> {
         let mut rest = Sum::new(instance.rows.rhs[i]);
         let (mut slope, mut size) = (0.0, 0.0_f64);
         for (k, a) in instance.matrix.row(i) {
@@ -142,9 +143,118 @@ impl Pattern {
             slope += t.coef * a;
             size += (t.coef * a).abs();
         }
-        let rest = rest.value();
-        let pivots = slope.abs() > SMALLEST_PIVOT * size;
-        (pivots && rest.is_finite()).then_some((rest, slope))
+        Some((rest.value(), slope, size))
+    }
+
+    /// The value of column j that row i gives, and its coefficient.
+    fn solved_for(
+        &self,
+        instance: &Instance,
+        i: usize,
+        j: usize,
+        level: &[f64],
+    ) -> Option<(f64, f64)> {
+        let (rest, slope, size) = self.without(instance, i, j, level)?;
+        let value = rest / slope;
+        let pivots = slope.abs() > SMALLEST_PIVOT * size && value.abs() <= FARTHEST;
+        pivots.then_some((value, slope))
+    }
+
+    /// Whether a row of which all columns are known holds.
+    fn holds(&self, instance: &Instance, i: usize, level: &[f64]) -> bool {
+        let room = HOLDS * instance.rows.rhs[i].abs().max(1.0);
+        let rest = self.without(instance, i, usize::MAX, level);
+        rest.is_some_and(|(rest, ..)| match instance.rows.relation[i] {
+            Relation::Equal => rest.abs() <= room,
+            Relation::Greater => rest <= room,
+            Relation::Less => rest >= -room,
+            Relation::Free => true,
+        })
+    }
+
+    /// Rows that give their column one after the other, whose levels they set. None where rows that are known then contradict each other.
+    fn first(&self, instance: &Instance, level: &mut [f64]) -> Option<Vec<Pivot>> {
+        let (m, columns) = (instance.row_count(), &instance.columns);
+        let mut known = vec![false; level.len()];
+        for (j, level) in level.iter_mut().enumerate() {
+            known[j] = columns.lower[j] == columns.upper[j];
+            if known[j] {
+                *level = columns.lower[j];
+            }
+        }
+        let unknown = |i: usize, known: &[bool]| {
+            let all = self.columns(i).iter().map(|&j| j as usize);
+            all.filter(|&j| !known[j]).collect::<Vec<_>>()
+        };
+        let mut open: Vec<usize> = (0..m).map(|i| unknown(i, &known).len()).collect();
+        let gives =
+            |i: usize, open: &[usize]| open[i] == 1 && instance.rows.relation[i] == Relation::Equal;
+        let mut next: Vec<usize> = (0..m).filter(|&i| gives(i, &open)).collect();
+        let mut pivots = Vec::new();
+        while let Some(row) = next.pop() {
+            let [column] = unknown(row, &known)[..] else {
+                continue;
+            };
+            let Some((value, slope)) = self.solved_for(instance, row, column, level) else {
+                continue;
+            };
+            let within = value.max(columns.lower[column]).min(columns.upper[column]);
+            if (value - within).abs() > HOLDS * value.abs().max(1.0) {
+                continue;
+            }
+            (known[column], level[column]) = (true, within);
+            pivots.push(Pivot { row, column, slope });
+            for &r in &self.rows[column] {
+                open[r as usize] -= 1;
+                if gives(r as usize, &open) {
+                    next.push(r as usize);
+                }
+            }
+        }
+        let all_hold =
+            pivots.is_empty() || (0..m).all(|i| open[i] > 0 || self.holds(instance, i, level));
+        all_hold.then_some(pivots)
+    }
+
+    /// Rows that define a free column which no other row needs, once those of `first` have left.
+    fn last(&self, instance: &Instance, z: usize, first: &[Pivot]) -> Vec<Pivot> {
+        let mut count: Vec<usize> = self.rows.iter().map(Vec::len).collect();
+        let mut left_out = vec![false; instance.row_count()];
+        for p in first {
+            left_out[p.row] = true;
+            for &j in self.columns(p.row) {
+                count[j as usize] -= 1;
+            }
+        }
+        // known already
+        first.iter().for_each(|p| count[p.column] = usize::MAX);
+        let alone = |j: usize, count: &[usize]| count[j] == 1 && instance.is_free(j) && j != z;
+        let mut next: Vec<usize> = (0..count.len()).filter(|&j| alone(j, &count)).collect();
+        let mut pivots = Vec::new();
+        while let Some(column) = next.pop() {
+            let row = self.rows[column].iter().find(|&&i| !left_out[i as usize]);
+            let Some(row) = row.map(|&i| i as usize) else {
+                continue;
+            };
+            let curved = |t: KernelTerm| t.columns.contains(&(column as u32));
+            let linear = !self.terms(instance, row).any(|(_, t)| curved(t));
+            let entry = instance.matrix.row(row).find(|e| e.0 == column && linear);
+            let (Some((_, slope)), Relation::Equal) = (entry, instance.rows.relation[row]) else {
+                continue;
+            };
+            if self.columns(row).contains(&(z as u32)) {
+                continue;
+            }
+            left_out[row] = true;
+            pivots.push(Pivot { row, column, slope });
+            for &j in self.columns(row) {
+                count[j as usize] -= 1;
+                if alone(j as usize, &count) {
+                    next.push(j as usize);
+                }
+            }
+        }
+        pivots
     }
 }
 
@@ -203,152 +313,36 @@ fn affine(group: &KernelTerms, term: KernelTerm, j: usize, level: &[f64]) -> Opt
 }
 
 impl Triangular {
-    /// None where there are no such rows, or those that are known contradict each other.
+    /// None where there are no such rows.
     fn new(instance: &Instance, using: ProblemType) -> Option<Self> {
-        let (m, n) = (instance.row_count(), instance.column_count());
-        let columns = &instance.columns;
-        let pattern = Pattern::new(instance);
         let z = instance.objective?.column as usize;
-        let is_equation = |i: usize| instance.rows.relation[i] == Relation::Equal;
-        let mut level = columns.level.clone();
-        let mut known: Vec<bool> = (0..n)
-            .map(|j| columns.lower[j] == columns.upper[j])
-            .collect();
-        for j in (0..n).filter(|&j| known[j]) {
-            level[j] = columns.lower[j];
-        }
-        let mut open: Vec<usize> = (0..m)
-            .map(|i| {
-                let unknown = |j: &&u32| !known[**j as usize];
-                pattern.columns(i).iter().filter(unknown).count()
-            })
-            .collect();
-        let mut before = Vec::new();
-        let mut left_out = vec![false; m];
-        let mut next: Vec<usize> = (0..m).filter(|&i| open[i] == 1 && is_equation(i)).collect();
-        while let Some(i) = next.pop() {
-            let unknown = |j: &&u32| !known[**j as usize];
-            let Some(&j) = pattern.columns(i).iter().find(unknown) else {
-                continue;
-            };
-            let j = j as usize;
-            let Some((rest, slope)) = pattern.solved_for(instance, i, j, &level) else {
-                continue;
-            };
-            let value = rest / slope;
-            let (l, u) = (columns.lower[j], columns.upper[j]);
-            let within = value.max(l).min(u);
-            if value.abs() > FARTHEST || (value - within).abs() > HOLDS * value.abs().max(1.0) {
-                continue;
-            }
-            (known[j], level[j], left_out[i]) = (true, within, true);
-            before.push(Pivot {
-                row: i,
-                column: j,
-                slope,
-            });
-            for &r in &pattern.rows[j] {
-                let r = r as usize;
-                open[r] -= 1;
-                if open[r] == 1 && is_equation(r) {
-                    next.push(r);
-                }
-            }
-        }
-        // a row of which everything has become known is not seen again
-        let contradicted = |i: &usize| {
-            let (i, none) = (*i, usize::MAX);
-            let known_now =
-                open[i] == 0 && !left_out[i] && instance.rows.relation[i] != Relation::Free;
-            let rest = || {
-                let mut rest = Sum::new(instance.rows.rhs[i]);
-                instance
-                    .matrix
-                    .row(i)
-                    .for_each(|(k, a)| rest.add_product(-a, level[k]));
-                for (group, t) in pattern.terms(instance, i) {
-                    rest.add_product(-t.coef, affine(group, t, none, &level)?.0);
-                }
-                Some(rest.value())
-            };
-            let room = HOLDS * instance.rows.rhs[i].abs().max(1.0);
-            known_now
-                && !rest().is_some_and(|r| match instance.rows.relation[i] {
-                    Relation::Greater => r <= room,
-                    Relation::Less => r >= -room,
-                    _ => r.abs() <= room,
-                })
-        };
-        if !before.is_empty() && (0..m).any(|i| contradicted(&i)) {
-            return None;
-        }
-        let mut count: Vec<usize> = pattern.rows.iter().map(Vec::len).collect();
-        for i in (0..m).filter(|&i| left_out[i]) {
-            pattern
-                .columns(i)
-                .iter()
-                .for_each(|&j| count[j as usize] -= 1);
-        }
-        let mut after = Vec::new();
-        let is_free = |j: usize| instance.is_free(j) && j != z;
-        let mut next: Vec<usize> = (0..n).filter(|&j| count[j] == 1 && is_free(j)).collect();
-        while let Some(j) = next.pop() {
-            let Some(i) = pattern.rows[j].iter().find(|&&i| !left_out[i as usize]) else {
-                continue;
-            };
-            let i = *i as usize;
-            let curved = pattern
-                .terms(instance, i)
-                .any(|(_, t)| t.columns.contains(&(j as u32)));
-            let slope = instance
-                .matrix
-                .row(i)
-                .find(|e| e.0 == j)
-                .map_or(0.0, |e| e.1);
-            let defines = is_equation(i) && !curved && slope != 0.0;
-            if known[j] || !defines || pattern.columns(i).contains(&(z as u32)) {
-                continue;
-            }
-            (known[j], left_out[i]) = (true, true);
-            after.push(Pivot {
-                row: i,
-                column: j,
-                slope,
-            });
-            for &k in pattern.columns(i) {
-                let k = k as usize;
-                count[k] -= 1;
-                if count[k] == 1 && is_free(k) {
-                    next.push(k);
-                }
-            }
-        }
+        let pattern = Pattern::new(instance);
+        let mut level = instance.columns.level.clone();
+        let before = pattern.first(instance, &mut level)?;
+        let after = pattern.last(instance, z, &before);
         if before.is_empty() && after.is_empty() {
             return None;
         }
         let mut reduced = instance.clone();
         for p in before.iter().chain(&after) {
-            let value = if level[p.column].is_finite() {
-                level[p.column]
-            } else {
-                0.0
-            };
-            reduced.columns.lower[p.column] = value;
-            reduced.columns.upper[p.column] = value;
-            reduced.columns.level[p.column] = value;
+            let known = Some(level[p.column]).filter(|v| v.is_finite());
+            let columns = &mut reduced.columns;
+            for side in [&mut columns.lower, &mut columns.upper, &mut columns.level] {
+                side[p.column] = known.unwrap_or(0.0);
+            }
             reduced.rows.relation[p.row] = Relation::Free;
         }
+        let stays = |i: usize| reduced.rows.relation[i] != Relation::Free;
         for (group, original) in reduced.nonlinear.iter_mut().zip(&instance.nonlinear) {
-            if original.row.iter().any(|&i| left_out[i as usize]) {
-                *group = KernelTerms::new(original.kernel.clone());
-                for t in original.terms().filter(|t| !left_out[t.row]) {
-                    group.push(t.row as u32, t.coef, t.columns, t.constants);
-                }
+            *group = KernelTerms::new(original.kernel.clone());
+            for t in original.terms().filter(|t| stays(t.row)) {
+                group.push(t.row as u32, t.coef, t.columns, t.constants);
             }
         }
         Some(Self {
             instance: reduced,
             using,
+            pattern,
             before,
             after,
             irregular: Cell::new(false),
@@ -395,10 +389,11 @@ impl Bridge for Triangular {
 
     fn restore(&self, instance: &Instance, answer: &Answer) -> Option<Reply> {
         let mut outcome = answer.outcome.clone();
-        let pattern = Pattern::new(instance);
         for p in self.after.iter().rev() {
-            let (rest, slope) = pattern.solved_for(instance, p.row, p.column, &outcome.level)?;
-            outcome.level[p.column] = rest / slope;
+            let solved = self
+                .pattern
+                .solved_for(instance, p.row, p.column, &outcome.level);
+            outcome.level[p.column] = solved?.0;
         }
         if matches!(outcome.claim, Claim::Infeasible | Claim::LocallyInfeasible) {
             return Some(outcome.into());
