@@ -79,12 +79,16 @@ strategies! {
             "PATH's restarts, Ferris & Munson 2000";
     }
     "nlp": {
+        TriangularRows "triangular_rows",
+            "pre- and post-triangular rows are solved before and after",
+            "the nonzeros",
+            "Drud 1994";
         ConvexEpigraph "convex_epigraph",
             "kinks on the side where they are convex are replaced by a column and a row for each argument",
             "one solve of the larger program",
             "Boyd & Vandenberghe 2004, 4.1.3";
         InnerSums "inner_sums",
-            "linear sums of 500 variables and more inside functions, others of 1000 (a tenth of these where second derivatives or their programs would fill the memory), become columns, so that second derivatives stay sparse",
+            "linear sums of 500 variables and more inside functions, others of 1000 (a tenth of these where second derivatives or their programs would fill the memory), become columns",
             "a row and a column for each",
             "Griewank & Toint 1982";
         VanishingSquares "vanishing_squares",
@@ -120,7 +124,7 @@ strategies! {
             "100 steps",
             "Byrd, Gould, Nocedal & Waltz 2004";
         InteriorFirst "interior_first",
-            "a quarter of all constraints are nonlinear, and at least 50 of these are equations (ten inequalities count as one): the interior point goes before the sequential method",
+            "a quarter of all constraints are nonlinear, and at least 50 of these are equations (ten inequalities count as one): the interior point goes first",
             "a run of the interior point",
             "ablation";
         SecondOrderCorrection "second_order_correction",

@@ -7,7 +7,8 @@
 //! * [`least_squares`]: a sum of as many squares as there are variables as equations;
 //! * [`kkt`]: the optimality conditions of a linear program as a complementarity problem;
 //! * [`products`]: pairs as nonlinear rows, for programs with equilibrium constraints;
-//! * [`squares`]: convex quadratic forms as columns, for programs with discrete columns.
+//! * [`squares`]: convex quadratic forms as columns, for programs with discrete columns;
+//! * [`triangular`]: columns that equations give one after the other, as numbers.
 
 pub mod binaries;
 mod builder;
@@ -19,6 +20,7 @@ mod least_squares;
 mod parts;
 pub mod products;
 pub mod squares;
+mod triangular;
 
 use super::Settings;
 use super::answer::Answer;
@@ -52,8 +54,9 @@ pub(super) trait Bridge {
 type Build = fn(&[&dyn Backend], &Task, &Settings) -> Option<Box<dyn Bridge>>;
 
 /// What is tried before a task is given to a backend as it is.
-pub(super) const BEFORE: [Build; 4] = [
+pub(super) const BEFORE: [Build; 5] = [
     kkt::Kkt::bridge,
+    triangular::Triangular::bridge,
     epigraph::Epigraph::bridge,
     least_squares::LeastSquares::bridge,
     inner_sums::InnerSums::bridge,

@@ -11,12 +11,13 @@
 //! * **complementarity**: the largest |multiplier · distance|;
 //! * **dual relative**: a reduced cost relative to max(1, max_i |m_i ∂a_i/∂x_j|), with |m_i| at least η
 //!   (see [`super`]) in rows that bind, a distance relative
-//!   to max(1, |x_j|), a multiplier by the reduced costs it makes, a slack relative to its row's size.
+//!   to max(1, |x_j|), a multiplier by the reduced costs it makes, a slack relative to its row's size; a reduced cost that
+//!   changes its sign within the tolerance of the level is 0.
 //!
 //! The primal residuals are those of [`super`], with |∂a_i/∂x_j · x_j| as the size of an
 //! entry.
 
-use super::{Linearised, Residuals, primal, row_violation, units};
+use super::{Linearised, Residuals, TOLERANCE, primal, row_violation, units};
 use crate::autodiff::{ErrorKind, EvalFailure, Evaluator, kinks};
 use crate::model::instance::{Instance, Relation};
 use crate::model::sum::Sum;
@@ -236,6 +237,12 @@ pub fn measure(
         return without_derivatives(instance, evaluator, level);
     };
     let mut found = residuals(instance, level, row_marginal, &at);
+    if found.is_feasible(TOLERANCE)
+        && found.dual_relative > TOLERANCE
+        && change_sign_nearby(instance, evaluator, level, row_marginal, &mut at)
+    {
+        found = residuals(instance, level, row_marginal, &at);
+    }
     if let Some(evaluator) = smoothed
         && let Ok(mut beside) = linearise(instance, evaluator, level, row_marginal)
     {
@@ -246,6 +253,50 @@ pub fn measure(
         }
     }
     (found, at)
+}
+
+/// Reduced costs that are looked at from nearby, at most.
+const MOST_STEEP: usize = 100;
+
+/// Puts reduced costs to 0 that change their sign within the tolerance of the level: where slopes change faster than digits, as that of
+/// x**1.1 − c·x near 0, such a column is as near to where it is stationary as others are to their bounds. Only if all that are not 0
+/// do so, each at a gain that is none beside the objective; whether they do.
+fn change_sign_nearby(
+    instance: &Instance,
+    evaluator: &mut Evaluator,
+    level: &[f64],
+    row_marginal: &[f64],
+    at: &mut Linearised,
+) -> bool {
+    let Some(objective) = instance.objective else {
+        return false;
+    };
+    let value = level[objective.column as usize].abs().max(1.0);
+    let columns = &instance.columns;
+    let mut there = level.to_vec();
+    let mut steep = Vec::new();
+    for (j, &x) in level.iter().enumerate() {
+        let (l, u, r) = (columns.lower[j], columns.upper[j], at.reduced[j]);
+        let by = TOLERANCE * x.abs().max(1.0);
+        let (to, room) = match objective.sense.sign() * r > 0.0 {
+            true => (x - by, x - l),
+            false => (x + by, u - x),
+        };
+        let size = at.column_size[j].clamp(1.0, HIDING);
+        if l == u || room <= by || r.abs() <= TOLERANCE * size {
+            continue;
+        }
+        there[j] = to;
+        let moved = linearise(instance, evaluator, &there, row_marginal);
+        there[j] = x;
+        let changes = moved.is_ok_and(|m| m.reduced[j] * r <= 0.0);
+        if !changes || r.abs() * by > TOLERANCE * value || steep.len() == MOST_STEEP {
+            return false;
+        }
+        steep.push(j);
+    }
+    steep.iter().for_each(|&j| at.reduced[j] = 0.0);
+    !steep.is_empty()
 }
 
 /// Residuals of a point without derivatives, or without values.

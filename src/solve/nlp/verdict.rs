@@ -7,7 +7,7 @@ use super::problem::Nlp;
 use super::relaxation;
 use super::trial::Trial;
 use crate::autodiff::{Degree, Evaluator};
-use crate::model::instance::{Instance, Relation};
+use crate::model::instance::Instance;
 use crate::solve::certificate::nonlinear::{is_locally_infeasible, violations};
 use crate::solve::{Claim, Outcome, SolverStatus, Stop, Strategy};
 
@@ -37,7 +37,7 @@ impl Driver<'_, '_> {
         let best = self.best.take().expect("a point was kept");
         let unbounded = self.is_unbounded(&best);
         let mut problem = lock(&*self.problem);
-        let affine = is_affine(self.instance, problem.evaluator(), &best.level);
+        let affine = is_affine(self.instance, problem.evaluator());
         let mut proved = |t: &Trial, y: &[f64]| {
             is_locally_infeasible(self.instance, problem.evaluator(), &t.level, y, 1e-4)
         };
@@ -127,62 +127,14 @@ impl Driver<'_, '_> {
     }
 }
 
-/// Whether only linear terms are left once the variables that equations determine one after the other, each linearly, are
-/// numbers like the fixed ones: what is optimal is so everywhere.
-fn is_affine(instance: &Instance, evaluator: &mut Evaluator, level: &[f64]) -> bool {
-    let (n, m) = (instance.column_count(), instance.row_count());
-    let degrees = evaluator.degrees();
-    let polynomial = |i: usize| degrees[i] <= Degree::Quadratic;
-    let mut inside: Vec<Vec<u32>> = vec![Vec::new(); m];
-    for t in instance.terms() {
-        inside[t.row].extend(t.columns);
-    }
-    let (first, second) = evaluator.hessian_pattern();
-    let pairs: Vec<(u32, u32)> = first.iter().copied().zip(second.iter().copied()).collect();
-    let mut squared = vec![false; n];
-    for &(j, _) in pairs.iter().filter(|(i, j)| i == j) {
-        squared[j as usize] = true;
-    }
-    let mut value = vec![0.0; evaluator.jacobian_pattern().1.len()];
-    if evaluator.jacobian(level, &mut value).is_err() {
-        return false;
-    }
-    let (start, column) = evaluator.jacobian_pattern();
+/// Whether only linear terms are left once the fixed variables are numbers: what is optimal is so everywhere.
+fn is_affine(instance: &Instance, evaluator: &mut Evaluator) -> bool {
     let columns = &instance.columns;
-    let mut known: Vec<bool> = (0..n)
-        .map(|j| columns.lower[j] == columns.upper[j])
-        .collect();
-    // rows by column; how many of a row's entries are not known: a row is looked at when one is left
-    let mut rows: Vec<Vec<usize>> = vec![Vec::new(); n];
-    let mut open = vec![0; m];
-    for i in 0..m {
-        for &j in &column[start[i]..start[i + 1]] {
-            if !known[j as usize] {
-                rows[j as usize].push(i);
-                open[i] += 1;
-            }
-        }
-    }
-    let mut single: Vec<usize> = (0..m).filter(|&i| open[i] == 1).collect();
-    while let Some(i) = single.pop() {
-        let mut entries = start[i]..start[i + 1];
-        let Some(k) = entries.find(|&k| !known[column[k] as usize]) else {
-            continue;
-        };
-        let j = column[k] as usize;
-        let linear = !inside[i].contains(&column[k]) || polynomial(i) && !squared[j];
-        if instance.rows.relation[i] != Relation::Equal || value[k] == 0.0 || !linear {
-            continue;
-        }
-        known[j] = true;
-        for &r in &rows[j] {
-            open[r] -= 1;
-            if open[r] == 1 {
-                single.push(r);
-            }
-        }
-    }
-    let known = |j: &u32| known[*j as usize];
-    pairs.iter().all(|(i, j)| known(i) || known(j))
-        && (0..m).all(|i| polynomial(i) || inside[i].iter().all(known))
+    let known = |j: &u32| columns.lower[*j as usize] == columns.upper[*j as usize];
+    let (first, second) = evaluator.hessian_pattern();
+    let degrees = evaluator.degrees();
+    first.iter().zip(second).all(|(i, j)| known(i) || known(j))
+        && instance
+            .terms()
+            .all(|t| degrees[t.row] <= Degree::Quadratic || t.columns.iter().all(known))
 }

@@ -246,6 +246,7 @@ impl Method<'_, '_> {
         let mut steps = 0;
         let mut halved = (0, f64::INFINITY);
         while steps < most && !self.budget.is_over() {
+            self.frame.see_rounding(&self.at);
             let residual = self.at.residual(&self.frame, &self.lambda);
             if residual <= SOLVED {
                 return (steps, End::Solved);
