@@ -92,11 +92,7 @@ fn show(e: &Expr) -> String {
         ExprKind::Number(x) => x.to_string(),
         ExprKind::Membership(yes) => if *yes { "yes" } else { "no" }.to_string(),
         ExprKind::Text(t) => format!("'{t}'"),
-        ExprKind::Apply {
-            name,
-            attribute,
-            arguments,
-        } => {
+        ExprKind::Apply(name, attribute, arguments) => {
             let a = attribute
                 .as_ref()
                 .map_or(String::new(), |a| format!(".{}", a.name));

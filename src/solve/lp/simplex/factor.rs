@@ -135,8 +135,13 @@ impl Factor {
         (!marked).then_some(lu)
     }
 
-    /// Rows in which none of these columns has its pivot. None: numbers that are not finite.
-    pub(crate) fn rows_without_pivots(m: usize, mut columns: Vec<Entries>) -> Option<Vec<usize>> {
+    /// Rows in which none of these columns, which have entries, has its pivot, and the columns that depend on the others. None: numbers that are not
+    /// finite.
+    pub(crate) fn without_pivots(
+        m: usize,
+        mut columns: Vec<Entries>,
+    ) -> Option<(Vec<usize>, Vec<usize>)> {
+        let given = columns.len();
         columns.resize(m, Vec::new());
         let (order, between) = triangular_order(m, &columns);
         let lu = if between <= SMALL_BUMP.max(2 * m / TRIANGULAR) {
@@ -151,8 +156,9 @@ impl Factor {
             SparseLu::factor_markowitz(&matrix, parameters(ZERO)).ok()?
         };
         let left = (0..columns.len()).filter(|&k| is_marked(&lu, k));
-        let rows = left.map(|k| lu.perm()[k]);
-        Some(rows.filter(|&i| i < m).collect())
+        let rows = left.clone().map(|k| lu.perm()[k]).filter(|&i| i < m);
+        let dependent = left.map(|k| lu.qcol()[k]).filter(|&k| k < given);
+        Some((rows.collect(), dependent.collect()))
     }
 
     /// Solves B x = a. None if the factor has broken down.

@@ -18,6 +18,7 @@
 use super::factor::{Entries, Factor, ZERO};
 use super::{Basis, NONBASIC, PIVOT, SAFE_PIVOT, Simplex};
 use crate::solve::lp::Ended;
+use std::collections::HashSet;
 
 /// What violates its bound, or its sign, by more does not block: it is left to the simplex method.
 const OUTSIDE: f64 = 1e-6;
@@ -100,14 +101,17 @@ impl Simplex {
             column.map(|(i, a)| (i, a * weight(i))).collect()
         };
         let columns: Vec<Entries> = inside.iter().map(weighted).collect();
-        let rows = Factor::rows_without_pivots(self.m, columns)?.into_iter();
-        let logicals: Vec<u32> = rows.map(|row| (self.n + row) as u32).collect();
-        let taken = logicals.iter().any(|&j| start.inside[j as usize]);
-        if inside.len() + logicals.len() != self.m || taken {
+        let (rows, dependent) = Factor::without_pivots(self.m, columns)?;
+        let dependent: HashSet<usize> = dependent.into_iter().collect();
+        let mut basic: Vec<u32> = (inside.into_iter().enumerate())
+            .filter_map(|(k, j)| (!dependent.contains(&k)).then_some(j))
+            .collect();
+        basic.extend(rows.into_iter().map(|row| (self.n + row) as u32));
+        let different: HashSet<u32> = basic.iter().copied().collect();
+        if different.len() != self.m || basic.len() != self.m {
             return self.refactor();
         }
-        self.head = inside;
-        self.head.extend(logicals);
+        self.head = basic;
         self.slot.fill(NONBASIC);
         for (slot, &j) in self.head.iter().enumerate() {
             self.slot[j as usize] = slot as u32;
