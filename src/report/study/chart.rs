@@ -47,17 +47,13 @@ pub fn svg(title: &str, s: &Study) -> String {
                 .map(|d| &*d.0.way.setting)
                 .collect();
             let exact = if first.1 == 0.0 { " (error 0)" } else { "" };
-            let text = here.join(", ") + exact;
-            // Blanks that stay keep it off the point; neighbours write to different sides.
-            let (text, anchor) = match k % 2 {
-                0 => (format!("{text}\u{a0}\u{a0}"), Anchor::End),
-                _ => (format!("\u{a0}\u{a0}{text}"), Anchor::Start),
-            };
+            // Blanks that stay keep it off the point.
+            let text = format!("\u{a0}\u{a0}{}{exact}", here.join(", "));
             let style = Style {
                 fill: Some(Paint::Color(series(k).into())),
                 ..Style::sized(10.0)
             };
-            labels.push(Element::new(Shape::Text(at, text, anchor)).style(style));
+            labels.push(Element::new(Shape::Text(at, text, Anchor::Start)).style(style));
             mine.retain(|d| !near(d));
         }
     }
