@@ -92,6 +92,11 @@ impl<'a> Task<'a> {
         let pairs = self.instance.matched.iter().flatten();
         self.using.has_pairs() && pairs.into_iter().any(Option::is_some)
     }
+
+    /// Whether all columns are continuous, and no row is paired with one.
+    pub(super) fn is_continuous(&self) -> bool {
+        !self.has_pairs() && !self.has_integers()
+    }
 }
 
 impl Supports {

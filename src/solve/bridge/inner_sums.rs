@@ -71,7 +71,7 @@ impl InnerSums {
         settings: &Settings,
     ) -> Option<Box<dyn Bridge>> {
         let instance = task.instance;
-        let other = instance.objective.is_none() || task.has_pairs() || task.has_integers();
+        let other = instance.objective.is_none() || !task.is_continuous();
         if other || !settings.runs(Strategy::InnerSums) {
             return None;
         }

@@ -24,7 +24,7 @@ impl Kkt {
         let name = task.choice?;
         let program = task.instance;
         program.objective.filter(|_| program.is_linear())?;
-        if task.has_pairs() || task.has_integers() {
+        if !task.is_continuous() {
             return None;
         }
         let named = || backends.iter().filter(|b| is_called(**b, name));

@@ -109,7 +109,7 @@ impl LeastSquares {
         settings: &Settings,
     ) -> Option<Box<dyn Bridge>> {
         let instance = task.instance;
-        let other = instance.objective.is_none() || task.has_pairs() || task.has_integers();
+        let other = instance.objective.is_none() || !task.is_continuous();
         if other || task.choice.is_some() || task.seen.is_some() {
             return None;
         }

@@ -356,7 +356,7 @@ impl Triangular {
         settings: &Settings,
     ) -> Option<Box<dyn Bridge>> {
         let instance = task.instance;
-        let other = instance.is_linear() || task.has_pairs() || task.has_integers();
+        let other = instance.is_linear() || !task.is_continuous();
         if other || task.seen.is_some() {
             return None;
         }
@@ -367,7 +367,7 @@ impl Triangular {
     }
 }
 
-/// Derivatives of the rows; beside a point where there are none.
+/// Derivatives of the rows at a point. None where they do not exist.
 fn jacobian(evaluator: &mut Evaluator, level: &[f64]) -> Option<Vec<f64>> {
     let mut value = vec![0.0; evaluator.jacobian_pattern().1.len()];
     evaluator.jacobian(level, &mut value).ok()?;

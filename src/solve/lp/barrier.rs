@@ -42,7 +42,7 @@ const REGULAR: f64 = 1e-9;
 
 /// Else ρ is this divided by a power of the variables' ratio, 10⁴ at most, and δ times the same power of that. (At a power of 0 the points on walls are
 /// right to 8 digits, at 1 to 10, at 1.5 to 11. With a ratio below 1, which makes ρ larger, D2Q06C of Netlib keeps dual residuals of 3e-7. With δ times
-/// 10⁴ only, the reduced costs on a wall of 80 courses are right to 4e-12, else to 6e-13, and 1 700 pivots mend their signs, else 8.)
+/// 10⁴ only, the reduced costs on a wall of 80 courses are right to 4e-12, else to 7e-13, and 1 700 pivots mend their signs, else 8.)
 const STEEPER: f64 = 1.5;
 const STEEPEST: f64 = 1e4;
 

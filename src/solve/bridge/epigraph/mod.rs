@@ -88,7 +88,7 @@ impl Epigraph {
         task: &Task,
         settings: &Settings,
     ) -> Option<Box<dyn Bridge>> {
-        let other = task.instance.is_linear() || task.has_pairs() || task.has_integers();
+        let other = task.instance.is_linear() || !task.is_continuous();
         if other || !settings.runs(Strategy::ConvexEpigraph) {
             return None;
         }
