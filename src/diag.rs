@@ -48,12 +48,12 @@ pub struct Diagnostic {
 }
 
 impl Diagnostic {
-    fn new(severity: Severity, code: &'static str, span: Span, message: impl Into<String>) -> Self {
+    fn new(severity: Severity, code: &'static str, span: Span) -> Self {
         debug_assert!(codes::find(code).is_some(), "{code} is not in diag::codes");
         Self {
             code,
             severity,
-            message: message.into(),
+            message: String::new(),
             span,
             label: String::new(),
             others: Vec::new(),
@@ -61,34 +61,19 @@ impl Diagnostic {
         }
     }
 
-    /// A compile error.
-    pub fn error(code: &'static str, span: Span, message: impl Into<String>) -> Self {
-        Self::new(Severity::Error, code, span, message)
+    /// A compile error; its message follows with [`Diagnostic::says`].
+    pub fn error(code: &'static str, span: Span) -> Self {
+        Self::new(Severity::Error, code, span)
     }
 
-    /// A warning.
-    pub fn warning(code: &'static str, span: Span, message: impl Into<String>) -> Self {
-        Self::new(Severity::Warning, code, span, message)
+    /// A warning; its message follows with [`Diagnostic::says`].
+    pub fn warning(code: &'static str, span: Span) -> Self {
+        Self::new(Severity::Warning, code, span)
     }
 
-    /// An execution error.
-    pub fn execution(code: &'static str, span: Span, message: impl Into<String>) -> Self {
-        Self::new(Severity::Execution, code, span, message)
-    }
-
-    /// A compile error whose message follows with [`Diagnostic::says`].
-    pub fn wrong(code: &'static str, span: Span) -> Self {
-        Self::error(code, span, "")
-    }
-
-    /// A warning whose message follows with [`Diagnostic::says`].
-    pub fn doubtful(code: &'static str, span: Span) -> Self {
-        Self::warning(code, span, "")
-    }
-
-    /// An execution error whose message follows with [`Diagnostic::says`].
-    pub fn failed(code: &'static str, span: Span) -> Self {
-        Self::execution(code, span, "")
+    /// An execution error; its message follows with [`Diagnostic::says`].
+    pub fn execution(code: &'static str, span: Span) -> Self {
+        Self::new(Severity::Execution, code, span)
     }
 
     /// The problem, with its values.

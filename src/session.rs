@@ -60,7 +60,7 @@ pub fn execute(
         return ended(RunStatus::CompilationError, diagnostics, program.map);
     }
     if let Some(message) = &options.refused {
-        diagnostics.push(Diagnostic::error("E0329", Span::default(), message));
+        diagnostics.push(Diagnostic::error("E0329", Span::default()).says(message));
         return ended(RunStatus::CompilationError, diagnostics, program.map);
     }
     let (mut machine, code) = Machine::new(program, host, options);

@@ -263,7 +263,7 @@ impl Model {
         }
         let (m, code) = Machine::new(program, &mut host, run::Options::default());
         let chosen = show::choose(&m, &code, choice.model.as_deref()).map_err(|why| {
-            let d = diag::Diagnostic::execution("E0430", crate::source::Span::default(), why);
+            let d = diag::Diagnostic::execution("E0430", crate::source::Span::default()).says(why);
             refused(&[d], &m.map)
         })?;
         let (page, f) = show::page(&m, &code, &chosen, None);

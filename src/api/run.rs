@@ -178,7 +178,7 @@ pub(super) struct Ended {
 
 /// What is said after a panic: a bug of bmod.
 pub(super) fn broken() -> diag::Diagnostic {
-    diag::Diagnostic::failed("E0499", crate::source::Span::default())
+    diag::Diagnostic::execution("E0499", crate::source::Span::default())
         .says("something went wrong inside bmod; this is a bug in bmod, not in the model")
         .help("please report it with the model that caused it")
 }

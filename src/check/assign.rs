@@ -121,7 +121,8 @@ impl Compiler {
             && let ExprKind::Apply(_, _, _) = &c.kind
         {
             let message = "`$` takes only what stands directly behind it; the comparison is made with all that stands on the left";
-            let d = Diagnostic::warning("E0379", c.span, message)
+            let d = Diagnostic::warning("E0379", c.span)
+                .says(message)
                 .label("the condition ends here")
                 .help("put the condition in parentheses: `1$(ord(t) > 1)`");
             self.report(d);
@@ -153,7 +154,7 @@ impl Compiler {
                     let what = symbol.kind_name();
                     // `z = 3*x;` is meant as the definition of an equation, which is missing then.
                     self.lose_definition();
-                    let d = Diagnostic::wrong("E0310", t.span)
+                    let d = Diagnostic::error("E0310", t.span)
                         .says(format!(
                             "the {what} `{}` cannot be assigned itself",
                             symbol.name
@@ -181,7 +182,7 @@ impl Compiler {
                     Some(functions::RecordAttribute::Fix) => Target::Fix(s),
                     Some(functions::RecordAttribute::Derived(_)) => {
                         return self.fail(
-                            Diagnostic::wrong("E0314", attr.span)
+                            Diagnostic::error("E0314", attr.span)
                                 .says(format!(
                                     "`.{}` is computed and cannot be assigned",
                                     attr.name
@@ -205,7 +206,7 @@ impl Compiler {
             }
             _ => {
                 return self.fail(
-                    Diagnostic::wrong("E0325", t.span)
+                    Diagnostic::error("E0325", t.span)
                         .says(format!(
                             "`{}` is {} and cannot be assigned",
                             symbol.name,
@@ -220,7 +221,7 @@ impl Compiler {
         let root = self.symbols.root(s);
         if is_set && (self.symbols.get(root).is_domain || root == super::symbols::UNIVERSE) {
             return self.fail(
-                Diagnostic::wrong("E0320", t.span)
+                Diagnostic::error("E0320", t.span)
                     .says(format!(
                         "the set `{}` cannot be assigned: it is the domain of other symbols",
                         symbol.name
@@ -249,7 +250,8 @@ impl Compiler {
         let name = self.symbols.get(root).name.clone();
         let message = format!("the loop runs over `{name}`, which is changed here");
         self.fail(
-            Diagnostic::error("E0320", span, message)
+            Diagnostic::error("E0320", span)
+                .says(message)
                 .label("bound by the loop")
                 .help(format!(
                     "run over the set it is part of: `loop(i$({name}(i)), …)`; or change a copy"

@@ -37,7 +37,7 @@ impl Compiler {
             None => format!("let `{name}` run alone, with a condition on its elements"),
         };
         self.fail(
-            Diagnostic::wrong("E0309", span)
+            Diagnostic::error("E0309", span)
                 .says(format!("{what} needs a set that runs itself; `{name}` stands here for what `{name}(…)` found"))
                 .label("not running")
                 .help(help),
@@ -119,7 +119,7 @@ impl Compiler {
             return Ok(());
         }
         self.fail(
-            Diagnostic::wrong("E0311", node.span)
+            Diagnostic::error("E0311", node.span)
                 .says(format!("{place} may not depend on a variable"))
                 .label("a variable stands in it")
                 .help(
@@ -170,7 +170,8 @@ impl Compiler {
     fn controlled_already<T>(&mut self, set: &Ident, span: Span) -> Result<T, Failed> {
         let message = format!("`{}` is bound already", set.name);
         self.fail(
-            Diagnostic::error("E0305", span, message)
+            Diagnostic::error("E0305", span)
+                .says(message)
                 .label("bound a second time here")
                 .help(format!(
                     "use an alias for the inner index: `alias({0},{0}2);` and write `{0}2` here",
@@ -183,7 +184,7 @@ impl Compiler {
     fn equal_item(&mut self, indices: &[Expr], span: Span, out: &mut Domain) -> Result<(), Failed> {
         let [a, b] = indices else {
             return self.fail(
-                Diagnostic::wrong("E0317", span).says("`sameas` compares two single indices"),
+                Diagnostic::error("E0317", span).says("`sameas` compares two single indices"),
             );
         };
         let free = |c: &Self, e: &Expr| match &e.kind {

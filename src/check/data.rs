@@ -155,7 +155,8 @@ fn looks_like_list(
 
 /// An error for data of a symbol that has some, or is assigned: data come before all assignments are carried out.
 pub(super) fn second_data(name: &str, span: Span, declared: Span) -> Diagnostic {
-    Diagnostic::error("E0340", span, format!("`{name}` has data already"))
+    Diagnostic::error("E0340", span)
+        .says(format!("`{name}` has data already"))
         .label("second data statement")
         .other(declared, "first declared here")
         .help("assign instead (`p(i) = …;`), or allow merging with `$onMulti`")
@@ -371,7 +372,7 @@ impl Compiler {
                 "`{}` is one element of the set `{name}`",
                 map.text(span).trim_end()
             );
-            let d = Diagnostic::warning("E0234", span, message).help(help);
+            let d = Diagnostic::warning("E0234", span).says(message).help(help);
             self.doubtful.push((s, d));
         }
         Ok(())
@@ -397,7 +398,8 @@ impl Compiler {
             let label = self.key_text(key);
             let message = format!("the element {label} of `{}` appears twice", to.symbol.name);
             self.report(
-                Diagnostic::error("E0341", span, message)
+                Diagnostic::error("E0341", span)
+                    .says(message)
                     .label("second time")
                     .help("take one of them out"),
             );
@@ -412,7 +414,11 @@ impl Compiler {
                     return;
                 }
                 let message = format!("`{}` is a singleton: it has one element", to.symbol.name);
-                self.report(Diagnostic::error("E0342", span, message).label("second element"));
+                self.report(
+                    Diagnostic::error("E0342", span)
+                        .says(message)
+                        .label("second element"),
+                );
                 return;
             }
             // `$onMulti`: the later element counts.
@@ -492,7 +498,8 @@ impl Compiler {
             if dim == 0 && !key.is_empty() {
                 let message = format!("the scalar `{}` gets one number", symbol.name);
                 self.report(
-                    Diagnostic::error("E0345", span, message)
+                    Diagnostic::error("E0345", span)
+                        .says(message)
                         .help("write `/ 5 /`; no blank parts thousands"),
                 );
                 continue;
@@ -559,7 +566,8 @@ impl Compiler {
         let name = &self.symbols.get(s).name;
         let message = format!("the data of `{name}` need a number for each record");
         self.report(
-            Diagnostic::error("E0345", record.span, message)
+            Diagnostic::error("E0345", record.span)
+                .says(message)
                 .label(at)
                 .help(help),
         );
@@ -595,7 +603,8 @@ impl Compiler {
             }
         };
         self.fail(
-            Diagnostic::error("E0345", span, format!("`{name}` is not a number"))
+            Diagnostic::error("E0345", span)
+                .says(format!("`{name}` is not a number"))
                 .label("a number is expected")
                 .help(help),
         )
@@ -636,7 +645,8 @@ impl Compiler {
                 _ => "take one of them out",
             };
             self.report(
-                Diagnostic::error("E0341", span, what)
+                Diagnostic::error("E0341", span)
+                    .says(what)
                     .label("second time")
                     .help(help),
             );
@@ -669,7 +679,7 @@ impl Compiler {
             };
             let Tail::Number(v, _) = record.value else {
                 self.report(
-                    Diagnostic::wrong("E0345", record.span)
+                    Diagnostic::error("E0345", record.span)
                         .says("a number is expected behind the attribute")
                         .label("no number"),
                 );

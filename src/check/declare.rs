@@ -25,7 +25,7 @@ impl Compiler {
             if symbol.dim() != 1 {
                 let declared = symbol.declared;
                 return self.fail(
-                    Diagnostic::wrong("E0334", d.name.span)
+                    Diagnostic::error("E0334", d.name.span)
                         .says(format!(
                             "`{}` has several positions; a domain is one-dimensional",
                             d.name.name
@@ -42,7 +42,7 @@ impl Compiler {
             if symbol.dynamic {
                 let declared = symbol.declared;
                 return self.fail(
-                    Diagnostic::wrong("E0339", d.name.span)
+                    Diagnostic::error("E0339", d.name.span)
                         .says(format!(
                             "`{}` is changed by an assignment; it cannot be a domain",
                             d.name.name
@@ -100,7 +100,7 @@ impl Compiler {
         }
         let dim = domain.len();
         if dim > 20 {
-            return self.fail(Diagnostic::wrong("E0336", d.name.span).says(format!(
+            return self.fail(Diagnostic::error("E0336", d.name.span).says(format!(
                 "`{}` has {dim} index positions; there may be 20",
                 d.name.name
             )));
@@ -163,7 +163,7 @@ impl Compiler {
                 (false, n) => format!(" with {n} ind{}", if n == 1 { "ex" } else { "ices" }),
             };
             return self.fail(
-                Diagnostic::wrong("E0333", d.name.span)
+                Diagnostic::error("E0333", d.name.span)
                     .says(format!(
                         "`{}` is declared already, as {}{shape}",
                         d.name.name,
@@ -197,7 +197,7 @@ impl Compiler {
             });
             if !compatible {
                 return self.fail(
-                    Diagnostic::wrong("E0335", d.name.span)
+                    Diagnostic::error("E0335", d.name.span)
                         .says(format!(
                             "`{}` is declared already over other sets",
                             d.name.name
@@ -248,7 +248,8 @@ impl Compiler {
                     &set.symbol.name.name,
                     over[0].name.span.to(over[over.len() - 1].name.span),
                 );
-                let d = Diagnostic::error("E0302", at, "none of these is a set")
+                let d = Diagnostic::error("E0302", at)
+                    .says("none of these is a set")
                     .label("in parentheses stand the sets that it runs over")
                     .help(format!(
                         "elements stand between slashes: `set {name} / {} /;`",
@@ -288,7 +289,8 @@ impl Compiler {
                 if !explicit && new && map.text(body).trim().is_empty() {
                     let message = format!("how many indices has `{}`?", d.name.name);
                     self.report(
-                        Diagnostic::error("E0334", d.name.span, message)
+                        Diagnostic::error("E0334", d.name.span)
+                            .says(message)
                             .label("neither a domain nor data say")
                             .help(format!("write `{}(*)`, or leave the data out", d.name.name)),
                     );
@@ -314,7 +316,8 @@ impl Compiler {
             let Some(root) = known.map(|s| self.symbols.root(s)) else {
                 let span = group[0].span.to(group[group.len() - 1].span);
                 return self.fail(
-                    Diagnostic::error("E0337", span, "none of these names is a set")
+                    Diagnostic::error("E0337", span)
+                        .says("none of these names is a set")
                         .label("`alias` gives a set another name")
                         .help("declare the set first: `set i / … /; alias(i, j);`"),
                 );
@@ -328,7 +331,7 @@ impl Compiler {
                     Some(s) => {
                         let declared = self.symbols.get(s).declared;
                         let _ = self.fail::<()>(
-                            Diagnostic::wrong("E0333", n.span)
+                            Diagnostic::error("E0333", n.span)
                                 .says(format!("`{}` is declared already", n.name))
                                 .label("declared again")
                                 .other(declared, "first declared here"),
@@ -366,7 +369,8 @@ impl Compiler {
                 let name = &p.symbol.name;
                 let message = format!("`{}` is a scalar: it has no index", name.name);
                 self.report(
-                    Diagnostic::error("E0336", first.name.span, message)
+                    Diagnostic::error("E0336", first.name.span)
+                        .says(message)
                         .label("no index here")
                         .help(format!(
                             "write `parameter {}({}) …`",
@@ -447,7 +451,7 @@ impl Compiler {
             }
             _ => ("has another kind already", "a second kind"),
         };
-        let d = Diagnostic::wrong("E0348", at)
+        let d = Diagnostic::error("E0348", at)
             .says(format!("the variable `{}` {message}", symbol.name))
             .label(label)
             .other(symbol.declared, "declared here")
@@ -554,7 +558,9 @@ impl Compiler {
             {
                 let message = "an equation and its variable are paired with a dot";
                 return c.fail(
-                    Diagnostic::error("E0338", n.span, message).help("write `model m / e.x /;`"),
+                    Diagnostic::error("E0338", n.span)
+                        .says(message)
+                        .help("write `model m / e.x /;`"),
                 );
             }
             let s = c.lookup(n)?;
@@ -563,7 +569,7 @@ impl Compiler {
                 SymbolKind::Equation(_) => Ok(()),
                 SymbolKind::Model(_) if model_too => Ok(()),
                 _ => c.fail(
-                    Diagnostic::wrong("E0338", n.span)
+                    Diagnostic::error("E0338", n.span)
                         .says(format!(
                             "`{}` is {}; a model is made of equations",
                             n.name,
@@ -588,7 +594,7 @@ impl Compiler {
                 let symbol = self.symbols.get(v).clone();
                 if !matches!(symbol.kind, SymbolKind::Variable(_)) {
                     return self.fail(
-                        Diagnostic::wrong("E0338", column.span)
+                        Diagnostic::error("E0338", column.span)
                             .says(format!(
                                 "`{}` is {}; an equation is paired with a variable",
                                 column.name,
@@ -610,7 +616,7 @@ impl Compiler {
         if !matches!(symbol.kind, SymbolKind::Variable(_)) {
             let kind = symbol.kind_name();
             return self.fail(
-                Diagnostic::error("E0338", variable.span, format!("the {kind} `{}` stands here without indices", symbol.name))
+                Diagnostic::error("E0338", variable.span).says(format!("the {kind} `{}` stands here without indices", symbol.name))
                 .label("only variables are limited to a set")
                 .other(symbol.declared, "declared here")
                 .help(format!(
@@ -621,7 +627,7 @@ impl Compiler {
         }
         let [set] = sets else {
             return self.fail(
-                Diagnostic::wrong("E0338", variable.span)
+                Diagnostic::error("E0338", variable.span)
                     .says("one set says which columns there are")
                     .label("not one set")
                     .help(format!(

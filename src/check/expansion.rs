@@ -370,7 +370,7 @@ impl Compiler {
             let before = rows.as_ref().map_or(1, Tuples::len);
             if before.saturating_mul(choices.len()) > MAX_EXPANSION {
                 return self.fail(
-                    Diagnostic::wrong("E0343", span)
+                    Diagnostic::error("E0343", span)
                         .says(format!("this stands for more than {MAX_EXPANSION} records"))
                         .label("too many")
                         .help("make the set by an assignment with a condition"),
@@ -414,10 +414,10 @@ impl Compiler {
                         if n <= MAX_EXPANSION as u64 {
                             self.take(n as usize, LABEL_BYTES, *span)?;
                         }
-                        let d =
-                            Diagnostic::error("E0343", *span, format!("this range has {n} labels"))
-                                .label("too many")
-                                .help(format!("{MAX_EXPANSION} are the most"));
+                        let d = Diagnostic::error("E0343", *span)
+                            .says(format!("this range has {n} labels"))
+                            .label("too many")
+                            .help(format!("{MAX_EXPANSION} are the most"));
                         return self.fail(d);
                     }
                     Err(NoRange::Unlike) => {
@@ -427,7 +427,7 @@ impl Compiler {
                             false => "for instance `i1*i10` or `1990*2000`; other labels are listed, with commas between them".into(),
                         };
                         return self.fail(
-                            Diagnostic::wrong("E0344", *span)
+                            Diagnostic::error("E0344", *span)
                                 .says(format!("`{from}*{to}` is not a range"))
                                 .label("the labels must differ in one number")
                                 .help(help),
@@ -505,7 +505,7 @@ impl Compiler {
                 let behind = self.products(s, position + rows.width, other, whole, defines)?;
                 if rows.len() != behind.len() {
                     self.report(
-                        Diagnostic::warning("E0347", whole, format!("`:` matches one by one, but there are {} on the left and {} on the right", rows.len(), behind.len()))
+                        Diagnostic::warning("E0347", whole).says(format!("`:` matches one by one, but there are {} on the left and {} on the right", rows.len(), behind.len()))
                             .label("what is left over on one side is dropped")
                             .help("a dot instead of the colon makes all combinations"),
                     );
@@ -534,7 +534,7 @@ impl Compiler {
             return Ok(());
         };
         let (count, second) = (labels.count, labels.iter().nth(1).unwrap_or_default());
-        let mut d = Diagnostic::doubtful("E0344", span)
+        let mut d = Diagnostic::warning("E0344", span)
             .says(format!(
                 "`{from}*{to}` counts letters: it stands for {count} labels"
             ))

@@ -34,7 +34,8 @@ impl Compiler {
         }
         let near = nearest(&id.name, self.symbols.iter().skip(1).map(|(_, s)| &*s.name))
             .map(str::to_string);
-        let d = Diagnostic::error("E0301", id.span, format!("`{}` is not known", id.name))
+        let d = Diagnostic::error("E0301", id.span)
+            .says(format!("`{}` is not known", id.name))
             .label("unknown symbol");
         let d = match near {
             Some(n) => d.help(format!("did you mean `{n}`?")),
@@ -62,7 +63,7 @@ impl Compiler {
             .iter()
             .filter(|(_, s)| matches!(s.kind, SymbolKind::Equation(None)));
         let near = nearest(&id.name, open.map(|(_, s)| &*s.name)).map(str::to_string);
-        let d = Diagnostic::wrong("E0301", id.span)
+        let d = Diagnostic::error("E0301", id.span)
             .says(format!("the equation `{}` is not declared", id.name))
             .label("unknown equation");
         let d = match &near {
@@ -97,7 +98,7 @@ impl Compiler {
         }
         let (kind, declared) = (self.symbols.get(s).a_kind(), self.symbols.get(s).declared);
         self.fail(
-            Diagnostic::error("E0302", id.span, format!("`{}` is {kind}; a set is expected here", id.name))
+            Diagnostic::error("E0302", id.span).says(format!("`{}` is {kind}; a set is expected here", id.name))
                 .label("not a set")
                 .other(declared, format!("declared as {kind} here"))
                 .help("an index position takes a set that is under control, a quoted label, or a lag such as `t-1`"),
@@ -116,7 +117,7 @@ impl Compiler {
             ExprKind::Text(t) => {
                 if !self.texts_allowed {
                     return self.fail(
-                        Diagnostic::error("E0312", span, "a text may not stand in an expression")
+                        Diagnostic::error("E0312", span).says("a text may not stand in an expression")
                             .label("a number is expected")
                             .help("texts belong into `display`, `put`, `abort`, or in quotes as an index"),
                     );
@@ -188,7 +189,7 @@ impl Compiler {
                     }
                     BinaryOp::Multiply => self.product(vec![(false, a), (false, b)], span),
                     BinaryOp::CircularPlus | BinaryOp::CircularMinus => self.fail(
-                        Diagnostic::wrong("E0313", span)
+                        Diagnostic::error("E0313", span)
                             .says("`++` and `--` stand between an index and a number only")
                             .label("not in an index position")
                             .help("two operators in a row need parentheses: `a - (-b)`"),
@@ -268,7 +269,7 @@ impl Compiler {
             return Ok(());
         }
         self.fail(
-            Diagnostic::error("E0312", span, "labels are not compared as numbers are")
+            Diagnostic::error("E0312", span).says("labels are not compared as numbers are")
                 .label("no numbers")
                 .help(format!("write `sameas({left},{right})`; `ord` is the position of an element, `.val` its label as a number")),
         )
@@ -284,7 +285,7 @@ impl Compiler {
             None => "`1$(…)` makes a number of it; with another membership, `+` is union, `*` intersection, `-` difference".into(),
         };
         self.fail(
-            Diagnostic::wrong("E0375", n.span)
+            Diagnostic::error("E0375", n.span)
                 .says("a membership stands where a number is expected")
                 .label("in the set or not: no number")
                 .help(help),
@@ -308,7 +309,8 @@ impl Compiler {
     pub(super) fn index_as_number(&mut self, n: &Node) {
         if let Some(set) = self.always_member(n) {
             let message = format!("`{set}` is no number here: it is 1 for every element");
-            let d = Diagnostic::warning("E0378", n.span, message)
+            let d = Diagnostic::warning("E0378", n.span)
+                .says(message)
                 .label("always 1")
                 .help(format!(
                     "`ord({set})` is the position of the element, `{set}.val` its label as a number"
@@ -417,7 +419,7 @@ impl Compiler {
             SymbolKind::Parameter { .. } => {
                 if let Some(attr) = attr {
                     return self.fail(
-                        Diagnostic::wrong("E0314", attr.span)
+                        Diagnostic::error("E0314", attr.span)
                             .says(format!("a parameter has no attribute `.{}`", attr.name))
                             .help(format!(
                                 "a parameter is its values: write `{}`",
@@ -456,7 +458,7 @@ impl Compiler {
                         ))
                     }
                     None => self.fail(
-                        Diagnostic::wrong("E0310", name.span)
+                        Diagnostic::error("E0310", name.span)
                             .says(format!(
                                 "`{}` is {}; outside equations it needs an attribute",
                                 symbol.name,
@@ -474,7 +476,7 @@ impl Compiler {
             SymbolKind::Model(_) | SymbolKind::File(_) => {
                 let Some(a) = attr else {
                     return self.fail(
-                        Diagnostic::wrong("E0315", name.span)
+                        Diagnostic::error("E0315", name.span)
                             .says(format!("{} is not a number", symbol.a_kind()))
                             .label("an attribute is expected")
                             .other(symbol.declared, "declared here")
@@ -486,7 +488,8 @@ impl Compiler {
             }
             SymbolKind::Acronym(n) => Ok(Node::number(value::acronym(*n), span)),
             SymbolKind::Figure(_) => self.fail(
-                Diagnostic::error("E0315", name.span, "a figure is not a number")
+                Diagnostic::error("E0315", name.span)
+                    .says("a figure is not a number")
                     .other(symbol.declared, "declared here"),
             ),
         }
@@ -520,7 +523,8 @@ impl Compiler {
                 Ok(Node::data(NodeKind::Derived(d, s, key), span))
             }
             functions::RecordAttribute::Fix => self.fail(
-                Diagnostic::error("E0314", a.span, "`.fx` can be assigned, not read")
+                Diagnostic::error("E0314", a.span)
+                    .says("`.fx` can be assigned, not read")
                     .label("write only")
                     .help("read `.l`, or `.lo` and `.up`"),
             ),
@@ -538,7 +542,8 @@ impl Compiler {
             _ => return Ok(()),
         };
         self.fail(
-            Diagnostic::error("E0314", a.span, message)
+            Diagnostic::error("E0314", a.span)
+                .says(message)
                 .label(format!("`{}` is {}", symbol.name, symbol.a_kind()))
                 .other(symbol.declared, "declared here"),
         )
@@ -559,7 +564,7 @@ impl Compiler {
             Some((at, _)) => format!("{}, …", &known[..at]),
             None => known.to_string(),
         };
-        let d = Diagnostic::wrong("E0314", a.span)
+        let d = Diagnostic::error("E0314", a.span)
             .says(format!(
                 "the {kind} `{name}` has no attribute `.{}`",
                 a.name
@@ -642,7 +647,7 @@ impl Compiler {
         if parts.len() != 1 {
             let (name, n) = (&symbol.name, parts.len());
             return self.fail(
-                Diagnostic::wrong("E0304", span)
+                Diagnostic::error("E0304", span)
                     .says(format!(
                         "`.{lower}` is of sets with one index; `{name}` has {n}"
                     ))
@@ -684,7 +689,7 @@ impl Compiler {
                 (l, h) => format!("{l} to {}", count(h)),
             };
             return self.fail(
-                Diagnostic::wrong("E0316", span)
+                Diagnostic::error("E0316", span)
                     .says(format!("`{lower}` takes {wanted}, not {}", args.len()))
                     .label("wrong number of arguments")
                     .help(self.arguments_help(callee, &lower, low, args)),
@@ -704,7 +709,7 @@ impl Compiler {
                 }
                 let v = nodes.iter().any(|n| n.has_var);
                 if v && functions::first_argument_must_be_data(f) && nodes[0].has_var {
-                    return self.fail(Diagnostic::wrong("E0318", nodes[0].span).says(format!(
+                    return self.fail(Diagnostic::error("E0318", nodes[0].span).says(format!(
                         "the first argument of `{lower}` may not depend on a variable"
                     )));
                 }
@@ -718,7 +723,7 @@ impl Compiler {
                     let n = self.expr(a)?;
                     if n.has_var {
                         return self.fail(
-                            Diagnostic::wrong("E0318", n.span)
+                            Diagnostic::error("E0318", n.span)
                                 .says(format!("`{lower}` may not depend on a variable"))
                                 .label("a variable stands in it"),
                         );
@@ -743,13 +748,14 @@ impl Compiler {
         }
         if let Some(second) = args.get(1) {
             return self.fail(
-                Diagnostic::error("E0316", second.span, "`ord` of a set takes 1 argument")
+                Diagnostic::error("E0316", second.span)
+                    .says("`ord` of a set takes 1 argument")
                     .label("only `ord('text', n)` has a position"),
             );
         }
         let ExprKind::Apply(n, None, None) = &args[0].kind else {
             return self.fail(
-                Diagnostic::wrong("E0317", args[0].span)
+                Diagnostic::error("E0317", args[0].span)
                     .says(format!("`{name}` takes the name of a set"))
                     .label("not a name")
                     .help(format!("for instance `{name}(i)`")),
@@ -795,7 +801,7 @@ impl Compiler {
         }
         if parts.len() != 2 {
             return self.fail(
-                Diagnostic::wrong("E0317", span).says("`sameas` compares two single indices"),
+                Diagnostic::error("E0317", span).says("`sameas` compares two single indices"),
             );
         }
         let b = parts.remove(1);
@@ -913,7 +919,8 @@ impl Compiler {
         } else {
             "symbol"
         };
-        let mut d = Diagnostic::error("E0301", name.span, format!("`{}` is not known", name.name))
+        let mut d = Diagnostic::error("E0301", name.span)
+            .says(format!("`{}` is not known", name.name))
             .label(format!("unknown {what}"));
         d = match near {
             Some(n) if n == "ifThen" => d.help(

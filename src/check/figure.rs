@@ -81,7 +81,7 @@ impl Compiler {
     fn figure_element(&mut self, e: &FigureElement) -> Result<FigureElementCode, Failed> {
         let kind = e.kind.name.to_lowercase();
         if !kinds().any(|k| k == kind) {
-            let d = Diagnostic::wrong("E0332", e.kind.span)
+            let d = Diagnostic::error("E0332", e.kind.span)
                 .says(format!("a figure has no element `{}`", e.kind.name))
                 .label("unknown element");
             return self.fail(match nearest(&kind, kinds()) {
@@ -109,7 +109,7 @@ impl Compiler {
                 };
                 if node.has_var {
                     return self.fail(
-                        Diagnostic::wrong("E0310", node.span)
+                        Diagnostic::error("E0310", node.span)
                             .says("a variable is not a number; a figure shows its level")
                             .label("which of its numbers?")
                             .help("write `.l` behind the variable's name"),
@@ -147,9 +147,9 @@ impl Compiler {
             };
             if !known.contains(&name) {
                 let span = ident.as_ref().map_or(value.span, |i| i.span);
-                let d =
-                    Diagnostic::error("E0370", span, format!("`{kind}` has no argument `{name}`"))
-                        .label("unknown argument");
+                let d = Diagnostic::error("E0370", span)
+                    .says(format!("`{kind}` has no argument `{name}`"))
+                    .label("unknown argument");
                 let near = match name {
                     "color" | "colour" => known
                         .iter()
@@ -170,7 +170,8 @@ impl Compiler {
         for r in required {
             if !code.arguments.iter().any(|(n, _)| n.as_deref() == Some(r)) {
                 return self.fail(
-                    Diagnostic::error("E0373", e.kind.span, format!("`{kind}` needs `{r}`"))
+                    Diagnostic::error("E0373", e.kind.span)
+                        .says(format!("`{kind}` needs `{r}`"))
                         .label(format!("`{r} = …` is missing"))
                         .help(format!(
                             "write `{kind}(…) {};`",
@@ -200,7 +201,7 @@ impl Compiler {
             && !(name == "x" && matches!(kind, "line" | "bar" | "errorbar"))
         {
             return self.fail(
-                Diagnostic::wrong("E0371", value.span)
+                Diagnostic::error("E0371", value.span)
                     .says(format!("`{name}` of `{kind}` is a number"))
                     .label("this is a text")
                     .help(format!("give an expression, for instance `{name} = p(i)`")),
@@ -209,7 +210,8 @@ impl Compiler {
         if let ("fill" | "stroke", NodeKind::Text(t)) = (name, &value.kind)
             && Paint::parse(t).is_none()
         {
-            let d = Diagnostic::error("E0372", value.span, format!("`{t}` is not a colour"))
+            let d = Diagnostic::error("E0372", value.span)
+                .says(format!("`{t}` is not a colour"))
                 .label("unknown colour");
             return self.fail(match nearest(t, Paint::names().iter().copied()) {
                 Some(n) => d.help(format!("did you mean `'{n}'`?")),
@@ -234,7 +236,8 @@ impl Compiler {
                 _ => "of two indices, the first runs along x, the last along y",
             };
             return self.fail(
-                Diagnostic::error("E0373", span, format!("`{kind}` needs two indices"))
+                Diagnostic::error("E0373", span)
+                    .says(format!("`{kind}` needs two indices"))
                     .label(format!("{slots} here"))
                     .help(format!("write {example}")),
             );
@@ -245,7 +248,7 @@ impl Compiler {
         ) && slots == 0
         {
             return self.fail(
-                Diagnostic::error("E0373", span, format!("`{kind}` needs an index that runs over its points"))
+                Diagnostic::error("E0373", span).says(format!("`{kind}` needs an index that runs over its points"))
                     .label("no index here")
                     .help(format!("write `{kind}(i)`; of several indices the last runs along, the others give one {kind} each")),
             );
@@ -257,7 +260,7 @@ impl Compiler {
     fn bare_value(&mut self, kind: &str, bare: bool, value: &Node) -> Result<(), Failed> {
         if !bare {
             return self.fail(
-                Diagnostic::wrong("E0370", value.span)
+                Diagnostic::error("E0370", value.span)
                     .says(format!("`{kind}` takes values with names"))
                     .label("which argument?")
                     .help("for instance `x = p(i)`"),
@@ -267,7 +270,7 @@ impl Compiler {
         if let ("axes", NodeKind::Text(t)) = (kind, &value.kind)
             && !words.contains(&t.to_lowercase().as_str())
         {
-            let d = Diagnostic::wrong("E0370", value.span)
+            let d = Diagnostic::error("E0370", value.span)
                 .says(format!("`axes` does not know the word `{t}`"))
                 .label("unknown word");
             return self.fail(match nearest(t, words.iter().copied()) {
@@ -280,7 +283,7 @@ impl Compiler {
         }
         if kind == "size" && is_text(value) {
             return self.fail(
-                Diagnostic::wrong("E0371", value.span)
+                Diagnostic::error("E0371", value.span)
                     .says("`size` takes numbers: width and height in pixels")
                     .label("this is a text"),
             );

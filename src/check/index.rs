@@ -87,7 +87,7 @@ impl Compiler {
             )
         };
         self.fail(
-            Diagnostic::wrong("E0306", span)
+            Diagnostic::error("E0306", span)
                 .says(format!(
                     "`{an}` may not stand at position {} of `{on}`, which runs over `{dn}`",
                     position + 1
@@ -126,7 +126,7 @@ impl Compiler {
             format!("{}({})", s.name, names.join(","))
         };
         self.fail(
-            Diagnostic::wrong("E0304", span)
+            Diagnostic::error("E0304", span)
                 .says(format!(
                     "`{}` has {}, but {} given here",
                     s.name,
@@ -275,13 +275,13 @@ impl Compiler {
             ExprKind::Number(x) => {
                 let text = x.to_string();
                 self.fail(
-                    Diagnostic::error("E0307", e.span, "a number may not stand as an index")
+                    Diagnostic::error("E0307", e.span).says("a number may not stand as an index")
                         .label("an index is expected")
                         .help(format!("if `{text}` is a label, quote it: `'{text}'`")),
                 )
             }
             _ => self.fail(
-                Diagnostic::error("E0307", e.span, "this is not an index")
+                Diagnostic::error("E0307", e.span).says("this is not an index")
                     .label("an index is expected")
                     .help("an index is a set under control, a quoted label, or a lag such as `t-1` or `t++1`"),
             ),
@@ -291,7 +291,8 @@ impl Compiler {
     pub(super) fn unknown_index<T>(&mut self, name: &Ident) -> Result<T, Failed> {
         if self.store.universe.get(&name.name).is_some() {
             let message = format!("`{}` is not a set, but it is a label", name.name);
-            let d = Diagnostic::error("E0301", name.span, message)
+            let d = Diagnostic::error("E0301", name.span)
+                .says(message)
                 .label("unknown set")
                 .help(format!("quote labels in expressions: `'{}'`", name.name));
             return self.unknown(name, d);
@@ -325,7 +326,8 @@ impl Compiler {
             help.push_str(&format!("; a label is quoted: `'{}'`", name.name));
         }
         let message = format!("the index `{}` is not bound here", name.name);
-        let d = Diagnostic::error("E0303", name.span, message)
+        let d = Diagnostic::error("E0303", name.span)
+            .says(message)
             .label("nothing says which elements")
             .other(declared, "the set is declared here")
             .help(help);
@@ -376,11 +378,13 @@ impl Compiler {
         };
         if self.in_equation {
             // As in GAMS: there is no such record when the model is generated.
-            let d = Diagnostic::warning("E0308", span, message).label("reads 0");
+            let d = Diagnostic::warning("E0308", span)
+                .says(message)
+                .label("reads 0");
             self.report(d.help(help));
             return Ok(self.store.universe.intern(text));
         }
-        let d = Diagnostic::error("E0308", span, message);
+        let d = Diagnostic::error("E0308", span).says(message);
         self.fail(d.label("unknown label").help(help))
     }
 
@@ -413,7 +417,8 @@ impl Compiler {
         let table = self.store.table(set.table);
         if table.is_empty() && !set.has_data && !set.assigned {
             let (name, declared) = (set.name.clone(), set.declared);
-            let d = Diagnostic::error("E0319", span, format!("the set `{name}` has no elements"))
+            let d = Diagnostic::error("E0319", span)
+                .says(format!("the set `{name}` has no elements"))
                 .label("no label is in it")
                 .other(declared, "declared without elements here")
                 .help(format!(
@@ -450,7 +455,7 @@ impl Compiler {
             ),
             None => format!("add `{quote}{text}{quote}` to `{set_name}`, or correct the label"),
         };
-        let mut d = Diagnostic::wrong("E0308", span)
+        let mut d = Diagnostic::error("E0308", span)
             .says(format!(
                 "`{quote}{text}{quote}` is not a member of the set `{set_name}`"
             ))
@@ -550,19 +555,21 @@ impl Compiler {
                 match part.len() {
                     1 => Ok((part.remove(0), table)),
                     _ => self.fail(
-                        Diagnostic::error("E0307", base.span, "a lag needs a one-dimensional set")
+                        Diagnostic::error("E0307", base.span)
+                            .says("a lag needs a one-dimensional set")
                             .label("several indices"),
                     ),
                 }
             }
             ExprKind::Text(label) => self.fail(
-                Diagnostic::wrong("E0309", base.span)
+                Diagnostic::error("E0309", base.span)
                     .says(format!("the label `'{label}'` takes no lag or lead"))
                     .label("a label is one element")
                     .help("write the label you mean, or use an index that runs"),
             ),
             _ => self.fail(
-                Diagnostic::error("E0307", base.span, "this is not an index")
+                Diagnostic::error("E0307", base.span)
+                    .says("this is not an index")
                     .label("an index is expected")
                     .help("a lag or lead starts from a set under control: `t-1`, `t+k`, `t++1`"),
             ),
@@ -584,7 +591,8 @@ impl Compiler {
             ExprKind::Sum(terms) => {
                 if terms.len() > 2 {
                     return self.fail(
-                        Diagnostic::error("E0309", e.span, "an index takes one lag or lead")
+                        Diagnostic::error("E0309", e.span)
+                            .says("an index takes one lag or lead")
                             .label("several")
                             .help("put the sum into parentheses: `t+(k+1)`"),
                     );
@@ -619,7 +627,7 @@ impl Compiler {
         let (declared, name) = (root.declared, root.name.clone());
         if matches!(root.kind, SymbolKind::Set { singleton: true }) {
             return self.fail(
-                Diagnostic::wrong("E0309", span)
+                Diagnostic::error("E0309", span)
                     .says(format!(
                         "{what} needs an ordered set; `{name}` is a singleton"
                     ))
@@ -628,7 +636,7 @@ impl Compiler {
         }
         if root.dynamic {
             return self.fail(
-                Diagnostic::wrong("E0309", span)
+                Diagnostic::error("E0309", span)
                     .says(format!(
                         "{what} needs an ordered set; `{name}` is changed by an assignment"
                     ))
@@ -639,7 +647,7 @@ impl Compiler {
         }
         if root.unordered {
             return self.fail(
-                Diagnostic::wrong("E0309", span)
+                Diagnostic::error("E0309", span)
                     .says(format!("{what} needs an ordered set; the labels of `{name}` appeared earlier in another order"))
                     .label("not ordered")
                     .other(declared, "declared here")

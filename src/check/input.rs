@@ -77,7 +77,7 @@ impl Compiler {
         if let Some(what) = wrong_kind {
             let (kind, name) = (symbol.kind_name(), &symbol.name);
             return self.fail(
-                Diagnostic::wrong("E0376", span)
+                Diagnostic::error("E0376", span)
                     .says(format!("`{name}` is a {kind}; {what} were given for it"))
                     .label("declared here")
                     .help("give members to sets, and numbers to parameters"),
@@ -87,7 +87,7 @@ impl Compiler {
         let given = input.data.keys();
         if let Some((n, key)) = given.unlike(dim) {
             return self.fail(
-                Diagnostic::wrong("E0377", span)
+                Diagnostic::error("E0377", span)
                     .says(format!(
                         "`{}` has {dim} index position{}; {} given for it has {}",
                         symbol.name,
@@ -102,7 +102,7 @@ impl Compiler {
             && given.len() > 1
         {
             return self.fail(
-                Diagnostic::wrong("E0377", span)
+                Diagnostic::error("E0377", span)
                     .says(format!(
                         "`{}` is a singleton; {} members were given",
                         symbol.name,
@@ -199,7 +199,7 @@ impl Compiler {
         let members = members.map(|&l| self.store.universe.name(l));
         let near = nearest(key[position], members).map(str::to_string);
         let (set_name, declared) = (domain.name.clone(), domain.declared);
-        let d = Diagnostic::wrong("E0377", span)
+        let d = Diagnostic::error("E0377", span)
             .says(format!(
                 "{} was given from outside, but `{}` is not a member of `{set_name}`",
                 record(name, &key, r),
@@ -224,14 +224,15 @@ impl Compiler {
                     let symbol = self.symbols.get(s);
                     let kind = symbol.kind_name();
                     let message = format!("data were given for `{name}`, which is a {kind}");
-                    Diagnostic::error("E0376", symbol.declared, message)
+                    Diagnostic::error("E0376", symbol.declared)
+                        .says(message)
                         .label("declared here")
                         .help("data from outside are for sets and parameters")
                 }
                 None => {
                     let message =
                         format!("data were given for `{name}`, which the model does not declare");
-                    let d = Diagnostic::error("E0376", Span::default(), message);
+                    let d = Diagnostic::error("E0376", Span::default()).says(message);
                     let takes = |k: &SymbolKind| {
                         matches!(k, SymbolKind::Set { .. } | SymbolKind::Parameter { .. })
                     };

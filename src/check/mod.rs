@@ -185,7 +185,7 @@ pub fn compile(
         if c.errors() - parser.cleared_errors() >= MAX_ERRORS {
             let at = c.diagnostics.last().map_or_else(Span::default, |d| d.span);
             c.diagnostics
-                .push(Diagnostic::wrong("E0300", at).says(format!(
+                .push(Diagnostic::error("E0300", at).says(format!(
                     "more than {MAX_ERRORS} errors; the rest of the text was not checked"
                 )));
             break;
@@ -253,7 +253,7 @@ impl Compiler {
         self.taken = self.taken.saturating_add(records.saturating_mul(bytes));
         match self.max_memory {
             Some(limit) if self.taken > limit => self.fail(
-                Diagnostic::wrong("E0491", span)
+                Diagnostic::error("E0491", span)
                     .says(format!("the memory limit of {} MB is used up", limit >> 20))
                     .label("by the data up to here")
                     .help("raise it with `--max-memory`, or make the set by an assignment with a condition"),
@@ -303,14 +303,14 @@ impl Compiler {
         });
         let next = next.map(|n| n.name.clone());
         let d = match s.kind {
-            SymbolKind::Variable(_) | SymbolKind::Equation(_) => Diagnostic::wrong("E0319", span)
+            SymbolKind::Variable(_) | SymbolKind::Equation(_) => Diagnostic::error("E0319", span)
                 .says(format!("the {kind} `{name}` has no values yet"))
                 .label(follow::NOTHING_SOLVED)
                 .other(declared, "declared here")
                 .help(format!(
                     "solve a model with `{name}` first, or assign `{name}.l`"
                 )),
-            _ => Diagnostic::wrong("E0319", span)
+            _ => Diagnostic::error("E0319", span)
                 .says(format!(
                     "the {kind} `{name}` has no {}",
                     if kind == "set" { "elements" } else { "values" }

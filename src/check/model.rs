@@ -25,7 +25,7 @@ impl Compiler {
         let symbol = self.symbols.get(model).clone();
         let SymbolKind::Model(info) = &symbol.kind else {
             return self.fail(
-                Diagnostic::wrong("E0350", s.model.span)
+                Diagnostic::error("E0350", s.model.span)
                     .says(format!(
                         "`{}` is {}, not a model",
                         symbol.name,
@@ -54,7 +54,7 @@ impl Compiler {
         }
         if rows.is_empty() {
             return self.fail(
-                Diagnostic::wrong("E0353", s.model.span)
+                Diagnostic::error("E0353", s.model.span)
                     .says(format!("the model `{}` has no equations", symbol.name))
                     .label("nothing to solve")
                     .other(symbol.declared, "declared here")
@@ -66,7 +66,7 @@ impl Compiler {
             Some((sense, name)) if has_objective => Some((*sense, self.objective(name, &rows)?)),
             Some((_, name)) => {
                 return self.fail(
-                    Diagnostic::wrong("E0354", name.span)
+                    Diagnostic::error("E0354", name.span)
                         .says(format!("a model of type `{using}` has no objective"))
                         .label("not expected here")
                         .help(format!("write `solve {} using {using};`", symbol.name)),
@@ -74,7 +74,7 @@ impl Compiler {
             }
             None if has_objective => {
                 return self.fail(
-                    Diagnostic::error("E0355", span, format!("a model of type `{using}` needs an objective variable"))
+                    Diagnostic::error("E0355", span).says(format!("a model of type `{using}` needs an objective variable"))
                         .label("no `minimizing` or `maximizing`")
                         .help(format!("write `solve {} using {using} minimizing z;` with a free scalar variable `z`", symbol.name)),
                 );
@@ -120,7 +120,7 @@ impl Compiler {
         let all = name.name.eq_ignore_ascii_case("all");
         let is_model = |(_, s): (SymbolId, &Symbol)| matches!(s.kind, SymbolKind::Model(_));
         if !all && self.named(name).is_none() && !self.symbols.iter().any(is_model) {
-            let d = Diagnostic::wrong("E0301", name.span)
+            let d = Diagnostic::error("E0301", name.span)
                 .says(format!("the model `{}` is not declared", name.name))
                 .label("unknown model")
                 .help(format!("declare it before: `model {} / all /;`", name.name));
@@ -130,7 +130,8 @@ impl Compiler {
             return self.lookup(name);
         }
         self.fail(
-            Diagnostic::error("E0350", name.span, "`all` stands in the list of a model")
+            Diagnostic::error("E0350", name.span)
+                .says("`all` stands in the list of a model")
                 .label("a model is expected")
                 .help("write `model m / all /; solve m using lp minimizing z;`"),
         )
@@ -139,7 +140,8 @@ impl Compiler {
     fn no_problem_type<T>(&mut self, name: &Ident) -> Result<T, Failed> {
         if name.name.eq_ignore_ascii_case("emp") {
             return self.fail(
-                Diagnostic::error("E0352", name.span, "`emp` is not there")
+                Diagnostic::error("E0352", name.span)
+                    .says("`emp` is not there")
                     .label("not supported")
                     .help("state the optimality conditions as an `mcp`"),
             );
@@ -155,7 +157,7 @@ impl Compiler {
         };
         let there_are = names.join(", ");
         self.fail(
-            Diagnostic::wrong("E0351", name.span)
+            Diagnostic::error("E0351", name.span)
                 .says(format!("there is no problem type `{}`", name.name))
                 .label("unknown problem type")
                 .help(format!("did you mean `{near}`? there are: {there_are}")),
@@ -305,7 +307,7 @@ impl Compiler {
                 continue;
             }
             let _ = self.fail::<()>(
-                Diagnostic::wrong("E0356", at)
+                Diagnostic::error("E0356", at)
                     .says(format!(
                         "the equation `{name}` is in the model but is not defined"
                     ))
@@ -328,7 +330,7 @@ impl Compiler {
         let symbol = self.symbols.get(v).clone();
         let SymbolKind::Variable(kind) = symbol.kind else {
             return self.fail(
-                Diagnostic::error("E0357", name.span, format!("the objective must be a variable; `{}` is {}", symbol.name, symbol.a_kind()))
+                Diagnostic::error("E0357", name.span).says(format!("the objective must be a variable; `{}` is {}", symbol.name, symbol.a_kind()))
                     .label("not a variable")
                     .other(symbol.declared, "declared here")
                     .help("declare a free variable and an equation that defines it: `variable z; equation cost; cost.. z =e= …;`"),
@@ -336,7 +338,7 @@ impl Compiler {
         };
         if symbol.dim() > 0 {
             return self.fail(
-                Diagnostic::wrong("E0358", name.span)
+                Diagnostic::error("E0358", name.span)
                     .says(format!(
                         "the objective must be a single number; `{}` is indexed",
                         symbol.name
@@ -348,7 +350,7 @@ impl Compiler {
         }
         if !matches!(kind, VariableKind::Free | VariableKind::Unstated) {
             return self.fail(
-                Diagnostic::wrong("E0359", name.span)
+                Diagnostic::error("E0359", name.span)
                     .says(format!("the objective `{}` must be a free variable", symbol.name))
                     .label("restricted in sign")
                     .other(symbol.declared, "declared here")
@@ -365,7 +367,7 @@ impl Compiler {
         // An equation that failed to compile may be the one that mentions it.
         if !mentioned && self.errors() == 0 {
             return self.fail(
-                Diagnostic::wrong("E0360", name.span)
+                Diagnostic::error("E0360", name.span)
                     .says(format!(
                         "the objective `{}` stands in no equation of the model",
                         symbol.name
@@ -466,7 +468,8 @@ impl Compiler {
                     format!("the equation `{name}` may not stand in a model solved as `{using}`")
                 };
                 self.fail(
-                    Diagnostic::error(code, span, kind)
+                    Diagnostic::error(code, span)
+                        .says(kind)
                         .label(what)
                         .other(solve, "solved here")
                         .help(help),
@@ -494,7 +497,8 @@ impl Compiler {
         let message = format!(
             "`{name}` runs in a loop around this solve and in the equation `{equation}` of the model"
         );
-        let error = Diagnostic::error("E0369", solve, message)
+        let error = Diagnostic::error("E0369", solve)
+            .says(message)
             .label(format!("solved once for each `{name}`"))
             .other(defined, format!("`{name}` runs here too"))
             .help(format!(
@@ -542,7 +546,7 @@ impl Compiler {
         );
         let relaxed = using.relaxation();
         self.fail(
-            Diagnostic::wrong("E0363", at)
+            Diagnostic::error("E0363", at)
                 .says(format!(
                     "`{name}` is a discrete variable, but the model is solved as `{using}`"
                 ))
@@ -576,7 +580,7 @@ impl Compiler {
                 );
                 failed |= self
                     .fail::<()>(
-                        Diagnostic::wrong("E0368", span)
+                        Diagnostic::error("E0368", span)
                             .says(format!(
                                 "the variable `{name}` of a pair stands in no equation of the model"
                             ))
@@ -594,7 +598,7 @@ impl Compiler {
                 if using == ProblemType::Mcp && relation != Relation::Equal {
                     failed |= self
                         .fail::<()>(
-                            Diagnostic::error("E0364", r.span, format!("the inequality `{}` has no partner", eq.name))
+                            Diagnostic::error("E0364", r.span).says(format!("the inequality `{}` has no partner", eq.name))
                                 .label("unmatched")
                                 .other(self.equations[r.definition].span, "defined here")
                                 .help(format!("pair it with a variable in the model: `{}.x`; only `=e=` rows may go without (with free variables)", eq.name)),
@@ -611,7 +615,7 @@ impl Compiler {
             {
                 failed |= self
                     .fail::<()>(
-                        Diagnostic::wrong("E0367", r.span)
+                        Diagnostic::error("E0367", r.span)
                             .says(format!("the equation `{}` is paired twice", eq.name))
                             .label("second pair")
                             .other(other.span, "first pair")
@@ -628,7 +632,7 @@ impl Compiler {
         let (eq, var) = (self.symbols.get(e).clone(), self.symbols.get(v).clone());
         if eq.dim() != var.dim() {
             return self.fail(
-                Diagnostic::wrong("E0365", at)
+                Diagnostic::error("E0365", at)
                     .says(format!(
                         "`{}` has {} indices and `{}` has {}: they cannot be paired",
                         eq.name,
@@ -653,7 +657,7 @@ impl Compiler {
             });
         if !same {
             return self.fail(
-                Diagnostic::wrong("E0366", at)
+                Diagnostic::error("E0366", at)
                     .says(format!(
                         "`{}` and `{}` run over different sets, or the same in another order",
                         eq.name, var.name

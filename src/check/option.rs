@@ -84,7 +84,8 @@ impl Compiler {
                 }
                 let message = format!("the option `{}` needs a value", item.name.name);
                 self.fail(
-                    Diagnostic::error("E0330", item.name.span, message)
+                    Diagnostic::error("E0330", item.name.span)
+                        .says(message)
                         .label("no value")
                         .help(format!("write `option {} = …;`", item.name.name)),
                 )
@@ -108,7 +109,7 @@ impl Compiler {
             Ok(Accepted::Ignored) if !language::chooses_solver(&name) => {
                 let message = format!("the option `{name}` means nothing here");
                 if self.passed_over.insert(name) {
-                    let d = Diagnostic::warning("E0329", item.name.span, message);
+                    let d = Diagnostic::warning("E0329", item.name.span).says(message);
                     let help =
                         "leave it out, or keep it for other systems: no result depends on it";
                     self.report(d.label("passed over").help(help));
@@ -118,7 +119,9 @@ impl Compiler {
             Ok(Accepted::Ignored) => {
                 let message = format!("the solver `{text}` is not in bmod, which takes its own");
                 let own = self.solvers.all_names();
-                let d = Diagnostic::warning("E0349", span, message).label("passed over");
+                let d = Diagnostic::warning("E0349", span)
+                    .says(message)
+                    .label("passed over");
                 self.report(d.help(format!("there are: {own}")));
                 Ok(Some(CodeKind::Option(name.into(), "default".into())))
             }
@@ -146,8 +149,10 @@ impl Compiler {
             _ => code == "E0349",
         };
         let d = match lenient {
-            true => Diagnostic::warning(code, span, message).label("passed over"),
-            false => Diagnostic::error(code, span, message).label(label),
+            true => Diagnostic::warning(code, span)
+                .says(message)
+                .label("passed over"),
+            false => Diagnostic::error(code, span).says(message).label(label),
         };
         let d = match help {
             Some(help) => d.help(help),
@@ -181,7 +186,8 @@ impl Compiler {
         let message = "`option p:d:r:c` takes decimals d from 0 to 8, fewer row indices r than `p` has indices, \
                        and at most the rest as columns c";
         self.fail(
-            Diagnostic::error("E0329", span, message)
+            Diagnostic::error("E0329", span)
+                .says(message)
                 .label(format!("has {dim} indices"))
                 .help("r = 0 displays a list, c records to a line"),
         )
@@ -226,7 +232,8 @@ impl Compiler {
             _ => {
                 let message = "`option p > s` takes a set `p(n,s,s)`: a number, an element of `s`, and what takes its place";
                 return self.fail(
-                    Diagnostic::error("E0331", item.name.span, message)
+                    Diagnostic::error("E0331", item.name.span)
+                        .says(message)
                         .other(symbol.declared, "declared here"),
                 );
             }
@@ -255,7 +262,7 @@ impl Compiler {
         else {
             let (declared, kind) = (symbol.declared, symbol.a_kind());
             return self.fail(
-                Diagnostic::error("E0330", span, "`option shuffle` takes a parameter with one index")
+                Diagnostic::error("E0330", span).says("`option shuffle` takes a parameter with one index")
                     .label(format!("this is {kind}"))
                     .other(declared, "declared here")
                     .help("declare `parameter p(i);` for it: it gets the positions of the elements, shuffled"),
@@ -282,7 +289,7 @@ impl Compiler {
         let (target, from) = (self.symbols.get(t).clone(), self.symbols.get(s).clone());
         if !target.is_set() && !matches!(target.kind, SymbolKind::Parameter { .. }) {
             return self.fail(
-                Diagnostic::wrong("E0331", item.name.span)
+                Diagnostic::error("E0331", item.name.span)
                     .says(format!(
                         "`{}` is {}: only sets and parameters are projected to",
                         item.name.name,
@@ -301,7 +308,7 @@ impl Compiler {
                     {
                         Some(i) => p.push(i),
                         None => {
-                            return self.fail(Diagnostic::wrong("E0331", name.span).says(format!(
+                            return self.fail(Diagnostic::error("E0331", name.span).says(format!(
                                 "`{}` is not an index of the right side",
                                 name.name
                             )));
@@ -328,7 +335,7 @@ impl Compiler {
         };
         if positions.len() != target.dim() {
             return self.fail(
-                Diagnostic::wrong("E0331", item.name.span)
+                Diagnostic::error("E0331", item.name.span)
                     .says("the right side does not have the index sets of the left")
                     .other(target.declared, "left side declared here")
                     .other(from.declared, "right side declared here"),

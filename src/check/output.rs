@@ -24,7 +24,7 @@ impl Compiler {
                     let is_known = self.symbols.find(&r.name.name).is_some();
                     if !is_known && !r.indices.is_empty() && is_operation(&r.name.name) {
                         let message = "`display` takes symbols, not expressions";
-                        return self.fail(Diagnostic::error("E0328", r.span, message).help(
+                        return self.fail(Diagnostic::error("E0328", r.span).says(message).help(
                             "assign it first: `parameter total; total = …; display total;`",
                         ));
                     }
@@ -32,7 +32,7 @@ impl Compiler {
                     let symbol = self.symbols.get(s).clone();
                     if !r.indices.is_empty() {
                         return self.fail(
-                            Diagnostic::wrong("E0328", r.span)
+                            Diagnostic::error("E0328", r.span)
                                 .says("`display` takes whole symbols, without indices")
                                 .label("indices here")
                                 .help(format!(
@@ -69,7 +69,8 @@ impl Compiler {
                             let message =
                                 format!("{} has no attribute `.{}`", symbol.a_kind(), a.name);
                             return self.fail(
-                                Diagnostic::error("E0314", a.span, message)
+                                Diagnostic::error("E0314", a.span)
+                                    .says(message)
                                     .label("not an attribute")
                                     .help(format!("write `display {};`", symbol.name)),
                             );
@@ -92,7 +93,8 @@ impl Compiler {
                     listed(&bare)
                 ),
             };
-            let d = Diagnostic::error("E0310", first.span, message)
+            let d = Diagnostic::error("E0310", first.span)
+                .says(message)
                 .label("an attribute is expected")
                 .help(format!("for instance `display {};`", levels.join(", ")));
             let d = bare[1..]
@@ -119,7 +121,7 @@ impl Compiler {
                     return Err(Failed);
                 }
                 return self.fail(
-                    Diagnostic::error("E0374", span, "no file is named to write to")
+                    Diagnostic::error("E0374", span).says("no file is named to write to")
                         .label("which file?")
                         .help("declare one, `file out / 'out.txt' /;`, and name it first: `put out 'text' /;`"),
                 );
@@ -167,7 +169,7 @@ impl Compiler {
                 && self.symbols.get(s).is_set()
             {
                 let (i, declared) = (&name.name, self.symbols.get(s).declared);
-                let d = Diagnostic::wrong("E0304", name.span)
+                let d = Diagnostic::error("E0304", name.span)
                     .says(format!("the set `{i}` has no value to write"))
                     .label("what of it?")
                     .other(declared, "declared here");

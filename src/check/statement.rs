@@ -119,7 +119,8 @@ impl Compiler {
                 {
                     let (declared, kind) = (symbol.declared, symbol.a_kind());
                     return self.fail(
-                        Diagnostic::error("E0321", variable.span, "`for` counts with a scalar")
+                        Diagnostic::error("E0321", variable.span)
+                            .says("`for` counts with a scalar")
                             .label(format!("this is {kind}"))
                             .other(declared, "declared here")
                             .help("declare `scalar k;`, or run over a set with `loop(i, …)`"),
@@ -180,7 +181,7 @@ impl Compiler {
             // results before, do not depend on a viewer or an export.
             StmtKind::Refused(what) => {
                 self.report(
-                    Diagnostic::warning("E0322", what.span, format!("`{}` is refused", what.name))
+                    Diagnostic::warning("E0322", what.span).says(format!("`{}` is refused", what.name))
                         .label("would run another program; passed over")
                         .help("a model run by bmod reads and writes only its own files; prepare the data before, or use `$include`"),
                 );
@@ -191,7 +192,7 @@ impl Compiler {
                 if !matches!(self.symbols.get(s).kind, SymbolKind::Figure(_)) {
                     let declared = self.symbols.get(s).declared;
                     return self.fail(
-                        Diagnostic::wrong("E0323", name.span)
+                        Diagnostic::error("E0323", name.span)
                             .says(format!("`{}` is not a figure", name.name))
                             .label("a figure is expected")
                             .other(declared, "declared here"),
@@ -202,7 +203,7 @@ impl Compiler {
                     Some((ExprKind::Text(t), _)) => Some(t.clone()),
                     Some((_, span)) => {
                         return self.fail(
-                            Diagnostic::wrong("E0323", span)
+                            Diagnostic::error("E0323", span)
                                 .says("`draw` takes a file name in quotes"),
                         );
                     }
@@ -234,7 +235,7 @@ impl Compiler {
             _ => return Ok(()),
         };
         self.fail(
-            Diagnostic::wrong("E0324", stmt.span)
+            Diagnostic::error("E0324", stmt.span)
                 .says(format!("a {what} may not stand inside a loop or an if"))
                 .label("inside a loop or an if")
                 .help("move it before the loop"),
@@ -262,7 +263,7 @@ impl Compiler {
         let symbol = self.symbols.get(s).clone();
         let SymbolKind::Equation(defined) = symbol.kind else {
             return self.fail(
-                Diagnostic::wrong("E0326", e.name.span)
+                Diagnostic::error("E0326", e.name.span)
                     .says(format!(
                         "`{}` is {}, not an equation",
                         symbol.name,
@@ -277,7 +278,7 @@ impl Compiler {
             let first = self.equations[d].span;
             if !self.modes.at(e.name.span).multi_replace {
                 return self.fail(
-                    Diagnostic::wrong("E0327", e.name.span)
+                    Diagnostic::error("E0327", e.name.span)
                         .says(format!("the equation `{}` is defined twice", symbol.name))
                         .label("second definition")
                         .other(first, "first definition")

@@ -110,7 +110,8 @@ impl Compiler {
             let of = &symbol.name;
             let message = format!("a table has rows and columns; `{of}` has {dim} index");
             return self.fail(
-                Diagnostic::error("E0346", name, message)
+                Diagnostic::error("E0346", name)
+                    .says(message)
                     .label("at least two index positions are needed")
                     .help("use a `parameter` with a list instead"),
             );
@@ -392,7 +393,7 @@ impl Compiler {
     fn comes_again(&mut self, key: &[Label], at: Span, what: &str) {
         let label = self.key_text(key);
         self.report(
-            Diagnostic::wrong("E0341", at)
+            Diagnostic::error("E0341", at)
                 .says(format!("the {what} {label} appears twice in this table"))
                 .label("second time"),
         );

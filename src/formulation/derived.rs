@@ -129,7 +129,9 @@ fn linear_dual(
     refuse_dual(m, primal, studied)?;
     let failed = |why: String| {
         let message = format!("the dual cannot be derived: {why}");
-        Diagnostic::execution("E0431", studied.span, message).label("of this solve")
+        Diagnostic::execution("E0431", studied.span)
+            .says(message)
+            .label("of this solve")
     };
     let (symbols, store) = (&m.symbols, &m.store);
     let shown = dual::dual(symbols, store, primal, true).map_err(failed)?;
@@ -167,7 +169,9 @@ fn linear_dual(
 fn refuse_dual(m: &Machine, primal: &Primal, studied: &Studied) -> Result<(), Box<Diagnostic>> {
     let instance = &primal.generated.instance;
     let no = |message: String| {
-        Diagnostic::execution("E0431", studied.span, message).label("of this solve")
+        Diagnostic::execution("E0431", studied.span)
+            .says(message)
+            .label("of this solve")
     };
     if primal.objective.is_none() {
         let message = format!(
@@ -192,7 +196,8 @@ fn refuse_dual(m: &Machine, primal: &Primal, studied: &Studied) -> Result<(), Bo
     let message =
         format!("the dual of a linear or convex quadratic program is asked for, and {why}");
     let span = row.map_or(studied.span, |d| d.span);
-    let refusal = Diagnostic::execution("E0431", span, message)
+    let refusal = Diagnostic::execution("E0431", span)
+        .says(message)
         .label(if row.is_some() {
             "this equation"
         } else {
@@ -267,7 +272,9 @@ fn conditions(
 ) -> Result<Derived, Box<Diagnostic>> {
     let (symbols, store) = (&m.symbols, &m.store);
     refuse_discrete(m, primal, |message| {
-        Diagnostic::execution("E0432", studied.span, message).label("of this solve")
+        Diagnostic::execution("E0432", studied.span)
+            .says(message)
+            .label("of this solve")
     })?;
     let mut f = kkt::kkt(symbols, store, primal, false, true)
         .map_err(|r| refuse_kkt(m, primal, studied, r))?;
@@ -336,7 +343,7 @@ fn refuse_kkt(
     (equation, why): kkt::Refusal,
 ) -> Diagnostic {
     let Some(k) = equation else {
-        return Diagnostic::failed("E0432", studied.span)
+        return Diagnostic::execution("E0432", studied.span)
             .says(format!(
                 "the optimality conditions cannot be derived: {why}"
             ))
@@ -347,7 +354,7 @@ fn refuse_kkt(
     let def = definition(m, symbol);
     let place = def.and_then(kink).or(def.map(|d| d.span));
     let name = &m.symbols.get(symbol).name;
-    Diagnostic::failed("E0432", place.unwrap_or(studied.span))
+    Diagnostic::execution("E0432", place.unwrap_or(studied.span))
         .says(format!(
             "the optimality conditions cannot be derived: in `{name}`, {why}"
         ))

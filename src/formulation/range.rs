@@ -27,7 +27,9 @@ pub fn of(
     names: &[String],
 ) -> Result<Ranges, Box<Diagnostic>> {
     let no = |message: &str| {
-        Diagnostic::execution("E0433", studied.span, message).label("of this solve")
+        Diagnostic::execution("E0433", studied.span)
+            .says(message)
+            .label("of this solve")
     };
     if primal.objective.is_none() || !primal.generated.instance.is_linear() {
         return Err(no("ranges belong to a linear program").into());

@@ -35,7 +35,8 @@ pub fn chosen(m: &mut Machine) -> Result<(Primal, Studied), Box<Diagnostic>> {
     } else {
         "the run ends here"
     };
-    let d = Diagnostic::execution("E0430", end, message)
+    let d = Diagnostic::execution("E0430", end)
+        .says(message)
         .label(label)
         .help("a derivation needs a solve: it says what is minimised and which data hold");
     Err(Box::new(d))

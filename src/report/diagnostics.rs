@@ -397,7 +397,8 @@ mod tests {
     fn shows_both_places() {
         let text = "set i / a, b /;\nparameter p(i);\n\n\n\n\n\nscalar s;\ns = p('a','b');\n";
         let (map, _) = map("wall.blk", text);
-        let d = Diagnostic::error("E0301", at(&map, "p('a','b')"), "`p` takes 1 index, not 2")
+        let d = Diagnostic::error("E0301", at(&map, "p('a','b')"))
+            .says("`p` takes 1 index, not 2")
             .label("2 indices here")
             .other(at(&map, "p(i)"), "declared here with 1 index")
             .help("write p('a')");
@@ -441,7 +442,9 @@ E0301
         let b = map.add_file("lib/sets.blk", "set x;\n".into());
         let first = map.push_copy(a, 0, 1);
         let second = map.push_copy(b, 4, 5);
-        let d = Diagnostic::warning("E0109", first, "`x` is a set").other(second, "declared here");
+        let d = Diagnostic::warning("E0109", first)
+            .says("`x` is a set")
+            .other(second, "declared here");
         insta::assert_snapshot!(render(&[d], &map, Look::plain()), @r#"
 E0109
 
@@ -468,26 +471,26 @@ Advice:
             "ä 2,".repeat(9)
         );
         let (map, all) = map("big.blk", &text);
-        let d = Diagnostic::error("E0102", at(&map, "oops"), "no value for the label");
+        let d = Diagnostic::error("E0102", at(&map, "oops")).says("no value for the label");
         let shown = render(&[d], &map, Look::plain());
         assert!(shown.len() < 600 && shown.contains("oops"), "{shown}");
         assert!(shown.contains("big.blk:1:400016"), "{shown}");
-        let d = Diagnostic::error("E0102", all, "the whole of it");
+        let d = Diagnostic::error("E0102", all).says("the whole of it");
         assert!(render(&[d], &map, Look::plain()).len() < 1000);
         let lines = "x\n".repeat(10_000);
         let (map, all) = super::tests::map("tall.blk", &lines);
-        let d = Diagnostic::error("E0102", all, "the whole of it");
+        let d = Diagnostic::error("E0102", all).says("the whole of it");
         assert!(render(&[d], &map, Look::plain()).lines().count() < 12);
     }
 
     #[test]
     fn no_place_no_harm() {
         let map = SourceMap::default();
-        let d = Diagnostic::execution("E0490", Span::default(), "nothing was read");
+        let d = Diagnostic::execution("E0490", Span::default()).says("nothing was read");
         assert!(render(std::slice::from_ref(&d), &map, Look::plain()).contains("nothing was read"));
         assert!(json_lines(&[d], &map).contains("\"execution\""));
         let (map, _) = super::tests::map("empty.blk", "");
-        let d = Diagnostic::warning("E0109", Span::default(), "the file is empty");
+        let d = Diagnostic::warning("E0109", Span::default()).says("the file is empty");
         assert!(render(&[d], &map, Look::plain()).contains("the file is empty"));
     }
 }

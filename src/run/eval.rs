@@ -170,7 +170,8 @@ impl Machine<'_> {
             format!("{message} ({at})")
         };
         self.note(
-            Diagnostic::execution(code, span, message)
+            Diagnostic::execution(code, span)
+                .says(message)
                 .label("here")
                 .help(help),
         );

@@ -58,7 +58,7 @@ impl Machine<'_> {
                 self.origin_name(&origin.columns, column)
             );
             self.note(
-                Diagnostic::warning("E0416", place, message)
+                Diagnostic::warning("E0416", place).says(message)
                     .label("`=e=`, but holds only where the variable is off its bounds")
                     .other(span, "at this solve")
                     .help("write `=g=` (lower bound) or `=l=` (upper bound) for what it means; make the variable free if the equation shall always hold"),
@@ -96,7 +96,8 @@ impl Machine<'_> {
             list(&origin.columns, &block.columns)
         );
         self.note(
-            Diagnostic::warning(code, span, message)
+            Diagnostic::warning(code, span)
+                .says(message)
                 .label("at this solve")
                 .help(help),
         );

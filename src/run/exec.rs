@@ -558,7 +558,11 @@ impl Machine<'_> {
                 || "the model stopped itself".to_string(),
                 |t| format!("the model stopped itself: {t}"),
             );
-            self.note(Diagnostic::execution("E0480", span, message).label("`abort`"));
+            self.note(
+                Diagnostic::execution("E0480", span)
+                    .says(message)
+                    .label("`abort`"),
+            );
         }
         Flow::Stop
     }

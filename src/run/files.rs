@@ -85,7 +85,7 @@ impl Machine<'_> {
 
 fn refused(code: &'static str, what: &str, name: &str, e: &HostError, span: Span) -> Diagnostic {
     let d = |why: String| {
-        Diagnostic::failed(code, span).says(format!("the file `{name}` cannot be {what}: {why}"))
+        Diagnostic::execution(code, span).says(format!("the file `{name}` cannot be {what}: {why}"))
     };
     match e {
         HostError::NotFound => {

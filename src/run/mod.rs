@@ -232,7 +232,7 @@ impl<'h> Machine<'h> {
         let mut list = self.diagnostics.borrow_mut();
         let last = list.iter_mut().rfind(|d| d.severity == Severity::Execution);
         if let Some(d) = last.filter(|d| d.others.iter().all(|o| o.text != text)) {
-            *d = std::mem::replace(d, Diagnostic::execution(d.code, d.span, "")).other(span, text);
+            *d = std::mem::replace(d, Diagnostic::execution(d.code, d.span)).other(span, text);
         }
     }
 
@@ -296,7 +296,7 @@ impl<'h> Machine<'h> {
             self.stop.set(true);
             drop(host);
             self.note(
-                Diagnostic::failed("E0490", self.options.at.get())
+                Diagnostic::execution("E0490", self.options.at.get())
                     .says(format!(
                         "the time limit of {} s is used up",
                         self.options.time_limit
@@ -312,7 +312,7 @@ impl<'h> Machine<'h> {
             self.stop.set(true);
             drop(host);
             self.note(
-                Diagnostic::failed("E0491", self.options.at.get())
+                Diagnostic::execution("E0491", self.options.at.get())
                     .says(format!("the memory limit of {} MB is used up", limit >> 20))
                     .label("stopped here")
                     .help("raise it with `--max-memory`, or add a condition that keeps the set sparse"),

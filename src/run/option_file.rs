@@ -57,7 +57,8 @@ impl Machine<'_> {
         let extension = extension(number as u32);
         let files: Vec<String> = names.iter().map(|s| format!("{s}.{extension}")).collect();
         let warn = |message: String, help: &str| {
-            Diagnostic::warning("E0426", span, message)
+            Diagnostic::warning("E0426", span)
+                .says(message)
                 .label("at this solve")
                 .help(help)
         };
@@ -114,7 +115,8 @@ impl Machine<'_> {
                     });
                     let message = format!("`{file}`, line {line}: {message}");
                     self.note(
-                        Diagnostic::execution("E0426", span, message)
+                        Diagnostic::execution("E0426", span)
+                            .says(message)
                             .label("at this solve")
                             .help(help),
                     );
@@ -125,7 +127,7 @@ impl Machine<'_> {
         if !ignored.is_empty() && self.passed_over.insert(file.to_string()) {
             let names = ignored.join("`, `");
             self.note(
-                Diagnostic::doubtful("E0426", span)
+                Diagnostic::warning("E0426", span)
                     .says(format!(
                         "`{file}`: `{names}` mean nothing here and are passed over"
                     ))

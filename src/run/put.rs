@@ -125,7 +125,7 @@ impl Machine<'_> {
     pub(super) fn put_file(&mut self, span: Span) -> Option<&mut super::options::PutFile> {
         let Some(s) = self.put.current else {
             self.note(
-                Diagnostic::execution("E0472", span, "no file is open to write to")
+                Diagnostic::execution("E0472", span).says("no file is open to write to")
                     .label("which file?")
                     .help("declare one, `file out / 'out.txt' /;`, and name it first: `put out 'text' /;`"),
             );
@@ -140,13 +140,13 @@ impl Machine<'_> {
     fn put_trouble(&mut self, r: Result<(), Overflow>, span: Span) {
         let d = match r {
             Ok(()) => return,
-            Err(Overflow::Number) => Diagnostic::doubtful("E0473", span)
+            Err(Overflow::Number) => Diagnostic::warning("E0473", span)
                 .says("the number is too wide for its place; asterisks were written")
                 .help("give it a greater width, `x:12:2`, or width 0, `x:0:2`"),
-            Err(Overflow::Line) => Diagnostic::doubtful("E0473", span)
+            Err(Overflow::Line) => Diagnostic::warning("E0473", span)
                 .says("the line is longer than the file's `.pw`; the rest of it was lost")
                 .help("end the line with `/`, or assign a greater `.pw`"),
-            Err(Overflow::Row) => Diagnostic::doubtful("E0473", span)
+            Err(Overflow::Row) => Diagnostic::warning("E0473", span)
                 .says("the row lies below the page; the last row was taken")
                 .help("assign a greater `.ps`"),
         };

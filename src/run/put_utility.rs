@@ -66,7 +66,7 @@ impl Machine<'_> {
             "gdxout" => self.transfer.unload_to = Some(argument.trim().into()),
             "gdxin" => self.transfer.load_from = Some(argument.trim().into()),
             _ => self.note(
-                Diagnostic::doubtful("E0474", span)
+                Diagnostic::warning("E0474", span)
                     .says(format!("`{command}` of `put_utility` is not carried out"))
                     .label("asks for what is outside of the model")
                     .help("`log`, `msg`, `ren`, `inc`, `gdxOut` and `gdxIn` are known"),

@@ -137,7 +137,7 @@ impl Machine<'_> {
 
     fn no_plan(&self, why: String, span: Span) -> Flow {
         self.note(
-            Diagnostic::failed("E0424", span)
+            Diagnostic::execution("E0424", span)
                 .says(format!(
                     "the dictionary of the scenarios cannot be used: {why}"
                 ))

@@ -110,9 +110,17 @@ impl Machine<'_> {
             let message = format!("`{name}` takes {}, not {value}", row.kind.words());
             if !matches!(row.kind, Kind::WordsOrReal(..)) {
                 valid = false;
-                self.note(Diagnostic::execution("E0423", span, message).label("at this solve"));
+                self.note(
+                    Diagnostic::execution("E0423", span)
+                        .says(message)
+                        .label("at this solve"),
+                );
             } else if self.passed_over.insert(name) {
-                self.note(Diagnostic::warning("E0423", span, message).label("at this solve"));
+                self.note(
+                    Diagnostic::warning("E0423", span)
+                        .says(message)
+                        .label("at this solve"),
+                );
             }
         }
         valid
@@ -286,7 +294,7 @@ impl Machine<'_> {
             let of = |d: &&EquationDef| d.symbol == symbol;
             self.equations.iter().find(of).map(|d| d.span)
         });
-        let mut d = Diagnostic::execution("E0422", blamed.unwrap_or(span), message);
+        let mut d = Diagnostic::execution("E0422", blamed.unwrap_or(span)).says(message);
         if e.message.contains("at the start point") {
             d = d.help(start_help(&e.message, column.as_deref().unwrap_or("x")));
         }

@@ -15,7 +15,7 @@ impl Preprocessor<'_> {
         let (lo, hi) = line.origin(0, line.text.len());
         let span = self.place(lo, hi);
         refuse(
-            Diagnostic::error("E0101", span, "`$onText` without its `$offText`").help(
+            Diagnostic::error("E0101", span).says("`$onText` without its `$offText`").help(
                 "the rest of the file is a comment: close it with `$offText` in the first column",
             ),
         )
@@ -71,7 +71,7 @@ impl Preprocessor<'_> {
             frame.ifs.clear();
             let span = self.place(lo, hi);
             return refuse(
-                Diagnostic::wrong("E0116", span)
+                Diagnostic::error("E0116", span)
                     .says(format!(
                         "`$goto {label}` was followed {limit} times: it does not end"
                     ))
@@ -100,7 +100,7 @@ impl Preprocessor<'_> {
         }
         let span = self.place(lo, hi);
         refuse(
-            Diagnostic::wrong("E0116", span)
+            Diagnostic::error("E0116", span)
                 .says(format!("there is no `$label {label}` in this file"))
                 .help("labels are looked for in the file of the `$goto` only"),
         )
@@ -191,7 +191,8 @@ impl Preprocessor<'_> {
             _ => format!("{end}.{tag}"),
         };
         refuse(
-            Diagnostic::error("E0101", span, format!("`${word}` without its `{end}`"))
+            Diagnostic::error("E0101", span)
+                .says(format!("`${word}` without its `{end}`"))
                 .help(format!("close it with `{end}` in the first column")),
         )
     }

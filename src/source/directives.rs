@@ -159,7 +159,7 @@ impl Preprocessor<'_> {
                 let (lo, hi) = line.origin(0, text.len().max(1));
                 let span = self.place(lo, hi);
                 return refuse(
-                    Diagnostic::wrong("E0107", span)
+                    Diagnostic::error("E0107", span)
                         .says("a `$` in the first column begins a directive, but no name follows")
                         .help(
                             "a `$` condition must not begin in the first column: put a blank before it",
@@ -306,7 +306,7 @@ impl Preprocessor<'_> {
                 }
                 return outcome.map_err(|d| match (word, d.code) {
                     ("libinclude" | "sysinclude", "E0103") => Box::new(
-                        Diagnostic::wrong("E0112", d.span)
+                        Diagnostic::error("E0112", d.span)
                             .says(format!("`{name}` belongs to the library of a GAMS installation, which is not there"))
                             .help("put the file beside the model, or do without it"),
                     ),
@@ -467,7 +467,8 @@ impl Preprocessor<'_> {
                 } else {
                     unquoted(rest)
                 };
-                let d = Diagnostic::error("E0110", span, message)
+                let d = Diagnostic::error("E0110", span)
+                    .says(message)
                     .label(format!("`${word}` stands here"));
                 if word == "abort" {
                     self.stop(Ending::Aborted);
@@ -517,7 +518,7 @@ impl Preprocessor<'_> {
                     && self.host.exists(&made, from.as_deref())
                 {
                     self.warnings.push(
-                        Diagnostic::doubtful("E0113", span)
+                        Diagnostic::warning("E0113", span)
                             .says(format!(
                                 "`${word}` starts no program: `{made}` is read as it is there"
                             ))
@@ -526,7 +527,7 @@ impl Preprocessor<'_> {
                     );
                     return Ok(());
                 }
-                return refuse(Diagnostic::error("E0113", span, format!("`${word}` would start another program, which is refused"))
+                return refuse(Diagnostic::error("E0113", span).says(format!("`${word}` would start another program, which is refused"))
                     .label("not run")
                     .help("run it yourself before the model, and read what it writes with `$include` or `$load`"));
             }
@@ -564,7 +565,8 @@ impl Preprocessor<'_> {
                     line.emit(&mut self.map, from.saturating_sub(1), line.text.len());
                     let message = "a `$` in the first column begins a directive";
                     return refuse(
-                        Diagnostic::error("E0107", span, message)
+                        Diagnostic::error("E0107", span)
+                            .says(message)
                             .help("put a blank before the condition"),
                     );
                 }
@@ -583,7 +585,8 @@ impl Preprocessor<'_> {
                     |n| format!("did you mean `${n}`?"),
                 );
                 return refuse(
-                    Diagnostic::error("E0107", span, format!("there is no directive `${word}`"))
+                    Diagnostic::error("E0107", span)
+                        .says(format!("there is no directive `${word}`"))
                         .help(help),
                 );
             }
@@ -593,7 +596,7 @@ impl Preprocessor<'_> {
 
     fn bad_condition(&mut self, word: &str, why: String, lo: u32, hi: u32) -> Diagnostic {
         let span = self.place(lo, hi);
-        Diagnostic::wrong("E0114", span)
+        Diagnostic::error("E0114", span)
             .says(format!("the condition of `${word}` cannot be read: {why}"))
             .help("for example `$if set x`, `$if not exist 'data.inc'`, `$if %n% == 3`, `$ifE %n% > 3`")
     }
@@ -610,7 +613,8 @@ impl Preprocessor<'_> {
                 let (lo, hi) = line.origin(0, line.text.len());
                 let span = self.place(lo, hi);
                 return refuse(
-                    Diagnostic::error("E0114", span, "more than 50 conditions on one line")
+                    Diagnostic::error("E0114", span)
+                        .says("more than 50 conditions on one line")
                         .help("use `$ifThen … $endIf` blocks"),
                 );
             }
@@ -633,7 +637,7 @@ impl Preprocessor<'_> {
         let Some(open) = self.frames.last_mut().and_then(|f| f.ifs.last_mut()) else {
             let span = self.place(lo, hi);
             return refuse(
-                Diagnostic::wrong("E0106", span)
+                Diagnostic::error("E0106", span)
                     .says(format!(
                         "`${word}` without an `$ifThen` before it in this file"
                     ))
@@ -649,7 +653,7 @@ impl Preprocessor<'_> {
             }
             let span = self.place(lo, hi);
             return refuse(
-                Diagnostic::wrong("E0106", span)
+                Diagnostic::error("E0106", span)
                     .says(format!(
                         "`${word}.{tag}` does not belong to the innermost open `$ifThen`"
                     ))
@@ -717,9 +721,11 @@ impl Preprocessor<'_> {
         if name.is_empty() {
             let span = self.place(lo, hi);
             return refuse(
-                Diagnostic::error("E0107", span, format!("`${word}` needs a name")).help(format!(
-                    "write `${word} name value`; then `%name%` stands for the value"
-                )),
+                Diagnostic::error("E0107", span)
+                    .says(format!("`${word}` needs a name"))
+                    .help(format!(
+                        "write `${word} name value`; then `%name%` stands for the value"
+                    )),
             );
         }
         let value = if word.starts_with("eval") && of_set {
@@ -730,7 +736,7 @@ impl Preprocessor<'_> {
                 None => {
                     let span = self.place(lo, hi);
                     let message = format!("`${word}.set {name}`: there is no text `{value}`");
-                    return refuse(Diagnostic::error("E0115", span, message).help(
+                    return refuse(Diagnostic::error("E0115", span).says(message).help(
                         "write the name of a set with elements and `.tl`, `.te`, `.ts`, `.firstTL`, `.lastTE` …",
                     ));
                 }
@@ -747,7 +753,8 @@ impl Preprocessor<'_> {
                     let span = self.place(lo, hi);
                     let message = format!("`${word} {name}`: `{value}` has no value");
                     return refuse(
-                        Diagnostic::error("E0115", span, message)
+                        Diagnostic::error("E0115", span)
+                            .says(message)
                             .help("`%name%` stands for UNDF after it"),
                     );
                 }
@@ -759,12 +766,14 @@ impl Preprocessor<'_> {
                     );
                     let span = self.place(lo, hi);
                     return refuse(
-                        Diagnostic::error("E0115", span, message).help("is an operator missing?"),
+                        Diagnostic::error("E0115", span)
+                            .says(message)
+                            .help("is an operator missing?"),
                     );
                 }
                 Err(why) => {
                     let span = self.place(lo, hi);
-                    return refuse(Diagnostic::error("E0115", span, format!("`${word} {name}` cannot be evaluated: {why}"))
+                    return refuse(Diagnostic::error("E0115", span).says(format!("`${word} {name}` cannot be evaluated: {why}"))
                         .help("numbers, operators, functions, `card(set)` and scalars with data can stand here"));
                 }
             }
@@ -804,7 +813,9 @@ impl Preprocessor<'_> {
         self.macros.define(&text, replace).map_err(|why| {
             let span = self.place(lo, hi);
             Box::new(
-                Diagnostic::error("E0111", span, why).help("`$macro name(a,b) text with a and b`"),
+                Diagnostic::error("E0111", span)
+                    .says(why)
+                    .help("`$macro name(a,b) text with a and b`"),
             )
         })
     }
@@ -836,7 +847,8 @@ impl Preprocessor<'_> {
                 _ => "$dollar #",
             };
             return refuse(
-                Diagnostic::error("E0107", span, format!("`${word}` needs its mark"))
+                Diagnostic::error("E0107", span)
+                    .says(format!("`${word}` needs its mark"))
                     .help(format!("for example `{example}`")),
             );
         }

@@ -42,7 +42,8 @@ pub(crate) fn refuse<T>(d: Diagnostic) -> Outcome<T> {
 pub(crate) fn embedded_code(at: Span, gives_back: bool) -> Diagnostic {
     let what = "embedded code of other languages is not run";
     match gives_back {
-        true => Diagnostic::error("E0113", at, what)
+        true => Diagnostic::error("E0113", at)
+            .says(what)
             .label("not run")
             .help("write the computation in the language itself"),
         false => passed_over(at, what),
@@ -51,7 +52,8 @@ pub(crate) fn embedded_code(at: Span, gives_back: bool) -> Diagnostic {
 
 /// An export that is not done.
 pub(crate) fn passed_over(at: Span, what: impl Into<String>) -> Diagnostic {
-    Diagnostic::warning("E0322", at, what)
+    Diagnostic::warning("E0322", at)
+        .says(what)
         .label("passed over: it gives nothing back")
         .help("`execute_unload` and `put` write files; `--json` has everything")
 }

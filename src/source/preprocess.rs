@@ -295,7 +295,8 @@ impl<'h> Preprocessor<'h> {
                 if empty {
                     let span = p.map.push_substitute("\n", FileId(0), 0, 0);
                     p.warnings.push(
-                        Diagnostic::warning("E0109", span, format!("the file `{path}` is empty"))
+                        Diagnostic::warning("E0109", span)
+                            .says(format!("the file `{path}` is empty"))
                             .help("nothing is declared and nothing is solved"),
                     );
                 }
@@ -375,7 +376,8 @@ impl<'h> Preprocessor<'h> {
         let asked = self.place(lo, hi);
         if name.is_empty() {
             return refuse(
-                Diagnostic::error("E0103", asked, "the name of the file is missing")
+                Diagnostic::error("E0103", asked)
+                    .says("the name of the file is missing")
                     .help("write `$include 'file.gms'`"),
             );
         }
@@ -414,7 +416,8 @@ impl<'h> Preprocessor<'h> {
             } else {
                 format!("files are included more than {DEEPEST_INCLUDE} deep")
             };
-            let mut d = Diagnostic::error("E0105", asked, message)
+            let mut d = Diagnostic::error("E0105", asked)
+                .says(message)
                 .help("take the `$include` out, or guard it with `$if not set`");
             for frame in self.frames.iter().skip(1).take(3) {
                 d = d.other(frame.asked, "included from here");
@@ -458,7 +461,7 @@ impl<'h> Preprocessor<'h> {
             let file = FileId(0);
             let span = self.map.push_substitute("\n", file, at, at);
             return Err(vec![
-                Diagnostic::wrong("E0108", span)
+                Diagnostic::error("E0108", span)
                     .says("the text is longer than 3 GB with all its includes")
                     .help("split the model, or read the data with `execute_load`"),
             ]);
@@ -685,13 +688,15 @@ impl<'h> Preprocessor<'h> {
         self.names.leave();
         if let Some(open) = open {
             return refuse(
-                Diagnostic::error("E0106", open.span, "this `$ifThen` is never closed")
+                Diagnostic::error("E0106", open.span)
+                    .says("this `$ifThen` is never closed")
                     .help("every `$ifThen` needs its `$endIf` in the same file"),
             );
         }
         if let Some(span) = comment {
             return refuse(
-                Diagnostic::error("E0101", span, "this comment is never closed")
+                Diagnostic::error("E0101", span)
+                    .says("this comment is never closed")
                     .help("close it with the mark that `$inlineCom` set"),
             );
         }
@@ -762,7 +767,7 @@ impl<'h> Preprocessor<'h> {
             let (lo, hi) = line.origin(0, line.text.len());
             let span = self.place(lo, hi);
             return refuse(
-                Diagnostic::wrong("E0108", span)
+                Diagnostic::error("E0108", span)
                     .says("with its `%name%` filled in, this line is longer than 4 MB")
                     .help("a name that stands for itself twice doubles with each `$set`"),
             );
@@ -888,7 +893,11 @@ impl<'h> Preprocessor<'h> {
                 Err(e) => {
                     let (lo, hi) = line.origin(e.from, e.to);
                     let span = self.place(lo, hi);
-                    return refuse(Diagnostic::error("E0111", span, e.message).help(e.help));
+                    return refuse(
+                        Diagnostic::error("E0111", span)
+                            .says(e.message)
+                            .help(e.help),
+                    );
                 }
             }
         }
@@ -1056,27 +1065,27 @@ fn byte_of_column(text: &str, column: usize) -> usize {
 /// The diagnostic for a file that cannot be read.
 fn unreadable(name: &str, e: &HostError, span: Span) -> Diagnostic {
     match e {
-        HostError::NotFound => {
-            Diagnostic::error("E0103", span, format!("the file `{name}` is not there"))
-                .help("paths are relative to the file that asks, then to the current directory")
-        }
-        HostError::Outside(p) => Diagnostic::wrong("E0104", span)
+        HostError::NotFound => Diagnostic::error("E0103", span)
+            .says(format!("the file `{name}` is not there"))
+            .help("paths are relative to the file that asks, then to the current directory"),
+        HostError::Outside(p) => Diagnostic::error("E0104", span)
             .says(format!(
                 "the file `{name}` lies outside the folders that may be read ({})",
                 p.display()
             ))
             .help("put it beside the model, or allow its folder: `--allow-read DIR`"),
-        HostError::NotUtf8(at) => Diagnostic::wrong("E0102", span)
+        HostError::NotUtf8(at) => Diagnostic::error("E0102", span)
             .says(format!(
                 "the file `{name}` is not UTF-8 text: byte {at} is not part of a character"
             ))
             .help("save it as UTF-8, for example with `iconv -f LATIN1 -t UTF-8`"),
         HostError::Compressed => {
             let message = format!("the file `{name}` was compressed by GAMS");
-            Diagnostic::error("E0102", span, message)
+            Diagnostic::error("E0102", span)
+                .says(message)
                 .help("GAMS unpacks it: `$decompress FILE PLAIN`; bmod reads the plain text")
         }
-        HostError::Other(why) => Diagnostic::wrong("E0103", span)
+        HostError::Other(why) => Diagnostic::error("E0103", span)
             .says(format!("the file `{name}` cannot be read: {why}"))
             .help("check the path and the permissions"),
     }

@@ -53,7 +53,7 @@ impl Constants {
         Some(match &c.value {
             Ok(x) => Ok((*x, c.hi)),
             Err(why) => Err(Box::new(
-                Diagnostic::wrong("E0247", Span::new(c.lo as u32, c.hi as u32))
+                Diagnostic::error("E0247", Span::new(c.lo as u32, c.hi as u32))
                     .says(format!("this constant expression cannot be evaluated: {why}"))
                     .help("numbers, operators, functions, `card(set)` and scalars with data can stand here, on one line"),
             )),

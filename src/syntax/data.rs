@@ -342,7 +342,8 @@ impl<'a> DataReader<'a> {
             Some(x) => Ok(Tail::Number(x, span)),
             None if text.bytes().all(is_label) => Ok(Tail::Name(text, span)),
             None => Err(Box::new(
-                Diagnostic::error("E0245", span, format!("`{text}` is not a number"))
+                Diagnostic::error("E0245", span)
+                    .says(format!("`{text}` is not a number"))
                     .help("under `$onDelim` the value stands behind the last comma"),
             )),
         }
@@ -671,12 +672,9 @@ impl<'a> DataReader<'a> {
                     let len = self.text[start..].chars().next().map_or(1, char::len_utf8);
                     let sign = &self.text[start..start + len];
                     return Err(Box::new(
-                        Diagnostic::error(
-                            "E0243",
-                            self.span(start, start + len),
-                            format!("`{sign}` cannot stand in a label without quotes"),
-                        )
-                        .help("put the label in quotes, or a blank before the text"),
+                        Diagnostic::error("E0243", self.span(start, start + len))
+                            .says(format!("`{sign}` cannot stand in a label without quotes"))
+                            .help("put the label in quotes, or a blank before the text"),
                     ));
                 }
                 let end =
@@ -738,7 +736,7 @@ impl<'a> DataReader<'a> {
                     end += 1;
                 }
                 return Err(Box::new(
-                    Diagnostic::error("E0245", self.span(start, end), format!("`{}` is not a number", &self.text[start..end]))
+                    Diagnostic::error("E0245", self.span(start, end)).says(format!("`{}` is not a number", &self.text[start..end]))
                         .help("numbers look like `12`, `-3.5`, `1.5e-3`; a comma or a line end comes before the next record"),
                 ));
             }
@@ -779,11 +777,7 @@ impl<'a> DataReader<'a> {
         hi: usize,
         message: impl Into<String>,
     ) -> Box<Diagnostic> {
-        Box::new(Diagnostic::error(
-            code,
-            self.span(lo, hi.min(self.text.len())),
-            message,
-        ))
+        Box::new(Diagnostic::error(code, self.span(lo, hi.min(self.text.len()))).says(message))
     }
 
     fn expected(&self, what: &str, at: usize) -> Box<Diagnostic> {
@@ -796,7 +790,7 @@ impl<'a> DataReader<'a> {
             Some(';') => format!("{what} was expected here, not `;`"),
             Some(c) => format!("{what} was expected here, not `{c}`"),
         };
-        let d = Diagnostic::error("E0243", self.span(at, at + len), message);
+        let d = Diagnostic::error("E0243", self.span(at, at + len)).says(message);
         Box::new(match found {
             Some(';') => d.help("is the closing `/` of these data missing?"),
             Some('.') => d.help("a range of labels is written `1*5`; a number begins with a digit or with `.` and a digit"),
@@ -849,7 +843,8 @@ fn set_suffix(bytes: &[u8]) -> Option<usize> {
 
 /// `undf` stands in data without `$onUndf`.
 pub fn undf_refused(span: Span) -> Diagnostic {
-    Diagnostic::error("E0246", span, "`undf` may be written only after `$onUndf`")
+    Diagnostic::error("E0246", span)
+        .says("`undf` may be written only after `$onUndf`")
         .help("for a missing value write `na`")
 }
 

@@ -83,19 +83,9 @@ impl<'a> Failure<'a> {
         }
     }
 
-    pub(super) fn error(
-        &self,
-        code: &'static str,
-        lo: usize,
-        len: usize,
-        message: impl Into<String>,
-    ) -> Diagnostic {
-        self.wrong(code, lo, len).says(message)
-    }
-
-    /// An error whose message follows with [`Diagnostic::says`].
-    pub(super) fn wrong(&self, code: &'static str, lo: usize, len: usize) -> Diagnostic {
-        Diagnostic::wrong(code, self.span(lo, lo + len))
+    /// An error; its message follows with [`Diagnostic::says`].
+    pub(super) fn error(&self, code: &'static str, lo: usize, len: usize) -> Diagnostic {
+        Diagnostic::error(code, self.span(lo, lo + len))
     }
 }
 
@@ -195,7 +185,8 @@ fn missing_semicolon(f: &Failure<'_>) -> Option<Explanation> {
     }
     let end = f.span(first.len().saturating_sub(1), first.len());
     let start = f.span(second, second + f.token(second).len());
-    let missing = Diagnostic::error("E0201", end, "`;` is missing at the end of this statement")
+    let missing = Diagnostic::error("E0201", end)
+        .says("`;` is missing at the end of this statement")
         .label("missing `;`")
         .other(start, "the next statement begins here");
     let mut found = Explanation::of(missing);
@@ -222,7 +213,7 @@ fn other_end(f: &Failure<'_>) -> Option<Explanation> {
         return None;
     }
     let missing = f
-        .wrong("E0201", f.at, 1)
+        .error("E0201", f.at, 1)
         .says(format!("`;` ends a statement, not `{token}`"))
         .label("write `;`");
     let mut found = Explanation::of(missing);
@@ -312,7 +303,7 @@ fn slip(f: &Failure<'_>) -> Option<Diagnostic> {
     match first {
         Some('\'' | '"') if f.raw.class == Class::File => {
             return Some(
-                f.wrong("E0210", f.at, 1)
+                f.error("E0210", f.at, 1)
                     .says("a file has a name in the text, and one outside of it")
                     .help("write `file out / 'out.txt' /;`, and `put out 'text' /;`"),
             );
@@ -321,18 +312,20 @@ fn slip(f: &Failure<'_>) -> Option<Diagnostic> {
             let line = f.text[f.at + 1..].split('\n').next().unwrap_or("");
             if !line.contains(token) {
                 return Some(
-                    f.error("E0206", f.at, 1, "this quote is not closed on its line")
+                    f.error("E0206", f.at, 1).says("this quote is not closed on its line")
                         .help("close it; a text that holds `'` goes in `\"…\"`, and the other way round"),
                 );
             }
             return Some(
-                f.error("E0210", f.at, 1, "a text in quotes cannot stand here")
+                f.error("E0210", f.at, 1)
+                    .says("a text in quotes cannot stand here")
                     .help("is a comma, an operator or a `;` missing before it?"),
             );
         }
         Some(')' | ']' | '}') if unmatched_close(bytes, f.at) => {
             return Some(
-                f.error("E0207", f.at, 1, format!("this `{token}` closes nothing"))
+                f.error("E0207", f.at, 1)
+                    .says(format!("this `{token}` closes nothing"))
                     .help("take it out, or write the opening parenthesis"),
             );
         }
@@ -344,7 +337,8 @@ fn slip(f: &Failure<'_>) -> Option<Diagnostic> {
             {
                 let name = &rest[..n];
                 return Some(
-                    f.error("E0208", f.at, n + 2, format!("`%{name}%` has no value"))
+                    f.error("E0208", f.at, n + 2)
+                        .says(format!("`%{name}%` has no value"))
                         .help(format!(
                             "set it with `$set {name} …` before this line, or with `-D {name}=…`"
                         )),
@@ -373,7 +367,7 @@ fn slip(f: &Failure<'_>) -> Option<Diagnostic> {
                 }
             };
             return Some(
-                f.wrong("E0209", f.at, c.len_utf8())
+                f.error("E0209", f.at, c.len_utf8())
                     .says(format!("`{c}` cannot stand here"))
                     .help(help),
             );
@@ -388,7 +382,7 @@ fn slip(f: &Failure<'_>) -> Option<Diagnostic> {
                     "names begin with a letter; between a number and a name an operator is missing"
                 };
                 return Some(
-                    f.wrong("E0209", f.at, end - f.at)
+                    f.error("E0209", f.at, end - f.at)
                         .says(format!("`{token}` is neither a number nor a name"))
                         .help(help),
                 );
@@ -396,7 +390,7 @@ fn slip(f: &Failure<'_>) -> Option<Diagnostic> {
         }
         Some('_') => {
             return Some(
-                f.wrong("E0209", f.at, token.len())
+                f.error("E0209", f.at, token.len())
                     .says(format!("the name `{token}` begins with `_`"))
                     .help("names begin with a letter"),
             );
@@ -422,7 +416,7 @@ fn in_declaration(f: &Failure<'_>, token: &str) -> Option<Diagnostic> {
     let here = f.span(f.at, f.at).lo as usize;
     if f.raw.class == Class::Equation && f.expanded[here..].starts_with("..") {
         return Some(
-            f.wrong("E0221", f.at, 2)
+            f.error("E0221", f.at, 2)
                 .says("an equation is declared in one statement and defined in another")
                 .help(format!(
                     "write `equation {name};` and then `{name}.. left =e= right;`"
@@ -434,7 +428,7 @@ fn in_declaration(f: &Failure<'_>, token: &str) -> Option<Diagnostic> {
     }
     if matches!(token, "-" | ".") && before_is_name(f.text, f.at) {
         return Some(
-            f.wrong("E0209", f.at, 1)
+            f.error("E0209", f.at, 1)
                 .says(format!("`{token}` cannot stand in a name"))
                 .help("names consist of letters, digits and `_`: `unit_cost`"),
         );
@@ -444,7 +438,8 @@ fn in_declaration(f: &Failure<'_>, token: &str) -> Option<Diagnostic> {
         && token.starts_with(|c: char| c.is_ascii_digit())
     {
         return Some(
-            f.error("E0220", f.at, token.len(), "a declaration gives no bounds")
+            f.error("E0220", f.at, token.len())
+                .says("a declaration gives no bounds")
                 .help("declare `variable x;` and assign the bounds: `x.lo = 0; x.up = 5;`"),
         );
     }
@@ -452,7 +447,7 @@ fn in_declaration(f: &Failure<'_>, token: &str) -> Option<Diagnostic> {
         && f.text[..f.at].trim_end().ends_with(['(', ','])
     {
         return Some(
-            f.wrong("E0220", f.at, token.len())
+            f.error("E0220", f.at, token.len())
                 .says("an index position is a set, not a number")
                 .help(format!("declare `set i / 1*{token} /;` and write `x(i)`")),
         );
@@ -471,7 +466,7 @@ fn in_declaration(f: &Failure<'_>, token: &str) -> Option<Diagnostic> {
             _ => format!("write `scalar {name} / 5 /;`, or declare it first and assign then: `scalar {name}; {name} = 5;`"),
         };
         return Some(
-            f.wrong("E0220", f.at, 1)
+            f.error("E0220", f.at, 1)
                 .says("a declaration gives values between slashes")
                 .label("`=` cannot stand here".replace('=', token))
                 .help(help),
@@ -483,7 +478,7 @@ fn in_declaration(f: &Failure<'_>, token: &str) -> Option<Diagnostic> {
             _ => ("lo", "`positive variable x;`, or "),
         };
         return Some(
-            f.error("E0220", f.at, 1, "a declaration gives no bounds")
+            f.error("E0220", f.at, 1).says("a declaration gives no bounds")
                 .help(format!("write {positive}the bound in a statement after the declaration: `{name}.{side} = …;`")),
         );
     }
@@ -495,7 +490,7 @@ fn declared_attribute(f: &Failure<'_>, token: &str, name: &str) -> Option<Diagno
     let attribute = f.token(f.at + 1).to_ascii_lowercase();
     let is_one = matches!(&*attribute, "l" | "lo" | "up" | "fx");
     (token == "." && f.raw.class == Class::Variable && is_one).then(|| {
-        f.error("E0220", f.at, 1 + attribute.len(), "a declaration gives no bounds").help(format!(
+        f.error("E0220", f.at, 1 + attribute.len()).says("a declaration gives no bounds").help(format!(
             "declare `variable {name};` and write `{name}.{attribute} = …;` in a statement of its own"
         ))
     })
@@ -557,7 +552,7 @@ fn called(rule: Rule) -> Option<&'static str> {
 fn form(f: &Failure<'_>) -> Option<Diagnostic> {
     let token = f.token(f.at);
     let say = |message: &str, help: String| {
-        let d = f.error("E0210", f.at, token.len().max(1), message);
+        let d = f.error("E0210", f.at, token.len().max(1)).says(message);
         Some(d.help(help))
     };
     if f.raw.class.declares() && token.as_bytes().first() == Some(&1) {
@@ -636,7 +631,7 @@ fn expected(f: &Failure<'_>, e: &Error<Rule>) -> Diagnostic {
             },
         )
     };
-    let d = Diagnostic::error("E0210", span, message);
+    let d = Diagnostic::error("E0210", span).says(message);
     if wanted.is_empty() {
         return d;
     }

@@ -170,7 +170,7 @@ pub(super) fn statement(f: &Failure<'_>) -> Option<Explanation> {
     }
     if text.to_ascii_lowercase().starts_with("s.t.") {
         let d = f
-            .wrong("E0231", lead, 4)
+            .error("E0231", lead, 4)
             .says("constraints are equations here")
             .help(CONSTRAINT);
         return Some(said(d, Language::Ampl));
@@ -180,7 +180,10 @@ pub(super) fn statement(f: &Failure<'_>) -> Option<Explanation> {
         .find(|i| i.words.contains(&lower.as_str()) && i.stands.fits(rest))
         .filter(|_| !rest.to_ascii_lowercase().starts_with("variable"));
     if let Some(i) = found {
-        let d = f.error("E0231", lead, word.len(), i.message).help(i.help);
+        let d = f
+            .error("E0231", lead, word.len())
+            .says(i.message)
+            .help(i.help);
         let mut found = said(d, i.language);
         if lower == "do" {
             found.go_on = line_end(f, lead);
@@ -240,7 +243,7 @@ fn comment(f: &Failure<'_>, text: &str, lead: usize) -> Option<Explanation> {
         "*" => "`*` begins a comment only in the first column".to_owned(),
         _ => format!("`{mark}` does not begin a comment here"),
     };
-    let mut found = Explanation::of(f.error("E0230", lead, mark.len(), message).help(HELP));
+    let mut found = Explanation::of(f.error("E0230", lead, mark.len()).says(message).help(HELP));
     let lo = f.span(lead, lead + mark.len()).lo as usize;
     let closing = match mark {
         "/*" => "*/",
@@ -275,7 +278,9 @@ pub(super) fn line(expanded: &str, statement: Span) -> Option<Explanation> {
             i.stands == Stands::Colon && i.words.contains(&word.to_ascii_lowercase().as_str())
         })
     {
-        let d = Diagnostic::error("E0231", place(0, word.len()), i.message).help(i.help);
+        let d = Diagnostic::error("E0231", place(0, word.len()))
+            .says(i.message)
+            .help(i.help);
         return Some(said(d, i.language));
     }
     trace(line, &place)
@@ -314,7 +319,9 @@ fn macros(text: &str, place: &dyn Fn(usize, usize) -> Span) -> Option<Explanatio
         _ => "this is a Python program, not a model",
     };
     Some(said(
-        Diagnostic::error("E0231", place(0, len + 1), origin).help(help),
+        Diagnostic::error("E0231", place(0, len + 1))
+            .says(origin)
+            .help(help),
         language,
     ))
 }
@@ -329,7 +336,7 @@ pub(super) fn line_end(f: &Failure<'_>, at: usize) -> GoOn {
 /// `for i in I`, `if a > 1:`, `while c { … }`, `end`.
 fn blocks(f: &Failure<'_>, word: &str, rest: &str, lead: usize) -> Option<Explanation> {
     let say = |message: String, help: &str| {
-        let d = f.error("E0231", lead, word.len(), message).help(help);
+        let d = f.error("E0231", lead, word.len()).says(message).help(help);
         Some(said(d, Language::Blocks))
     };
     let second = rest[..words::word_end(rest.as_bytes(), 0)].to_ascii_lowercase();
@@ -343,7 +350,7 @@ fn blocks(f: &Failure<'_>, word: &str, rest: &str, lead: usize) -> Option<Explan
                 .trim_start();
             let cut = words::word_end(after.as_bytes(), 0);
             let mut found = said(
-                f.error("E0233", lead, 3, "blocks end with `);`")
+                f.error("E0233", lead, 3).says("blocks end with `);`")
                     .help("write `for(k = 1 to n, … );` and `if(c, … );`"),
                 Language::Blocks,
             );
@@ -366,7 +373,7 @@ fn blocks(f: &Failure<'_>, word: &str, rest: &str, lead: usize) -> Option<Explan
             if head.to_ascii_lowercase().contains(" in ") && !rest.starts_with('(') =>
         {
             let python = head.trim_end().ends_with(':');
-            let d = f.error("E0231", lead, word.len(), "a loop over a set is written with `loop`")
+            let d = f.error("E0231", lead, word.len()).says("a loop over a set is written with `loop`")
                 .help("write `loop(i, … );`; in an equation the index stands behind its name: `e(i).. …`");
             Some(said(
                 d,
@@ -383,7 +390,7 @@ fn blocks(f: &Failure<'_>, word: &str, rest: &str, lead: usize) -> Option<Explan
         ),
         // `p(i) = 1 if a(i) > 0;`: the splitter has cut before the word.
         ("for" | "if" | "while", _) if !rest.starts_with('(') && behind_code(f, lead) => Some(Explanation::of(
-            f.error("E0232", lead, word.len(), format!("`{word}` cannot stand behind an expression"))
+            f.error("E0232", lead, word.len()).says(format!("`{word}` cannot stand behind an expression"))
                 .help("a condition stands behind `$`: `p(i)$(a(i) > 0) = …;`; an equation holds for all elements of the index behind its name, `e(i).. …`"),
         )),
         ("for" | "while" | "if" | "loop" | "elseif" | "else", _)
@@ -405,19 +412,19 @@ fn blocks(f: &Failure<'_>, word: &str, rest: &str, lead: usize) -> Option<Explan
             Some(found)
         }
         ("solve", "minimize" | "maximize" | "satisfy") => {
-            let d = f.wrong("E0231", lead, 5)
+            let d = f.error("E0231", lead, 5)
                 .says("`solve` names a model first")
                 .help("write `model m / all /; solve m using lp minimizing z;`");
             Some(said(d, Language::MiniZinc))
         }
         ("solve", "" | "using" | "minimizing" | "maximizing") if f.raw.class == Class::Other => {
             Some(Explanation::of(
-                f.error("E0218", lead, 5, "`solve` names a model first")
+                f.error("E0218", lead, 5).says("`solve` names a model first")
                     .help("write `model m / all /; solve m using lp minimizing z;`"),
             ))
         }
         ("set" | "sets", "of") => {
-            let d = f.wrong("E0231", lead, word.len())
+            let d = f.error("E0231", lead, word.len())
                 .says("the elements of a set stand between slashes")
                 .help("write `set i / a, b, c /;` or `set t / 1*10 /;`");
             Some(said(d, Language::MiniZinc))
@@ -473,7 +480,7 @@ fn trace(line: &str, place: &dyn Fn(usize, usize) -> Span) -> Option<Explanation
         Language::Matlab => "a MATLAB program",
         _ => "a Python program",
     };
-    let d = Diagnostic::wrong("E0231", place(at, len))
+    let d = Diagnostic::error("E0231", place(at, len))
         .says(format!("this is {name}, not a model"))
         .help(PROGRAM);
     Some(said(d, language))
@@ -535,7 +542,7 @@ fn misspelled(f: &Failure<'_>, word: &str, rest: &str, lead: usize) -> Option<Ex
         ];
         let meant = nearest(word, KINDS).unwrap_or("positive");
         let d = f
-            .wrong("E0219", lead, word.len())
+            .error("E0219", lead, word.len())
             .says(format!("`{word}` is no kind of variable"));
         return Some(Explanation::of(
             d.label(format!("write `{meant}`"))
@@ -552,7 +559,7 @@ fn misspelled(f: &Failure<'_>, word: &str, rest: &str, lead: usize) -> Option<Ex
         _ => meant,
     };
     Some(Explanation::of(
-        f.wrong("E0219", lead, word.len())
+        f.error("E0219", lead, word.len())
             .says(format!("`{word}` is not a statement"))
             .label(format!("write `{meant}`")),
     ))
@@ -569,13 +576,14 @@ pub(super) fn keyword_inside(f: &Failure<'_>) -> Option<Explanation> {
     let span = Span::new(lo as u32, (lo + word.len()) as u32);
     words::statement_word(after, 0, word.len())?;
     let d = if f.text.trim().eq_ignore_ascii_case("abort") && word.eq_ignore_ascii_case("if") {
-        Diagnostic::error("E0231", span, "a condition stands behind `$`")
+        Diagnostic::error("E0231", span)
+            .says("a condition stands behind `$`")
             .help("write `abort$(a > 0) 'why';`")
     } else if f.raw.class.declares() || f.text.trim_start().len() < 8 && f.raw.class == Class::Other
     {
         words::reserved(word, span)
     } else if word.eq_ignore_ascii_case("if") && f.raw.class == Class::Algebra {
-        Diagnostic::wrong("E0231", span)
+        Diagnostic::error("E0231", span)
             .says("`if` is a statement; it cannot stand in an expression")
             .help("write `ifThen(c, a, b)`, or `a$(c) + b$(not c)`")
     } else {

@@ -208,8 +208,11 @@ impl<'h> Parser<'h> {
                 );
                 let help =
                     "the elements stand between slashes: `set i / a, b, c /;`, `set t / 1*10 /;`";
-                self.text
-                    .warn(Diagnostic::warning("E0234", name.span, message).help(help));
+                self.text.warn(
+                    Diagnostic::warning("E0234", name.span)
+                        .says(message)
+                        .help(help),
+                );
             }
         }
         let ast::StmtKind::Variable(stated, list) = &stmt.kind else {
@@ -258,8 +261,11 @@ impl<'h> Parser<'h> {
             };
             let message =
                 format!("`{text}` behind `{name}` is read as an explanatory text, not as a {what}");
-            self.text
-                .warn(Diagnostic::warning("E0234", d.name.span, message).help(help));
+            self.text.warn(
+                Diagnostic::warning("E0234", d.name.span)
+                    .says(message)
+                    .help(help),
+            );
         }
     }
 

@@ -29,7 +29,8 @@ pub(super) fn equation(f: &Failure<'_>) -> Option<Diagnostic> {
                 is_relation(b) || b.starts_with(b"<=") || b.starts_with(b">=")
             })?;
             Some(
-                f.error("E0222", second, 3, "an equation has one relation")
+                f.error("E0222", second, 3)
+                    .says("an equation has one relation")
                     .label("a second one")
                     .help("write two equations, or bounds: `x.lo = 1; x.up = 4;`"),
             )
@@ -43,7 +44,7 @@ fn after_dots(f: &Failure<'_>, lead: usize, dots: usize) -> Option<Diagnostic> {
     let name = f.text[lead..dots].trim();
     match bytes.get(dots + 2) {
         Some(b'.') => Some(
-            f.wrong("E0221", dots, 3)
+            f.error("E0221", dots, 3)
                 .says("two dots stand behind the name of an equation, not three")
                 .help(format!("write `{name}.. left =e= right;`")),
         ),
@@ -57,7 +58,7 @@ fn after_dots(f: &Failure<'_>, lead: usize, dots: usize) -> Option<Diagnostic> {
                 .trim_start()
                 .starts_with(|c: char| c.is_ascii_alphanumeric() || c == '(');
             (simple && next && !name.ends_with(')')).then(|| {
-                f.wrong("E0221", dots + 2, close - dots - 1)
+                f.error("E0221", dots + 2, close - dots - 1)
                     .says("the indices of an equation stand before the dots")
                     .help(format!("write `{name}({indices}).. left =e= right;`"))
             })
@@ -90,7 +91,7 @@ fn without_dots(f: &Failure<'_>, lead: usize, relation: usize) -> Option<Diagnos
         });
     if !named {
         return Some(
-            f.error("E0221", lead, relation + 3 - lead, "an equation begins with its name and `..`")
+            f.error("E0221", lead, relation + 3 - lead).says("an equation begins with its name and `..`")
                 .help(format!("declare `equation e;` and write `e.. left {sign} right;`; a bound is assigned: `x.up = 3;`")),
         );
     }
@@ -99,7 +100,7 @@ fn without_dots(f: &Failure<'_>, lead: usize, relation: usize) -> Option<Diagnos
         _ => (lead, end - lead),
     };
     Some(
-        f.wrong("E0221", at, len)
+        f.error("E0221", at, len)
             .says(format!(
                 "two dots stand behind the name of an equation: `{name}..`"
             ))
@@ -138,7 +139,7 @@ fn bound(f: &Failure<'_>, lead: usize) -> Option<Diagnostic> {
         && (indices.is_empty()
             || indices.starts_with('(')
                 && closing(indices.as_bytes(), 0) == Some(indices.len() - 1));
-    let d = f.wrong("E0222", at, len).says(format!(
+    let d = f.error("E0222", at, len).says(format!(
         "`{}` compares known numbers; it states no constraint",
         &f.text[at..at + len]
     ));
@@ -170,7 +171,7 @@ fn without_relation(f: &Failure<'_>, dots: usize) -> Option<Diagnostic> {
     let Some(at) = compare else {
         let end = f.text.trim_end().len();
         let said = f
-            .wrong("E0222", end.saturating_sub(1), 1)
+            .error("E0222", end.saturating_sub(1), 1)
             .says("this equation has no relation");
         return (f.at >= end)
             .then(|| said.help("write `=e=`, `=l=`, `=g=` or `=n=` between its sides"));
@@ -206,7 +207,7 @@ fn without_relation(f: &Failure<'_>, dots: usize) -> Option<Diagnostic> {
     };
     let twice = top_level(bytes, at + len, |b| matches!(b[0], b'<' | b'>')).is_some();
     let d = f
-        .wrong("E0222", at, len)
+        .error("E0222", at, len)
         .says(format!(
             "an equation relates its sides by `{meant}`, not by `{}`",
             &rest[..len]

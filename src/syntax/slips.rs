@@ -50,7 +50,8 @@ fn sum(f: &Failure<'_>) -> Option<Diagnostic> {
     let lower = token.to_ascii_lowercase();
     let say = |message: &str, help: String| {
         Some(
-            f.error("E0235", f.at, token.len().max(1), message)
+            f.error("E0235", f.at, token.len().max(1))
+                .says(message)
                 .help(help),
         )
     };
@@ -110,7 +111,7 @@ fn sum_condition(f: &Failure<'_>) -> Option<Diagnostic> {
         f.text[dollar + 1..end].trim(),
     );
     Some(
-        f.wrong("E0235", dollar, end - dollar)
+        f.error("E0235", dollar, end - dollar)
             .says("a condition with an operator stands in parentheses")
             .help(format!("write `{word}({index}$({condition}), …)`")),
     )
@@ -153,7 +154,8 @@ fn is_here(f: &Failure<'_>, op: &str) -> bool {
 }
 
 fn not_an_operator(f: &Failure<'_>, at: usize, op: &str, help: impl Into<String>) -> Diagnostic {
-    f.error("E0232", at, op.len(), format!("`{op}` is not an operator"))
+    f.error("E0232", at, op.len())
+        .says(format!("`{op}` is not an operator"))
         .help(help)
 }
 
@@ -184,14 +186,15 @@ fn operator(f: &Failure<'_>) -> Option<Diagnostic> {
     }
     if is_here(f, "...") {
         return Some(
-            f.wrong("E0232", f.at, 3)
+            f.error("E0232", f.at, 3)
                 .says("a statement goes over several lines without a sign")
                 .help("leave `...` out"),
         );
     }
     if let Some(at) = found("//") {
         return Some(
-            f.error("E0230", at, 2, "`//` does not begin a comment in this file")
+            f.error("E0230", at, 2)
+                .says("`//` does not begin a comment in this file")
                 .help("`$eolCom //` makes it one; files named `.blk` have it from the start"),
         );
     }
@@ -246,13 +249,14 @@ fn sign(f: &Failure<'_>) -> Option<Diagnostic> {
     }
     if is_here(f, "#") {
         return Some(
-            f.error("E0230", f.at, 1, "`#` does not begin a comment")
+            f.error("E0230", f.at, 1).says("`#` does not begin a comment")
                 .help("a comment is a line with `*` in its first column; in a `.blk` file also `//`; `$onEolCom` allows `!!` to the end of the line"),
         );
     }
     if is_here(f, ":") && f.raw.class == Class::Algebra {
         return Some(
-            f.error("E0221", f.at, 1, "`:` does not begin an equation")
+            f.error("E0221", f.at, 1)
+                .says("`:` does not begin an equation")
                 .label("write `..`")
                 .help("an equation is defined as `e(i).. left =e= right;`"),
         );
@@ -267,7 +271,8 @@ fn sign(f: &Failure<'_>) -> Option<Diagnostic> {
             .ends_with(['+', '-', '*', '/', '$', '='])
     {
         return Some(
-            f.error("E0212", f.at, 1, "two operators in a row")
+            f.error("E0212", f.at, 1)
+                .says("two operators in a row")
                 .label("this one needs parentheses")
                 .help("write `a*(-b)`, `$(-c)`"),
         );
@@ -287,7 +292,7 @@ fn bars(f: &Failure<'_>) -> Option<Diagnostic> {
         _ => return None,
     };
     let message = format!("`{}` is not an operator", f.token(f.at));
-    Some(f.error("E0232", f.at, 1, message).help(write))
+    Some(f.error("E0232", f.at, 1).says(message).help(write))
 }
 
 /// `2 x`, `f d(i,j)`, `3(x + y)`, `1,5`, `a where b`.
@@ -304,16 +309,17 @@ fn missing_operator(f: &Failure<'_>) -> Option<Diagnostic> {
     }
     match token.to_ascii_lowercase().as_str() {
         "where" | "if" | "for" | "when" => Some(
-            f.wrong("E0232", f.at, token.len())
+            f.error("E0232", f.at, token.len())
                 .says(format!("`{token}` is not an operator"))
                 .help("a condition stands behind `$`: `e(i)$(a(i) > 0).. …`, `x$(a > 0)`"),
         ),
         "in" => Some(
-            f.error("E0232", f.at, 2, "`in` is not an operator")
+            f.error("E0232", f.at, 2)
+                .says("`in` is not an operator")
                 .help("write `a >= 0 and a <= 2`; whether an element is in a set says `s(i)`"),
         ),
         "div" | "mod" => Some(
-            f.wrong("E0232", f.at, token.len())
+            f.error("E0232", f.at, token.len())
                 .says(format!("`{token}` is not an operator"))
                 .help(match token.len() {
                     3 if token.eq_ignore_ascii_case("mod") => "write `mod(x, y)`",
@@ -324,14 +330,15 @@ fn missing_operator(f: &Failure<'_>) -> Option<Diagnostic> {
             && f.text[f.at + 1..].starts_with(|c: char| c.is_ascii_digit()) =>
         {
             Some(
-                f.error("E0209", f.at, 1, "decimals stand behind a point")
+                f.error("E0209", f.at, 1)
+                    .says("decimals stand behind a point")
                     .label("write `.`"),
             )
         }
         t if t != "(" && is_function(last_word(before)) => {
             let name = last_word(before);
             Some(
-                f.wrong("E0212", f.at, token.len())
+                f.error("E0212", f.at, token.len())
                     .says(format!("`{name}` takes its argument in parentheses"))
                     .help(format!("write `{name}({token})`")),
             )
@@ -339,7 +346,7 @@ fn missing_operator(f: &Failure<'_>) -> Option<Diagnostic> {
         t if t == "(" || t.starts_with(|c: char| c.is_ascii_alphanumeric()) => {
             let help = "write `*` between factors, `+` or `-` between terms";
             (f.at > 0 && (before.contains('=') || before.contains(".."))).then(|| {
-                f.wrong("E0212", f.at, token.len())
+                f.error("E0212", f.at, token.len())
                     .says(format!("an operator is missing before `{token}`"))
                     .label("missing operator")
                     .help(help)
@@ -357,7 +364,7 @@ fn direction(f: &Failure<'_>, before: &str) -> Option<Diagnostic> {
         .iter()
         .any(|w| word.eq_ignore_ascii_case(w));
     (directs && before[..at].trim_end().ends_with("..")).then(|| {
-        f.wrong("E0231", at, word.len())
+        f.error("E0231", at, word.len())
             .says("the direction stands in the `solve`")
             .help("write `o.. z =e= …;` and `solve m using lp minimizing z;`")
     })
@@ -378,7 +385,7 @@ fn no_name(f: &Failure<'_>) -> Option<Diagnostic> {
         c.is_ascii_digit() || matches!(c, '(' | '[' | '=' | '\'' | '"' | '+' | '-')
     });
     (f.raw.class == Class::Algebra && f.at == lead && sign).then(|| {
-        f.wrong("E0210", lead, first.len())
+        f.error("E0210", lead, first.len())
             .says(
                 "a statement begins with a keyword, or with the name of what it assigns or defines",
             )
@@ -393,8 +400,9 @@ fn parts(f: &Failure<'_>) -> Option<Diagnostic> {
     let before = f.text[..f.at].trim_end();
     let lead = f.text.len() - f.text.trim_start().len();
     let algebra = f.raw.class == Class::Algebra;
-    let say =
-        |at, len, message: &str, help: String| Some(f.error("E0210", at, len, message).help(help));
+    let say = |at, len, message: &str, help: String| {
+        Some(f.error("E0210", at, len).says(message).help(help))
+    };
     // Behind the name and indices that the statement begins with.
     let word = words::word_end(bytes, lead);
     let named = match bytes.get(word) {
@@ -426,13 +434,13 @@ fn parts(f: &Failure<'_>) -> Option<Diagnostic> {
             format!("for some elements of a set write a condition, `{}(i)$s(i)`, with a subset, `set s(i) / a, b /;`", &f.text[lead..word]),
         ),
         "+" | "-" if algebra && before.len() == named && bytes.get(f.at + 1) == bytes.get(f.at) => Some(
-            f.error("E0232", f.at, 2, format!("nothing stands behind `{token}{token}`"))
+            f.error("E0232", f.at, 2).says(format!("nothing stands behind `{token}{token}`"))
                 .help(format!("write `a = a {token} 1;`")),
         ),
         "" | ")" | "]" | "}" if before.ends_with("++") || before.ends_with("--") => {
             let (sign, index) = (&before[before.len() - 2..], enclosing(f.text, f.at).map(|(open, _)| &f.text[open + 1..before.len() - 2]));
             Some(
-                f.error("E0232", before.len() - 2, 2, format!("nothing stands behind `{sign}`"))
+                f.error("E0232", before.len() - 2, 2).says(format!("nothing stands behind `{sign}`"))
                     .help(match index {
                         Some(index) => format!("a circular lead or lag needs its number: `{index}{sign}1`"),
                         None => format!("write `a = a {} 1;`", &sign[..1]),
@@ -452,7 +460,7 @@ fn parts(f: &Failure<'_>) -> Option<Diagnostic> {
             "write `;` between two statements; an equation holds for all elements of the index behind its name, `e(i).. …`".into(),
         ),
         _ if is_sum(token) && !f.text[f.at + token.len()..].trim_start().starts_with(['(', '[', '{']) => Some(
-            f.error("E0235", f.at, token.len(), format!("`{token}` takes its index and its term in parentheses"))
+            f.error("E0235", f.at, token.len()).says(format!("`{token}` takes its index and its term in parentheses"))
                 .help(format!("write `{token}(i, …)`, or `{token}((i,j), …)` for several indices")),
         ),
         _ if matches!(token.to_ascii_lowercase().as_str(), "else" | "elseif") && before.ends_with(',') => say(
@@ -485,7 +493,7 @@ fn condition(f: &Failure<'_>, lead: usize, token: &str) -> Option<Diagnostic> {
     };
     let condition = f.text[dollar + 1..end].trim();
     Some(
-        f.wrong("E0210", dollar, end - dollar)
+        f.error("E0210", dollar, end - dollar)
             .says("a condition with an operator stands in parentheses")
             .help(format!(
                 "write `{}$({condition})`",
@@ -515,7 +523,7 @@ fn operand(f: &Failure<'_>) -> Option<Diagnostic> {
     let open = enclosing.map(|(at, _)| bytes[at]);
     let list = enclosing.is_some_and(|(at, word)| bytes[at] != b'(' && word.is_empty());
     let say = |code, at, len, message: String, help: &str| {
-        Some(f.error(code, at, len, message).help(help))
+        Some(f.error(code, at, len).says(message).help(help))
     };
     match token {
         "[" | "("
@@ -586,7 +594,7 @@ fn operand(f: &Failure<'_>) -> Option<Diagnostic> {
             let (at, _) = enclosing?;
             let closes = matches!((bytes[at], token), (b'(', ")") | (b'[', "]") | (b'{', "}"));
             (!closes).then(|| {
-                f.wrong("E0202", f.at, 1)
+                f.error("E0202", f.at, 1)
                     .says(format!("`{}` is closed by `{token}`", bytes[at] as char))
                     .other(f.span(at, at + 1), "opened here")
                     .help("the closing parenthesis is of the kind of the opening one")
@@ -665,7 +673,8 @@ fn control(f: &Failure<'_>) -> Option<Diagnostic> {
     let head = &f.text[open + 1..f.at];
     let say = |message: &str, help: &str| {
         Some(
-            f.error("E0236", f.at, token.len().max(1), message)
+            f.error("E0236", f.at, token.len().max(1))
+                .says(message)
                 .help(help),
         )
     };
@@ -676,7 +685,7 @@ fn control(f: &Failure<'_>) -> Option<Diagnostic> {
     if let Some((at, written)) = split.filter(|(at, _)| word == "if" && !lower[*at..].contains(';'))
     {
         return Some(
-            f.wrong("E0236", at, written.len())
+            f.error("E0236", at, written.len())
                 .says(format!("`elseif` is written for `{written}`"))
                 .help("write `if(a > 0, … ; elseif a < 0, … ; else … );`"),
         );
@@ -741,14 +750,14 @@ fn display(f: &Failure<'_>) -> Option<Diagnostic> {
     if rest.starts_with('(') && closing(rest.as_bytes(), 0) == Some(len - 1) {
         let inside = rest[1..len - 1].trim();
         return Some(
-            f.wrong("E0328", lo, len)
+            f.error("E0328", lo, len)
                 .says("`display` takes its symbols without parentheses")
                 .help(format!("write `display {inside};`")),
         );
     }
     if rest.starts_with(['\'', '"']) && f.token(f.at) == "+" {
         return Some(
-            f.wrong("E0328", f.at, 1)
+            f.error("E0328", f.at, 1)
                 .says("`display` takes texts and symbols, with commas between them")
                 .help("write `display 'total', z.l;`"),
         );
@@ -757,7 +766,7 @@ fn display(f: &Failure<'_>) -> Option<Diagnostic> {
         || matches!(f.token(f.at), "*" | "+" | "-" | "/" | "(")
         || rest.starts_with(|c: char| c.is_ascii_digit());
     expression.then(|| {
-        f.wrong("E0328", lo.max(lead), len)
+        f.error("E0328", lo.max(lead), len)
             .says("`display` takes symbols, not expressions")
             .help("assign it first: `parameter total; total = …; display total;`")
     })
@@ -771,8 +780,9 @@ fn solve(f: &Failure<'_>) -> Option<Diagnostic> {
     }
     let lower = f.text.to_ascii_lowercase();
     let token = f.token(f.at);
-    let said =
-        |message: &str, help: &str| Some(f.error("E0218", f.at, token.len(), message).help(help));
+    let said = |message: &str, help: &str| {
+        Some(f.error("E0218", f.at, token.len()).says(message).help(help))
+    };
     if ProblemType::from_name(token).is_some() {
         return said(
             "`using` stands before the type of the model",
@@ -805,7 +815,7 @@ fn solve(f: &Failure<'_>) -> Option<Diagnostic> {
     let rest = f.text[from..].trim();
     let lo = from + f.text[from..].len() - f.text[from..].trim_start().len();
     let d = f
-        .wrong("E0357", lo, rest.len())
+        .error("E0357", lo, rest.len())
         .says("the objective is the name of a variable");
     Some(match rest.strip_prefix('(').and_then(|r| r.strip_suffix(')')) {
         Some(name) if is_name(name.trim()) => d.help(format!("write `minimizing {}`", name.trim())),

@@ -251,7 +251,7 @@ impl Splitter {
             _ => '}',
         };
         self.problems.push(
-            Diagnostic::wrong("E0202", span(open.at, open.at + 1))
+            Diagnostic::error("E0202", span(open.at, open.at + 1))
                 .says(format!("this `{}` is never closed", open.byte as char))
                 .label(format!("its `{close}` is missing"))
                 .help(if open.block {
@@ -281,7 +281,7 @@ impl Splitter {
             false => "data stand between two slashes: `/ a 1, b 2 /`",
         };
         self.problems.push(
-            Diagnostic::wrong("E0203", span(at.saturating_sub(1), at))
+            Diagnostic::error("E0203", span(at.saturating_sub(1), at))
                 .says("the data that begin here are never closed by `/`")
                 .label("opened here")
                 .help(help),
@@ -427,7 +427,8 @@ impl Splitter {
                     Some(n) if open.block => {
                         let message = "a declaration cannot stand inside of a loop or an `if`";
                         self.problems.push(
-                            Diagnostic::error("E0324", span(at.start, at.end), message)
+                            Diagnostic::error("E0324", span(at.start, at.end))
+                                .says(message)
                                 .help("move it before the loop"),
                         );
                         self.pos = at.start + n;
@@ -468,7 +469,7 @@ impl Splitter {
             Some(open) if open.block => (i + 1, false),
             Some(_) if stray_semicolon(&text[i + 1..], self.opens.len()) => {
                 self.problems.push(
-                    Diagnostic::error("E0202", span(i, i + 1), "a `;` stands inside of parentheses")
+                    Diagnostic::error("E0202", span(i, i + 1)).says("a `;` stands inside of parentheses")
                         .label("a comma is meant?")
                         .help("write `,` between the parts of a sum or the arguments of a function; `;` ends a statement"),
                 );
@@ -497,7 +498,7 @@ impl Splitter {
             depth == 0
         });
         self.problems.push(
-            Diagnostic::error("E0231", span(i, i + 1), "statements are not grouped by braces")
+            Diagnostic::error("E0231", span(i, i + 1)).says("statements are not grouped by braces")
                 .help("they stand inside of the parentheses, after a comma: `loop(i, … );`, `if(c, … );`, `while(c, … );`"),
         );
         let end = close.map_or(text.len(), |n| i + n + 1);
@@ -509,7 +510,7 @@ impl Splitter {
     /// Nested too deeply: reports it and passes over the statement.
     fn too_deep(&mut self, bytes: &[u8], i: usize) -> bool {
         self.problems.push(
-            Diagnostic::wrong("E0204", span(i - 1, i))
+            Diagnostic::error("E0204", span(i - 1, i))
                 .says(format!(
                     "parentheses are nested more than {DEEPEST} deep here"
                 ))

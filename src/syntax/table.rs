@@ -196,7 +196,8 @@ impl<'a> TableReader<'a> {
             let plus = stop - line.len();
             if self.bare {
                 let at = Span::new(plus as u32, plus as u32 + 1);
-                let d = Diagnostic::error("E0254", at, "a table goes on here that has no rows");
+                let d =
+                    Diagnostic::error("E0254", at).says("a table goes on here that has no rows");
                 self.at = self.end;
                 return Err(Box::new(match self.columns.first() {
                     Some(c) => d.other(c.span, "these columns have no row").help(
@@ -332,7 +333,7 @@ impl<'a> TableReader<'a> {
         {
             let span = first.span;
             return Err(Box::new(
-                Diagnostic::error("E0252", self.row_span, "the label of this row reaches under a column")
+                Diagnostic::error("E0252", self.row_span).says("the label of this row reaches under a column")
                     .other(span, "the first column begins here")
                     .help("move the columns to the right, or shorten the label; is a row's label missing?"),
             ));
@@ -359,9 +360,11 @@ impl<'a> TableReader<'a> {
         if to == from {
             self.skip(from + 1);
             return Err(Box::new(
-                Diagnostic::error("E0243", span, "a number was expected here").help(
-                    "numbers look like `12`, `-3.5`, `1.5e-3`; decimals stand behind a point",
-                ),
+                Diagnostic::error("E0243", span)
+                    .says("a number was expected here")
+                    .help(
+                        "numbers look like `12`, `-3.5`, `1.5e-3`; decimals stand behind a point",
+                    ),
             ));
         }
         let (left, right) = (self.column(from), self.column(to));
@@ -376,7 +379,8 @@ impl<'a> TableReader<'a> {
             .count();
         match under {
             1 if first < self.filled => Err(Box::new(
-                Diagnostic::error("E0253", span, "a second value stands under this column")
+                Diagnostic::error("E0253", span)
+                    .says("a second value stands under this column")
                     .other(self.columns[first].span, "the column")
                     .help("move it under the label of its own column"),
             )),
@@ -389,7 +393,7 @@ impl<'a> TableReader<'a> {
                 Ok((first, value, span))
             }
             0 => {
-                let mut d = Diagnostic::error("E0250", span, "this value stands under no column")
+                let mut d = Diagnostic::error("E0250", span).says("this value stands under no column")
                     .help(match value {
                         Tail::Name(..) => "a value must stand under a part of its column's label; dots stand between the labels of a row: `a.b`",
                         _ => "a value must stand under a part of its column's label",
@@ -402,7 +406,7 @@ impl<'a> TableReader<'a> {
                 Err(Box::new(d))
             }
             _ => {
-                let d = Diagnostic::wrong("E0251", span)
+                let d = Diagnostic::error("E0251", span)
                     .says("this value stands under more than one column")
                     .other(self.columns[first].span, "one")
                     .other(self.columns[first + 1].span, "another")

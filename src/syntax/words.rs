@@ -266,7 +266,7 @@ pub(crate) fn is_reserved(name: &str) -> bool {
 
 /// A word of the language stands where a name is declared.
 pub(crate) fn reserved(word: &str, span: Span) -> Diagnostic {
-    Diagnostic::wrong("E0205", span)
+    Diagnostic::error("E0205", span)
         .says(format!(
             "`{word}` is a word of the language and cannot be a name"
         ))

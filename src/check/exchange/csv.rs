@@ -88,7 +88,8 @@ pub(super) fn read(
 ) -> Loaded<()> {
     let fail = |w: &Wanted, message: String, help: &str| {
         Box::new(
-            Diagnostic::execution("E0478", w.span, format!("{file}: {message}"))
+            Diagnostic::execution("E0478", w.span)
+                .says(format!("{file}: {message}"))
                 .label(format!("while loading `{}`", w.name))
                 .help(help),
         )
@@ -126,7 +127,7 @@ pub(super) fn read(
 
 fn short(file: &str, line: usize, w: &Wanted, have: usize, need: usize) -> Box<Diagnostic> {
     Box::new(
-        Diagnostic::failed("E0478", w.span)
+        Diagnostic::execution("E0478", w.span)
             .says(format!(
                 "{file}:{line}: {have} columns, but `{}` needs {need}",
                 w.name
@@ -167,7 +168,7 @@ fn long(file: &str, rows: &Rows, w: &Wanted, loading: &mut Loading<'_>) -> Loade
         };
         let Some(offset) = offset else {
             return Err(Box::new(
-                Diagnostic::failed("E0478", w.span)
+                Diagnostic::execution("E0478", w.span)
                     .says(format!(
                         "{file}:{line}: `{}` is not known",
                         row.get(0).unwrap_or("")

@@ -22,7 +22,11 @@ fn open<'a>(file: &str, bytes: &'a [u8], at: Span) -> Loaded<File<'a>> {
 
 fn damaged(file: &str, at: Span, e: &Error) -> Box<Diagnostic> {
     let message = format!("the GDX file `{file}` cannot be read: {e}");
-    Box::new(Diagnostic::execution("E0478", at, message).label("nothing was loaded"))
+    Box::new(
+        Diagnostic::execution("E0478", at)
+            .says(message)
+            .label("nothing was loaded"),
+    )
 }
 
 /// Whether a symbol of a file can be loaded into one of the program.
@@ -126,7 +130,9 @@ struct Reader<'a> {
 impl Reader<'_> {
     fn wrong<T>(&self, w: &Wanted, what: &str, help: &str) -> Loaded<T> {
         let message = format!("{}: `{}`: {what}", self.file, w.name);
-        let d = Diagnostic::execution("E0478", w.span, message).label("nothing was loaded");
+        let d = Diagnostic::execution("E0478", w.span)
+            .says(message)
+            .label("nothing was loaded");
         Err(Box::new(match help {
             "" => d,
             help => d.help(help),
@@ -311,7 +317,8 @@ impl Reader<'_> {
             let message =
                 format!("{file}: {count} of the {total} records of `{name}` are left out");
             loading.warn(
-                Diagnostic::warning("E0479", w.span, message)
+                Diagnostic::warning("E0479", w.span)
+                    .says(message)
                     .label(format!("such as one with `{label}`, {why}"))
                     .help("`$loadDC` and `execute_loadDC` make it an error"),
             );
@@ -401,7 +408,8 @@ impl Reader<'_> {
         ) {
             let message = format!("{}: the acronym `{name}` is not declared", self.file);
             loading.warn(
-                Diagnostic::warning("E0478", w.span, message)
+                Diagnostic::warning("E0478", w.span)
+                    .says(message)
                     .label("its records have the value UNDF")
                     .help(format!("write `acronym {name};` before")),
             );

@@ -26,7 +26,8 @@ pub(super) fn read(
     };
     let object: Map<String, Value> = serde_json::from_str(text).map_err(|e| {
         Box::new(
-            Diagnostic::execution("E0478", first.span, format!("{file}:{}: {e}", e.line()))
+            Diagnostic::execution("E0478", first.span)
+                .says(format!("{file}:{}: {e}", e.line()))
                 .help("the file holds one object, with a member per symbol: `{\"p\": …}`"),
         )
     })?;
@@ -71,7 +72,7 @@ impl Reader<'_> {
             }
         };
         Err(Box::new(
-            Diagnostic::failed("E0478", self.w.span)
+            Diagnostic::execution("E0478", self.w.span)
                 .says(format!("{}: `{}`: {what}", self.file, self.w.name))
                 .label("nothing was loaded")
                 .help(format!(

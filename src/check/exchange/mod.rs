@@ -99,14 +99,14 @@ pub fn wanted(symbols: &Symbols, items: &[ExchangeItem]) -> Loaded<Vec<Wanted>> 
         let ExchangeItem { name, other, .. } = item;
         let Some(symbol) = symbols.find(&name.name) else {
             return Err(Box::new(
-                Diagnostic::failed("E0475", name.span)
+                Diagnostic::execution("E0475", name.span)
                     .says(format!("`{}` is not known", name.name)),
             ));
         };
         if !has_data(&symbols.get(symbol).kind) {
             let kind = symbols.get(symbol).a_kind();
             return Err(Box::new(
-                Diagnostic::failed("E0475", name.span)
+                Diagnostic::execution("E0475", name.span)
                     .says(format!(
                         "`{}` is {kind}; it has no data to exchange",
                         name.name
@@ -163,7 +163,7 @@ fn part_of(item: &ExchangeItem) -> Loaded<Part> {
 fn no_part(suffix: &Ident) -> Box<Diagnostic> {
     let message = format!("`.{}` is not a part of a symbol in a file", suffix.name);
     Box::new(
-        Diagnostic::execution("E0475", suffix.span, message)
+        Diagnostic::execution("E0475", suffix.span).says(message)
             .help("`p = x.l` reads an attribute into a parameter, `i < p.dim1` the labels of a position into a set"),
     )
 }
@@ -262,7 +262,7 @@ pub fn load(
             .find(|w| w.part != Part::Whole || w.into.is_some())
     {
         return Err(Box::new(
-            Diagnostic::failed("E0475", w.span)
+            Diagnostic::execution("E0475", w.span)
                 .says(format!(
                     "a part of `{}` is read from GDX files only",
                     w.name
@@ -333,7 +333,7 @@ fn text_of<'a>(file: &str, bytes: &'a [u8], at: Span) -> Loaded<&'a str> {
     match std::str::from_utf8(bytes) {
         Ok(text) => Ok(text.strip_prefix('\u{feff}').unwrap_or(text)),
         Err(e) => Err(Box::new(
-            Diagnostic::failed("E0478", at)
+            Diagnostic::execution("E0478", at)
                 .says(format!("{file}: byte {} is not UTF-8", e.valid_up_to() + 1))
                 .help("save the file as UTF-8"),
         )),
@@ -368,8 +368,8 @@ pub fn unload(
             Ok(items.iter().map(named).collect())
         }
         Kind::Gdx => one(gdx::write(symbols, store, equations, items).map_err(|e| {
-            let d =
-                Diagnostic::execution("E0470", span, format!("`{file}` cannot be written: {e}"));
+            let d = Diagnostic::execution("E0470", span)
+                .says(format!("`{file}` cannot be written: {e}"));
             Box::new(d.label("nothing was written"))
         })?),
     }
@@ -557,7 +557,8 @@ impl Compiler {
 /// A load or unload without a file.
 pub fn no_file(span: Span, write: &str) -> Box<Diagnostic> {
     Box::new(
-        Diagnostic::execution("E0475", span, "no file is named")
+        Diagnostic::execution("E0475", span)
+            .says("no file is named")
             .label("which file?")
             .help(format!("write `{write}` before")),
     )
@@ -599,7 +600,7 @@ fn parse_value(text: &str, acronyms: &[Box<str>]) -> Option<f64> {
 
 /// No symbol of that name in the file.
 fn missing(file: &str, w: &Wanted, there: &[String]) -> Box<Diagnostic> {
-    let d = Diagnostic::failed("E0477", w.span)
+    let d = Diagnostic::execution("E0477", w.span)
         .says(format!("the file `{file}` has no symbol `{}`", w.name));
     Box::new(match nearest(&w.name, there.iter().map(String::as_str)) {
         Some(n) => d.help(format!("did you mean `{n}`? write `{} = {n}`", w.name)),

@@ -94,7 +94,7 @@ impl<'a> Loading<'a> {
     pub(super) fn value(&self, text: &str, file: &str, place: usize, w: &Wanted) -> Loaded<f64> {
         parse_value(text, &self.store.acronyms).ok_or_else(|| {
             Box::new(
-                Diagnostic::failed("E0478", w.span)
+                Diagnostic::execution("E0478", w.span)
                     .says(format!("{file}:{place}: `{text}` is not a number"))
                     .label(format!("while loading `{}`", w.name))
                     .help("numbers, EPS, NA, INF, -INF, UNDF, yes and no are values"),
@@ -153,7 +153,7 @@ impl<'a> Loading<'a> {
                     .map(|row| self.store.universe.name(table.key(row)[0])),
             )
             .map(str::to_string);
-            let d = Diagnostic::failed("E0479", w.span)
+            let d = Diagnostic::execution("E0479", w.span)
                 .says(format!(
                     "{file}:{place}: `{}` is not a member of the set `{}`{others}",
                     self.name(first),
@@ -206,7 +206,7 @@ impl<'a> Loading<'a> {
                     format!("the record `{}`", labels.join("."))
                 };
                 return Err(Box::new(
-                    Diagnostic::failed("E0478", w.span)
+                    Diagnostic::execution("E0478", w.span)
                         .says(format!(
                             "{file}:{}: {what} of `{}` was given before, at {}",
                             r.places[pair[1]], w.name, r.places[pair[0]]
@@ -222,7 +222,7 @@ impl<'a> Loading<'a> {
             && count > 1
         {
             return Err(Box::new(
-                Diagnostic::failed("E0478", w.span)
+                Diagnostic::execution("E0478", w.span)
                     .says(format!(
                         "`{}` is a singleton; the file has {count} elements for it",
                         w.name

@@ -56,7 +56,8 @@ impl Machine<'_> {
         let lower = file.to_lowercase();
         if !lower.ends_with(".svg") && !lower.ends_with(".png") {
             self.note(
-                Diagnostic::execution("E0481", span, format!("`draw` cannot write `{file}`"))
+                Diagnostic::execution("E0481", span)
+                    .says(format!("`draw` cannot write `{file}`"))
                     .label("a name that ends in .svg or .png is expected")
                     .help(format!(
                         "write `draw {} '{}.svg';`",
@@ -73,7 +74,8 @@ impl Machine<'_> {
         if scene.elements.is_empty() {
             let message = format!("the figure `{name}` is empty: no element has a record to draw");
             self.note(
-                Diagnostic::warning("E0484", span, message)
+                Diagnostic::warning("E0484", span)
+                    .says(message)
                     .label("drawn as an empty page")
                     .help("`display` the data of its elements; a condition may leave nothing"),
             );
@@ -88,7 +90,8 @@ impl Machine<'_> {
                 self.write_file(&file, &bytes, span);
             }
             Err(e) => self.note(
-                Diagnostic::failed("E0481", span).says(format!("the figure cannot be drawn: {e}")),
+                Diagnostic::execution("E0481", span)
+                    .says(format!("the figure cannot be drawn: {e}")),
             ),
         }
     }
@@ -212,7 +215,7 @@ impl Machine<'_> {
                     key => format!(" at `{}`", self.turn_name(key)),
                 };
                 self.note(
-                    Diagnostic::doubtful("E0482", n.span)
+                    Diagnostic::warning("E0482", n.span)
                         .says(format!("`{name}` is {} {at}", self.shown(*v)).replace("  ", " "))
                         .label("left out of the figure")
                         .help("give it a value, or leave it out with a condition, `polygon(i,j)$c(i)`"),
@@ -250,7 +253,11 @@ impl Machine<'_> {
         };
         filled.map_err(|e| {
             let at = nodes.first().map_or(span, |n| n.span);
-            self.note(Diagnostic::execution("E0483", at, e).label("in this text"));
+            self.note(
+                Diagnostic::execution("E0483", at)
+                    .says(e)
+                    .label("in this text"),
+            );
             Failed
         })
     }
@@ -265,9 +272,9 @@ impl Machine<'_> {
             Some(Item::Label(word) | Item::Text(word)) => match Paint::parse(&word) {
                 Some(p) => Ok(Some(p)),
                 None => {
-                    let d =
-                        Diagnostic::execution("E0372", n.span, format!("`{word}` is not a colour"))
-                            .label("unknown colour");
+                    let d = Diagnostic::execution("E0372", n.span)
+                        .says(format!("`{word}` is not a colour"))
+                        .label("unknown colour");
                     self.note(match nearest(&word, Paint::names().iter().copied()) {
                         Some(near) => d.help(format!("did you mean `{near}`?")),
                         None => d.help("colours are CSS names, `#rrggbb`, `none`, or numbers for the colour scale"),
@@ -301,7 +308,7 @@ impl Machine<'_> {
                         Some(l) if l.iter().all(|x| *x >= 0.0) => l,
                         _ => {
                             self.note(
-                                Diagnostic::execution("E0483", n.span, format!("`{list}` is not a dash"))
+                                Diagnostic::execution("E0483", n.span).says(format!("`{list}` is not a dash"))
                                     .help("`dashed`, `dotted`, or lengths of dashes and gaps in pixels: `'6 2'`"),
                             );
                             return Err(Failed);
@@ -437,7 +444,7 @@ impl Machine<'_> {
                             "middle" | "center" | "centre" => Anchor::Middle,
                             other => {
                                 self.note(
-                                    Diagnostic::failed("E0483", n.span)
+                                    Diagnostic::execution("E0483", n.span)
                                         .says(format!("`{other}` is not an alignment"))
                                         .help("there are: start, middle, end"),
                                 );
@@ -465,7 +472,7 @@ impl Machine<'_> {
                 let v = self.number_of(n, frame);
                 let Some(v) = v.is_finite().then_some(v).filter(|v| *v > 0.0) else {
                     self.note(
-                        Diagnostic::failed("E0483", n.span)
+                        Diagnostic::execution("E0483", n.span)
                             .says(format!("{} is not a size in pixels", self.shown(v))),
                     );
                     return Err(Failed);

@@ -142,7 +142,7 @@ impl Builder<'_, '_> {
                 };
                 let (column, a, b) = (name(columns, c), name(rows, other), name(rows, r));
                 self.m.note(
-                    Diagnostic::failed("E0412", self.span)
+                    Diagnostic::execution("E0412", self.span)
                         .says(format!("the column {column} is matched twice: with {a} and with {b}"))
                         .label("in this model")
                         .help(
@@ -225,7 +225,8 @@ impl Builder<'_, '_> {
                 "restrict the equation by a `$` condition to where the variable is used, or fix the variable",
             )
         };
-        let diagnostic = Diagnostic::execution(code, place, message)
+        let diagnostic = Diagnostic::execution(code, place)
+            .says(message)
             .label("this equation")
             .other(self.span, "at this solve")
             .help(help);
@@ -385,7 +386,8 @@ impl Builder<'_, '_> {
             };
             if let Some(message) = problem {
                 self.m.note(
-                    Diagnostic::execution("E0413", self.m.options.at.get(), message)
+                    Diagnostic::execution("E0413", self.m.options.at.get())
+                        .says(message)
                         .label("at this solve")
                         .help("check the assignments to `.lo`, `.up`, `.fx` and `.l`"),
                 );
@@ -404,7 +406,8 @@ impl Builder<'_, '_> {
     pub(super) fn bad_scale(&mut self, name: &str, scale: f64) {
         let message = format!("the scale of {name} must be a number above 1e-20, not {scale:e}");
         self.m.note(
-            Diagnostic::execution("E0413", self.m.options.at.get(), message)
+            Diagnostic::execution("E0413", self.m.options.at.get())
+                .says(message)
                 .label("at this solve")
                 .help("check the assignments to `.scale`"),
         );

@@ -263,7 +263,7 @@ impl Builder<'_> {
                     }
                     if minus {
                         return Err(Box::new(
-                            Diagnostic::wrong("E0215", place)
+                            Diagnostic::error("E0215", place)
                                 .says("a pair cannot be taken out of a model")
                                 .help("write `- equation` to take an equation out"),
                         ));
@@ -294,7 +294,7 @@ impl Builder<'_> {
                 ExprKind::Apply(name, None, None) => names.push(name),
                 _ => {
                     return Err(Box::new(
-                        Diagnostic::wrong("E0214", e.span).says("a set was expected here"),
+                        Diagnostic::error("E0214", e.span).says("a set was expected here"),
                     ));
                 }
             }

@@ -119,7 +119,7 @@ impl Stack {
 }
 
 fn too_deep(at: Span) -> Diagnostic {
-    Diagnostic::wrong("E0204", at)
+    Diagnostic::error("E0204", at)
         .says(format!(
             "this expression is nested more than {DEEPEST} levels deep"
         ))
@@ -240,7 +240,8 @@ impl Builder<'_> {
                         && s.ops.last().is_some_and(|(top, _)| level(*top) == RELATION)
                     {
                         return Err(Box::new(
-                            Diagnostic::error("E0213", at, "relations cannot be chained")
+                            Diagnostic::error("E0213", at)
+                                .says("relations cannot be chained")
                                 .label("a second relation")
                                 .help(
                                     "write `a < b and b < c`, or put one comparison in parentheses",
@@ -447,7 +448,8 @@ impl Builder<'_> {
                 })
             }
             _ => Err(Box::new(
-                Diagnostic::error("E0214", span, "a set was expected here")
+                Diagnostic::error("E0214", span)
+                    .says("a set was expected here")
                     .help("sums and loops run over sets: `sum((i,j), …)`, `sum(arc(i,j), …)`"),
             )),
         }
@@ -468,7 +470,8 @@ impl Builder<'_> {
 }
 
 fn two_operators(at: Span) -> Diagnostic {
-    Diagnostic::error("E0212", at, "two operators in a row")
+    Diagnostic::error("E0212", at)
+        .says("two operators in a row")
         .label("this one needs parentheses")
         .help("write `a*(-b)`, `$(not c)`")
 }

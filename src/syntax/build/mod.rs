@@ -118,7 +118,7 @@ fn need<'i>(
 
 /// Something is missing.
 fn expected(at: Span, what: &str) -> Box<Diagnostic> {
-    Box::new(Diagnostic::wrong("E0210", at).says(format!("{what} was expected")))
+    Box::new(Diagnostic::error("E0210", at).says(format!("{what} was expected")))
 }
 
 /// The pairs inside a pair, without those of bare keywords.

@@ -100,7 +100,8 @@ impl Builder<'_> {
                 ))
             }
             _ => Err(Box::new(
-                Diagnostic::error("E0210", at, "a declaration cannot stand here")
+                Diagnostic::error("E0210", at)
+                    .says("a declaration cannot stand here")
                     .help("declare it before the block"),
             )),
         }
@@ -154,7 +155,7 @@ impl Builder<'_> {
                     let right = self.expression(need(&mut sides, at, "an expression")?)?;
                     if let Some(a) = target.attribute {
                         return Err(Box::new(
-                            Diagnostic::wrong("E0211", a.span)
+                            Diagnostic::error("E0211", a.span)
                                 .says("an equation is defined by its name, without an attribute")
                                 .help(format!("write `{}..`", target.name.name)),
                         ));
@@ -190,7 +191,9 @@ impl Builder<'_> {
         let at = self.span(pair);
         let refused = |what: &str, help: &str| {
             Err(Box::new(
-                Diagnostic::error("E0216", at, what.to_owned()).help(help),
+                Diagnostic::error("E0216", at)
+                    .says(what.to_owned())
+                    .help(help),
             ))
         };
         match pair.as_str().as_bytes()[1].to_ascii_lowercase() {
@@ -252,7 +255,7 @@ impl Builder<'_> {
                 _ => {
                     loops = p.as_str().parse().ok().filter(|n| *n > 0).ok_or_else(|| {
                         Box::new(
-                            Diagnostic::wrong("E0217", self.span(&p))
+                            Diagnostic::error("E0217", self.span(&p))
                                 .says("the number of loops to leave is a whole number from 1 on")
                                 .help("`break;` leaves one loop, `break 2;` two"),
                         )
@@ -364,7 +367,7 @@ impl Builder<'_> {
                     let name = parts(p).next().map(|n| self.ident(&n));
                     if using.is_some() {
                         return Err(Box::new(
-                            Diagnostic::wrong("E0218", place).says("`using` stands here twice"),
+                            Diagnostic::error("E0218", place).says("`using` stands here twice"),
                         ));
                     }
                     using = name;
@@ -383,7 +386,8 @@ impl Builder<'_> {
                     let variable = self.ident(&need(&mut sides, place, "a variable")?);
                     if objective.is_some() {
                         return Err(Box::new(
-                            Diagnostic::error("E0218", place, "a second direction stands here")
+                            Diagnostic::error("E0218", place)
+                                .says("a second direction stands here")
                                 .help(
                                     "a solve has one objective: `solve m using lp minimizing z;`",
                                 ),
@@ -401,7 +405,7 @@ impl Builder<'_> {
                 scenario,
             })),
             None => Err(Box::new(
-                Diagnostic::wrong("E0218", at)
+                Diagnostic::error("E0218", at)
                     .says(format!(
                         "`solve {}` does not say which type of model it is",
                         model.name

@@ -103,7 +103,8 @@ impl Splitter {
                 {
                     let end = line_quote(bytes, i).unwrap_or(i + 1);
                     self.problems.push(
-                        Diagnostic::error("E0220", span(i, end), "the name stands before its text")
+                        Diagnostic::error("E0220", span(i, end))
+                            .says("the name stands before its text")
                             .help("write `set i 'plants' / a, b /;`, `parameter p(i) 'price';`"),
                     );
                     self.pos = end;
@@ -113,7 +114,7 @@ impl Splitter {
                     && memchr::memchr(b'}', &bytes[i..]).is_some() =>
                 {
                     self.problems.push(
-                        Diagnostic::wrong("E0220", span(i, i + 1))
+                        Diagnostic::error("E0220", span(i, i + 1))
                             .says("data stand between two slashes")
                             .help("write `/ a 1, b 2 /`"),
                     );
@@ -199,8 +200,11 @@ impl Splitter {
 
     /// Something that does not belong between the parts of a declaration; its names can be read.
     fn stray(&mut self, lo: usize, hi: usize, message: &str, help: &str) {
-        self.problems
-            .push(Diagnostic::error("E0223", span(lo, hi), message).help(help));
+        self.problems.push(
+            Diagnostic::error("E0223", span(lo, hi))
+                .says(message)
+                .help(help),
+        );
     }
 
     /// The declaration ends: behind a comma a name is expected.
@@ -295,7 +299,7 @@ impl Splitter {
         let end = start + before.len();
         let name_end = words::word_end(bytes, self.last_name);
         self.problems.push(
-            Diagnostic::wrong("E0201", span(end.saturating_sub(1).max(start), end))
+            Diagnostic::error("E0201", span(end.saturating_sub(1).max(start), end))
                 .says("`;` is missing at the end of this declaration")
                 .label("missing `;`")
                 .other(
@@ -414,7 +418,7 @@ impl Splitter {
                 if separates_records(rest) {
                     if self.problems.is_empty() {
                         self.problems.push(
-                            Diagnostic::error("E0248", span(at, at + 1), "`;` ends a statement; it cannot stand between records")
+                            Diagnostic::error("E0248", span(at, at + 1)).says("`;` ends a statement; it cannot stand between records")
                                 .help("write a comma or a line end between records, a blank between a label and its number"),
                         );
                     }
@@ -491,7 +495,7 @@ impl Splitter {
                     && !begins_statement(text, at + 1)
                 {
                     self.problems.push(
-                        Diagnostic::error("E0248", span(at, at + 1), "`;` ends a table; it cannot stand between its columns")
+                        Diagnostic::error("E0248", span(at, at + 1)).says("`;` ends a table; it cannot stand between its columns")
                             .help("lay the columns out with blanks; or replace `;` by `,` and write `$onDelim` before the table and `$offDelim` behind it"),
                     );
                     // To the line that ends it.
@@ -514,7 +518,7 @@ impl Splitter {
                 };
                 if rows > 0 {
                     self.problems.push(
-                        Diagnostic::wrong("E0248", span(at, at + 1))
+                        Diagnostic::error("E0248", span(at, at + 1))
                             .says("`;` ends a table; rows follow behind it")
                             .label("the table ends here")
                             .help("write `;` behind the last row only"),
@@ -603,7 +607,7 @@ fn separates_records(text: &str) -> bool {
 
 /// A text's quote that has no partner on its line.
 fn unclosed_quote(at: usize) -> Diagnostic {
-    Diagnostic::wrong("E0206", span(at, at + 1))
+    Diagnostic::error("E0206", span(at, at + 1))
         .says("this quote is not closed on its line")
         .label("opened here")
         .help("a text stands between two quotes of one kind: `'text'`, `\"it's\"`")
