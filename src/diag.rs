@@ -108,6 +108,23 @@ impl Diagnostic {
         self.help = Some(text.into());
         self
     }
+
+    /// Adds the name that may have been meant as help, or else another help.
+    pub fn did_you_mean(
+        self,
+        near: Option<impl std::fmt::Display>,
+        otherwise: impl Into<String>,
+    ) -> Self {
+        match near {
+            Some(n) => self.help(format!("did you mean `{n}`?")),
+            None => self.help(otherwise),
+        }
+    }
+
+    /// The diagnostic as an outcome; boxed because it is large and rare.
+    pub(crate) fn refuse<T>(self) -> Result<T, Box<Self>> {
+        Err(Box::new(self))
+    }
 }
 
 /// The name among `known` that is most like `name`, if any is like enough to suggest.

@@ -121,11 +121,11 @@ impl Compiler {
             && let ExprKind::Apply(_, _, _) = &c.kind
         {
             let message = "`$` takes only what stands directly behind it; the comparison is made with all that stands on the left";
-            let d = Diagnostic::warning("E0379", c.span)
+            Diagnostic::warning("E0379", c.span)
                 .says(message)
                 .label("the condition ends here")
-                .help("put the condition in parentheses: `1$(ord(t) > 1)`");
-            self.report(d);
+                .help("put the condition in parentheses: `1$(ord(t) > 1)`")
+                .report(self);
         }
     }
 
@@ -164,31 +164,29 @@ impl Compiler {
                     if what == "equation" {
                         self.lose(&t.name.name);
                     }
-                    return self.fail(if what == "equation" {
-                        d.help(format!(
-                            "an equation is defined with two dots: `{}.. left =e= right;`",
-                            t.name.name
-                        ))
-                    } else {
-                        d.help(format!(
-                            "assign `{0}.l`, `{0}.lo`, `{0}.up` or `{0}.fx`; what it must be equal to is said by an equation: `e.. {0} =e= …;`",
-                            t.name.name
-                        ))
-                    });
+                    let name = &t.name.name;
+                    let help = match what {
+                        "equation" => format!(
+                            "an equation is defined with two dots: `{name}.. left =e= right;`"
+                        ),
+                        _ => format!(
+                            "assign `{name}.l`, `{name}.lo`, `{name}.up` or `{name}.fx`; what it must be equal to is said by an equation: `e.. {name} =e= …;`"
+                        ),
+                    };
+                    return d.help(help).fail(self);
                 };
                 self.suits(&symbol, attr)?;
                 match functions::record_attribute(&attr.name) {
                     Some(functions::RecordAttribute::Stored(o)) => Target::Table(symbol.table + o),
                     Some(functions::RecordAttribute::Fix) => Target::Fix(s),
                     Some(functions::RecordAttribute::Derived(_)) => {
-                        return self.fail(
-                            Diagnostic::error("E0314", attr.span)
-                                .says(format!(
-                                    "`.{}` is computed and cannot be assigned",
-                                    attr.name
-                                ))
-                                .label("read only"),
-                        );
+                        return Diagnostic::error("E0314", attr.span)
+                            .says(format!(
+                                "`.{}` is computed and cannot be assigned",
+                                attr.name
+                            ))
+                            .label("read only")
+                            .fail(self);
                     }
                     None => {
                         return self.unknown_attribute(
@@ -205,34 +203,32 @@ impl Compiler {
                 Target::Object(s, self.object_attribute(s, attr)?)
             }
             _ => {
-                return self.fail(
-                    Diagnostic::error("E0325", t.span)
-                        .says(format!(
-                            "`{}` is {} and cannot be assigned",
-                            symbol.name,
-                            symbol.a_kind()
-                        ))
-                        .label("not assignable")
-                        .other(symbol.declared, "declared here"),
-                );
+                return Diagnostic::error("E0325", t.span)
+                    .says(format!(
+                        "`{}` is {} and cannot be assigned",
+                        symbol.name,
+                        symbol.a_kind()
+                    ))
+                    .label("not assignable")
+                    .other(symbol.declared, "declared here")
+                    .fail(self);
             }
         };
         let is_set = matches!(target, Target::Set(_) | Target::Singleton(_));
         let root = self.symbols.root(s);
         if is_set && (self.symbols.get(root).is_domain || root == super::symbols::UNIVERSE) {
-            return self.fail(
-                Diagnostic::error("E0320", t.span)
-                    .says(format!(
-                        "the set `{}` cannot be assigned: it is the domain of other symbols",
-                        symbol.name
-                    ))
-                    .label("a domain must stay as it is")
-                    .other(symbol.declared, "declared here")
-                    .help(format!(
-                        "declare a subset, `set sub({});`, and assign that",
-                        symbol.name
-                    )),
-            );
+            return Diagnostic::error("E0320", t.span)
+                .says(format!(
+                    "the set `{}` cannot be assigned: it is the domain of other symbols",
+                    symbol.name
+                ))
+                .label("a domain must stay as it is")
+                .other(symbol.declared, "declared here")
+                .help(format!(
+                    "declare a subset, `set sub({});`, and assign that",
+                    symbol.name
+                ))
+                .fail(self);
         }
         Ok(target)
     }
@@ -249,14 +245,13 @@ impl Compiler {
         }
         let name = self.symbols.get(root).name.clone();
         let message = format!("the loop runs over `{name}`, which is changed here");
-        self.fail(
-            Diagnostic::error("E0320", span)
-                .says(message)
-                .label("bound by the loop")
-                .help(format!(
-                    "run over the set it is part of: `loop(i$({name}(i)), …)`; or change a copy"
-                )),
-        )
+        Diagnostic::error("E0320", span)
+            .says(message)
+            .label("bound by the loop")
+            .help(format!(
+                "run over the set it is part of: `loop(i$({name}(i)), …)`; or change a copy"
+            ))
+            .fail(self)
     }
 
     /// The tables that a target writes to.

@@ -36,12 +36,11 @@ impl Compiler {
             Some(i) => format!("use `{i}`, which runs, or let `{name}` run alone"),
             None => format!("let `{name}` run alone, with a condition on its elements"),
         };
-        self.fail(
-            Diagnostic::error("E0309", span)
-                .says(format!("{what} needs a set that runs itself; `{name}` stands here for what `{name}(…)` found"))
-                .label("not running")
-                .help(help),
-        )
+        Diagnostic::error("E0309", span)
+            .says(format!("{what} needs a set that runs itself; `{name}` stands here for what `{name}(…)` found"))
+            .label("not running")
+            .help(help)
+            .fail(self)
     }
 
     pub(super) fn new_slot(&mut self) -> Slot {
@@ -118,14 +117,11 @@ impl Compiler {
         if !node.has_var {
             return Ok(());
         }
-        self.fail(
-            Diagnostic::error("E0311", node.span)
-                .says(format!("{place} may not depend on a variable"))
-                .label("a variable stands in it")
-                .help(
-                    "use the level of the last solve (`x.l`), a parameter, or a binary formulation",
-                ),
-        )
+        Diagnostic::error("E0311", node.span)
+            .says(format!("{place} may not depend on a variable"))
+            .label("a variable stands in it")
+            .help("use the level of the last solve (`x.l`), a parameter, or a binary formulation")
+            .fail(self)
     }
 
     /// One item of a domain: controls what is not controlled yet; returns its key parts.
@@ -169,23 +165,22 @@ impl Compiler {
 
     fn controlled_already<T>(&mut self, set: &Ident, span: Span) -> Result<T, Failed> {
         let message = format!("`{}` is bound already", set.name);
-        self.fail(
-            Diagnostic::error("E0305", span)
-                .says(message)
-                .label("bound a second time here")
-                .help(format!(
-                    "use an alias for the inner index: `alias({0},{0}2);` and write `{0}2` here",
-                    set.name
-                )),
-        )
+        Diagnostic::error("E0305", span)
+            .says(message)
+            .label("bound a second time here")
+            .help(format!(
+                "use an alias for the inner index: `alias({0},{0}2);` and write `{0}2` here",
+                set.name
+            ))
+            .fail(self)
     }
 
     /// `sum(sameas(i,j), …)`: a set that is not under control yet takes the element of the other.
     fn equal_item(&mut self, indices: &[Expr], span: Span, out: &mut Domain) -> Result<(), Failed> {
         let [a, b] = indices else {
-            return self.fail(
-                Diagnostic::error("E0317", span).says("`sameas` compares two single indices"),
-            );
+            return Diagnostic::error("E0317", span)
+                .says("`sameas` compares two single indices")
+                .fail(self);
         };
         let free = |c: &Self, e: &Expr| match &e.kind {
             ExprKind::Apply(name, None, None) => c.symbols.find(&name.name).filter(|&s| {

@@ -191,7 +191,7 @@ impl Compiler {
             symbol.table,
         );
         if had && !modes.multi {
-            return self.fail(second_data(&name, span, declared));
+            return second_data(&name, span, declared).fail(self);
         }
         if had && modes.multi_replace {
             self.store.table_mut(table).clear();
@@ -320,7 +320,7 @@ impl Compiler {
             let record = match record {
                 Ok(r) => r,
                 Err(d) => {
-                    self.report(d);
+                    d.report(self);
                     // Which elements it has is not known.
                     self.lost.elements.insert(s);
                     continue;
@@ -397,12 +397,11 @@ impl Compiler {
         if to.filling.repeats(&mut self.store, key) {
             let label = self.key_text(key);
             let message = format!("the element {label} of `{}` appears twice", to.symbol.name);
-            self.report(
-                Diagnostic::error("E0341", span)
-                    .says(message)
-                    .label("second time")
-                    .help("take one of them out"),
-            );
+            Diagnostic::error("E0341", span)
+                .says(message)
+                .label("second time")
+                .help("take one of them out")
+                .report(self);
             return;
         }
         if matches!(to.symbol.kind, SymbolKind::Set { singleton: true })
@@ -414,11 +413,10 @@ impl Compiler {
                     return;
                 }
                 let message = format!("`{}` is a singleton: it has one element", to.symbol.name);
-                self.report(
-                    Diagnostic::error("E0342", span)
-                        .says(message)
-                        .label("second element"),
-                );
+                Diagnostic::error("E0342", span)
+                    .says(message)
+                    .label("second element")
+                    .report(self);
                 return;
             }
             // `$onMulti`: the later element counts.
@@ -481,7 +479,7 @@ impl Compiler {
             let record = match record {
                 Ok(r) => r,
                 Err(d) => {
-                    self.report(d);
+                    d.report(self);
                     continue;
                 }
             };
@@ -497,11 +495,10 @@ impl Compiler {
             let (span, key) = (record.span, record.key);
             if dim == 0 && !key.is_empty() {
                 let message = format!("the scalar `{}` gets one number", symbol.name);
-                self.report(
-                    Diagnostic::error("E0345", span)
-                        .says(message)
-                        .help("write `/ 5 /`; no blank parts thousands"),
-                );
+                Diagnostic::error("E0345", span)
+                    .says(message)
+                    .help("write `/ 5 /`; no blank parts thousands")
+                    .report(self);
                 continue;
             }
             if self.expand(s, key, span, defines, &mut keys).is_err() {
@@ -538,7 +535,7 @@ impl Compiler {
             (Tail::None, [KeyPart::Label { text, span, .. }]) if dim == 0 => {
                 return match number(text) {
                     Some(v) if value::is_undf(v) && !self.modes.at(*span).undf => {
-                        self.report(undf_refused(*span));
+                        undf_refused(*span).report(self);
                         Err(Failed)
                     }
                     Some(v) => Ok(v),
@@ -565,12 +562,11 @@ impl Compiler {
         };
         let name = &self.symbols.get(s).name;
         let message = format!("the data of `{name}` need a number for each record");
-        self.report(
-            Diagnostic::error("E0345", record.span)
-                .says(message)
-                .label(at)
-                .help(help),
-        );
+        Diagnostic::error("E0345", record.span)
+            .says(message)
+            .label(at)
+            .help(help)
+            .report(self);
         Err(Failed)
     }
 
@@ -602,12 +598,11 @@ impl Compiler {
                 "numbers are `1.5`, `-2e3`, `inf`, `eps`, `na`; a label with a blank stands in quotes, `'new york' 3`; other words are declared as acronyms"
             }
         };
-        self.fail(
-            Diagnostic::error("E0345", span)
-                .says(format!("`{name}` is not a number"))
-                .label("a number is expected")
-                .help(help),
-        )
+        Diagnostic::error("E0345", span)
+            .says(format!("`{name}` is not a number"))
+            .label("a number is expected")
+            .help(help)
+            .fail(self)
     }
 
     /// What a number in data is stored as.
@@ -644,12 +639,11 @@ impl Compiler {
                 }
                 _ => "take one of them out",
             };
-            self.report(
-                Diagnostic::error("E0341", span)
-                    .says(what)
-                    .label("second time")
-                    .help(help),
-            );
+            Diagnostic::error("E0341", span)
+                .says(what)
+                .label("second time")
+                .help(help)
+                .report(self);
             return;
         }
         self.store.tables[filling.table as usize].set(key, v);
@@ -673,16 +667,15 @@ impl Compiler {
             let record = match record {
                 Ok(r) => r,
                 Err(d) => {
-                    self.report(d);
+                    d.report(self);
                     break;
                 }
             };
             let Tail::Number(v, _) = record.value else {
-                self.report(
-                    Diagnostic::error("E0345", record.span)
-                        .says("a number is expected behind the attribute")
-                        .label("no number"),
-                );
+                Diagnostic::error("E0345", record.span)
+                    .says("a number is expected behind the attribute")
+                    .label("no number")
+                    .report(self);
                 continue;
             };
             let _ = self.attribute_data(s, record.key, v, record.span);

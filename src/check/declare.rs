@@ -24,16 +24,15 @@ impl Compiler {
             let symbol = self.symbols.get(root);
             if symbol.dim() != 1 {
                 let declared = symbol.declared;
-                return self.fail(
-                    Diagnostic::error("E0334", d.name.span)
-                        .says(format!(
-                            "`{}` has several positions; a domain is one-dimensional",
-                            d.name.name
-                        ))
-                        .label("not one-dimensional")
-                        .other(declared, "declared here")
-                        .help("name a set for each index; in the data of a set a range is written `1*5`, and `1:5` or `1.5` is a pair"),
-                );
+                return Diagnostic::error("E0334", d.name.span)
+                    .says(format!(
+                        "`{}` has several positions; a domain is one-dimensional",
+                        d.name.name
+                    ))
+                    .label("not one-dimensional")
+                    .other(declared, "declared here")
+                    .help("name a set for each index; in the data of a set a range is written `1*5`, and `1:5` or `1.5` is a pair")
+                    .fail(self);
             }
             if root == UNIVERSE {
                 out.push(DomainPosition::Universe);
@@ -41,16 +40,15 @@ impl Compiler {
             }
             if symbol.dynamic {
                 let declared = symbol.declared;
-                return self.fail(
-                    Diagnostic::error("E0339", d.name.span)
-                        .says(format!(
-                            "`{}` is changed by an assignment; it cannot be a domain",
-                            d.name.name
-                        ))
-                        .label("a domain must stay as it is")
-                        .other(declared, "declared here")
-                        .help("use the set that it is a subset of as the domain"),
-                );
+                return Diagnostic::error("E0339", d.name.span)
+                    .says(format!(
+                        "`{}` is changed by an assignment; it cannot be a domain",
+                        d.name.name
+                    ))
+                    .label("a domain must stay as it is")
+                    .other(declared, "declared here")
+                    .help("use the set that it is a subset of as the domain")
+                    .fail(self);
             }
             self.symbols.get_mut(root).is_domain = true;
             self.symbols.get_mut(root).open = false;
@@ -100,10 +98,12 @@ impl Compiler {
         }
         let dim = domain.len();
         if dim > 20 {
-            return self.fail(Diagnostic::error("E0336", d.name.span).says(format!(
-                "`{}` has {dim} index positions; there may be 20",
-                d.name.name
-            )));
+            return Diagnostic::error("E0336", d.name.span)
+                .says(format!(
+                    "`{}` has {dim} index positions; there may be 20",
+                    d.name.name
+                ))
+                .fail(self);
         }
         let table = tables(self, dim);
         let open = d
@@ -162,23 +162,21 @@ impl Compiler {
                 (false, 0) => " without an index".into(),
                 (false, n) => format!(" with {n} ind{}", if n == 1 { "ex" } else { "ices" }),
             };
-            return self.fail(
-                Diagnostic::error("E0333", d.name.span)
-                    .says(format!(
-                        "`{}` is declared already, as {}{shape}",
-                        d.name.name,
-                        old.a_kind()
-                    ))
-                    .label("declared again")
-                    .other(old.declared, "first declared here")
-                    .help(match listed {
-                        true => {
-                            "the equations of a model stand between slashes: `model m / e, f /;`"
-                                .into()
-                        }
-                        false => format!("choose another name{capitals}"),
-                    }),
-            );
+            return Diagnostic::error("E0333", d.name.span)
+                .says(format!(
+                    "`{}` is declared already, as {}{shape}",
+                    d.name.name,
+                    old.a_kind()
+                ))
+                .label("declared again")
+                .other(old.declared, "first declared here")
+                .help(match listed {
+                    true => {
+                        "the equations of a model stand between slashes: `model m / e, f /;`".into()
+                    }
+                    false => format!("choose another name{capitals}"),
+                })
+                .fail(self);
         }
         if old.open && d.domain.is_some() && domain.len() <= 20 {
             self.reshape(s, domain.len());
@@ -196,15 +194,14 @@ impl Compiler {
                 _ => true,
             });
             if !compatible {
-                return self.fail(
-                    Diagnostic::error("E0335", d.name.span)
-                        .says(format!(
-                            "`{}` is declared already over other sets",
-                            d.name.name
-                        ))
-                        .label("declared again")
-                        .other(old.declared, "first declared here"),
-                );
+                return Diagnostic::error("E0335", d.name.span)
+                    .says(format!(
+                        "`{}` is declared already over other sets",
+                        d.name.name
+                    ))
+                    .label("declared again")
+                    .other(old.declared, "first declared here")
+                    .fail(self);
             }
         }
         let symbol = self.symbols.get_mut(s);
@@ -255,7 +252,7 @@ impl Compiler {
                         "elements stand between slashes: `set {name} / {} /;`",
                         names.join(", ")
                     ));
-                self.report(d);
+                d.report(self);
                 self.lose_declaration(name);
                 continue;
             }
@@ -288,12 +285,11 @@ impl Compiler {
             {
                 if !explicit && new && map.text(body).trim().is_empty() {
                     let message = format!("how many indices has `{}`?", d.name.name);
-                    self.report(
-                        Diagnostic::error("E0334", d.name.span)
-                            .says(message)
-                            .label("neither a domain nor data say")
-                            .help(format!("write `{}(*)`, or leave the data out", d.name.name)),
-                    );
+                    Diagnostic::error("E0334", d.name.span)
+                        .says(message)
+                        .label("neither a domain nor data say")
+                        .help(format!("write `{}(*)`, or leave the data out", d.name.name))
+                        .report(self);
                     continue;
                 }
                 let _ = self.set_data(s, body, d.name.span, &d.defines(), map);
@@ -315,12 +311,11 @@ impl Compiler {
             });
             let Some(root) = known.map(|s| self.symbols.root(s)) else {
                 let span = group[0].span.to(group[group.len() - 1].span);
-                return self.fail(
-                    Diagnostic::error("E0337", span)
-                        .says("none of these names is a set")
-                        .label("`alias` gives a set another name")
-                        .help("declare the set first: `set i / … /; alias(i, j);`"),
-                );
+                return Diagnostic::error("E0337", span)
+                    .says("none of these names is a set")
+                    .label("`alias` gives a set another name")
+                    .help("declare the set first: `set i / … /; alias(i, j);`")
+                    .fail(self);
             };
             for n in group {
                 if &*n.name == "*" {
@@ -330,12 +325,11 @@ impl Compiler {
                     Some(s) if self.symbols.root(s) == root => {}
                     Some(s) => {
                         let declared = self.symbols.get(s).declared;
-                        let _ = self.fail::<()>(
-                            Diagnostic::error("E0333", n.span)
-                                .says(format!("`{}` is declared already", n.name))
-                                .label("declared again")
-                                .other(declared, "first declared here"),
-                        );
+                        Diagnostic::error("E0333", n.span)
+                            .says(format!("`{}` is declared already", n.name))
+                            .label("declared again")
+                            .other(declared, "first declared here")
+                            .report(self);
                     }
                     None => {
                         self.symbols.get_mut(root).open = false;
@@ -368,15 +362,14 @@ impl Compiler {
             {
                 let name = &p.symbol.name;
                 let message = format!("`{}` is a scalar: it has no index", name.name);
-                self.report(
-                    Diagnostic::error("E0336", first.name.span)
-                        .says(message)
-                        .label("no index here")
-                        .help(format!(
-                            "write `parameter {}({}) …`",
-                            name.name, first.name.name
-                        )),
-                );
+                Diagnostic::error("E0336", first.name.span)
+                    .says(message)
+                    .label("no index here")
+                    .help(format!(
+                        "write `parameter {}({}) …`",
+                        name.name, first.name.name
+                    ))
+                    .report(self);
                 self.lose_declaration(&name.name);
                 continue;
             }
@@ -456,7 +449,7 @@ impl Compiler {
             .label(label)
             .other(symbol.declared, "declared here")
             .help("a variable has one kind from its first use on; assign its bounds `.lo` and `.up` to narrow it");
-        self.fail(d)
+        d.fail(self)
     }
 
     fn record_tables(&mut self, dim: usize) -> TableId {
@@ -557,28 +550,26 @@ impl Compiler {
             if perpendicular.iter().any(|w| n.name.eq_ignore_ascii_case(w)) && c.named(n).is_none()
             {
                 let message = "an equation and its variable are paired with a dot";
-                return c.fail(
-                    Diagnostic::error("E0338", n.span)
-                        .says(message)
-                        .help("write `model m / e.x /;`"),
-                );
+                return Diagnostic::error("E0338", n.span)
+                    .says(message)
+                    .help("write `model m / e.x /;`")
+                    .fail(c);
             }
             let s = c.lookup(n)?;
             let symbol = c.symbols.get(s).clone();
             match symbol.kind {
                 SymbolKind::Equation(_) => Ok(()),
                 SymbolKind::Model(_) if model_too => Ok(()),
-                _ => c.fail(
-                    Diagnostic::error("E0338", n.span)
-                        .says(format!(
-                            "`{}` is {}; a model is made of equations",
-                            n.name,
-                            symbol.a_kind()
-                        ))
-                        .label("not an equation")
-                        .other(symbol.declared, "declared here")
-                        .help("list equations, or `model m / all /;` for all of them; variables are found in them; a pair of a complementarity problem is `e.x`"),
-                ),
+                _ => Diagnostic::error("E0338", n.span)
+                    .says(format!(
+                        "`{}` is {}; a model is made of equations",
+                        n.name,
+                        symbol.a_kind()
+                    ))
+                    .label("not an equation")
+                    .other(symbol.declared, "declared here")
+                    .help("list equations, or `model m / all /;` for all of them; variables are found in them; a pair of a complementarity problem is `e.x`")
+                    .fail(c),
             }
         };
         match item {
@@ -593,16 +584,15 @@ impl Compiler {
                 let v = self.lookup(column)?;
                 let symbol = self.symbols.get(v).clone();
                 if !matches!(symbol.kind, SymbolKind::Variable(_)) {
-                    return self.fail(
-                        Diagnostic::error("E0338", column.span)
-                            .says(format!(
-                                "`{}` is {}; an equation is paired with a variable",
-                                column.name,
-                                symbol.a_kind()
-                            ))
-                            .label("not a variable")
-                            .other(symbol.declared, "declared here"),
-                    );
+                    return Diagnostic::error("E0338", column.span)
+                        .says(format!(
+                            "`{}` is {}; an equation is paired with a variable",
+                            column.name,
+                            symbol.a_kind()
+                        ))
+                        .label("not a variable")
+                        .other(symbol.declared, "declared here")
+                        .fail(self);
                 }
                 Ok(())
             }
@@ -615,26 +605,24 @@ impl Compiler {
         let symbol = self.symbols.get(v).clone();
         if !matches!(symbol.kind, SymbolKind::Variable(_)) {
             let kind = symbol.kind_name();
-            return self.fail(
-                Diagnostic::error("E0338", variable.span).says(format!("the {kind} `{}` stands here without indices", symbol.name))
+            return Diagnostic::error("E0338", variable.span).says(format!("the {kind} `{}` stands here without indices", symbol.name))
                 .label("only variables are limited to a set")
                 .other(symbol.declared, "declared here")
                 .help(format!(
                     "write `{}` alone; which rows there are is said where the equation is defined: `e(i)$s(i)..`",
                     symbol.name
-                )),
-            );
+                ))
+                .fail(self);
         }
         let [set] = sets else {
-            return self.fail(
-                Diagnostic::error("E0338", variable.span)
-                    .says("one set says which columns there are")
-                    .label("not one set")
-                    .help(format!(
-                        "write `{}(s)` with a set `s` of the dimension of `{0}`",
-                        symbol.name
-                    )),
-            );
+            return Diagnostic::error("E0338", variable.span)
+                .says("one set says which columns there are")
+                .label("not one set")
+                .help(format!(
+                    "write `{}(s)` with a set `s` of the dimension of `{0}`",
+                    symbol.name
+                ))
+                .fail(self);
         };
         let s = self.lookup_set(set)?;
         match self.symbols.get(s).dim() == symbol.dim() {

@@ -369,12 +369,11 @@ impl Compiler {
             let choices = self.choices(s, at, part, span, defines)?;
             let before = rows.as_ref().map_or(1, Tuples::len);
             if before.saturating_mul(choices.len()) > MAX_EXPANSION {
-                return self.fail(
-                    Diagnostic::error("E0343", span)
-                        .says(format!("this stands for more than {MAX_EXPANSION} records"))
-                        .label("too many")
-                        .help("make the set by an assignment with a condition"),
-                );
+                return Diagnostic::error("E0343", span)
+                    .says(format!("this stands for more than {MAX_EXPANSION} records"))
+                    .label("too many")
+                    .help("make the set by an assignment with a condition")
+                    .fail(self);
             }
             let labels = choices.width + rows.as_ref().map_or(0, |r| r.width);
             self.take(before * choices.len(), 4 * labels, span)?;
@@ -418,7 +417,7 @@ impl Compiler {
                             .says(format!("this range has {n} labels"))
                             .label("too many")
                             .help(format!("{MAX_EXPANSION} are the most"));
-                        return self.fail(d);
+                        return d.fail(self);
                     }
                     Err(NoRange::Unlike) => {
                         let known = self.symbols.find(to).map(|s| self.symbols.get(s));
@@ -426,12 +425,11 @@ impl Compiler {
                             true => format!("labels are fixed when the text is read: `$set {to} 10` above, and `{from}*%{to}%` here"),
                             false => "for instance `i1*i10` or `1990*2000`; other labels are listed, with commas between them".into(),
                         };
-                        return self.fail(
-                            Diagnostic::error("E0344", *span)
-                                .says(format!("`{from}*{to}` is not a range"))
-                                .label("the labels must differ in one number")
-                                .help(help),
-                        );
+                        return Diagnostic::error("E0344", *span)
+                            .says(format!("`{from}*{to}` is not a range"))
+                            .label("the labels must differ in one number")
+                            .help(help)
+                            .fail(self);
                     }
                 };
                 self.take(labels.count, LABEL_BYTES, *span)?;
@@ -504,11 +502,10 @@ impl Compiler {
                 let rows = self.products(s, position, first, whole, defines)?;
                 let behind = self.products(s, position + rows.width, other, whole, defines)?;
                 if rows.len() != behind.len() {
-                    self.report(
-                        Diagnostic::warning("E0347", whole).says(format!("`:` matches one by one, but there are {} on the left and {} on the right", rows.len(), behind.len()))
-                            .label("what is left over on one side is dropped")
-                            .help("a dot instead of the colon makes all combinations"),
-                    );
+                    Diagnostic::warning("E0347", whole).says(format!("`:` matches one by one, but there are {} on the left and {} on the right", rows.len(), behind.len()))
+                        .label("what is left over on one side is dropped")
+                        .help("a dot instead of the colon makes all combinations")
+                        .report(self);
                 }
                 Ok(rows.beside(&behind))
             }
@@ -548,10 +545,10 @@ impl Compiler {
             let known = self.store.universe.get(&second);
             if known.is_none_or(|l| self.store.table(table).find(&[l]).is_none()) {
                 d.severity = Severity::Error;
-                return self.fail(d);
+                return d.fail(self);
             }
         }
-        self.report(d);
+        d.report(self);
         Ok(())
     }
 

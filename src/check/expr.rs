@@ -22,11 +22,6 @@ fn combine(kind: NodeKind, span: Span, has_var: bool, linear: bool) -> Node {
 }
 
 impl Compiler {
-    pub(super) fn fail<T>(&mut self, d: Diagnostic) -> Result<T, Failed> {
-        self.report(d);
-        Err(Failed)
-    }
-
     /// The symbol of a name, or an "unknown symbol" error with the nearest name.
     pub(super) fn lookup(&mut self, id: &Ident) -> Result<SymbolId, Failed> {
         if let Some(s) = self.named(id) {
@@ -37,15 +32,14 @@ impl Compiler {
         let d = Diagnostic::error("E0301", id.span)
             .says(format!("`{}` is not known", id.name))
             .label("unknown symbol");
-        let d = match near {
-            Some(n) => d.help(format!("did you mean `{n}`?")),
-            None if self.store.universe.get(&id.name).is_some() => d.help(format!(
+        let label = self.store.universe.get(&id.name).map(|_| {
+            format!(
                 "`{0}` is a label of a set, not a set: quote it, `'{0}'`, or name the set",
                 id.name
-            )),
-            None => d.help(DECLARE_FIRST),
-        };
-        self.unknown(id, d)
+            )
+        });
+        let help = label.unwrap_or_else(|| DECLARE_FIRST.into());
+        self.unknown(id, d.did_you_mean(near, help))
     }
 
     /// The equation that a definition is for.
@@ -66,14 +60,9 @@ impl Compiler {
         let d = Diagnostic::error("E0301", id.span)
             .says(format!("the equation `{}` is not declared", id.name))
             .label("unknown equation");
-        let d = match &near {
-            Some(n) => d.help(format!("did you mean `{n}`?")),
-            None => d.help(format!(
-                "declare it before: `equation {}{};`",
-                id.name,
-                named_indices(indices)
-            )),
-        };
+        let (name, over) = (&id.name, named_indices(indices));
+        let declare = format!("declare it before: `equation {name}{over};`");
+        let d = d.did_you_mean(near.as_ref(), declare);
         near.iter().for_each(|n| self.lose(n));
         self.unknown(id, d)
     }
@@ -97,12 +86,11 @@ impl Compiler {
             return Ok(s);
         }
         let (kind, declared) = (self.symbols.get(s).a_kind(), self.symbols.get(s).declared);
-        self.fail(
-            Diagnostic::error("E0302", id.span).says(format!("`{}` is {kind}; a set is expected here", id.name))
-                .label("not a set")
-                .other(declared, format!("declared as {kind} here"))
-                .help("an index position takes a set that is under control, a quoted label, or a lag such as `t-1`"),
-        )
+        Diagnostic::error("E0302", id.span).says(format!("`{}` is {kind}; a set is expected here", id.name))
+            .label("not a set")
+            .other(declared, format!("declared as {kind} here"))
+            .help("an index position takes a set that is under control, a quoted label, or a lag such as `t-1`")
+            .fail(self)
     }
 
     /// An expression.
@@ -116,11 +104,13 @@ impl Compiler {
             }
             ExprKind::Text(t) => {
                 if !self.texts_allowed {
-                    return self.fail(
-                        Diagnostic::error("E0312", span).says("a text may not stand in an expression")
-                            .label("a number is expected")
-                            .help("texts belong into `display`, `put`, `abort`, or in quotes as an index"),
-                    );
+                    return Diagnostic::error("E0312", span)
+                        .says("a text may not stand in an expression")
+                        .label("a number is expected")
+                        .help(
+                            "texts belong into `display`, `put`, `abort`, or in quotes as an index",
+                        )
+                        .fail(self);
                 }
                 Ok(Node::data(NodeKind::Text(t.clone()), span))
             }
@@ -188,12 +178,13 @@ impl Compiler {
                         self.sum(vec![(false, a), (*op == BinaryOp::Subtract, b)], span)
                     }
                     BinaryOp::Multiply => self.product(vec![(false, a), (false, b)], span),
-                    BinaryOp::CircularPlus | BinaryOp::CircularMinus => self.fail(
+                    BinaryOp::CircularPlus | BinaryOp::CircularMinus => {
                         Diagnostic::error("E0313", span)
                             .says("`++` and `--` stand between an index and a number only")
                             .label("not in an index position")
-                            .help("two operators in a row need parentheses: `a - (-b)`"),
-                    ),
+                            .help("two operators in a row need parentheses: `a - (-b)`")
+                            .fail(self)
+                    }
                     _ => {
                         let logical = matches!(
                             op,
@@ -268,11 +259,10 @@ impl Compiler {
         if self.texts_allowed || set(a).is_none() && set(b).is_none() {
             return Ok(());
         }
-        self.fail(
-            Diagnostic::error("E0312", span).says("labels are not compared as numbers are")
-                .label("no numbers")
-                .help(format!("write `sameas({left},{right})`; `ord` is the position of an element, `.val` its label as a number")),
-        )
+        Diagnostic::error("E0312", span).says("labels are not compared as numbers are")
+            .label("no numbers")
+            .help(format!("write `sameas({left},{right})`; `ord` is the position of an element, `.val` its label as a number"))
+            .fail(self)
     }
 
     /// An error if a membership stands where a number must.
@@ -284,12 +274,11 @@ impl Compiler {
             Some(set) => format!("`ord({set})` is the position of the element, `{set}.val` its label as a number"),
             None => "`1$(…)` makes a number of it; with another membership, `+` is union, `*` intersection, `-` difference".into(),
         };
-        self.fail(
-            Diagnostic::error("E0375", n.span)
-                .says("a membership stands where a number is expected")
-                .label("in the set or not: no number")
-                .help(help),
-        )
+        Diagnostic::error("E0375", n.span)
+            .says("a membership stands where a number is expected")
+            .label("in the set or not: no number")
+            .help(help)
+            .fail(self)
     }
 
     /// The set whose index stands for a membership that is always true: `t` in `p(t) = t`.
@@ -309,13 +298,13 @@ impl Compiler {
     pub(super) fn index_as_number(&mut self, n: &Node) {
         if let Some(set) = self.always_member(n) {
             let message = format!("`{set}` is no number here: it is 1 for every element");
-            let d = Diagnostic::warning("E0378", n.span)
+            Diagnostic::warning("E0378", n.span)
                 .says(message)
                 .label("always 1")
                 .help(format!(
                     "`ord({set})` is the position of the element, `{set}.val` its label as a number"
-                ));
-            self.report(d);
+                ))
+                .report(self);
         }
     }
 
@@ -418,19 +407,18 @@ impl Compiler {
             }
             SymbolKind::Parameter { .. } => {
                 if let Some(attr) = attr {
-                    return self.fail(
-                        Diagnostic::error("E0314", attr.span)
-                            .says(format!("a parameter has no attribute `.{}`", attr.name))
-                            .help(format!(
-                                "a parameter is its values: write `{}`",
-                                symbol.name
-                            ))
-                            .label("not there")
-                            .other(
-                                symbol.declared,
-                                format!("`{}` is {}", symbol.name, symbol.a_kind()),
-                            ),
-                    );
+                    return Diagnostic::error("E0314", attr.span)
+                        .says(format!("a parameter has no attribute `.{}`", attr.name))
+                        .help(format!(
+                            "a parameter is its values: write `{}`",
+                            symbol.name
+                        ))
+                        .label("not there")
+                        .other(
+                            symbol.declared,
+                            format!("`{}` is {}", symbol.name, symbol.a_kind()),
+                        )
+                        .fail(self);
                 }
                 let key = self.key(s, indices, span)?;
                 self.used(s, span);
@@ -457,41 +445,38 @@ impl Compiler {
                             span,
                         ))
                     }
-                    None => self.fail(
-                        Diagnostic::error("E0310", name.span)
-                            .says(format!(
-                                "`{}` is {}; outside equations it needs an attribute",
-                                symbol.name,
-                                symbol.a_kind()
-                            ))
-                            .label("which of its numbers?")
-                            .other(symbol.declared, "declared here")
-                            .help(format!(
-                                "its level is `{0}.l`, its marginal `{0}.m`",
-                                name.name
-                            )),
-                    ),
+                    None => Diagnostic::error("E0310", name.span)
+                        .says(format!(
+                            "`{}` is {}; outside equations it needs an attribute",
+                            symbol.name,
+                            symbol.a_kind()
+                        ))
+                        .label("which of its numbers?")
+                        .other(symbol.declared, "declared here")
+                        .help(format!(
+                            "its level is `{0}.l`, its marginal `{0}.m`",
+                            name.name
+                        ))
+                        .fail(self),
                 }
             }
             SymbolKind::Model(_) | SymbolKind::File(_) => {
                 let Some(a) = attr else {
-                    return self.fail(
-                        Diagnostic::error("E0315", name.span)
-                            .says(format!("{} is not a number", symbol.a_kind()))
-                            .label("an attribute is expected")
-                            .other(symbol.declared, "declared here")
-                            .help(format!("for instance `{}.modelstat`", name.name)),
-                    );
+                    return Diagnostic::error("E0315", name.span)
+                        .says(format!("{} is not a number", symbol.a_kind()))
+                        .label("an attribute is expected")
+                        .other(symbol.declared, "declared here")
+                        .help(format!("for instance `{}.modelstat`", name.name))
+                        .fail(self);
                 };
                 let attribute = self.object_attribute(s, a)?;
                 Ok(Node::data(NodeKind::ObjectAttribute(s, attribute), span))
             }
             SymbolKind::Acronym(n) => Ok(Node::number(value::acronym(*n), span)),
-            SymbolKind::Figure(_) => self.fail(
-                Diagnostic::error("E0315", name.span)
-                    .says("a figure is not a number")
-                    .other(symbol.declared, "declared here"),
-            ),
+            SymbolKind::Figure(_) => Diagnostic::error("E0315", name.span)
+                .says("a figure is not a number")
+                .other(symbol.declared, "declared here")
+                .fail(self),
         }
     }
 
@@ -522,12 +507,11 @@ impl Compiler {
             functions::RecordAttribute::Derived(d) => {
                 Ok(Node::data(NodeKind::Derived(d, s, key), span))
             }
-            functions::RecordAttribute::Fix => self.fail(
-                Diagnostic::error("E0314", a.span)
-                    .says("`.fx` can be assigned, not read")
-                    .label("write only")
-                    .help("read `.l`, or `.lo` and `.up`"),
-            ),
+            functions::RecordAttribute::Fix => Diagnostic::error("E0314", a.span)
+                .says("`.fx` can be assigned, not read")
+                .label("write only")
+                .help("read `.l`, or `.lo` and `.up`")
+                .fail(self),
         }
     }
 
@@ -541,12 +525,11 @@ impl Compiler {
             ("scale", true) => "a discrete variable is not scaled",
             _ => return Ok(()),
         };
-        self.fail(
-            Diagnostic::error("E0314", a.span)
-                .says(message)
-                .label(format!("`{}` is {}", symbol.name, symbol.a_kind()))
-                .other(symbol.declared, "declared here"),
-        )
+        Diagnostic::error("E0314", a.span)
+            .says(message)
+            .label(format!("`{}` is {}", symbol.name, symbol.a_kind()))
+            .other(symbol.declared, "declared here")
+            .fail(self)
     }
 
     pub(super) fn unknown_attribute<T>(
@@ -574,13 +557,13 @@ impl Compiler {
             "type", "kind", "binary", "integer", "positive", "free", "bin",
         ];
         let is_kind = kind == "variable" && KINDS.iter().any(|k| a.name.eq_ignore_ascii_case(k));
-        self.fail(match near {
-            _ if is_kind => d.help(format!(
+        match is_kind {
+            true => d.help(format!(
                 "the kind stands in the declaration: `binary variable {name};`"
             )),
-            Some(n) => d.help(format!("did you mean `.{n}`?")),
-            None => d.help(format!("there are: {known}")),
-        })
+            false => d.did_you_mean(near.map(|n| format!(".{n}")), format!("there are: {known}")),
+        }
+        .fail(self)
     }
 
     pub(super) fn object_attribute(
@@ -646,15 +629,14 @@ impl Compiler {
         };
         if parts.len() != 1 {
             let (name, n) = (&symbol.name, parts.len());
-            return self.fail(
-                Diagnostic::error("E0304", span)
-                    .says(format!(
-                        "`.{lower}` is of sets with one index; `{name}` has {n}"
-                    ))
-                    .label(format!("{n} indices here"))
-                    .other(symbol.declared, "declared here")
-                    .help(format!("ask one of its indices: `i.{lower}`")),
-            );
+            return Diagnostic::error("E0304", span)
+                .says(format!(
+                    "`.{lower}` is of sets with one index; `{name}` has {n}"
+                ))
+                .label(format!("{n} indices here"))
+                .other(symbol.declared, "declared here")
+                .help(format!("ask one of its indices: `i.{lower}`"))
+                .fail(self);
         }
         Ok(Node::data(
             NodeKind::LabelAttribute(which, symbol.table, parts.remove(0)),
@@ -688,12 +670,11 @@ impl Compiler {
                 (l, usize::MAX) => format!("{l} or more arguments"),
                 (l, h) => format!("{l} to {}", count(h)),
             };
-            return self.fail(
-                Diagnostic::error("E0316", span)
-                    .says(format!("`{lower}` takes {wanted}, not {}", args.len()))
-                    .label("wrong number of arguments")
-                    .help(self.arguments_help(callee, &lower, low, args)),
-            );
+            return Diagnostic::error("E0316", span)
+                .says(format!("`{lower}` takes {wanted}, not {}", args.len()))
+                .label("wrong number of arguments")
+                .help(self.arguments_help(callee, &lower, low, args))
+                .fail(self);
         }
         match callee {
             Callee::Ord | Callee::Card => self.ord_or_card(callee == Callee::Card, args, span),
@@ -709,9 +690,11 @@ impl Compiler {
                 }
                 let v = nodes.iter().any(|n| n.has_var);
                 if v && functions::first_argument_must_be_data(f) && nodes[0].has_var {
-                    return self.fail(Diagnostic::error("E0318", nodes[0].span).says(format!(
-                        "the first argument of `{lower}` may not depend on a variable"
-                    )));
+                    return Diagnostic::error("E0318", nodes[0].span)
+                        .says(format!(
+                            "the first argument of `{lower}` may not depend on a variable"
+                        ))
+                        .fail(self);
                 }
                 Ok(combine(NodeKind::Call(f, nodes), span, v, false))
             }
@@ -722,11 +705,10 @@ impl Compiler {
                 for a in args {
                     let n = self.expr(a)?;
                     if n.has_var {
-                        return self.fail(
-                            Diagnostic::error("E0318", n.span)
-                                .says(format!("`{lower}` may not depend on a variable"))
-                                .label("a variable stands in it"),
-                        );
+                        return Diagnostic::error("E0318", n.span)
+                            .says(format!("`{lower}` may not depend on a variable"))
+                            .label("a variable stands in it")
+                            .fail(self);
                     }
                     nodes.push(n);
                 }
@@ -747,19 +729,17 @@ impl Compiler {
             return Ok(Node::data(NodeKind::OfText(Box::new(text), at), span));
         }
         if let Some(second) = args.get(1) {
-            return self.fail(
-                Diagnostic::error("E0316", second.span)
-                    .says("`ord` of a set takes 1 argument")
-                    .label("only `ord('text', n)` has a position"),
-            );
+            return Diagnostic::error("E0316", second.span)
+                .says("`ord` of a set takes 1 argument")
+                .label("only `ord('text', n)` has a position")
+                .fail(self);
         }
         let ExprKind::Apply(n, None, None) = &args[0].kind else {
-            return self.fail(
-                Diagnostic::error("E0317", args[0].span)
-                    .says(format!("`{name}` takes the name of a set"))
-                    .label("not a name")
-                    .help(format!("for instance `{name}(i)`")),
-            );
+            return Diagnostic::error("E0317", args[0].span)
+                .says(format!("`{name}` takes the name of a set"))
+                .label("not a name")
+                .help(format!("for instance `{name}(i)`"))
+                .fail(self);
         };
         let s = self.lookup(n)?;
         if card {
@@ -800,9 +780,9 @@ impl Compiler {
             });
         }
         if parts.len() != 2 {
-            return self.fail(
-                Diagnostic::error("E0317", span).says("`sameas` compares two single indices"),
-            );
+            return Diagnostic::error("E0317", span)
+                .says("`sameas` compares two single indices")
+                .fail(self);
         }
         let b = parts.remove(1);
         let kind = NodeKind::SameAs(parts.remove(0), b);

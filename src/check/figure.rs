@@ -81,16 +81,12 @@ impl Compiler {
     fn figure_element(&mut self, e: &FigureElement) -> Result<FigureElementCode, Failed> {
         let kind = e.kind.name.to_lowercase();
         if !kinds().any(|k| k == kind) {
-            let d = Diagnostic::error("E0332", e.kind.span)
+            let all = kinds().collect::<Vec<_>>().join(", ");
+            return Diagnostic::error("E0332", e.kind.span)
                 .says(format!("a figure has no element `{}`", e.kind.name))
-                .label("unknown element");
-            return self.fail(match nearest(&kind, kinds()) {
-                Some(n) => d.help(format!("did you mean `{n}`?")),
-                None => d.help(format!(
-                    "there are: {}",
-                    kinds().collect::<Vec<_>>().join(", ")
-                )),
-            });
+                .label("unknown element")
+                .did_you_mean(nearest(&kind, kinds()), format!("there are: {all}"))
+                .fail(self);
         }
         // The levels and data that a figure shows need not be there when it is declared.
         self.in_equation = true;
@@ -108,12 +104,11 @@ impl Compiler {
                     _ => self.expr(value)?,
                 };
                 if node.has_var {
-                    return self.fail(
-                        Diagnostic::error("E0310", node.span)
-                            .says("a variable is not a number; a figure shows its level")
-                            .label("which of its numbers?")
-                            .help("write `.l` behind the variable's name"),
-                    );
+                    return Diagnostic::error("E0310", node.span)
+                        .says("a variable is not a number; a figure shows its level")
+                        .label("which of its numbers?")
+                        .help("write `.l` behind the variable's name")
+                        .fail(self);
                 }
                 arguments.push((name.as_ref().map(|n| n.name.to_lowercase().into()), node));
             }
@@ -157,31 +152,28 @@ impl Compiler {
                         .find(|k| matches!(*k, "fill" | "stroke")),
                     _ => nearest(name, known.iter().copied()),
                 };
-                return self.fail(match near {
-                    Some(n) => d.help(format!("did you mean `{n}`?")),
-                    None if known.is_empty() => {
-                        d.help(format!("`{kind}` takes values without names"))
-                    }
-                    None => d.help(format!("there are: {}", known.join(", "))),
-                });
+                let help = match known.is_empty() {
+                    true => format!("`{kind}` takes values without names"),
+                    false => format!("there are: {}", known.join(", ")),
+                };
+                return d.did_you_mean(near, help).fail(self);
             }
             self.fits_argument(kind, name, value)?;
         }
         for r in required {
             if !code.arguments.iter().any(|(n, _)| n.as_deref() == Some(r)) {
-                return self.fail(
-                    Diagnostic::error("E0373", e.kind.span)
-                        .says(format!("`{kind}` needs `{r}`"))
-                        .label(format!("`{r} = …` is missing"))
-                        .help(format!(
-                            "write `{kind}(…) {};`",
-                            required
-                                .iter()
-                                .map(|r| format!("{r} = …"))
-                                .collect::<Vec<_>>()
-                                .join(", ")
-                        )),
-                );
+                return Diagnostic::error("E0373", e.kind.span)
+                    .says(format!("`{kind}` needs `{r}`"))
+                    .label(format!("`{r} = …` is missing"))
+                    .help(format!(
+                        "write `{kind}(…) {};`",
+                        required
+                            .iter()
+                            .map(|r| format!("{r} = …"))
+                            .collect::<Vec<_>>()
+                            .join(", ")
+                    ))
+                    .fail(self);
             }
         }
         self.has_indices(kind, e.kind.span, code)
@@ -200,23 +192,21 @@ impl Compiler {
             // A chart stands against labels as well.
             && !(name == "x" && matches!(kind, "line" | "bar" | "errorbar"))
         {
-            return self.fail(
-                Diagnostic::error("E0371", value.span)
-                    .says(format!("`{name}` of `{kind}` is a number"))
-                    .label("this is a text")
-                    .help(format!("give an expression, for instance `{name} = p(i)`")),
-            );
+            return Diagnostic::error("E0371", value.span)
+                .says(format!("`{name}` of `{kind}` is a number"))
+                .label("this is a text")
+                .help(format!("give an expression, for instance `{name} = p(i)`"))
+                .fail(self);
         }
         if let ("fill" | "stroke", NodeKind::Text(t)) = (name, &value.kind)
             && Paint::parse(t).is_none()
         {
-            let d = Diagnostic::error("E0372", value.span)
+            let near = nearest(t, Paint::names().iter().copied()).map(|n| format!("'{n}'"));
+            return Diagnostic::error("E0372", value.span)
                 .says(format!("`{t}` is not a colour"))
-                .label("unknown colour");
-            return self.fail(match nearest(t, Paint::names().iter().copied()) {
-                Some(n) => d.help(format!("did you mean `'{n}'`?")),
-                None => d.help("colours are CSS names (`'steelblue'`), `'#rrggbb'`, `none`, or a number for the colour scale"),
-            });
+                .label("unknown colour")
+                .did_you_mean(near, "colours are CSS names (`'steelblue'`), `'#rrggbb'`, `none`, or a number for the colour scale")
+                .fail(self);
         }
         Ok(())
     }
@@ -235,23 +225,21 @@ impl Compiler {
                 "gantt" => "`gantt(machine,job)`: a row for each machine",
                 _ => "of two indices, the first runs along x, the last along y",
             };
-            return self.fail(
-                Diagnostic::error("E0373", span)
-                    .says(format!("`{kind}` needs two indices"))
-                    .label(format!("{slots} here"))
-                    .help(format!("write {example}")),
-            );
+            return Diagnostic::error("E0373", span)
+                .says(format!("`{kind}` needs two indices"))
+                .label(format!("{slots} here"))
+                .help(format!("write {example}"))
+                .fail(self);
         }
         if matches!(
             kind,
             "polygon" | "polyline" | "line" | "bar" | "errorbar" | "node"
         ) && slots == 0
         {
-            return self.fail(
-                Diagnostic::error("E0373", span).says(format!("`{kind}` needs an index that runs over its points"))
-                    .label("no index here")
-                    .help(format!("write `{kind}(i)`; of several indices the last runs along, the others give one {kind} each")),
-            );
+            return Diagnostic::error("E0373", span).says(format!("`{kind}` needs an index that runs over its points"))
+                .label("no index here")
+                .help(format!("write `{kind}(i)`; of several indices the last runs along, the others give one {kind} each"))
+                .fail(self);
         }
         Ok(())
     }
@@ -259,34 +247,31 @@ impl Compiler {
     /// A value without a name.
     fn bare_value(&mut self, kind: &str, bare: bool, value: &Node) -> Result<(), Failed> {
         if !bare {
-            return self.fail(
-                Diagnostic::error("E0370", value.span)
-                    .says(format!("`{kind}` takes values with names"))
-                    .label("which argument?")
-                    .help("for instance `x = p(i)`"),
-            );
+            return Diagnostic::error("E0370", value.span)
+                .says(format!("`{kind}` takes values with names"))
+                .label("which argument?")
+                .help("for instance `x = p(i)`")
+                .fail(self);
         }
         let words = WORDS.iter().find(|w| w.0 == kind).map_or(&[][..], |w| w.1);
         if let ("axes", NodeKind::Text(t)) = (kind, &value.kind)
             && !words.contains(&t.to_lowercase().as_str())
         {
-            let d = Diagnostic::error("E0370", value.span)
+            let all = words.join(", ");
+            return Diagnostic::error("E0370", value.span)
                 .says(format!("`axes` does not know the word `{t}`"))
-                .label("unknown word");
-            return self.fail(match nearest(t, words.iter().copied()) {
-                Some(n) => d.help(format!("did you mean `{n}`?")),
-                None => d.help(format!(
-                    "there are: {}; labels are written `x = 'text'`",
-                    words.join(", ")
-                )),
-            });
+                .label("unknown word")
+                .did_you_mean(
+                    nearest(t, words.iter().copied()),
+                    format!("there are: {all}; labels are written `x = 'text'`"),
+                )
+                .fail(self);
         }
         if kind == "size" && is_text(value) {
-            return self.fail(
-                Diagnostic::error("E0371", value.span)
-                    .says("`size` takes numbers: width and height in pixels")
-                    .label("this is a text"),
-            );
+            return Diagnostic::error("E0371", value.span)
+                .says("`size` takes numbers: width and height in pixels")
+                .label("this is a text")
+                .fail(self);
         }
         Ok(())
     }

@@ -58,6 +58,19 @@ pub(super) struct Lost {
     unknown: Vec<(usize, String)>,
 }
 
+impl Diagnostic {
+    /// Reports it to the user, unless it repeats another.
+    pub(super) fn report(self, c: &mut Compiler) {
+        c.keep(self);
+    }
+
+    /// Reports it; what it belongs to is not there.
+    pub(super) fn fail<T>(self, c: &mut Compiler) -> Result<T, Failed> {
+        self.report(c);
+        Err(Failed)
+    }
+}
+
 impl Compiler {
     /// A statement begins.
     pub(super) fn begin_statement(&mut self) {
@@ -66,7 +79,7 @@ impl Compiler {
     }
 
     /// Keeps a diagnostic, unless it repeats another.
-    pub(super) fn report(&mut self, d: Diagnostic) {
+    fn keep(&mut self, d: Diagnostic) {
         let from = self.lost.statement.min(self.diagnostics.len());
         let here = &mut self.diagnostics[from..];
         let said = |group: &&[&str]| {
@@ -182,7 +195,7 @@ impl Compiler {
     pub(super) fn unknown<T>(&mut self, id: &Ident, d: Diagnostic) -> Result<T, Failed> {
         if !self.is_lost(&id.name) {
             let before = self.diagnostics.len();
-            self.report(d);
+            d.report(self);
             if self.diagnostics.len() > before {
                 self.lost.unknown.push((before, id.name.to_string()));
             }
@@ -208,7 +221,7 @@ impl Compiler {
         match first {
             None => {
                 self.lost.unbound = vec![lower];
-                self.report(d);
+                d.report(self);
             }
             Some(first) if !self.lost.unbound.contains(&lower) => {
                 self.lost.unbound.push(lower);

@@ -86,17 +86,16 @@ impl Compiler {
                 "declare `{an}` as a subset (`set {an}({dn})`) or as an alias of `{dn}`; equal labels alone do not make it one"
             )
         };
-        self.fail(
-            Diagnostic::error("E0306", span)
-                .says(format!(
-                    "`{an}` may not stand at position {} of `{on}`, which runs over `{dn}`",
-                    position + 1
-                ))
-                .label(why)
-                .other(declared, format!("`{on}` is declared here"))
-                .other(a_root, format!("`{an}` is declared here"))
-                .help(help),
-        )
+        Diagnostic::error("E0306", span)
+            .says(format!(
+                "`{an}` may not stand at position {} of `{on}`, which runs over `{dn}`",
+                position + 1
+            ))
+            .label(why)
+            .other(declared, format!("`{on}` is declared here"))
+            .other(a_root, format!("`{an}` is declared here"))
+            .help(help)
+            .fail(self)
     }
 
     pub(super) fn wrong_dimension<T>(
@@ -125,30 +124,29 @@ impl Compiler {
         } else {
             format!("{}({})", s.name, names.join(","))
         };
-        self.fail(
-            Diagnostic::error("E0304", span)
-                .says(format!(
-                    "`{}` has {}, but {} given here",
-                    s.name,
-                    plural(s.dim()),
-                    match given {
-                        0 => "none is".to_string(),
-                        1 => "1 is".to_string(),
-                        n => format!("{n} are"),
-                    }
-                ))
-                .label(format!("{} here", plural(given)))
-                .other(
-                    s.declared,
-                    format!("declared with {} here", plural(s.dim())),
-                )
-                .help(match (s.dim(), &s.kind) {
-                    (0, SymbolKind::Parameter { .. } | SymbolKind::Variable(_)) if given == 1 => {
-                        format!("write `{shape}`; a product is `{shape}*(…)`")
-                    }
-                    _ => format!("write `{shape}`"),
-                }),
-        )
+        Diagnostic::error("E0304", span)
+            .says(format!(
+                "`{}` has {}, but {} given here",
+                s.name,
+                plural(s.dim()),
+                match given {
+                    0 => "none is".to_string(),
+                    1 => "1 is".to_string(),
+                    n => format!("{n} are"),
+                }
+            ))
+            .label(format!("{} here", plural(given)))
+            .other(
+                s.declared,
+                format!("declared with {} here", plural(s.dim())),
+            )
+            .help(match (s.dim(), &s.kind) {
+                (0, SymbolKind::Parameter { .. } | SymbolKind::Variable(_)) if given == 1 => {
+                    format!("write `{shape}`; a product is `{shape}*(…)`")
+                }
+                _ => format!("write `{shape}`"),
+            })
+            .fail(self)
     }
 
     /// A symbol that was declared without a domain gets as many indices as its first use has.
@@ -274,17 +272,15 @@ impl Compiler {
             }
             ExprKind::Number(x) => {
                 let text = x.to_string();
-                self.fail(
-                    Diagnostic::error("E0307", e.span).says("a number may not stand as an index")
-                        .label("an index is expected")
-                        .help(format!("if `{text}` is a label, quote it: `'{text}'`")),
-                )
-            }
-            _ => self.fail(
-                Diagnostic::error("E0307", e.span).says("this is not an index")
+                Diagnostic::error("E0307", e.span).says("a number may not stand as an index")
                     .label("an index is expected")
-                    .help("an index is a set under control, a quoted label, or a lag such as `t-1` or `t++1`"),
-            ),
+                    .help(format!("if `{text}` is a label, quote it: `'{text}'`"))
+                    .fail(self)
+            }
+            _ => Diagnostic::error("E0307", e.span).says("this is not an index")
+                .label("an index is expected")
+                .help("an index is a set under control, a quoted label, or a lag such as `t-1` or `t++1`")
+                .fail(self),
         }
     }
 
@@ -381,11 +377,11 @@ impl Compiler {
             let d = Diagnostic::warning("E0308", span)
                 .says(message)
                 .label("reads 0");
-            self.report(d.help(help));
+            d.help(help).report(self);
             return Ok(self.store.universe.intern(text));
         }
         let d = Diagnostic::error("E0308", span).says(message);
-        self.fail(d.label("unknown label").help(help))
+        d.label("unknown label").help(help).fail(self)
     }
 
     /// Runs `f` where labels may be new: on the left of an assignment, in the key of an equation.
@@ -424,7 +420,7 @@ impl Compiler {
                 .help(format!(
                     "write its elements between slashes: `set {name} / {quote}{text}{quote}, … /;`"
                 ));
-            self.report(d);
+            d.report(self);
             self.lose_declaration(&name);
             return Err(Failed);
         }
@@ -468,7 +464,7 @@ impl Compiler {
         self.doubtful.retain(|(s, _)| *s != set_id);
         if self.modes.at(span).warnings {
             d.severity = Severity::Warning;
-            self.report(d);
+            d.report(self);
             return Ok(self.store.universe.intern(text));
         }
         // Declared over the wrong set: what its uses show is no news.
@@ -476,7 +472,7 @@ impl Compiler {
             let name = name.clone();
             self.lose_declaration(&name);
         }
-        self.fail(d)
+        d.fail(self)
     }
 
     /// A label that another position of the symbol's domain has, or another set alone.
@@ -554,25 +550,22 @@ impl Compiler {
                 let table = self.symbols.get(s).table;
                 match part.len() {
                     1 => Ok((part.remove(0), table)),
-                    _ => self.fail(
-                        Diagnostic::error("E0307", base.span)
-                            .says("a lag needs a one-dimensional set")
-                            .label("several indices"),
-                    ),
+                    _ => Diagnostic::error("E0307", base.span)
+                        .says("a lag needs a one-dimensional set")
+                        .label("several indices")
+                        .fail(self),
                 }
             }
-            ExprKind::Text(label) => self.fail(
-                Diagnostic::error("E0309", base.span)
-                    .says(format!("the label `'{label}'` takes no lag or lead"))
-                    .label("a label is one element")
-                    .help("write the label you mean, or use an index that runs"),
-            ),
-            _ => self.fail(
-                Diagnostic::error("E0307", base.span)
-                    .says("this is not an index")
-                    .label("an index is expected")
-                    .help("a lag or lead starts from a set under control: `t-1`, `t+k`, `t++1`"),
-            ),
+            ExprKind::Text(label) => Diagnostic::error("E0309", base.span)
+                .says(format!("the label `'{label}'` takes no lag or lead"))
+                .label("a label is one element")
+                .help("write the label you mean, or use an index that runs")
+                .fail(self),
+            _ => Diagnostic::error("E0307", base.span)
+                .says("this is not an index")
+                .label("an index is expected")
+                .help("a lag or lead starts from a set under control: `t-1`, `t+k`, `t++1`")
+                .fail(self),
         }
     }
 
@@ -590,12 +583,11 @@ impl Compiler {
             }
             ExprKind::Sum(terms) => {
                 if terms.len() > 2 {
-                    return self.fail(
-                        Diagnostic::error("E0309", e.span)
-                            .says("an index takes one lag or lead")
-                            .label("several")
-                            .help("put the sum into parentheses: `t+(k+1)`"),
-                    );
+                    return Diagnostic::error("E0309", e.span)
+                        .says("an index takes one lag or lead")
+                        .label("several")
+                        .help("put the sum into parentheses: `t+(k+1)`")
+                        .fail(self);
                 }
                 let mut offset = Vec::new();
                 for (sign, t) in &terms[1..] {
@@ -626,33 +618,30 @@ impl Compiler {
         let root = self.symbols.get(self.symbols.root(s));
         let (declared, name) = (root.declared, root.name.clone());
         if matches!(root.kind, SymbolKind::Set { singleton: true }) {
-            return self.fail(
-                Diagnostic::error("E0309", span)
-                    .says(format!(
-                        "{what} needs an ordered set; `{name}` is a singleton"
-                    ))
-                    .other(declared, "declared here"),
-            );
+            return Diagnostic::error("E0309", span)
+                .says(format!(
+                    "{what} needs an ordered set; `{name}` is a singleton"
+                ))
+                .other(declared, "declared here")
+                .fail(self);
         }
         if root.dynamic {
-            return self.fail(
-                Diagnostic::error("E0309", span)
-                    .says(format!(
-                        "{what} needs an ordered set; `{name}` is changed by an assignment"
-                    ))
-                    .label("a dynamic set has no order")
-                    .other(declared, "declared here")
-                    .help("use the set that it is a subset of, or `$offOrder`"),
-            );
+            return Diagnostic::error("E0309", span)
+                .says(format!(
+                    "{what} needs an ordered set; `{name}` is changed by an assignment"
+                ))
+                .label("a dynamic set has no order")
+                .other(declared, "declared here")
+                .help("use the set that it is a subset of, or `$offOrder`")
+                .fail(self);
         }
         if root.unordered {
-            return self.fail(
-                Diagnostic::error("E0309", span)
-                    .says(format!("{what} needs an ordered set; the labels of `{name}` appeared earlier in another order"))
-                    .label("not ordered")
-                    .other(declared, "declared here")
-                    .help("declare the set with its labels in the wanted order before they appear elsewhere"),
-            );
+            return Diagnostic::error("E0309", span)
+                .says(format!("{what} needs an ordered set; the labels of `{name}` appeared earlier in another order"))
+                .label("not ordered")
+                .other(declared, "declared here")
+                .help("declare the set with its labels in the wanted order before they appear elsewhere")
+                .fail(self);
         }
         Ok(())
     }

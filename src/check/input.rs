@@ -76,40 +76,37 @@ impl Compiler {
         };
         if let Some(what) = wrong_kind {
             let (kind, name) = (symbol.kind_name(), &symbol.name);
-            return self.fail(
-                Diagnostic::error("E0376", span)
-                    .says(format!("`{name}` is a {kind}; {what} were given for it"))
-                    .label("declared here")
-                    .help("give members to sets, and numbers to parameters"),
-            );
+            return Diagnostic::error("E0376", span)
+                .says(format!("`{name}` is a {kind}; {what} were given for it"))
+                .label("declared here")
+                .help("give members to sets, and numbers to parameters")
+                .fail(self);
         }
         let dim = symbol.dim();
         let given = input.data.keys();
         if let Some((n, key)) = given.unlike(dim) {
-            return self.fail(
-                Diagnostic::error("E0377", span)
-                    .says(format!(
-                        "`{}` has {dim} index position{}; {} given for it has {}",
-                        symbol.name,
-                        if dim == 1 { "" } else { "s" },
-                        record(&symbol.name, &key, n),
-                        key.len()
-                    ))
-                    .label("declared here"),
-            );
+            return Diagnostic::error("E0377", span)
+                .says(format!(
+                    "`{}` has {dim} index position{}; {} given for it has {}",
+                    symbol.name,
+                    if dim == 1 { "" } else { "s" },
+                    record(&symbol.name, &key, n),
+                    key.len()
+                ))
+                .label("declared here")
+                .fail(self);
         }
         if let SymbolKind::Set { singleton: true } = symbol.kind
             && given.len() > 1
         {
-            return self.fail(
-                Diagnostic::error("E0377", span)
-                    .says(format!(
-                        "`{}` is a singleton; {} members were given",
-                        symbol.name,
-                        given.len()
-                    ))
-                    .label("declared here"),
-            );
+            return Diagnostic::error("E0377", span)
+                .says(format!(
+                    "`{}` is a singleton; {} members were given",
+                    symbol.name,
+                    given.len()
+                ))
+                .label("declared here")
+                .fail(self);
         }
         Ok(())
     }
@@ -199,20 +196,19 @@ impl Compiler {
         let members = members.map(|&l| self.store.universe.name(l));
         let near = nearest(key[position], members).map(str::to_string);
         let (set_name, declared) = (domain.name.clone(), domain.declared);
-        let d = Diagnostic::error("E0377", span)
+        Diagnostic::error("E0377", span)
             .says(format!(
                 "{} was given from outside, but `{}` is not a member of `{set_name}`",
                 record(name, &key, r),
                 key[position]
             ))
             .label("declared here")
-            .other(declared, format!("`{set_name}` is declared here"));
-        self.fail(match near {
-            Some(near) => d.help(format!("did you mean `{near}`?")),
-            None => d.help(format!(
-                "give `{set_name}` this member too, or leave the record out"
-            )),
-        })
+            .other(declared, format!("`{set_name}` is declared here"))
+            .did_you_mean(
+                near,
+                format!("give `{set_name}` this member too, or leave the record out"),
+            )
+            .fail(self)
     }
 
     /// An error for each piece of data that no symbol has taken.
@@ -232,18 +228,19 @@ impl Compiler {
                 None => {
                     let message =
                         format!("data were given for `{name}`, which the model does not declare");
-                    let d = Diagnostic::error("E0376", Span::default()).says(message);
                     let takes = |k: &SymbolKind| {
                         matches!(k, SymbolKind::Set { .. } | SymbolKind::Parameter { .. })
                     };
                     let known = self.symbols.iter().skip(1).filter(|(_, s)| takes(&s.kind));
-                    match nearest(name, known.map(|(_, s)| &*s.name)) {
-                        Some(near) => d.help(format!("did you mean `{near}`?")),
-                        None => d.help(format!("declare it: `parameter {name};`")),
-                    }
+                    Diagnostic::error("E0376", Span::default())
+                        .says(message)
+                        .did_you_mean(
+                            nearest(name, known.map(|(_, s)| &*s.name)),
+                            format!("declare it: `parameter {name};`"),
+                        )
                 }
             };
-            self.report(d);
+            d.report(self);
         }
     }
 }

@@ -176,7 +176,7 @@ pub fn compile(
             }
             Err(errors) => {
                 c.begin_statement();
-                errors.into_iter().for_each(|d| c.report(d));
+                errors.into_iter().for_each(|d| d.report(&mut c));
                 if let Some(text) = parser.refused() {
                     c.lose_statement(text);
                 }
@@ -192,7 +192,7 @@ pub fn compile(
         }
     }
     if let Err(d) = c.finish_unload(&mut parser) {
-        c.report(d.as_error());
+        d.as_error().report(&mut c);
     }
     c.unused_inputs();
     c.clear_errors(parser.cleared_errors());
@@ -252,12 +252,11 @@ impl Compiler {
     fn take(&mut self, records: usize, bytes: usize, span: Span) -> Result<(), Failed> {
         self.taken = self.taken.saturating_add(records.saturating_mul(bytes));
         match self.max_memory {
-            Some(limit) if self.taken > limit => self.fail(
-                Diagnostic::error("E0491", span)
-                    .says(format!("the memory limit of {} MB is used up", limit >> 20))
-                    .label("by the data up to here")
-                    .help("raise it with `--max-memory`, or make the set by an assignment with a condition"),
-            ),
+            Some(limit) if self.taken > limit => Diagnostic::error("E0491", span)
+                .says(format!("the memory limit of {} MB is used up", limit >> 20))
+                .label("by the data up to here")
+                .help("raise it with `--max-memory`, or make the set by an assignment with a condition")
+                .fail(self),
             _ => Ok(()),
         }
     }
@@ -329,7 +328,7 @@ impl Compiler {
                     },
                 }),
         };
-        self.report(d);
+        d.report(self);
         // One such message per symbol.
         self.symbols.get_mut(root).assigned = true;
     }

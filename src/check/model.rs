@@ -24,17 +24,16 @@ impl Compiler {
         let model = self.lookup_model(&s.model)?;
         let symbol = self.symbols.get(model).clone();
         let SymbolKind::Model(info) = &symbol.kind else {
-            return self.fail(
-                Diagnostic::error("E0350", s.model.span)
-                    .says(format!(
-                        "`{}` is {}, not a model",
-                        symbol.name,
-                        symbol.a_kind()
-                    ))
-                    .label("a model is expected")
-                    .other(symbol.declared, "declared here")
-                    .help("declare one: `model m / all /;`"),
-            );
+            return Diagnostic::error("E0350", s.model.span)
+                .says(format!(
+                    "`{}` is {}, not a model",
+                    symbol.name,
+                    symbol.a_kind()
+                ))
+                .label("a model is expected")
+                .other(symbol.declared, "declared here")
+                .help("declare one: `model m / all /;`")
+                .fail(self);
         };
         let Some(using) = ProblemType::from_name(&s.using.name) else {
             return self.no_problem_type(&s.using);
@@ -53,31 +52,28 @@ impl Compiler {
             return Err(Failed);
         }
         if rows.is_empty() {
-            return self.fail(
-                Diagnostic::error("E0353", s.model.span)
-                    .says(format!("the model `{}` has no equations", symbol.name))
-                    .label("nothing to solve")
-                    .other(symbol.declared, "declared here")
-                    .help("list equations in it: `model m / all /;`"),
-            );
+            return Diagnostic::error("E0353", s.model.span)
+                .says(format!("the model `{}` has no equations", symbol.name))
+                .label("nothing to solve")
+                .other(symbol.declared, "declared here")
+                .help("list equations in it: `model m / all /;`")
+                .fail(self);
         }
         let has_objective = using.has_objective();
         let objective = match &s.objective {
             Some((sense, name)) if has_objective => Some((*sense, self.objective(name, &rows)?)),
             Some((_, name)) => {
-                return self.fail(
-                    Diagnostic::error("E0354", name.span)
-                        .says(format!("a model of type `{using}` has no objective"))
-                        .label("not expected here")
-                        .help(format!("write `solve {} using {using};`", symbol.name)),
-                );
+                return Diagnostic::error("E0354", name.span)
+                    .says(format!("a model of type `{using}` has no objective"))
+                    .label("not expected here")
+                    .help(format!("write `solve {} using {using};`", symbol.name))
+                    .fail(self);
             }
             None if has_objective => {
-                return self.fail(
-                    Diagnostic::error("E0355", span).says(format!("a model of type `{using}` needs an objective variable"))
-                        .label("no `minimizing` or `maximizing`")
-                        .help(format!("write `solve {} using {using} minimizing z;` with a free scalar variable `z`", symbol.name)),
-                );
+                return Diagnostic::error("E0355", span).says(format!("a model of type `{using}` needs an objective variable"))
+                    .label("no `minimizing` or `maximizing`")
+                    .help(format!("write `solve {} using {using} minimizing z;` with a free scalar variable `z`", symbol.name))
+                    .fail(self);
             }
             None => None,
         };
@@ -129,22 +125,20 @@ impl Compiler {
         if !all {
             return self.lookup(name);
         }
-        self.fail(
-            Diagnostic::error("E0350", name.span)
-                .says("`all` stands in the list of a model")
-                .label("a model is expected")
-                .help("write `model m / all /; solve m using lp minimizing z;`"),
-        )
+        Diagnostic::error("E0350", name.span)
+            .says("`all` stands in the list of a model")
+            .label("a model is expected")
+            .help("write `model m / all /; solve m using lp minimizing z;`")
+            .fail(self)
     }
 
     fn no_problem_type<T>(&mut self, name: &Ident) -> Result<T, Failed> {
         if name.name.eq_ignore_ascii_case("emp") {
-            return self.fail(
-                Diagnostic::error("E0352", name.span)
-                    .says("`emp` is not there")
-                    .label("not supported")
-                    .help("state the optimality conditions as an `mcp`"),
-            );
+            return Diagnostic::error("E0352", name.span)
+                .says("`emp` is not there")
+                .label("not supported")
+                .help("state the optimality conditions as an `mcp`")
+                .fail(self);
         }
         let names = ProblemType::ALL.map(ProblemType::name);
         let near = match name.name.to_lowercase().as_str() {
@@ -156,12 +150,11 @@ impl Compiler {
             lower => nearest(lower, names).unwrap_or("lp"),
         };
         let there_are = names.join(", ");
-        self.fail(
-            Diagnostic::error("E0351", name.span)
-                .says(format!("there is no problem type `{}`", name.name))
-                .label("unknown problem type")
-                .help(format!("did you mean `{near}`? there are: {there_are}")),
-        )
+        Diagnostic::error("E0351", name.span)
+            .says(format!("there is no problem type `{}`", name.name))
+            .label("unknown problem type")
+            .help(format!("did you mean `{near}`? there are: {there_are}"))
+            .fail(self)
     }
 
     /// After a solve, levels and marginals are there: of the equations and of what stands in them.
@@ -306,17 +299,16 @@ impl Compiler {
             if self.is_lost(&name) || self.lacks_equations() {
                 continue;
             }
-            let _ = self.fail::<()>(
-                Diagnostic::error("E0356", at)
-                    .says(format!(
-                        "the equation `{name}` is in the model but is not defined"
-                    ))
-                    .label("in this model")
-                    .other(declared, "declared here, and defined nowhere")
-                    .help(format!(
-                        "define it: `{name}.. left =e= right;`, or take it out of the model"
-                    )),
-            );
+            Diagnostic::error("E0356", at)
+                .says(format!(
+                    "the equation `{name}` is in the model but is not defined"
+                ))
+                .label("in this model")
+                .other(declared, "declared here, and defined nowhere")
+                .help(format!(
+                    "define it: `{name}.. left =e= right;`, or take it out of the model"
+                ))
+                .report(self);
         }
         undefined.is_empty().then_some(()).ok_or(Failed)
     }
@@ -329,36 +321,36 @@ impl Compiler {
         let v = self.lookup(name)?;
         let symbol = self.symbols.get(v).clone();
         let SymbolKind::Variable(kind) = symbol.kind else {
-            return self.fail(
-                Diagnostic::error("E0357", name.span).says(format!("the objective must be a variable; `{}` is {}", symbol.name, symbol.a_kind()))
-                    .label("not a variable")
-                    .other(symbol.declared, "declared here")
-                    .help("declare a free variable and an equation that defines it: `variable z; equation cost; cost.. z =e= …;`"),
-            );
+            return Diagnostic::error("E0357", name.span).says(format!("the objective must be a variable; `{}` is {}", symbol.name, symbol.a_kind()))
+                .label("not a variable")
+                .other(symbol.declared, "declared here")
+                .help("declare a free variable and an equation that defines it: `variable z; equation cost; cost.. z =e= …;`")
+                .fail(self);
         };
         if symbol.dim() > 0 {
-            return self.fail(
-                Diagnostic::error("E0358", name.span)
-                    .says(format!(
-                        "the objective must be a single number; `{}` is indexed",
-                        symbol.name
-                    ))
-                    .label("indexed")
-                    .other(symbol.declared, "declared with indices here")
-                    .help("declare a free scalar variable and define it in an equation"),
-            );
+            return Diagnostic::error("E0358", name.span)
+                .says(format!(
+                    "the objective must be a single number; `{}` is indexed",
+                    symbol.name
+                ))
+                .label("indexed")
+                .other(symbol.declared, "declared with indices here")
+                .help("declare a free scalar variable and define it in an equation")
+                .fail(self);
         }
         if !matches!(kind, VariableKind::Free | VariableKind::Unstated) {
-            return self.fail(
-                Diagnostic::error("E0359", name.span)
-                    .says(format!("the objective `{}` must be a free variable", symbol.name))
-                    .label("restricted in sign")
-                    .other(symbol.declared, "declared here")
-                    .help(format!(
-                        "declare it by `free variable {0};`, and bound it by an equation if it must be",
-                        symbol.name
-                    )),
-            );
+            return Diagnostic::error("E0359", name.span)
+                .says(format!(
+                    "the objective `{}` must be a free variable",
+                    symbol.name
+                ))
+                .label("restricted in sign")
+                .other(symbol.declared, "declared here")
+                .help(format!(
+                    "declare it by `free variable {0};`, and bound it by an equation if it must be",
+                    symbol.name
+                ))
+                .fail(self);
         }
         let mentioned = rows.iter().any(|r| {
             let e = &self.equations[r.definition];
@@ -366,19 +358,18 @@ impl Compiler {
         });
         // An equation that failed to compile may be the one that mentions it.
         if !mentioned && self.errors() == 0 {
-            return self.fail(
-                Diagnostic::error("E0360", name.span)
-                    .says(format!(
-                        "the objective `{}` stands in no equation of the model",
-                        symbol.name
-                    ))
-                    .label("in no equation")
-                    .other(symbol.declared, "declared here")
-                    .help(format!(
-                        "define it in an equation of the model: `cost.. {} =e= …;`",
-                        symbol.name
-                    )),
-            );
+            return Diagnostic::error("E0360", name.span)
+                .says(format!(
+                    "the objective `{}` stands in no equation of the model",
+                    symbol.name
+                ))
+                .label("in no equation")
+                .other(symbol.declared, "declared here")
+                .help(format!(
+                    "define it in an equation of the model: `cost.. {} =e= …;`",
+                    symbol.name
+                ))
+                .fail(self);
         }
         Ok(v)
     }
@@ -467,13 +458,12 @@ impl Compiler {
                 } else {
                     format!("the equation `{name}` may not stand in a model solved as `{using}`")
                 };
-                self.fail(
-                    Diagnostic::error(code, span)
-                        .says(kind)
-                        .label(what)
-                        .other(solve, "solved here")
-                        .help(help),
-                )
+                Diagnostic::error(code, span)
+                    .says(kind)
+                    .label(what)
+                    .other(solve, "solved here")
+                    .help(help)
+                    .fail(self)
             }
         }
     }
@@ -504,7 +494,7 @@ impl Compiler {
             .help(format!(
                 "loop over an alias: `alias({name},{name}_);` and `loop({name}_, …)`"
             ));
-        self.fail(error)
+        error.fail(self)
     }
 
     /// Some types have no discrete variables at all; for the others the solve decides.
@@ -545,19 +535,18 @@ impl Compiler {
             self.symbols.get(v).declared,
         );
         let relaxed = using.relaxation();
-        self.fail(
-            Diagnostic::error("E0363", at)
-                .says(format!(
-                    "`{name}` is a discrete variable, but the model is solved as `{using}`"
-                ))
-                .label("discrete")
-                .other(declared, "declared here")
-                .other(solve, "solved here")
-                .help(format!(
-                    "`solve … using {}` decides it; `using {relaxed}` solves the relaxation",
-                    &relaxed.name()[1..]
-                )),
-        )
+        Diagnostic::error("E0363", at)
+            .says(format!(
+                "`{name}` is a discrete variable, but the model is solved as `{using}`"
+            ))
+            .label("discrete")
+            .other(declared, "declared here")
+            .other(solve, "solved here")
+            .help(format!(
+                "`solve … using {}` decides it; `using {relaxed}` solves the relaxation",
+                &relaxed.name()[1..]
+            ))
+            .fail(self)
     }
 
     /// The rules of matching that can be seen in the text.
@@ -578,16 +567,14 @@ impl Compiler {
                     self.symbols.get(v).name.clone(),
                     self.symbols.get(v).declared,
                 );
-                failed |= self
-                    .fail::<()>(
-                        Diagnostic::error("E0368", span)
-                            .says(format!(
-                                "the variable `{name}` of a pair stands in no equation of the model"
-                            ))
-                            .label("paired, but in no equation")
-                            .other(declared, "declared here"),
-                    )
-                    .is_err();
+                Diagnostic::error("E0368", span)
+                    .says(format!(
+                        "the variable `{name}` of a pair stands in no equation of the model"
+                    ))
+                    .label("paired, but in no equation")
+                    .other(declared, "declared here")
+                    .report(self);
+                failed = true;
             }
         }
         for r in rows {
@@ -596,14 +583,12 @@ impl Compiler {
             let eq = self.symbols.get(symbol).clone();
             let Some(v) = r.pair else {
                 if using == ProblemType::Mcp && relation != Relation::Equal {
-                    failed |= self
-                        .fail::<()>(
-                            Diagnostic::error("E0364", r.span).says(format!("the inequality `{}` has no partner", eq.name))
-                                .label("unmatched")
-                                .other(self.equations[r.definition].span, "defined here")
-                                .help(format!("pair it with a variable in the model: `{}.x`; only `=e=` rows may go without (with free variables)", eq.name)),
-                        )
-                        .is_err();
+                    Diagnostic::error("E0364", r.span).says(format!("the inequality `{}` has no partner", eq.name))
+                        .label("unmatched")
+                        .other(self.equations[r.definition].span, "defined here")
+                        .help(format!("pair it with a variable in the model: `{}.x`; only `=e=` rows may go without (with free variables)", eq.name))
+                        .report(self);
+                    failed = true;
                 }
                 continue;
             };
@@ -613,15 +598,13 @@ impl Compiler {
                 .find(|o| o.definition == r.definition && o.pair.is_some() && o.pair != r.pair)
                 && r.span.lo > other.span.lo
             {
-                failed |= self
-                    .fail::<()>(
-                        Diagnostic::error("E0367", r.span)
-                            .says(format!("the equation `{}` is paired twice", eq.name))
-                            .label("second pair")
-                            .other(other.span, "first pair")
-                            .help("an equation has one partner: take one of the pairs out"),
-                    )
-                    .is_err();
+                Diagnostic::error("E0367", r.span)
+                    .says(format!("the equation `{}` is paired twice", eq.name))
+                    .label("second pair")
+                    .other(other.span, "first pair")
+                    .help("an equation has one partner: take one of the pairs out")
+                    .report(self);
+                failed = true;
             }
         }
         if failed { Err(Failed) } else { Ok(()) }
@@ -631,19 +614,18 @@ impl Compiler {
     fn check_domains(&mut self, e: SymbolId, v: SymbolId, at: Span) -> Result<(), Failed> {
         let (eq, var) = (self.symbols.get(e).clone(), self.symbols.get(v).clone());
         if eq.dim() != var.dim() {
-            return self.fail(
-                Diagnostic::error("E0365", at)
-                    .says(format!(
-                        "`{}` has {} indices and `{}` has {}: they cannot be paired",
-                        eq.name,
-                        eq.dim(),
-                        var.name,
-                        var.dim()
-                    ))
-                    .label("different dimensions")
-                    .other(eq.declared, "the equation")
-                    .other(var.declared, "the variable"),
-            );
+            return Diagnostic::error("E0365", at)
+                .says(format!(
+                    "`{}` has {} indices and `{}` has {}: they cannot be paired",
+                    eq.name,
+                    eq.dim(),
+                    var.name,
+                    var.dim()
+                ))
+                .label("different dimensions")
+                .other(eq.declared, "the equation")
+                .other(var.declared, "the variable")
+                .fail(self);
         }
         let same = eq
             .domain
@@ -656,16 +638,15 @@ impl Compiler {
                 _ => true,
             });
         if !same {
-            return self.fail(
-                Diagnostic::error("E0366", at)
-                    .says(format!(
-                        "`{}` and `{}` run over different sets, or the same in another order",
-                        eq.name, var.name
-                    ))
-                    .label("domains differ")
-                    .other(eq.declared, "the equation")
-                    .other(var.declared, "the variable"),
-            );
+            return Diagnostic::error("E0366", at)
+                .says(format!(
+                    "`{}` and `{}` run over different sets, or the same in another order",
+                    eq.name, var.name
+                ))
+                .label("domains differ")
+                .other(eq.declared, "the equation")
+                .other(var.declared, "the variable")
+                .fail(self);
         }
         Ok(())
     }

@@ -83,12 +83,11 @@ impl Compiler {
                     return self.refused_option(item, &lower, "", item.name.span, &refused);
                 }
                 let message = format!("the option `{}` needs a value", item.name.name);
-                self.fail(
-                    Diagnostic::error("E0330", item.name.span)
-                        .says(message)
-                        .label("no value")
-                        .help(format!("write `option {} = …;`", item.name.name)),
-                )
+                Diagnostic::error("E0330", item.name.span)
+                    .says(message)
+                    .label("no value")
+                    .help(format!("write `option {} = …;`", item.name.name))
+                    .fail(self)
             }
         }
     }
@@ -112,7 +111,7 @@ impl Compiler {
                     let d = Diagnostic::warning("E0329", item.name.span).says(message);
                     let help =
                         "leave it out, or keep it for other systems: no result depends on it";
-                    self.report(d.label("passed over").help(help));
+                    d.label("passed over").help(help).report(self);
                 }
                 Ok(None)
             }
@@ -122,7 +121,7 @@ impl Compiler {
                 let d = Diagnostic::warning("E0349", span)
                     .says(message)
                     .label("passed over");
-                self.report(d.help(format!("there are: {own}")));
+                d.help(format!("there are: {own}")).report(self);
                 Ok(Some(CodeKind::Option(name.into(), "default".into())))
             }
             Err(refused) => self.refused_option(item, &name, &text, span, &refused),
@@ -159,9 +158,9 @@ impl Compiler {
             None => d,
         };
         if !lenient {
-            return self.fail(d);
+            return d.fail(self);
         }
-        self.report(d);
+        d.report(self);
         Ok(match code {
             "E0349" => Some(CodeKind::Option(name.into(), "default".into())),
             _ => None,
@@ -185,12 +184,11 @@ impl Compiler {
         }
         let message = "`option p:d:r:c` takes decimals d from 0 to 8, fewer row indices r than `p` has indices, \
                        and at most the rest as columns c";
-        self.fail(
-            Diagnostic::error("E0329", span)
-                .says(message)
-                .label(format!("has {dim} indices"))
-                .help("r = 0 displays a list, c records to a line"),
-        )
+        Diagnostic::error("E0329", span)
+            .says(message)
+            .label(format!("has {dim} indices"))
+            .help("r = 0 displays a list, c records to a line")
+            .fail(self)
     }
 
     fn matching(
@@ -231,11 +229,10 @@ impl Compiler {
             }
             _ => {
                 let message = "`option p > s` takes a set `p(n,s,s)`: a number, an element of `s`, and what takes its place";
-                return self.fail(
-                    Diagnostic::error("E0331", item.name.span)
-                        .says(message)
-                        .other(symbol.declared, "declared here"),
-                );
+                return Diagnostic::error("E0331", item.name.span)
+                    .says(message)
+                    .other(symbol.declared, "declared here")
+                    .fail(self);
             }
         };
         for position in 1..3 {
@@ -261,12 +258,11 @@ impl Compiler {
         let (SymbolKind::Parameter { .. }, [index]) = (&symbol.kind, symbol.domain.as_slice())
         else {
             let (declared, kind) = (symbol.declared, symbol.a_kind());
-            return self.fail(
-                Diagnostic::error("E0330", span).says("`option shuffle` takes a parameter with one index")
-                    .label(format!("this is {kind}"))
-                    .other(declared, "declared here")
-                    .help("declare `parameter p(i);` for it: it gets the positions of the elements, shuffled"),
-            );
+            return Diagnostic::error("E0330", span).says("`option shuffle` takes a parameter with one index")
+                .label(format!("this is {kind}"))
+                .other(declared, "declared here")
+                .help("declare `parameter p(i);` for it: it gets the positions of the elements, shuffled")
+                .fail(self);
         };
         let set = match index {
             DomainPosition::Set(s) => *s,
@@ -288,15 +284,14 @@ impl Compiler {
         self.used(s, source.span);
         let (target, from) = (self.symbols.get(t).clone(), self.symbols.get(s).clone());
         if !target.is_set() && !matches!(target.kind, SymbolKind::Parameter { .. }) {
-            return self.fail(
-                Diagnostic::error("E0331", item.name.span)
-                    .says(format!(
-                        "`{}` is {}: only sets and parameters are projected to",
-                        item.name.name,
-                        target.a_kind()
-                    ))
-                    .other(target.declared, "declared here"),
-            );
+            return Diagnostic::error("E0331", item.name.span)
+                .says(format!(
+                    "`{}` is {}: only sets and parameters are projected to",
+                    item.name.name,
+                    target.a_kind()
+                ))
+                .other(target.declared, "declared here")
+                .fail(self);
         }
         let positions: Vec<usize> = match (&item.indices, source_indices) {
             (Some(a), Some(b)) => {
@@ -308,10 +303,9 @@ impl Compiler {
                     {
                         Some(i) => p.push(i),
                         None => {
-                            return self.fail(Diagnostic::error("E0331", name.span).says(format!(
-                                "`{}` is not an index of the right side",
-                                name.name
-                            )));
+                            return Diagnostic::error("E0331", name.span)
+                                .says(format!("`{}` is not an index of the right side", name.name))
+                                .fail(self);
                         }
                     }
                 }
@@ -334,12 +328,11 @@ impl Compiler {
             }
         };
         if positions.len() != target.dim() {
-            return self.fail(
-                Diagnostic::error("E0331", item.name.span)
-                    .says("the right side does not have the index sets of the left")
-                    .other(target.declared, "left side declared here")
-                    .other(from.declared, "right side declared here"),
-            );
+            return Diagnostic::error("E0331", item.name.span)
+                .says("the right side does not have the index sets of the left")
+                .other(target.declared, "left side declared here")
+                .other(from.declared, "right side declared here")
+                .fail(self);
         }
         self.changes_set(t);
         Ok(Some(CodeKind::Project {

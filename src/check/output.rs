@@ -24,25 +24,25 @@ impl Compiler {
                     let is_known = self.symbols.find(&r.name.name).is_some();
                     if !is_known && !r.indices.is_empty() && is_operation(&r.name.name) {
                         let message = "`display` takes symbols, not expressions";
-                        return self.fail(Diagnostic::error("E0328", r.span).says(message).help(
-                            "assign it first: `parameter total; total = …; display total;`",
-                        ));
+                        return Diagnostic::error("E0328", r.span)
+                            .says(message)
+                            .help("assign it first: `parameter total; total = …; display total;`")
+                            .fail(self);
                     }
                     let s = self.lookup(&r.name)?;
                     let symbol = self.symbols.get(s).clone();
                     if !r.indices.is_empty() {
-                        return self.fail(
-                            Diagnostic::error("E0328", r.span)
-                                .says("`display` takes whole symbols, without indices")
-                                .label("indices here")
-                                .help(format!(
-                                    "write `display {}{}`; or copy the part you want into a parameter",
-                                    r.name.name,
-                                    r.attribute
-                                        .as_ref()
-                                        .map_or(String::new(), |a| format!(".{}", a.name))
-                                )),
-                        );
+                        return Diagnostic::error("E0328", r.span)
+                            .says("`display` takes whole symbols, without indices")
+                            .label("indices here")
+                            .help(format!(
+                                "write `display {}{}`; or copy the part you want into a parameter",
+                                r.name.name,
+                                r.attribute
+                                    .as_ref()
+                                    .map_or(String::new(), |a| format!(".{}", a.name))
+                            ))
+                            .fail(self);
                     }
                     let attr = match (&symbol.kind, &r.attribute) {
                         (SymbolKind::Variable(_) | SymbolKind::Equation(_), Some(a)) => {
@@ -68,12 +68,11 @@ impl Compiler {
                         (_, Some(a)) => {
                             let message =
                                 format!("{} has no attribute `.{}`", symbol.a_kind(), a.name);
-                            return self.fail(
-                                Diagnostic::error("E0314", a.span)
-                                    .says(message)
-                                    .label("not an attribute")
-                                    .help(format!("write `display {};`", symbol.name)),
-                            );
+                            return Diagnostic::error("E0314", a.span)
+                                .says(message)
+                                .label("not an attribute")
+                                .help(format!("write `display {};`", symbol.name))
+                                .fail(self);
                         }
                         (_, None) => None,
                     };
@@ -100,7 +99,7 @@ impl Compiler {
             let d = bare[1..]
                 .iter()
                 .fold(d, |d, (n, _)| d.other(n.span, "here too"));
-            return self.fail(d);
+            return d.fail(self);
         }
         Ok(out)
     }
@@ -120,11 +119,10 @@ impl Compiler {
                 if self.lacks_something() {
                     return Err(Failed);
                 }
-                return self.fail(
-                    Diagnostic::error("E0374", span).says("no file is named to write to")
-                        .label("which file?")
-                        .help("declare one, `file out / 'out.txt' /;`, and name it first: `put out 'text' /;`"),
-                );
+                return Diagnostic::error("E0374", span).says("no file is named to write to")
+                    .label("which file?")
+                    .help("declare one, `file out / 'out.txt' /;`, and name it first: `put out 'text' /;`")
+                    .fail(self);
             }
         }
         Ok(CodeKind::Put(p.keyword.clone(), condition, r?))
@@ -169,13 +167,12 @@ impl Compiler {
                 && self.symbols.get(s).is_set()
             {
                 let (i, declared) = (&name.name, self.symbols.get(s).declared);
-                let d = Diagnostic::error("E0304", name.span)
+                return Diagnostic::error("E0304", name.span)
                     .says(format!("the set `{i}` has no value to write"))
                     .label("what of it?")
-                    .other(declared, "declared here");
-                return self.fail(d.help(format!(
-                    "write its element's label, `{i}.tl`, its text, `{i}.te({i})`, or its position, `ord({i})`"
-                )));
+                    .other(declared, "declared here")
+                    .help(format!("write its element's label, `{i}.tl`, its text, `{i}.te({i})`, or its position, `ord({i})`"))
+                    .fail(self);
             }
         }
         let value = match &value.kind {

@@ -118,13 +118,12 @@ impl Compiler {
                     || variable.attribute.is_some()
                 {
                     let (declared, kind) = (symbol.declared, symbol.a_kind());
-                    return self.fail(
-                        Diagnostic::error("E0321", variable.span)
-                            .says("`for` counts with a scalar")
-                            .label(format!("this is {kind}"))
-                            .other(declared, "declared here")
-                            .help("declare `scalar k;`, or run over a set with `loop(i, …)`"),
-                    );
+                    return Diagnostic::error("E0321", variable.span)
+                        .says("`for` counts with a scalar")
+                        .label(format!("this is {kind}"))
+                        .other(declared, "declared here")
+                        .help("declare `scalar k;`, or run over a set with `loop(i, …)`")
+                        .fail(self);
                 }
                 let table = symbol.table;
                 let (from, to) = (self.expr(&f.from)?, self.expr(&f.to)?);
@@ -180,32 +179,29 @@ impl Compiler {
             // In GAMS too the run goes on when a program cannot be started: what comes after, and the
             // results before, do not depend on a viewer or an export.
             StmtKind::Refused(what) => {
-                self.report(
-                    Diagnostic::warning("E0322", what.span).says(format!("`{}` is refused", what.name))
-                        .label("would run another program; passed over")
-                        .help("a model run by bmod reads and writes only its own files; prepare the data before, or use `$include`"),
-                );
+                Diagnostic::warning("E0322", what.span).says(format!("`{}` is refused", what.name))
+                    .label("would run another program; passed over")
+                    .help("a model run by bmod reads and writes only its own files; prepare the data before, or use `$include`")
+                    .report(self);
                 return Ok(());
             }
             StmtKind::Draw(name, file) => {
                 let s = self.lookup(name)?;
                 if !matches!(self.symbols.get(s).kind, SymbolKind::Figure(_)) {
                     let declared = self.symbols.get(s).declared;
-                    return self.fail(
-                        Diagnostic::error("E0323", name.span)
-                            .says(format!("`{}` is not a figure", name.name))
-                            .label("a figure is expected")
-                            .other(declared, "declared here"),
-                    );
+                    return Diagnostic::error("E0323", name.span)
+                        .says(format!("`{}` is not a figure", name.name))
+                        .label("a figure is expected")
+                        .other(declared, "declared here")
+                        .fail(self);
                 }
                 let file = match file.as_ref().map(|f| (&f.kind, f.span)) {
                     None => None,
                     Some((ExprKind::Text(t), _)) => Some(t.clone()),
                     Some((_, span)) => {
-                        return self.fail(
-                            Diagnostic::error("E0323", span)
-                                .says("`draw` takes a file name in quotes"),
-                        );
+                        return Diagnostic::error("E0323", span)
+                            .says("`draw` takes a file name in quotes")
+                            .fail(self);
                     }
                 };
                 CodeKind::Draw(s, file)
@@ -234,12 +230,11 @@ impl Compiler {
             StmtKind::Equate(_) => "definition of an equation",
             _ => return Ok(()),
         };
-        self.fail(
-            Diagnostic::error("E0324", stmt.span)
-                .says(format!("a {what} may not stand inside a loop or an if"))
-                .label("inside a loop or an if")
-                .help("move it before the loop"),
-        )
+        Diagnostic::error("E0324", stmt.span)
+            .says(format!("a {what} may not stand inside a loop or an if"))
+            .label("inside a loop or an if")
+            .help("move it before the loop")
+            .fail(self)
     }
 
     fn body(&mut self, body: &[Stmt], map: &SourceMap) -> Result<Vec<Code>, Failed> {
@@ -262,28 +257,26 @@ impl Compiler {
         self.shape(s, &e.indices);
         let symbol = self.symbols.get(s).clone();
         let SymbolKind::Equation(defined) = symbol.kind else {
-            return self.fail(
-                Diagnostic::error("E0326", e.name.span)
-                    .says(format!(
-                        "`{}` is {}, not an equation",
-                        symbol.name,
-                        symbol.a_kind()
-                    ))
-                    .label("an equation is expected before `..`")
-                    .other(symbol.declared, "declared here")
-                    .help(format!("declare it: `equation {};`", e.name.name)),
-            );
+            return Diagnostic::error("E0326", e.name.span)
+                .says(format!(
+                    "`{}` is {}, not an equation",
+                    symbol.name,
+                    symbol.a_kind()
+                ))
+                .label("an equation is expected before `..`")
+                .other(symbol.declared, "declared here")
+                .help(format!("declare it: `equation {};`", e.name.name))
+                .fail(self);
         };
         if let Some(d) = defined {
             let first = self.equations[d].span;
             if !self.modes.at(e.name.span).multi_replace {
-                return self.fail(
-                    Diagnostic::error("E0327", e.name.span)
-                        .says(format!("the equation `{}` is defined twice", symbol.name))
-                        .label("second definition")
-                        .other(first, "first definition")
-                        .help("give the second one another name"),
-                );
+                return Diagnostic::error("E0327", e.name.span)
+                    .says(format!("the equation `{}` is defined twice", symbol.name))
+                    .label("second definition")
+                    .other(first, "first definition")
+                    .help("give the second one another name")
+                    .fail(self);
             }
         }
         self.in_equation = true;

@@ -109,12 +109,11 @@ impl Compiler {
         if dim < 2 {
             let of = &symbol.name;
             let message = format!("a table has rows and columns; `{of}` has {dim} index");
-            return self.fail(
-                Diagnostic::error("E0346", name)
-                    .says(message)
-                    .label("at least two index positions are needed")
-                    .help("use a `parameter` with a list instead"),
-            );
+            return Diagnostic::error("E0346", name)
+                .says(message)
+                .label("at least two index positions are needed")
+                .help("use a `parameter` with a list instead")
+                .fail(self);
         }
         let lines = Lines {
             columns: Vec::new(),
@@ -184,7 +183,7 @@ impl Compiler {
                     self.not_again(line, &mut lines.rows, span, "row");
                 }
                 Err(d) => {
-                    self.report(*d);
+                    d.report(self);
                     if self.errors() >= MAX_ERRORS {
                         break;
                     }
@@ -318,7 +317,7 @@ impl Compiler {
                     }
                 }
                 Ok(TableItem::Headings | TableItem::EmptyRow(..)) => {}
-                Err(d) => self.report(*d),
+                Err(d) => d.report(self),
             }
         }
         self.attributes_given(s);
@@ -392,10 +391,9 @@ impl Compiler {
 
     fn comes_again(&mut self, key: &[Label], at: Span, what: &str) {
         let label = self.key_text(key);
-        self.report(
-            Diagnostic::error("E0341", at)
-                .says(format!("the {what} {label} appears twice in this table"))
-                .label("second time"),
-        );
+        Diagnostic::error("E0341", at)
+            .says(format!("the {what} {label} appears twice in this table"))
+            .label("second time")
+            .report(self);
     }
 }

@@ -169,12 +169,11 @@ impl Machine<'_> {
         } else {
             format!("{message} ({at})")
         };
-        self.note(
-            Diagnostic::execution(code, span)
-                .says(message)
-                .label("here")
-                .help(help),
-        );
+        Diagnostic::execution(code, span)
+            .says(message)
+            .label("here")
+            .help(help)
+            .note(self);
         UNDF
     }
 

@@ -57,12 +57,11 @@ impl Machine<'_> {
                 self.origin_name(&origin.rows, row),
                 self.origin_name(&origin.columns, column)
             );
-            self.note(
-                Diagnostic::warning("E0416", place).says(message)
-                    .label("`=e=`, but holds only where the variable is off its bounds")
-                    .other(span, "at this solve")
-                    .help("write `=g=` (lower bound) or `=l=` (upper bound) for what it means; make the variable free if the equation shall always hold"),
-            );
+            Diagnostic::warning("E0416", place).says(message)
+                .label("`=e=`, but holds only where the variable is off its bounds")
+                .other(span, "at this solve")
+                .help("write `=g=` (lower bound) or `=l=` (upper bound) for what it means; make the variable free if the equation shall always hold")
+                .note(self);
         }
     }
 
@@ -95,11 +94,10 @@ impl Machine<'_> {
             list(&origin.rows, &block.rows),
             list(&origin.columns, &block.columns)
         );
-        self.note(
-            Diagnostic::warning(code, span)
-                .says(message)
-                .label("at this solve")
-                .help(help),
-        );
+        Diagnostic::warning(code, span)
+            .says(message)
+            .label("at this solve")
+            .help(help)
+            .note(self);
     }
 }

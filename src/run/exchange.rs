@@ -31,7 +31,7 @@ impl Machine<'_> {
         }
         let items = match wanted(&self.symbols, &x.items) {
             Ok(items) => items,
-            Err(d) => return self.note(*d),
+            Err(d) => return d.note(self),
         };
         let unloads = x.keyword.name.contains("unload");
         let (named, example) = match unloads {
@@ -40,7 +40,7 @@ impl Machine<'_> {
         };
         let named = named.clone().map(|f| (f.into(), span));
         let Some((file, at)) = x.file.as_ref().or(named.as_ref()) else {
-            return self.note(*no_file(span, example));
+            return no_file(span, example).note(self);
         };
         if unloads {
             return self.unload(file, &items, *at);
@@ -59,14 +59,14 @@ impl Machine<'_> {
 
     fn load(&mut self, request: &Request<'_>) {
         match self.take_in(request) {
-            Ok(warnings) => warnings.into_iter().for_each(|d| self.note(d)),
+            Ok(warnings) => warnings.into_iter().for_each(|d| d.note(self)),
             Err(d) => {
                 // As in GAMS what fits is there behind the error.
                 if request.strict && d.code == "E0479" {
                     let strict = false;
                     let _ = self.take_in(&Request { strict, ..*request });
                 }
-                self.note(*d);
+                d.note(self);
             }
         }
     }
@@ -119,7 +119,7 @@ impl Machine<'_> {
         );
         let files = match done {
             Ok(files) => files,
-            Err(d) => return self.note(*d),
+            Err(d) => return d.note(self),
         };
         for (name, bytes) in files {
             let written = self.write_file(&name, &bytes, span);

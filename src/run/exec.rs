@@ -558,11 +558,10 @@ impl Machine<'_> {
                 || "the model stopped itself".to_string(),
                 |t| format!("the model stopped itself: {t}"),
             );
-            self.note(
-                Diagnostic::execution("E0480", span)
-                    .says(message)
-                    .label("`abort`"),
-            );
+            Diagnostic::execution("E0480", span)
+                .says(message)
+                .label("`abort`")
+                .note(self);
         }
         Flow::Stop
     }

@@ -22,7 +22,7 @@ impl Machine<'_> {
                 true
             }
             Err(e) => {
-                self.note(refused("E0470", "written", name, &e, span));
+                refused("E0470", "written", name, &e, span).note(self);
                 false
             }
         }

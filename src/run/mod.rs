@@ -125,6 +125,13 @@ pub struct Machine<'h> {
     passed_over: FxHashSet<String>,
 }
 
+impl Diagnostic {
+    /// Reports it to the user, unless it repeats another.
+    pub(crate) fn note(self, m: &Machine) {
+        m.keep(self);
+    }
+}
+
 impl<'h> Machine<'h> {
     /// A machine for a program that compiled.
     pub fn new(
@@ -206,8 +213,8 @@ impl<'h> Machine<'h> {
         std::mem::take(&mut self.diagnostics.borrow_mut())
     }
 
-    /// Adds a diagnostic.
-    pub(crate) fn note(&self, d: Diagnostic) {
+    /// Keeps a diagnostic, unless it repeats another.
+    fn keep(&self, d: Diagnostic) {
         let mut list = self.diagnostics.borrow_mut();
         // A loop comes to the same place again; a warning may come from several solves.
         let warning = d.severity == Severity::Warning;
@@ -295,15 +302,14 @@ impl<'h> Machine<'h> {
         if host.elapsed() > self.options.time_limit {
             self.stop.set(true);
             drop(host);
-            self.note(
-                Diagnostic::execution("E0490", self.options.at.get())
-                    .says(format!(
-                        "the time limit of {} s is used up",
-                        self.options.time_limit
-                    ))
-                    .label("stopped here")
-                    .help("raise it with `--time-limit`, or look for a loop that does not end"),
-            );
+            Diagnostic::execution("E0490", self.options.at.get())
+                .says(format!(
+                    "the time limit of {} s is used up",
+                    self.options.time_limit
+                ))
+                .label("stopped here")
+                .help("raise it with `--time-limit`, or look for a loop that does not end")
+                .note(self);
             return false;
         }
         if let Some(limit) = self.options.max_memory
@@ -311,12 +317,11 @@ impl<'h> Machine<'h> {
         {
             self.stop.set(true);
             drop(host);
-            self.note(
-                Diagnostic::execution("E0491", self.options.at.get())
-                    .says(format!("the memory limit of {} MB is used up", limit >> 20))
-                    .label("stopped here")
-                    .help("raise it with `--max-memory`, or add a condition that keeps the set sparse"),
-            );
+            Diagnostic::execution("E0491", self.options.at.get())
+                .says(format!("the memory limit of {} MB is used up", limit >> 20))
+                .label("stopped here")
+                .help("raise it with `--max-memory`, or add a condition that keeps the set sparse")
+                .note(self);
             return false;
         }
         drop(host);

@@ -69,28 +69,30 @@ impl Machine<'_> {
             let text = match self.read_file(file, span) {
                 Ok(text) => text,
                 Err(d) => {
-                    self.note(*d);
+                    d.note(self);
                     return Some(Vec::new());
                 }
             };
             return match parse(&text) {
                 Ok(options) => self.checked(file, options, &tables, span),
                 Err(line) => {
-                    self.note(warn(
+                    warn(
                         format!("the option file `{file}` is not used: `{line}` has no value"),
                         "a line holds a name and a value",
-                    ));
+                    )
+                    .note(self);
                     Some(Vec::new())
                 }
             };
         }
-        self.note(warn(
+        warn(
             format!(
                 "there is no option file `{}`: the defaults are used",
                 files.join("` or `")
             ),
             "it stands beside the model, or in the current folder",
-        ));
+        )
+        .note(self);
         Some(Vec::new())
     }
 
@@ -114,25 +116,23 @@ impl Machine<'_> {
                         format!("`bmod help options {backend}` lists the options")
                     });
                     let message = format!("`{file}`, line {line}: {message}");
-                    self.note(
-                        Diagnostic::execution("E0426", span)
-                            .says(message)
-                            .label("at this solve")
-                            .help(help),
-                    );
+                    Diagnostic::execution("E0426", span)
+                        .says(message)
+                        .label("at this solve")
+                        .help(help)
+                        .note(self);
                     return None;
                 }
             }
         }
         if !ignored.is_empty() && self.passed_over.insert(file.to_string()) {
             let names = ignored.join("`, `");
-            self.note(
-                Diagnostic::warning("E0426", span)
-                    .says(format!(
-                        "`{file}`: `{names}` mean nothing here and are passed over"
-                    ))
-                    .label("at this solve"),
-            );
+            Diagnostic::warning("E0426", span)
+                .says(format!(
+                    "`{file}`: `{names}` mean nothing here and are passed over"
+                ))
+                .label("at this solve")
+                .note(self);
         }
         Some(taken)
     }

@@ -124,11 +124,10 @@ impl Machine<'_> {
     /// The current file; a diagnostic if there is none.
     pub(super) fn put_file(&mut self, span: Span) -> Option<&mut super::options::PutFile> {
         let Some(s) = self.put.current else {
-            self.note(
-                Diagnostic::execution("E0472", span).says("no file is open to write to")
-                    .label("which file?")
-                    .help("declare one, `file out / 'out.txt' /;`, and name it first: `put out 'text' /;`"),
-            );
+            Diagnostic::execution("E0472", span).says("no file is open to write to")
+                .label("which file?")
+                .help("declare one, `file out / 'out.txt' /;`, and name it first: `put out 'text' /;`")
+                .note(self);
             return None;
         };
         self.open_put_file(s);
@@ -150,7 +149,7 @@ impl Machine<'_> {
                 .says("the row lies below the page; the last row was taken")
                 .help("assign a greater `.ps`"),
         };
-        self.note(d);
+        d.note(self);
     }
 
     /// Writes a file, if anything was put into it, and forgets its cursor.

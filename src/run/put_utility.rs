@@ -61,16 +61,15 @@ impl Machine<'_> {
                         f.text.insert(&text);
                     }
                 }
-                Err(d) => self.note(*d),
+                Err(d) => d.note(self),
             },
             "gdxout" => self.transfer.unload_to = Some(argument.trim().into()),
             "gdxin" => self.transfer.load_from = Some(argument.trim().into()),
-            _ => self.note(
-                Diagnostic::warning("E0474", span)
-                    .says(format!("`{command}` of `put_utility` is not carried out"))
-                    .label("asks for what is outside of the model")
-                    .help("`log`, `msg`, `ren`, `inc`, `gdxOut` and `gdxIn` are known"),
-            ),
+            _ => Diagnostic::warning("E0474", span)
+                .says(format!("`{command}` of `put_utility` is not carried out"))
+                .label("asks for what is outside of the model")
+                .help("`log`, `msg`, `ren`, `inc`, `gdxOut` and `gdxIn` are known")
+                .note(self),
         }
     }
 }

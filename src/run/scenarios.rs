@@ -136,16 +136,13 @@ impl Machine<'_> {
     }
 
     fn no_plan(&self, why: String, span: Span) -> Flow {
-        self.note(
-            Diagnostic::execution("E0424", span)
-                .says(format!(
-                    "the dictionary of the scenarios cannot be used: {why}"
-                ))
-                .label("not solved")
-                .help(
-                    "its records look like `s.scenario.''`, `demand.param.demands`, `x.level.xs`",
-                ),
-        );
+        Diagnostic::execution("E0424", span)
+            .says(format!(
+                "the dictionary of the scenarios cannot be used: {why}"
+            ))
+            .label("not solved")
+            .help("its records look like `s.scenario.''`, `demand.param.demands`, `x.level.xs`")
+            .note(self);
         Flow::Stop
     }
 

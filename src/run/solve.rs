@@ -110,17 +110,15 @@ impl Machine<'_> {
             let message = format!("`{name}` takes {}, not {value}", row.kind.words());
             if !matches!(row.kind, Kind::WordsOrReal(..)) {
                 valid = false;
-                self.note(
-                    Diagnostic::execution("E0423", span)
-                        .says(message)
-                        .label("at this solve"),
-                );
+                Diagnostic::execution("E0423", span)
+                    .says(message)
+                    .label("at this solve")
+                    .note(self);
             } else if self.passed_over.insert(name) {
-                self.note(
-                    Diagnostic::warning("E0423", span)
-                        .says(message)
-                        .label("at this solve"),
-                );
+                Diagnostic::warning("E0423", span)
+                    .says(message)
+                    .label("at this solve")
+                    .note(self);
             }
         }
         valid
@@ -298,10 +296,11 @@ impl Machine<'_> {
         if e.message.contains("at the start point") {
             d = d.help(start_help(&e.message, column.as_deref().unwrap_or("x")));
         }
-        self.note(match blamed {
+        match blamed {
             Some(_) => d.label("this row").other(span, "at this solve"),
             None => d.label("at this solve"),
-        });
+        }
+        .note(self);
         let report = self.not_solved(s, generated);
         self.report().solves.push(report);
     }

@@ -88,7 +88,7 @@ impl Machine<'_> {
 
     /// Adds what a command has to say to what the run had.
     pub fn say(&self, d: crate::diag::Diagnostic) {
-        self.note(d);
+        d.note(self);
     }
 
     /// How many solves a run with a study had.

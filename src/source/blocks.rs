@@ -3,7 +3,7 @@
 use super::directives::{file_name, tag_of};
 use super::line::Line;
 use super::preprocess::Preprocessor;
-use super::{FileId, Outcome, refuse};
+use super::{FileId, Outcome};
 use crate::diag::Diagnostic;
 
 impl Preprocessor<'_> {
@@ -14,11 +14,10 @@ impl Preprocessor<'_> {
         }
         let (lo, hi) = line.origin(0, line.text.len());
         let span = self.place(lo, hi);
-        refuse(
-            Diagnostic::error("E0101", span).says("`$onText` without its `$offText`").help(
-                "the rest of the file is a comment: close it with `$offText` in the first column",
-            ),
-        )
+        Diagnostic::error("E0101", span)
+            .says("`$onText` without its `$offText`")
+            .help("the rest of the file is a comment: close it with `$offText` in the first column")
+            .refuse()
     }
 
     /// Passes over lines up to the one that begins with a directive and its tag, and shows each.
@@ -70,13 +69,12 @@ impl Preprocessor<'_> {
             frame.pos = frame.len;
             frame.ifs.clear();
             let span = self.place(lo, hi);
-            return refuse(
-                Diagnostic::error("E0116", span)
-                    .says(format!(
-                        "`$goto {label}` was followed {limit} times: it does not end"
-                    ))
-                    .help("`$maxGoto n` allows more"),
-            );
+            return Diagnostic::error("E0116", span)
+                .says(format!(
+                    "`$goto {label}` was followed {limit} times: it does not end"
+                ))
+                .help("`$maxGoto n` allows more")
+                .refuse();
         }
         let text = &self.map.file(frame.file).text;
         let mut pos = 0;
@@ -99,11 +97,10 @@ impl Preprocessor<'_> {
             pos = end;
         }
         let span = self.place(lo, hi);
-        refuse(
-            Diagnostic::error("E0116", span)
-                .says(format!("there is no `$label {label}` in this file"))
-                .help("labels are looked for in the file of the `$goto` only"),
-        )
+        Diagnostic::error("E0116", span)
+            .says(format!("there is no `$label {label}` in this file"))
+            .help("labels are looked for in the file of the `$goto` only")
+            .refuse()
     }
 
     /// Remembers what `$echo` writes: a later `$include`, and the run, may read it; the run writes it.
@@ -190,10 +187,9 @@ impl Preprocessor<'_> {
             "" => end.to_owned(),
             _ => format!("{end}.{tag}"),
         };
-        refuse(
-            Diagnostic::error("E0101", span)
-                .says(format!("`${word}` without its `{end}`"))
-                .help(format!("close it with `{end}` in the first column")),
-        )
+        Diagnostic::error("E0101", span)
+            .says(format!("`${word}` without its `{end}`"))
+            .help(format!("close it with `{end}` in the first column"))
+            .refuse()
     }
 }

@@ -11,7 +11,7 @@ use super::evaluate::{evaluate, number_text};
 use super::line::Line;
 use super::preprocess::{Ending, Known, Preprocessor};
 use super::variables::Reach;
-use super::{Outcome, embedded_code, passed_over, refuse};
+use super::{Outcome, embedded_code, passed_over};
 use crate::diag::{Diagnostic, nearest};
 
 /// Length of the word at the start of a text.
@@ -158,13 +158,12 @@ impl Preprocessor<'_> {
             if word.is_empty() {
                 let (lo, hi) = line.origin(0, text.len().max(1));
                 let span = self.place(lo, hi);
-                return refuse(
-                    Diagnostic::error("E0107", span)
-                        .says("a `$` in the first column begins a directive, but no name follows")
-                        .help(
-                            "a `$` condition must not begin in the first column: put a blank before it",
-                        ),
-                );
+                return Diagnostic::error("E0107", span)
+                    .says("a `$` in the first column begins a directive, but no name follows")
+                    .help(
+                        "a `$` condition must not begin in the first column: put a blank before it",
+                    )
+                    .refuse();
             }
             if self.switch(&word) || SILENT.contains(&word.as_str()) {
                 if SILENT.contains(&word.as_str()) {
@@ -408,7 +407,7 @@ impl Preprocessor<'_> {
             "if" | "ifi" | "ife" => {
                 let flavour = flavour(&word[2..]);
                 match self.condition(rest, flavour, known) {
-                    Err(why) => return refuse(self.bad_condition(word, why, lo, hi)),
+                    Err(why) => return self.bad_condition(word, why, lo, hi).refuse(),
                     Ok((false, len)) if rest[len..].trim().is_empty() => {
                         // With nothing behind it, it speaks of the next line, whatever that is.
                         self.take_line();
@@ -423,7 +422,7 @@ impl Preprocessor<'_> {
                     Err(why) => {
                         // Its `$endIf` is not to blame.
                         self.if_then(line, suffix, true, known)?;
-                        return refuse(self.bad_condition(word, why, lo, hi));
+                        return self.bad_condition(word, why, lo, hi).refuse();
                     }
                     Ok((truth, len)) => {
                         self.if_then(line, suffix, truth, known)?;
@@ -473,7 +472,7 @@ impl Preprocessor<'_> {
                 if word == "abort" {
                     self.stop(Ending::Aborted);
                 }
-                return refuse(d);
+                return d.refuse();
             }
             "clearerror" | "clearerrors" => self.cleared_errors = known.errors(),
             "macro" => return self.define_macro(rest, lo, hi),
@@ -527,9 +526,10 @@ impl Preprocessor<'_> {
                     );
                     return Ok(());
                 }
-                return refuse(Diagnostic::error("E0113", span).says(format!("`${word}` would start another program, which is refused"))
+                return Diagnostic::error("E0113", span).says(format!("`${word}` would start another program, which is refused"))
                     .label("not run")
-                    .help("run it yourself before the model, and read what it writes with `$include` or `$load`"));
+                    .help("run it yourself before the model, and read what it writes with `$include` or `$load`")
+                    .refuse();
             }
             "onembeddedcode" | "onembeddedcodes" | "onembeddedcodev" => {
                 let span = self.place(lo, hi);
@@ -539,7 +539,7 @@ impl Preprocessor<'_> {
                 });
                 let d = embedded_code(span, gives_back);
                 if gives_back {
-                    return refuse(d);
+                    return d.refuse();
                 }
                 self.warnings.push(d);
             }
@@ -564,11 +564,10 @@ impl Preprocessor<'_> {
                     self.map.push_substitute(" ", file, lo, lo);
                     line.emit(&mut self.map, from.saturating_sub(1), line.text.len());
                     let message = "a `$` in the first column begins a directive";
-                    return refuse(
-                        Diagnostic::error("E0107", span)
-                            .says(message)
-                            .help("put a blank before the condition"),
-                    );
+                    return Diagnostic::error("E0107", span)
+                        .says(message)
+                        .help("put a blank before the condition")
+                        .refuse();
                 }
                 let mut all: Vec<String> = OTHERS
                     .iter()
@@ -584,11 +583,10 @@ impl Preprocessor<'_> {
                     "take the line out; docs/language.md lists the directives".into(),
                     |n| format!("did you mean `${n}`?"),
                 );
-                return refuse(
-                    Diagnostic::error("E0107", span)
-                        .says(format!("there is no directive `${word}`"))
-                        .help(help),
-                );
+                return Diagnostic::error("E0107", span)
+                    .says(format!("there is no directive `${word}`"))
+                    .help(help)
+                    .refuse();
             }
         }
         Ok(())
@@ -612,11 +610,10 @@ impl Preprocessor<'_> {
             if self.conditions_on_line >= 50 {
                 let (lo, hi) = line.origin(0, line.text.len());
                 let span = self.place(lo, hi);
-                return refuse(
-                    Diagnostic::error("E0114", span)
-                        .says("more than 50 conditions on one line")
-                        .help("use `$ifThen … $endIf` blocks"),
-                );
+                return Diagnostic::error("E0114", span)
+                    .says("more than 50 conditions on one line")
+                    .help("use `$ifThen … $endIf` blocks")
+                    .refuse();
             }
             self.conditions_on_line += 1;
             let outcome = self.directives(line, start + 1, known);
@@ -636,13 +633,12 @@ impl Preprocessor<'_> {
         let (lo, hi) = line.origin(0, text.trim_end().len().max(1));
         let Some(open) = self.frames.last_mut().and_then(|f| f.ifs.last_mut()) else {
             let span = self.place(lo, hi);
-            return refuse(
-                Diagnostic::error("E0106", span)
-                    .says(format!(
-                        "`${word}` without an `$ifThen` before it in this file"
-                    ))
-                    .help("`$if` on one line needs no `$endIf`; blocks begin with `$ifThen`"),
-            );
+            return Diagnostic::error("E0106", span)
+                .says(format!(
+                    "`${word}` without an `$ifThen` before it in this file"
+                ))
+                .help("`$if` on one line needs no `$endIf`; blocks begin with `$ifThen`")
+                .refuse();
         };
         if open.tag != tag {
             let (at, expected) = (open.span, open.tag.clone());
@@ -652,18 +648,17 @@ impl Preprocessor<'_> {
                 f.ifs.pop();
             }
             let span = self.place(lo, hi);
-            return refuse(
-                Diagnostic::error("E0106", span)
-                    .says(format!(
-                        "`${word}.{tag}` does not belong to the innermost open `$ifThen`"
-                    ))
-                    .other(at, "which is this one")
-                    .help(if expected.is_empty() {
-                        format!("write `${word}`")
-                    } else {
-                        format!("write `${word}.{expected}`")
-                    }),
-            );
+            return Diagnostic::error("E0106", span)
+                .says(format!(
+                    "`${word}.{tag}` does not belong to the innermost open `$ifThen`"
+                ))
+                .other(at, "which is this one")
+                .help(if expected.is_empty() {
+                    format!("write `${word}`")
+                } else {
+                    format!("write `${word}.{expected}`")
+                })
+                .refuse();
         }
         match word.as_str() {
             "endif" => {
@@ -687,7 +682,7 @@ impl Preprocessor<'_> {
             _ => {
                 let flavour = flavour(&word[6..]);
                 match self.condition(&text[at..], flavour, known) {
-                    Err(why) => refuse(self.bad_condition(&word, why, lo, hi)),
+                    Err(why) => self.bad_condition(&word, why, lo, hi).refuse(),
                     Ok((truth, len)) => {
                         if let Some(open) = self.frames.last_mut().and_then(|f| f.ifs.last_mut()) {
                             open.taken = truth;
@@ -720,13 +715,12 @@ impl Preprocessor<'_> {
         let (name, value) = (&rest[..len], rest[len..].trim());
         if name.is_empty() {
             let span = self.place(lo, hi);
-            return refuse(
-                Diagnostic::error("E0107", span)
-                    .says(format!("`${word}` needs a name"))
-                    .help(format!(
-                        "write `${word} name value`; then `%name%` stands for the value"
-                    )),
-            );
+            return Diagnostic::error("E0107", span)
+                .says(format!("`${word}` needs a name"))
+                .help(format!(
+                    "write `${word} name value`; then `%name%` stands for the value"
+                ))
+                .refuse();
         }
         let value = if word.starts_with("eval") && of_set {
             // `$eval.set X i.te`
@@ -736,9 +730,10 @@ impl Preprocessor<'_> {
                 None => {
                     let span = self.place(lo, hi);
                     let message = format!("`${word}.set {name}`: there is no text `{value}`");
-                    return refuse(Diagnostic::error("E0115", span).says(message).help(
+                    return Diagnostic::error("E0115", span).says(message).help(
                         "write the name of a set with elements and `.tl`, `.te`, `.ts`, `.firstTL`, `.lastTE` …",
-                    ));
+                    )
+                        .refuse();
                 }
             }
         } else if word.starts_with("eval") {
@@ -752,11 +747,10 @@ impl Preprocessor<'_> {
                     self.names.set(reach(word), name, number_text(x));
                     let span = self.place(lo, hi);
                     let message = format!("`${word} {name}`: `{value}` has no value");
-                    return refuse(
-                        Diagnostic::error("E0115", span)
-                            .says(message)
-                            .help("`%name%` stands for UNDF after it"),
-                    );
+                    return Diagnostic::error("E0115", span)
+                        .says(message)
+                        .help("`%name%` stands for UNDF after it")
+                        .refuse();
                 }
                 Ok((x, n)) if value[n..].trim().is_empty() => number_text(x),
                 Ok((_, n)) => {
@@ -765,16 +759,16 @@ impl Preprocessor<'_> {
                         value[n..].trim()
                     );
                     let span = self.place(lo, hi);
-                    return refuse(
-                        Diagnostic::error("E0115", span)
-                            .says(message)
-                            .help("is an operator missing?"),
-                    );
+                    return Diagnostic::error("E0115", span)
+                        .says(message)
+                        .help("is an operator missing?")
+                        .refuse();
                 }
                 Err(why) => {
                     let span = self.place(lo, hi);
-                    return refuse(Diagnostic::error("E0115", span).says(format!("`${word} {name}` cannot be evaluated: {why}"))
-                        .help("numbers, operators, functions, `card(set)` and scalars with data can stand here"));
+                    return Diagnostic::error("E0115", span).says(format!("`${word} {name}` cannot be evaluated: {why}"))
+                        .help("numbers, operators, functions, `card(set)` and scalars with data can stand here")
+                        .refuse();
                 }
             }
         } else {
@@ -846,11 +840,10 @@ impl Preprocessor<'_> {
                 "comment" => "$comment *",
                 _ => "$dollar #",
             };
-            return refuse(
-                Diagnostic::error("E0107", span)
-                    .says(format!("`${word}` needs its mark"))
-                    .help(format!("for example `{example}`")),
-            );
+            return Diagnostic::error("E0107", span)
+                .says(format!("`${word}` needs its mark"))
+                .help(format!("for example `{example}`"))
+                .refuse();
         }
         match word {
             "inlinecom" => {

@@ -33,11 +33,6 @@ pub(crate) use variables::constant as named_constant;
 /// What reading a line gives; a diagnostic is boxed because it is large and rare.
 pub(crate) type Outcome<T> = Result<T, Box<Diagnostic>>;
 
-/// A diagnostic as the outcome.
-pub(crate) fn refuse<T>(d: Diagnostic) -> Outcome<T> {
-    Err(Box::new(d))
-}
-
 /// Code of another language in the model. Only an export gives nothing back; what does not is passed over, as `execute` is.
 pub(crate) fn embedded_code(at: Span, gives_back: bool) -> Diagnostic {
     let what = "embedded code of other languages is not run";

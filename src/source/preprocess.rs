@@ -20,7 +20,7 @@ use super::directives::word_len;
 use super::line::Line;
 use super::macros::Macros;
 use super::variables::{self, Variables};
-use super::{FileId, Modes, Outcome, SourceMap, Span, Switches, refuse};
+use super::{FileId, Modes, Outcome, SourceMap, Span, Switches};
 use crate::data::input::Input;
 use crate::diag::Diagnostic;
 use crate::host::{Host, HostError};
@@ -375,11 +375,10 @@ impl<'h> Preprocessor<'h> {
     ) -> Outcome<()> {
         let asked = self.place(lo, hi);
         if name.is_empty() {
-            return refuse(
-                Diagnostic::error("E0103", asked)
-                    .says("the name of the file is missing")
-                    .help("write `$include 'file.gms'`"),
-            );
+            return Diagnostic::error("E0103", asked)
+                .says("the name of the file is missing")
+                .help("write `$include 'file.gms'`")
+                .refuse();
         }
         // The name as it is, then with GAMS's ending.
         let longer = Path::new(name)
@@ -402,7 +401,7 @@ impl<'h> Preprocessor<'h> {
         }
         let (path, text) = match read {
             Ok(found) => found,
-            Err(e) => return refuse(unreadable(name, &e, asked)),
+            Err(e) => return unreadable(name, &e, asked).refuse(),
         };
         // A batch file may call itself with other arguments: that is bounded by the depth.
         let itself = arguments.is_none()
@@ -422,7 +421,7 @@ impl<'h> Preprocessor<'h> {
             for frame in self.frames.iter().skip(1).take(3) {
                 d = d.other(frame.asked, "included from here");
             }
-            return refuse(d);
+            return d.refuse();
         }
         self.open(path, name, text, arguments, asked);
         Ok(())
@@ -687,18 +686,16 @@ impl<'h> Preprocessor<'h> {
         self.set_listed(listed);
         self.names.leave();
         if let Some(open) = open {
-            return refuse(
-                Diagnostic::error("E0106", open.span)
-                    .says("this `$ifThen` is never closed")
-                    .help("every `$ifThen` needs its `$endIf` in the same file"),
-            );
+            return Diagnostic::error("E0106", open.span)
+                .says("this `$ifThen` is never closed")
+                .help("every `$ifThen` needs its `$endIf` in the same file")
+                .refuse();
         }
         if let Some(span) = comment {
-            return refuse(
-                Diagnostic::error("E0101", span)
-                    .says("this comment is never closed")
-                    .help("close it with the mark that `$inlineCom` set"),
-            );
+            return Diagnostic::error("E0101", span)
+                .says("this comment is never closed")
+                .help("close it with the mark that `$inlineCom` set")
+                .refuse();
         }
         Ok(())
     }
@@ -766,11 +763,10 @@ impl<'h> Preprocessor<'h> {
         if grown > LONGEST_LINE {
             let (lo, hi) = line.origin(0, line.text.len());
             let span = self.place(lo, hi);
-            return refuse(
-                Diagnostic::error("E0108", span)
-                    .says("with its `%name%` filled in, this line is longer than 4 MB")
-                    .help("a name that stands for itself twice doubles with each `$set`"),
-            );
+            return Diagnostic::error("E0108", span)
+                .says("with its `%name%` filled in, this line is longer than 4 MB")
+                .help("a name that stands for itself twice doubles with each `$set`")
+                .refuse();
         }
         line.replace(&changes);
         Ok(line)
@@ -893,11 +889,10 @@ impl<'h> Preprocessor<'h> {
                 Err(e) => {
                     let (lo, hi) = line.origin(e.from, e.to);
                     let span = self.place(lo, hi);
-                    return refuse(
-                        Diagnostic::error("E0111", span)
-                            .says(e.message)
-                            .help(e.help),
-                    );
+                    return Diagnostic::error("E0111", span)
+                        .says(e.message)
+                        .help(e.help)
+                        .refuse();
                 }
             }
         }

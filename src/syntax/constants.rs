@@ -52,11 +52,10 @@ impl Constants {
         let c = &self.0[n];
         Some(match &c.value {
             Ok(x) => Ok((*x, c.hi)),
-            Err(why) => Err(Box::new(
-                Diagnostic::error("E0247", Span::new(c.lo as u32, c.hi as u32))
-                    .says(format!("this constant expression cannot be evaluated: {why}"))
-                    .help("numbers, operators, functions, `card(set)` and scalars with data can stand here, on one line"),
-            )),
+            Err(why) => Diagnostic::error("E0247", Span::new(c.lo as u32, c.hi as u32))
+                .says(format!("this constant expression cannot be evaluated: {why}"))
+                .help("numbers, operators, functions, `card(set)` and scalars with data can stand here, on one line")
+                .refuse(),
         })
     }
 }

@@ -341,11 +341,10 @@ impl<'a> DataReader<'a> {
         match self.number_of(text) {
             Some(x) => Ok(Tail::Number(x, span)),
             None if text.bytes().all(is_label) => Ok(Tail::Name(text, span)),
-            None => Err(Box::new(
-                Diagnostic::error("E0245", span)
-                    .says(format!("`{text}` is not a number"))
-                    .help("under `$onDelim` the value stands behind the last comma"),
-            )),
+            None => Diagnostic::error("E0245", span)
+                .says(format!("`{text}` is not a number"))
+                .help("under `$onDelim` the value stands behind the last comma")
+                .refuse(),
         }
     }
 
@@ -671,11 +670,10 @@ impl<'a> DataReader<'a> {
                 if from == start && start > 0 && !is_space(bytes[start - 1]) {
                     let len = self.text[start..].chars().next().map_or(1, char::len_utf8);
                     let sign = &self.text[start..start + len];
-                    return Err(Box::new(
-                        Diagnostic::error("E0243", self.span(start, start + len))
-                            .says(format!("`{sign}` cannot stand in a label without quotes"))
-                            .help("put the label in quotes, or a blank before the text"),
-                    ));
+                    return Diagnostic::error("E0243", self.span(start, start + len))
+                        .says(format!("`{sign}` cannot stand in a label without quotes"))
+                        .help("put the label in quotes, or a blank before the text")
+                        .refuse();
                 }
                 let end =
                     memchr::memchr2(b',', b'\n', &bytes[from..]).map_or(bytes.len(), |n| from + n);
@@ -735,10 +733,9 @@ impl<'a> DataReader<'a> {
                 while end < bytes.len() && (is_label(bytes[end]) || bytes[end] == b'.') {
                     end += 1;
                 }
-                return Err(Box::new(
-                    Diagnostic::error("E0245", self.span(start, end)).says(format!("`{}` is not a number", &self.text[start..end]))
-                        .help("numbers look like `12`, `-3.5`, `1.5e-3`; a comma or a line end comes before the next record"),
-                ));
+                return Diagnostic::error("E0245", self.span(start, end)).says(format!("`{}` is not a number", &self.text[start..end]))
+                    .help("numbers look like `12`, `-3.5`, `1.5e-3`; a comma or a line end comes before the next record")
+                    .refuse();
             }
             self.at = end;
             let digits = &self.text[i..end];

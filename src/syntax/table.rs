@@ -332,11 +332,10 @@ impl<'a> TableReader<'a> {
             && reach > first.from
         {
             let span = first.span;
-            return Err(Box::new(
-                Diagnostic::error("E0252", self.row_span).says("the label of this row reaches under a column")
-                    .other(span, "the first column begins here")
-                    .help("move the columns to the right, or shorten the label; is a row's label missing?"),
-            ));
+            return Diagnostic::error("E0252", self.row_span).says("the label of this row reaches under a column")
+                .other(span, "the first column begins here")
+                .help("move the columns to the right, or shorten the label; is a row's label missing?")
+                .refuse();
         }
         self.in_row = true;
         self.empty = true;
@@ -359,13 +358,10 @@ impl<'a> TableReader<'a> {
         let span = self.span(from, to);
         if to == from {
             self.skip(from + 1);
-            return Err(Box::new(
-                Diagnostic::error("E0243", span)
-                    .says("a number was expected here")
-                    .help(
-                        "numbers look like `12`, `-3.5`, `1.5e-3`; decimals stand behind a point",
-                    ),
-            ));
+            return Diagnostic::error("E0243", span)
+                .says("a number was expected here")
+                .help("numbers look like `12`, `-3.5`, `1.5e-3`; decimals stand behind a point")
+                .refuse();
         }
         let (left, right) = (self.column(from), self.column(to));
         let mut first = self.passed;
@@ -378,12 +374,11 @@ impl<'a> TableReader<'a> {
             .take_while(|c| c.from < right)
             .count();
         match under {
-            1 if first < self.filled => Err(Box::new(
-                Diagnostic::error("E0253", span)
-                    .says("a second value stands under this column")
-                    .other(self.columns[first].span, "the column")
-                    .help("move it under the label of its own column"),
-            )),
+            1 if first < self.filled => Diagnostic::error("E0253", span)
+                .says("a second value stands under this column")
+                .other(self.columns[first].span, "the column")
+                .help("move it under the label of its own column")
+                .refuse(),
             1 => {
                 self.filled = first + 1;
                 // As in GAMS a column is as wide as its label and the values under it so far.

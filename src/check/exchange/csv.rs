@@ -167,14 +167,13 @@ fn long(file: &str, rows: &Rows, w: &Wanted, loading: &mut Loading<'_>) -> Loade
             Some(_) => None,
         };
         let Some(offset) = offset else {
-            return Err(Box::new(
-                Diagnostic::execution("E0478", w.span)
-                    .says(format!(
-                        "{file}:{line}: `{}` is not known",
-                        row.get(0).unwrap_or("")
-                    ))
-                    .help("attributes are l, m, lo, up and scale, of variables and equations"),
-            ));
+            return Diagnostic::execution("E0478", w.span)
+                .says(format!(
+                    "{file}:{line}: `{}` is not known",
+                    row.get(0).unwrap_or("")
+                ))
+                .help("attributes are l, m, lo, up and scale, of variables and equations")
+                .refuse();
         };
         if row.len() <= dim {
             return Err(short(file, line, w, row.len(), dim + 2));

@@ -71,15 +71,14 @@ impl Reader<'_> {
                 format!("{{\"records\": [[[{}], 3.5], …]}}", labels.join(", "))
             }
         };
-        Err(Box::new(
-            Diagnostic::execution("E0478", self.w.span)
-                .says(format!("{}: `{}`: {what}", self.file, self.w.name))
-                .label("nothing was loaded")
-                .help(format!(
-                    "a {} with {dim} indices is written as `{example}`",
-                    self.symbol.kind_name()
-                )),
-        ))
+        Diagnostic::execution("E0478", self.w.span)
+            .says(format!("{}: `{}`: {what}", self.file, self.w.name))
+            .label("nothing was loaded")
+            .help(format!(
+                "a {} with {dim} indices is written as `{example}`",
+                self.symbol.kind_name()
+            ))
+            .refuse()
     }
 
     fn symbol(mut self, v: &Value, loading: &mut Loading<'_>) -> Loaded<()> {

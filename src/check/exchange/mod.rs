@@ -98,21 +98,19 @@ pub fn wanted(symbols: &Symbols, items: &[ExchangeItem]) -> Loaded<Vec<Wanted>> 
     for item in items {
         let ExchangeItem { name, other, .. } = item;
         let Some(symbol) = symbols.find(&name.name) else {
-            return Err(Box::new(
-                Diagnostic::execution("E0475", name.span)
-                    .says(format!("`{}` is not known", name.name)),
-            ));
+            return Diagnostic::execution("E0475", name.span)
+                .says(format!("`{}` is not known", name.name))
+                .refuse();
         };
         if !has_data(&symbols.get(symbol).kind) {
             let kind = symbols.get(symbol).a_kind();
-            return Err(Box::new(
-                Diagnostic::execution("E0475", name.span)
-                    .says(format!(
-                        "`{}` is {kind}; it has no data to exchange",
-                        name.name
-                    ))
-                    .label("a set, parameter, variable or equation is expected"),
-            ));
+            return Diagnostic::execution("E0475", name.span)
+                .says(format!(
+                    "`{}` is {kind}; it has no data to exchange",
+                    name.name
+                ))
+                .label("a set, parameter, variable or equation is expected")
+                .refuse();
         }
         let shown = other.as_ref().map_or_else(
             || symbols.get(symbol).name.to_string(),
@@ -261,14 +259,13 @@ pub fn load(
             .iter()
             .find(|w| w.part != Part::Whole || w.into.is_some())
     {
-        return Err(Box::new(
-            Diagnostic::execution("E0475", w.span)
-                .says(format!(
-                    "a part of `{}` is read from GDX files only",
-                    w.name
-                ))
-                .help("read the whole symbol, and take its part in an assignment"),
-        ));
+        return Diagnostic::execution("E0475", w.span)
+            .says(format!(
+                "a part of `{}` is read from GDX files only",
+                w.name
+            ))
+            .help("read the whole symbol, and take its part in an assignment")
+            .refuse();
     }
     let mut files = Vec::new();
     if kind == Kind::Folder {
@@ -332,11 +329,10 @@ pub fn load(
 fn text_of<'a>(file: &str, bytes: &'a [u8], at: Span) -> Loaded<&'a str> {
     match std::str::from_utf8(bytes) {
         Ok(text) => Ok(text.strip_prefix('\u{feff}').unwrap_or(text)),
-        Err(e) => Err(Box::new(
-            Diagnostic::execution("E0478", at)
-                .says(format!("{file}: byte {} is not UTF-8", e.valid_up_to() + 1))
-                .help("save the file as UTF-8"),
-        )),
+        Err(e) => Diagnostic::execution("E0478", at)
+            .says(format!("{file}: byte {} is not UTF-8", e.valid_up_to() + 1))
+            .help("save the file as UTF-8")
+            .refuse(),
     }
 }
 
@@ -427,7 +423,7 @@ impl Compiler {
                 self.not_loaded.insert(root);
             }
         }
-        self.fail(d.as_error())
+        d.as_error().fail(self)
     }
 
     fn load_listed(&mut self, x: &Exchange, span: Span, parser: &mut Parser) -> Loaded<()> {
@@ -466,7 +462,7 @@ impl Compiler {
         };
         let mut read = |name: &str, at| parser.read(name, at);
         let warnings = load(&mut self.symbols, &mut self.store, &request, &mut read)?;
-        warnings.into_iter().for_each(|d| self.report(d));
+        warnings.into_iter().for_each(|d| d.report(self));
         Ok(())
     }
 

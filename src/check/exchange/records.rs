@@ -169,13 +169,11 @@ impl<'a> Loading<'a> {
                     set_symbol.declared,
                     format!("`{}` is declared here", set_symbol.name),
                 );
-            return Err(Box::new(match near {
-                Some(n) => d.help(format!("did you mean `{n}`?")),
-                None => d.help(format!(
-                    "add the label to `{}`, or correct the file",
-                    set_symbol.name
-                )),
-            }));
+            let add = format!(
+                "add the label to `{}`, or correct the file",
+                set_symbol.name
+            );
+            return d.did_you_mean(near, add).refuse();
         }
         Ok(())
     }
@@ -205,15 +203,14 @@ impl<'a> Loading<'a> {
                 } else {
                     format!("the record `{}`", labels.join("."))
                 };
-                return Err(Box::new(
-                    Diagnostic::execution("E0478", w.span)
-                        .says(format!(
-                            "{file}:{}: {what} of `{}` was given before, at {}",
-                            r.places[pair[1]], w.name, r.places[pair[0]]
-                        ))
-                        .label("given twice; nothing was loaded")
-                        .help("keep one of the two"),
-                ));
+                return Diagnostic::execution("E0478", w.span)
+                    .says(format!(
+                        "{file}:{}: {what} of `{}` was given before, at {}",
+                        r.places[pair[1]], w.name, r.places[pair[0]]
+                    ))
+                    .label("given twice; nothing was loaded")
+                    .help("keep one of the two")
+                    .refuse();
             }
         }
         let keys: Vec<Label> = order.iter().flat_map(|&k| key(k).iter().copied()).collect();
@@ -221,14 +218,13 @@ impl<'a> Loading<'a> {
         if let SymbolKind::Set { singleton: true } = symbol.kind
             && count > 1
         {
-            return Err(Box::new(
-                Diagnostic::execution("E0478", w.span)
-                    .says(format!(
-                        "`{}` is a singleton; the file has {count} elements for it",
-                        w.name
-                    ))
-                    .label("nothing was loaded"),
-            ));
+            return Diagnostic::execution("E0478", w.span)
+                .says(format!(
+                    "`{}` is a singleton; the file has {count} elements for it",
+                    w.name
+                ))
+                .label("nothing was loaded")
+                .refuse();
         }
         // As in GAMS the records of the file are all that there is: the other attributes get their defaults.
         if w.into.is_some() && dim > 0 && !self.request.point {

@@ -243,10 +243,12 @@ impl Machine<'_> {
             .map_or(8.0, |n| self.number_of(n, frame));
         if !(1.0..=MAX_LEVELS).contains(&count) {
             let span = t.argument("levels").map_or(t.element.span, |n| n.span);
-            self.note(Diagnostic::execution("E0483", span).says(format!(
-                "{} is not a number of levels from 1 to {MAX_LEVELS}",
-                self.shown(count)
-            )));
+            Diagnostic::execution("E0483", span)
+                .says(format!(
+                    "{} is not a number of levels from 1 to {MAX_LEVELS}",
+                    self.shown(count)
+                ))
+                .note(self);
             return Err(Failed);
         }
         let style = self.style(t, frame)?;
@@ -335,12 +337,11 @@ impl Machine<'_> {
                     };
                     let name = self.turn_name(&[missing]);
                     let text = format!("`arc` leads to `{name}`, which no `node` draws");
-                    self.note(
-                        Diagnostic::warning("E0482", t.element.span)
-                            .says(text)
-                            .label("left out of the figure")
-                            .help("draw the nodes first: `node(i) x = px(i), y = py(i);`"),
-                    );
+                    Diagnostic::warning("E0482", t.element.span)
+                        .says(text)
+                        .label("left out of the figure")
+                        .help("draw the nodes first: `node(i) x = px(i), y = py(i);`")
+                        .note(self);
                     continue;
                 };
                 add(Shape::Arc(from, to, a.max(b) / 2.0 + 1.0), style)?;

@@ -55,15 +55,14 @@ impl Machine<'_> {
         let file = file.map_or_else(|| format!("{}.svg", symbol.name), str::to_string);
         let lower = file.to_lowercase();
         if !lower.ends_with(".svg") && !lower.ends_with(".png") {
-            self.note(
-                Diagnostic::execution("E0481", span)
-                    .says(format!("`draw` cannot write `{file}`"))
-                    .label("a name that ends in .svg or .png is expected")
-                    .help(format!(
-                        "write `draw {} '{}.svg';`",
-                        symbol.name, symbol.name
-                    )),
-            );
+            Diagnostic::execution("E0481", span)
+                .says(format!("`draw` cannot write `{file}`"))
+                .label("a name that ends in .svg or .png is expected")
+                .help(format!(
+                    "write `draw {} '{}.svg';`",
+                    symbol.name, symbol.name
+                ))
+                .note(self);
             return;
         }
         let name = symbol.name.to_string();
@@ -73,12 +72,11 @@ impl Machine<'_> {
         };
         if scene.elements.is_empty() {
             let message = format!("the figure `{name}` is empty: no element has a record to draw");
-            self.note(
-                Diagnostic::warning("E0484", span)
-                    .says(message)
-                    .label("drawn as an empty page")
-                    .help("`display` the data of its elements; a condition may leave nothing"),
-            );
+            Diagnostic::warning("E0484", span)
+                .says(message)
+                .label("drawn as an empty page")
+                .help("`display` the data of its elements; a condition may leave nothing")
+                .note(self);
         }
         let picture = svg(&scene);
         if lower.ends_with(".svg") {
@@ -89,10 +87,9 @@ impl Machine<'_> {
             Ok(bytes) => {
                 self.write_file(&file, &bytes, span);
             }
-            Err(e) => self.note(
-                Diagnostic::execution("E0481", span)
-                    .says(format!("the figure cannot be drawn: {e}")),
-            ),
+            Err(e) => Diagnostic::execution("E0481", span)
+                .says(format!("the figure cannot be drawn: {e}"))
+                .note(self),
         }
     }
 
@@ -214,12 +211,11 @@ impl Machine<'_> {
                     [] => String::new(),
                     key => format!(" at `{}`", self.turn_name(key)),
                 };
-                self.note(
-                    Diagnostic::warning("E0482", n.span)
-                        .says(format!("`{name}` is {} {at}", self.shown(*v)).replace("  ", " "))
-                        .label("left out of the figure")
-                        .help("give it a value, or leave it out with a condition, `polygon(i,j)$c(i)`"),
-                );
+                Diagnostic::warning("E0482", n.span)
+                    .says(format!("`{name}` is {} {at}", self.shown(*v)).replace("  ", " "))
+                    .label("left out of the figure")
+                    .help("give it a value, or leave it out with a condition, `polygon(i,j)$c(i)`")
+                    .note(self);
                 return None;
             }
         }
@@ -253,11 +249,10 @@ impl Machine<'_> {
         };
         filled.map_err(|e| {
             let at = nodes.first().map_or(span, |n| n.span);
-            self.note(
-                Diagnostic::execution("E0483", at)
-                    .says(e)
-                    .label("in this text"),
-            );
+            Diagnostic::execution("E0483", at)
+                .says(e)
+                .label("in this text")
+                .note(self);
             Failed
         })
     }
@@ -269,19 +264,20 @@ impl Machine<'_> {
         };
         match self.put_item(n, frame) {
             Some(Item::Number(x)) => Ok(Some(Paint::Value(x))),
-            Some(Item::Label(word) | Item::Text(word)) => match Paint::parse(&word) {
-                Some(p) => Ok(Some(p)),
-                None => {
-                    let d = Diagnostic::execution("E0372", n.span)
-                        .says(format!("`{word}` is not a colour"))
-                        .label("unknown colour");
-                    self.note(match nearest(&word, Paint::names().iter().copied()) {
-                        Some(near) => d.help(format!("did you mean `{near}`?")),
-                        None => d.help("colours are CSS names, `#rrggbb`, `none`, or numbers for the colour scale"),
-                    });
-                    Err(Failed)
+            Some(Item::Label(word) | Item::Text(word)) => {
+                match Paint::parse(&word) {
+                    Some(p) => Ok(Some(p)),
+                    None => {
+                        let d = Diagnostic::execution("E0372", n.span)
+                            .says(format!("`{word}` is not a colour"))
+                            .label("unknown colour");
+                        let near = nearest(&word, Paint::names().iter().copied());
+                        d.did_you_mean(near, "colours are CSS names, `#rrggbb`, `none`, or numbers for the colour scale")
+                        .note(self);
+                        Err(Failed)
+                    }
                 }
-            },
+            }
             _ => Ok(None),
         }
     }
@@ -307,10 +303,9 @@ impl Machine<'_> {
                     match lengths.into_iter().collect::<Option<Vec<f64>>>() {
                         Some(l) if l.iter().all(|x| *x >= 0.0) => l,
                         _ => {
-                            self.note(
-                                Diagnostic::execution("E0483", n.span).says(format!("`{list}` is not a dash"))
-                                    .help("`dashed`, `dotted`, or lengths of dashes and gaps in pixels: `'6 2'`"),
-                            );
+                            Diagnostic::execution("E0483", n.span).says(format!("`{list}` is not a dash"))
+                                .help("`dashed`, `dotted`, or lengths of dashes and gaps in pixels: `'6 2'`")
+                                .note(self);
                             return Err(Failed);
                         }
                     }
@@ -443,11 +438,10 @@ impl Machine<'_> {
                             "end" | "right" => Anchor::End,
                             "middle" | "center" | "centre" => Anchor::Middle,
                             other => {
-                                self.note(
-                                    Diagnostic::execution("E0483", n.span)
-                                        .says(format!("`{other}` is not an alignment"))
-                                        .help("there are: start, middle, end"),
-                                );
+                                Diagnostic::execution("E0483", n.span)
+                                    .says(format!("`{other}` is not an alignment"))
+                                    .help("there are: start, middle, end")
+                                    .note(self);
                                 return Err(Failed);
                             }
                         },
@@ -471,10 +465,9 @@ impl Machine<'_> {
             if &*e.kind == "size" {
                 let v = self.number_of(n, frame);
                 let Some(v) = v.is_finite().then_some(v).filter(|v| *v > 0.0) else {
-                    self.note(
-                        Diagnostic::execution("E0483", n.span)
-                            .says(format!("{} is not a size in pixels", self.shown(v))),
-                    );
+                    Diagnostic::execution("E0483", n.span)
+                        .says(format!("{} is not a size in pixels", self.shown(v)))
+                        .note(self);
                     return Err(Failed);
                 };
                 match name.as_deref() {

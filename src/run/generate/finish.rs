@@ -141,14 +141,15 @@ impl Builder<'_, '_> {
                     self.m.record_name(block.symbol, block.key(i))
                 };
                 let (column, a, b) = (name(columns, c), name(rows, other), name(rows, r));
-                self.m.note(
-                    Diagnostic::execution("E0412", self.span)
-                        .says(format!("the column {column} is matched twice: with {a} and with {b}"))
-                        .label("in this model")
-                        .help(
-                            "each column has one row; restrict one of the equations by a `$` condition",
-                        ),
-                );
+                Diagnostic::execution("E0412", self.span)
+                    .says(format!(
+                        "the column {column} is matched twice: with {a} and with {b}"
+                    ))
+                    .label("in this model")
+                    .help(
+                        "each column has one row; restrict one of the equations by a `$` condition",
+                    )
+                    .note(self.m);
                 self.failed = true;
             }
             *slot = Some(r);
@@ -230,7 +231,7 @@ impl Builder<'_, '_> {
             .label("this equation")
             .other(self.span, "at this solve")
             .help(help);
-        self.m.note(diagnostic);
+        diagnostic.note(self.m);
         self.failed = true;
     }
 
@@ -385,12 +386,11 @@ impl Builder<'_, '_> {
                     .map(|rule| format!("{rule}: {} has {lo} … {up}", name()))
             };
             if let Some(message) = problem {
-                self.m.note(
-                    Diagnostic::execution("E0413", self.m.options.at.get())
-                        .says(message)
-                        .label("at this solve")
-                        .help("check the assignments to `.lo`, `.up`, `.fx` and `.l`"),
-                );
+                Diagnostic::execution("E0413", self.m.options.at.get())
+                    .says(message)
+                    .label("at this solve")
+                    .help("check the assignments to `.lo`, `.up`, `.fx` and `.l`")
+                    .note(self.m);
                 self.failed = true;
             }
             let scale = self.instance.columns.scale[i];
@@ -405,12 +405,11 @@ impl Builder<'_, '_> {
     /// An error for a scale that rows and columns cannot be divided by.
     pub(super) fn bad_scale(&mut self, name: &str, scale: f64) {
         let message = format!("the scale of {name} must be a number above 1e-20, not {scale:e}");
-        self.m.note(
-            Diagnostic::execution("E0413", self.m.options.at.get())
-                .says(message)
-                .label("at this solve")
-                .help("check the assignments to `.scale`"),
-        );
+        Diagnostic::execution("E0413", self.m.options.at.get())
+            .says(message)
+            .label("at this solve")
+            .help("check the assignments to `.scale`")
+            .note(self.m);
         self.failed = true;
     }
 

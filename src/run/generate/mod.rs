@@ -409,11 +409,10 @@ impl Builder<'_, '_> {
         if violated {
             let name = self.m.record_name(e.symbol, key);
             let sign = relation.sign();
-            self.m.note(
-                Diagnostic::execution("E0410", e.span).says(format!("the row {name} has no variables and cannot hold: 0 {sign} {rhs}"))
-                    .label("empty and infeasible")
-                    .help("its coefficients are all zero, or its sums are empty: check the data, or add a `$` condition to the equation"),
-            );
+            Diagnostic::execution("E0410", e.span).says(format!("the row {name} has no variables and cannot hold: 0 {sign} {rhs}"))
+                .label("empty and infeasible")
+                .help("its coefficients are all zero, or its sums are empty: check the data, or add a `$` condition to the equation")
+                .note(self.m);
             self.failed = true;
         }
         self.leave_out(e, key, rhs);
@@ -430,12 +429,11 @@ impl Builder<'_, '_> {
 
     fn not_finite(&mut self, part: &str, row: &str, span: Span) {
         let message = format!("{part} of the row {row} is not a finite number");
-        self.m.note(
-            Diagnostic::execution("E0411", span)
-                .says(message)
-                .label("not finite")
-                .help("look for inf, na or undf in the data of this equation"),
-        );
+        Diagnostic::execution("E0411", span)
+            .says(message)
+            .label("not finite")
+            .help("look for inf, na or undf in the data of this equation")
+            .note(self.m);
         self.failed = true;
     }
 

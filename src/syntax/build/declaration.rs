@@ -262,11 +262,10 @@ impl Builder<'_> {
                         }
                     }
                     if minus {
-                        return Err(Box::new(
-                            Diagnostic::error("E0215", place)
-                                .says("a pair cannot be taken out of a model")
-                                .help("write `- equation` to take an equation out"),
-                        ));
+                        return Diagnostic::error("E0215", place)
+                            .says("a pair cannot be taken out of a model")
+                            .help("write `- equation` to take an equation out")
+                            .refuse();
                     }
                     match <[Ident; 1]>::try_from(columns) {
                         Ok([column]) => items.push(ModelItem::Pair { rows, column }),
@@ -293,9 +292,9 @@ impl Builder<'_> {
             match e.kind {
                 ExprKind::Apply(name, None, None) => names.push(name),
                 _ => {
-                    return Err(Box::new(
-                        Diagnostic::error("E0214", e.span).says("a set was expected here"),
-                    ));
+                    return Diagnostic::error("E0214", e.span)
+                        .says("a set was expected here")
+                        .refuse();
                 }
             }
         }

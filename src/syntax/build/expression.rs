@@ -239,14 +239,11 @@ impl Builder<'_> {
                     if new == RELATION
                         && s.ops.last().is_some_and(|(top, _)| level(*top) == RELATION)
                     {
-                        return Err(Box::new(
-                            Diagnostic::error("E0213", at)
-                                .says("relations cannot be chained")
-                                .label("a second relation")
-                                .help(
-                                    "write `a < b and b < c`, or put one comparison in parentheses",
-                                ),
-                        ));
+                        return Diagnostic::error("E0213", at)
+                            .says("relations cannot be chained")
+                            .label("a second relation")
+                            .help("write `a < b and b < c`, or put one comparison in parentheses")
+                            .refuse();
                     }
                     while s.ops.last().is_some_and(|(top, _)| level(*top) == new) {
                         s.reduce()?;
@@ -447,11 +444,10 @@ impl Builder<'_> {
                     span,
                 })
             }
-            _ => Err(Box::new(
-                Diagnostic::error("E0214", span)
-                    .says("a set was expected here")
-                    .help("sums and loops run over sets: `sum((i,j), …)`, `sum(arc(i,j), …)`"),
-            )),
+            _ => Diagnostic::error("E0214", span)
+                .says("a set was expected here")
+                .help("sums and loops run over sets: `sum((i,j), …)`, `sum(arc(i,j), …)`")
+                .refuse(),
         }
     }
 

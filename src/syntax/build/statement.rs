@@ -99,11 +99,10 @@ impl Builder<'_> {
                     inner.next().map(|e| self.expression(e)).transpose()?,
                 ))
             }
-            _ => Err(Box::new(
-                Diagnostic::error("E0210", at)
-                    .says("a declaration cannot stand here")
-                    .help("declare it before the block"),
-            )),
+            _ => Diagnostic::error("E0210", at)
+                .says("a declaration cannot stand here")
+                .help("declare it before the block")
+                .refuse(),
         }
     }
 
@@ -154,11 +153,10 @@ impl Builder<'_> {
                     let relation = self.relation(&need(&mut sides, at, "a relation")?)?;
                     let right = self.expression(need(&mut sides, at, "an expression")?)?;
                     if let Some(a) = target.attribute {
-                        return Err(Box::new(
-                            Diagnostic::error("E0211", a.span)
-                                .says("an equation is defined by its name, without an attribute")
-                                .help(format!("write `{}..`", target.name.name)),
-                        ));
+                        return Diagnostic::error("E0211", a.span)
+                            .says("an equation is defined by its name, without an attribute")
+                            .help(format!("write `{}..`", target.name.name))
+                            .refuse();
                     }
                     return Ok(StmtKind::Equate(Equate {
                         name: target.name,
@@ -190,11 +188,10 @@ impl Builder<'_> {
     fn relation(&self, pair: &Pair<'_, Rule>) -> Built<Relation> {
         let at = self.span(pair);
         let refused = |what: &str, help: &str| {
-            Err(Box::new(
-                Diagnostic::error("E0216", at)
-                    .says(what.to_owned())
-                    .help(help),
-            ))
+            Diagnostic::error("E0216", at)
+                .says(what.to_owned())
+                .help(help)
+                .refuse()
         };
         match pair.as_str().as_bytes()[1].to_ascii_lowercase() {
             b'e' => Ok(Relation::Equal),
@@ -366,9 +363,9 @@ impl Builder<'_> {
                 Rule::using => {
                     let name = parts(p).next().map(|n| self.ident(&n));
                     if using.is_some() {
-                        return Err(Box::new(
-                            Diagnostic::error("E0218", place).says("`using` stands here twice"),
-                        ));
+                        return Diagnostic::error("E0218", place)
+                            .says("`using` stands here twice")
+                            .refuse();
                     }
                     using = name;
                 }
@@ -385,13 +382,10 @@ impl Builder<'_> {
                     };
                     let variable = self.ident(&need(&mut sides, place, "a variable")?);
                     if objective.is_some() {
-                        return Err(Box::new(
-                            Diagnostic::error("E0218", place)
-                                .says("a second direction stands here")
-                                .help(
-                                    "a solve has one objective: `solve m using lp minimizing z;`",
-                                ),
-                        ));
+                        return Diagnostic::error("E0218", place)
+                            .says("a second direction stands here")
+                            .help("a solve has one objective: `solve m using lp minimizing z;`")
+                            .refuse();
                     }
                     objective = Some((sense, variable));
                 }
@@ -404,17 +398,16 @@ impl Builder<'_> {
                 objective,
                 scenario,
             })),
-            None => Err(Box::new(
-                Diagnostic::error("E0218", at)
-                    .says(format!(
-                        "`solve {}` does not say which type of model it is",
-                        model.name
-                    ))
-                    .help(format!(
-                        "write `solve {} using lp minimizing z;`",
-                        model.name
-                    )),
-            )),
+            None => Diagnostic::error("E0218", at)
+                .says(format!(
+                    "`solve {}` does not say which type of model it is",
+                    model.name
+                ))
+                .help(format!(
+                    "write `solve {} using lp minimizing z;`",
+                    model.name
+                ))
+                .refuse(),
         }
     }
 
