@@ -31,17 +31,16 @@ impl std::fmt::Display for HostError {
     }
 }
 
+/// What was read, and the path under which the file is known.
+pub type Found<T> = Result<(PathBuf, T), HostError>;
+
 /// What a run may ask of the world.
 pub trait Host {
     /// Reads a text. `from` is the file whose text asks (for relative paths).
     /// Returns the path under which it is known, and the text.
-    fn read(&mut self, path: &str, from: Option<&Path>) -> Result<(PathBuf, String), HostError>;
+    fn read(&mut self, path: &str, from: Option<&Path>) -> Found<String>;
     /// Reads the bytes of a file, as [`Host::read`] finds it. A host that has texts only gives their bytes.
-    fn read_bytes(
-        &mut self,
-        path: &str,
-        from: Option<&Path>,
-    ) -> Result<(PathBuf, Vec<u8>), HostError> {
+    fn read_bytes(&mut self, path: &str, from: Option<&Path>) -> Found<Vec<u8>> {
         let (known, text) = self.read(path, from)?;
         Ok((known, text.into_bytes()))
     }

@@ -6,7 +6,7 @@
 use std::path::{Component, Path, PathBuf};
 use std::time::SystemTime;
 
-use crate::host::HostError;
+use crate::host::{Found, HostError};
 
 /// Which files a model may read, and where they are looked for.
 #[derive(Clone, Debug)]
@@ -101,11 +101,7 @@ impl Files {
     }
 
     /// Reads a text, as [`crate::host::Host::read`] does.
-    pub(crate) fn read(
-        &self,
-        path: &str,
-        from: Option<&Path>,
-    ) -> Result<(PathBuf, String), HostError> {
+    pub(crate) fn read(&self, path: &str, from: Option<&Path>) -> Found<String> {
         let (known, bytes) = self.read_bytes(path, from)?;
         if bytes.starts_with(b"*GAMS*") {
             return Err(HostError::Compressed);
@@ -128,11 +124,7 @@ impl Files {
     }
 
     /// Reads a file, as [`crate::host::Host::read_bytes`] does.
-    pub(crate) fn read_bytes(
-        &self,
-        path: &str,
-        from: Option<&Path>,
-    ) -> Result<(PathBuf, Vec<u8>), HostError> {
+    pub(crate) fn read_bytes(&self, path: &str, from: Option<&Path>) -> Found<Vec<u8>> {
         let (known, real) = self.find(path, from)?;
         let size = real.metadata().map_err(other)?.len();
         if size > u64::from(u32::MAX / 2) {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::common;
 use bmod::diag::Diagnostic;
-use bmod::host::{Host, HostError};
+use bmod::host::{Found, Host, HostError};
 use bmod::report::diagnostics::{Look, render};
 use bmod::run::Options;
 
@@ -15,7 +15,7 @@ struct Bench {
 }
 
 impl Host for Bench {
-    fn read(&mut self, path: &str, _: Option<&Path>) -> Result<(PathBuf, String), HostError> {
+    fn read(&mut self, path: &str, _: Option<&Path>) -> Found<String> {
         match path {
             "model.blk" => Ok((path.into(), self.text.clone())),
             "self.inc" => Ok((path.into(), "$include self.inc\n".into())),

@@ -1,7 +1,7 @@
 //! The host of a run of the library: texts in memory, perhaps files on disk to read, nothing written to disk.
 
 use super::{Model, Options, OutputFile, Run};
-use crate::host::{Host, HostError, day_number};
+use crate::host::{Found, Host, HostError, day_number};
 use serde::{Deserialize, Serialize};
 use std::cell::{Cell, RefCell};
 use std::path::{Component, Path, PathBuf};
@@ -150,7 +150,7 @@ impl<'a> RunHost<'a> {
 }
 
 impl Host for RunHost<'_> {
-    fn read(&mut self, path: &str, from: Option<&Path>) -> Result<(PathBuf, String), HostError> {
+    fn read(&mut self, path: &str, from: Option<&Path>) -> Found<String> {
         if let Some((known, bytes)) = self.in_memory(path, from) {
             let text = String::from_utf8(bytes);
             let text = text.map_err(|e| HostError::NotUtf8(e.utf8_error().valid_up_to()))?;
@@ -164,11 +164,7 @@ impl Host for RunHost<'_> {
         Err(HostError::NotFound)
     }
 
-    fn read_bytes(
-        &mut self,
-        path: &str,
-        from: Option<&Path>,
-    ) -> Result<(PathBuf, Vec<u8>), HostError> {
+    fn read_bytes(&mut self, path: &str, from: Option<&Path>) -> Found<Vec<u8>> {
         #[cfg(feature = "system")]
         if let (None, Some(files)) = (self.in_memory(path, from), &self.model.files) {
             self.asked(What::File, path, from);

@@ -378,7 +378,7 @@ impl Model {
         PreprocessOptions {
             defines: self.defines.clone(),
             slash_comments: self.slash_comments,
-            max_memory: options.memory_limit(),
+            max_memory: options.max_memory,
             inputs: self.inputs.clone(),
             ..PreprocessOptions::default()
         }
@@ -398,10 +398,10 @@ impl Model {
             ..options.for_machine()
         };
         let finished = execute(settings, &mut |machine| {
-            if options.keeps_solutions() {
+            if options.keep_solutions {
                 ended.solution = Some(machine.solutions(&self.name));
             }
-            if let Some(tolerance) = options.claim_tolerance() {
+            if let Some(tolerance) = options.claims {
                 ended.claims = self.claims(machine, tolerance);
             }
             ended.stopped = machine.stopped() || options.control.is_cancelled();

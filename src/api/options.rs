@@ -23,15 +23,15 @@ pub(super) type Clock = Arc<dyn Fn() -> f64 + Send + Sync>;
 #[derive(Clone, Default)]
 pub struct Options {
     time_limit: Option<f64>,
-    max_memory: Option<usize>,
+    pub(super) max_memory: Option<usize>,
     pairs: Vec<(String, String)>,
     certify: bool,
     explain: bool,
-    keep_solutions: bool,
+    pub(super) keep_solutions: bool,
     pub(super) control: Control,
     pub(super) listener: Option<Listener>,
     pub(super) watcher: Option<Listener>,
-    claims: Option<f64>,
+    pub(super) claims: Option<f64>,
     list: Option<usize>,
     pub(super) clock: Option<Clock>,
 }
@@ -134,10 +134,6 @@ impl Options {
         self
     }
 
-    pub(super) fn claim_tolerance(&self) -> Option<f64> {
-        self.claims
-    }
-
     /// What of them a result may depend on.
     pub(super) fn describe(&self, add: &mut dyn FnMut(&str)) {
         let mut pairs = self.pairs.clone();
@@ -150,14 +146,6 @@ impl Options {
             "{:?} {:?} {} {}",
             self.time_limit, self.max_memory, self.certify, self.explain
         ));
-    }
-
-    pub(super) fn memory_limit(&self) -> Option<usize> {
-        self.max_memory
-    }
-
-    pub(super) fn keeps_solutions(&self) -> bool {
-        self.keep_solutions
     }
 
     pub(super) fn for_machine(&self) -> run::Options {

@@ -164,16 +164,12 @@ pub(super) fn second_data(name: &str, span: Span, declared: Span) -> Diagnostic 
 
 impl Compiler {
     /// The sets that data define, `p(i<)`, get theirs with them.
-    pub(super) fn open_domains(
-        &mut self,
-        s: SymbolId,
-        defines: &[bool],
-        span: Span,
-    ) -> Result<(), Failed> {
-        for (position, _) in defines.iter().enumerate().filter(|(_, d)| **d) {
-            if let Some(DomainPosition::Set(d)) = self.symbols.get(s).domain.get(position) {
-                let root = self.symbols.root(*d);
-                self.open_data(root, span)?;
+    pub(super) fn open_domains(&mut self, s: SymbolId, span: Span) -> Result<(), Failed> {
+        for position in 0..self.symbols.get(s).dim() {
+            if let DomainPosition::Set(d) = self.symbols.get(s).domain[position]
+                && self.defines(s, position)
+            {
+                self.open_data(self.symbols.root(d), span)?;
             }
         }
         Ok(())
@@ -249,14 +245,13 @@ impl Compiler {
         s: SymbolId,
         body: Span,
         name: Span,
-        defines: &[bool],
         kind: DataKind,
         map: &'m SourceMap,
     ) -> Result<(Filling, DataReader<'m>), Failed> {
         self.store.phantom.clone_from(&map.phantom);
         let open = self.symbols.get(s).open;
         let filling = self.open_data(s, name)?;
-        self.open_domains(s, defines, name)?;
+        self.open_domains(s, name)?;
         let text = map.text(body);
         if open {
             self.shape_by_data(s, text, kind);
@@ -285,10 +280,9 @@ impl Compiler {
         s: SymbolId,
         body: Span,
         name: Span,
-        defines: &[bool],
         map: &SourceMap,
     ) -> Result<(), Failed> {
-        let (filling, mut reader) = self.open_reader(s, body, name, defines, DataKind::Set, map)?;
+        let (filling, mut reader) = self.open_reader(s, body, name, DataKind::Set, map)?;
         let symbol = self.symbols.get(s).clone();
         let mut elements = Elements {
             last: self.last_label(symbol.table, symbol.dim()),
@@ -347,10 +341,7 @@ impl Compiler {
                 Some((help, words)) if !plain => lists.push((span, help, words)),
                 _ => plain = true,
             }
-            if self
-                .expand(s, record.key, span, defines, &mut keys)
-                .is_err()
-            {
+            if self.expand(s, record.key, span, &mut keys).is_err() {
                 continue;
             }
             elements.unordered |= all_of_unordered && elements.symbol.dim() == 1 && keys.len() > 0;
@@ -455,11 +446,9 @@ impl Compiler {
         s: SymbolId,
         body: Span,
         name: Span,
-        defines: &[bool],
         map: &SourceMap,
     ) -> Result<(), Failed> {
-        let (mut filling, mut reader) =
-            self.open_reader(s, body, name, defines, DataKind::Values, map)?;
+        let (mut filling, mut reader) = self.open_reader(s, body, name, DataKind::Values, map)?;
         let symbol = self.symbols.get(s).clone();
         let dim = symbol.dim();
         let mut keys = Tuples::default();
@@ -501,7 +490,7 @@ impl Compiler {
                     .report(self);
                 continue;
             }
-            if self.expand(s, key, span, defines, &mut keys).is_err() {
+            if self.expand(s, key, span, &mut keys).is_err() {
                 if self.errors() >= super::MAX_ERRORS {
                     break;
                 }
@@ -720,7 +709,7 @@ impl Compiler {
         let symbol = self.symbols.get(s).clone();
         let mut keys = Tuples::default();
         if symbol.dim() > 0 {
-            self.expand(s, key, span, &[], &mut keys)?;
+            self.expand(s, key, span, &mut keys)?;
         }
         let offsets = match functions::record_attribute(text) {
             Some(RecordAttribute::Fix) => vec![attribute::L, attribute::LO, attribute::UP],

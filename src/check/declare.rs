@@ -65,8 +65,12 @@ impl Compiler {
         tables: impl FnOnce(&mut Self, usize) -> TableId,
     ) -> Result<SymbolId, Failed> {
         let declared = self.declare_new(d, kind, tables);
-        if declared.is_err() {
-            self.lose_declaration(&d.name.name);
+        match (declared, &d.domain) {
+            (Ok(s), Some(_)) => {
+                self.defining.insert(s, d.defines());
+            }
+            (Ok(_), None) => {}
+            (Err(Failed), _) => self.lose_declaration(&d.name.name),
         }
         declared
     }
@@ -118,7 +122,7 @@ impl Compiler {
                     | SymbolKind::Variable(_)
                     | SymbolKind::Equation(_)
             );
-        let new = self.symbols.add(Symbol {
+        Ok(self.symbols.add(Symbol {
             name: d.name.name.clone(),
             open,
             kind,
@@ -131,12 +135,7 @@ impl Compiler {
             dynamic: false,
             is_domain: false,
             unordered: false,
-        });
-        if names.iter().any(|n| n.defines) {
-            let defines = names.iter().map(|n| n.defines).collect();
-            self.defining.insert(new, defines);
-        }
-        Ok(new)
+        }))
     }
 
     /// A further declaration of a symbol, which may give it its indices and its text.
@@ -280,7 +279,7 @@ impl Compiler {
             if explicit {
                 self.symbols.get_mut(s).open = false;
             }
-            if !self.take_input(s, &d.defines(), d.name.span)
+            if !self.take_input(s, d.name.span)
                 && let Some(body) = d.data
             {
                 if !explicit && new && map.text(body).trim().is_empty() {
@@ -292,7 +291,7 @@ impl Compiler {
                         .report(self);
                     continue;
                 }
-                let _ = self.set_data(s, body, d.name.span, &d.defines(), map);
+                let _ = self.set_data(s, body, d.name.span, map);
             }
         }
         Ok(())
@@ -377,11 +376,10 @@ impl Compiler {
             let Ok(s) = self.declare(&p.symbol, kind, |c, n| c.store.add_table(n, 0.0)) else {
                 continue;
             };
-            let defines = p.symbol.defines();
-            if !self.take_input(s, &defines, p.symbol.name.span)
+            if !self.take_input(s, p.symbol.name.span)
                 && let Some(body) = p.symbol.data
             {
-                let _ = self.parameter_data(s, body, p.symbol.name.span, &defines, map);
+                let _ = self.parameter_data(s, body, p.symbol.name.span, map);
             }
         }
         Ok(())

@@ -287,13 +287,18 @@ fn letters<'a>(from: &str, to: &str) -> Option<Labels<'a>> {
 }
 
 impl Compiler {
+    /// Whether data of a symbol define the set of a position: `p(i<)`.
+    pub(super) fn defines(&self, s: SymbolId, position: usize) -> bool {
+        let defines = self.defining.get(&s);
+        defines.is_some_and(|d| d.get(position) == Some(&true))
+    }
+
     /// All keys a record of data stands for.
     pub(super) fn expand(
         &mut self,
         s: SymbolId,
         parts: &[KeyPart],
         span: Span,
-        defines: &[bool],
         out: &mut Tuples,
     ) -> Result<(), Failed> {
         out.width = self.symbols.get(s).dim();
@@ -318,12 +323,12 @@ impl Compiler {
                 let KeyPart::Label { text, span, .. } = part else {
                     unreachable!("tested above")
                 };
-                let label = self.data_label(s, p, text, *span, defines)?;
+                let label = self.data_label(s, p, text, *span)?;
                 out.labels.push(label);
             }
             return Ok(());
         }
-        let rows = self.products(s, 0, parts, span, defines)?;
+        let rows = self.products(s, 0, parts, span)?;
         self.take(rows.len(), record_bytes(dim), span)?;
         if rows.len() > 0 && rows.width != dim {
             return self.wrong_record(s, span, rows.width);
@@ -355,7 +360,6 @@ impl Compiler {
         position: usize,
         parts: &[KeyPart],
         span: Span,
-        defines: &[bool],
     ) -> Result<Tuples, Failed> {
         let spelled_out = set_prefix(parts);
         let parts = spelled_out.as_deref().unwrap_or(parts);
@@ -366,7 +370,7 @@ impl Compiler {
                 continue;
             }
             let at = position + rows.as_ref().map_or(0, |r| r.width);
-            let choices = self.choices(s, at, part, span, defines)?;
+            let choices = self.choices(s, at, part, span)?;
             let before = rows.as_ref().map_or(1, Tuples::len);
             if before.saturating_mul(choices.len()) > MAX_EXPANSION {
                 return Diagnostic::error("E0343", span)
@@ -392,14 +396,13 @@ impl Compiler {
         position: usize,
         part: &KeyPart,
         whole: Span,
-        defines: &[bool],
     ) -> Result<Tuples, Failed> {
         match part {
             KeyPart::Label { text, .. } if self.store.is_phantom(text) => {
                 Ok(Tuples::single(Vec::new()))
             }
             KeyPart::Label { text, span, .. } => {
-                let label = self.data_label(s, position, text, *span, defines)?;
+                let label = self.data_label(s, position, text, *span)?;
                 Ok(Tuples::single(vec![label]))
             }
             KeyPart::Range { from, to, span } => {
@@ -433,7 +436,7 @@ impl Compiler {
                     }
                 };
                 self.take(labels.count, LABEL_BYTES, *span)?;
-                self.range_of_words(from, to, s, position, *span, defines)?;
+                self.range_of_words(from, to, s, position, *span)?;
                 self.store.universe.reserve(labels.count);
                 let mut found = Vec::with_capacity(labels.count);
                 let (mut text, mut ends) = (String::new(), Vec::new());
@@ -449,7 +452,7 @@ impl Compiler {
                     let spelled = || ends.windows(2).map(|e| &text[e[0]..e[1]]);
                     self.store.universe.warm(spelled());
                     for label in spelled() {
-                        found.push(self.data_label(s, position, label, *span, defines)?);
+                        found.push(self.data_label(s, position, label, *span)?);
                     }
                 }
                 Ok(Tuples::single(found))
@@ -486,7 +489,7 @@ impl Compiler {
             KeyPart::Group(alternatives) => {
                 let mut out = Tuples::default();
                 for alternative in alternatives {
-                    let more = self.products(s, position, alternative, whole, defines)?;
+                    let more = self.products(s, position, alternative, whole)?;
                     if out.len() > 0 && more.len() > 0 && out.width != more.width {
                         return self.wrong_dimension(s, whole, position + more.width);
                     }
@@ -499,8 +502,8 @@ impl Compiler {
             }
             KeyPart::Factor(_) => Ok(Tuples::default()),
             KeyPart::Matched(first, other) => {
-                let rows = self.products(s, position, first, whole, defines)?;
-                let behind = self.products(s, position + rows.width, other, whole, defines)?;
+                let rows = self.products(s, position, first, whole)?;
+                let behind = self.products(s, position + rows.width, other, whole)?;
                 if rows.len() != behind.len() {
                     Diagnostic::warning("E0347", whole).says(format!("`:` matches one by one, but there are {} on the left and {} on the right", rows.len(), behind.len()))
                         .label("what is left over on one side is dropped")
@@ -520,7 +523,6 @@ impl Compiler {
         s: SymbolId,
         position: usize,
         span: Span,
-        defines: &[bool],
     ) -> Result<(), Failed> {
         let is_word = |l: &str| l.len() > 2 && l.bytes().all(|b| b.is_ascii_alphabetic());
         let head = |l: &str| l[..l.len() - 1].to_ascii_lowercase();
@@ -538,7 +540,7 @@ impl Compiler {
             .label(format!("`{from}`, `{second}`, …"))
             .help("list the labels, with commas between them");
         if let Some(DomainPosition::Set(set)) = self.symbols.get(s).domain.get(position)
-            && defines.get(position) != Some(&true)
+            && !self.defines(s, position)
             && !self.modes.at(span).warnings
         {
             let table = self.symbols.get(self.symbols.root(*set)).table;
@@ -559,7 +561,6 @@ impl Compiler {
         position: usize,
         text: &str,
         span: Span,
-        defines: &[bool],
     ) -> Result<Label, Failed> {
         let symbol = self.symbols.get(s);
         let Some(DomainPosition::Set(d)) = symbol.domain.get(position) else {
@@ -573,7 +574,7 @@ impl Compiler {
         {
             return Ok(l);
         }
-        if defines.get(position) == Some(&true) {
+        if self.defines(s, position) {
             let l = self.store.universe.intern(text);
             self.store.table_mut(table).set(&[l], 1.0);
             return Ok(l);

@@ -38,7 +38,7 @@ impl Inputs {
 impl Compiler {
     /// Gives a symbol that was just declared its data from outside. True if it has some: the text's own are
     /// passed over then.
-    pub(super) fn take_input(&mut self, s: SymbolId, defines: &[bool], span: Span) -> bool {
+    pub(super) fn take_input(&mut self, s: SymbolId, span: Span) -> bool {
         if self.inputs.has(s) {
             return true;
         }
@@ -61,9 +61,10 @@ impl Compiler {
             self.set_dimension(s, keys.dimension());
         }
         // Which members the set has is known only here then.
-        self.asked_for_data
-            .set(self.asked_for_data.get() || defines.contains(&true));
-        let _ = self.fill_from_input(s, &input, defines, span);
+        self.asked_for_data.set(
+            self.asked_for_data.get() || self.defining.get(&s).is_some_and(|d| d.contains(&true)),
+        );
+        let _ = self.fill_from_input(s, &input, span);
         true
     }
 
@@ -111,13 +112,7 @@ impl Compiler {
         Ok(())
     }
 
-    fn fill_from_input(
-        &mut self,
-        s: SymbolId,
-        input: &Input,
-        defines: &[bool],
-        span: Span,
-    ) -> Result<(), Failed> {
+    fn fill_from_input(&mut self, s: SymbolId, input: &Input, span: Span) -> Result<(), Failed> {
         let symbol = self.symbols.get(s).clone();
         self.fits_symbol(&symbol, input, span)?;
         let (dim, given) = (symbol.dim(), input.data.keys());
@@ -134,15 +129,7 @@ impl Compiler {
                         let label = self.store.universe.intern(&given.labels(p)[code]);
                         if let Some(DomainPosition::Set(d)) = symbol.domain.get(p) {
                             let d = self.symbols.root(*d);
-                            self.check_member(
-                                &symbol.name,
-                                given,
-                                [r, p],
-                                d,
-                                label,
-                                defines,
-                                span,
-                            )?;
+                            self.check_member(s, given, [r, p], d, label, span)?;
                         }
                         known[code] = Some(label);
                         label
@@ -166,26 +153,25 @@ impl Compiler {
     }
 
     /// Checks a label against the set of its position, or adds it to a set that the data define (`p(i<)`).
-    #[allow(clippy::too_many_arguments)]
     fn check_member(
         &mut self,
-        name: &str,
+        s: SymbolId,
         keys: &Keys,
         [r, position]: [usize; 2],
         set: SymbolId,
         label: Label,
-        defines: &[bool],
         span: Span,
     ) -> Result<(), Failed> {
         if set == UNIVERSE {
             return Ok(());
         }
+        let defines = self.defines(s, position) && !self.inputs.has(set);
         let domain = self.symbols.get(set);
         let table = &mut self.store.tables[domain.table as usize];
         if table.find(&[label]).is_some() {
             return Ok(());
         }
-        if defines.get(position) == Some(&true) && !self.inputs.has(set) {
+        if defines {
             table.set(&[label], 1.0);
             table.tidy();
             self.symbols.get_mut(set).has_data = true;
@@ -199,7 +185,7 @@ impl Compiler {
         Diagnostic::error("E0377", span)
             .says(format!(
                 "{} was given from outside, but `{}` is not a member of `{set_name}`",
-                record(name, &key, r),
+                record(&self.symbols.get(s).name, &key, r),
                 key[position]
             ))
             .label("declared here")

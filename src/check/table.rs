@@ -88,13 +88,12 @@ impl Compiler {
         };
         let s = self.declare(d, kind, |c, n| c.store.add_table(n, 0.0))?;
         let name = d.name.span;
-        let defines = d.defines();
-        if self.take_input(s, &defines, name) {
+        if self.take_input(s, name) {
             return Ok(());
         }
         let open = self.symbols.get(s).open;
         let filling = self.open_data(s, name)?;
-        self.open_domains(s, &defines, name)?;
+        self.open_domains(s, name)?;
         if open {
             let mut reader = self.table_reader(body, 1, map);
             while let Some(item) = reader.next() {
@@ -124,7 +123,7 @@ impl Compiler {
             key: Vec::new(),
             values: Vec::new(),
             familiar: Familiar::new(&self.symbols, s),
-            defines,
+            defines: d.defines(),
             filling,
             name,
             keys: Tuples::default(),
@@ -171,7 +170,7 @@ impl Compiler {
                     lines.single = across < dim;
                     for (key, span) in reader.columns() {
                         let at = dim.saturating_sub(width(key));
-                        let line = self.table_line(s, at, key, &lines.defines, lines.name);
+                        let line = self.table_line(s, at, key, lines.name);
                         let line = self.not_again(line, &mut lines.headings, span, "column");
                         lines.single &= width(key) == across
                             && matches!(&line, Line::Labels(l) if l.len() == across);
@@ -179,7 +178,7 @@ impl Compiler {
                     }
                 }
                 Ok(TableItem::EmptyRow(key, span)) => {
-                    let line = self.table_line(s, 0, key, &lines.defines, lines.name);
+                    let line = self.table_line(s, 0, key, lines.name);
                     self.not_again(line, &mut lines.rows, span, "row");
                 }
                 Err(d) => {
@@ -248,7 +247,7 @@ impl Compiler {
                     labels.extend_from_slice(&lines.familiar.key[..cell.row.len()]);
                     Line::Labels(labels)
                 }
-                false => self.table_line(s, 0, cell.row, &lines.defines, lines.name),
+                false => self.table_line(s, 0, cell.row, lines.name),
             };
             lines.row = self.not_again(row, &mut lines.rows, cell.row_span, "row");
         }
@@ -277,7 +276,7 @@ impl Compiler {
             _ => {}
         }
         let parts = [cell.row, cell.column].concat();
-        let found = self.expand(s, &parts, cell.span, &lines.defines, &mut lines.keys);
+        let found = self.expand(s, &parts, cell.span, &mut lines.keys);
         for k in lines
             .keys
             .rows()
@@ -326,14 +325,7 @@ impl Compiler {
 
     /// Looks up the label of a row or column that begins at an index position. A set that the table
     /// defines gets labels from values only.
-    fn table_line(
-        &mut self,
-        s: SymbolId,
-        position: usize,
-        key: &[KeyPart],
-        defines: &[bool],
-        span: Span,
-    ) -> Line {
+    fn table_line(&mut self, s: SymbolId, position: usize, key: &[KeyPart], span: Span) -> Line {
         let spelled_out = set_prefix(key);
         let key = spelled_out.as_deref().unwrap_or(key);
         let ends = key.iter().scan(position, |at, part| {
@@ -341,17 +333,17 @@ impl Compiler {
             *at += width(std::slice::from_ref(part));
             Some((from, *at))
         });
-        let opens = |(from, to): (usize, usize)| (from..to).any(|p| defines.get(p) == Some(&true));
-        if !ends.clone().any(opens) {
-            return match self.products(s, position, key, span, &[]) {
+        let opens = |c: &Self, (from, to)| (from..to).any(|p| c.defines(s, p));
+        if !ends.clone().any(|place| opens(self, place)) {
+            return match self.products(s, position, key, span) {
                 Err(Failed) => Line::Refused,
                 Ok(t) if t.len() == 1 => Line::Labels(t.labels),
                 Ok(t) => Line::Many(t),
             };
         }
-        for (part, place) in key.iter().zip(ends).filter(|(_, place)| !opens(*place)) {
+        for (part, place) in key.iter().zip(ends) {
             let part = std::slice::from_ref(part);
-            if self.products(s, place.0, part, span, &[]).is_err() {
+            if !opens(self, place) && self.products(s, place.0, part, span).is_err() {
                 return Line::Refused;
             }
         }

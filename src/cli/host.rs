@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::host::{Host, HostError};
+use crate::host::{Found, Host, HostError};
 use crate::system::{self, Files, other, tidy};
 
 /// Set by the first Ctrl-C.
@@ -80,14 +80,6 @@ impl SystemHost {
         self
     }
 
-    fn clear_progress(&mut self) {
-        if let Some(bar) = self.bar.take() {
-            bar.finish_and_clear();
-        }
-    }
-}
-
-impl SystemHost {
     /// Takes the progress line away.
     pub fn finish(&mut self) {
         if let Some(bar) = self.bar.take() {
@@ -125,15 +117,11 @@ impl Host for SystemHost {
         system::memory()
     }
 
-    fn read(&mut self, path: &str, from: Option<&Path>) -> Result<(PathBuf, String), HostError> {
+    fn read(&mut self, path: &str, from: Option<&Path>) -> Found<String> {
         self.files.read(path, from)
     }
 
-    fn read_bytes(
-        &mut self,
-        path: &str,
-        from: Option<&Path>,
-    ) -> Result<(PathBuf, Vec<u8>), HostError> {
+    fn read_bytes(&mut self, path: &str, from: Option<&Path>) -> Found<Vec<u8>> {
         self.files.read_bytes(path, from)
     }
 
@@ -179,7 +167,7 @@ impl Host for SystemHost {
     }
 
     fn print(&mut self, text: &str) {
-        self.clear_progress();
+        self.finish();
         // A reader that has gone away (`| head`) is no error of ours.
         let _ = match self.output {
             Output::Standard => std::io::stdout().write_all(text.as_bytes()),
@@ -223,7 +211,7 @@ impl Host for SystemHost {
 
 impl Drop for SystemHost {
     fn drop(&mut self) {
-        self.clear_progress();
+        self.finish();
     }
 }
 

@@ -15,7 +15,7 @@ use super::args::EXECUTION;
 use crate::editor::{
     CompletionKind, Diagnostic, Edit, Editor, Files, Fix, Location, Position, Range, TOKEN_KINDS,
 };
-use crate::host::HostError;
+use crate::host::{Found, HostError};
 use crate::system;
 
 /// Files larger than this are not read for an editor.
@@ -37,7 +37,7 @@ pub(super) fn lsp() -> u8 {
 struct Disk;
 
 impl Files for Disk {
-    fn read(&self, path: &str, from: Option<&Path>) -> Result<(PathBuf, Vec<u8>), HostError> {
+    fn read(&self, path: &str, from: Option<&Path>) -> Found<Vec<u8>> {
         let beside = from.and_then(Path::parent).map(|f| f.join(path));
         let mut found = [beside, Some(path.into())].into_iter().flatten();
         let Some(file) = found.find(|p| p.is_file()) else {

@@ -2,7 +2,7 @@
 
 use super::place::{LineIndex, Position, Range};
 use super::scan::Scan;
-use crate::host::{Host, HostError};
+use crate::host::{Found, Host, HostError};
 use rustc_hash::FxHashMap;
 use std::path::{Component, Path, PathBuf};
 
@@ -12,7 +12,7 @@ pub trait Files {
     ///
     /// # Errors
     /// If there is no such file.
-    fn read(&self, path: &str, from: Option<&Path>) -> Result<(PathBuf, Vec<u8>), HostError>;
+    fn read(&self, path: &str, from: Option<&Path>) -> Found<Vec<u8>>;
     /// Whether there is such a file.
     fn exists(&self, path: &str, from: Option<&Path>) -> bool {
         self.read(path, from).is_ok()
@@ -101,7 +101,7 @@ impl ProjectHost<'_> {
 }
 
 impl Host for ProjectHost<'_> {
-    fn read(&mut self, path: &str, from: Option<&Path>) -> Result<(PathBuf, String), HostError> {
+    fn read(&mut self, path: &str, from: Option<&Path>) -> Found<String> {
         let (known, text) = match self.find(path, from) {
             Some((known, d)) => (known, d.text.clone()),
             None => {
@@ -122,11 +122,7 @@ impl Host for ProjectHost<'_> {
         Ok((known, text))
     }
 
-    fn read_bytes(
-        &mut self,
-        path: &str,
-        from: Option<&Path>,
-    ) -> Result<(PathBuf, Vec<u8>), HostError> {
+    fn read_bytes(&mut self, path: &str, from: Option<&Path>) -> Found<Vec<u8>> {
         match self.find(path, from) {
             Some((known, d)) => Ok((known, d.text.clone().into_bytes())),
             None => self.files.ok_or(HostError::NotFound)?.read(path, from),

@@ -200,7 +200,7 @@ impl<'a> Derivation<'a> {
             return None;
         }
         let e = &self.primal.equations[k];
-        let whole = sum(vec![(true, e.left.clone()), (false, e.right.clone())]);
+        let whole = -e.left.clone() + e.right.clone();
         let zero = |e| match e {
             Expr::Variable(Variable::Own(s), _) if s == z => Some(Expr::Number(0.0)),
             e => Some(e),
@@ -208,7 +208,7 @@ impl<'a> Derivation<'a> {
         let rest = whole.map(&mut { zero }, &mut |p| Some(p.clone()))?;
         Some(Eliminated {
             equation: k,
-            function: over(rest, a),
+            function: rest / a,
         })
     }
 
@@ -466,7 +466,7 @@ impl<'a> Derivation<'a> {
     pub fn right_side(&self, equation: usize) -> Expr {
         let e = &self.primal.equations[equation];
         let (left, right) = (e.left.without_variables(), e.right.without_variables());
-        sum(vec![(false, right), (true, left)])
+        right - left
     }
 }
 

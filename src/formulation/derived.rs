@@ -5,7 +5,7 @@ use super::check::{self, Comparison};
 use super::derive::{Derivation, Primal};
 use super::math::{Math, name};
 use super::page::{Block, Formula, Page, Setter, formulas};
-use super::tree::{Expr, Variable, sum, sum_over, times};
+use super::tree::{Expr, Variable, sum, sum_over};
 use super::{Formulation, dual, kkt, side, text};
 use crate::check::node::{AggregateOp, EquationDef, Node, NodeKind, SymbolId};
 use crate::check::visit::Visitor;
@@ -329,8 +329,8 @@ fn lagrangian(m: &Machine, primal: &Primal) -> Option<(Expr, Formulation)> {
         let Some(y) = d.multiplier_of(k) else {
             continue;
         };
-        let g = sum(vec![(false, e.left.clone()), (true, e.right.clone())]);
-        terms.push((true, sum_over(e.binder.clone(), times(y, g))));
+        let g = e.left.clone() - e.right.clone();
+        terms.push((true, sum_over(e.binder.clone(), y * g)));
     }
     Some((sum(terms), d.out))
 }

@@ -46,7 +46,7 @@ pub fn dual(
             }
         };
         let y = d.multiplier(number, primal.equations[k].key.clone());
-        objective.push((false, sum_over(d.binders[k].clone(), times(b, y))));
+        objective.push((false, sum_over(d.binders[k].clone(), b * y)));
     }
     for v in d.variables() {
         let mut bounds = column(&mut d, v)?;
@@ -91,7 +91,7 @@ fn right_side_at(e: &Equation) -> Result<Expr, String> {
         return Err("a quadratic equation is not convex".into());
     }
     let (left, right) = (less_slope(&e.left)?, less_slope(&e.right)?);
-    Ok(sum(vec![(false, right), (true, left)]))
+    Ok(right - left)
 }
 
 /// `f − ∇f·x` of a quadratic function: its constants, less its quadratic terms.
@@ -104,7 +104,7 @@ fn less_slope(f: &Expr) -> Result<Expr, String> {
     let pair = |a: &Expr, b: &Expr, make: &dyn Fn(Expr, Expr) -> Expr| {
         let (a0, b0) = (a.without_variables(), b.without_variables());
         let (a1, b1) = (homogeneous(a), homogeneous(b));
-        sum(vec![(false, make(a0, b0)), (true, make(a1, b1))])
+        make(a0, b0) - make(a1, b1)
     };
     let square = |a: &Expr| {
         let sqr = |a: Expr, _: Expr| match a {
@@ -128,7 +128,7 @@ fn less_slope(f: &Expr) -> Result<Expr, String> {
                 t.iter().cloned().partition(|(_, e)| e.has_variable());
             let rest = match with.as_slice() {
                 [(false, a)] => less_slope(a)?,
-                [(false, a), (false, b)] => pair(a, b, &times),
+                [(false, a), (false, b)] => pair(a, b, &|a, b| a * b),
                 _ => return unknown(),
             };
             factors.push((false, rest));
@@ -395,7 +395,7 @@ fn multiplier_of_bounds(
     );
     let Some(offset) = bounds.data else {
         // It keeps the row in the model.
-        let term = times(Expr::Number(EPS), y);
+        let term = Expr::Number(EPS) * y;
         return (guarded(term, guard.into_iter().collect()), None);
     };
     let bound = Expr::Data(Source::Attribute(v, offset), row.key());
@@ -407,7 +407,7 @@ fn multiplier_of_bounds(
         },
         None => row.binder(None),
     };
-    let worth = sum_over(binder, times(bound, y.clone()));
+    let worth = sum_over(binder, bound * y.clone());
     (guarded(y, guard.into_iter().collect()), Some(worth))
 }
 

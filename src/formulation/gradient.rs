@@ -117,19 +117,14 @@ impl Gradient<'_> {
     }
 
     /// Walks into `e` with further factors. Sums in them get indices of their own: they stand beside those of `e` now.
-    fn with(
-        &mut self,
-        factors: Vec<(bool, Expr)>,
-        e: &Expr,
-        negative: bool,
-    ) -> Result<(), NoDerivative> {
+    fn with(&mut self, factor: Expr, e: &Expr, negative: bool) -> Result<(), NoDerivative> {
         if !e.has_variable() {
             return Ok(());
         }
         let n = self.factors.len();
-        for (d, f) in factors {
-            let f = renamed(&f, self.indices);
-            self.factors.push((d, f));
+        match renamed(&factor, self.indices) {
+            Expr::Product(t) => self.factors.extend(t),
+            f => self.factors.push((false, f)),
         }
         let r = self.walk(e, negative);
         self.factors.truncate(n);
@@ -148,10 +143,9 @@ impl Gradient<'_> {
                 }
             }
             if *divide {
-                let square = Expr::Call(Function::Sqr, vec![e.clone()]);
-                others.push((true, square));
+                others.push((true, sqr(e.clone())));
             }
-            self.with(others, e, negative != *divide)?;
+            self.with(product(others), e, negative != *divide)?;
         }
         Ok(())
     }
@@ -173,19 +167,18 @@ impl Gradient<'_> {
         }
         let body = rename(a, &map);
         let rest = Expr::Aggregate(AggregateOp::Prod, Box::new(others), Box::new(body));
-        self.inside(d, |g| g.with(vec![(false, rest)], a, negative))
+        self.inside(d, |g| g.with(rest, a, negative))
     }
 
     fn power(&mut self, a: &Expr, b: &Expr, negative: bool) -> Result<(), NoDerivative> {
-        let lower = match less_one(b) {
+        let lower = match less_one(b.clone()) {
             Expr::Number(1.0) => a.clone(),
-            Expr::Number(0.0) => Expr::Number(1.0),
-            m => Expr::Binary(BinaryOp::Power, Box::new(a.clone()), Box::new(m)),
+            Expr::Number(0.0) => number(1.0),
+            m => power(a.clone(), m),
         };
-        self.with(vec![(false, b.clone()), (false, lower)], a, negative)?;
-        let whole = Expr::Binary(BinaryOp::Power, Box::new(a.clone()), Box::new(b.clone()));
-        let log = Expr::Call(Function::Log, vec![a.clone()]);
-        self.with(vec![(false, whole), (false, log)], b, negative)
+        self.with(b.clone() * lower, a, negative)?;
+        let whole = power(a.clone(), b.clone());
+        self.with(whole * call(Function::Log, a.clone()), b, negative)
     }
 
     fn call(&mut self, f: Function, args: &[Expr], negative: bool) -> Result<(), NoDerivative> {
@@ -202,13 +195,13 @@ impl Gradient<'_> {
             if !a.has_variable() {
                 continue;
             }
-            let Some(factors) = derivative(f, args, k) else {
+            let Some(factor) = derivative(f, args, k) else {
                 let name = f.name();
                 return Err(format!(
                     "the derivative of `{name}` is no function of the language"
                 ));
             };
-            self.with(factors, a, negative)?;
+            self.with(factor, a, negative)?;
         }
         Ok(())
     }
@@ -218,185 +211,101 @@ fn number(x: f64) -> Expr {
     Expr::Number(x)
 }
 
-fn call(f: Function, args: Vec<Expr>) -> Expr {
-    Expr::Call(f, args)
+fn call(f: Function, x: Expr) -> Expr {
+    Expr::Call(f, vec![x])
 }
 
-fn sqr(e: &Expr) -> Expr {
-    call(Function::Sqr, vec![e.clone()])
-}
-
-fn minus(a: Expr, b: Expr) -> Expr {
-    sum(vec![(false, a), (true, b)])
+fn sqr(x: Expr) -> Expr {
+    call(Function::Sqr, x)
 }
 
 /// An exponent less 1, in numbers where it is one.
-fn less_one(n: &Expr) -> Expr {
-    let ratio = match n {
-        Expr::Product(t) => t.as_slice(),
-        _ => &[],
-    };
-    match (n, ratio) {
-        (Expr::Number(x), _) => number(x - 1.0),
-        (_, [(false, Expr::Number(p)), (true, Expr::Number(q))]) => over(number(p - q), number(*q)),
-        _ => minus(n.clone(), number(1.0)),
+fn less_one(n: Expr) -> Expr {
+    match &n {
+        Expr::Number(x) => number(x - 1.0),
+        Expr::Product(t) => match t.as_slice() {
+            [(false, Expr::Number(p)), (true, Expr::Number(q))] => number(p - q) / number(*q),
+            _ => n - number(1.0),
+        },
+        _ => n - number(1.0),
     }
 }
 
-fn plus(a: Expr, b: Expr) -> Expr {
-    sum(vec![(false, a), (false, b)])
-}
-
-fn power(a: &Expr, b: Expr) -> Expr {
-    Expr::Binary(BinaryOp::Power, Box::new(a.clone()), Box::new(b))
-}
-
-/// The derivative of a function by its k-th argument, as factors; None where the language has no function for it.
-#[allow(clippy::too_many_lines)] // one function per line
-fn derivative(f: Function, args: &[Expr], k: usize) -> Option<Vec<(bool, Expr)>> {
+/// The derivative of a function by its k-th argument; None where the language has no function for it.
+fn derivative(f: Function, args: &[Expr], k: usize) -> Option<Expr> {
     use Function as F;
-    let x = &args[0];
-    let whole = || call(f, args.to_vec());
-    let mul = |e| vec![(false, e)];
-    let div = |e| vec![(true, e)];
+    let x = || args[0].clone();
+    let y = || args[1].clone();
+    let z = |default| args.get(2).cloned().unwrap_or(number(default));
+    let by = || args[k].clone();
+    let one = || number(1.0);
+    let whole = || Expr::Call(f, args.to_vec());
     Some(match (f, k) {
-        (F::Exp, _) => mul(whole()),
-        (F::Log, _) => div(x.clone()),
-        (F::Log2, _) => vec![(true, x.clone()), (true, call(F::Log, vec![number(2.0)]))],
-        (F::Log10, _) => vec![(true, x.clone()), (true, call(F::Log, vec![number(10.0)]))],
-        (F::Sqrt, _) => vec![(false, number(0.5)), (true, whole())],
-        (F::Sqr, _) => vec![(false, number(2.0)), (false, x.clone())],
-        (F::Power, 0) => {
-            let n = args[1].clone();
-            let lower = match &n {
-                Expr::Number(2.0) => x.clone(),
-                Expr::Number(1.0) => number(1.0),
-                _ => call(f, vec![x.clone(), less_one(&n)]),
-            };
-            vec![(false, n), (false, lower)]
+        (F::Exp, _) => whole(),
+        (F::Log, _) => one() / x(),
+        (F::Log2, _) => one() / x() / call(F::Log, number(2.0)),
+        (F::Log10, _) => one() / x() / call(F::Log, number(10.0)),
+        (F::Sqrt, _) => number(0.5) / whole(),
+        (F::Sqr, _) => number(2.0) * x(),
+        (F::Power, 0) if args[1] == number(2.0) => y() * x(),
+        (F::Power, 0) if args[1] == one() => one(),
+        (F::Power | F::RPower | F::VcPower, 0) => y() * Expr::Call(f, vec![x(), less_one(y())]),
+        (F::RPower | F::CvPower, 1) => whole() * call(F::Log, x()),
+        (F::SignPower, 0) => y() * power(call(F::Abs, x()), less_one(y())),
+        (F::Sin, _) => call(F::Cos, x()),
+        (F::Cos, _) => -call(F::Sin, x()),
+        (F::Tan, _) => one() + sqr(whole()),
+        (F::ArcSin, _) => one() / call(F::Sqrt, one() - sqr(x())),
+        (F::ArcCos, _) => number(-1.0) / call(F::Sqrt, one() - sqr(x())),
+        (F::ArcTan, _) => one() / (one() + sqr(x())),
+        (F::ArcTan2, 0) => y() / (sqr(x()) + sqr(y())),
+        (F::ArcTan2, _) => -x() / (sqr(x()) + sqr(y())),
+        (F::Sinh, _) => call(F::Cosh, x()),
+        (F::Cosh, _) => call(F::Sinh, x()),
+        (F::Tanh, _) => one() - sqr(whole()),
+        (F::ErrorF, _) => {
+            let pi = Expr::DataCall(DataFunction::Pi, vec![]);
+            call(F::Exp, -sqr(x()) / number(2.0)) / call(F::Sqrt, number(2.0) * pi)
         }
-        (F::RPower | F::VcPower, 0) => {
-            let n = args[1].clone();
-            let lower = call(f, vec![x.clone(), less_one(&n)]);
-            vec![(false, n), (false, lower)]
+        (F::Entropy, _) => -(call(F::Log, x()) + one()),
+        (F::Centropy, 0) => {
+            let (a, b) = (x() + z(1e-20), y() + z(1e-20));
+            call(F::Log, a.clone() / b) + x() / a
         }
-        (F::RPower | F::CvPower, 1) => {
-            vec![(false, whole()), (false, call(F::Log, vec![x.clone()]))]
-        }
-        (F::SignPower, 0) => {
-            let n = args[1].clone();
-            let size = call(F::Abs, vec![x.clone()]);
-            vec![(false, n.clone()), (false, power(&size, less_one(&n)))]
-        }
-        (F::Sin, _) => mul(call(F::Cos, vec![x.clone()])),
-        (F::Cos, _) => mul(negate(call(F::Sin, vec![x.clone()]))),
-        (F::Tan, _) => mul(plus(number(1.0), sqr(&whole()))),
-        (F::ArcSin, _) => div(call(F::Sqrt, vec![minus(number(1.0), sqr(x))])),
-        (F::ArcCos, _) => vec![
-            (false, number(-1.0)),
-            (true, call(F::Sqrt, vec![minus(number(1.0), sqr(x))])),
-        ],
-        (F::ArcTan, _) => div(plus(number(1.0), sqr(x))),
-        (F::ArcTan2, 0) => vec![
-            (false, args[1].clone()),
-            (true, plus(sqr(x), sqr(&args[1]))),
-        ],
-        (F::ArcTan2, _) => vec![
-            (false, negate(x.clone())),
-            (true, plus(sqr(x), sqr(&args[1]))),
-        ],
-        (F::Sinh, _) => mul(call(F::Cosh, vec![x.clone()])),
-        (F::Cosh, _) => mul(call(F::Sinh, vec![x.clone()])),
-        (F::Tanh, _) => mul(minus(number(1.0), sqr(&whole()))),
-        (F::ErrorF, _) => vec![
-            (false, call(F::Exp, vec![over(negate(sqr(x)), number(2.0))])),
-            (
-                true,
-                call(
-                    F::Sqrt,
-                    vec![times(number(2.0), Expr::DataCall(DataFunction::Pi, vec![]))],
-                ),
-            ),
-        ],
-        (F::Entropy, _) => mul(negate(plus(call(F::Log, vec![x.clone()]), number(1.0)))),
-        (F::Centropy, 0 | 1) => {
-            let shift = args.get(2).cloned().unwrap_or(number(1e-20));
-            let (a, b) = (plus(x.clone(), shift.clone()), plus(args[1].clone(), shift));
-            match k {
-                0 => mul(plus(
-                    call(F::Log, vec![over(a.clone(), b)]),
-                    over(x.clone(), a),
-                )),
-                _ => vec![(false, negate(x.clone())), (true, b)],
-            }
-        }
-        (F::Sigmoid, _) => vec![
-            (false, whole()),
-            (false, call(F::Sigmoid, vec![negate(x.clone())])),
-        ],
-        (F::Logit, _) => vec![(true, x.clone()), (true, minus(number(1.0), x.clone()))],
+        (F::Centropy, 1) => -x() / (y() + z(1e-20)),
+        (F::Sigmoid, _) => whole() * call(F::Sigmoid, -x()),
+        (F::Logit, _) => one() / x() / (one() - x()),
         (F::Poly, 0) => {
             let terms = args[2..].iter().enumerate().map(|(n, a)| {
-                let n = n as f64;
-                let power = call(F::Power, vec![x.clone(), number(n)]);
-                let factors = match n {
-                    0.0 => vec![(false, a.clone())],
-                    1.0 => vec![(false, number(2.0)), (false, a.clone()), (false, x.clone())],
-                    _ => vec![(false, number(n + 1.0)), (false, a.clone()), (false, power)],
+                let (n, a) = (n as f64, a.clone());
+                let term = match n {
+                    0.0 => a,
+                    1.0 => number(2.0) * a * x(),
+                    _ => number(n + 1.0) * a * Expr::Call(F::Power, vec![x(), number(n)]),
                 };
-                (false, product(factors))
+                (false, term)
             });
-            mul(sum(terms.collect()))
+            sum(terms.collect())
         }
-        (F::Poly, k) => mul(call(F::Power, vec![x.clone(), number(k as f64 - 1.0)])),
-        (F::EDist, k) => vec![(false, args[k].clone()), (true, whole())],
-        (F::Div | F::Div0, 0) => div(args[1].clone()),
-        (F::Div | F::Div0, _) => vec![(false, negate(x.clone())), (true, sqr(&args[1]))],
-        (F::LseMax, k) => mul(call(F::Exp, vec![minus(args[k].clone(), whole())])),
-        (F::LseMin, k) => mul(call(F::Exp, vec![minus(whole(), args[k].clone())])),
-        (F::LseMaxSc, k) if k > 0 => {
-            let e = times(x.clone(), minus(args[k].clone(), whole()));
-            mul(call(F::Exp, vec![e]))
-        }
-        (F::LseMinSc, k) if k > 0 => {
-            let e = times(x.clone(), minus(whole(), args[k].clone()));
-            mul(call(F::Exp, vec![e]))
-        }
+        (F::Poly, k) => Expr::Call(F::Power, vec![x(), number(k as f64 - 1.0)]),
+        (F::EDist, _) => by() / whole(),
+        (F::Div | F::Div0, 0) => one() / y(),
+        (F::Div | F::Div0, _) => -x() / sqr(y()),
+        (F::LseMax, _) => call(F::Exp, by() - whole()),
+        (F::LseMin, _) => call(F::Exp, whole() - by()),
+        (F::LseMaxSc, k) if k > 0 => call(F::Exp, x() * (by() - whole())),
+        (F::LseMinSc, k) if k > 0 => call(F::Exp, x() * (whole() - by())),
         (F::BetaReg, 0) => {
-            let (a, b) = (&args[1], &args[2]);
-            vec![
-                (false, power(x, less_one(a))),
-                (false, power(&minus(number(1.0), x.clone()), less_one(b))),
-                (true, call(F::Beta, vec![a.clone(), b.clone()])),
-            ]
+            let (a, b) = (y(), z(0.0));
+            let beta = Expr::Call(F::Beta, vec![a.clone(), b.clone()]);
+            power(x(), less_one(a)) * power(one() - x(), less_one(b)) / beta
         }
-        (F::GammaReg, 0) => {
-            let a = &args[1];
-            vec![
-                (false, power(x, less_one(a))),
-                (false, call(F::Exp, vec![negate(x.clone())])),
-                (true, call(F::Gamma, vec![a.clone()])),
-            ]
-        }
-        (F::NcpCm, 0 | 1) => {
-            let s = call(
-                F::Sigmoid,
-                vec![over(minus(x.clone(), args[1].clone()), args[2].clone())],
-            );
-            match k {
-                0 => mul(minus(number(1.0), s)),
-                _ => mul(s),
-            }
-        }
+        (F::GammaReg, 0) => power(x(), less_one(y())) * call(F::Exp, -x()) / call(F::Gamma, y()),
+        (F::NcpCm, 0) => one() - call(F::Sigmoid, (x() - y()) / z(0.0)),
+        (F::NcpCm, 1) => call(F::Sigmoid, (x() - y()) / z(0.0)),
         (F::NcpF, 0 | 1) => {
-            let smoothing = args.get(2).cloned().unwrap_or(number(0.0));
-            let inside = sum(vec![
-                (false, sqr(x)),
-                (false, sqr(&args[1])),
-                (false, times(number(2.0), smoothing)),
-            ]);
-            let ratio = over(args[k].clone(), call(F::Sqrt, vec![inside]));
-            mul(minus(ratio, number(1.0)))
+            let squares = sqr(x()) + sqr(y()) + number(2.0) * z(0.0);
+            by() / call(F::Sqrt, squares) - one()
         }
         _ => return None,
     })

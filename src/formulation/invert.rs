@@ -264,10 +264,7 @@ fn substituted(sets: Sets, e: &Expr, k: IndexId, to: &Part) -> Option<Expr> {
             if back.circular || symbols.root(s) != symbols.root(back.set) {
                 return None;
             }
-            Some(sum(vec![
-                (false, Expr::Ord(s, back.base.clone())),
-                (false, back.offset.clone()),
-            ]))
+            Some(Expr::Ord(s, back.base.clone()) + back.offset.clone())
         }
         (Expr::LabelAttribute(_, _, Part::Lag(_)), Some(_)) => None,
         // A position in one set is none in another.
@@ -338,7 +335,7 @@ fn substituted_part(sets: Sets, p: &Part, k: IndexId, to: &Part) -> Option<Part>
                     if !same || inner.circular != l.circular {
                         return None;
                     }
-                    let offset = sum(vec![(false, inner.offset.clone()), (false, offset)]);
+                    let offset = inner.offset.clone() + offset;
                     Some(lagged(inner.base.clone(), l.set, offset, l.circular))
                 }
                 // The lag counts in the set that its index ran over: another index counts elsewhere.

@@ -90,18 +90,12 @@ fn stationarity(d: &mut Derivation, v: SymbolId, keep: bool) -> Result<(), Strin
         ),
     };
     let left = match d.is_minimum() {
-        true => sum(vec![(false, row.cost.clone()), (true, row.rows.clone())]),
-        false => sum(vec![(false, row.rows.clone()), (true, row.cost.clone())]),
+        true => row.cost.clone() - row.rows.clone(),
+        false => row.rows.clone() - row.cost.clone(),
     };
     // A variable that stands in no row is kept in the model by a coefficient eps.
     let left = match keep || !d.without_row(v).is_empty() {
-        true => {
-            let eps = times(
-                Expr::Number(EPS),
-                Expr::Variable(Variable::Own(v), row.key()),
-            );
-            sum(vec![(false, left), (false, eps)])
-        }
+        true => left + Expr::Number(EPS) * Expr::Variable(Variable::Own(v), row.key()),
         false => left,
     };
     let row_name = d.fresh(&format!("stat_{name}"));
@@ -213,7 +207,7 @@ fn feasibility(d: &mut Derivation, k: usize, keep: bool) {
     let left = match keep {
         true => {
             let y = Expr::Variable(Variable::Multiplier(y), e.key.clone());
-            sum(vec![(false, left), (false, times(Expr::Number(EPS), y))])
+            left + Expr::Number(EPS) * y
         }
         false => left,
     };

@@ -56,11 +56,11 @@ pub fn left_side(g: &Generated, i: usize, number: &dyn Fn(f64) -> Expr) -> Expr 
     let p = &g.instance;
     let mut terms = Vec::new();
     for (j, a) in p.matrix.row(i).filter(|t| t.1 != 0.0) {
-        terms.push((false, times(number(a), column(g, j))));
+        terms.push((false, number(a) * column(g, j)));
     }
     for k in &p.nonlinear {
         for t in k.terms().filter(|t| t.row == i) {
-            terms.push((false, times(number(t.coef), term(g, &k.kernel, t, number))));
+            terms.push((false, number(t.coef) * term(g, &k.kernel, t, number)));
         }
     }
     sum(terms)
@@ -82,7 +82,7 @@ fn term(g: &Generated, k: &Kernel, t: KernelTerm, number: &dyn Fn(f64) -> Expr) 
                 terms,
             } => {
                 let all = (0..terms)
-                    .map(|n| (false, times(constant(first + 1 + n), variable(x + n))))
+                    .map(|n| (false, constant(first + 1 + n) * variable(x + n)))
                     .chain([(false, constant(first))]);
                 sum(all.collect())
             }
@@ -92,18 +92,10 @@ fn term(g: &Generated, k: &Kernel, t: KernelTerm, number: &dyn Fn(f64) -> Expr) 
             }
             Op::Negate => negate(args.remove(0)),
             Op::Call(f, _) => Expr::Call(f, args),
-            Op::PowerInt(n) => {
-                let n = Expr::Number(f64::from(n));
-                Expr::Binary(BinaryOp::Power, Box::new(args.remove(0)), Box::new(n))
-            }
-            Op::Subtract | Op::Divide | Op::Power => {
-                let (a, b) = (args.remove(0), args.remove(0));
-                match op {
-                    Op::Subtract => sum(vec![(false, a), (true, b)]),
-                    Op::Divide => over(a, b),
-                    _ => Expr::Binary(BinaryOp::Power, Box::new(a), Box::new(b)),
-                }
-            }
+            Op::PowerInt(n) => power(args.remove(0), Expr::Number(f64::from(n))),
+            Op::Subtract => args.remove(0) - args.remove(0),
+            Op::Divide => args.remove(0) / args.remove(0),
+            Op::Power => power(args.remove(0), args.remove(0)),
         };
         stack.push(made);
     }

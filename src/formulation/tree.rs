@@ -6,6 +6,7 @@ pub use crate::check::node::{
 };
 use crate::data::universe::Label;
 pub use crate::model::instance::Function;
+use std::ops;
 
 /// An index that runs: its number in [`Indices`].
 pub type IndexId = usize;
@@ -304,14 +305,44 @@ pub fn product(factors: Vec<(bool, Expr)>) -> Expr {
     if minus { negate(all) } else { all }
 }
 
-/// `a · b`
-pub fn times(a: Expr, b: Expr) -> Expr {
-    product(vec![(false, a), (false, b)])
+impl ops::Neg for Expr {
+    type Output = Self;
+    fn neg(self) -> Self {
+        negate(self)
+    }
 }
 
-/// `a / b`
-pub fn over(a: Expr, b: Expr) -> Expr {
-    product(vec![(false, a), (true, b)])
+impl ops::Add for Expr {
+    type Output = Self;
+    fn add(self, b: Self) -> Self {
+        sum(vec![(false, self), (false, b)])
+    }
+}
+
+impl ops::Sub for Expr {
+    type Output = Self;
+    fn sub(self, b: Self) -> Self {
+        sum(vec![(false, self), (true, b)])
+    }
+}
+
+impl ops::Mul for Expr {
+    type Output = Self;
+    fn mul(self, b: Self) -> Self {
+        product(vec![(false, self), (false, b)])
+    }
+}
+
+impl ops::Div for Expr {
+    type Output = Self;
+    fn div(self, b: Self) -> Self {
+        product(vec![(false, self), (true, b)])
+    }
+}
+
+/// a to the power b.
+pub fn power(a: Expr, b: Expr) -> Expr {
+    Expr::Binary(BinaryOp::Power, Box::new(a), Box::new(b))
 }
 
 /// `a $ (c and …)`

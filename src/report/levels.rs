@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::names::Names;
+use super::names::{Names, join};
 use super::summary::digits;
 use crate::model::instance::Instance;
 
@@ -21,87 +21,53 @@ pub struct Values<'a> {
     pub row_marginal: &'a [f64],
 }
 
-/// A member of a symbol: its name, level and marginal.
-struct Line {
-    name: String,
-    level: f64,
-    marginal: f64,
-}
-
 /// Two tables, of variables and of equations. The short form leaves out columns where level and marginal are 0, rows
 /// whose marginal is 0, and what is beyond the first few of a symbol; it says how many those are. The
 /// objective variable is left out: the summary shows it.
 pub fn levels(instance: &Instance, names: &dyn Names, values: &Values, all: bool) -> String {
     let objective = instance.objective.map(|o| o.column as usize);
     let columns = (0..instance.column_count()).filter(|j| Some(*j) != objective);
-    let column = |j: usize| Line {
-        name: String::new(),
-        level: values.column_level[j],
-        marginal: values.column_marginal[j],
-    };
-    let row = |i: usize| Line {
-        name: String::new(),
-        level: values.row_level[i],
-        marginal: values.row_marginal[i],
-    };
-    let mut out = String::new();
-    let is_shown = |l: &Line| all || l.level != 0.0 || l.marginal != 0.0;
-    let of_columns = columns.map(|j| (names.column_parts(j).0, j, column(j)));
-    table(
-        &mut out,
-        "variable",
-        of_columns,
-        is_shown,
-        &|j| names.column(j),
-        all,
-    );
+    let columns = columns.map(|j| {
+        let of = (values.column_level[j], values.column_marginal[j]);
+        (names.column_parts(j), of)
+    });
     // The row that defines the objective has the marginal 1: nothing to read there.
     let defines = |i: usize| instance.matrix.row(i).any(|(j, _)| Some(j) == objective);
     let rows = (0..instance.row_count()).filter(|&i| all || !defines(i));
-    let of_rows = rows.map(|i| (names.row_parts(i).0, i, row(i)));
-    let is_shown = |l: &Line| all || l.marginal != 0.0;
-    table(
-        &mut out,
-        "equation",
-        of_rows,
-        is_shown,
-        &|i| names.row(i),
-        all,
-    );
+    let rows = rows.map(|i| {
+        let of = (values.row_level[i], values.row_marginal[i]);
+        (names.row_parts(i), of)
+    });
+    let mut out = String::new();
+    table(&mut out, "variable", columns, |of| of != (0.0, 0.0), all);
+    table(&mut out, "equation", rows, |of| of.1 != 0.0, all);
     out
 }
 
+/// A table of members, which are symbol and labels, level and marginal.
 fn table(
     out: &mut String,
     heading: &str,
-    members: impl Iterator<Item = (String, usize, Line)>,
-    is_shown: impl Fn(&Line) -> bool,
-    name: &dyn Fn(usize) -> String,
+    members: impl Iterator<Item = ((String, Vec<String>), (f64, f64))>,
+    says_something: impl Fn((f64, f64)) -> bool,
     all: bool,
 ) {
-    let mut lines: Vec<Line> = Vec::new();
+    let mut text: Vec<[String; 3]> = Vec::new();
     let (mut symbol, mut of_symbol, mut left_out) = (String::new(), 0, 0);
-    for (s, k, line) in members {
+    for ((s, labels), of) in members {
         if s != symbol {
             (symbol, of_symbol) = (s, 0);
         }
-        if !is_shown(&line) || of_symbol >= SHORT && !all {
+        if !all && (!says_something(of) || of_symbol >= SHORT) {
             left_out += 1;
             continue;
         }
         of_symbol += 1;
-        lines.push(Line {
-            name: name(k),
-            ..line
-        });
+        text.push([join(&symbol, &labels), digits(of.0), digits(of.1)]);
     }
-    if lines.is_empty() {
+    if text.is_empty() {
         return;
     }
-    let text: Vec<[String; 3]> = lines
-        .into_iter()
-        .map(|l| [l.name, digits(l.level), digits(l.marginal)])
-        .collect();
     let width = |c: usize, least: &str| {
         let longest = text.iter().map(|l| l[c].chars().count()).max();
         longest.unwrap_or(0).max(least.len())

@@ -5,7 +5,7 @@
 //! the same numbers; infinities as `"+INF"` and `"-INF"`. The shape is documented in
 //! `docs/json.md`.
 
-use serde::{Serialize, Serializer, ser::SerializeSeq};
+use serde::Serialize;
 
 use super::json::{FORMAT, Number};
 use super::names::Names;
@@ -43,10 +43,10 @@ struct Solve<'a> {
     using: &'a str,
     sense: Option<&'static str>,
     objective: Option<u32>,
-    rows: Rows<'a>,
-    columns: Columns<'a>,
+    rows: Vec<Line>,
+    columns: Vec<Line>,
     /// `[row, column, coefficient]`
-    coefficients: Coefficients<'a>,
+    coefficients: Vec<(usize, usize, Number)>,
     /// Rows with terms that are not linear (their coefficients are not in the list).
     nonlinear_rows: Vec<u32>,
     /// `[row, column]`
@@ -65,61 +65,41 @@ struct Line {
     marginal: Number,
 }
 
-struct Rows<'a>(&'a Solved<'a>);
-struct Columns<'a>(&'a Solved<'a>);
-struct Coefficients<'a>(&'a Instance);
-
-impl Serialize for Rows<'_> {
-    fn serialize<S: Serializer>(&self, s: S) -> Result<S::Ok, S::Error> {
-        let rows = &self.0.instance.rows;
-        let mut list = s.serialize_seq(Some(rows.rhs.len()))?;
-        for (i, &rhs) in rows.rhs.iter().enumerate() {
-            let (symbol, labels) = self.0.names.row_parts(i);
-            let [lower, upper] = rows.relation[i].bounds(rhs);
-            list.serialize_element(&Line {
-                symbol,
-                labels,
-                relation: Some(rows.relation[i].sign()),
-                lower: Number(lower),
-                level: Number(self.0.activity[i]),
-                upper: Number(upper),
-                marginal: Number(self.0.outcome.row_marginal[i]),
-            })?;
+/// The rows of a solve.
+fn rows(solved: &Solved) -> Vec<Line> {
+    let rows = &solved.instance.rows;
+    let row = |i: usize| {
+        let (symbol, labels) = solved.names.row_parts(i);
+        let [lower, upper] = rows.relation[i].bounds(rows.rhs[i]);
+        Line {
+            symbol,
+            labels,
+            relation: Some(rows.relation[i].sign()),
+            lower: Number(lower),
+            level: Number(solved.activity[i]),
+            upper: Number(upper),
+            marginal: Number(solved.outcome.row_marginal[i]),
         }
-        list.end()
-    }
+    };
+    (0..rows.rhs.len()).map(row).collect()
 }
 
-impl Serialize for Columns<'_> {
-    fn serialize<S: Serializer>(&self, s: S) -> Result<S::Ok, S::Error> {
-        let columns = &self.0.instance.columns;
-        let mut list = s.serialize_seq(Some(columns.lower.len()))?;
-        for j in 0..columns.lower.len() {
-            let (symbol, labels) = self.0.names.column_parts(j);
-            list.serialize_element(&Line {
-                symbol,
-                labels,
-                relation: None,
-                lower: Number(columns.lower[j]),
-                level: Number(self.0.outcome.level[j]),
-                upper: Number(columns.upper[j]),
-                marginal: Number(self.0.outcome.column_marginal[j]),
-            })?;
+/// The columns of a solve.
+fn columns(solved: &Solved) -> Vec<Line> {
+    let columns = &solved.instance.columns;
+    let column = |j: usize| {
+        let (symbol, labels) = solved.names.column_parts(j);
+        Line {
+            symbol,
+            labels,
+            relation: None,
+            lower: Number(columns.lower[j]),
+            level: Number(solved.outcome.level[j]),
+            upper: Number(columns.upper[j]),
+            marginal: Number(solved.outcome.column_marginal[j]),
         }
-        list.end()
-    }
-}
-
-impl Serialize for Coefficients<'_> {
-    fn serialize<S: Serializer>(&self, s: S) -> Result<S::Ok, S::Error> {
-        let mut list = s.serialize_seq(Some(self.0.matrix.value.len()))?;
-        for i in 0..self.0.row_count() {
-            for (j, a) in self.0.matrix.row(i) {
-                list.serialize_element(&(i, j, Number(a)))?;
-            }
-        }
-        list.end()
-    }
+    };
+    (0..columns.lower.len()).map(column).collect()
 }
 
 /// The solves of a run as JSON.
@@ -127,8 +107,10 @@ pub fn to_json(file: &str, solves: &[Solved<'_>]) -> String {
     let solves = solves.iter().map(|solved| {
         let instance = solved.instance;
         let is_nonlinear = instance.nonlinear_rows();
-        let rows = 0..instance.row_count() as u32;
-        let nonlinear_rows = rows.filter(|&i| is_nonlinear[i as usize]).collect();
+        let all = 0..instance.row_count();
+        let nonlinear = all.clone().filter(|&i| is_nonlinear[i]);
+        let coefficients =
+            all.flat_map(|i| instance.matrix.row(i).map(move |(j, a)| (i, j, Number(a))));
         let matched = instance.matched.iter().flatten().enumerate();
         Solve {
             model: solved.model,
@@ -138,10 +120,10 @@ pub fn to_json(file: &str, solves: &[Solved<'_>]) -> String {
                 Sense::Maximize => "max",
             }),
             objective: instance.objective.map(|o| o.column),
-            rows: Rows(solved),
-            columns: Columns(solved),
-            coefficients: Coefficients(instance),
-            nonlinear_rows,
+            rows: rows(solved),
+            columns: columns(solved),
+            coefficients: coefficients.collect(),
+            nonlinear_rows: nonlinear.map(|i| i as u32).collect(),
             pairs: matched
                 .filter_map(|(j, row)| row.map(|i| [i, j as u32]))
                 .collect(),

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use bmod::cli::host::{Output, SystemHost};
-use bmod::host::{Host, HostError};
+use bmod::host::{Found, Host, HostError};
 use bmod::model::instance::Instance;
 use bmod::model::problem_type::ProblemType;
 use bmod::report::json::{RunStatus, SolveReport};
@@ -91,7 +91,7 @@ impl Memory {
 }
 
 impl Host for Memory {
-    fn read(&mut self, path: &str, _: Option<&Path>) -> Result<(PathBuf, String), HostError> {
+    fn read(&mut self, path: &str, _: Option<&Path>) -> Found<String> {
         if let Some(text) = self.files.get(path) {
             return Ok((path.into(), text.clone()));
         }
@@ -99,11 +99,7 @@ impl Host for Memory {
         let text = std::fs::read_to_string(&real).map_err(|_| HostError::NotFound)?;
         Ok((real, text))
     }
-    fn read_bytes(
-        &mut self,
-        path: &str,
-        from: Option<&Path>,
-    ) -> Result<(PathBuf, Vec<u8>), HostError> {
+    fn read_bytes(&mut self, path: &str, from: Option<&Path>) -> Found<Vec<u8>> {
         match self.on_disk(path).map(|p| (std::fs::read(&p), p)) {
             Some((Ok(bytes), real)) if !self.files.contains_key(path) => Ok((real, bytes)),
             _ => self.read(path, from).map(|(p, t)| (p, t.into_bytes())),

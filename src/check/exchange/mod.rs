@@ -494,11 +494,10 @@ impl Compiler {
         }
         let mut more = Vec::new();
         for w in items.iter().filter(|w| w.part == Part::Whole) {
-            let defines = self.defining.get(&w.symbol).map_or(&[][..], Vec::as_slice);
             let domain = &self.symbols.get(w.symbol).domain;
             for (p, d) in domain.iter().enumerate() {
                 if let DomainPosition::Set(set) = d
-                    && defines.get(p) == Some(&true)
+                    && self.defines(w.symbol, p)
                 {
                     let part = Part::Position(p);
                     let symbol = *set;

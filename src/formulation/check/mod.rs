@@ -10,7 +10,7 @@ use super::{Formulation, dual, kkt, text};
 use crate::check::node::SymbolId;
 use crate::check::symbols::{Store, Symbols};
 use crate::data::universe::{Label, Universe};
-use crate::host::{Host, HostError};
+use crate::host::{Found, Host, HostError};
 use crate::model::origin::{Block, Blocks};
 use crate::run::{Generated, Machine, Options, StudyChoice};
 use crate::session;
@@ -80,7 +80,7 @@ struct Text<'a> {
 }
 
 impl Host for Text<'_> {
-    fn read(&mut self, path: &str, _: Option<&Path>) -> Result<(PathBuf, String), HostError> {
+    fn read(&mut self, path: &str, _: Option<&Path>) -> Found<String> {
         match path {
             "derived.blk" => Ok((path.into(), self.text.to_string())),
             _ => Err(HostError::NotFound),
