@@ -269,7 +269,7 @@ impl Compiler {
             ExprKind::Apply(name, None, None) => {
                 let free = self.symbols.find(&name.name).filter(|&s| {
                     let singleton = matches!(
-                        self.symbols.get(self.symbols.root(s)).kind,
+                        self.symbols.rooted(s).kind,
                         SymbolKind::Set { singleton: true }
                     );
                     self.symbols.get(s).is_set() && !singleton && self.controlled(s).is_none()
@@ -283,10 +283,7 @@ impl Compiler {
                 }
             }
             ExprKind::Apply(name, None, Some(inner))
-                if self
-                    .symbols
-                    .find(&name.name)
-                    .is_some_and(|s| self.symbols.get(s).is_set()) =>
+                if self.symbols.find_set(&name.name).is_some() =>
             {
                 let s = self.lookup_set(name)?;
                 if self.symbols.get(s).dim() == 1 {
@@ -358,8 +355,8 @@ impl Compiler {
         } else if let ExprKind::Apply(name, None, None) = &base.kind {
             let free = self
                 .symbols
-                .find(&name.name)
-                .filter(|&s| self.symbols.get(s).is_set() && self.controlled(s).is_none());
+                .find_set(&name.name)
+                .filter(|&s| self.controlled(s).is_none());
             if free.is_some() {
                 self.domain_item(name, None, base.span, out)?;
             }

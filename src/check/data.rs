@@ -327,7 +327,7 @@ impl Compiler {
                 KeyPart::AllOf { set, .. } => self
                     .symbols
                     .find(set)
-                    .is_some_and(|set| self.symbols.get(self.symbols.root(set)).unordered),
+                    .is_some_and(|set| self.symbols.rooted(set).unordered),
                 _ => false,
             });
             let text = match &record.value {
@@ -563,7 +563,7 @@ impl Compiler {
     pub(super) fn example(&self, s: SymbolId) -> Vec<&str> {
         let first = |d: &DomainPosition| match d {
             DomainPosition::Set(d) => {
-                let set = self.symbols.get(self.symbols.root(*d));
+                let set = self.symbols.rooted(*d);
                 let table = self.store.table(set.table);
                 match table.is_empty() {
                     true => "a",
@@ -748,7 +748,7 @@ impl Familiar {
     pub(super) fn new(symbols: &Symbols, s: SymbolId) -> Self {
         let domain = &symbols.get(s).domain;
         let set = |p: &DomainPosition| match p {
-            DomainPosition::Set(d) => Some(symbols.get(symbols.root(*d)).table),
+            DomainPosition::Set(d) => Some(symbols.rooted(*d).table),
             _ => None,
         };
         Self {

@@ -303,9 +303,7 @@ impl Compiler {
                 if &*n.name == "*" {
                     Some(UNIVERSE)
                 } else {
-                    self.symbols
-                        .find(&n.name)
-                        .filter(|&s| self.symbols.get(s).is_set())
+                    self.symbols.find_set(&n.name)
                 }
             });
             let Some(root) = known.map(|s| self.symbols.root(s)) else {

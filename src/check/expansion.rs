@@ -543,7 +543,7 @@ impl Compiler {
             && !self.defines(s, position)
             && !self.modes.at(span).warnings
         {
-            let table = self.symbols.get(self.symbols.root(*set)).table;
+            let table = self.symbols.rooted(*set).table;
             let known = self.store.universe.get(&second);
             if known.is_none_or(|l| self.store.table(table).find(&[l]).is_none()) {
                 d.severity = Severity::Error;

@@ -880,13 +880,8 @@ impl Compiler {
         let near = instead.map(str::to_string).or(indexed).or_else(|| {
             let mut known: Vec<&str> = self.symbols.iter().skip(1).map(|(_, s)| &*s.name).collect();
             // A function is meant only where numbers are its arguments.
-            let index = |e: &Expr| {
-                bare(e).is_some_and(|n| {
-                    self.symbols
-                        .find(&n.name)
-                        .is_some_and(|s| self.symbols.get(s).is_set())
-                })
-            };
+            let index =
+                |e: &Expr| bare(e).is_some_and(|n| self.symbols.find_set(&n.name).is_some());
             if arguments.is_some_and(|list| !list.iter().any(index)) {
                 for n in functions::names() {
                     known.push(n);

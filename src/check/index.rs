@@ -23,7 +23,7 @@ impl Compiler {
         if self.modes.at(span).universal {
             return Ok(());
         }
-        let over = self.symbols.get(self.symbols.root(a)).domain.clone();
+        let over = self.symbols.rooted(a).domain.clone();
         if over.len() == 1 {
             return self.fits_as(a, a, of, position, span);
         }
@@ -73,7 +73,7 @@ impl Compiler {
             self.symbols.get(of).name.clone(),
             self.symbols.get(of).declared,
         );
-        let a_root = self.symbols.get(self.symbols.root(a)).declared;
+        let a_root = self.symbols.rooted(a).declared;
         let same = self.symbols.is_subset(d, a);
         let help = if s != a {
             format!("declare `{an}` over the sets that `{on}` runs over, or name its indices")
@@ -301,7 +301,7 @@ impl Compiler {
         if let Some(parts) = self.controlled(s) {
             return Ok(parts.to_vec());
         }
-        let root = self.symbols.get(self.symbols.root(s));
+        let root = self.symbols.rooted(s);
         if matches!(root.kind, SymbolKind::Set { singleton: true }) {
             let (t, dim) = (root.table, root.dim());
             return Ok((0..dim).map(|p| Part::Singleton(t, p as u8)).collect());
@@ -347,7 +347,7 @@ impl Compiler {
         else {
             return self.known_label(text, span);
         };
-        let set = self.symbols.get(self.symbols.root(d));
+        let set = self.symbols.rooted(d);
         let known = self.store.universe.get(text);
         if let Some(l) = known
             && (set.dynamic || self.store.table(set.table).find(&[l]).is_some())
@@ -434,12 +434,7 @@ impl Compiler {
             None if near.is_some() => {
                 format!("did you mean `{quote}{}{quote}`?", near.unwrap_or_default())
             }
-            None if !quote.is_empty()
-                && self
-                    .symbols
-                    .find(text)
-                    .is_some_and(|s| self.symbols.get(s).is_set()) =>
-            {
+            None if !quote.is_empty() && self.symbols.find_set(text).is_some() => {
                 format!("an index stands without quotes: `{text}`; quotes make it one label")
             }
             None if elsewhere.is_some() => {
@@ -479,7 +474,7 @@ impl Compiler {
     fn member_elsewhere(&self, of: SymbolId, position: usize, text: &str) -> Option<String> {
         let label = self.store.universe.get(text)?;
         let has = |s: SymbolId| {
-            let set = self.symbols.get(self.symbols.root(s));
+            let set = self.symbols.rooted(s);
             set.dim() == 1 && self.store.table(set.table).find(&[label]).is_some()
         };
         let symbol = self.symbols.get(of);
@@ -615,7 +610,7 @@ impl Compiler {
         if self.modes.at(span).off_order {
             return Ok(());
         }
-        let root = self.symbols.get(self.symbols.root(s));
+        let root = self.symbols.rooted(s);
         let (declared, name) = (root.declared, root.name.clone());
         if matches!(root.kind, SymbolKind::Set { singleton: true }) {
             return Diagnostic::error("E0309", span)

@@ -307,7 +307,7 @@ impl Program {
         for (p, domain) in symbol.domain.iter().enumerate() {
             let set = match domain {
                 DomainPosition::Set(d) if *d != UNIVERSE => {
-                    let set = self.symbols.get(self.symbols.root(*d));
+                    let set = self.symbols.rooted(*d);
                     Some(self.store.table(set.table))
                 }
                 _ => None,

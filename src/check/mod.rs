@@ -288,7 +288,7 @@ impl Compiler {
             return;
         }
         // A statement with an error may be the one that gives it values.
-        let solved_for = matches!(s.kind, SymbolKind::Variable(_) | SymbolKind::Equation(_));
+        let solved_for = s.has_attributes();
         let hides = |d: &Diagnostic| d.severity == Severity::Error && d.code != "E0319";
         if self.is_lost(&s.name) || solved_for && self.diagnostics.iter().any(hides) {
             return;

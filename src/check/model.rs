@@ -180,7 +180,7 @@ impl Compiler {
         if self.symbols.get(s).dim() != 3 {
             return self.wrong_dimension(s, name.span, 3);
         }
-        let table = self.symbols.get(self.symbols.root(s)).table;
+        let table = self.symbols.rooted(s).table;
         self.store.table_mut(table).tidy();
         let spelled = |l| self.store.universe.name(l).to_lowercase();
         let rows = self.store.table(table).iter();

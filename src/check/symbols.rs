@@ -262,6 +262,16 @@ impl Symbols {
             .map(|(i, s)| (i as SymbolId, s))
     }
 
+    /// The set, or the alias of one, that has this name.
+    pub fn find_set(&self, name: &str) -> Option<SymbolId> {
+        self.find(name).filter(|&s| self.get(s).is_set())
+    }
+
+    /// The symbol itself, or what it is an alias of.
+    pub fn rooted(&self, s: SymbolId) -> &Symbol {
+        self.get(self.root(s))
+    }
+
     /// The set behind an alias.
     pub fn root(&self, id: SymbolId) -> SymbolId {
         match self.get(id).kind {

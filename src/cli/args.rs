@@ -611,32 +611,11 @@ pub fn try_parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Cli, c
 }
 
 /// GAMS's own `key=value` arguments that say how its log, its listing and its processes look: nothing here to set.
+#[rustfmt::skip]
 const GAMS_KEYS: &[&str] = &[
-    "lo",
-    "logoption",
-    "o",
-    "output",
-    "pw",
-    "pagewidth",
-    "ps",
-    "pagesize",
-    "lf",
-    "logfile",
-    "gdx",
-    "scrdir",
-    "curdir",
-    "idir",
-    "ll",
-    "loglevel",
-    "suppress",
-    "appendlog",
-    "appendout",
-    "errmsg",
-    "license",
-    "procdir",
-    "ide",
-    "profile",
-    "stepsum",
+    "lo", "logoption", "o", "output", "pw", "pagewidth", "ps", "pagesize", "lf", "logfile", "gdx",
+    "scrdir", "curdir", "idir", "ll", "loglevel", "suppress", "appendlog", "appendout", "errmsg",
+    "license", "procdir", "ide", "profile", "stepsum",
 ];
 
 /// What GAMS's `key=value` on the command line means here: an option of the run (`reslim=5`), a definition (`user1=x`), or

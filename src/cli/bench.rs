@@ -111,7 +111,7 @@ pub fn bench(a: &BenchArgs) -> u8 {
         let files = [
             (&a.csv, csv),
             (&a.svg, &|| Ok(svg().into_bytes())),
-            (&a.png, &|| png::png(&svg(), 2.0).map_err(|e| e.to_string())),
+            (&a.png, &|| png::png(&svg(), 2.0)),
         ];
         for (path, content) in files {
             let Some(path) = path else { continue };

@@ -24,7 +24,7 @@ pub(super) fn show(a: &GdxArgs) -> u8 {
             let near = nearest(symbol, file.symbols.iter().map(|s| s.name.as_str()));
             let near = near.map(|n| format!("; did you mean `{n}`?"));
             let near = near.unwrap_or_default();
-            return Err(Error(format!("it has no symbol `{symbol}`{near}")));
+            return Err(format!("it has no symbol `{symbol}`{near}"));
         };
         Ok((None, records(&file, n)?))
     });

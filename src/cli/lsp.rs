@@ -391,7 +391,7 @@ impl Server<'_> {
             "textDocument/rename" => {
                 let new = p["newName"].as_str().unwrap_or_default();
                 let edits = editor.rename(&file, at, new);
-                workspace_edit(&edits.map_err(|e| (ErrorCode::RequestFailed, e.to_string()))?)
+                workspace_edit(&edits.map_err(|e| (ErrorCode::RequestFailed, e))?)
             }
             "textDocument/documentSymbol" => {
                 let items = editor.outline(&file).into_iter().map(|i| {

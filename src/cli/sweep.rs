@@ -352,15 +352,9 @@ fn typed(value: &str) -> Value {
 }
 
 /// Columns behind those of the values and outputs.
+#[rustfmt::skip]
 const ABOUT: &[&str] = &[
-    "run",
-    "status",
-    "objective",
-    "solver",
-    "iterations",
-    "primal",
-    "seconds",
-    "stopped",
+    "run", "status", "objective", "solver", "iterations", "primal", "seconds", "stopped",
     "messages",
 ];
 

@@ -36,7 +36,7 @@ pub use analysis::{Diagnostic, FileDiagnostics, Fix, Related};
 pub use complete::{Completion, CompletionKind};
 pub use hover::{Hover, Signature};
 pub use layout::format;
-pub use navigate::{Edit, RenameError};
+pub use navigate::Edit;
 pub use outline::{Fold, FoldKind, Lens, OutlineItem, TOKEN_KINDS, Token};
 pub use place::{Location, Position, Range};
 pub use project::Files;

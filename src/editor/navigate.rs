@@ -21,36 +21,6 @@ pub struct Edit {
     pub new_text: String,
 }
 
-/// Why a name cannot be changed.
-#[derive(Clone, PartialEq, Eq, Debug)]
-pub enum RenameError {
-    /// There is no symbol at this place.
-    NoSymbol,
-    /// The new name is none, or a word of the language.
-    NotAName(String),
-    /// There is a symbol of this name.
-    Taken(String),
-    /// With the new name the model has an error that it does not have now.
-    Breaks(String),
-}
-
-impl std::fmt::Display for RenameError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::NoSymbol => f.write_str("there is no symbol here"),
-            Self::NotAName(n) => write!(
-                f,
-                "`{n}` is no name: a letter, then letters, digits and `_`, and no word of the language"
-            ),
-            Self::Taken(n) => write!(f, "there is a symbol `{n}` already"),
-            Self::Breaks(why) => write!(
-                f,
-                "the name is used where it cannot be followed; with another one: {why}"
-            ),
-        }
-    }
-}
-
 /// What stands at a place.
 #[derive(Clone, PartialEq, Debug)]
 pub(super) enum Subject {
@@ -336,9 +306,10 @@ impl Editor {
     /// Another name for the symbol at a place, everywhere: in all files of the model, and in claims in comments.
     ///
     /// # Errors
-    /// If there is no symbol, the new name cannot be one, or the model would have an error with it.
-    pub fn rename(&self, file: &str, at: Position, new: &str) -> Result<Vec<Edit>, RenameError> {
-        let (_, old) = self.prepare_rename(file, at).ok_or(RenameError::NoSymbol)?;
+    /// If there is no symbol, the new name cannot be one, or the model would have an error with it: says so in words.
+    pub fn rename(&self, file: &str, at: Position, new: &str) -> Result<Vec<Edit>, String> {
+        let symbol = self.prepare_rename(file, at);
+        let (_, old) = symbol.ok_or("there is no symbol here")?;
         let first = new.as_bytes().first();
         let is_name = first.is_some_and(u8::is_ascii_alphabetic)
             && words::word_end(new.as_bytes(), 0) == new.len();
@@ -348,10 +319,12 @@ impl Editor {
             || super::scan::INNER_WORDS.contains(&small.as_str())
             || functions::callee(&small).is_some();
         if !is_name || taken_word {
-            return Err(RenameError::NotAName(new.to_owned()));
+            return Err(format!(
+                "`{new}` is no name: a letter, then letters, digits and `_`, and no word of the language"
+            ));
         }
         if small != old && self.is_symbol(file, &small) {
-            return Err(RenameError::Taken(new.to_owned()));
+            return Err(format!("there is a symbol `{new}` already"));
         }
         let places = self.references(file, at, true).into_iter();
         let edits: Vec<Edit> = places
@@ -362,7 +335,9 @@ impl Editor {
             })
             .collect();
         match self.new_error(file, &edits) {
-            Some(why) => Err(RenameError::Breaks(why)),
+            Some(why) => Err(format!(
+                "the name is used where it cannot be followed; with another one: {why}"
+            )),
             None => Ok(edits),
         }
     }

@@ -66,21 +66,10 @@ pub struct Token {
 
 /// The kinds of words, in names of the language server protocol: sets are types, equations are methods, models classes,
 /// labels are members of enumerations, explanatory texts and directives have names of their own.
+#[rustfmt::skip]
 pub const TOKEN_KINDS: &[&str] = &[
-    "comment",
-    "macro",
-    "keyword",
-    "type",
-    "parameter",
-    "variable",
-    "method",
-    "class",
-    "function",
-    "number",
-    "string",
-    "enumMember",
-    "property",
-    "operator",
+    "comment", "macro", "keyword", "type", "parameter", "variable", "method", "class", "function",
+    "number", "string", "enumMember", "property", "operator",
 ];
 
 /// Something to do with a statement.

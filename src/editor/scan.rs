@@ -436,14 +436,9 @@ impl Scanner<'_> {
 /// Whether symbols may stand behind a directive.
 fn names_symbols(directive: &str) -> bool {
     const WORDS: &[&str] = &["macro", "kill", "clear", "onput"];
+    #[rustfmt::skip]
     const BEGINNINGS: &[&str] = &[
-        "if",
-        "elseif",
-        "eval",
-        "load",
-        "unload",
-        "gdxload",
-        "gdxunload",
+        "if", "elseif", "eval", "load", "unload", "gdxload", "gdxunload",
     ];
     WORDS.contains(&directive) || BEGINNINGS.iter().any(|b| directive.starts_with(b))
 }

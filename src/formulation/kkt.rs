@@ -121,7 +121,7 @@ fn is_exact(
     target: &[IndexId],
     columns: usize,
 ) -> bool {
-    let table = |s: SymbolId| -> &Table { d.store.table(d.symbols.get(d.symbols.root(s)).table) };
+    let table = |s: SymbolId| -> &Table { d.store.table(d.symbols.rooted(s).table) };
     let mut tests: Vec<(&Table, Vec<usize>)> = Vec::new();
     for c in conditions {
         let Expr::Member(s, key) = c else {

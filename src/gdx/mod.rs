@@ -34,22 +34,13 @@ const TOO_LARGE: f64 = 1e300;
 /// Longest label in bytes.
 pub const MAX_LABEL: usize = 63;
 
-/// What is wrong with a file, or with data that a file cannot hold.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Error(pub String);
-
-impl std::fmt::Display for Error {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&self.0)
-    }
-}
-
-impl std::error::Error for Error {}
+/// What is wrong with a file, or with data that a file cannot hold, in words.
+pub type Error = String;
 
 type Result<T> = std::result::Result<T, Error>;
 
 fn fail<T>(message: impl Into<String>) -> Result<T> {
-    Err(Error(message.into()))
+    Err(message.into())
 }
 
 /// What a symbol is.

@@ -209,7 +209,7 @@ impl<'a> File<'a> {
 
     /// The records of a symbol, of the set behind an alias. A scalar has one always.
     pub fn records(&self, symbol: usize) -> Result<Records> {
-        let of = |e: Error| Error(format!("`{}`: {e}", self.symbols[symbol].name));
+        let of = |e: Error| format!("`{}`: {e}", self.symbols[symbol].name);
         match self.root(symbol)? {
             None => Ok(self.universe()),
             Some(s) => self.decode(s).map_err(of),

@@ -17,18 +17,10 @@ use crate::diag::Diagnostic;
 use crate::source::Span;
 
 /// Attributes of a model that are reported where a label has their name.
+#[rustfmt::skip]
 const REPORTED: &[&str] = &[
-    "domusd",
-    "iterusd",
-    "objest",
-    "nodusd",
-    "modelstat",
-    "numnopt",
-    "numinfes",
-    "objval",
-    "resusd",
-    "solvestat",
-    "suminfes",
+    "domusd", "iterusd", "objest", "nodusd", "modelstat", "numnopt", "numinfes", "objval", "resusd",
+    "solvestat", "suminfes",
 ];
 
 /// A dictionary, read.
@@ -156,9 +148,7 @@ impl Machine<'_> {
 
     fn scenario_plan(&self, dict: SymbolId) -> Result<Plan, String> {
         let (mut plan, mut found) = (Plan::default(), None);
-        let dict = self
-            .store
-            .table(self.symbols.get(self.symbols.root(dict)).table);
+        let dict = self.store.table(self.symbols.rooted(dict).table);
         let name = |l: Label| self.store.universe.name(l);
         let depth = dict
             .iter()
@@ -167,7 +157,7 @@ impl Machine<'_> {
             .map_or(1, |s| self.symbols.get(s).dim());
         for (key, _) in dict.iter() {
             let find = |l: Label| match self.symbols.find(name(l)) {
-                Some(s) => Ok(self.symbols.get(self.symbols.root(s))),
+                Some(s) => Ok(self.symbols.rooted(s)),
                 None => Err(format!("`{}` is not known", name(l))),
             };
             let first = find(key[0])?;

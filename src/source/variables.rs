@@ -121,15 +121,10 @@ pub(crate) fn constant(name: &str) -> Option<&'static str> {
         "solvererr", "internalerr", "skipped", "systemerr",
     ];
     const SOLVE_PRINT: &[&str] = &["summary", "report", "quiet"];
+    #[rustfmt::skip]
     const SOLVE_LINK: &[&str] = &[
-        "chainscript",
-        "callscript",
-        "callmodule",
-        "asyncgrid",
-        "asyncsimulate",
-        "loadlibrary",
-        "asyncthreads",
-        "threadssimulate",
+        "chainscript", "callscript", "callmodule", "asyncgrid", "asyncsimulate", "loadlibrary",
+        "asyncthreads", "threadssimulate",
     ];
     const SOLVE_OPT: &[&str] = &["replace", "merge", "clear"];
     const HANDLE_STATUS: &[&str] = &["unknown", "running", "ready", "failure"];

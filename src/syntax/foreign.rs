@@ -501,43 +501,20 @@ pub(super) fn variable_kind(word: &str) -> Option<&'static str> {
 
 /// `paramter a(i) / … /;`
 fn misspelled(f: &Failure<'_>, word: &str, rest: &str, lead: usize) -> Option<Explanation> {
+    #[rustfmt::skip]
     const KEYWORDS: [&str; 22] = [
-        "set",
-        "sets",
-        "parameter",
-        "parameters",
-        "scalar",
-        "scalars",
-        "table",
-        "variable",
-        "variables",
-        "positive",
-        "equation",
-        "equations",
-        "model",
-        "solve",
-        "display",
-        "option",
-        "alias",
-        "acronym",
-        "loop",
-        "repeat",
-        "figure",
-        "abort",
+        "set", "sets", "parameter", "parameters", "scalar", "scalars", "table", "variable",
+        "variables", "positive", "equation", "equations", "model", "solve", "display", "option",
+        "alias", "acronym", "loop", "repeat", "figure", "abort",
     ];
     if f.raw.class != Class::Algebra || word.len() < 3 {
         return None;
     }
     let after = f.expanded[f.raw.span.hi as usize..].trim_start();
     if rest.is_empty() && after.to_ascii_lowercase().starts_with("variable") {
+        #[rustfmt::skip]
         const KINDS: [&str; 8] = [
-            "free",
-            "positive",
-            "nonnegative",
-            "negative",
-            "binary",
-            "integer",
-            "semicont",
+            "free", "positive", "nonnegative", "negative", "binary", "integer", "semicont",
             "semiint",
         ];
         let meant = nearest(word, KINDS).unwrap_or("positive");

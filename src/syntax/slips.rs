@@ -503,15 +503,9 @@ fn condition(f: &Failure<'_>, lead: usize, token: &str) -> Option<Diagnostic> {
 }
 
 /// Directives that are often written behind a statement.
+#[rustfmt::skip]
 const DIRECTIVES: [&str; 8] = [
-    "gdxIn",
-    "load",
-    "loadDC",
-    "include",
-    "set",
-    "setGlobal",
-    "onText",
-    "call",
+    "gdxIn", "load", "loadDC", "include", "set", "setGlobal", "onText", "call",
 ];
 
 /// What stands where an operand should, or where one is missing.

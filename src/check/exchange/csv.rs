@@ -139,7 +139,7 @@ fn short(file: &str, line: usize, w: &Wanted, have: usize, need: usize) -> Box<D
 
 /// Many symbols: `symbol,label1,label2,value,text`.
 fn long(file: &str, rows: &Rows, w: &Wanted, loading: &mut Loading<'_>) -> Loaded<()> {
-    let symbol = loading.symbols.get(loading.symbols.root(w.symbol)).clone();
+    let symbol = loading.symbols.rooted(w.symbol).clone();
     let dim = symbol.dim();
     let value_column = rows
         .header
@@ -151,10 +151,7 @@ fn long(file: &str, rows: &Rows, w: &Wanted, loading: &mut Loading<'_>) -> Loade
         .position(|h| h.eq_ignore_ascii_case("text"));
     // Per attribute of variables and equations, in the order in which they appear.
     let mut parts: Vec<(u32, Records)> = Vec::new();
-    let is_record = matches!(
-        symbol.kind,
-        SymbolKind::Variable(_) | SymbolKind::Equation(_)
-    );
+    let is_record = symbol.has_attributes();
     for (row, &line) in rows.rows.iter().zip(&rows.lines) {
         let mut name = row.get(0).unwrap_or("").splitn(2, '.');
         if !name.next().is_some_and(|n| n.eq_ignore_ascii_case(&w.name)) {
@@ -241,7 +238,7 @@ fn is_table(header: &StringRecord, symbol: &Symbol, loading: &Loading<'_>) -> bo
 
 /// One symbol: labels, then the value, the text, or the attributes; or a table with the last index on top.
 fn single(file: &str, rows: &Rows, w: &Wanted, loading: &mut Loading<'_>) -> Loaded<()> {
-    let symbol = loading.symbols.get(loading.symbols.root(w.symbol)).clone();
+    let symbol = loading.symbols.rooted(w.symbol).clone();
     let dim = symbol.dim();
     let mut r = Records::default();
     if is_table(&rows.header, &symbol, loading)

@@ -141,7 +141,7 @@ impl Reader<'_> {
 
     /// The records of a symbol, and the tables that their values go to.
     fn symbol(&mut self, w: &Wanted, loading: &mut Loading<'_>) -> Loaded<(Records, Vec<u32>)> {
-        let symbol = loading.symbols.get(loading.symbols.root(w.symbol));
+        let symbol = loading.symbols.rooted(w.symbol);
         if w.name == "*" {
             return match symbol.is_set() && symbol.dim() == 1 {
                 true => self.set(w, self.gdx.universe(), 1, loading),
@@ -267,7 +267,7 @@ impl Reader<'_> {
         dim: usize,
         loading: &mut Loading<'_>,
     ) -> (Records, Vec<usize>) {
-        let symbol = loading.symbols.get(loading.symbols.root(w.symbol));
+        let symbol = loading.symbols.rooted(w.symbol);
         let mut out = Records::default();
         if dim == 0 {
             out.places.push(1);
@@ -438,7 +438,7 @@ pub(super) fn write(
     items: &[Wanted],
 ) -> Result<Vec<u8>, Error> {
     // Labels that are used, in the order of the universe.
-    let data = |w: &Wanted| symbols.get(symbols.root(w.symbol));
+    let data = |w: &Wanted| symbols.rooted(w.symbol);
     let is_alias = |w: &Wanted| {
         let root = symbols.root(w.symbol);
         let mut before = items.iter().take_while(|o| o.symbol != w.symbol);

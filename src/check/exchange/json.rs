@@ -39,7 +39,7 @@ pub(super) fn read(
         Reader {
             file,
             w,
-            symbol: loading.symbols.get(loading.symbols.root(w.symbol)).clone(),
+            symbol: loading.symbols.rooted(w.symbol).clone(),
             records: Records::default(),
             columns: Vec::new(),
         }

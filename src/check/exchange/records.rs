@@ -141,7 +141,7 @@ impl<'a> Loading<'a> {
             let Some(&(first, place)) = wrong.first() else {
                 continue;
             };
-            let set_symbol = self.symbols.get(self.symbols.root(*set));
+            let set_symbol = self.symbols.rooted(*set);
             let others = match wrong.len() {
                 1 => String::new(),
                 n => format!(" (and {} more)", n - 1),

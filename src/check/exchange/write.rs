@@ -9,7 +9,7 @@ use serde_json::{Map, Value, json};
 /// Makes the tables of symbols ready for reading in order.
 pub(super) fn tidy(symbols: &Symbols, store: &mut Store, items: &[Wanted]) {
     for w in items {
-        for (_, table) in parts(symbols.get(symbols.root(w.symbol))) {
+        for (_, table) in parts(symbols.rooted(w.symbol)) {
             store.table_mut(table).tidy();
         }
     }
@@ -56,7 +56,7 @@ impl Writer<'_> {
         let mut out = csv::Writer::from_writer(Vec::new());
         // A vector takes everything: writing cannot fail.
         if let [one] = items {
-            let symbol = self.symbols.get(self.symbols.root(one.symbol));
+            let symbol = self.symbols.rooted(one.symbol);
             let set = symbol.is_set();
             let mut header = self.symbols.domain_names(symbol);
             match parts(symbol).as_slice() {
@@ -87,11 +87,7 @@ impl Writer<'_> {
                 let _ = out.write_record(&row);
             }
         } else {
-            let symbols = || {
-                items
-                    .iter()
-                    .map(|w| (w, self.symbols.get(self.symbols.root(w.symbol))))
-            };
+            let symbols = || items.iter().map(|w| (w, self.symbols.rooted(w.symbol)));
             let dim = symbols().map(|(_, s)| s.dim()).max().unwrap_or(0);
             let texts = symbols().any(|(_, s)| {
                 s.is_set()
@@ -155,7 +151,7 @@ impl Writer<'_> {
     pub(super) fn json(&self, items: &[Wanted]) -> String {
         let mut out = String::from("{");
         for (n, w) in items.iter().enumerate() {
-            let symbol = self.symbols.get(self.symbols.root(w.symbol));
+            let symbol = self.symbols.rooted(w.symbol);
             out.push_str(if n > 0 { ",\n" } else { "\n" });
             out.push_str(&format!("  {}: ", Value::from(w.name.as_str())));
             let parts = parts(symbol);

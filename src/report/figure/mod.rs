@@ -17,13 +17,13 @@ mod svg;
 
 pub use crate::color::{Paint, series};
 #[cfg(feature = "png")]
-pub use png::{PngError, png};
+pub use png::png;
 pub use svg::svg;
 
 /// A build without the feature `png` writes SVG only.
 #[cfg(not(feature = "png"))]
-pub fn png(_: &str, _: f64) -> Result<Vec<u8>, &'static str> {
-    Err("this build of bmod writes SVG only")
+pub fn png(_: &str, _: f64) -> Result<Vec<u8>, String> {
+    Err("this build of bmod writes SVG only".into())
 }
 
 /// Something to see.

@@ -9,29 +9,6 @@ use std::sync::{Arc, LazyLock};
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree, fontdb};
 
-/// Why there is no picture.
-#[derive(Clone, Debug, PartialEq)]
-pub enum PngError {
-    /// The SVG is not one, in the parser's words.
-    Svg(String),
-    /// The picture would have no or too many pixels.
-    Size(u32, u32),
-    /// The picture could not be encoded.
-    Encoding(String),
-}
-
-impl std::fmt::Display for PngError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Svg(e) => write!(f, "the SVG cannot be read: {e}"),
-            Self::Size(w, h) => write!(f, "a picture of {w} × {h} pixels cannot be made"),
-            Self::Encoding(e) => write!(f, "the picture cannot be encoded: {e}"),
-        }
-    }
-}
-
-impl std::error::Error for PngError {}
-
 static FONTS: LazyLock<Arc<fontdb::Database>> = LazyLock::new(|| {
     let mut db = fontdb::Database::new();
     let regular = include_bytes!("../../../assets/fonts/Inter-400Regular.ttf");
@@ -44,23 +21,23 @@ static FONTS: LazyLock<Arc<fontdb::Database>> = LazyLock::new(|| {
     Arc::new(db)
 });
 
-/// Rasterises an SVG; `scale` is pixels per SVG pixel (2 gives a picture for a dense screen).
-pub fn png(svg: &str, scale: f64) -> Result<Vec<u8>, PngError> {
+/// Rasterises an SVG; `scale` is pixels per SVG pixel (2 gives a picture for a dense screen). Err: why there is no picture.
+pub fn png(svg: &str, scale: f64) -> Result<Vec<u8>, String> {
     let options = Options {
         font_family: "Inter".into(),
         fontdb: Arc::clone(&FONTS),
         ..Options::default()
     };
-    let tree = Tree::from_str(svg, &options).map_err(|e| PngError::Svg(e.to_string()))?;
+    let tree = Tree::from_str(svg, &options);
+    let tree = tree.map_err(|e| format!("the SVG cannot be read: {e}"))?;
     let pixels = |length: f32| (f64::from(length) * scale).round().clamp(0.0, 1e9) as u32;
     let (w, h) = (pixels(tree.size().width()), pixels(tree.size().height()));
-    if u64::from(w) * u64::from(h) > 200_000_000 {
-        return Err(PngError::Size(w, h));
-    }
-    let mut pixmap = Pixmap::new(w, h).ok_or(PngError::Size(w, h))?;
+    let few = u64::from(w) * u64::from(h) <= 200_000_000;
+    let Some(mut pixmap) = few.then(|| Pixmap::new(w, h)).flatten() else {
+        return Err(format!("a picture of {w} × {h} pixels cannot be made"));
+    };
     let transform = Transform::from_scale(scale as f32, scale as f32);
     resvg::render(&tree, transform, &mut pixmap.as_mut());
-    pixmap
-        .encode_png()
-        .map_err(|e| PngError::Encoding(e.to_string()))
+    let png = pixmap.encode_png();
+    png.map_err(|e| format!("the picture cannot be encoded: {e}"))
 }

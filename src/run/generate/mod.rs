@@ -145,7 +145,7 @@ impl Machine<'_> {
             scans.driving(&e.left);
             scans.driving(&e.right);
         }
-        let table = |s: SymbolId| self.symbols.get(self.symbols.root(s)).table;
+        let table = |s: SymbolId| self.symbols.rooted(s).table;
         let limits: FxHashMap<SymbolId, TableId> =
             solve.limits.iter().map(|&(v, s)| (v, table(s))).collect();
         for &t in scans.tables().iter().chain(limits.values()) {
