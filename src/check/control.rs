@@ -164,9 +164,8 @@ impl Compiler {
     }
 
     fn controlled_already<T>(&mut self, set: &Ident, span: Span) -> Result<T, Failed> {
-        let message = format!("`{}` is bound already", set.name);
         Diagnostic::error("E0305", span)
-            .says(message)
+            .says(format!("`{}` is bound already", set.name))
             .label("bound a second time here")
             .help(format!(
                 "use an alias for the inner index: `alias({0},{0}2);` and write `{0}2` here",

@@ -483,9 +483,8 @@ impl Compiler {
             }
             let (span, key) = (record.span, record.key);
             if dim == 0 && !key.is_empty() {
-                let message = format!("the scalar `{}` gets one number", symbol.name);
                 Diagnostic::error("E0345", span)
-                    .says(message)
+                    .says(format!("the scalar `{}` gets one number", symbol.name))
                     .help("write `/ 5 /`; no blank parts thousands")
                     .report(self);
                 continue;

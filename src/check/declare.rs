@@ -283,9 +283,8 @@ impl Compiler {
                 && let Some(body) = d.data
             {
                 if !explicit && new && map.text(body).trim().is_empty() {
-                    let message = format!("how many indices has `{}`?", d.name.name);
                     Diagnostic::error("E0334", d.name.span)
-                        .says(message)
+                        .says(format!("how many indices has `{}`?", d.name.name))
                         .label("neither a domain nor data say")
                         .help(format!("write `{}(*)`, or leave the data out", d.name.name))
                         .report(self);
@@ -358,9 +357,8 @@ impl Compiler {
                 .filter(|_| p.scalar)
             {
                 let name = &p.symbol.name;
-                let message = format!("`{}` is a scalar: it has no index", name.name);
                 Diagnostic::error("E0336", first.name.span)
-                    .says(message)
+                    .says(format!("`{}` is a scalar: it has no index", name.name))
                     .label("no index here")
                     .help(format!(
                         "write `parameter {}({}) …`",
@@ -545,9 +543,8 @@ impl Compiler {
             let perpendicular = ["perp", "complements", "complement"];
             if perpendicular.iter().any(|w| n.name.eq_ignore_ascii_case(w)) && c.named(n).is_none()
             {
-                let message = "an equation and its variable are paired with a dot";
                 return Diagnostic::error("E0338", n.span)
-                    .says(message)
+                    .says("an equation and its variable are paired with a dot")
                     .help("write `model m / e.x /;`")
                     .fail(c);
             }

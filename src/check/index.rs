@@ -286,9 +286,8 @@ impl Compiler {
 
     pub(super) fn unknown_index<T>(&mut self, name: &Ident) -> Result<T, Failed> {
         if self.store.universe.get(&name.name).is_some() {
-            let message = format!("`{}` is not a set, but it is a label", name.name);
             let d = Diagnostic::error("E0301", name.span)
-                .says(message)
+                .says(format!("`{}` is not a set, but it is a label", name.name))
                 .label("unknown set")
                 .help(format!("quote labels in expressions: `'{}'`", name.name));
             return self.unknown(name, d);
@@ -321,9 +320,8 @@ impl Compiler {
         if is_label {
             help.push_str(&format!("; a label is quoted: `'{}'`", name.name));
         }
-        let message = format!("the index `{}` is not bound here", name.name);
         let d = Diagnostic::error("E0303", name.span)
-            .says(message)
+            .says(format!("the index `{}` is not bound here", name.name))
             .label("nothing says which elements")
             .other(declared, "the set is declared here")
             .help(help);

@@ -205,9 +205,8 @@ impl Compiler {
                 Some(s) => {
                     let symbol = self.symbols.get(s);
                     let kind = symbol.kind_name();
-                    let message = format!("data were given for `{name}`, which is a {kind}");
                     Diagnostic::error("E0376", symbol.declared)
-                        .says(message)
+                        .says(format!("data were given for `{name}`, which is a {kind}"))
                         .label("declared here")
                         .help("data from outside are for sets and parameters")
                 }

@@ -82,9 +82,8 @@ impl Compiler {
                 if let Err(refused @ Refused::Unknown(_)) = self.solvers.check(&lower, "") {
                     return self.refused_option(item, &lower, "", item.name.span, &refused);
                 }
-                let message = format!("the option `{}` needs a value", item.name.name);
                 Diagnostic::error("E0330", item.name.span)
-                    .says(message)
+                    .says(format!("the option `{}` needs a value", item.name.name))
                     .label("no value")
                     .help(format!("write `option {} = …;`", item.name.name))
                     .fail(self)

@@ -23,9 +23,8 @@ impl Compiler {
                 DisplayItem::Symbol(r) => {
                     let is_known = self.symbols.find(&r.name.name).is_some();
                     if !is_known && !r.indices.is_empty() && is_operation(&r.name.name) {
-                        let message = "`display` takes symbols, not expressions";
                         return Diagnostic::error("E0328", r.span)
-                            .says(message)
+                            .says("`display` takes symbols, not expressions")
                             .help("assign it first: `parameter total; total = …; display total;`")
                             .fail(self);
                     }

@@ -128,9 +128,8 @@ fn linear_dual(
 ) -> Result<Derived, Box<Diagnostic>> {
     refuse_dual(m, primal, studied)?;
     let failed = |why: String| {
-        let message = format!("the dual cannot be derived: {why}");
         Diagnostic::execution("E0431", studied.span)
-            .says(message)
+            .says(format!("the dual cannot be derived: {why}"))
             .label("of this solve")
     };
     let (symbols, store) = (&m.symbols, &m.store);

@@ -4,7 +4,6 @@
 use super::generate::Generated;
 use super::{Flow, Machine};
 use crate::check::node::{SolveCode, SymbolId};
-use crate::report::json;
 use crate::solve::answer::Answer;
 use crate::source::Span;
 use std::cell::RefCell;
@@ -15,7 +14,6 @@ struct Submitted {
     solve: SolveCode,
     generated: Generated,
     answer: Answer,
-    seconds: json::Seconds,
     span: Span,
 }
 
@@ -83,15 +81,13 @@ impl Machine<'_> {
         s: &SolveCode,
         generated: Generated,
         answer: Answer,
-        seconds: json::Seconds,
         span: Span,
     ) -> Flow {
-        self.report_solve(s, &generated, &answer, seconds);
+        self.report_solve(s, &generated, &answer);
         let submitted = Submitted {
             solve: s.clone(),
             generated,
             answer,
-            seconds,
             span,
         };
         let handle = {
@@ -113,7 +109,7 @@ impl Machine<'_> {
             return;
         }
         for (handle, s) in self.grid.asked.take() {
-            self.store_answer(&s.solve, &s.generated, &s.answer, s.seconds, s.span);
+            self.store_answer(&s.solve, &s.generated, &s.answer, s.span);
             let state = self.models.entry(s.solve.model).or_default();
             state.attributes.insert("handle", handle);
         }

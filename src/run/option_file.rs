@@ -115,9 +115,8 @@ impl Machine<'_> {
                         let backend = tables.first().map_or("", |t| t.backend);
                         format!("`bmod help options {backend}` lists the options")
                     });
-                    let message = format!("`{file}`, line {line}: {message}");
                     Diagnostic::execution("E0426", span)
-                        .says(message)
+                        .says(format!("`{file}`, line {line}: {message}"))
                         .label("at this solve")
                         .help(help)
                         .note(self);

@@ -28,13 +28,13 @@ use crate::solve::{Budget, Limits, Monitor, Progress, Settings, SolveError, rang
 use crate::source::Span;
 use std::sync::Arc;
 
-/// A solver's line to the run.
-struct RunMonitor<'a, 'h> {
+/// What solvers see of a run, and the names of rows and columns, made when asked for.
+struct RunNames<'a, 'h> {
     machine: &'a Machine<'h>,
     origin: &'a Origin,
 }
 
-impl Monitor for RunMonitor<'_, '_> {
+impl Monitor for RunNames<'_, '_> {
     fn log(&mut self, line: &str) {
         self.machine.print(&format!("{line}\n"));
     }
@@ -76,7 +76,7 @@ fn start_help(message: &str, x: &str) -> String {
     )
 }
 
-impl Machine<'_> {
+impl<'h> Machine<'h> {
     /// `equil('b3','x')`
     pub fn origin_name(&self, blocks: &Blocks, i: usize) -> String {
         match blocks.get(i as u32) {
@@ -162,7 +162,7 @@ impl Machine<'_> {
         let mut own = frame.clone();
         let generated = self.generate(s, options, &mut own);
         self.doing.replace(super::STATEMENTS.into());
-        let Some(generated) = generated else {
+        let Some(mut generated) = generated else {
             if !self.stopped() && !self.failed() {
                 return self.skip(s, span);
             }
@@ -198,10 +198,7 @@ impl Machine<'_> {
             let square = s.using == ProblemType::Cns;
             self.examine(&generated.instance, &generated.origin, square, span);
         }
-        let mut monitor = RunMonitor {
-            machine: self,
-            origin: &generated.origin,
-        };
+        let mut monitor = self.names(&generated);
         let budget = Budget::new(&mut monitor, self.limits(s.model), self.options.log);
         let instance = &generated.instance;
         let start = self.start(s.model, instance, &settings);
@@ -219,12 +216,12 @@ impl Machine<'_> {
                 }
                 self.study_answer(&generated, &a);
                 let end = self.elapsed();
-                let seconds = json::Seconds {
+                generated.seconds = json::Seconds {
                     generate: generated_at - begin,
                     solve: end - generated_at,
                     total: end - begin,
                 };
-                self.take_answer(s, generated, a, seconds, span)
+                self.take_answer(s, generated, a, span)
             }
             Err(e) => {
                 self.report_refusal(s, &generated, &e, span);
@@ -233,20 +230,21 @@ impl Machine<'_> {
         }
     }
 
-    /// Stores and reports what a solve gave.
-    fn take_answer(
-        &mut self,
-        s: &SolveCode,
-        generated: Generated,
-        a: Answer,
-        seconds: json::Seconds,
-        span: Span,
-    ) -> Flow {
-        if self.is_submitted(s) {
-            return self.submit(s, generated, a, seconds, span);
+    /// What a solver sees of the run, and the names of an instance.
+    fn names<'a>(&'a self, g: &'a Generated) -> RunNames<'a, 'h> {
+        RunNames {
+            machine: self,
+            origin: &g.origin,
         }
-        self.store_answer(s, &generated, &a, seconds, span);
-        self.report_solve(s, &generated, &a, seconds);
+    }
+
+    /// Stores and reports what a solve gave.
+    fn take_answer(&mut self, s: &SolveCode, generated: Generated, a: Answer, span: Span) -> Flow {
+        if self.is_submitted(s) {
+            return self.submit(s, generated, a, span);
+        }
+        self.store_answer(s, &generated, &a, span);
+        self.report_solve(s, &generated, &a);
         if self.options.keep_solutions {
             self.keep_solution(s, generated, a);
         }
@@ -263,13 +261,12 @@ impl Machine<'_> {
         s: &SolveCode,
         generated: &Generated,
         a: &Answer,
-        seconds: json::Seconds,
         span: Span,
     ) {
         self.store_outside(s, generated);
         self.store(generated, a);
         self.ranged(s, generated, a);
-        self.remember(s, generated, a, seconds);
+        self.remember(s, generated, a);
         let savepoint = self.model_option(s.model, "savepoint", 0.0);
         self.save_point(s.model, savepoint, &generated.origin, span);
     }
@@ -421,10 +418,7 @@ impl Machine<'_> {
         }
         self.host()
             .progress("proving an interval for the objective");
-        let mut monitor = RunMonitor {
-            machine: self,
-            origin: &g.origin,
-        };
+        let mut monitor = self.names(&g);
         let limits = Limits {
             iterations: u64::MAX,
             ..self.limits(s.model)
@@ -552,7 +546,7 @@ impl Machine<'_> {
     }
 
     /// Model attributes after a solve.
-    fn remember(&mut self, s: &SolveCode, g: &Generated, a: &Answer, seconds: json::Seconds) {
+    fn remember(&mut self, s: &SolveCode, g: &Generated, a: &Answer) {
         let r = &a.residuals;
         let instance: &Instance = &g.instance;
         let objective = match instance.objective {
@@ -587,10 +581,10 @@ impl Machine<'_> {
             ("objest", bound),
             ("nodusd", nodes),
             ("iterusd", a.outcome.iterations as f64),
-            ("resusd", seconds.solve),
-            ("etsolve", seconds.total),
-            ("etsolver", seconds.solve),
-            ("resgen", seconds.generate),
+            ("resusd", g.seconds.solve),
+            ("etsolve", g.seconds.total),
+            ("etsolver", g.seconds.solve),
+            ("resgen", g.seconds.generate),
             ("numequ", instance.row_count() as f64),
             ("numvar", g.columns() as f64),
             ("numnz", g.origin.nonzeros as f64),
@@ -633,13 +627,7 @@ impl Machine<'_> {
         }
     }
 
-    pub(super) fn report_solve(
-        &mut self,
-        s: &SolveCode,
-        g: &Generated,
-        a: &Answer,
-        seconds: json::Seconds,
-    ) {
+    pub(super) fn report_solve(&mut self, s: &SolveCode, g: &Generated, a: &Answer) {
         let r = &a.residuals;
         let objective = g.instance.objective;
         let solve = json::SolveReport {
@@ -658,7 +646,6 @@ impl Machine<'_> {
                 .as_ref()
                 .map(|found| self.search_report(g, a, found)),
             iterations: a.outcome.iterations,
-            seconds,
             residual: r.into(),
             complementarity_sum: r
                 .complementarity_sum
@@ -690,10 +677,7 @@ impl Machine<'_> {
         if !wanted && !all {
             return String::new();
         }
-        let names = RunNames {
-            machine: self,
-            origin: &g.origin,
-        };
+        let names = self.names(&g);
         let values = levels::Values {
             column_level: &a.outcome.level,
             column_marginal: &a.outcome.column_marginal,
@@ -731,7 +715,7 @@ impl Machine<'_> {
             nonzeros: g.origin.nonzeros,
             nonlinear_nonzeros: g.origin.nonlinear_nonzeros,
             iterations: 0,
-            seconds: json::Seconds::default(),
+            seconds: g.seconds,
             residual: json::Residual::default(),
             complementarity_sum: None,
             bounds: None,
@@ -774,16 +758,10 @@ impl Machine<'_> {
 
     /// What explains the status, for `bmod why`.
     fn explanation(&self, s: &SolveCode, g: &Generated, a: &Answer) -> Explanation {
-        let mut monitor = RunMonitor {
-            machine: self,
-            origin: &g.origin,
-        };
+        let mut monitor = self.names(&g);
         let budget = Budget::new(&mut monitor, self.limits(s.model), self.options.log);
         let found = why::findings(s.using, &g.instance, a, &budget);
-        let names = RunNames {
-            machine: self,
-            origin: &g.origin,
-        };
+        let names = self.names(&g);
         explain(&found, &g.instance, &names)
     }
 
@@ -850,10 +828,7 @@ impl Machine<'_> {
             names: list.only.clone(),
             limit: list.limit,
         };
-        let names = RunNames {
-            machine: self,
-            origin: &g.origin,
-        };
+        let names = self.names(&g);
         let mut text = listing::listing(&g.instance, &names, &activity, &selection);
         if text.is_empty() && !list.only.is_empty() {
             let asked = list.only.join("`, `");
@@ -887,14 +862,8 @@ impl Machine<'_> {
 
     /// Everything about the solves of the run, as JSON (`--solution`).
     pub fn solutions(&self, file: &str) -> String {
-        let names: Vec<RunNames> = self
-            .kept
-            .iter()
-            .map(|k| RunNames {
-                machine: self,
-                origin: &k.generated.origin,
-            })
-            .collect();
+        let kept = self.kept.iter();
+        let names: Vec<RunNames> = kept.map(|k| self.names(&k.generated)).collect();
         let solved: Vec<solution::Solved> = self
             .kept
             .iter()
@@ -966,12 +935,6 @@ impl KeptSolve {
     pub fn parts(&self) -> (&str, ProblemType, &Instance) {
         (&self.model, self.using, &self.generated.instance)
     }
-}
-
-/// Names of rows and columns, made when asked for.
-struct RunNames<'a, 'h> {
-    machine: &'a Machine<'h>,
-    origin: &'a Origin,
 }
 
 impl RunNames<'_, '_> {

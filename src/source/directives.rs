@@ -563,9 +563,8 @@ impl Preprocessor<'_> {
                     let file = self.frames.last().map_or(super::FileId(0), |f| f.file);
                     self.map.push_substitute(" ", file, lo, lo);
                     line.emit(&mut self.map, from.saturating_sub(1), line.text.len());
-                    let message = "a `$` in the first column begins a directive";
                     return Diagnostic::error("E0107", span)
-                        .says(message)
+                        .says("a `$` in the first column begins a directive")
                         .help("put a blank before the condition")
                         .refuse();
                 }
@@ -729,8 +728,7 @@ impl Preprocessor<'_> {
                 Some(text) => text,
                 None => {
                     let span = self.place(lo, hi);
-                    let message = format!("`${word}.set {name}`: there is no text `{value}`");
-                    return Diagnostic::error("E0115", span).says(message).help(
+                    return Diagnostic::error("E0115", span).says(format!("`${word}.set {name}`: there is no text `{value}`")).help(
                         "write the name of a set with elements and `.tl`, `.te`, `.ts`, `.firstTL`, `.lastTE` …",
                     )
                         .refuse();
@@ -746,9 +744,8 @@ impl Preprocessor<'_> {
                 Ok((x, _)) if x.is_nan() && self.modes.last().is_none_or(|m| !m.1.undf) => {
                     self.names.set(reach(word), name, number_text(x));
                     let span = self.place(lo, hi);
-                    let message = format!("`${word} {name}`: `{value}` has no value");
                     return Diagnostic::error("E0115", span)
-                        .says(message)
+                        .says(format!("`${word} {name}`: `{value}` has no value"))
                         .help("`%name%` stands for UNDF after it")
                         .refuse();
                 }

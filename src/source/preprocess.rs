@@ -1074,12 +1074,9 @@ fn unreadable(name: &str, e: &HostError, span: Span) -> Diagnostic {
                 "the file `{name}` is not UTF-8 text: byte {at} is not part of a character"
             ))
             .help("save it as UTF-8, for example with `iconv -f LATIN1 -t UTF-8`"),
-        HostError::Compressed => {
-            let message = format!("the file `{name}` was compressed by GAMS");
-            Diagnostic::error("E0102", span)
-                .says(message)
-                .help("GAMS unpacks it: `$decompress FILE PLAIN`; bmod reads the plain text")
-        }
+        HostError::Compressed => Diagnostic::error("E0102", span)
+            .says(format!("the file `{name}` was compressed by GAMS"))
+            .help("GAMS unpacks it: `$decompress FILE PLAIN`; bmod reads the plain text"),
         HostError::Other(why) => Diagnostic::error("E0103", span)
             .says(format!("the file `{name}` cannot be read: {why}"))
             .help("check the path and the permissions"),

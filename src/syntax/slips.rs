@@ -291,8 +291,11 @@ fn bars(f: &Failure<'_>) -> Option<Diagnostic> {
         "!" if behind_operand && next != "=" => "write `fact(n)`",
         _ => return None,
     };
-    let message = format!("`{}` is not an operator", f.token(f.at));
-    Some(f.error("E0232", f.at, 1).says(message).help(write))
+    Some(
+        f.error("E0232", f.at, 1)
+            .says(format!("`{}` is not an operator", f.token(f.at)))
+            .help(write),
+    )
 }
 
 /// `2 x`, `f d(i,j)`, `3(x + y)`, `1,5`, `a where b`.

@@ -129,9 +129,8 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     fn wrong<T>(&self, w: &Wanted, what: &str, help: &str) -> Loaded<T> {
-        let message = format!("{}: `{}`: {what}", self.file, w.name);
         let d = Diagnostic::execution("E0478", w.span)
-            .says(message)
+            .says(format!("{}: `{}`: {what}", self.file, w.name))
             .label("nothing was loaded");
         Err(Box::new(match help {
             "" => d,

@@ -336,9 +336,8 @@ impl Machine<'_> {
                         first
                     };
                     let name = self.turn_name(&[missing]);
-                    let text = format!("`arc` leads to `{name}`, which no `node` draws");
                     Diagnostic::warning("E0482", t.element.span)
-                        .says(text)
+                        .says(format!("`arc` leads to `{name}`, which no `node` draws"))
                         .label("left out of the figure")
                         .help("draw the nodes first: `node(i) x = px(i), y = py(i);`")
                         .note(self);

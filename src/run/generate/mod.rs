@@ -23,6 +23,7 @@ use crate::data::value::number;
 use crate::diag::Diagnostic;
 use crate::model::instance::*;
 use crate::model::origin::{Block, Blocks, LeftOut, Origin};
+use crate::report::json::Seconds;
 use crate::source::Span;
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -44,6 +45,8 @@ pub struct Generated {
     pub instance: Instance,
     /// Names and statistics.
     pub origin: Origin,
+    /// What its generation and solution took, once it is solved.
+    pub seconds: Seconds,
 }
 
 impl Generated {
@@ -188,7 +191,12 @@ impl Machine<'_> {
         let origin = b.finish(row_blocks, solve);
         let instance = b.instance;
         let failed = b.failed;
-        (!failed && !self.stopped()).then_some(Generated { instance, origin })
+        let seconds = Seconds::default();
+        (!failed && !self.stopped()).then_some(Generated {
+            instance,
+            origin,
+            seconds,
+        })
     }
 }
 
@@ -428,9 +436,8 @@ impl Builder<'_, '_> {
     }
 
     fn not_finite(&mut self, part: &str, row: &str, span: Span) {
-        let message = format!("{part} of the row {row} is not a finite number");
         Diagnostic::execution("E0411", span)
-            .says(message)
+            .says(format!("{part} of the row {row} is not a finite number"))
             .label("not finite")
             .help("look for inf, na or undf in the data of this equation")
             .note(self.m);
