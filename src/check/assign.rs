@@ -4,19 +4,14 @@ use super::functions;
 use super::node::*;
 use super::symbols::{DomainPosition, Symbol, SymbolKind, attribute};
 use super::visit::{Reading, Visitor};
-use super::{Compiler, Failed};
+use super::{Checked, Compiler};
 use crate::diag::Diagnostic;
 use crate::source::Span;
 use crate::syntax::ast::{self, Assign, Expr, ExprKind, Reference};
 
 impl Compiler {
     /// An assignment; several statements where GAMS does more than one thing.
-    pub(super) fn assign(
-        &mut self,
-        a: &Assign,
-        span: Span,
-        out: &mut Vec<Code>,
-    ) -> Result<(), Failed> {
+    pub(super) fn assign(&mut self, a: &Assign, span: Span, out: &mut Vec<Code>) -> Checked<()> {
         let t = &a.target;
         if let Some(target) = of_the_run(&t.name.name)
             && self.symbols.find(&t.name.name).is_none()
@@ -130,7 +125,7 @@ impl Compiler {
     }
 
     /// What is written to.
-    fn target(&mut self, s: SymbolId, t: &Reference) -> Result<Target, Failed> {
+    fn target(&mut self, s: SymbolId, t: &Reference) -> Checked<Target> {
         let symbol = self.symbols.get(s).clone();
         let target = match &symbol.kind {
             SymbolKind::Parameter { .. } if t.attribute.is_none() => Target::Table(symbol.table),
@@ -234,7 +229,7 @@ impl Compiler {
     }
 
     /// An error where a set that a loop around runs over is changed.
-    pub(super) fn changes_control(&mut self, s: SymbolId, span: Span) -> Result<(), Failed> {
+    pub(super) fn changes_control(&mut self, s: SymbolId, span: Span) -> Checked<()> {
         let root = self.symbols.root(s);
         if !self
             .scope

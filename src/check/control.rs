@@ -5,7 +5,7 @@
 
 use super::node::*;
 use super::symbols::{DomainPosition, SymbolKind, UNIVERSE};
-use super::{Compiler, Failed};
+use super::{Checked, Compiler};
 use crate::diag::Diagnostic;
 use crate::source::Span;
 use crate::syntax::ast::{self, Expr, ExprKind, Ident, Sign};
@@ -21,7 +21,7 @@ impl Compiler {
     }
 
     /// An error where a set stands for what its own indices found, as `s` under `loop(s(i), …)`: it does not run.
-    pub(super) fn runs(&mut self, set: SymbolId, span: Span, what: &str) -> Result<(), Failed> {
+    pub(super) fn runs(&mut self, set: SymbolId, span: Span, what: &str) -> Checked<()> {
         let found = self.scope.iter().rposition(|(s, _)| *s == set);
         let Some(at) = found.filter(|at| self.maps.contains(at)) else {
             return Ok(());
@@ -61,7 +61,7 @@ impl Compiler {
     }
 
     /// Takes a domain and puts its indices under control (until the caller's scope ends).
-    pub(super) fn domain(&mut self, d: &ast::Domain) -> Result<Domain, Failed> {
+    pub(super) fn domain(&mut self, d: &ast::Domain) -> Checked<Domain> {
         let mut out = Domain::default();
         for item in &d.items {
             if item.local {
@@ -88,7 +88,7 @@ impl Compiler {
 
     /// Adds the conjuncts of a condition to a domain. Where random numbers are drawn in one, the condition
     /// stays whole: every tuple draws, whatever the others say.
-    pub(super) fn condition(&mut self, c: &Expr, out: &mut Domain) -> Result<(), Failed> {
+    pub(super) fn condition(&mut self, c: &Expr, out: &mut Domain) -> Checked<()> {
         let before = out.conditions.len();
         self.conjuncts(c, &mut out.conditions)?;
         if out.conditions[before..].iter().any(Node::has_random) {
@@ -102,7 +102,7 @@ impl Compiler {
         Ok(())
     }
 
-    fn conjuncts(&mut self, c: &Expr, out: &mut Vec<Node>) -> Result<(), Failed> {
+    fn conjuncts(&mut self, c: &Expr, out: &mut Vec<Node>) -> Checked<()> {
         if let ExprKind::Binary(BinaryOp::And, a, b) = &c.kind {
             self.conjuncts(a, out)?;
             return self.conjuncts(b, out);
@@ -113,7 +113,7 @@ impl Compiler {
         Ok(())
     }
 
-    pub(super) fn no_variable(&mut self, node: &Node, place: &str) -> Result<(), Failed> {
+    pub(super) fn no_variable(&mut self, node: &Node, place: &str) -> Checked<()> {
         if !node.has_var {
             return Ok(());
         }
@@ -131,7 +131,7 @@ impl Compiler {
         indices: Option<&[Expr]>,
         span: Span,
         out: &mut Domain,
-    ) -> Result<Vec<Part>, Failed> {
+    ) -> Checked<Vec<Part>> {
         let id = self.lookup_set(set)?;
         self.used(id, set.span);
         match indices {
@@ -163,7 +163,7 @@ impl Compiler {
         Ok(parts)
     }
 
-    fn controlled_already<T>(&mut self, set: &Ident, span: Span) -> Result<T, Failed> {
+    fn controlled_already<T>(&mut self, set: &Ident, span: Span) -> Checked<T> {
         Diagnostic::error("E0305", span)
             .says(format!("`{}` is bound already", set.name))
             .label("bound a second time here")
@@ -175,7 +175,7 @@ impl Compiler {
     }
 
     /// `sum(sameas(i,j), …)`: a set that is not under control yet takes the element of the other.
-    fn equal_item(&mut self, indices: &[Expr], span: Span, out: &mut Domain) -> Result<(), Failed> {
+    fn equal_item(&mut self, indices: &[Expr], span: Span, out: &mut Domain) -> Checked<()> {
         let [a, b] = indices else {
             return Diagnostic::error("E0317", span)
                 .says("`sameas` compares two single indices")
@@ -257,7 +257,7 @@ impl Compiler {
         of: SymbolId,
         position: usize,
         out: &mut Domain,
-    ) -> Result<Vec<Part>, Failed> {
+    ) -> Checked<Vec<Part>> {
         match &index.kind {
             ExprKind::Apply(name, Some(a), None) if a.name.eq_ignore_ascii_case("local") => {
                 let s = self.lookup_set(name)?;
@@ -302,7 +302,7 @@ impl Compiler {
         of: SymbolId,
         span: Span,
         out: &mut Domain,
-    ) -> Result<Vec<Part>, Failed> {
+    ) -> Checked<Vec<Part>> {
         let dim = self.symbols.get(of).dim();
         let mut parts: Vec<Vec<Part>> = Vec::with_capacity(indices.len());
         let mut lags = Vec::new();
@@ -344,7 +344,7 @@ impl Compiler {
         Ok(parts)
     }
 
-    fn control_lag_base(&mut self, base: &Expr, out: &mut Domain) -> Result<(), Failed> {
+    fn control_lag_base(&mut self, base: &Expr, out: &mut Domain) -> Checked<()> {
         if let ExprKind::Apply(name, Some(a), None) = &base.kind
             && a.name.eq_ignore_ascii_case("local")
         {

@@ -4,7 +4,7 @@ use super::expansion::{Tuples, record_bytes, set_prefix, together};
 use super::functions::{self, RecordAttribute};
 use super::node::{SymbolId, TableId};
 use super::symbols::{DomainPosition, Store, Symbol, SymbolKind, Symbols, attribute};
-use super::{Compiler, Failed};
+use super::{Checked, Compiler, Failed};
 use crate::data::key_index::KeyIndex;
 use crate::data::universe::Label;
 use crate::data::value::{self, EPS};
@@ -164,7 +164,7 @@ pub(super) fn second_data(name: &str, span: Span, declared: Span) -> Diagnostic 
 
 impl Compiler {
     /// The sets that data define, `p(i<)`, get theirs with them.
-    pub(super) fn open_domains(&mut self, s: SymbolId, span: Span) -> Result<(), Failed> {
+    pub(super) fn open_domains(&mut self, s: SymbolId, span: Span) -> Checked<()> {
         for position in 0..self.symbols.get(s).dim() {
             if let DomainPosition::Set(d) = self.symbols.get(s).domain[position]
                 && self.defines(s, position)
@@ -176,7 +176,7 @@ impl Compiler {
     }
 
     /// An error if a symbol may get no data now; clears it for `$onMultiR`.
-    pub(super) fn open_data(&mut self, s: SymbolId, span: Span) -> Result<Filling, Failed> {
+    pub(super) fn open_data(&mut self, s: SymbolId, span: Span) -> Checked<Filling> {
         self.symbols.get_mut(s).open = false;
         let symbol = self.symbols.get(s);
         let modes = self.modes.at(span);
@@ -204,7 +204,7 @@ impl Compiler {
     }
 
     /// `$clear`, `$kill`: the data so far are forgotten while the text is read.
-    pub(super) fn forget(&mut self, kill: bool, names: &[Ident]) -> Result<(), Failed> {
+    pub(super) fn forget(&mut self, kill: bool, names: &[Ident]) -> Checked<()> {
         for name in names {
             let s = self.lookup(name)?;
             let root = self.symbols.root(s);
@@ -247,7 +247,7 @@ impl Compiler {
         name: Span,
         kind: DataKind,
         map: &'m SourceMap,
-    ) -> Result<(Filling, DataReader<'m>), Failed> {
+    ) -> Checked<(Filling, DataReader<'m>)> {
         self.store.phantom.clone_from(&map.phantom);
         let open = self.symbols.get(s).open;
         let filling = self.open_data(s, name)?;
@@ -281,7 +281,7 @@ impl Compiler {
         body: Span,
         name: Span,
         map: &SourceMap,
-    ) -> Result<(), Failed> {
+    ) -> Checked<()> {
         let (filling, mut reader) = self.open_reader(s, body, name, DataKind::Set, map)?;
         let symbol = self.symbols.get(s).clone();
         let mut elements = Elements {
@@ -447,7 +447,7 @@ impl Compiler {
         body: Span,
         name: Span,
         map: &SourceMap,
-    ) -> Result<(), Failed> {
+    ) -> Checked<()> {
         let (mut filling, mut reader) = self.open_reader(s, body, name, DataKind::Values, map)?;
         let symbol = self.symbols.get(s).clone();
         let dim = symbol.dim();
@@ -508,12 +508,7 @@ impl Compiler {
     }
 
     /// The number of a record of a parameter; that of a scalar may stand where a label would.
-    fn number_of(
-        &mut self,
-        record: &Record<'_, '_>,
-        s: SymbolId,
-        map: &SourceMap,
-    ) -> Result<f64, Failed> {
+    fn number_of(&mut self, record: &Record<'_, '_>, s: SymbolId, map: &SourceMap) -> Checked<f64> {
         let dim = self.symbols.get(s).dim();
         let at = match (&record.value, record.key) {
             (Tail::Number(v, _), _) => return Ok(*v),
@@ -574,7 +569,7 @@ impl Compiler {
         self.symbols.get(s).domain.iter().map(first).collect()
     }
 
-    pub(super) fn acronym(&mut self, name: &str, span: Span) -> Result<f64, Failed> {
+    pub(super) fn acronym(&mut self, name: &str, span: Span) -> Checked<f64> {
         if let Some(s) = self.symbols.find(name)
             && let SymbolKind::Acronym(n) = self.symbols.get(s).kind
         {
@@ -638,12 +633,7 @@ impl Compiler {
     }
 
     /// `variable x(i) / a.lo 5 /`.
-    pub(super) fn record_data(
-        &mut self,
-        s: SymbolId,
-        body: Span,
-        map: &SourceMap,
-    ) -> Result<(), Failed> {
+    pub(super) fn record_data(&mut self, s: SymbolId, body: Span, map: &SourceMap) -> Checked<()> {
         let mut reader = DataReader::new(
             map.text(body),
             body.lo,
@@ -689,7 +679,7 @@ impl Compiler {
         key: &[KeyPart],
         v: f64,
         span: Span,
-    ) -> Result<(), Failed> {
+    ) -> Checked<()> {
         let (text, at, key) = match key.split_last() {
             Some((KeyPart::Group(alternatives), before)) => {
                 for alternative in alternatives {

@@ -2,7 +2,7 @@
 
 use super::node::{SymbolId, TableId};
 use super::symbols::{DomainPosition, ModelInfo, Symbol, SymbolKind, UNIVERSE, attribute};
-use super::{Compiler, Failed};
+use super::{Checked, Compiler, Failed};
 use crate::diag::Diagnostic;
 use crate::source::{SourceMap, Span};
 use crate::syntax::ast::{
@@ -12,7 +12,7 @@ use crate::syntax::ast::{
 use std::sync::Arc;
 
 impl Compiler {
-    fn positions(&mut self, domain: &[DomainName]) -> Result<Vec<DomainPosition>, Failed> {
+    fn positions(&mut self, domain: &[DomainName]) -> Checked<Vec<DomainPosition>> {
         let mut out = Vec::new();
         for d in domain {
             if &*d.name.name == "*" {
@@ -63,7 +63,7 @@ impl Compiler {
         d: &SymbolDecl,
         kind: SymbolKind,
         tables: impl FnOnce(&mut Self, usize) -> TableId,
-    ) -> Result<SymbolId, Failed> {
+    ) -> Checked<SymbolId> {
         let declared = self.declare_new(d, kind, tables);
         match (declared, &d.domain) {
             (Ok(s), Some(_)) => {
@@ -80,7 +80,7 @@ impl Compiler {
         d: &SymbolDecl,
         kind: SymbolKind,
         tables: impl FnOnce(&mut Self, usize) -> TableId,
-    ) -> Result<SymbolId, Failed> {
+    ) -> Checked<SymbolId> {
         let mut names = std::borrow::Cow::Borrowed(d.domain.as_deref().unwrap_or(&[]));
         if matches!(kind, SymbolKind::Set { .. }) && self.symbols.find(&d.name.name).is_none() {
             // `set e(e)`: a set over itself is over the universe.
@@ -145,7 +145,7 @@ impl Compiler {
         d: &SymbolDecl,
         kind: &SymbolKind,
         domain: Vec<DomainPosition>,
-    ) -> Result<SymbolId, Failed> {
+    ) -> Checked<SymbolId> {
         let old = self.symbols.get(s).clone();
         let reshaped = !old.open && d.domain.is_some() && domain.len() != old.dim();
         let unlike = std::mem::discriminant(&old.kind) != std::mem::discriminant(kind);
@@ -217,7 +217,7 @@ impl Compiler {
         name: &Ident,
         kind: SymbolKind,
         text: Option<&str>,
-    ) -> Result<SymbolId, Failed> {
+    ) -> Checked<SymbolId> {
         let d = SymbolDecl {
             name: name.clone(),
             domain: None,
@@ -229,7 +229,7 @@ impl Compiler {
         Ok(s)
     }
 
-    pub(super) fn declare_sets(&mut self, list: &[SetDecl], map: &SourceMap) -> Result<(), Failed> {
+    pub(super) fn declare_sets(&mut self, list: &[SetDecl], map: &SourceMap) -> Checked<()> {
         for set in list {
             if let (Some(over), None) = (&set.symbol.domain, set.symbol.data)
                 && over.len() > 1
@@ -296,7 +296,7 @@ impl Compiler {
         Ok(())
     }
 
-    pub(super) fn declare_aliases(&mut self, groups: &[Vec<Ident>]) -> Result<(), Failed> {
+    pub(super) fn declare_aliases(&mut self, groups: &[Vec<Ident>]) -> Checked<()> {
         for group in groups {
             let known = group.iter().find_map(|n| {
                 if &*n.name == "*" {
@@ -347,7 +347,7 @@ impl Compiler {
         &mut self,
         list: &[ParameterDecl],
         map: &SourceMap,
-    ) -> Result<(), Failed> {
+    ) -> Checked<()> {
         for p in list {
             if let Some(first) = p
                 .symbol
@@ -386,7 +386,7 @@ impl Compiler {
         kind: VariableKind,
         list: &[SymbolDecl],
         map: &SourceMap,
-    ) -> Result<(), Failed> {
+    ) -> Checked<()> {
         for d in list {
             let Ok(s) = self.declare(d, SymbolKind::Variable(VariableKind::Unstated), |c, n| {
                 c.record_tables(n)
@@ -421,7 +421,7 @@ impl Compiler {
     }
 
     /// An error for a variable that has another kind, or was used as one without.
-    fn other_kind(&mut self, s: SymbolId, kind: VariableKind, at: Span) -> Result<(), Failed> {
+    fn other_kind(&mut self, s: SymbolId, kind: VariableKind, at: Span) -> Checked<()> {
         let symbol = self.symbols.get(s);
         let (message, label) = match symbol.kind {
             SymbolKind::Variable(before) if before == kind => return Ok(()),
@@ -461,7 +461,7 @@ impl Compiler {
         &mut self,
         list: &[SymbolDecl],
         map: &SourceMap,
-    ) -> Result<(), Failed> {
+    ) -> Checked<()> {
         for d in list {
             let Ok(s) = self.declare(d, SymbolKind::Equation(None), |c, n| c.record_tables(n))
             else {
@@ -474,7 +474,7 @@ impl Compiler {
         Ok(())
     }
 
-    pub(super) fn declare_models(&mut self, list: &[ModelDecl]) -> Result<(), Failed> {
+    pub(super) fn declare_models(&mut self, list: &[ModelDecl]) -> Checked<()> {
         for m in list {
             if let Some(items) = &m.items {
                 let mut failed = false;
@@ -538,7 +538,7 @@ impl Compiler {
         out
     }
 
-    fn check_model_item(&mut self, item: &ModelItem) -> Result<(), Failed> {
+    fn check_model_item(&mut self, item: &ModelItem) -> Checked<()> {
         let is_equation = |c: &mut Self, n: &Ident, model_too: bool| {
             let perpendicular = ["perp", "complements", "complement"];
             if perpendicular.iter().any(|w| n.name.eq_ignore_ascii_case(w)) && c.named(n).is_none()
@@ -593,7 +593,7 @@ impl Compiler {
     }
 
     /// `x(s)` in the list of a model.
-    fn check_limit(&mut self, variable: &Ident, sets: &[Ident]) -> Result<(), Failed> {
+    fn check_limit(&mut self, variable: &Ident, sets: &[Ident]) -> Checked<()> {
         let v = self.lookup(variable)?;
         let symbol = self.symbols.get(v).clone();
         if !matches!(symbol.kind, SymbolKind::Variable(_)) {
@@ -624,7 +624,7 @@ impl Compiler {
         }
     }
 
-    pub(super) fn declare_acronyms(&mut self, list: &[SymbolDecl]) -> Result<(), Failed> {
+    pub(super) fn declare_acronyms(&mut self, list: &[SymbolDecl]) -> Checked<()> {
         for d in list {
             if self
                 .symbols
@@ -640,7 +640,7 @@ impl Compiler {
         Ok(())
     }
 
-    pub(super) fn declare_files(&mut self, list: &[FileDecl]) -> Result<(), Failed> {
+    pub(super) fn declare_files(&mut self, list: &[FileDecl]) -> Checked<()> {
         for f in list {
             let path = f.path.clone();
             let path = path.unwrap_or_else(|| format!("{}.put", f.name.name).into());

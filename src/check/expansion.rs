@@ -2,7 +2,7 @@
 
 use super::node::SymbolId;
 use super::symbols::{DomainPosition, UNIVERSE};
-use super::{Compiler, Failed};
+use super::{Checked, Compiler};
 use crate::data::table::Table;
 use crate::data::universe::{AT_ONCE, Label};
 use crate::diag::{Diagnostic, Severity};
@@ -300,7 +300,7 @@ impl Compiler {
         parts: &[KeyPart],
         span: Span,
         out: &mut Tuples,
-    ) -> Result<(), Failed> {
+    ) -> Checked<()> {
         out.width = self.symbols.get(s).dim();
         out.labels.clear();
         out.factors.clear();
@@ -337,7 +337,7 @@ impl Compiler {
         Ok(())
     }
 
-    fn wrong_record(&mut self, s: SymbolId, span: Span, given: usize) -> Result<(), Failed> {
+    fn wrong_record(&mut self, s: SymbolId, span: Span, given: usize) -> Checked<()> {
         let at = self.diagnostics.len();
         let failed = self.wrong_dimension(s, span, given);
         let example = self.example(s).join(".");
@@ -360,7 +360,7 @@ impl Compiler {
         position: usize,
         parts: &[KeyPart],
         span: Span,
-    ) -> Result<Tuples, Failed> {
+    ) -> Checked<Tuples> {
         let spelled_out = set_prefix(parts);
         let parts = spelled_out.as_deref().unwrap_or(parts);
         let mut rows: Option<Tuples> = None;
@@ -396,7 +396,7 @@ impl Compiler {
         position: usize,
         part: &KeyPart,
         whole: Span,
-    ) -> Result<Tuples, Failed> {
+    ) -> Checked<Tuples> {
         match part {
             KeyPart::Label { text, .. } if self.store.is_phantom(text) => {
                 Ok(Tuples::single(Vec::new()))
@@ -523,7 +523,7 @@ impl Compiler {
         s: SymbolId,
         position: usize,
         span: Span,
-    ) -> Result<(), Failed> {
+    ) -> Checked<()> {
         let is_word = |l: &str| l.len() > 2 && l.bytes().all(|b| b.is_ascii_alphabetic());
         let head = |l: &str| l[..l.len() - 1].to_ascii_lowercase();
         if !is_word(from) || !is_word(to) || head(from) == head(to) {
@@ -561,7 +561,7 @@ impl Compiler {
         position: usize,
         text: &str,
         span: Span,
-    ) -> Result<Label, Failed> {
+    ) -> Checked<Label> {
         let symbol = self.symbols.get(s);
         let Some(DomainPosition::Set(d)) = symbol.domain.get(position) else {
             return Ok(self.store.universe.intern(text));

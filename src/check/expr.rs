@@ -3,7 +3,7 @@
 use super::functions::{self, Callee};
 use super::node::*;
 use super::symbols::{Symbol, SymbolKind, UNIVERSE, attribute};
-use super::{Compiler, Failed};
+use super::{Checked, Compiler, Failed};
 use crate::data::value;
 use crate::diag::{Diagnostic, nearest};
 use crate::model::instance::Function;
@@ -23,7 +23,7 @@ fn combine(kind: NodeKind, span: Span, has_var: bool, linear: bool) -> Node {
 
 impl Compiler {
     /// The symbol of a name, or an "unknown symbol" error with the nearest name.
-    pub(super) fn lookup(&mut self, id: &Ident) -> Result<SymbolId, Failed> {
+    pub(super) fn lookup(&mut self, id: &Ident) -> Checked<SymbolId> {
         if let Some(s) = self.named(id) {
             return if self.is_torn(s) { Err(Failed) } else { Ok(s) };
         }
@@ -43,11 +43,7 @@ impl Compiler {
     }
 
     /// The equation that a definition is for.
-    pub(super) fn lookup_equation(
-        &mut self,
-        id: &Ident,
-        indices: &[Expr],
-    ) -> Result<SymbolId, Failed> {
+    pub(super) fn lookup_equation(&mut self, id: &Ident, indices: &[Expr]) -> Checked<SymbolId> {
         if self.named(id).is_some() {
             return self.lookup(id);
         }
@@ -77,7 +73,7 @@ impl Compiler {
     }
 
     /// A set by name.
-    pub(super) fn lookup_set(&mut self, id: &Ident) -> Result<SymbolId, Failed> {
+    pub(super) fn lookup_set(&mut self, id: &Ident) -> Checked<SymbolId> {
         if &*id.name == "*" {
             return Ok(UNIVERSE);
         }
@@ -94,7 +90,7 @@ impl Compiler {
     }
 
     /// An expression.
-    pub(super) fn expr(&mut self, e: &Expr) -> Result<Node, Failed> {
+    pub(super) fn expr(&mut self, e: &Expr) -> Checked<Node> {
         let span = e.span;
         match &e.kind {
             ExprKind::Number(x) => Ok(Node::number(*x, span)),
@@ -156,7 +152,7 @@ impl Compiler {
                         Factor::Multiply => (false, node),
                     }));
                 }
-                let factors = out.into_iter().collect::<Result<_, Failed>>()?;
+                let factors = out.into_iter().collect::<Checked<_>>()?;
                 self.product(factors, span)
             }
             ExprKind::Binary(BinaryOp::Divide, a, right) => {
@@ -241,7 +237,7 @@ impl Compiler {
     }
 
     /// `t = '2023'`, `i = j`: an index is no number.
-    fn labels_compared(&mut self, a: &Expr, b: &Expr, span: Span) -> Result<(), Failed> {
+    fn labels_compared(&mut self, a: &Expr, b: &Expr, span: Span) -> Checked<()> {
         let set = |e: &Expr| {
             let s = self.symbols.find(&bare(e)?.name)?;
             self.symbols
@@ -266,7 +262,7 @@ impl Compiler {
     }
 
     /// An error if a membership stands where a number must.
-    pub(super) fn number(&mut self, n: &Node) -> Result<(), Failed> {
+    pub(super) fn number(&mut self, n: &Node) -> Checked<()> {
         if !n.member {
             return Ok(());
         }
@@ -309,7 +305,7 @@ impl Compiler {
     }
 
     /// Terms added up. Of memberships, `+` is the union and `-` the difference.
-    fn sum(&mut self, terms: Vec<(bool, Node)>, span: Span) -> Result<Node, Failed> {
+    fn sum(&mut self, terms: Vec<(bool, Node)>, span: Span) -> Checked<Node> {
         if !terms.iter().all(|(_, n)| n.member) {
             for (_, n) in &terms {
                 self.number(n)?;
@@ -335,7 +331,7 @@ impl Compiler {
     }
 
     /// Factors multiplied. Of memberships, it is the intersection.
-    fn product(&mut self, factors: Vec<(bool, Node)>, span: Span) -> Result<Node, Failed> {
+    fn product(&mut self, factors: Vec<(bool, Node)>, span: Span) -> Checked<Node> {
         let divides = factors
             .iter()
             .any(|(divide, n)| *divide || n.kind.reciprocal_of().is_some());
@@ -364,7 +360,7 @@ impl Compiler {
         attr: Option<&Ident>,
         arguments: Option<&[Expr]>,
         span: Span,
-    ) -> Result<Node, Failed> {
+    ) -> Checked<Node> {
         let Some(s) = self.named(name) else {
             // `system.gamsRelease` is the function of that name.
             return match attr {
@@ -487,7 +483,7 @@ impl Compiler {
         a: &Ident,
         indices: &[Expr],
         span: Span,
-    ) -> Result<Node, Failed> {
+    ) -> Checked<Node> {
         let symbol = self.symbols.get(s).clone();
         let Some(which) = functions::record_attribute(&a.name) else {
             return self.unknown_attribute(
@@ -516,7 +512,7 @@ impl Compiler {
     }
 
     /// Priorities are for discrete variables, scales for the others.
-    pub(super) fn suits(&mut self, symbol: &Symbol, a: &Ident) -> Result<(), Failed> {
+    pub(super) fn suits(&mut self, symbol: &Symbol, a: &Ident) -> Checked<()> {
         let SymbolKind::Variable(kind) = symbol.kind else {
             return Ok(());
         };
@@ -538,7 +534,7 @@ impl Compiler {
         name: &str,
         kind: &str,
         known: &str,
-    ) -> Result<T, Failed> {
+    ) -> Checked<T> {
         let meant = functions::meant_attribute(&a.name, kind);
         let near = meant
             .or_else(|| nearest(&a.name, known.split(", ")))
@@ -566,11 +562,7 @@ impl Compiler {
         .fail(self)
     }
 
-    pub(super) fn object_attribute(
-        &mut self,
-        s: SymbolId,
-        a: &Ident,
-    ) -> Result<&'static str, Failed> {
+    pub(super) fn object_attribute(&mut self, s: SymbolId, a: &Ident) -> Checked<&'static str> {
         let symbol = self.symbols.get(s).clone();
         let known = match symbol.kind {
             SymbolKind::Model(_) => functions::MODEL_ATTRIBUTES,
@@ -590,7 +582,7 @@ impl Compiler {
         attr: &Ident,
         indices: &[Expr],
         span: Span,
-    ) -> Result<Node, Failed> {
+    ) -> Checked<Node> {
         let symbol = self.symbols.get(s).clone();
         let lower = attr.name.to_lowercase();
         match lower.as_str() {
@@ -651,7 +643,7 @@ impl Compiler {
         attr: Option<&Ident>,
         arguments: Option<&[Expr]>,
         span: Span,
-    ) -> Result<Node, Failed> {
+    ) -> Checked<Node> {
         let lower = name.name.to_lowercase();
         let args = arguments.unwrap_or(&[]);
         let Some((callee, low, high)) = functions::callee(&lower).filter(|_| attr.is_none()) else {
@@ -718,7 +710,7 @@ impl Compiler {
     }
 
     /// `ord(i)`, `card(s)`, and both of a text.
-    fn ord_or_card(&mut self, card: bool, args: &[Expr], span: Span) -> Result<Node, Failed> {
+    fn ord_or_card(&mut self, card: bool, args: &[Expr], span: Span) -> Checked<Node> {
         let name = if card { "card" } else { "ord" };
         if let Some(text) = self.text_argument(&args[0])? {
             let at = match (card, args.get(1)) {
@@ -771,7 +763,7 @@ impl Compiler {
     }
 
     /// `sameas`, and `diag`, which is the same as a number.
-    fn same_as(&mut self, member: bool, args: &[Expr], span: Span) -> Result<Node, Failed> {
+    fn same_as(&mut self, member: bool, args: &[Expr], span: Span) -> Checked<Node> {
         let mut parts = Vec::new();
         for a in args {
             parts.extend(match &a.kind {
@@ -794,7 +786,7 @@ impl Compiler {
     }
 
     /// A text where `card` and `ord` may have one: `'abc'`, `i.tl`, `i.te(i)`, `p.ts`.
-    fn text_argument(&mut self, e: &Expr) -> Result<Option<Node>, Failed> {
+    fn text_argument(&mut self, e: &Expr) -> Checked<Option<Node>> {
         let is_text = match &e.kind {
             ExprKind::Text(_) => true,
             ExprKind::Apply(_, Some(a), _) => ["tl", "te", "ts", "tn"]
@@ -841,7 +833,7 @@ impl Compiler {
         }
     }
 
-    fn unknown_name<T>(&mut self, name: &Ident, arguments: Option<&[Expr]>) -> Result<T, Failed> {
+    fn unknown_name<T>(&mut self, name: &Ident, arguments: Option<&[Expr]>) -> Checked<T> {
         let instead = match name.name.to_lowercase().as_str() {
             "asin" => Some("arcsin"),
             "acos" => Some("arccos"),

@@ -2,7 +2,7 @@
 
 use super::node::{FigureCode, FigureElementCode, Node, NodeKind};
 use super::symbols::SymbolKind;
-use super::{Compiler, Failed};
+use super::{Checked, Compiler, Failed};
 use crate::color::Paint;
 use crate::diag::{Diagnostic, nearest};
 use crate::source::Span;
@@ -59,7 +59,7 @@ pub(crate) fn is_text(n: &Node) -> bool {
 }
 
 impl Compiler {
-    pub(super) fn declare_figure(&mut self, f: &Figure) -> Result<(), Failed> {
+    pub(super) fn declare_figure(&mut self, f: &Figure) -> Checked<()> {
         self.texts_allowed = true;
         let mut elements = Vec::new();
         let mut failed = false;
@@ -78,7 +78,7 @@ impl Compiler {
         if failed { Err(Failed) } else { Ok(()) }
     }
 
-    fn figure_element(&mut self, e: &FigureElement) -> Result<FigureElementCode, Failed> {
+    fn figure_element(&mut self, e: &FigureElement) -> Checked<FigureElementCode> {
         let kind = e.kind.name.to_lowercase();
         if !kinds().any(|k| k == kind) {
             let all = kinds().collect::<Vec<_>>().join(", ");
@@ -131,7 +131,7 @@ impl Compiler {
         &mut self,
         e: &FigureElement,
         code: &FigureElementCode,
-    ) -> Result<(), Failed> {
+    ) -> Checked<()> {
         let Some(&(kind, known, required, bare)) = KINDS.iter().find(|k| k.0 == &*code.kind) else {
             return Ok(());
         };
@@ -180,7 +180,7 @@ impl Compiler {
     }
 
     /// An error for a text where a number belongs, and for what is no colour.
-    fn fits_argument(&mut self, kind: &str, name: &str, value: &Node) -> Result<(), Failed> {
+    fn fits_argument(&mut self, kind: &str, name: &str, value: &Node) -> Checked<()> {
         if matches!(name, "x" | "y") && kind == "axes" {
             return Ok(());
         }
@@ -212,12 +212,7 @@ impl Compiler {
     }
 
     /// An error for an element without the indices that it runs over.
-    fn has_indices(
-        &mut self,
-        kind: &str,
-        span: Span,
-        code: &FigureElementCode,
-    ) -> Result<(), Failed> {
+    fn has_indices(&mut self, kind: &str, span: Span, code: &FigureElementCode) -> Checked<()> {
         let slots = code.domain.as_ref().map_or(0, |d| d.slots.len());
         if matches!(kind, "heat" | "contour" | "arc" | "gantt") && slots < 2 {
             let example = match kind {
@@ -245,7 +240,7 @@ impl Compiler {
     }
 
     /// A value without a name.
-    fn bare_value(&mut self, kind: &str, bare: bool, value: &Node) -> Result<(), Failed> {
+    fn bare_value(&mut self, kind: &str, bare: bool, value: &Node) -> Checked<()> {
         if !bare {
             return Diagnostic::error("E0370", value.span)
                 .says(format!("`{kind}` takes values with names"))

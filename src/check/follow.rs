@@ -2,7 +2,7 @@
 //! *lost*, and statements that use them fail without a word; the same about a symbol is said once, with the other places.
 
 use super::symbols::{Symbol, SymbolKind};
-use super::{Compiler, Failed};
+use super::{Checked, Compiler, Failed};
 use crate::check::node::SymbolId;
 use crate::diag::{Diagnostic, Label, Severity};
 use crate::source::{SourceMap, Span};
@@ -65,7 +65,7 @@ impl Diagnostic {
     }
 
     /// Reports it; what it belongs to is not there.
-    pub(super) fn fail<T>(self, c: &mut Compiler) -> Result<T, Failed> {
+    pub(super) fn fail<T>(self, c: &mut Compiler) -> Checked<T> {
         self.report(c);
         Err(Failed)
     }
@@ -192,7 +192,7 @@ impl Compiler {
     }
 
     /// An "unknown name", said once.
-    pub(super) fn unknown<T>(&mut self, id: &Ident, d: Diagnostic) -> Result<T, Failed> {
+    pub(super) fn unknown<T>(&mut self, id: &Ident, d: Diagnostic) -> Checked<T> {
         if !self.is_lost(&id.name) {
             let before = self.diagnostics.len();
             d.report(self);
@@ -212,7 +212,7 @@ impl Compiler {
     }
 
     /// An index that nothing binds; several in one statement are one message.
-    pub(super) fn unbound<T>(&mut self, name: &Ident, d: Diagnostic) -> Result<T, Failed> {
+    pub(super) fn unbound<T>(&mut self, name: &Ident, d: Diagnostic) -> Checked<T> {
         let lower = name.name.to_lowercase();
         let from = self.lost.statement.min(self.diagnostics.len());
         let first = self.diagnostics[from..]

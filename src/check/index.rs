@@ -5,7 +5,7 @@ use super::expansion::range;
 use super::follow::EXCHANGED;
 use super::node::*;
 use super::symbols::{DomainPosition, SymbolKind, UNIVERSE, attribute};
-use super::{Compiler, Failed};
+use super::{Checked, Compiler, Failed};
 use crate::diag::{Diagnostic, Severity, nearest};
 use crate::source::Span;
 use crate::syntax::ast::{Expr, ExprKind, Ident, Sign};
@@ -19,7 +19,7 @@ impl Compiler {
         of: SymbolId,
         position: usize,
         span: Span,
-    ) -> Result<(), Failed> {
+    ) -> Checked<()> {
         if self.modes.at(span).universal {
             return Ok(());
         }
@@ -56,7 +56,7 @@ impl Compiler {
         of: SymbolId,
         position: usize,
         span: Span,
-    ) -> Result<(), Failed> {
+    ) -> Checked<()> {
         let Some(&DomainPosition::Set(d)) = self.symbols.get(of).domain.get(position) else {
             return Ok(());
         };
@@ -103,7 +103,7 @@ impl Compiler {
         of: SymbolId,
         span: Span,
         given: usize,
-    ) -> Result<T, Failed> {
+    ) -> Checked<T> {
         let s = self.symbols.get(of).clone();
         let plural = |n: usize| match n {
             0 => "no index".to_string(),
@@ -192,12 +192,7 @@ impl Compiler {
     }
 
     /// Key of a symbol from its indices, all of which are under control.
-    pub(super) fn key(
-        &mut self,
-        of: SymbolId,
-        indices: &[Expr],
-        span: Span,
-    ) -> Result<Key, Failed> {
+    pub(super) fn key(&mut self, of: SymbolId, indices: &[Expr], span: Span) -> Checked<Key> {
         self.shape(of, indices);
         let dim = self.symbols.get(of).dim();
         // A tuple set under control stands for all its positions: `p(arc)`.
@@ -234,12 +229,7 @@ impl Compiler {
     }
 
     /// One index expression at a position of a symbol.
-    pub(super) fn index(
-        &mut self,
-        e: &Expr,
-        of: SymbolId,
-        position: usize,
-    ) -> Result<Vec<Part>, Failed> {
+    pub(super) fn index(&mut self, e: &Expr, of: SymbolId, position: usize) -> Checked<Vec<Part>> {
         match &e.kind {
             ExprKind::Text(label) => Ok(vec![Part::Label(self.label(label, of, position, e.span)?)]),
             ExprKind::Apply(name, None, None) => {
@@ -284,7 +274,7 @@ impl Compiler {
         }
     }
 
-    pub(super) fn unknown_index<T>(&mut self, name: &Ident) -> Result<T, Failed> {
+    pub(super) fn unknown_index<T>(&mut self, name: &Ident) -> Checked<T> {
         if self.store.universe.get(&name.name).is_some() {
             let d = Diagnostic::error("E0301", name.span)
                 .says(format!("`{}` is not a set, but it is a label", name.name))
@@ -296,7 +286,7 @@ impl Compiler {
     }
 
     /// A set name as an index: its slots, or the element of a singleton.
-    pub(super) fn set_index(&mut self, s: SymbolId, name: &Ident) -> Result<Vec<Part>, Failed> {
+    pub(super) fn set_index(&mut self, s: SymbolId, name: &Ident) -> Checked<Vec<Part>> {
         if let Some(parts) = self.controlled(s) {
             return Ok(parts.to_vec());
         }
@@ -335,7 +325,7 @@ impl Compiler {
         of: SymbolId,
         position: usize,
         span: Span,
-    ) -> Result<u32, Failed> {
+    ) -> Checked<u32> {
         let symbol = self.symbols.get(of);
         let DomainPosition::Set(d) = symbol
             .domain
@@ -356,7 +346,7 @@ impl Compiler {
     }
 
     /// A label that must be in the universe, unless this place may bring it there.
-    pub(super) fn known_label(&mut self, text: &str, span: Span) -> Result<u32, Failed> {
+    pub(super) fn known_label(&mut self, text: &str, span: Span) -> Checked<u32> {
         if let Some(l) = self.store.universe.get(text) {
             return Ok(l);
         }
@@ -398,7 +388,7 @@ impl Compiler {
         of: SymbolId,
         position: usize,
         span: Span,
-    ) -> Result<u32, Failed> {
+    ) -> Checked<u32> {
         let symbol = self.symbols.get(of);
         let set_id = match symbol.domain.get(position) {
             Some(DomainPosition::Set(d)) => self.symbols.root(*d),
@@ -522,7 +512,7 @@ impl Compiler {
         base: &Expr,
         of: SymbolId,
         position: usize,
-    ) -> Result<(Part, TableId), Failed> {
+    ) -> Checked<(Part, TableId)> {
         match &base.kind {
             ExprKind::Apply(name, attribute, None)
                 if attribute
@@ -563,7 +553,7 @@ impl Compiler {
     }
 
     /// `t-1`, `t+k`.
-    pub(super) fn lag(&mut self, e: &Expr, (base, set): (Part, TableId)) -> Result<Part, Failed> {
+    pub(super) fn lag(&mut self, e: &Expr, (base, set): (Part, TableId)) -> Checked<Part> {
         let (offset, circular) = match &e.kind {
             ExprKind::Binary(op, _, offset) => {
                 let offset = self.expr(offset)?;
@@ -604,7 +594,7 @@ impl Compiler {
     }
 
     /// An error unless the set has an order.
-    pub(super) fn ordered(&mut self, s: SymbolId, span: Span, what: &str) -> Result<(), Failed> {
+    pub(super) fn ordered(&mut self, s: SymbolId, span: Span, what: &str) -> Checked<()> {
         if self.modes.at(span).off_order {
             return Ok(());
         }

@@ -3,7 +3,7 @@
 
 use super::node::SymbolId;
 use super::symbols::{DomainPosition, Symbol, SymbolKind, UNIVERSE};
-use super::{Compiler, Failed, Program};
+use super::{Checked, Compiler, Program};
 use crate::data::input::{Input, InputData, Keys};
 use crate::data::table::Table;
 use crate::data::universe::Label;
@@ -69,7 +69,7 @@ impl Compiler {
     }
 
     /// An error for data that a symbol of this kind and shape cannot have.
-    fn fits_symbol(&mut self, symbol: &Symbol, input: &Input, span: Span) -> Result<(), Failed> {
+    fn fits_symbol(&mut self, symbol: &Symbol, input: &Input, span: Span) -> Checked<()> {
         let wrong_kind = match (&symbol.kind, &input.data) {
             (SymbolKind::Set { .. }, InputData::Values(..)) => Some("numbers"),
             (SymbolKind::Parameter { .. }, InputData::Members(..)) => Some("members"),
@@ -112,7 +112,7 @@ impl Compiler {
         Ok(())
     }
 
-    fn fill_from_input(&mut self, s: SymbolId, input: &Input, span: Span) -> Result<(), Failed> {
+    fn fill_from_input(&mut self, s: SymbolId, input: &Input, span: Span) -> Checked<()> {
         let symbol = self.symbols.get(s).clone();
         self.fits_symbol(&symbol, input, span)?;
         let (dim, given) = (symbol.dim(), input.data.keys());
@@ -161,7 +161,7 @@ impl Compiler {
         set: SymbolId,
         label: Label,
         span: Span,
-    ) -> Result<(), Failed> {
+    ) -> Checked<()> {
         if set == UNIVERSE {
             return Ok(());
         }

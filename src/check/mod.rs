@@ -48,6 +48,9 @@ use symbols::{DomainPosition, Store, Symbol, SymbolKind, Symbols, UNIVERSE};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Failed;
 
+/// What is checked, unless an error was reported.
+type Checked<T> = Result<T, Failed>;
+
 /// More errors than this are not reported.
 const MAX_ERRORS: usize = 30;
 
@@ -249,7 +252,7 @@ impl Compiler {
 impl Compiler {
     /// Takes memory for data, estimated from what they say: the same text ends at the same place
     /// everywhere.
-    fn take(&mut self, records: usize, bytes: usize, span: Span) -> Result<(), Failed> {
+    fn take(&mut self, records: usize, bytes: usize, span: Span) -> Checked<()> {
         self.taken = self.taken.saturating_add(records.saturating_mul(bytes));
         match self.max_memory {
             Some(limit) if self.taken > limit => Diagnostic::error("E0491", span)

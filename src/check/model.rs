@@ -2,7 +2,7 @@
 
 use super::node::*;
 use super::symbols::{DomainPosition, Symbol, SymbolKind};
-use super::{Compiler, Failed};
+use super::{Checked, Compiler, Failed};
 use crate::diag::{Diagnostic, nearest};
 use crate::model::instance::Function;
 use crate::model::problem_type::{Discrete, ProblemType};
@@ -20,7 +20,7 @@ struct Listed {
 }
 
 impl Compiler {
-    pub(super) fn solve(&mut self, s: &Solve, span: Span) -> Result<CodeKind, Failed> {
+    pub(super) fn solve(&mut self, s: &Solve, span: Span) -> Checked<CodeKind> {
         let model = self.lookup_model(&s.model)?;
         let symbol = self.symbols.get(model).clone();
         let SymbolKind::Model(info) = &symbol.kind else {
@@ -112,7 +112,7 @@ impl Compiler {
         })))
     }
 
-    fn lookup_model(&mut self, name: &Ident) -> Result<SymbolId, Failed> {
+    fn lookup_model(&mut self, name: &Ident) -> Checked<SymbolId> {
         let all = name.name.eq_ignore_ascii_case("all");
         let is_model = |(_, s): (SymbolId, &Symbol)| matches!(s.kind, SymbolKind::Model(_));
         if !all && self.named(name).is_none() && !self.symbols.iter().any(is_model) {
@@ -132,7 +132,7 @@ impl Compiler {
             .fail(self)
     }
 
-    fn no_problem_type<T>(&mut self, name: &Ident) -> Result<T, Failed> {
+    fn no_problem_type<T>(&mut self, name: &Ident) -> Checked<T> {
         if name.name.eq_ignore_ascii_case("emp") {
             return Diagnostic::error("E0352", name.span)
                 .says("`emp` is not there")
@@ -175,7 +175,7 @@ impl Compiler {
     }
 
     /// The set behind `scenario`; the parameters it names get values in the solve.
-    fn dictionary(&mut self, name: &Ident) -> Result<SymbolId, Failed> {
+    fn dictionary(&mut self, name: &Ident) -> Checked<SymbolId> {
         let s = self.lookup_set(name)?;
         if self.symbols.get(s).dim() != 3 {
             return self.wrong_dimension(s, name.span, 3);
@@ -199,12 +199,7 @@ impl Compiler {
     }
 
     /// What a list of model items names, in order.
-    fn collect(
-        &mut self,
-        items: &[ModelItem],
-        listed: &mut Listed,
-        depth: usize,
-    ) -> Result<(), Failed> {
+    fn collect(&mut self, items: &[ModelItem], listed: &mut Listed, depth: usize) -> Checked<()> {
         if depth > 50 {
             return Ok(());
         }
@@ -290,7 +285,7 @@ impl Compiler {
     }
 
     /// Refuses equations that no `..` defines and that nothing takes out of the model.
-    fn not_defined(&mut self, undefined: &[(SymbolId, Span)]) -> Result<(), Failed> {
+    fn not_defined(&mut self, undefined: &[(SymbolId, Span)]) -> Checked<()> {
         for &(e, at) in undefined {
             let (name, declared) = (
                 self.symbols.get(e).name.clone(),
@@ -317,7 +312,7 @@ impl Compiler {
         &mut self,
         name: &crate::syntax::ast::Ident,
         rows: &[ModelRow],
-    ) -> Result<SymbolId, Failed> {
+    ) -> Checked<SymbolId> {
         let v = self.lookup(name)?;
         let symbol = self.symbols.get(v).clone();
         let SymbolKind::Variable(kind) = symbol.kind else {
@@ -375,12 +370,7 @@ impl Compiler {
     }
 
     /// Whether an equation may stand in a model of this type.
-    fn check_class(
-        &mut self,
-        definition: usize,
-        using: ProblemType,
-        solve: Span,
-    ) -> Result<(), Failed> {
+    fn check_class(&mut self, definition: usize, using: ProblemType, solve: Span) -> Checked<()> {
         let e = &self.equations[definition];
         let name = self.symbols.get(e.symbol).name.clone();
         let linear_only = using.is_linear();
@@ -470,7 +460,7 @@ impl Compiler {
 
     /// The sets of the loops around a solve may not run in its equations: in GAMS neither, and whether the
     /// whole set or the loop's element is meant cannot be seen.
-    fn check_loops(&mut self, rows: &[ModelRow], solve: Span) -> Result<(), Failed> {
+    fn check_loops(&mut self, rows: &[ModelRow], solve: Span) -> Checked<()> {
         let looped = self.scope.iter().enumerate();
         let looped = looped.filter(|(at, _)| !self.maps.contains(at));
         let looped: Vec<SymbolId> = looped.map(|(_, (s, _))| *s).collect();
@@ -503,7 +493,7 @@ impl Compiler {
         rows: &[ModelRow],
         using: ProblemType,
         solve: Span,
-    ) -> Result<(), Failed> {
+    ) -> Checked<()> {
         if using.discrete() != Discrete::Forbidden {
             return Ok(());
         }
@@ -550,7 +540,7 @@ impl Compiler {
     }
 
     /// The rules of matching that can be seen in the text.
-    fn check_pairs(&mut self, rows: &[ModelRow], using: ProblemType) -> Result<(), Failed> {
+    fn check_pairs(&mut self, rows: &[ModelRow], using: ProblemType) -> Checked<()> {
         let mut failed = false;
         let paired = || {
             rows.iter()
@@ -611,7 +601,7 @@ impl Compiler {
     }
 
     /// An equation and its partner run over the same indices.
-    fn check_domains(&mut self, e: SymbolId, v: SymbolId, at: Span) -> Result<(), Failed> {
+    fn check_domains(&mut self, e: SymbolId, v: SymbolId, at: Span) -> Checked<()> {
         let (eq, var) = (self.symbols.get(e).clone(), self.symbols.get(v).clone());
         if eq.dim() != var.dim() {
             return Diagnostic::error("E0365", at)

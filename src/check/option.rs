@@ -3,7 +3,7 @@
 use super::functions;
 use super::node::*;
 use super::symbols::{DomainPosition, SymbolKind, UNIVERSE};
-use super::{Compiler, Failed};
+use super::{Checked, Compiler};
 use crate::diag::Diagnostic;
 use crate::model::language;
 use crate::model::option::{Accepted, Refused};
@@ -18,7 +18,7 @@ const FLAGS: &[&str] = &[
 ];
 
 impl Compiler {
-    pub(super) fn option(&mut self, item: &OptionItem) -> Result<Option<CodeKind>, Failed> {
+    pub(super) fn option(&mut self, item: &OptionItem) -> Checked<Option<CodeKind>> {
         let lower = item.name.name.to_lowercase();
         match &item.form {
             OptionForm::Format(numbers) => {
@@ -97,7 +97,7 @@ impl Compiler {
         item: &OptionItem,
         name: String,
         value: &OptionValue,
-    ) -> Result<Option<CodeKind>, Failed> {
+    ) -> Checked<Option<CodeKind>> {
         let (text, span) = match value {
             OptionValue::Number(x) => (x.to_string(), item.name.span),
             OptionValue::Text(t, span) => (t.to_string(), *span),
@@ -135,7 +135,7 @@ impl Compiler {
         value: &str,
         span: Span,
         refused: &Refused,
-    ) -> Result<Option<CodeKind>, Failed> {
+    ) -> Checked<Option<CodeKind>> {
         let (code, span, label) = match refused {
             Refused::Unknown(_) => ("E0329", item.name.span, "unknown option"),
             Refused::Solver(..) | Refused::Unsuited(_) => ("E0349", span, "passed over"),
@@ -167,7 +167,7 @@ impl Compiler {
     }
 
     /// An error for decimals, row indices or column indices that a display cannot have.
-    fn fitting_format(&mut self, s: SymbolId, numbers: &[i64], span: Span) -> Result<(), Failed> {
+    fn fitting_format(&mut self, s: SymbolId, numbers: &[i64], span: Span) -> Checked<()> {
         let symbol = self.symbols.get(s);
         let dim = symbol.dim() as i64;
         let fits = match numbers {
@@ -190,11 +190,7 @@ impl Compiler {
             .fail(self)
     }
 
-    fn matching(
-        &mut self,
-        item: &OptionItem,
-        sets: &[(bool, Ident)],
-    ) -> Result<Option<CodeKind>, Failed> {
+    fn matching(&mut self, item: &OptionItem, sets: &[(bool, Ident)]) -> Checked<Option<CodeKind>> {
         let target = self.lookup_set(&item.name)?;
         let (mut tables, mut position) = (Vec::new(), 0);
         for (matched, name) in sets {
@@ -218,7 +214,7 @@ impl Compiler {
         Ok(Some(CodeKind::Match(target, tables)))
     }
 
-    fn permute(&mut self, item: &OptionItem, set: &Ident) -> Result<Option<CodeKind>, Failed> {
+    fn permute(&mut self, item: &OptionItem, set: &Ident) -> Checked<Option<CodeKind>> {
         let (target, s) = (self.lookup_set(&item.name)?, self.lookup_set(set)?);
         self.used(s, set.span);
         let (symbol, source) = (self.symbols.get(target), self.symbols.get(s));
@@ -250,7 +246,7 @@ impl Compiler {
     }
 
     /// `option shuffle = p`
-    fn shuffled(&mut self, name: &str, span: Span) -> Result<Option<CodeKind>, Failed> {
+    fn shuffled(&mut self, name: &str, span: Span) -> Checked<Option<CodeKind>> {
         let name = name.into();
         let p = self.lookup(&Ident { name, span })?;
         let symbol = self.symbols.get(p);
@@ -278,7 +274,7 @@ impl Compiler {
         from_left: bool,
         source: &Ident,
         source_indices: Option<&[Ident]>,
-    ) -> Result<Option<CodeKind>, Failed> {
+    ) -> Checked<Option<CodeKind>> {
         let (t, s) = (self.lookup(&item.name)?, self.lookup(source)?);
         self.used(s, source.span);
         let (target, from) = (self.symbols.get(t).clone(), self.symbols.get(s).clone());

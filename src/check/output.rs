@@ -2,7 +2,7 @@
 
 use super::node::*;
 use super::symbols::SymbolKind;
-use super::{Compiler, Failed, functions};
+use super::{Checked, Compiler, Failed, functions};
 use crate::diag::Diagnostic;
 use crate::source::Span;
 use crate::syntax::ast::{DisplayItem, Expr, ExprKind, Ident, Put, PutItem};
@@ -14,7 +14,7 @@ fn listed(names: &[(Ident, String)]) -> String {
 }
 
 impl Compiler {
-    pub(super) fn shown(&mut self, items: &[DisplayItem]) -> Result<Vec<Shown>, Failed> {
+    pub(super) fn shown(&mut self, items: &[DisplayItem]) -> Checked<Vec<Shown>> {
         let mut out = Vec::new();
         let mut bare: Vec<(Ident, String)> = Vec::new();
         for item in items {
@@ -103,7 +103,7 @@ impl Compiler {
         Ok(out)
     }
 
-    pub(super) fn put(&mut self, p: &Put, span: Span) -> Result<CodeKind, Failed> {
+    pub(super) fn put(&mut self, p: &Put, span: Span) -> Checked<CodeKind> {
         let condition = self.optional(p.condition.as_ref())?;
         self.texts_allowed = true;
         let r = self.put_items(&p.items);
@@ -127,7 +127,7 @@ impl Compiler {
         Ok(CodeKind::Put(p.keyword.clone(), condition, r?))
     }
 
-    fn put_items(&mut self, items: &[PutItem]) -> Result<Vec<PutCode>, Failed> {
+    fn put_items(&mut self, items: &[PutItem]) -> Checked<Vec<PutCode>> {
         let mut out = Vec::new();
         for item in items {
             let code = match item {
@@ -157,7 +157,7 @@ impl Compiler {
         &mut self,
         value: &Expr,
         (align, width, decimals): (Option<char>, Option<Node>, Option<Node>),
-    ) -> Result<PutCode, Failed> {
+    ) -> Checked<PutCode> {
         if let ExprKind::Apply(name, None, None) = &value.kind {
             if let Some(s) = self.file(name) {
                 return Ok(PutCode::File(s));
@@ -196,7 +196,7 @@ impl Compiler {
     }
 
     /// A variable or an equation without attribute stands for its name: `put x(i) ' ' x.l(i)`.
-    fn record_name(&mut self, value: &Expr) -> Result<Option<Node>, Failed> {
+    fn record_name(&mut self, value: &Expr) -> Checked<Option<Node>> {
         let ExprKind::Apply(name, None, arguments) = &value.kind else {
             return Ok(None);
         };

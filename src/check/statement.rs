@@ -3,7 +3,7 @@
 use super::effects::Effects;
 use super::node::*;
 use super::symbols::{SymbolKind, attribute};
-use super::{Compiler, Failed};
+use super::{Checked, Compiler, Failed};
 use crate::diag::Diagnostic;
 use crate::source::{SourceMap, Span};
 use crate::syntax::ast::{self, DisplayItem, Equate, Expr, ExprKind, Stmt, StmtKind};
@@ -15,7 +15,7 @@ impl Compiler {
         stmt: &Stmt,
         map: &SourceMap,
         out: &mut Vec<Code>,
-    ) -> Result<(), Failed> {
+    ) -> Checked<()> {
         let slot = self.next_slot;
         let r = self.one_statement(stmt, map, out);
         self.next_slot = slot;
@@ -48,12 +48,7 @@ impl Compiler {
         bodies.into_iter().flatten().for_each(|s| self.meant(s));
     }
 
-    fn one_statement(
-        &mut self,
-        stmt: &Stmt,
-        map: &SourceMap,
-        out: &mut Vec<Code>,
-    ) -> Result<(), Failed> {
+    fn one_statement(&mut self, stmt: &Stmt, map: &SourceMap, out: &mut Vec<Code>) -> Checked<()> {
         self.modes = stmt.modes.clone();
         self.begin_statement();
         let mut span = stmt.span;
@@ -215,7 +210,7 @@ impl Compiler {
         Ok(())
     }
 
-    fn no_declaration(&mut self, stmt: &Stmt) -> Result<(), Failed> {
+    fn no_declaration(&mut self, stmt: &Stmt) -> Checked<()> {
         let what = match &stmt.kind {
             StmtKind::Set(_)
             | StmtKind::Alias(_)
@@ -237,7 +232,7 @@ impl Compiler {
             .fail(self)
     }
 
-    fn body(&mut self, body: &[Stmt], map: &SourceMap) -> Result<Vec<Code>, Failed> {
+    fn body(&mut self, body: &[Stmt], map: &SourceMap) -> Checked<Vec<Code>> {
         self.nesting += 1;
         let mut out = Vec::new();
         let mut failed = false;
@@ -248,11 +243,11 @@ impl Compiler {
         if failed { Err(Failed) } else { Ok(out) }
     }
 
-    pub(super) fn optional(&mut self, e: Option<&Expr>) -> Result<Option<Node>, Failed> {
+    pub(super) fn optional(&mut self, e: Option<&Expr>) -> Checked<Option<Node>> {
         e.map(|e| self.expr(e)).transpose()
     }
 
-    fn equate(&mut self, e: &Equate, span: Span) -> Result<(), Failed> {
+    fn equate(&mut self, e: &Equate, span: Span) -> Checked<()> {
         let s = self.lookup_equation(&e.name, &e.indices)?;
         self.shape(s, &e.indices);
         let symbol = self.symbols.get(s).clone();

@@ -4,7 +4,7 @@ use super::data::{Familiar, Filling, Seen, lines_about};
 use super::expansion::{Tuples, record_bytes, set_prefix};
 use super::node::SymbolId;
 use super::symbols::SymbolKind;
-use super::{Compiler, Failed, MAX_ERRORS};
+use super::{Checked, Compiler, Failed, MAX_ERRORS};
 use crate::data::universe::Label;
 use crate::data::value::truth;
 use crate::diag::Diagnostic;
@@ -49,7 +49,7 @@ struct Lines {
 }
 
 impl Compiler {
-    pub(super) fn declare_tables(&mut self, t: &TableDecl, map: &SourceMap) -> Result<(), Failed> {
+    pub(super) fn declare_tables(&mut self, t: &TableDecl, map: &SourceMap) -> Checked<()> {
         for d in &t.symbols {
             let mut symbol = d.clone();
             match (symbol.data.take(), t.of) {
@@ -74,7 +74,7 @@ impl Compiler {
         d: &SymbolDecl,
         body: Span,
         map: &SourceMap,
-    ) -> Result<(), Failed> {
+    ) -> Checked<()> {
         // A symbol that is declared already may get its values so.
         let declared = self.symbols.find(&d.name.name);
         let kind = match (of, declared.map(|s| &self.symbols.get(s).kind)) {
@@ -139,7 +139,7 @@ impl Compiler {
         mut lines: Lines,
         body: Span,
         map: &SourceMap,
-    ) -> Result<(), Failed> {
+    ) -> Checked<()> {
         let symbol = self.symbols.get(s);
         let (dim, table) = (symbol.dim(), symbol.table);
         let mut reader = self.table_reader(body, dim, map);
@@ -199,7 +199,7 @@ impl Compiler {
         lines: &mut Lines,
         row: Span,
         cells: &[PlainCell],
-    ) -> Result<(), Failed> {
+    ) -> Checked<()> {
         let symbol = self.symbols.get(s);
         let (dim, table, is_set) = (symbol.dim(), symbol.table, symbol.is_set());
         let Some(Line::Labels(column)) = lines.columns.first() else {
@@ -234,7 +234,7 @@ impl Compiler {
         Ok(())
     }
 
-    fn fill_cell(&mut self, s: SymbolId, lines: &mut Lines, cell: &Cell) -> Result<(), Failed> {
+    fn fill_cell(&mut self, s: SymbolId, lines: &mut Lines, cell: &Cell) -> Checked<()> {
         if cell.first {
             let row = match self.familiar_line(lines, cell.row) {
                 true => {
@@ -302,7 +302,7 @@ impl Compiler {
         d: &SymbolDecl,
         body: Span,
         map: &SourceMap,
-    ) -> Result<(), Failed> {
+    ) -> Checked<()> {
         self.declare_variables(kind, std::slice::from_ref(d), map)?;
         let s = self.lookup(&d.name)?;
         let dim = self.symbols.get(s).dim() + 1;

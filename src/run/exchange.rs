@@ -6,7 +6,7 @@ use crate::check::exchange::{Part, Request, Wanted, load, no_file, unload, wante
 use crate::check::node::SymbolId;
 use crate::diag::Diagnostic;
 use crate::model::origin::Origin;
-use crate::source::Span;
+use crate::source::{Outcome, Span};
 use crate::syntax::ast::Exchange;
 
 /// Files that `put_utility` named for the next unload and load without a name.
@@ -71,7 +71,7 @@ impl Machine<'_> {
         }
     }
 
-    fn take_in(&mut self, request: &Request<'_>) -> Result<Vec<Diagnostic>, Box<Diagnostic>> {
+    fn take_in(&mut self, request: &Request<'_>) -> Outcome<Vec<Diagnostic>> {
         let mut symbols = std::mem::take(&mut self.symbols);
         let mut store = std::mem::take(&mut self.store);
         let mut read = |name: &str, at| self.read_bytes(name, at);

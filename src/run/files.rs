@@ -3,7 +3,7 @@
 use super::Machine;
 use crate::diag::Diagnostic;
 use crate::host::HostError;
-use crate::source::Span;
+use crate::source::{Outcome, Span};
 
 impl Machine<'_> {
     /// Writes a whole file; false, and a diagnostic, if that is not possible.
@@ -47,7 +47,7 @@ impl Machine<'_> {
     }
 
     /// Reads a text; a diagnostic if that is not possible.
-    pub(super) fn read_file(&mut self, name: &str, span: Span) -> Result<String, Box<Diagnostic>> {
+    pub(super) fn read_file(&mut self, name: &str, span: Span) -> Outcome<String> {
         if let Some(text) = self.map.written_text(name) {
             return Ok(text.to_owned());
         }
@@ -60,11 +60,7 @@ impl Machine<'_> {
     }
 
     /// Reads the bytes of a file; a diagnostic if that is not possible.
-    pub(super) fn read_bytes(
-        &mut self,
-        name: &str,
-        span: Span,
-    ) -> Result<Vec<u8>, Box<Diagnostic>> {
+    pub(super) fn read_bytes(&mut self, name: &str, span: Span) -> Outcome<Vec<u8>> {
         if let Some(bytes) = self.map.written(name) {
             return Ok(bytes.to_owned());
         }

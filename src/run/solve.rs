@@ -418,7 +418,7 @@ impl<'h> Machine<'h> {
         }
         self.host()
             .progress("proving an interval for the objective");
-        let mut monitor = self.names(&g);
+        let mut monitor = self.names(g);
         let limits = Limits {
             iterations: u64::MAX,
             ..self.limits(s.model)
@@ -677,7 +677,7 @@ impl<'h> Machine<'h> {
         if !wanted && !all {
             return String::new();
         }
-        let names = self.names(&g);
+        let names = self.names(g);
         let values = levels::Values {
             column_level: &a.outcome.level,
             column_marginal: &a.outcome.column_marginal,
@@ -758,10 +758,10 @@ impl<'h> Machine<'h> {
 
     /// What explains the status, for `bmod why`.
     fn explanation(&self, s: &SolveCode, g: &Generated, a: &Answer) -> Explanation {
-        let mut monitor = self.names(&g);
+        let mut monitor = self.names(g);
         let budget = Budget::new(&mut monitor, self.limits(s.model), self.options.log);
         let found = why::findings(s.using, &g.instance, a, &budget);
-        let names = self.names(&g);
+        let names = self.names(g);
         explain(&found, &g.instance, &names)
     }
 
@@ -828,7 +828,7 @@ impl<'h> Machine<'h> {
             names: list.only.clone(),
             limit: list.limit,
         };
-        let names = self.names(&g);
+        let names = self.names(g);
         let mut text = listing::listing(&g.instance, &names, &activity, &selection);
         if text.is_empty() && !list.only.is_empty() {
             let asked = list.only.join("`, `");

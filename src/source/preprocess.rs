@@ -57,7 +57,7 @@ pub struct PreprocessOptions {
 }
 
 /// Brings the bytes of a data file for the place that asks for it.
-pub type ReadData<'a> = &'a mut dyn FnMut(&str, Span) -> Result<Vec<u8>, Box<Diagnostic>>;
+pub type ReadData<'a> = &'a mut dyn FnMut(&str, Span) -> Outcome<Vec<u8>>;
 
 /// What a directive may ask about the symbols known so far.
 pub trait Known {
@@ -428,7 +428,7 @@ impl<'h> Preprocessor<'h> {
     }
 
     /// The bytes of a data file, looked for beside the file that asks for it.
-    pub(crate) fn read(&mut self, name: &str, at: Span) -> Result<Vec<u8>, Box<Diagnostic>> {
+    pub(crate) fn read(&mut self, name: &str, at: Span) -> Outcome<Vec<u8>> {
         if let Some(bytes) = self.map.written(name) {
             return Ok(bytes.to_owned());
         }

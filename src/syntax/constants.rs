@@ -4,7 +4,7 @@
 //! data are read, because only the checker knows what `card(i)` is.
 
 use crate::diag::Diagnostic;
-use crate::source::{Known, Span, constant, quoted_end};
+use crate::source::{Known, Outcome, Span, constant, quoted_end};
 
 /// The constant expressions of one body of data, by their places in the expanded text.
 #[derive(Clone, Default)]
@@ -47,7 +47,7 @@ impl Constants {
     }
 
     /// The value of the one that begins at `at`, and where it ends.
-    pub(super) fn at(&self, at: usize) -> Option<Result<(f64, usize), Box<Diagnostic>>> {
+    pub(super) fn at(&self, at: usize) -> Option<Outcome<(f64, usize)>> {
         let n = self.0.binary_search_by_key(&at, |c| c.lo).ok()?;
         let c = &self.0[n];
         Some(match &c.value {

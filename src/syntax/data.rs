@@ -14,7 +14,7 @@ use super::constants::Constants;
 use super::fields::{Fields, MARK, has_comma};
 use crate::data::value::{EPS, NA, UNDF};
 use crate::diag::Diagnostic;
-use crate::source::{Known, Span};
+use crate::source::{Known, Outcome, Span};
 
 /// What the data belong to: only texts of sets are read to the end of the line.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -259,7 +259,7 @@ impl<'a> DataReader<'a> {
     }
 
     /// A line under `$onDelim`: labels, then the value or the text, with commas between. None: empty.
-    fn delimited(&mut self) -> Option<Result<Tail<'a>, Box<Diagnostic>>> {
+    fn delimited(&mut self) -> Option<Outcome<Tail<'a>>> {
         let (lo, hi) = self.marked_line();
         self.at = hi;
         let mut fields = Fields::new(self.text, lo, hi).peekable();
@@ -332,7 +332,7 @@ impl<'a> DataReader<'a> {
     }
 
     /// A value between commas; nothing is 0.
-    pub(super) fn field_value(&self, from: usize, to: usize) -> Result<Tail<'a>, Box<Diagnostic>> {
+    pub(super) fn field_value(&self, from: usize, to: usize) -> Outcome<Tail<'a>> {
         let text = &self.text[from..to];
         let span = self.span(from, to);
         if text.is_empty() {
@@ -348,7 +348,7 @@ impl<'a> DataReader<'a> {
         }
     }
 
-    fn record(&mut self, start: usize) -> Result<Tail<'a>, Box<Diagnostic>> {
+    fn record(&mut self, start: usize) -> Outcome<Tail<'a>> {
         if self.kind == DataKind::Values {
             if let Some(value) = self.bare_number(start) {
                 return Ok(value);
@@ -422,11 +422,7 @@ impl<'a> DataReader<'a> {
         Some(x)
     }
 
-    pub(super) fn key_parts(
-        &mut self,
-        key: &mut Vec<KeyPart<'a>>,
-        depth: usize,
-    ) -> Result<(), Box<Diagnostic>> {
+    pub(super) fn key_parts(&mut self, key: &mut Vec<KeyPart<'a>>, depth: usize) -> Outcome<()> {
         loop {
             let part = self.key_part(depth)?;
             key.push(part);
@@ -453,7 +449,7 @@ impl<'a> DataReader<'a> {
             && width(key) >= self.arity
     }
 
-    fn key_part(&mut self, depth: usize) -> Result<KeyPart<'a>, Box<Diagnostic>> {
+    fn key_part(&mut self, depth: usize) -> Outcome<KeyPart<'a>> {
         let start = self.at;
         match self.peek() {
             Some(b'(') => self.group(depth),
@@ -512,11 +508,7 @@ impl<'a> DataReader<'a> {
     }
 
     /// The parts of a key, and what is matched with them behind a colon.
-    fn whole_key(
-        &mut self,
-        key: &mut Vec<KeyPart<'a>>,
-        depth: usize,
-    ) -> Result<(), Box<Diagnostic>> {
+    fn whole_key(&mut self, key: &mut Vec<KeyPart<'a>>, depth: usize) -> Outcome<()> {
         self.key_parts(key, depth)?;
         self.blanks(false);
         if self.peek() == Some(b':') {
@@ -536,7 +528,7 @@ impl<'a> DataReader<'a> {
         rest.is_some_and(|rest| rest.eq_ignore_ascii_case(word.as_bytes()))
     }
 
-    fn group(&mut self, depth: usize) -> Result<KeyPart<'a>, Box<Diagnostic>> {
+    fn group(&mut self, depth: usize) -> Outcome<KeyPart<'a>> {
         let open = self.at;
         if depth >= DEEPEST {
             return Err(self.error(
@@ -606,7 +598,7 @@ impl<'a> DataReader<'a> {
         &self.text[start..self.at]
     }
 
-    fn label(&mut self) -> Result<(&'a str, bool), Box<Diagnostic>> {
+    fn label(&mut self) -> Outcome<(&'a str, bool)> {
         let bytes = self.text.as_bytes();
         let start = self.at;
         match bytes.get(start) {
@@ -638,7 +630,7 @@ impl<'a> DataReader<'a> {
     }
 
     /// An element's text: quoted, or to the comma or the end of the line.
-    fn element_text(&mut self) -> Result<Tail<'a>, Box<Diagnostic>> {
+    fn element_text(&mut self) -> Outcome<Tail<'a>> {
         let bytes = self.text.as_bytes();
         let start = self.at;
         let mut from = start;
@@ -684,7 +676,7 @@ impl<'a> DataReader<'a> {
         }
     }
 
-    pub(super) fn value(&mut self) -> Result<Tail<'a>, Box<Diagnostic>> {
+    pub(super) fn value(&mut self) -> Outcome<Tail<'a>> {
         // The value may stand on the next line.
         self.blanks(true);
         let bytes = self.text.as_bytes();

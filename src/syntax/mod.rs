@@ -27,7 +27,7 @@ use pest::Parser as _;
 
 use crate::diag::Diagnostic;
 use crate::host::Host;
-use crate::source::{Ending, Known, PreprocessOptions, Preprocessor, SourceMap, Span};
+use crate::source::{Ending, Known, Outcome, PreprocessOptions, Preprocessor, SourceMap, Span};
 use ast::Stmt;
 use build::{Builder, Condensed};
 use explain::{Explanation, GoOn};
@@ -328,7 +328,7 @@ impl<'h> Parser<'h> {
     }
 
     /// The text of a data file that the statement at `at` asks for.
-    pub fn read(&mut self, name: &str, at: Span) -> Result<Vec<u8>, Box<Diagnostic>> {
+    pub fn read(&mut self, name: &str, at: Span) -> Outcome<Vec<u8>> {
         self.text.read(name, at)
     }
 

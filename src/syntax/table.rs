@@ -11,7 +11,7 @@
 use super::data::{DataKind, DataReader, KeyPart, Tail, width};
 use super::fields::{Fields, MARK};
 use crate::diag::Diagnostic;
-use crate::source::{Known, Span};
+use crate::source::{Known, Outcome, Span};
 
 mod plain;
 pub use plain::PlainCell;
@@ -125,7 +125,7 @@ impl<'a> TableReader<'a> {
 
     /// The next item. After an error, reading goes on with the next value or line.
     #[allow(clippy::should_implement_trait)]
-    pub fn next(&mut self) -> Option<Result<TableItem<'_, 'a>, Box<Diagnostic>>> {
+    pub fn next(&mut self) -> Option<Outcome<TableItem<'_, 'a>>> {
         loop {
             if std::mem::take(&mut self.headings) {
                 return Some(Ok(TableItem::Headings));
@@ -168,7 +168,7 @@ impl<'a> TableReader<'a> {
     }
 
     /// Takes the next line: column labels, or the label of a row.
-    fn begin_line(&mut self) -> Result<(), Box<Diagnostic>> {
+    fn begin_line(&mut self) -> Outcome<()> {
         let bytes = self.text.as_bytes();
         let start = self.at;
         let line_end = |from: usize| {
@@ -283,7 +283,7 @@ impl<'a> TableReader<'a> {
         self.empty = true;
     }
 
-    fn read_header(&mut self) -> Result<(), Box<Diagnostic>> {
+    fn read_header(&mut self) -> Outcome<()> {
         self.columns.clear();
         self.bare = true;
         self.reader.set_arity(usize::MAX);
@@ -305,7 +305,7 @@ impl<'a> TableReader<'a> {
         Ok(())
     }
 
-    fn read_row_label(&mut self) -> Result<(), Box<Diagnostic>> {
+    fn read_row_label(&mut self) -> Outcome<()> {
         self.bare = false;
         self.row.clear();
         self.reader.more();
@@ -342,7 +342,7 @@ impl<'a> TableReader<'a> {
         Ok(())
     }
 
-    fn cell(&mut self) -> Result<(usize, Tail<'a>, Span), Box<Diagnostic>> {
+    fn cell(&mut self) -> Outcome<(usize, Tail<'a>, Span)> {
         let from = self.reader.position();
         let value = match self.reader.value() {
             Ok(v) => v,

@@ -1,7 +1,7 @@
 //! Reading CSV.
 
 use super::records::{Loading, Records};
-use super::{Loaded, Wanted, attribute_offset, missing};
+use super::{Outcome, Wanted, attribute_offset, missing};
 use crate::check::symbols::{DomainPosition, Symbol, SymbolKind, attribute};
 use crate::diag::Diagnostic;
 use ::csv::{ReaderBuilder, StringRecord};
@@ -85,7 +85,7 @@ pub(super) fn read(
     text: &str,
     items: &[Wanted],
     loading: &mut Loading<'_>,
-) -> Loaded<()> {
+) -> Outcome<()> {
     let fail = |w: &Wanted, message: String, help: &str| {
         Box::new(
             Diagnostic::execution("E0478", w.span)
@@ -138,7 +138,7 @@ fn short(file: &str, line: usize, w: &Wanted, have: usize, need: usize) -> Box<D
 }
 
 /// Many symbols: `symbol,label1,label2,value,text`.
-fn long(file: &str, rows: &Rows, w: &Wanted, loading: &mut Loading<'_>) -> Loaded<()> {
+fn long(file: &str, rows: &Rows, w: &Wanted, loading: &mut Loading<'_>) -> Outcome<()> {
     let symbol = loading.symbols.rooted(w.symbol).clone();
     let dim = symbol.dim();
     let value_column = rows
@@ -237,7 +237,7 @@ fn is_table(header: &StringRecord, symbol: &Symbol, loading: &Loading<'_>) -> bo
 }
 
 /// One symbol: labels, then the value, the text, or the attributes; or a table with the last index on top.
-fn single(file: &str, rows: &Rows, w: &Wanted, loading: &mut Loading<'_>) -> Loaded<()> {
+fn single(file: &str, rows: &Rows, w: &Wanted, loading: &mut Loading<'_>) -> Outcome<()> {
     let symbol = loading.symbols.rooted(w.symbol).clone();
     let dim = symbol.dim();
     let mut r = Records::default();

@@ -1,7 +1,7 @@
 //! GDX files: from the symbols of a file to those of the program, and back.
 
 use super::records::{Loading, Records};
-use super::{ATTRIBUTES, Loaded, Part, Request, Wanted, missing, write as tables};
+use super::{ATTRIBUTES, Outcome, Part, Request, Wanted, missing, write as tables};
 use crate::check::node::EquationDef;
 use crate::check::symbols::{
     DomainPosition, Store, Symbol, SymbolKind, Symbols, UNIVERSE, attribute,
@@ -16,7 +16,7 @@ use crate::syntax::ast::{Relation, VariableKind};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Opens a file.
-fn open<'a>(file: &str, bytes: &'a [u8], at: Span) -> Loaded<File<'a>> {
+fn open<'a>(file: &str, bytes: &'a [u8], at: Span) -> Outcome<File<'a>> {
     File::open(bytes).map_err(|e| damaged(file, at, &e))
 }
 
@@ -42,7 +42,7 @@ fn same_kind(inside: Kind, symbol: &SymbolKind) -> bool {
 }
 
 /// Names in a file that fit symbols of the program.
-pub(super) fn names(file: &str, bytes: &[u8], at: Span, symbols: &Symbols) -> Loaded<Vec<String>> {
+pub(super) fn names(file: &str, bytes: &[u8], at: Span, symbols: &Symbols) -> Outcome<Vec<String>> {
     let gdx = open(file, bytes, at)?;
     let fits = |s: &&gdx::Symbol| {
         symbols.find(&s.name).is_some_and(|id| {
@@ -64,7 +64,7 @@ pub(super) fn shape(
     symbols: &mut Symbols,
     store: &mut Store,
     request: &Request<'_>,
-) -> Loaded<()> {
+) -> Outcome<()> {
     let is_open = |w: &&Wanted| w.part == Part::Whole && symbols.get(w.symbol).open;
     let items: Vec<&Wanted> = items.iter().filter(is_open).collect();
     if items.is_empty() {
@@ -104,7 +104,7 @@ pub(super) fn read(
     at: Span,
     items: &[Wanted],
     loading: &mut Loading<'_>,
-) -> Loaded<()> {
+) -> Outcome<()> {
     let gdx = open(file, bytes, at)?;
     let mut reader = Reader {
         file,
@@ -128,7 +128,7 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    fn wrong<T>(&self, w: &Wanted, what: &str, help: &str) -> Loaded<T> {
+    fn wrong<T>(&self, w: &Wanted, what: &str, help: &str) -> Outcome<T> {
         let d = Diagnostic::execution("E0478", w.span)
             .says(format!("{}: `{}`: {what}", self.file, w.name))
             .label("nothing was loaded");
@@ -139,7 +139,7 @@ impl Reader<'_> {
     }
 
     /// The records of a symbol, and the tables that their values go to.
-    fn symbol(&mut self, w: &Wanted, loading: &mut Loading<'_>) -> Loaded<(Records, Vec<u32>)> {
+    fn symbol(&mut self, w: &Wanted, loading: &mut Loading<'_>) -> Outcome<(Records, Vec<u32>)> {
         let symbol = loading.symbols.rooted(w.symbol);
         if w.name == "*" {
             return match symbol.is_set() && symbol.dim() == 1 {
@@ -331,7 +331,7 @@ impl Reader<'_> {
         records: gdx::Records,
         dim: usize,
         loading: &mut Loading<'_>,
-    ) -> Loaded<(Records, Vec<u32>)> {
+    ) -> Outcome<(Records, Vec<u32>)> {
         let (mut out, taken) = self.keys(w, &records.keys, dim, loading);
         out.values = vec![1.0; taken.len()];
         for (n, r) in taken.into_iter().enumerate() {
@@ -352,7 +352,7 @@ impl Reader<'_> {
         dim: usize,
         position: usize,
         loading: &mut Loading<'_>,
-    ) -> Loaded<(Records, Vec<u32>)> {
+    ) -> Outcome<(Records, Vec<u32>)> {
         let mut seen = FxHashSet::default();
         let labels = records.keys.iter().skip(position).step_by(dim).copied();
         let keys: Vec<u32> = labels.filter(|k| seen.insert(*k)).collect();
@@ -368,7 +368,7 @@ impl Reader<'_> {
         inside: &gdx::Symbol,
         part: Part,
         loading: &mut Loading<'_>,
-    ) -> Loaded<(Records, Vec<u32>)> {
+    ) -> Outcome<(Records, Vec<u32>)> {
         let (dim, width) = (inside.domain.len(), inside.kind.width());
         let (mut out, taken) = self.keys(w, &records.keys, dim, loading);
         // The file's order is level, marginal, lower and upper bound, scale: that of the tables.

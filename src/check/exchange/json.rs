@@ -1,7 +1,7 @@
 //! Reading JSON: an object with a member per symbol.
 
 use super::records::{Loading, Records};
-use super::{ATTRIBUTES, Loaded, Wanted, attribute_offset, missing};
+use super::{ATTRIBUTES, Outcome, Wanted, attribute_offset, missing};
 use crate::check::symbols::{Symbol, SymbolKind, attribute};
 use crate::diag::Diagnostic;
 use serde_json::{Map, Value};
@@ -20,7 +20,7 @@ pub(super) fn read(
     text: &str,
     items: &[Wanted],
     loading: &mut Loading<'_>,
-) -> Loaded<()> {
+) -> Outcome<()> {
     let Some(first) = items.first() else {
         return Ok(());
     };
@@ -58,7 +58,7 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    fn wrong<T>(&self, what: &str) -> Loaded<T> {
+    fn wrong<T>(&self, what: &str) -> Outcome<T> {
         let dim = self.symbol.dim();
         let example = match (self.symbol.is_set(), dim) {
             (true, 1) => "[\"a\", \"b\"]".to_string(),
@@ -81,7 +81,7 @@ impl Reader<'_> {
             .refuse()
     }
 
-    fn symbol(mut self, v: &Value, loading: &mut Loading<'_>) -> Loaded<()> {
+    fn symbol(mut self, v: &Value, loading: &mut Loading<'_>) -> Outcome<()> {
         let dim = self.symbol.dim();
         self.columns = match self.symbol.kind {
             SymbolKind::Variable(_) | SymbolKind::Equation(_) => {
@@ -134,7 +134,7 @@ impl Reader<'_> {
     }
 
     /// `[["a","x"], 3.5]`, and for sets `"a"`, `["a","x"]`, `[["a","x"], "text"]`.
-    fn entry(&mut self, e: &Value, place: usize, loading: &mut Loading<'_>) -> Loaded<()> {
+    fn entry(&mut self, e: &Value, place: usize, loading: &mut Loading<'_>) -> Outcome<()> {
         let dim = self.symbol.dim();
         let (labels, value) = match e {
             Value::Array(pair) if pair.len() == 2 && pair[0].is_array() => {
@@ -161,7 +161,7 @@ impl Reader<'_> {
     }
 
     /// `{"a": {"x": 3.5}}`
-    fn nested(&mut self, v: &Value, path: &mut Vec<u32>, loading: &mut Loading<'_>) -> Loaded<()> {
+    fn nested(&mut self, v: &Value, path: &mut Vec<u32>, loading: &mut Loading<'_>) -> Outcome<()> {
         if path.len() == self.symbol.dim() {
             self.records.keys.extend_from_slice(path);
             let place = self.records.places.len() + 1;
@@ -183,7 +183,7 @@ impl Reader<'_> {
     }
 
     /// The values of a record.
-    fn values(&mut self, v: &Value, place: usize, loading: &Loading<'_>) -> Loaded<()> {
+    fn values(&mut self, v: &Value, place: usize, loading: &Loading<'_>) -> Outcome<()> {
         self.records.places.push(place);
         if self.symbol.is_set() {
             self.records.values.push(1.0);

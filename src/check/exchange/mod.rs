@@ -16,22 +16,19 @@ mod write;
 use super::data::second_data;
 use super::node::{EquationDef, SymbolId};
 use super::symbols::{DomainPosition, Store, SymbolKind, Symbols, attribute};
-use super::{Compiler, Failed};
+use super::{Checked, Compiler};
 use crate::data::value::{EPS, NA, UNDF};
 use crate::diag::{Diagnostic, nearest};
-use crate::source::Span;
+use crate::source::{Outcome, Span};
 use crate::syntax::Parser;
 use crate::syntax::ast::{Exchange, ExchangeBy, ExchangeItem, Ident};
 use records::Loading;
-
-/// A diagnostic; boxed, because it is large and rare.
-pub type Loaded<T> = Result<T, Box<Diagnostic>>;
 
 /// Files to write: names and bytes.
 pub type Files = Vec<(String, Vec<u8>)>;
 
 /// The bytes of a file.
-pub type Read<'a> = &'a mut dyn FnMut(&str, Span) -> Loaded<Vec<u8>>;
+pub type Read<'a> = &'a mut dyn FnMut(&str, Span) -> Outcome<Vec<u8>>;
 
 /// A symbol, and its name in the file.
 #[derive(Clone, Debug)]
@@ -93,7 +90,7 @@ fn attribute_offset(name: &str) -> Option<u32> {
 }
 
 /// The symbols of a list; an error if one is not known or has no data.
-pub fn wanted(symbols: &Symbols, items: &[ExchangeItem]) -> Loaded<Vec<Wanted>> {
+pub fn wanted(symbols: &Symbols, items: &[ExchangeItem]) -> Outcome<Vec<Wanted>> {
     let mut out = Vec::new();
     for item in items {
         let ExchangeItem { name, other, .. } = item;
@@ -128,7 +125,7 @@ pub fn wanted(symbols: &Symbols, items: &[ExchangeItem]) -> Loaded<Vec<Wanted>> 
 }
 
 /// The attribute that an item fills.
-fn into_of(item: &ExchangeItem) -> Loaded<Option<u32>> {
+fn into_of(item: &ExchangeItem) -> Outcome<Option<u32>> {
     let Some(into) = &item.into else {
         return Ok(None);
     };
@@ -139,7 +136,7 @@ fn into_of(item: &ExchangeItem) -> Loaded<Option<u32>> {
 }
 
 /// What of a symbol an item asks for.
-fn part_of(item: &ExchangeItem) -> Loaded<Part> {
+fn part_of(item: &ExchangeItem) -> Outcome<Part> {
     let own = item.into.as_ref().filter(|_| item.other.is_none());
     let Some(suffix) = item.suffix.as_ref().or(own) else {
         return Ok(match item.by {
@@ -194,7 +191,7 @@ fn declared_in(
     symbols: &Symbols,
     point: bool,
     span: Span,
-) -> Loaded<Vec<Wanted>> {
+) -> Outcome<Vec<Wanted>> {
     let names = match kind {
         Kind::Gdx => gdx::names(file, bytes, span, symbols)?,
         Kind::Json => json::names(text_of(file, bytes, span)?),
@@ -250,7 +247,7 @@ pub fn load(
     store: &mut Store,
     request: &Request<'_>,
     read: Read<'_>,
-) -> Loaded<Vec<Diagnostic>> {
+) -> Outcome<Vec<Diagnostic>> {
     let kind = format_of(request.file);
     let file = full_name(request.file);
     if kind != Kind::Gdx
@@ -326,7 +323,7 @@ pub fn load(
 }
 
 /// A text file's text.
-fn text_of<'a>(file: &str, bytes: &'a [u8], at: Span) -> Loaded<&'a str> {
+fn text_of<'a>(file: &str, bytes: &'a [u8], at: Span) -> Outcome<&'a str> {
     match std::str::from_utf8(bytes) {
         Ok(text) => Ok(text.strip_prefix('\u{feff}').unwrap_or(text)),
         Err(e) => Diagnostic::execution("E0478", at)
@@ -344,7 +341,7 @@ pub fn unload(
     file: &str,
     items: &[Wanted],
     span: Span,
-) -> Loaded<Files> {
+) -> Outcome<Files> {
     let kind = format_of(file);
     let everything = match items.is_empty() {
         true => everything(symbols, kind, span),
@@ -393,7 +390,7 @@ impl Compiler {
         x: &Exchange,
         span: Span,
         parser: &mut Parser,
-    ) -> Result<bool, Failed> {
+    ) -> Checked<bool> {
         let done = match &*x.keyword.name {
             "gdxin" => {
                 self.input = x.file.as_ref().map(|(f, s)| (f.to_string(), *s));
@@ -426,7 +423,7 @@ impl Compiler {
         d.as_error().fail(self)
     }
 
-    fn load_listed(&mut self, x: &Exchange, span: Span, parser: &mut Parser) -> Loaded<()> {
+    fn load_listed(&mut self, x: &Exchange, span: Span, parser: &mut Parser) -> Outcome<()> {
         let mut items = wanted(&self.symbols, &x.items)?;
         items.retain(|w| !self.inputs.has(self.symbols.root(w.symbol)));
         let named = x.file.as_ref().map(|(f, s)| (f.to_string(), *s));
@@ -468,7 +465,7 @@ impl Compiler {
 
     /// Whether a load adds to what its symbols hold: `loadM`, or `$onMulti`. An error for one that has data or is
     /// assigned, unless these or `loadR`, `$onMultiR` allow it.
-    fn merges(&self, how: &str, items: &[Wanted], span: Span) -> Loaded<bool> {
+    fn merges(&self, how: &str, items: &[Wanted], span: Span) -> Outcome<bool> {
         let modes = self.modes.at(span);
         let plain = matches!(how, "" | "dc");
         if plain && !modes.multi {
@@ -513,7 +510,7 @@ impl Compiler {
     }
 
     /// `$unload`: what it lists is written at the next `$gdxOut`; alone it lists everything.
-    fn unload_listed(&mut self, x: &Exchange, span: Span) -> Loaded<()> {
+    fn unload_listed(&mut self, x: &Exchange, span: Span) -> Outcome<()> {
         let mut items = wanted(&self.symbols, &x.items)?;
         if items.is_empty() {
             let file = x.file.as_ref().map(|(f, _)| &**f);
@@ -529,7 +526,7 @@ impl Compiler {
     }
 
     /// Keeps what `$unload` collected: the run writes it, and what follows may load it.
-    pub(super) fn finish_unload(&mut self, parser: &mut Parser) -> Loaded<()> {
+    pub(super) fn finish_unload(&mut self, parser: &mut Parser) -> Outcome<()> {
         let Some((file, span, items)) = self.output.take().filter(|o| !o.2.is_empty()) else {
             return Ok(());
         };

@@ -1,6 +1,6 @@
 //! What a load collects before anything is changed.
 
-use super::{Loaded, Request, Wanted, parse_value};
+use super::{Outcome, Request, Wanted, parse_value};
 use crate::check::node::{SymbolId, TableId};
 use crate::check::symbols::{DomainPosition, Store, SymbolKind, Symbols, attribute};
 use crate::data::table::Table;
@@ -91,7 +91,7 @@ impl<'a> Loading<'a> {
     }
 
     /// A value, or a message about the place in the file.
-    pub(super) fn value(&self, text: &str, file: &str, place: usize, w: &Wanted) -> Loaded<f64> {
+    pub(super) fn value(&self, text: &str, file: &str, place: usize, w: &Wanted) -> Outcome<f64> {
         parse_value(text, &self.store.acronyms).ok_or_else(|| {
             Box::new(
                 Diagnostic::execution("E0478", w.span)
@@ -119,7 +119,7 @@ impl<'a> Loading<'a> {
     }
 
     /// Checks the labels of a symbol against its domain.
-    fn check_domain(&self, w: &Wanted, file: &str, r: &Records) -> Loaded<()> {
+    fn check_domain(&self, w: &Wanted, file: &str, r: &Records) -> Outcome<()> {
         let symbol = self.symbols.get(w.symbol);
         let dim = symbol.dim();
         for (p, d) in symbol.domain.iter().enumerate() {
@@ -186,7 +186,7 @@ impl<'a> Loading<'a> {
         file: &str,
         mut r: Records,
         columns: &[u32],
-    ) -> Loaded<()> {
+    ) -> Outcome<()> {
         self.check_domain(w, file, &r)?;
         let root = self.symbols.root(w.symbol);
         let symbol = self.symbols.get(root);

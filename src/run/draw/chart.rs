@@ -1,7 +1,7 @@
 //! Elements of charts: lines, bars and error bars against numbers or labels, heat maps, Gantt charts,
 //! contours and networks.
 
-use super::{Failed, Turns};
+use super::{Drawn, Failed, Turns};
 use crate::check::figure::is_text;
 use crate::data::universe::Label;
 use crate::diag::Diagnostic;
@@ -94,7 +94,7 @@ impl Machine<'_> {
         categories: &Categories,
         scene: &mut Scene,
         frame: &mut Frame,
-    ) -> Result<(), Failed> {
+    ) -> Drawn<()> {
         let kind = &*t.element.kind;
         let ends = if kind == "errorbar" {
             ["low", "high"]
@@ -146,7 +146,7 @@ impl Machine<'_> {
         categories: &Categories,
         scene: &mut Scene,
         frame: &mut Frame,
-    ) -> Result<(), Failed> {
+    ) -> Drawn<()> {
         let is_heat = &*t.element.kind == "heat";
         scene.axes.get_or_insert(true);
         scene.equal.get_or_insert(false);
@@ -204,12 +204,7 @@ impl Machine<'_> {
     }
 
     /// Lines of equal z on the grid of the last two indices.
-    pub(super) fn contour(
-        &self,
-        t: &Turns<'_>,
-        scene: &mut Scene,
-        frame: &mut Frame,
-    ) -> Result<(), Failed> {
+    pub(super) fn contour(&self, t: &Turns<'_>, scene: &mut Scene, frame: &mut Frame) -> Drawn<()> {
         scene.axes.get_or_insert(true);
         scene.equal.get_or_insert(false);
         let (mut xs, mut ys): (Vec<Label>, Vec<Label>) = (Vec::new(), Vec::new());
@@ -306,7 +301,7 @@ impl Machine<'_> {
         nodes: &Nodes,
         scene: &mut Scene,
         frame: &mut Frame,
-    ) -> Result<(), Failed> {
+    ) -> Drawn<()> {
         let is_node = &*t.element.kind == "node";
         for k in 0..t.count {
             self.enter(t, k, frame);

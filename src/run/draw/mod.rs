@@ -27,6 +27,9 @@ const PNG_SCALE: f64 = 2.0;
 /// Nothing to draw: a diagnostic says why.
 struct Failed;
 
+/// What is drawn, unless a diagnostic says why not.
+type Drawn<T> = Result<T, Failed>;
+
 /// The labels of one turn of an element.
 struct Turns<'a> {
     element: &'a FigureElementCode,
@@ -93,7 +96,7 @@ impl Machine<'_> {
         }
     }
 
-    fn scene(&mut self, code: &FigureCode, frame: &mut Frame) -> Result<Scene, Failed> {
+    fn scene(&mut self, code: &FigureCode, frame: &mut Frame) -> Drawn<Scene> {
         let mut scans = Scans::default();
         for e in &code.elements {
             e.domain.iter().for_each(|d| scans.domain(d));
@@ -227,7 +230,7 @@ impl Machine<'_> {
     }
 
     /// The text that an argument stands for: a text, or a format with values.
-    fn text(&self, nodes: &[&Node], span: Span, frame: &mut Frame) -> Result<String, Failed> {
+    fn text(&self, nodes: &[&Node], span: Span, frame: &mut Frame) -> Drawn<String> {
         let mut values = Vec::with_capacity(nodes.len());
         for n in nodes {
             values.push(match self.put_item(n, frame) {
@@ -258,7 +261,7 @@ impl Machine<'_> {
     }
 
     /// A colour: a text, or a number for the scale.
-    fn paint(&self, t: &Turns<'_>, name: &str, frame: &mut Frame) -> Result<Option<Paint>, Failed> {
+    fn paint(&self, t: &Turns<'_>, name: &str, frame: &mut Frame) -> Drawn<Option<Paint>> {
         let Some(n) = t.argument(name) else {
             return Ok(None);
         };
@@ -282,7 +285,7 @@ impl Machine<'_> {
         }
     }
 
-    fn style(&self, t: &Turns<'_>, frame: &mut Frame) -> Result<Style, Failed> {
+    fn style(&self, t: &Turns<'_>, frame: &mut Frame) -> Drawn<Style> {
         let mut number = |name: &str| {
             let v = self.number_of(t.argument(name)?, frame);
             v.is_finite().then_some(v)
@@ -323,7 +326,7 @@ impl Machine<'_> {
     }
 
     /// Name in the legend.
-    fn legend_name(&self, t: &Turns<'_>, frame: &mut Frame) -> Result<Option<String>, Failed> {
+    fn legend_name(&self, t: &Turns<'_>, frame: &mut Frame) -> Drawn<Option<String>> {
         match t.argument("label") {
             Some(n) => Ok(Some(self.text(&[n], n.span, frame)?).filter(|t| !t.is_empty())),
             None => Ok(None),
@@ -331,7 +334,7 @@ impl Machine<'_> {
     }
 
     /// The text of an element: `label`, a format for the bare values if there are any.
-    fn text_beside(&self, t: &Turns<'_>, frame: &mut Frame) -> Result<Option<String>, Failed> {
+    fn text_beside(&self, t: &Turns<'_>, frame: &mut Frame) -> Drawn<Option<String>> {
         let bare = t.element.arguments.iter().filter(|a| a.0.is_none());
         let nodes: Vec<&Node> = t
             .argument("label")
@@ -345,7 +348,7 @@ impl Machine<'_> {
     }
 
     /// The panel of small multiples that an element belongs to.
-    fn panel(&self, t: &Turns<'_>, frame: &mut Frame) -> Result<Option<String>, Failed> {
+    fn panel(&self, t: &Turns<'_>, frame: &mut Frame) -> Drawn<Option<String>> {
         match t.argument("panel") {
             Some(n) => Ok(Some(self.text(&[n], n.span, frame)?)),
             None => Ok(None),
@@ -357,7 +360,7 @@ impl Machine<'_> {
         &self,
         scene: &mut Scene,
         (shape, style, name, panel): (Shape, Style, Option<String>, Option<String>),
-    ) -> Result<(), Failed> {
+    ) -> Drawn<()> {
         scene.elements.push(Element {
             shape,
             style,
@@ -368,12 +371,12 @@ impl Machine<'_> {
     }
 
     /// Fails once the run is to stop.
-    fn going(&self) -> Result<(), Failed> {
+    fn going(&self) -> Drawn<()> {
         self.keep_going().then_some(()).ok_or(Failed)
     }
 
     /// Polygons and polylines.
-    fn paths(&self, t: &Turns<'_>, scene: &mut Scene, frame: &mut Frame) -> Result<(), Failed> {
+    fn paths(&self, t: &Turns<'_>, scene: &mut Scene, frame: &mut Frame) -> Drawn<()> {
         for range in t.runs() {
             self.enter(t, range.start, frame);
             let style = self.style(t, frame)?;
@@ -395,7 +398,7 @@ impl Machine<'_> {
     }
 
     /// Points, arrows and texts.
-    fn marks(&self, t: &Turns<'_>, scene: &mut Scene, frame: &mut Frame) -> Result<(), Failed> {
+    fn marks(&self, t: &Turns<'_>, scene: &mut Scene, frame: &mut Frame) -> Drawn<()> {
         let kind = &*t.element.kind;
         let first = scene.elements.len();
         for k in 0..t.count {
@@ -454,12 +457,7 @@ impl Machine<'_> {
     }
 
     /// `axes`, `xaxis`, `yaxis`, `size`.
-    fn setting(
-        &self,
-        e: &FigureElementCode,
-        scene: &mut Scene,
-        frame: &mut Frame,
-    ) -> Result<(), Failed> {
+    fn setting(&self, e: &FigureElementCode, scene: &mut Scene, frame: &mut Frame) -> Drawn<()> {
         let mut numbers = Vec::new();
         for (name, n) in &e.arguments {
             if &*e.kind == "size" {

@@ -2,7 +2,7 @@
 
 use pest::iterators::Pair;
 
-use super::{Builder, Built, need, parts};
+use super::{Builder, Outcome, need, parts};
 use crate::diag::Diagnostic;
 use crate::syntax::ast::*;
 use crate::syntax::grammar::Rule;
@@ -10,7 +10,7 @@ use crate::syntax::words;
 
 impl Builder<'_> {
     /// A whole statement, given its top rule.
-    pub(crate) fn statement(&self, pair: Pair<'_, Rule>) -> Built<StmtKind> {
+    pub(crate) fn statement(&self, pair: Pair<'_, Rule>) -> Outcome<StmtKind> {
         match pair.as_rule() {
             Rule::set_statement => {
                 let mut singleton = false;
@@ -115,11 +115,11 @@ impl Builder<'_> {
         }
     }
 
-    fn declarations(&self, pair: Pair<'_, Rule>) -> Built<Vec<SymbolDecl>> {
+    fn declarations(&self, pair: Pair<'_, Rule>) -> Outcome<Vec<SymbolDecl>> {
         parts(pair).map(|p| self.declaration(p)).collect()
     }
 
-    fn declaration(&self, pair: Pair<'_, Rule>) -> Built<SymbolDecl> {
+    fn declaration(&self, pair: Pair<'_, Rule>) -> Outcome<SymbolDecl> {
         let span = self.span(&pair);
         let mut inner = parts(pair);
         let name = need(&mut inner, span, "a name")?;
@@ -145,7 +145,7 @@ impl Builder<'_> {
     }
 
     /// A name that is declared: no word of the language.
-    fn free_name(&self, pair: &Pair<'_, Rule>) -> Built<Ident> {
+    fn free_name(&self, pair: &Pair<'_, Rule>) -> Outcome<Ident> {
         let name = self.ident(pair);
         match words::is_reserved(&name.name) {
             true => Err(Box::new(words::reserved(&name.name, name.span))),
@@ -186,7 +186,7 @@ impl Builder<'_> {
             .collect()
     }
 
-    fn model(&self, pair: Pair<'_, Rule>) -> Built<ModelDecl> {
+    fn model(&self, pair: Pair<'_, Rule>) -> Outcome<ModelDecl> {
         let span = self.span(&pair);
         let mut inner = parts(pair);
         let name = need(&mut inner, span, "a name")?;
@@ -216,7 +216,7 @@ impl Builder<'_> {
         Ok(model)
     }
 
-    fn model_item(&self, pair: Pair<'_, Rule>, items: &mut Vec<ModelItem>) -> Built<()> {
+    fn model_item(&self, pair: Pair<'_, Rule>, items: &mut Vec<ModelItem>) -> Outcome<()> {
         let mut minus = false;
         for p in parts(pair) {
             let place = self.span(&p);
@@ -286,7 +286,7 @@ impl Builder<'_> {
     }
 
     /// Arguments that are bare names.
-    pub(super) fn plain_names(&self, pair: Pair<'_, Rule>) -> Built<Vec<Ident>> {
+    pub(super) fn plain_names(&self, pair: Pair<'_, Rule>) -> Outcome<Vec<Ident>> {
         let mut names = Vec::new();
         for e in self.arguments(pair)? {
             match e.kind {

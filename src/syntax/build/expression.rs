@@ -3,7 +3,7 @@
 
 use pest::iterators::Pair;
 
-use super::{Builder, Built, DEEPEST, expected, need};
+use super::{Builder, DEEPEST, Outcome, expected, need};
 use crate::data::value;
 use crate::diag::Diagnostic;
 use crate::source::Span;
@@ -87,7 +87,7 @@ struct Stack {
 
 impl Stack {
     /// Applies the operator on top.
-    fn reduce(&mut self) -> Built<()> {
+    fn reduce(&mut self) -> Outcome<()> {
         let Some((op, at)) = self.ops.pop() else {
             return Ok(());
         };
@@ -197,11 +197,11 @@ fn join(left: Node, op: BinaryOp, right: Node) -> Node {
 
 impl Builder<'_> {
     /// An `expression`.
-    pub(super) fn expression(&self, pair: Pair<'_, Rule>) -> Built<Expr> {
+    pub(super) fn expression(&self, pair: Pair<'_, Rule>) -> Outcome<Expr> {
         Ok(self.chain(pair)?.expr)
     }
 
-    fn chain(&self, pair: Pair<'_, Rule>) -> Built<Node> {
+    fn chain(&self, pair: Pair<'_, Rule>) -> Outcome<Node> {
         let place = self.span(&pair);
         let mut s = Stack::default();
         // What stands before the next token.
@@ -289,7 +289,7 @@ impl Builder<'_> {
     }
 
     /// One operand.
-    fn primary(&self, pair: Pair<'_, Rule>) -> Built<Node> {
+    fn primary(&self, pair: Pair<'_, Rule>) -> Outcome<Node> {
         let span = self.span(&pair);
         let leaf = |kind| Node {
             expr: Expr { kind, span },
@@ -313,7 +313,7 @@ impl Builder<'_> {
         }
     }
 
-    fn not_too_deep(&self, node: Node) -> Built<Node> {
+    fn not_too_deep(&self, node: Node) -> Outcome<Node> {
         if node.depth > DEEPEST {
             return Err(Box::new(too_deep(node.expr.span)));
         }
@@ -321,12 +321,12 @@ impl Builder<'_> {
     }
 
     /// Any single operand as an expression (`put` items, what `$` takes).
-    pub(super) fn operand(&self, pair: Pair<'_, Rule>) -> Built<Expr> {
+    pub(super) fn operand(&self, pair: Pair<'_, Rule>) -> Outcome<Expr> {
         Ok(self.primary(pair)?.expr)
     }
 
     /// The arguments between parentheses, and their greatest depth.
-    fn argument_list(&self, pair: Pair<'_, Rule>) -> Built<(Vec<Expr>, usize)> {
+    fn argument_list(&self, pair: Pair<'_, Rule>) -> Outcome<(Vec<Expr>, usize)> {
         let mut depth = 0;
         let mut list = Vec::new();
         for e in pair.into_inner() {
@@ -338,11 +338,11 @@ impl Builder<'_> {
     }
 
     /// The arguments between parentheses.
-    pub(super) fn arguments(&self, pair: Pair<'_, Rule>) -> Built<Vec<Expr>> {
+    pub(super) fn arguments(&self, pair: Pair<'_, Rule>) -> Outcome<Vec<Expr>> {
         Ok(self.argument_list(pair)?.0)
     }
 
-    fn apply(&self, pair: Pair<'_, Rule>) -> Built<Node> {
+    fn apply(&self, pair: Pair<'_, Rule>) -> Outcome<Node> {
         let span = self.span(&pair);
         let mut inner = pair.into_inner();
         let name = need(&mut inner, span, "a name")?;
@@ -378,7 +378,7 @@ impl Builder<'_> {
         })
     }
 
-    fn aggregate(&self, pair: Pair<'_, Rule>) -> Built<Node> {
+    fn aggregate(&self, pair: Pair<'_, Rule>) -> Outcome<Node> {
         let span = self.span(&pair);
         let (mut op, mut domain, mut body) = (AggregateOp::Sum, None, None);
         for p in pair.into_inner() {
@@ -411,7 +411,7 @@ impl Builder<'_> {
     }
 
     /// What a sum or a loop runs over.
-    pub(super) fn domain(&self, pair: Pair<'_, Rule>) -> Built<Domain> {
+    pub(super) fn domain(&self, pair: Pair<'_, Rule>) -> Outcome<Domain> {
         let span = self.span(&pair);
         let mut items = Vec::new();
         let mut condition = None;
@@ -428,7 +428,7 @@ impl Builder<'_> {
         })
     }
 
-    pub(super) fn domain_item(&self, pair: Pair<'_, Rule>) -> Built<DomainItem> {
+    pub(super) fn domain_item(&self, pair: Pair<'_, Rule>) -> Outcome<DomainItem> {
         let node = self.apply(pair)?;
         let span = node.expr.span;
         match node.expr.kind {
@@ -452,7 +452,7 @@ impl Builder<'_> {
     }
 
     /// `$c`
-    pub(super) fn condition(&self, pair: Pair<'_, Rule>) -> Built<Expr> {
+    pub(super) fn condition(&self, pair: Pair<'_, Rule>) -> Outcome<Expr> {
         let span = self.span(&pair);
         let mut operand = None;
         for p in pair.into_inner() {

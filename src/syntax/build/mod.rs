@@ -13,13 +13,10 @@ use super::ast::*;
 use super::grammar::Rule;
 use super::split::{Hole, HoleKind};
 use crate::diag::Diagnostic;
-use crate::source::{Span, Switches};
+use crate::source::{Outcome, Span, Switches};
 
 /// Depth of an expression, operators and parentheses counted: later stages recurse over it.
 pub(super) const DEEPEST: usize = 1000;
-
-/// What building gives; a diagnostic is boxed because it is large and rare.
-pub(super) type Built<T> = Result<T, Box<Diagnostic>>;
 
 /// A statement's text as the grammar reads it, and where its parts stand in the expanded text.
 pub(super) struct Condensed {
@@ -112,7 +109,7 @@ fn need<'i>(
     pairs: &mut impl Iterator<Item = Pair<'i, Rule>>,
     at: Span,
     what: &str,
-) -> Built<Pair<'i, Rule>> {
+) -> Outcome<Pair<'i, Rule>> {
     pairs.next().ok_or_else(|| expected(at, what))
 }
 

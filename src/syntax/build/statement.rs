@@ -3,7 +3,7 @@
 use pest::iterators::Pair;
 
 use super::expression::number;
-use super::{Builder, Built, expected, need, parts};
+use super::{Builder, Outcome, expected, need, parts};
 use crate::diag::Diagnostic;
 use crate::source::Span;
 use crate::syntax::ast::*;
@@ -11,7 +11,7 @@ use crate::syntax::grammar::Rule;
 
 impl Builder<'_> {
     /// A statement that is no declaration.
-    pub(super) fn action(&self, pair: Pair<'_, Rule>) -> Built<StmtKind> {
+    pub(super) fn action(&self, pair: Pair<'_, Rule>) -> Outcome<StmtKind> {
         let at = self.span(&pair);
         match pair.as_rule() {
             Rule::algebra => self.algebra(pair),
@@ -78,7 +78,7 @@ impl Builder<'_> {
             Rule::option_statement => {
                 let items = parts(pair)
                     .map(|p| self.option_item(p))
-                    .collect::<Built<_>>()?;
+                    .collect::<Outcome<_>>()?;
                 Ok(StmtKind::Option(items))
             }
             Rule::solve_statement => self.solve(pair),
@@ -107,7 +107,7 @@ impl Builder<'_> {
     }
 
     /// Statements inside a block.
-    fn body(&self, pair: Pair<'_, Rule>) -> Built<Vec<Stmt>> {
+    fn body(&self, pair: Pair<'_, Rule>) -> Outcome<Vec<Stmt>> {
         let mut list = Vec::new();
         for p in parts(pair) {
             let span = self.span(&p);
@@ -120,7 +120,7 @@ impl Builder<'_> {
         Ok(list)
     }
 
-    pub(super) fn reference(&self, pair: Pair<'_, Rule>) -> Built<Reference> {
+    pub(super) fn reference(&self, pair: Pair<'_, Rule>) -> Outcome<Reference> {
         let span = self.span(&pair);
         let mut inner = parts(pair);
         let name = self.ident(&need(&mut inner, span, "a name")?);
@@ -139,7 +139,7 @@ impl Builder<'_> {
         })
     }
 
-    fn algebra(&self, pair: Pair<'_, Rule>) -> Built<StmtKind> {
+    fn algebra(&self, pair: Pair<'_, Rule>) -> Outcome<StmtKind> {
         let at = self.span(&pair);
         let mut inner = parts(pair);
         let target = self.reference(need(&mut inner, at, "a name")?)?;
@@ -185,7 +185,7 @@ impl Builder<'_> {
         Err(expected(at, "`=` or `..`"))
     }
 
-    fn relation(&self, pair: &Pair<'_, Rule>) -> Built<Relation> {
+    fn relation(&self, pair: &Pair<'_, Rule>) -> Outcome<Relation> {
         let at = self.span(pair);
         let refused = |what: &str, help: &str| {
             Diagnostic::error("E0216", at)
@@ -217,7 +217,7 @@ impl Builder<'_> {
         }
     }
 
-    fn for_statement(&self, pair: Pair<'_, Rule>) -> Built<StmtKind> {
+    fn for_statement(&self, pair: Pair<'_, Rule>) -> Outcome<StmtKind> {
         let at = self.span(&pair);
         let mut inner = parts(pair);
         let variable = self.reference(need(&mut inner, at, "a scalar")?)?;
@@ -243,7 +243,7 @@ impl Builder<'_> {
     }
 
     /// The condition of `break` and `continue`, and the number of loops.
-    fn jump(&self, pair: Pair<'_, Rule>) -> Built<(Option<Expr>, u32)> {
+    fn jump(&self, pair: Pair<'_, Rule>) -> Outcome<(Option<Expr>, u32)> {
         let mut condition = None;
         let mut loops = 1;
         for p in parts(pair) {
@@ -263,7 +263,7 @@ impl Builder<'_> {
         Ok((condition, loops))
     }
 
-    fn display(&self, pair: Pair<'_, Rule>) -> Built<(Option<Expr>, Vec<DisplayItem>, bool)> {
+    fn display(&self, pair: Pair<'_, Rule>) -> Outcome<(Option<Expr>, Vec<DisplayItem>, bool)> {
         let mut condition = None;
         let mut items = Vec::new();
         let mut no_error = false;
@@ -278,7 +278,7 @@ impl Builder<'_> {
         Ok((condition, items, no_error))
     }
 
-    fn option_item(&self, pair: Pair<'_, Rule>) -> Built<OptionItem> {
+    fn option_item(&self, pair: Pair<'_, Rule>) -> Outcome<OptionItem> {
         let at = self.span(&pair);
         let mut inner = parts(pair);
         let name = self.ident(&need(&mut inner, at, "an option")?);
@@ -352,7 +352,7 @@ impl Builder<'_> {
         parts(pair).map(|p| self.ident(&p)).collect()
     }
 
-    fn solve(&self, pair: Pair<'_, Rule>) -> Built<StmtKind> {
+    fn solve(&self, pair: Pair<'_, Rule>) -> Outcome<StmtKind> {
         let at = self.span(&pair);
         let mut inner = parts(pair);
         let model = self.ident(&need(&mut inner, at, "a model")?);
@@ -411,7 +411,7 @@ impl Builder<'_> {
         }
     }
 
-    fn put(&self, pair: Pair<'_, Rule>) -> Built<StmtKind> {
+    fn put(&self, pair: Pair<'_, Rule>) -> Outcome<StmtKind> {
         let at = self.span(&pair);
         let mut inner = parts(pair);
         let keyword = need(&mut inner, at, "`put`")?
@@ -445,7 +445,7 @@ impl Builder<'_> {
         }))
     }
 
-    fn put_value(&self, pair: Pair<'_, Rule>, at: Span) -> Built<PutItem> {
+    fn put_value(&self, pair: Pair<'_, Rule>, at: Span) -> Outcome<PutItem> {
         let mut inner = parts(pair);
         let first = need(&mut inner, at, "something to write")?;
         let mut value = self.operand(first)?;
@@ -484,7 +484,7 @@ impl Builder<'_> {
     }
 
     /// A width or decimals: digits, a scalar, or an expression in parentheses.
-    fn put_number(&self, pair: Pair<'_, Rule>) -> Built<Expr> {
+    fn put_number(&self, pair: Pair<'_, Rule>) -> Outcome<Expr> {
         let span = self.span(&pair);
         let inner = need(&mut parts(pair), span, "a width")?;
         if inner.as_rule() == Rule::digits {
@@ -496,7 +496,7 @@ impl Builder<'_> {
         self.operand(inner)
     }
 
-    fn exchange(&self, pair: Pair<'_, Rule>) -> Built<StmtKind> {
+    fn exchange(&self, pair: Pair<'_, Rule>) -> Outcome<StmtKind> {
         let at = self.span(&pair);
         let mut inner = parts(pair);
         let word = need(&mut inner, at, "a keyword")?;
@@ -570,7 +570,7 @@ impl Builder<'_> {
         })
     }
 
-    fn directive(&self, pair: Pair<'_, Rule>) -> Built<StmtKind> {
+    fn directive(&self, pair: Pair<'_, Rule>) -> Outcome<StmtKind> {
         let at = self.span(&pair);
         let mut inner = parts(pair);
         let word = need(&mut inner, at, "a directive")?;
@@ -608,7 +608,7 @@ impl Builder<'_> {
         }))
     }
 
-    fn figure(&self, pair: Pair<'_, Rule>) -> Built<StmtKind> {
+    fn figure(&self, pair: Pair<'_, Rule>) -> Outcome<StmtKind> {
         let at = self.span(&pair);
         let mut inner = parts(pair);
         let name = self.ident(&need(&mut inner, at, "a name")?);
@@ -627,7 +627,7 @@ impl Builder<'_> {
         }))
     }
 
-    fn figure_element(&self, pair: Pair<'_, Rule>) -> Built<FigureElement> {
+    fn figure_element(&self, pair: Pair<'_, Rule>) -> Outcome<FigureElement> {
         let span = self.span(&pair);
         let mut inner = parts(pair);
         let kind = self.ident(&need(&mut inner, span, "an element")?);
@@ -639,7 +639,7 @@ impl Builder<'_> {
                     let items = p
                         .into_inner()
                         .map(|i| self.domain_item(i))
-                        .collect::<Built<Vec<_>>>()?;
+                        .collect::<Outcome<Vec<_>>>()?;
                     domain = Some(Domain {
                         items,
                         condition: None,
