@@ -30,13 +30,11 @@ pub(super) fn diagnose(block: &Block, first: usize, x: &[f64], order: u8) -> Eva
     overflow(block.row[first])
 }
 
+/// A value, or what failed and the operand to blame.
+type Value = Result<f64, (DomainError, Option<Id>)>;
+
 /// Value of a term without its coefficient; the derivatives of its functions are tried, too.
-fn evaluate(
-    block: &Block,
-    t: usize,
-    x: &[f64],
-    order: u8,
-) -> Result<f64, (DomainError, Option<Id>)> {
+fn evaluate(block: &Block, t: usize, x: &[f64], order: u8) -> Value {
     let graph = &block.graph;
     let mut value = Vec::with_capacity(graph.elements.len());
     for (id, e) in graph.elements.iter().enumerate() {
@@ -51,12 +49,7 @@ fn evaluate(
     Ok(value[graph.root as usize])
 }
 
-fn node(
-    graph: &Graph,
-    e: &Element,
-    value: &[f64],
-    order: u8,
-) -> Result<f64, (DomainError, Option<Id>)> {
+fn node(graph: &Graph, e: &Element, value: &[f64], order: u8) -> Value {
     let v = |id: Id| value[id as usize];
     let blame = |operands: &[Id], e: DomainError| {
         let culprit = operands.get(usize::from(e.culprit)).copied();

@@ -598,7 +598,8 @@ impl Compiler {
         let symbol = self.symbols.get(v).clone();
         if !matches!(symbol.kind, SymbolKind::Variable(_)) {
             let kind = symbol.kind_name();
-            return Diagnostic::error("E0338", variable.span).says(format!("the {kind} `{}` stands here without indices", symbol.name))
+            return Diagnostic::error("E0338", variable.span)
+                .says(format!("the {kind} `{}` stands here without indices", symbol.name))
                 .label("only variables are limited to a set")
                 .other(symbol.declared, "declared here")
                 .help(format!(

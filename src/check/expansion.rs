@@ -505,7 +505,8 @@ impl Compiler {
                 let rows = self.products(s, position, first, whole)?;
                 let behind = self.products(s, position + rows.width, other, whole)?;
                 if rows.len() != behind.len() {
-                    Diagnostic::warning("E0347", whole).says(format!("`:` matches one by one, but there are {} on the left and {} on the right", rows.len(), behind.len()))
+                    Diagnostic::warning("E0347", whole)
+                        .says(format!("`:` matches one by one, but there are {} on the left and {} on the right", rows.len(), behind.len()))
                         .label("what is left over on one side is dropped")
                         .help("a dot instead of the colon makes all combinations")
                         .report(self);

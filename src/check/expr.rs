@@ -82,7 +82,8 @@ impl Compiler {
             return Ok(s);
         }
         let (kind, declared) = (self.symbols.get(s).a_kind(), self.symbols.get(s).declared);
-        Diagnostic::error("E0302", id.span).says(format!("`{}` is {kind}; a set is expected here", id.name))
+        Diagnostic::error("E0302", id.span)
+            .says(format!("`{}` is {kind}; a set is expected here", id.name))
             .label("not a set")
             .other(declared, format!("declared as {kind} here"))
             .help("an index position takes a set that is under control, a quoted label, or a lag such as `t-1`")
@@ -255,7 +256,8 @@ impl Compiler {
         if self.texts_allowed || set(a).is_none() && set(b).is_none() {
             return Ok(());
         }
-        Diagnostic::error("E0312", span).says("labels are not compared as numbers are")
+        Diagnostic::error("E0312", span)
+            .says("labels are not compared as numbers are")
             .label("no numbers")
             .help(format!("write `sameas({left},{right})`; `ord` is the position of an element, `.val` its label as a number"))
             .fail(self)

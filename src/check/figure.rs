@@ -231,7 +231,8 @@ impl Compiler {
             "polygon" | "polyline" | "line" | "bar" | "errorbar" | "node"
         ) && slots == 0
         {
-            return Diagnostic::error("E0373", span).says(format!("`{kind}` needs an index that runs over its points"))
+            return Diagnostic::error("E0373", span)
+                .says(format!("`{kind}` needs an index that runs over its points"))
                 .label("no index here")
                 .help(format!("write `{kind}(i)`; of several indices the last runs along, the others give one {kind} each"))
                 .fail(self);

@@ -262,12 +262,14 @@ impl Compiler {
             }
             ExprKind::Number(x) => {
                 let text = x.to_string();
-                Diagnostic::error("E0307", e.span).says("a number may not stand as an index")
+                Diagnostic::error("E0307", e.span)
+                    .says("a number may not stand as an index")
                     .label("an index is expected")
                     .help(format!("if `{text}` is a label, quote it: `'{text}'`"))
                     .fail(self)
             }
-            _ => Diagnostic::error("E0307", e.span).says("this is not an index")
+            _ => Diagnostic::error("E0307", e.span)
+                .says("this is not an index")
                 .label("an index is expected")
                 .help("an index is a set under control, a quoted label, or a lag such as `t-1` or `t++1`")
                 .fail(self),

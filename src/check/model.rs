@@ -70,7 +70,8 @@ impl Compiler {
                     .fail(self);
             }
             None if has_objective => {
-                return Diagnostic::error("E0355", span).says(format!("a model of type `{using}` needs an objective variable"))
+                return Diagnostic::error("E0355", span)
+                    .says(format!("a model of type `{using}` needs an objective variable"))
                     .label("no `minimizing` or `maximizing`")
                     .help(format!("write `solve {} using {using} minimizing z;` with a free scalar variable `z`", symbol.name))
                     .fail(self);
@@ -316,7 +317,8 @@ impl Compiler {
         let v = self.lookup(name)?;
         let symbol = self.symbols.get(v).clone();
         let SymbolKind::Variable(kind) = symbol.kind else {
-            return Diagnostic::error("E0357", name.span).says(format!("the objective must be a variable; `{}` is {}", symbol.name, symbol.a_kind()))
+            return Diagnostic::error("E0357", name.span)
+                .says(format!("the objective must be a variable; `{}` is {}", symbol.name, symbol.a_kind()))
                 .label("not a variable")
                 .other(symbol.declared, "declared here")
                 .help("declare a free variable and an equation that defines it: `variable z; equation cost; cost.. z =e= …;`")
@@ -573,7 +575,8 @@ impl Compiler {
             let eq = self.symbols.get(symbol).clone();
             let Some(v) = r.pair else {
                 if using == ProblemType::Mcp && relation != Relation::Equal {
-                    Diagnostic::error("E0364", r.span).says(format!("the inequality `{}` has no partner", eq.name))
+                    Diagnostic::error("E0364", r.span)
+                        .says(format!("the inequality `{}` has no partner", eq.name))
                         .label("unmatched")
                         .other(self.equations[r.definition].span, "defined here")
                         .help(format!("pair it with a variable in the model: `{}.x`; only `=e=` rows may go without (with free variables)", eq.name))

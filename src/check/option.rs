@@ -253,7 +253,8 @@ impl Compiler {
         let (SymbolKind::Parameter { .. }, [index]) = (&symbol.kind, symbol.domain.as_slice())
         else {
             let (declared, kind) = (symbol.declared, symbol.a_kind());
-            return Diagnostic::error("E0330", span).says("`option shuffle` takes a parameter with one index")
+            return Diagnostic::error("E0330", span)
+                .says("`option shuffle` takes a parameter with one index")
                 .label(format!("this is {kind}"))
                 .other(declared, "declared here")
                 .help("declare `parameter p(i);` for it: it gets the positions of the elements, shuffled")

@@ -118,7 +118,8 @@ impl Compiler {
                 if self.lacks_something() {
                     return Err(Failed);
                 }
-                return Diagnostic::error("E0374", span).says("no file is named to write to")
+                return Diagnostic::error("E0374", span)
+                    .says("no file is named to write to")
                     .label("which file?")
                     .help("declare one, `file out / 'out.txt' /;`, and name it first: `put out 'text' /;`")
                     .fail(self);

@@ -174,7 +174,8 @@ impl Compiler {
             // In GAMS too the run goes on when a program cannot be started: what comes after, and the
             // results before, do not depend on a viewer or an export.
             StmtKind::Refused(what) => {
-                Diagnostic::warning("E0322", what.span).says(format!("`{}` is refused", what.name))
+                Diagnostic::warning("E0322", what.span)
+                    .says(format!("`{}` is refused", what.name))
                     .label("would run another program; passed over")
                     .help("a model run by bmod reads and writes only its own files; prepare the data before, or use `$include`")
                     .report(self);

@@ -28,9 +28,6 @@ impl Term {
     }
 }
 
-/// Why there is no derivative.
-pub type NoDerivative = String;
-
 /// The walk.
 pub struct Gradient<'a> {
     indices: &'a mut Indices,
@@ -39,12 +36,8 @@ pub struct Gradient<'a> {
     terms: Vec<Term>,
 }
 
-/// The terms of `left − right`.
-pub fn gradient(
-    left: &Expr,
-    right: &Expr,
-    indices: &mut Indices,
-) -> Result<Vec<Term>, NoDerivative> {
+/// The terms of `left − right`. Err: why there is no derivative.
+pub fn gradient(left: &Expr, right: &Expr, indices: &mut Indices) -> Result<Vec<Term>, String> {
     let mut g = Gradient {
         indices,
         binder: Binder::default(),
@@ -57,7 +50,7 @@ pub fn gradient(
 }
 
 impl Gradient<'_> {
-    fn walk(&mut self, e: &Expr, negative: bool) -> Result<(), NoDerivative> {
+    fn walk(&mut self, e: &Expr, negative: bool) -> Result<(), String> {
         if !e.has_variable() {
             return Ok(());
         }
@@ -117,7 +110,7 @@ impl Gradient<'_> {
     }
 
     /// Walks into `e` with further factors. Sums in them get indices of their own: they stand beside those of `e` now.
-    fn with(&mut self, factor: Expr, e: &Expr, negative: bool) -> Result<(), NoDerivative> {
+    fn with(&mut self, factor: Expr, e: &Expr, negative: bool) -> Result<(), String> {
         if !e.has_variable() {
             return Ok(());
         }
@@ -131,7 +124,7 @@ impl Gradient<'_> {
         r
     }
 
-    fn product(&mut self, t: &[(bool, Expr)], negative: bool) -> Result<(), NoDerivative> {
+    fn product(&mut self, t: &[(bool, Expr)], negative: bool) -> Result<(), String> {
         for (k, (divide, e)) in t.iter().enumerate() {
             if !e.has_variable() {
                 continue;
@@ -151,7 +144,7 @@ impl Gradient<'_> {
     }
 
     /// `prod(d, a)`: the product over all others.
-    fn prod(&mut self, d: &Binder, a: &Expr, negative: bool) -> Result<(), NoDerivative> {
+    fn prod(&mut self, d: &Binder, a: &Expr, negative: bool) -> Result<(), String> {
         let map: Vec<(IndexId, IndexId)> = d
             .indices
             .iter()
@@ -170,7 +163,7 @@ impl Gradient<'_> {
         self.inside(d, |g| g.with(rest, a, negative))
     }
 
-    fn power(&mut self, a: &Expr, b: &Expr, negative: bool) -> Result<(), NoDerivative> {
+    fn power(&mut self, a: &Expr, b: &Expr, negative: bool) -> Result<(), String> {
         let lower = match less_one(b.clone()) {
             Expr::Number(1.0) => a.clone(),
             Expr::Number(0.0) => number(1.0),
@@ -181,7 +174,7 @@ impl Gradient<'_> {
         self.with(whole * call(Function::Log, a.clone()), b, negative)
     }
 
-    fn call(&mut self, f: Function, args: &[Expr], negative: bool) -> Result<(), NoDerivative> {
+    fn call(&mut self, f: Function, args: &[Expr], negative: bool) -> Result<(), String> {
         if f == Function::IfThen && !args[0].has_variable() {
             let truth = &args[0];
             let yes = guarded(args[1].clone(), vec![truth.clone()]);

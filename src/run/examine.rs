@@ -57,7 +57,8 @@ impl Machine<'_> {
                 self.origin_name(&origin.rows, row),
                 self.origin_name(&origin.columns, column)
             );
-            Diagnostic::warning("E0416", place).says(message)
+            Diagnostic::warning("E0416", place)
+                .says(message)
                 .label("`=e=`, but holds only where the variable is off its bounds")
                 .other(span, "at this solve")
                 .help("write `=g=` (lower bound) or `=l=` (upper bound) for what it means; make the variable free if the equation shall always hold")

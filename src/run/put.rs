@@ -124,7 +124,8 @@ impl Machine<'_> {
     /// The current file; a diagnostic if there is none.
     pub(super) fn put_file(&mut self, span: Span) -> Option<&mut super::options::PutFile> {
         let Some(s) = self.put.current else {
-            Diagnostic::execution("E0472", span).says("no file is open to write to")
+            Diagnostic::execution("E0472", span)
+                .says("no file is open to write to")
                 .label("which file?")
                 .help("declare one, `file out / 'out.txt' /;`, and name it first: `put out 'text' /;`")
                 .note(self);

@@ -526,7 +526,8 @@ impl Preprocessor<'_> {
                     );
                     return Ok(());
                 }
-                return Diagnostic::error("E0113", span).says(format!("`${word}` would start another program, which is refused"))
+                return Diagnostic::error("E0113", span)
+                    .says(format!("`${word}` would start another program, which is refused"))
                     .label("not run")
                     .help("run it yourself before the model, and read what it writes with `$include` or `$load`")
                     .refuse();
@@ -763,7 +764,8 @@ impl Preprocessor<'_> {
                 }
                 Err(why) => {
                     let span = self.place(lo, hi);
-                    return Diagnostic::error("E0115", span).says(format!("`${word} {name}` cannot be evaluated: {why}"))
+                    return Diagnostic::error("E0115", span)
+                        .says(format!("`${word} {name}` cannot be evaluated: {why}"))
                         .help("numbers, operators, functions, `card(set)` and scalars with data can stand here")
                         .refuse();
                 }

@@ -725,7 +725,8 @@ impl<'a> DataReader<'a> {
                 while end < bytes.len() && (is_label(bytes[end]) || bytes[end] == b'.') {
                     end += 1;
                 }
-                return Diagnostic::error("E0245", self.span(start, end)).says(format!("`{}` is not a number", &self.text[start..end]))
+                return Diagnostic::error("E0245", self.span(start, end))
+                    .says(format!("`{}` is not a number", &self.text[start..end]))
                     .help("numbers look like `12`, `-3.5`, `1.5e-3`; a comma or a line end comes before the next record")
                     .refuse();
             }

@@ -469,7 +469,8 @@ impl Splitter {
             Some(open) if open.block => (i + 1, false),
             Some(_) if stray_semicolon(&text[i + 1..], self.opens.len()) => {
                 self.problems.push(
-                    Diagnostic::error("E0202", span(i, i + 1)).says("a `;` stands inside of parentheses")
+                    Diagnostic::error("E0202", span(i, i + 1))
+                        .says("a `;` stands inside of parentheses")
                         .label("a comma is meant?")
                         .help("write `,` between the parts of a sum or the arguments of a function; `;` ends a statement"),
                 );
@@ -498,7 +499,8 @@ impl Splitter {
             depth == 0
         });
         self.problems.push(
-            Diagnostic::error("E0231", span(i, i + 1)).says("statements are not grouped by braces")
+            Diagnostic::error("E0231", span(i, i + 1))
+                .says("statements are not grouped by braces")
                 .help("they stand inside of the parentheses, after a comma: `loop(i, … );`, `if(c, … );`, `while(c, … );`"),
         );
         let end = close.map_or(text.len(), |n| i + n + 1);

@@ -332,7 +332,8 @@ impl<'a> TableReader<'a> {
             && reach > first.from
         {
             let span = first.span;
-            return Diagnostic::error("E0252", self.row_span).says("the label of this row reaches under a column")
+            return Diagnostic::error("E0252", self.row_span)
+                .says("the label of this row reaches under a column")
                 .other(span, "the first column begins here")
                 .help("move the columns to the right, or shorten the label; is a row's label missing?")
                 .refuse();
@@ -388,7 +389,8 @@ impl<'a> TableReader<'a> {
                 Ok((first, value, span))
             }
             0 => {
-                let mut d = Diagnostic::error("E0250", span).says("this value stands under no column")
+                let mut d = Diagnostic::error("E0250", span)
+                    .says("this value stands under no column")
                     .help(match value {
                         Tail::Name(..) => "a value must stand under a part of its column's label; dots stand between the labels of a row: `a.b`",
                         _ => "a value must stand under a part of its column's label",

@@ -158,7 +158,8 @@ fn part_of(item: &ExchangeItem) -> Outcome<Part> {
 fn no_part(suffix: &Ident) -> Box<Diagnostic> {
     let message = format!("`.{}` is not a part of a symbol in a file", suffix.name);
     Box::new(
-        Diagnostic::execution("E0475", suffix.span).says(message)
+        Diagnostic::execution("E0475", suffix.span)
+            .says(message)
             .help("`p = x.l` reads an attribute into a parameter, `i < p.dim1` the labels of a position into a set"),
     )
 }

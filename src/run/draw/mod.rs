@@ -267,20 +267,20 @@ impl Machine<'_> {
         };
         match self.put_item(n, frame) {
             Some(Item::Number(x)) => Ok(Some(Paint::Value(x))),
-            Some(Item::Label(word) | Item::Text(word)) => {
-                match Paint::parse(&word) {
-                    Some(p) => Ok(Some(p)),
-                    None => {
-                        let d = Diagnostic::execution("E0372", n.span)
-                            .says(format!("`{word}` is not a colour"))
-                            .label("unknown colour");
-                        let near = nearest(&word, Paint::names().iter().copied());
-                        d.did_you_mean(near, "colours are CSS names, `#rrggbb`, `none`, or numbers for the colour scale")
+            Some(Item::Label(word) | Item::Text(word)) => match Paint::parse(&word) {
+                Some(p) => Ok(Some(p)),
+                None => {
+                    let near = nearest(&word, Paint::names().iter().copied());
+                    let others =
+                        "colours are CSS names, `#rrggbb`, `none`, or numbers for the colour scale";
+                    Diagnostic::execution("E0372", n.span)
+                        .says(format!("`{word}` is not a colour"))
+                        .label("unknown colour")
+                        .did_you_mean(near, others)
                         .note(self);
-                        Err(Failed)
-                    }
+                    Err(Failed)
                 }
-            }
+            },
             _ => Ok(None),
         }
     }
@@ -306,7 +306,8 @@ impl Machine<'_> {
                     match lengths.into_iter().collect::<Option<Vec<f64>>>() {
                         Some(l) if l.iter().all(|x| *x >= 0.0) => l,
                         _ => {
-                            Diagnostic::execution("E0483", n.span).says(format!("`{list}` is not a dash"))
+                            Diagnostic::execution("E0483", n.span)
+                                .says(format!("`{list}` is not a dash"))
                                 .help("`dashed`, `dotted`, or lengths of dashes and gaps in pixels: `'6 2'`")
                                 .note(self);
                             return Err(Failed);

@@ -417,7 +417,8 @@ impl Builder<'_, '_> {
         if violated {
             let name = self.m.record_name(e.symbol, key);
             let sign = relation.sign();
-            Diagnostic::execution("E0410", e.span).says(format!("the row {name} has no variables and cannot hold: 0 {sign} {rhs}"))
+            Diagnostic::execution("E0410", e.span)
+                .says(format!("the row {name} has no variables and cannot hold: 0 {sign} {rhs}"))
                 .label("empty and infeasible")
                 .help("its coefficients are all zero, or its sums are empty: check the data, or add a `$` condition to the equation")
                 .note(self.m);

@@ -418,7 +418,8 @@ impl Splitter {
                 if separates_records(rest) {
                     if self.problems.is_empty() {
                         self.problems.push(
-                            Diagnostic::error("E0248", span(at, at + 1)).says("`;` ends a statement; it cannot stand between records")
+                            Diagnostic::error("E0248", span(at, at + 1))
+                                .says("`;` ends a statement; it cannot stand between records")
                                 .help("write a comma or a line end between records, a blank between a label and its number"),
                         );
                     }
@@ -495,7 +496,8 @@ impl Splitter {
                     && !begins_statement(text, at + 1)
                 {
                     self.problems.push(
-                        Diagnostic::error("E0248", span(at, at + 1)).says("`;` ends a table; it cannot stand between its columns")
+                        Diagnostic::error("E0248", span(at, at + 1))
+                            .says("`;` ends a table; it cannot stand between its columns")
                             .help("lay the columns out with blanks; or replace `;` by `,` and write `$onDelim` before the table and `$offDelim` behind it"),
                     );
                     // To the line that ends it.
