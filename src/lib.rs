@@ -92,7 +92,7 @@ pub use formulation::algebra::{
     Algebra, AlgebraEquation, AlgebraTerm, AlgebraVariable, Expression, Index, Over,
 };
 pub use formulation::check::Comparison;
-pub use host::{Host, HostError};
+pub use host::{Found, Host, HostError};
 pub use model::instance::Sense;
 pub use model::outcome::{ModelStatus, SolverStatus};
 pub use model::problem_type::ProblemType;
