@@ -6,6 +6,12 @@ use std::collections::{BTreeMap, VecDeque};
 /// How much either value of every binary may cost, in entries of rows for every entry of the program.
 const PROBING: usize = 100;
 
+/// How much the points of rows may cost without a gain, in the same unit.
+const ENUMERATION: usize = 100;
+
+/// Points of a row that are looked at, at most; a column's values at them are the bits of a number.
+const POINTS: u32 = 64;
+
 /// A row's least and largest activity over bounds, with the infinite terms counted apart.
 #[derive(Clone, Copy, Default)]
 struct Activity {
@@ -63,6 +69,49 @@ impl Activity {
     /// What rounding may have done to it.
     fn slack(&self) -> f64 {
         FEASIBLE * self.size.max(1.0)
+    }
+}
+
+/// What columns are at the points of a row.
+struct Points {
+    count: u32,
+    lower: Vec<f64>,
+    upper: Vec<f64>,
+    /// By column: not decided at a point.
+    is_open: Vec<bool>,
+    /// By column: the points at which it is 1.
+    ones: Vec<u64>,
+}
+
+impl Points {
+    fn new(columns: usize) -> Self {
+        Self {
+            count: 0,
+            lower: vec![f64::INFINITY; columns],
+            upper: vec![f64::NEG_INFINITY; columns],
+            is_open: vec![false; columns],
+            ones: vec![0; columns],
+        }
+    }
+
+    /// The bits of all points.
+    fn all(&self) -> u64 {
+        u64::MAX >> (POINTS - self.count)
+    }
+
+    /// One more; false: there are too many.
+    fn add(&mut self, lower: &[f64], upper: &[f64]) -> bool {
+        if self.count == POINTS {
+            return false;
+        }
+        for (k, (&l, &u)) in lower.iter().zip(upper).enumerate() {
+            self.lower[k] = self.lower[k].min(l);
+            self.upper[k] = self.upper[k].max(u);
+            self.is_open[k] |= l < u;
+            self.ones[k] |= u64::from(l == 1.0) << self.count;
+        }
+        self.count += 1;
+        true
     }
 }
 
@@ -228,6 +277,88 @@ impl Propagator {
             }
         }
         Some(changed)
+    }
+
+    /// Tightens bounds by what all points of an equation of binaries have in common, equation by equation, and tells
+    /// columns that are the same at all of them, or opposite. None: nothing satisfies them; otherwise whether bounds moved.
+    pub fn enumerate(
+        &mut self,
+        mip: &Mip,
+        lower: &mut [f64],
+        upper: &mut [f64],
+        alike: &mut dyn FnMut(usize, usize, bool),
+    ) -> Option<bool> {
+        let p = &mip.problem;
+        let is_open = |j: usize, l: &[f64], u: &[f64]| mip.integer[j] && l[j] == 0.0 && u[j] == 1.0;
+        let worth = ENUMERATION * (p.rows.value.len() + 1000);
+        let mut most = self.work + worth;
+        let mut changed = false;
+        for i in (0..p.m()).filter(|&i| p.row_lower[i] == p.row_upper[i]) {
+            let columns = p.rows.line(i).map(|e| e.0);
+            let open: Vec<usize> = columns.filter(|&j| lower[j] < upper[j]).collect();
+            let are_binary = open.iter().all(|&j| is_open(j, lower, upper));
+            if open.len() < 3 || !are_binary || self.work > most {
+                continue;
+            }
+            let mut points = Points::new(lower.len());
+            if !self.points(mip, &open, lower, upper, most, &mut points) {
+                continue;
+            }
+            if points.count == 0 {
+                return None;
+            }
+            let mut columns = Vec::new();
+            let mut same: BTreeMap<u64, (usize, u64)> = BTreeMap::new();
+            for k in 0..lower.len() {
+                if points.lower[k] > lower[k] || points.upper[k] < upper[k] {
+                    (lower[k], upper[k]) = (points.lower[k], points.upper[k]);
+                    columns.push(k);
+                } else if is_open(k, lower, upper) && !points.is_open[k] {
+                    let (ones, opposite) = (points.ones[k], points.all() & !points.ones[k]);
+                    match same.get(&ones.min(opposite)) {
+                        Some(&(by, of)) => {
+                            alike(k, by, of != ones);
+                            most = self.work + worth;
+                        }
+                        None => drop(same.insert(ones.min(opposite), (k, ones))),
+                    }
+                }
+            }
+            if columns.is_empty() {
+                continue;
+            }
+            (changed, most) = (true, self.work + worth);
+            if !self.run(mip, Some(&columns), lower, upper) {
+                return None;
+            }
+        }
+        Some(changed)
+    }
+
+    /// Collects what follows from each assignment of these columns. False: there are too many.
+    fn points(
+        &mut self,
+        mip: &Mip,
+        open: &[usize],
+        lower: &[f64],
+        upper: &[f64],
+        most: usize,
+        points: &mut Points,
+    ) -> bool {
+        self.work += lower.len();
+        if self.work > most {
+            return false;
+        }
+        let Some(next) = open.iter().position(|&j| lower[j] < upper[j]) else {
+            return points.add(lower, upper);
+        };
+        let (column, rest) = (open[next], &open[next + 1..]);
+        [1.0, 0.0].into_iter().all(|value| {
+            let (mut l, mut u) = (lower.to_vec(), upper.to_vec());
+            (l[column], u[column]) = (value, value);
+            !self.run(mip, Some(&[column]), &mut l, &mut u)
+                || self.points(mip, rest, &l, &u, most, points)
+        })
     }
 
     fn row(

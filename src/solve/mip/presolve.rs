@@ -69,6 +69,7 @@ pub fn reduce(mip: &Mip, fixed: &[Change], cutoff: f64) -> Option<Reduced> {
         true => definitions(&mut work, &mut idle, &stays),
         false => Vec::new(),
     };
+    let mut enumerated = false;
     for round in 0..6 {
         let mut changed = singletons(&mut work, &mut idle)?;
         let (mut lower, mut upper) = (work.problem.lower.clone(), work.problem.upper.clone());
@@ -79,10 +80,21 @@ pub fn reduce(mip: &Mip, fixed: &[Change], cutoff: f64) -> Option<Reduced> {
             return None;
         }
         changed |= !propagator.moved.is_empty();
-        if round == 1 && fixed.is_empty() {
+        if (round == 1 || enumerated) && fixed.is_empty() {
             changed |= propagator.probe(&work, &mut lower, &mut upper)?;
         }
+        let mut alike = Alike::new(&work, &stays);
+        if round > 0 && fixed.is_empty() {
+            let mut tell = |k, by, opposite| alike.add(k, by, opposite);
+            enumerated = propagator.enumerate(&work, &mut lower, &mut upper, &mut tell)?;
+            changed |= enumerated;
+        }
         (work.problem.lower, work.problem.upper) = (lower, upper);
+        if work.held.is_empty() {
+            let more = alike.put_in(&mut work);
+            changed |= !more.is_empty();
+            given.extend(more);
+        }
         changed |= rows(&mut work, &mut idle);
         changed |= dual_fixing(&mut work, &idle, &stays);
         // Rows that come later know the program's columns.
@@ -94,7 +106,8 @@ pub fn reduce(mip: &Mip, fixed: &[Change], cutoff: f64) -> Option<Reduced> {
             changed |= !more.is_empty();
             given.extend(more);
         }
-        if !changed {
+        // The first round leaves probing to the second.
+        if !changed && round > 0 {
             break;
         }
     }
@@ -102,6 +115,51 @@ pub fn reduce(mip: &Mip, fixed: &[Change], cutoff: f64) -> Option<Reduced> {
         given,
         ..assemble(&work, &idle, &stays)
     })
+}
+
+/// Columns that are the same as others, or opposite, wherever rows are satisfied.
+struct Alike {
+    given: Vec<Given>,
+    /// By column: it may go, and it may be what another is given by.
+    may: Vec<[bool; 2]>,
+}
+
+impl Alike {
+    fn new(mip: &Mip, stays: &[bool]) -> Self {
+        let is_free = |j: usize| !stays[j] && mip.threshold[j] == 0.0;
+        Self {
+            given: Vec::new(),
+            may: (0..stays.len()).map(|j| [is_free(j); 2]).collect(),
+        }
+    }
+
+    fn add(&mut self, column: usize, by: usize, opposite: bool) {
+        if self.may[column][0] && self.may[by][1] {
+            (self.may[column], self.may[by][0]) = ([false; 2], false);
+            let (constant, factor) = if opposite { (1.0, -1.0) } else { (0.0, 1.0) };
+            self.given.push(Given {
+                column,
+                constant,
+                terms: vec![(by, factor)],
+            });
+        }
+    }
+
+    /// What is still open is put in.
+    fn put_in(mut self, mip: &mut Mip) -> Vec<Given> {
+        let p = &mut mip.problem;
+        let is_open = |j: usize| p.lower[j] < p.upper[j];
+        self.given
+            .retain(|g| is_open(g.column) && is_open(g.terms[0].0));
+        for g in &self.given {
+            if let Some(&first) = mip.priority.get(g.column) {
+                let by = g.terms[0].0;
+                mip.priority[by] = mip.priority[by].min(first);
+            }
+        }
+        put_in(p, &self.given);
+        self.given
+    }
 }
 
 /// Whether a row asks for a number that no sum of integers times its coefficients is.
