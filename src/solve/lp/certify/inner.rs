@@ -142,7 +142,7 @@ fn search(
         p.row_upper.push(limit);
     }
     p.columns = p.rows.transpose(p.cost.len());
-    let run = interior_only(&p, [1e-9; 2], budget);
+    let run = interior_only(&p, [SLACK; 2], budget);
     if run.ended != Ended::Solved {
         return None;
     }

@@ -12,8 +12,8 @@
 //! Only the weighted row sums of |C| are kept, so nothing dense is stored; κ and these sums are
 //! rounded upwards. Source: Rump, "Verification methods" (2010), section 10.
 //!
-//! The basis is chosen for room to move and few entries: each equation takes a column of its own,
-//! free ones before others; where the choice is singular, pivots repair it.
+//! The basis is chosen for few entries: each equation takes a column of its own. (How much room a column has does not matter, for
+//! corrections are far smaller; columns of few entries leave the inverse sparse.) Where the choice is singular, pivots repair it.
 
 use super::super::simplex::factor::{Entries, Factor, Failure};
 use super::Enclosed;
@@ -41,12 +41,12 @@ fn rounded_up(sum: f64, terms: usize) -> f64 {
 }
 
 impl System {
-    /// For the equations `rows`; column j may move if `room[j] > 0`, the more the better. Err: an
+    /// For the equations `rows`; column j may move if `moves[j]`. Err: an
     /// equation that depends on others, or on which no column may move.
     pub(super) fn new(
         poly: &Polyhedron,
         rows: Vec<usize>,
-        room: &[f64],
+        moves: &[bool],
         unit: Vec<f64>,
         stop: &mut dyn FnMut() -> bool,
     ) -> Result<Self, Option<usize>> {
@@ -61,7 +61,7 @@ impl System {
                 .map(|(i, a)| (position[i] as usize, a))
                 .collect()
         };
-        let mut basis = choose(poly, &rows, room, &entries);
+        let mut basis = choose(poly, &rows, moves, &entries);
         let mut factor = None;
         for _ in 0..20 {
             let columns: Vec<Entries> = basis
@@ -85,7 +85,7 @@ impl System {
             }
         }
         let mut factor = factor.ok_or(None)?;
-        let repaired = repair(poly, &rows, room, &entries, &mut basis, &mut factor, stop)?;
+        let repaired = repair(poly, &rows, moves, &entries, &mut basis, &mut factor, stop)?;
         let columns: Vec<Entries> = repaired.iter().map(|&j| entries(j)).collect();
         let mut factor = Factor::new(k, &columns).map_err(|_| None)?;
         // The rows of M, for the products with the rows of C.
@@ -206,23 +206,23 @@ enum Choice {
 fn choose(
     poly: &Polyhedron,
     rows: &[usize],
-    room: &[f64],
+    moves: &[bool],
     entries: &dyn Fn(usize) -> Entries,
 ) -> Vec<Choice> {
     let shape: Vec<(f64, f64)> = (0..poly.n())
         .map(|j| {
-            if room[j] <= 0.0 {
+            if !moves[j] {
                 return (1.0, 0.0);
             }
             let e = entries(j);
             let top = e.iter().fold(0.0f64, |t, &(_, a)| t.max(a.abs()));
-            (top, room[j] / (e.len().max(1) as f64))
+            (top, 1.0 / (e.len().max(1) as f64))
         })
         .collect();
     let mut order: Vec<usize> = (0..rows.len()).collect();
     order.sort_by_key(|&p| {
         let line = poly.rows.line(rows[p]);
-        (line.filter(|&(j, _)| room[j] > 0.0).count(), p)
+        (line.filter(|&(j, _)| moves[j]).count(), p)
     });
     let mut taken = vec![false; poly.n()];
     let mut basis: Vec<Choice> = (0..rows.len()).map(Choice::Unit).collect();
@@ -247,7 +247,7 @@ fn choose(
 fn repair(
     poly: &Polyhedron,
     rows: &[usize],
-    room: &[f64],
+    moves: &[bool],
     entries: &dyn Fn(usize) -> Entries,
     basis: &mut [Choice],
     factor: &mut Factor,
@@ -271,7 +271,7 @@ fn repair(
         let mut size = 0.0f64;
         for &(q, r) in &rho {
             for (j, a) in poly.rows.line(rows[q]) {
-                if room[j] > 0.0 && !inside[j] {
+                if moves[j] && !inside[j] {
                     *pivots.entry(j).or_default() += r * a;
                     size = size.max((r * a).abs());
                 }
@@ -279,9 +279,8 @@ fn repair(
         }
         let mut best = (0.0, None);
         for (&j, &v) in &pivots {
-            let score = v.abs() * room[j].min(1.0);
-            if v.abs() > 1e-9 * size.max(1e-9) && score > best.0 {
-                best = (score, Some(j));
+            if v.abs() > (1e-9 * size.max(1e-9)).max(best.0) {
+                best = (v.abs(), Some(j));
             }
         }
         let Some(j) = best.1 else {
