@@ -408,7 +408,8 @@ fn others(p: &Problem, row: usize, but: usize) -> impl Iterator<Item = (usize, f
 
 /// Whether the second row is a multiple of the first, with the second column, whose coefficients are these, for the first.
 fn is_multiple(p: &Problem, rows: [usize; 2], columns: [usize; 2], own: [f64; 2]) -> bool {
-    let same = |x: f64, y: f64| x == y || (x - y).abs() <= SAME * x.abs().max(y.abs());
+    let close = |x: f64, y: f64| (x - y).abs() <= SAME * x.abs().max(y.abs());
+    let same = |x: f64, y: f64| x == y || (x - y).is_finite() && close(x, y);
     let mut one = others(p, rows[0], columns[0]);
     let mut two = others(p, rows[1], columns[1]);
     let ratio = own[1] / own[0];
