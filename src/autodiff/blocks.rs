@@ -191,7 +191,7 @@ pub fn second_derivatives(instance: &Instance) -> (f64, f64) {
 }
 
 /// The columns of each addend that is not linear: there are second derivatives for pairs of them at most.
-pub fn curved_columns(instance: &Instance) -> Vec<Vec<u32>> {
+pub(crate) fn curved_columns(instance: &Instance) -> Vec<Vec<u32>> {
     let mut out = Vec::new();
     for (kernel, parts) in groups(instance) {
         let sets = curved(&kernel);

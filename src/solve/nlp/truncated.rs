@@ -11,6 +11,7 @@
 //! its entries are dear, some gradients for each product.
 
 use super::problem::{Entry, Nlp};
+use crate::solve::random::Random;
 use crate::solve::{Budget, Progress};
 use std::cell::Cell;
 
@@ -25,6 +26,13 @@ const ROUNDING: f64 = 1e-16;
 const TAKEN: f64 = 1e-3;
 /// The part of the slope that a first step must be worth.
 const ENOUGH: f64 = 0.01;
+/// How often a saddle is left, conjugate gradients that look for the way, and its first steps, relative to the size of the point.
+const MOST_SADDLES: u32 = 3;
+const LOOKS: usize = 60;
+const FIRST_STEPS: [f64; 4] = [0.3, 0.1, 1e-2, 1e-3];
+/// Curvature, relative to the largest, and a gain, relative to the value, that are rounding.
+const STRAIGHT: f64 = 1e-6;
+const NOTICEABLE: f64 = 1e-12;
 /// A trust region this small is none.
 const SMALLEST: f64 = 1e-12;
 
@@ -42,7 +50,7 @@ pub(super) fn solve(nlp: &mut dyn Nlp, products: Option<u64>, budget: &Budget) -
     let bounds = (&lower[..], &upper[..]);
     let mut x = clipped(nlp.start(), bounds);
     let mut f = nlp.objective(&x).filter(|f| f.is_finite())?;
-    let (mut steps, mut radius) = (0, 1.0_f64);
+    let (mut steps, mut radius, mut saddles) = (0, 1.0_f64, 0);
     let mut model = Model::at(nlp, &x, products)?;
     while steps < STEPS
         && radius > SMALLEST
@@ -57,7 +65,17 @@ pub(super) fn solve(nlp: &mut dyn Nlp, products: Option<u64>, budget: &Budget) -
             ..Progress::default()
         });
         if slope <= FLAT {
-            break;
+            let on = match saddles < MOST_SADDLES {
+                true => model.beyond(nlp, bounds, f),
+                false => None,
+            };
+            let Some((next, value)) = on else { break };
+            let Some(there) = Model::at(nlp, &next, model.left.get()) else {
+                break;
+            };
+            (x, f, model) = (next, value, there);
+            (radius, saddles) = (1.0, saddles + 1);
+            continue;
         }
         steps += 1;
         let s = model.step(nlp, bounds, radius, budget);
@@ -267,6 +285,59 @@ impl Model {
             rz = rz_next;
         }
         w
+    }
+
+    /// From a point without slope: one where f is less along a direction in which it curves downwards.
+    fn beyond(
+        &self,
+        nlp: &mut dyn Nlp,
+        bounds: (&[f64], &[f64]),
+        f: f64,
+    ) -> Option<(Vec<f64>, f64)> {
+        let d = self.downwards(nlp, bounds)?;
+        let largest = |v: &[f64]| v.iter().fold(0.0_f64, |s, v| s.max(v.abs()));
+        let unit = largest(&self.x).max(1.0) / largest(&d);
+        let ways = FIRST_STEPS.into_iter().flat_map(|t| [t, -t]);
+        let mut ends = ways.filter_map(|t| {
+            let y = clipped(&sum(&self.x, t * unit, &d), bounds);
+            let value = nlp.objective(&y)?;
+            (value < f - NOTICEABLE * f.abs().max(1.0)).then_some((y, value))
+        });
+        ends.next()
+    }
+
+    /// A direction of negative curvature in the variables that no slope holds at a bound, as conjugate gradients for any right-hand
+    /// side come across one.
+    fn downwards(&self, nlp: &mut dyn Nlp, (lower, upper): (&[f64], &[f64])) -> Option<Vec<f64>> {
+        let held = |j: usize| {
+            let at_bound = self.x[j] <= lower[j] || self.x[j] >= upper[j];
+            at_bound && self.gradient[j].abs() > FLAT
+        };
+        let mut random = Random(1);
+        let each = (0..self.x.len()).map(|j| match (random.uniform(), held(j)) {
+            (_, true) => 0.0,
+            (u, false) => u - 0.5,
+        });
+        let mut r: Vec<f64> = each.collect();
+        let (mut p, mut rr, mut largest) = (r.clone(), dot(&r, &r), 0.0_f64);
+        for _ in 0..LOOKS {
+            let mut hp = self.product(nlp, &p);
+            (0..hp.len()).filter(|&j| held(j)).for_each(|j| hp[j] = 0.0);
+            let (curvature, pp) = (dot(&p, &hp), dot(&p, &p));
+            largest = largest.max(curvature.abs() / pp);
+            if curvature < -STRAIGHT * largest * pp {
+                return Some(p);
+            }
+            if curvature <= STRAIGHT * STRAIGHT * largest * pp {
+                break;
+            }
+            let t = rr / curvature;
+            r = sum(&r, -t, &hp);
+            let next = dot(&r, &r);
+            p = sum(&r, next / rr, &p);
+            rr = next;
+        }
+        None
     }
 
     /// How far a direction can be gone from a step within the trust region.
