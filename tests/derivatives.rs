@@ -514,6 +514,21 @@ proptest! {
         if e.hessian(&x, &[1.0], &mut hv).is_err() {
             return Ok(());
         }
+        let vector: Vec<f64> = (0..n).map(|_| r.uniform(-1.0, 1.0)).collect();
+        let mut product = vec![0.0; n];
+        for ((&i, &j), h) in hr.iter().zip(&hc).zip(&hv) {
+            let (i, j) = (i as usize, j as usize);
+            product[i] += h * vector[j];
+            if i != j {
+                product[j] += h * vector[i];
+            }
+        }
+        let mut multiplied = vec![0.0; n];
+        Evaluator::with_products(&instance).product(&x, &vector, &[1.0], &mut multiplied).expect("the Hessian has a value");
+        let largest = hv.iter().fold(1.0_f64, |m, v| m.max(v.abs()));
+        for (a, b) in product.iter().zip(&multiplied) {
+            prop_assert!((a - b).abs() <= 1e-10 * largest, "{} {}", a, b);
+        }
         let columns = e.jacobian_pattern().1.to_vec();
         let mut gradient = |x: &[f64]| {
             let mut v = vec![0.0; columns.len()];

@@ -17,8 +17,21 @@ use std::hash::{Hash, Hasher};
 pub(super) struct Wanted {
     /// δ, as in [`Graph::new`].
     pub smoothing: f64,
-    /// Whether second derivatives are asked for.
-    pub second: bool,
+    /// What is asked for of second derivatives.
+    pub second: Second,
+    /// Number of columns.
+    pub columns: u32,
+}
+
+/// Of second derivatives.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Second {
+    /// Nothing.
+    None,
+    /// Each of them.
+    Entries,
+    /// Products of the Hessian and a vector.
+    Products,
 }
 
 /// A compiled kernel and its terms.
@@ -44,7 +57,10 @@ pub(super) struct Block {
     pub row: Vec<u32>,
     /// Coefficient of each term.
     pub coef: Vec<f64>,
-    /// Columns, slot by slot.
+    /// Code for the product of the Hessian and a vector, and the columns of its entries, one after the other.
+    pub product: Program,
+    pub product_columns: Vec<u32>,
+    /// Columns, slot by slot; for products the places of the vector's entries, behind those of the point, follow.
     pub columns: Vec<u32>,
     /// Constants, slot by slot.
     pub constants: Vec<f64>,
@@ -111,10 +127,19 @@ impl Block {
             derive::value(&graph),
             derive::gradient(&graph),
             match wanted.second {
-                true => derive::hessian(&graph),
-                false => derive::Code::default(),
+                Second::Entries => derive::hessian(&graph),
+                _ => derive::Code::default(),
             },
         );
+        let product = match wanted.second {
+            Second::Products => derive::product(&graph, kernel.variables),
+            _ => derive::Code::default(),
+        };
+        if wanted.second == Second::Products {
+            columns.extend_from_within(..);
+            let vector = columns[v * terms..].iter_mut();
+            vector.for_each(|j| *j += wanted.columns);
+        }
         let constant = |code: &derive::Code| {
             let inactive = |o: &derive::Output| !code.steps.list[o.step as usize].active;
             code.checks.is_empty() && code.outputs.iter().all(inactive)
@@ -128,7 +153,14 @@ impl Block {
             hessian: Program::new(&hessian),
             gradient_slots: gradient.outputs.iter().map(|o| o.slots[0]).collect(),
             hessian_slots: hessian.outputs.iter().map(|o| o.slots).collect(),
-            quadratic: wanted.second && !kinked && constant(&hessian),
+            product: Program::new(&product),
+            product_columns: product
+                .outputs
+                .iter()
+                .flat_map(|o| &columns[o.slots[0] as usize * terms..][..terms])
+                .copied()
+                .collect(),
+            quadratic: wanted.second == Second::Entries && !kinked && constant(&hessian),
             linear: constant(&gradient),
             graph,
             row,
@@ -151,17 +183,32 @@ pub(super) fn compile(instance: &Instance, wanted: Wanted) -> Vec<Block> {
 pub fn second_derivatives(instance: &Instance) -> (f64, f64) {
     let of_groups = groups(instance).into_iter().map(|(kernel, parts)| {
         let terms: usize = parts.iter().map(|p| p.row.len()).sum();
-        let each = curved(&kernel.ops, kernel.variables as usize);
+        let triangle = |set: Vec<u32>| (set.len() * (set.len() + 1)) as f64 / 2.0;
+        let each: f64 = curved(&kernel).into_iter().map(triangle).sum();
         (terms as f64 * each, each)
     });
     of_groups.fold((0.0, 0.0), |all, (a, b)| (all.0 + a, all.1 + b))
 }
 
-/// Second derivatives of an expression, at most: a triangle for the variables of each addend.
-fn curved(ops: &[Op], variables: usize) -> f64 {
+/// The columns of each addend that is not linear: there are second derivatives for pairs of them at most.
+pub(crate) fn curved_columns(instance: &Instance) -> Vec<Vec<u32>> {
+    let mut out = Vec::new();
+    for (kernel, parts) in groups(instance) {
+        let sets = curved(&kernel);
+        for slots in parts.iter().flat_map(KernelTerms::terms) {
+            let columns = |set: &Vec<u32>| set.iter().map(|&k| slots.columns[k as usize]).collect();
+            out.extend(sets.iter().map(columns));
+        }
+    }
+    out
+}
+
+/// The variables of each addend of an expression that is not linear.
+fn curved(kernel: &Kernel) -> Vec<Vec<u32>> {
+    let ops = &kernel.ops;
     let begin = begins(ops);
-    let mut seen = vec![usize::MAX; variables];
-    let (mut rest, mut sum) = (vec![ops.len() - 1], 0.0);
+    let mut seen = vec![usize::MAX; kernel.variables as usize];
+    let (mut rest, mut sets) = (vec![ops.len() - 1], Vec::new());
     while let Some(end) = rest.pop() {
         match ops[end] {
             Op::Const(_) | Op::Var(_) | Op::Affine { .. } => {}
@@ -173,11 +220,11 @@ fn curved(ops: &[Op], variables: usize) -> f64 {
                 }
             }
             _ => {
-                let mut distinct = 0.0;
+                let mut set = Vec::new();
                 let mut see = |k: u32| {
                     if seen[k as usize] != end {
                         seen[k as usize] = end;
-                        distinct += 1.0;
+                        set.push(k);
                     }
                 };
                 for op in &ops[begin[end]..end] {
@@ -189,11 +236,11 @@ fn curved(ops: &[Op], variables: usize) -> f64 {
                         _ => {}
                     }
                 }
-                sum += distinct * (distinct + 1.0) / 2.0;
+                sets.push(set);
             }
         }
     }
-    sum
+    sets
 }
 
 /// Where the subexpression that ends at each operation begins.

@@ -99,6 +99,58 @@ pub(super) fn hessian(graph: &Graph) -> Code {
     d.finish(outputs)
 }
 
+/// Code for the product of the Hessian and a vector, whose entries are in the slots after those of the variables: the derivative of
+/// the gradient along it.
+pub(super) fn product(graph: &Graph, variables: u32) -> Code {
+    let mut d = Derivation::new(graph, 2);
+    d.forward();
+    let adjoint = d.adjoints();
+    let n = graph.elements.len();
+    let (mut along, mut change): (Vec<Option<Step>>, Vec<Option<Step>>) =
+        (vec![None; n], vec![None; n]);
+    for (id, e) in graph.elements.iter().enumerate() {
+        if let Element::Var(k) = e {
+            along[id] = Some(d.steps.var(variables + k));
+        }
+        for (j, slope) in &d.local[id].first {
+            if let Some(v) = along[*j as usize] {
+                let t = d.steps.multiply(*slope, v);
+                accumulate(&mut d.steps, &mut along[id], t);
+            }
+        }
+    }
+    for i in (0..n).rev() {
+        let local = std::mem::take(&mut d.local[i]);
+        for &(j, slope) in &local.first {
+            if let Some(c) = change[i] {
+                let t = d.steps.multiply(c, slope);
+                accumulate(&mut d.steps, &mut change[j as usize], t);
+            }
+        }
+        let Some(a) = adjoint[i] else { continue };
+        for &(j, k, curvature) in &local.second {
+            let h = d.steps.multiply(a, curvature);
+            let both = [(j, k), (k, j)];
+            for &(to, from) in &both[..1 + usize::from(j != k)] {
+                if let Some(v) = along[from as usize] {
+                    let t = d.steps.multiply(h, v);
+                    accumulate(&mut d.steps, &mut change[to as usize], t);
+                }
+            }
+        }
+    }
+    let mut outputs = Vec::new();
+    for (id, e) in graph.elements.iter().enumerate() {
+        if let (Element::Var(k), Some(step)) = (e, change[id]) {
+            outputs.push(Output {
+                slots: [*k, NONE],
+                step,
+            });
+        }
+    }
+    d.finish(outputs)
+}
+
 impl<'g> Derivation<'g> {
     fn new(graph: &'g Graph, order: u8) -> Self {
         Self {

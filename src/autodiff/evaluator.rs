@@ -7,7 +7,7 @@
 //!
 //! Invariant: a pattern depends on the instance alone, never on the point.
 
-use super::blocks::{Block, Wanted, compile};
+use super::blocks::{Block, Second, Wanted, compile};
 use super::fixed::without_fixed;
 use super::functions::{DomainError, ErrorKind, Operation};
 use super::program::{Sink, Workspace};
@@ -128,23 +128,25 @@ impl Evaluator {
 
     /// [`Self::smoothed`] without second derivatives.
     pub fn smoothed_first_order(instance: &Instance, delta: f64) -> Self {
-        let wanted = Wanted {
-            smoothing: delta,
-            second: false,
-        };
-        Self::made(instance, wanted)
+        Self::made(instance, delta, Second::None)
+    }
+
+    /// The same with [`Self::product`].
+    pub fn with_products(instance: &Instance) -> Self {
+        Self::made(instance, 0.0, Second::Products)
     }
 
     /// The same with √(a² + δ²) for |a|, and min and max made from it: differentiable everywhere.
     pub fn smoothed(instance: &Instance, delta: f64) -> Self {
-        let wanted = Wanted {
-            smoothing: delta,
-            second: true,
-        };
-        Self::made(instance, wanted)
+        Self::made(instance, delta, Second::Entries)
     }
 
-    fn made(instance: &Instance, wanted: Wanted) -> Self {
+    fn made(instance: &Instance, smoothing: f64, second: Second) -> Self {
+        let wanted = Wanted {
+            smoothing,
+            second,
+            columns: instance.column_count() as u32,
+        };
         let mut e = Self::plain(instance, wanted);
         if let Some(i) = without_fixed(instance) {
             e.unfixed = Unfixed::Terms(Box::new(i), wanted);
@@ -320,6 +322,38 @@ impl Evaluator {
                 b.hessian.run(operands, &mut self.work, &mut sink)
             };
             result.map_err(|first| scalar::diagnose(b, first, x, 2))?;
+        }
+        Ok(())
+    }
+
+    /// Σ λ_i ∇²row_i times a vector, of an evaluator that was made for it.
+    ///
+    /// Errors: as [`Self::jacobian`].
+    pub fn product(
+        &mut self,
+        x: &[f64],
+        vector: &[f64],
+        lambda: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), EvalFailure> {
+        out.fill(0.0);
+        let both = [x, vector].concat();
+        for b in &self.blocks {
+            let weight: Vec<f64> = b
+                .row
+                .iter()
+                .zip(&b.coef)
+                .map(|(&i, c)| c * lambda[i as usize])
+                .collect();
+            let mut sink = PlaceSink {
+                values: out,
+                place: &b.product_columns,
+                weight: &weight,
+                terms: b.terms(),
+            };
+            b.product
+                .run(b.operands(&both), &mut self.work, &mut sink)
+                .map_err(|first| scalar::diagnose(b, first, x, 2))?;
         }
         Ok(())
     }

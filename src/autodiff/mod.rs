@@ -19,6 +19,7 @@ mod scalar;
 pub mod special;
 mod steps;
 
+pub(crate) use blocks::curved_columns;
 pub use blocks::second_derivatives;
 pub use evaluator::{Degree, EvalFailure, Evaluator, Kinks, kinks};
 pub use functions::{DomainError, ErrorKind, Operation, function_value};

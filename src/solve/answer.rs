@@ -12,7 +12,7 @@ use super::mpec::Stationarity;
 use super::mpec::pairs::Program;
 use super::registry::BACKENDS;
 use super::{
-    Budget, Claim, ModelStatus, Outcome, Settings, SolveError, SolverStatus, lp, mip, noise,
+    Budget, Claim, ModelStatus, Outcome, Settings, SolveError, SolverStatus, lp, mip, nlp, noise,
 };
 use crate::autodiff::{Evaluator, second_derivatives};
 use crate::model::instance::{Instance, Relation};
@@ -121,12 +121,18 @@ fn solve(
     settings: &Settings,
     budget: &Budget,
 ) -> Result<Answer, SolveError> {
-    for build in bridge::BEFORE {
-        if let Some(bridge) = build(backends, task, settings)
-            && let Some(answer) = across(backends, &*bridge, task, settings, budget)
-        {
-            return Ok(answer);
-        }
+    let by = |build: bridge::Build| {
+        let bridge = build(backends, task, settings)?;
+        across(backends, &*bridge, task, settings, budget)
+    };
+    if let Some(answer) = bridge::BEFORE.into_iter().find_map(by) {
+        return Ok(answer);
+    }
+    if let Some(outcome) = nlp::solve_by_products(task, settings, budget) {
+        return Ok(certified(task, outcome.into(), None));
+    }
+    if let Some(answer) = by(bridge::LAST) {
+        return Ok(answer);
     }
     affords_hessian(task, budget)?;
     let backend = choose(backends, task).ok_or_else(|| missing(task))?;

@@ -93,7 +93,7 @@ strategies! {
             "Griewank & Toint 1982";
         VanishingSquares "vanishing_squares",
             "the objective is a sum of squares, and these and the equations are as many as the variables: they are solved as equations",
-            "50 iterations",
+            "200 steps of Newton's method",
             "Nocedal & Wright 2006, chapters 10 and 11";
         ConvexQuadratic "convex_quadratic",
             "linear rows and a positive semidefinite Hessian of the objective: Clarabel solves it",
@@ -104,12 +104,12 @@ strategies! {
             "an evaluation and a factorisation",
             "Gill, Murray & Saunders 2005";
         SquareNewton "square_newton",
-            "at least as many equations as variables: Newton's method with Levenberg and Marquardt's damping, then with steps that shorten the next one",
-            "twice 50 steps",
-            "Nocedal & Wright 2006, chapter 10; Deuflhard 2004, 3.3";
+            "at least as many equations as variables: Newton's method with Levenberg and Marquardt's damping, then along the path on which a part of the first residual is left",
+            "200 steps",
+            "Nocedal & Wright 2006, chapter 10; Allgower & Georg 2003";
         TruncatedNewton "truncated_newton",
-            "no constraints, and a factor of the Hessian would take 5·10⁹ operations: conjugate gradients in a trust region",
-            "1000 steps",
+            "no constraints, and a factor of the Hessian would take 5·10⁹ operations, or a step with its entries as long as 200 products with it: conjugate gradients in a trust region",
+            "1000 steps; without entries, products that take as long as 20 steps with them",
             "Steihaug 1983; Lin & Moré 1999";
         DifferentiableStart "differentiable_start",
             "a row has no derivatives at the start, as √x at 0: its variables are moved by a hundredth",

@@ -51,13 +51,13 @@ pub(super) trait Bridge {
 }
 
 /// Makes a bridge where it applies.
-type Build = fn(&[&dyn Backend], &Task, &Settings) -> Option<Box<dyn Bridge>>;
+pub(super) type Build = fn(&[&dyn Backend], &Task, &Settings) -> Option<Box<dyn Bridge>>;
 
-/// What is tried before a task is given to a backend as it is.
-pub(super) const BEFORE: [Build; 5] = [
+/// What is tried before a task is given to a backend as it is; and what last.
+pub(super) const BEFORE: [Build; 4] = [
     kkt::Kkt::bridge,
     triangular::Triangular::bridge,
     epigraph::Epigraph::bridge,
     least_squares::LeastSquares::bridge,
-    inner_sums::InnerSums::bridge,
 ];
+pub(super) const LAST: Build = inner_sums::InnerSums::bridge;

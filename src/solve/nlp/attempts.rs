@@ -25,12 +25,15 @@ const FILLED: f64 = 5e9;
 impl Driver<'_, '_> {
     /// Without constraints and with a Hessian whose factors fill up: conjugate gradients. Whether that settles it.
     pub(super) fn settle_by_products(&mut self) -> Result<bool, SolveError> {
-        let filled = self.size_of_factors().operations > FILLED;
-        if self.named || !filled || !self.settings.runs(Strategy::TruncatedNewton) {
+        let filled = || self.size_of_factors().operations > FILLED;
+        if self.named
+            || self.products.is_none() && !filled()
+            || !self.settings.runs(Strategy::TruncatedNewton)
+        {
             return Ok(false);
         }
         self.multiplies = true;
-        let run = truncated::solve(&mut *lock(&*self.problem), self.budget);
+        let run = truncated::solve(&mut *lock(&*self.problem), self.products, self.budget);
         if let Some(run) = run {
             self.spend(run.steps);
             let trial = self.judge(run.x, Vec::new(), Ended::Acceptable);

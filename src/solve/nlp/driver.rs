@@ -18,6 +18,7 @@ use super::Convexity;
 use super::consistent::consistent_start;
 use super::growth::Growth;
 use super::interior_point::{Ended, InteriorPoint, lock};
+use super::interior_point_solvers;
 use super::problem::{Nlp, Problem};
 use super::quadratic::Quadratic;
 use super::schedule::{
@@ -26,8 +27,10 @@ use super::schedule::{
 };
 use super::slqp::Effort;
 use super::trial::{Trial, clean, polished, residuals_at, tidy, without_noise};
-use crate::autodiff::{Degree, ErrorKind, EvalFailure, Evaluator};
-use crate::model::instance::Instance;
+use crate::autodiff::{
+    Degree, ErrorKind, EvalFailure, Evaluator, Kinks, curved_columns, kinks, second_derivatives,
+};
+use crate::model::instance::{Instance, KernelTerms, Op};
 use crate::solve::backend::Task;
 use crate::solve::budget::{Budget, Size};
 use crate::solve::certificate::nonlinear::beside_kinks;
@@ -48,6 +51,16 @@ const MAX_START_EVALUATIONS: u32 = 100;
 
 /// Nonlinear equations from which on the interior point may go first.
 const MANY_CURVED: usize = 50;
+
+/// Entries of a Hessian, and operations of a step with its factors, up to which products with it are not thought of.
+const MANY_ENTRIES: f64 = 1e6;
+const DEAR: f64 = 1e8;
+/// Addends of so many variables are few where there are so many times more columns.
+const LONG: usize = 500;
+const FEW: usize = 10;
+/// Products that a step with factors must cost at least, and steps that all products may cost.
+const CHEAPER: f64 = 200.0;
+const STEPS_WORTH: f64 = 20.0;
 
 /// Solves an instance and certifies the answer.
 pub fn solve(
@@ -101,6 +114,86 @@ pub fn solve(
     driver.convex = quadratic.is_some().then_some(convexity);
     driver.named = matches!(convexity, Convexity::Ignored);
     driver.run(quadratic)
+}
+
+/// A program with bounds alone, each step on which would cost far more with the entries of its Hessian than by products with it. None
+/// for all others, and where conjugate gradients do not settle it.
+pub fn solve_by_products(task: &Task, settings: &Settings, budget: &Budget) -> Option<Outcome> {
+    let instance = task.instance;
+    let columns = &instance.columns;
+    let ordered = columns
+        .lower
+        .iter()
+        .zip(&columns.upper)
+        .all(|(l, u)| l <= u);
+    let free = task.choice.is_none() && task.seen.is_none() && task.is_continuous();
+    if !free || !ordered || instance.row_count() != 1 || kinks(instance) == Some(Kinks::Anywhere) {
+        return None;
+    }
+    let most = most_products(instance)?;
+    if !settings.runs(Strategy::TruncatedNewton) {
+        return None;
+    }
+    let mut problem = Problem::with_products(instance);
+    let start = problem.start().to_vec();
+    if problem.size().1 > 0 || problem.without_derivatives(&start).is_some() {
+        return None;
+    }
+    let interior_point = *interior_point_solvers().first()?;
+    let mut driver = Driver::new(instance, problem, interior_point, settings, budget);
+    driver.products = Some(most);
+    let settled = driver.settle_by_products().ok()?;
+    settled.then(|| driver.finish())
+}
+
+/// How often the Hessian may be multiplied before [`STEPS_WORTH`] steps with its factors would have cost the same; none where these
+/// are no dearer than [`CHEAPER`] products.
+fn most_products(instance: &Instance) -> Option<u64> {
+    let (entries, _) = second_derivatives(instance);
+    if entries < MANY_ENTRIES {
+        return None;
+    }
+    let n = instance.column_count();
+    let sets = curved_columns(instance);
+    let long = sets.iter().filter(|s| s.len() >= LONG).count();
+    if long > 0 && FEW * long < n {
+        // columns in their place leave few second derivatives
+        return None;
+    }
+    let longest = sets.iter().map(Vec::len).max().unwrap_or(0);
+    let factors = match 4 * longest >= n {
+        true => (n as f64).powi(3) / 3.0,
+        false => {
+            symmetric_size("the factor of the Hessian", n, pairs(n, &sets).into_iter()).operations
+        }
+    };
+    let size = |op: &Op| match op {
+        Op::Affine { terms, .. } => *terms as usize,
+        _ => 1,
+    };
+    let each = |t: &KernelTerms| t.row.len() * t.kernel.ops.iter().map(size).sum::<usize>();
+    let product = instance.nonlinear.iter().map(each).sum::<usize>() as f64;
+    let step = entries + factors;
+    (step > CHEAPER * product && step > DEAR).then_some((STEPS_WORTH * step / product) as u64)
+}
+
+/// Pairs of columns that stand in a set together.
+fn pairs(n: usize, sets: &[Vec<u32>]) -> Vec<(usize, usize)> {
+    let mut with = vec![Vec::new(); n];
+    for set in sets {
+        set.iter().for_each(|&j| with[j as usize].push(set));
+    }
+    let (mut seen, mut out) = (vec![usize::MAX; n], Vec::new());
+    for (i, with) in with.into_iter().enumerate() {
+        for &j in with.into_iter().flatten() {
+            let j = j as usize;
+            if j < i && seen[j] != i {
+                seen[j] = i;
+                out.push((i, j));
+            }
+        }
+    }
+    out
 }
 
 /// x moved by up to this fraction of its size (at least by this much), inwards from its bounds; or, where that is asked for, anywhere
@@ -208,6 +301,8 @@ pub(super) struct Driver<'a, 'm> {
     factors: OnceCell<Size>,
     /// Factors are too dear: the Hessian is only multiplied.
     pub(super) multiplies: bool,
+    /// It has no entries, and may be multiplied so often.
+    pub(super) products: Option<u64>,
     /// Iterations one attempt may take.
     pub(super) attempt_iterations: u64,
     /// What is done about runs that lead far away.
@@ -245,6 +340,7 @@ impl<'a, 'm> Driver<'a, 'm> {
             enough: f64::INFINITY,
             factors: OnceCell::new(),
             multiplies: false,
+            products: None,
             attempt_iterations: FIRST_ATTEMPT_ITERATIONS,
             growth: Growth::Watched(0),
         }

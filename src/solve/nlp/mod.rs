@@ -42,6 +42,8 @@ pub use options::IPOPT_OPTIONS;
 pub use options::POUNCE_OPTIONS;
 pub use options::SHARED_OPTIONS;
 
+pub(super) use driver::solve_by_products;
+
 /// Name of the threads on which interior-point solvers run that may panic.
 pub const THREAD: &str = "nonlinear solver";
 

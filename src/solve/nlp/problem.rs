@@ -43,6 +43,8 @@ pub trait Nlp {
     fn jacobian(&mut self, x: &[f64], out: &mut [f64]) -> Option<()>;
     /// Lower triangle of σ ∇²f + Σ λ_i ∇²g_i in the order of its pattern.
     fn hessian(&mut self, x: &[f64], sigma: f64, lambda: &[f64], out: &mut [f64]) -> Option<()>;
+    /// ∇²f(x) times a vector, of a problem that was made for it. None where it has no value, and of other problems.
+    fn product(&mut self, x: &[f64], vector: &[f64]) -> Option<Vec<f64>>;
     /// Number of evaluations that failed so far.
     fn failures(&self) -> u64;
     /// The last point at which derivatives were evaluated: where a run is, or the start.
@@ -221,7 +223,15 @@ impl Problem {
 
     /// The same with kinks rounded by δ, see [`Evaluator::smoothed`].
     pub fn smoothed(instance: &Instance, delta: f64) -> Self {
-        let evaluator = Evaluator::smoothed(instance, delta);
+        Self::made(instance, Evaluator::smoothed(instance, delta))
+    }
+
+    /// The same where the Hessian is only multiplied: it has no entries.
+    pub fn with_products(instance: &Instance) -> Self {
+        Self::made(instance, Evaluator::with_products(instance))
+    }
+
+    fn made(instance: &Instance, evaluator: Evaluator) -> Self {
         let (m, n) = (instance.row_count(), instance.column_count());
         let columns = &instance.columns;
         let form = objective_form(instance);
@@ -578,6 +588,27 @@ impl Nlp for Problem {
             *v = self.second[k as usize];
         }
         Some(())
+    }
+
+    fn product(&mut self, x: &[f64], vector: &[f64]) -> Option<Vec<f64>> {
+        let ObjectiveForm::Row {
+            row, coefficient, ..
+        } = self.form
+        else {
+            return None;
+        };
+        self.place(x);
+        self.lambda.fill(0.0);
+        self.lambda[row] = -self.sign / coefficient;
+        let mut along = vec![0.0; self.full.len()];
+        for (&j, v) in self.columns.iter().zip(vector) {
+            along[j as usize] = *v;
+        }
+        let mut out = vec![0.0; along.len()];
+        let evaluator = &mut self.evaluator;
+        let result = evaluator.product(&self.full, &along, &self.lambda, &mut out);
+        result.map_err(|e| self.fail(e)).ok()?;
+        Some(self.columns.iter().map(|&j| out[j as usize]).collect())
     }
 
     fn failures(&self) -> u64 {

@@ -6,6 +6,11 @@
 
 use feral::{CscMatrix, FactorStatus, Solver};
 
+/// Order from which on pivots that are rounding, beside the largest entry of the scaled matrix, become this large, which refinement makes
+/// good: each would otherwise be put off until a dense row is reached, and all together fill a square.
+const MANY: usize = 1000;
+const LEAST_PIVOT: f64 = 1e-12;
+
 /// A symmetric matrix and its factors.
 pub(super) struct Symmetric {
     matrix: CscMatrix,
@@ -45,8 +50,7 @@ impl Symmetric {
                 row_idx: Vec::new(),
                 values: Vec::new(),
             },
-            // One thread: the same digits on every machine.
-            solver: Solver::new().with_parallel(false),
+            solver: solver(0),
         }
     }
 
@@ -54,6 +58,9 @@ impl Symmetric {
     /// and finite; otherwise there are no factors.
     pub(super) fn factor(&mut self, n: usize, lower: &Lower) -> bool {
         let entries = (&lower.rows, &lower.columns, &lower.values);
+        if (n >= MANY) != (self.matrix.n >= MANY) {
+            self.solver = solver(n);
+        }
         let finite = lower.values.iter().all(|v| v.is_finite());
         match CscMatrix::from_triplets(n, entries.0, entries.1, entries.2) {
             Ok(matrix) if finite => self.matrix = matrix,
@@ -75,5 +82,15 @@ impl Symmetric {
     pub(super) fn inertia(&self) -> Option<(usize, usize)> {
         let i = self.solver.inertia()?;
         Some((i.positive, i.negative))
+    }
+}
+
+/// A solver for matrices of this order.
+fn solver(n: usize) -> Solver {
+    // One thread: the same digits on every machine.
+    let solver = Solver::new().with_parallel(false);
+    match n >= MANY {
+        true => solver.with_static_pivot_threshold(LEAST_PIVOT),
+        false => solver,
     }
 }

@@ -7,10 +7,13 @@
 //! In each step the model f + gᵀs + ½ sᵀHs is first made smaller along the projected gradient, which says which bounds hold; on the
 //! other variables conjugate gradients go on until the residual is a part of what it was, the trust region is left, or the
 //! model curves downwards, which is then followed to the end of the region (Steihaug 1983; Lin & Moré, Newton's method for large
-//! bound-constrained optimization problems, 1999). H is only multiplied: a step costs its nonzeros times the products.
+//! bound-constrained optimization problems, 1999). H is only multiplied: a step costs its nonzeros times the products, or, where even
+//! its entries are dear, some gradients for each product.
 
 use super::problem::{Entry, Nlp};
+use crate::solve::random::Random;
 use crate::solve::{Budget, Progress};
+use std::cell::Cell;
 
 /// Steps at most, and products of one step by the number of variables.
 const STEPS: u64 = 1000;
@@ -23,6 +26,13 @@ const ROUNDING: f64 = 1e-16;
 const TAKEN: f64 = 1e-3;
 /// The part of the slope that a first step must be worth.
 const ENOUGH: f64 = 0.01;
+/// How often a saddle is left, conjugate gradients that look for the way, and its first steps, relative to the size of the point.
+const MOST_SADDLES: u32 = 3;
+const LOOKS: usize = 60;
+const FIRST_STEPS: [f64; 4] = [0.3, 0.1, 1e-2, 1e-3];
+/// Curvature, relative to the largest, and a gain, relative to the value, that are rounding.
+const STRAIGHT: f64 = 1e-6;
+const NOTICEABLE: f64 = 1e-12;
 /// A trust region this small is none.
 const SMALLEST: f64 = 1e-12;
 
@@ -33,17 +43,21 @@ pub(super) struct Run {
     pub(super) steps: u64,
 }
 
-/// Runs from the start point. None where it has no value or derivatives.
-pub(super) fn solve(nlp: &mut dyn Nlp, budget: &Budget) -> Option<Run> {
+/// Runs from the start point. None where it has no value or derivatives. `products`: where the Hessian has no entries, how often it is
+/// multiplied at most.
+pub(super) fn solve(nlp: &mut dyn Nlp, products: Option<u64>, budget: &Budget) -> Option<Run> {
     let (lower, upper) = (nlp.bounds().0.to_vec(), nlp.bounds().1.to_vec());
     let bounds = (&lower[..], &upper[..]);
     let mut x = clipped(nlp.start(), bounds);
     let mut f = nlp.objective(&x).filter(|f| f.is_finite())?;
-    let (mut steps, mut radius) = (0, 1.0_f64);
-    let mut model = Model::at(nlp, &x)?;
-    while steps < STEPS && radius > SMALLEST && budget.stop_after_failures(nlp.failures()).is_none()
+    let (mut steps, mut radius, mut saddles) = (0, 1.0_f64, 0);
+    let mut model = Model::at(nlp, &x, products)?;
+    while steps < STEPS
+        && radius > SMALLEST
+        && model.left.get() != Some(0)
+        && budget.stop_after_failures(nlp.failures()).is_none()
     {
-        let slope = model.slope(&x, bounds);
+        let slope = model.slope(bounds);
         budget.tell(Progress {
             method: "truncated Newton",
             iteration: steps,
@@ -51,11 +65,21 @@ pub(super) fn solve(nlp: &mut dyn Nlp, budget: &Budget) -> Option<Run> {
             ..Progress::default()
         });
         if slope <= FLAT {
-            break;
+            let on = match saddles < MOST_SADDLES {
+                true => model.beyond(nlp, bounds, f),
+                false => None,
+            };
+            let Some((next, value)) = on else { break };
+            let Some(there) = Model::at(nlp, &next, model.left.get()) else {
+                break;
+            };
+            (x, f, model) = (next, value, there);
+            (radius, saddles) = (1.0, saddles + 1);
+            continue;
         }
         steps += 1;
-        let s = model.step(&x, bounds, radius, budget);
-        let promised = -model.change(&s);
+        let s = model.step(nlp, bounds, radius, budget);
+        let promised = -model.change(nlp, &s);
         if promised <= ROUNDING * f.abs() {
             break;
         }
@@ -74,7 +98,7 @@ pub(super) fn solve(nlp: &mut dyn Nlp, budget: &Budget) -> Option<Run> {
             ));
         }
         if gain >= TAKEN
-            && let (Some(v), Some(there)) = (value, Model::at(nlp, &next))
+            && let (Some(v), Some(there)) = (value, Model::at(nlp, &next, model.left.get()))
         {
             (x, f, model) = (next, v, there);
         } else {
@@ -86,9 +110,12 @@ pub(super) fn solve(nlp: &mut dyn Nlp, budget: &Budget) -> Option<Run> {
 
 /// The quadratic model of f at a point.
 struct Model {
+    x: Vec<f64>,
     gradient: Vec<f64>,
-    /// Lower triangle of the Hessian.
-    hessian: Vec<Entry>,
+    /// Lower triangle of the Hessian. None: the problem multiplies it.
+    hessian: Option<Vec<Entry>>,
+    /// Products that are left for that.
+    left: Cell<Option<u64>>,
     /// What a variable is measured in.
     unit: Vec<f64>,
     /// Size of the diagonal, which conditions the gradients.
@@ -96,13 +123,15 @@ struct Model {
 }
 
 impl Model {
-    fn at(nlp: &mut dyn Nlp, x: &[f64]) -> Option<Self> {
+    fn at(nlp: &mut dyn Nlp, x: &[f64], products: Option<u64>) -> Option<Self> {
         let mut gradient = vec![0.0; x.len()];
         nlp.gradient(x, &mut gradient)?;
-        let mut hessian = nlp.hessian_entries(x, &[])?;
-        hessian.retain(|e| e.2 != 0.0);
+        let hessian = match products {
+            Some(_) => None,
+            None => Some(nlp.hessian_entries(x, &[])?),
+        };
         let mut diagonal = vec![0.0_f64; x.len()];
-        for &(i, j, h) in &hessian {
+        for &(i, j, h) in hessian.iter().flatten() {
             if i == j {
                 diagonal[i] += h;
             }
@@ -112,17 +141,23 @@ impl Model {
         diagonal.iter_mut().for_each(|d| *d = d.abs().max(least));
         let finite = gradient.iter().all(|g| g.is_finite()) && largest.is_finite();
         finite.then(|| Self {
+            x: x.to_vec(),
             gradient,
             hessian,
+            left: Cell::new(products),
             unit: x.iter().map(|x| x.abs().max(1.0)).collect(),
             diagonal,
         })
     }
 
     /// H s.
-    fn product(&self, s: &[f64]) -> Vec<f64> {
+    fn product(&self, nlp: &mut dyn Nlp, s: &[f64]) -> Vec<f64> {
         let mut out = vec![0.0; s.len()];
-        for &(i, j, h) in &self.hessian {
+        let Some(hessian) = &self.hessian else {
+            self.left.set(self.left.get().map(|l| l.saturating_sub(1)));
+            return nlp.product(&self.x, s).unwrap_or(out);
+        };
+        for &(i, j, h) in hessian {
             out[i] += h * s[j];
             if i != j {
                 out[j] += h * s[i];
@@ -132,8 +167,8 @@ impl Model {
     }
 
     /// Change of the model.
-    fn change(&self, s: &[f64]) -> f64 {
-        dot(&self.gradient, s) + 0.5 * dot(&self.product(s), s)
+    fn change(&self, nlp: &mut dyn Nlp, s: &[f64]) -> f64 {
+        dot(&self.gradient, s) + 0.5 * dot(&self.product(nlp, s), s)
     }
 
     /// Length of a step in units.
@@ -143,7 +178,8 @@ impl Model {
     }
 
     /// The steepest way down that the bounds leave.
-    fn slope(&self, x: &[f64], (lower, upper): (&[f64], &[f64])) -> f64 {
+    fn slope(&self, (lower, upper): (&[f64], &[f64])) -> f64 {
+        let x = &self.x;
         let each = self
             .gradient
             .iter()
@@ -156,7 +192,14 @@ impl Model {
     }
 
     /// A step within the bounds that is worth as much as one along the projected gradient, and on from there by conjugate gradients.
-    fn step(&self, x: &[f64], bounds: (&[f64], &[f64]), radius: f64, budget: &Budget) -> Vec<f64> {
+    fn step(
+        &self,
+        nlp: &mut dyn Nlp,
+        bounds: (&[f64], &[f64]),
+        radius: f64,
+        budget: &Budget,
+    ) -> Vec<f64> {
+        let x = &self.x;
         let direction: Vec<f64> = (self.gradient.iter().zip(&self.diagonal))
             .map(|(g, d)| -g / d)
             .collect();
@@ -168,7 +211,7 @@ impl Model {
         let (mut first, mut t) = (along(&zero, &direction, 1.0), 1.0);
         while t > 1e-20
             && (self.length(&first) > radius
-                || self.change(&first) > ENOUGH * dot(&self.gradient, &first))
+                || self.change(nlp, &first) > ENOUGH * dot(&self.gradient, &first))
         {
             t *= 0.25;
             first = along(&zero, &direction, t);
@@ -179,12 +222,12 @@ impl Model {
                 y > bounds.0[j] && y < bounds.1[j]
             })
             .collect();
-        let on = self.conjugate(&first, &free, radius, budget);
-        let here = self.change(&first);
+        let on = self.conjugate(nlp, &first, &free, radius, budget);
+        let here = self.change(nlp, &first);
         let mut t = 1.0;
         while t > 1e-3 {
             let s = along(&first, &on, t);
-            if self.change(&s) < here {
+            if self.change(nlp, &s) < here {
                 return s;
             }
             t *= 0.25;
@@ -193,7 +236,14 @@ impl Model {
     }
 
     /// From a step by conjugate gradients on the free variables, within the trust region: what is added to it.
-    fn conjugate(&self, first: &[f64], free: &[bool], radius: f64, budget: &Budget) -> Vec<f64> {
+    fn conjugate(
+        &self,
+        nlp: &mut dyn Nlp,
+        first: &[f64],
+        free: &[bool],
+        radius: f64,
+        budget: &Budget,
+    ) -> Vec<f64> {
         let n = first.len();
         let masked = |v: &mut [f64]| {
             v.iter_mut()
@@ -203,7 +253,7 @@ impl Model {
         };
         let conditioned =
             |r: &[f64]| -> Vec<f64> { r.iter().zip(&self.diagonal).map(|(r, d)| r / d).collect() };
-        let mut residual = sum(&self.gradient, 1.0, &self.product(first));
+        let mut residual = sum(&self.gradient, 1.0, &self.product(nlp, first));
         residual.iter_mut().for_each(|r| *r = -*r);
         masked(&mut residual);
         let begin = dot(&residual, &residual).sqrt();
@@ -212,10 +262,13 @@ impl Model {
         let (mut p, mut rz) = (z.clone(), dot(&residual, &z));
         let mut w = vec![0.0; n];
         for _ in 0..MOST_PRODUCTS * n {
-            if dot(&residual, &residual).sqrt() <= until || budget.is_over() {
+            if dot(&residual, &residual).sqrt() <= until
+                || budget.is_over()
+                || self.left.get() == Some(0)
+            {
                 break;
             }
-            let mut hp = self.product(&p);
+            let mut hp = self.product(nlp, &p);
             masked(&mut hp);
             let curvature = dot(&p, &hp);
             let t = rz / curvature;
@@ -232,6 +285,59 @@ impl Model {
             rz = rz_next;
         }
         w
+    }
+
+    /// From a point without slope: one where f is less along a direction in which it curves downwards.
+    fn beyond(
+        &self,
+        nlp: &mut dyn Nlp,
+        bounds: (&[f64], &[f64]),
+        f: f64,
+    ) -> Option<(Vec<f64>, f64)> {
+        let d = self.downwards(nlp, bounds)?;
+        let largest = |v: &[f64]| v.iter().fold(0.0_f64, |s, v| s.max(v.abs()));
+        let unit = largest(&self.x).max(1.0) / largest(&d);
+        let ways = FIRST_STEPS.into_iter().flat_map(|t| [t, -t]);
+        let mut ends = ways.filter_map(|t| {
+            let y = clipped(&sum(&self.x, t * unit, &d), bounds);
+            let value = nlp.objective(&y)?;
+            (value < f - NOTICEABLE * f.abs().max(1.0)).then_some((y, value))
+        });
+        ends.next()
+    }
+
+    /// A direction of negative curvature in the variables that no slope holds at a bound, as conjugate gradients for any right-hand
+    /// side come across one.
+    fn downwards(&self, nlp: &mut dyn Nlp, (lower, upper): (&[f64], &[f64])) -> Option<Vec<f64>> {
+        let held = |j: usize| {
+            let at_bound = self.x[j] <= lower[j] || self.x[j] >= upper[j];
+            at_bound && self.gradient[j].abs() > FLAT
+        };
+        let mut random = Random(1);
+        let each = (0..self.x.len()).map(|j| match (random.uniform(), held(j)) {
+            (_, true) => 0.0,
+            (u, false) => u - 0.5,
+        });
+        let mut r: Vec<f64> = each.collect();
+        let (mut p, mut rr, mut largest) = (r.clone(), dot(&r, &r), 0.0_f64);
+        for _ in 0..LOOKS {
+            let mut hp = self.product(nlp, &p);
+            (0..hp.len()).filter(|&j| held(j)).for_each(|j| hp[j] = 0.0);
+            let (curvature, pp) = (dot(&p, &hp), dot(&p, &p));
+            largest = largest.max(curvature.abs() / pp);
+            if curvature < -STRAIGHT * largest * pp {
+                return Some(p);
+            }
+            if curvature <= STRAIGHT * STRAIGHT * largest * pp {
+                break;
+            }
+            let t = rr / curvature;
+            r = sum(&r, -t, &hp);
+            let next = dot(&r, &r);
+            p = sum(&r, next / rr, &p);
+            rr = next;
+        }
+        None
     }
 
     /// How far a direction can be gone from a step within the trust region.
