@@ -301,7 +301,7 @@ impl System {
                 |j: usize| d[j] < 0.0 && x[j] <= lower[j] || d[j] > 0.0 && x[j] >= upper[j];
             let out: Vec<usize> = (0..x.len()).filter(|&j| !stays[j] && leaves(j)).collect();
             if let Kind::Symmetric(factors) = factors.kind {
-                *order = Some(factors);
+                *order = Some(*factors);
             }
             if out.is_empty() {
                 return Some(d);
@@ -358,7 +358,7 @@ impl System {
             columns,
             rows,
             free,
-            kind: Kind::Symmetric(factors),
+            kind: Kind::Symmetric(Box::new(factors)),
         })
     }
 }
@@ -394,7 +394,7 @@ struct Factors {
 
 /// What is factorised: the whole system, or J.
 enum Kind {
-    Symmetric(Symmetric),
+    Symmetric(Box<Symmetric>),
     Lu(Box<Lu<usize, f64>>),
 }
 
