@@ -108,8 +108,8 @@ strategies! {
             "200 steps",
             "Nocedal & Wright 2006, chapter 10; Allgower & Georg 2003";
         TruncatedNewton "truncated_newton",
-            "no constraints, and a factor of the Hessian would take 5·10⁹ operations, or a step with its entries as long as 200 products with it: conjugate gradients in a trust region",
-            "1000 steps; without entries, products that take as long as 20 steps with them",
+            "no constraints, a factor of the Hessian takes 5·10⁹ operations, or a step with its entries 200 products: conjugate gradients in a trust region",
+            "1000 steps, or products worth 20 steps with entries",
             "Steihaug 1983; Lin & Moré 1999";
         DifferentiableStart "differentiable_start",
             "a row has no derivatives at the start, as √x at 0: its variables are moved by a hundredth",
