@@ -17,7 +17,9 @@
 //! A step that is too long is halved until the residual is less. Where that creeps, or ends, the method begins anew and follows the path on
 //! which a part of the first residual is left, F(x) = t F(x₀), from t = 1 to 0, by Newton's method at each t from where the last two points
 //! lead (Allgower & Georg, Introduction to Numerical Continuation Methods, 2003): each of these systems is near to one that is solved, however
-//! ill-conditioned both are. A driven cavity with Reynolds number 1000 on a grid of 97 × 97 takes 16 steps so.
+//! ill-conditioned both are. A driven cavity with Reynolds number 1000 on a grid of 97 × 97 takes 16 steps so. A path may lead nowhere: then steps
+//! with next to no damping are halved until the next one with the same matrix is shorter. |J⁻¹r|, unlike |r|, does not depend on the units of
+//! the equations (Deuflhard, Newton Methods for Nonlinear Problems, 2004, 3.3). A flowsheet of 87 equations is solved so.
 //!
 //! Where as many rows count as variables are free, and these are many, J itself is factorised: that takes a third of the time, without damping.
 
@@ -28,7 +30,7 @@ use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::solvers::Lu;
 use faer::sparse::{SparseColMat, Triplet};
 
-/// Steps at most, of either kind: to lessen the residual, and half of those along the path.
+/// Steps at most, of each kind: to lessen the residual, or the next step, and half of those along the path.
 const STEPS: u64 = 50;
 /// δ at a residual of 1.
 const DAMPING: f64 = 1e-8;
@@ -58,6 +60,15 @@ const MOST_NONZEROS: f64 = 2e8;
 /// What may be left of a right-hand side of ones.
 const SOUND: f64 = 1e-6;
 
+/// What is less at the end of a step.
+#[derive(Clone, Copy, PartialEq)]
+enum Less {
+    /// The residual.
+    Residual,
+    /// The next step with the same matrix.
+    NextStep,
+}
+
 /// Where it ended.
 #[derive(Debug)]
 pub(super) struct Run {
@@ -73,18 +84,20 @@ pub(super) struct Run {
 /// or derivatives.
 pub(super) fn solve(nlp: &mut dyn Nlp, stop: &mut dyn FnMut(u64) -> bool) -> Option<Run> {
     let start = nlp.start().to_vec();
-    let (mut end, mut steps) = iterate(nlp, start, stop)?;
+    let (mut end, mut steps) = iterate(nlp, start.clone(), Less::Residual, stop)?;
     let (a, b) = nlp.sides();
     let equations = a.iter().zip(b).filter(|(a, b)| a == b).count();
     if end.1.size > NEARLY && equations >= nlp.size().0 {
         let (x, taken) = along_path(nlp, stop)?;
         steps += taken;
-        if let Some(x) = x {
-            let (other, taken) = iterate(nlp, x, stop)?;
-            steps += taken;
-            if other.1.size < end.1.size {
-                end = other;
-            }
+        let (x, less) = match x {
+            Some(x) => (x, Less::Residual),
+            None => (start, Less::NextStep),
+        };
+        let (other, taken) = iterate(nlp, x, less, stop)?;
+        steps += taken;
+        if other.1.size < end.1.size {
+            end = other;
         }
     }
     let (x, there) = end;
@@ -96,21 +109,31 @@ pub(super) fn solve(nlp: &mut dyn Nlp, stop: &mut dyn FnMut(u64) -> bool) -> Opt
 fn iterate(
     nlp: &mut dyn Nlp,
     mut x: Vec<f64>,
+    less: Less,
     stop: &mut dyn FnMut(u64) -> bool,
 ) -> Option<((Vec<f64>, System), u64)> {
     let mut here = System::at(nlp, &x)?;
     let mut order = None;
     let (mut steps, mut halved) = (0, (0, here.size));
     while steps < STEPS && here.size > EXACT {
-        if steps - halved.0 >= MOST_CREEPING || stop(nlp.failures()) {
+        let creeps = less == Less::Residual && steps - halved.0 >= MOST_CREEPING;
+        if creeps || stop(nlp.failures()) {
             break;
         }
         steps += 1;
         let damped = (DAMPING * here.size.min(1.0).powi(2)).max(LEAST_DAMPING);
-        let step = here.step(nlp, &x, damped, &mut order);
-        let Some((next, there)) = step.and_then(|d| shortened(nlp, &x, &d, &here)) else {
-            break;
-        };
+        // Where columns are dependent, only damped steps lead on.
+        let light = (less == Less::NextStep).then_some(LEAST_DAMPING);
+        let next = light.into_iter().chain([damped]).find_map(|damping| {
+            let (d, factors) = here.step(nlp, &x, damping, &mut order)?;
+            let next = light.and_then(|_| nearer(nlp, &x, &d, &here, &factors));
+            order = factors.symmetric();
+            next.or_else(|| match damping == damped {
+                true => shortened(nlp, &x, &d, &here),
+                false => None,
+            })
+        });
+        let Some((next, there)) = next else { break };
         (x, here) = (next, there);
         if here.size <= 0.5 * halved.1 {
             halved = (steps, here.size);
@@ -170,7 +193,8 @@ fn corrected(
                 .iter_mut()
                 .zip(left)
                 .for_each(|(r, l)| *r -= l);
-            let d = here.step(nlp, &x, LEAST_DAMPING, order)?;
+            let (d, factors) = here.step(nlp, &x, LEAST_DAMPING, order)?;
+            *order = factors.symmetric();
             Some((here.length(&d), d))
         });
         let Some((length, d)) = step.filter(|s| s.0 <= last) else {
@@ -192,6 +216,29 @@ fn shortened(nlp: &mut dyn Nlp, x: &[f64], d: &[f64], here: &System) -> Option<(
         let next = moved(nlp, x, d, length);
         let residual = residuals(nlp, &next).map(|r| here.norm(&r));
         if residual.is_some_and(|r| r < (1.0 - 1e-4 * length) * here.norm(&here.residual))
+            && let Some(there) = System::at(nlp, &next)
+        {
+            return Some((next, there));
+        }
+        length *= 0.5;
+    }
+    None
+}
+
+/// The first point along the step, halved again and again, from which the next step with the same matrix would be shorter.
+fn nearer(
+    nlp: &mut dyn Nlp,
+    x: &[f64],
+    d: &[f64],
+    here: &System,
+    factors: &Factors,
+) -> Option<(Vec<f64>, System)> {
+    let size = here.length(d);
+    let mut length = 1.0;
+    for _ in 0..HALVINGS {
+        let next = moved(nlp, x, d, length);
+        let again = residuals(nlp, &next).and_then(|r| here.again(factors, &r));
+        if again.is_some_and(|d| here.length(&d) <= (1.0 - 0.25 * length) * size)
             && let Some(there) = System::at(nlp, &next)
         {
             return Some((next, there));
@@ -281,14 +328,25 @@ impl System {
         each.sum::<f64>().sqrt()
     }
 
-    /// The step, none of it out of the bounds that the point is at; `order`: factors whose order may serve again.
+    /// The step with the same factors at another residual; none where other rows would count there.
+    fn again(&self, factors: &Factors, residual: &[f64]) -> Option<Vec<f64>> {
+        let counted = |(r, row): (&f64, &Option<usize>)| *r == 0.0 || row.is_some();
+        if !residual.iter().zip(&factors.rows).all(counted) {
+            return None;
+        }
+        let right = |i: usize| -residual[i] / self.row_unit[i];
+        Some(factors.solve(self, |_| 0.0, right)?.0)
+    }
+
+    /// The step, none of it out of the bounds that the point is at, and the factors that gave it; `order`: factors whose order may
+    /// serve again.
     fn step(
         &self,
         nlp: &dyn Nlp,
         x: &[f64],
         damping: f64,
         order: &mut Option<Symmetric>,
-    ) -> Option<Vec<f64>> {
+    ) -> Option<(Vec<f64>, Factors)> {
         let (lower, upper) = nlp.bounds();
         let (a, b) = nlp.sides();
         let counts = |i: usize| a[i] == b[i] || self.residual[i] != 0.0;
@@ -300,12 +358,10 @@ impl System {
             let leaves =
                 |j: usize| d[j] < 0.0 && x[j] <= lower[j] || d[j] > 0.0 && x[j] >= upper[j];
             let out: Vec<usize> = (0..x.len()).filter(|&j| !stays[j] && leaves(j)).collect();
-            if let Kind::Symmetric(factors) = factors.kind {
-                *order = Some(*factors);
-            }
             if out.is_empty() {
-                return Some(d);
+                return Some((d, factors));
             }
+            *order = factors.symmetric();
             out.into_iter().for_each(|j| stays[j] = true);
         }
     }
@@ -399,6 +455,14 @@ enum Kind {
 }
 
 impl Factors {
+    /// Factors whose order may serve again.
+    fn symmetric(self) -> Option<Symmetric> {
+        match self.kind {
+            Kind::Symmetric(factors) => Some(*factors),
+            Kind::Lu(_) => None,
+        }
+    }
+
     /// The solution for right-hand sides in the units of the system: a step, and multipliers of the rows in their units.
     fn solve(
         &self,
