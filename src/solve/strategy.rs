@@ -104,9 +104,9 @@ strategies! {
             "an evaluation and a factorisation",
             "Gill, Murray & Saunders 2005";
         SquareNewton "square_newton",
-            "at least as many equations as variables: Newton's method with Levenberg and Marquardt's damping, then along the path on which a part of the first residual is left",
+            "at least as many equations as variables: Newton's method with Levenberg and Marquardt's damping, then along the path of residuals, then with steps that shorten the next one",
             "200 steps",
-            "Nocedal & Wright 2006, chapter 10; Allgower & Georg 2003";
+            "Nocedal & Wright 2006, chapter 10; Allgower & Georg 2003; Deuflhard 2004, 3.3";
         TruncatedNewton "truncated_newton",
             "no constraints, a factor of the Hessian takes 5·10⁹ operations, or a step with its entries 200 products: conjugate gradients in a trust region",
             "1000 steps, or products worth 20 steps with entries",
