@@ -74,7 +74,7 @@ strategies! {
             "its iterations",
             "Wright 1997, chapter 8";
         RandomRestarts "random_restarts",
-            "all methods failed from the given start: 30 random ones",
+            "all methods failed from the given start: ten random ones",
             "twice the work so far, or a second",
             "PATH's restarts, Ferris & Munson 2000";
     }
