@@ -59,6 +59,28 @@ impl Scaling {
         }
     }
 
+    /// For a program in steps: the first columns in these units, rows in that of their largest entry there, each other column, which has one
+    /// entry, in that of its row; bounds in units of `size`.
+    pub fn of_steps(p: &Problem, units: &[f64], size: f64) -> Self {
+        let mut column: Vec<f64> = units.iter().map(|&u| power_of_two(u)).collect();
+        let row: Vec<f64> = (0..p.m())
+            .map(|i| {
+                let own = p.rows.line(i).filter(|e| e.0 < units.len());
+                let largest = own.map(|(j, v)| (v * column[j]).abs()).fold(0.0, f64::max);
+                power_of_two(1.0 / largest)
+            })
+            .collect();
+        let single = |j: usize| p.columns.line(j).next().map_or(1.0, |(i, _)| 1.0 / row[i]);
+        column.extend((units.len()..p.n()).map(single));
+        let costs = p.cost.iter().zip(&column).map(|(&q, &c)| q * c);
+        Self {
+            price: power_of_two(mean(costs)),
+            size: power_of_two(size),
+            row,
+            column,
+        }
+    }
+
     fn choose(p: &Problem, units: &[Option<f64>]) -> Self {
         let mut row = vec![1.0; p.m()];
         let unit = |u: &Option<f64>| u.map_or(1.0, power_of_two);

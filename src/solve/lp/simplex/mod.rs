@@ -597,9 +597,14 @@ impl Simplex {
 
     /// Alternates the methods; the first `perturbed` rounds with perturbations.
     fn rounds(&mut self, perturbed: u32, stop: &mut dyn FnMut(u64) -> Option<Ended>) -> Ended {
+        let mut before = None;
         for round in 0..12 {
             self.perturb = round < perturbed;
             if self.restore().is_none() {
+                return Ended::Failed;
+            }
+            let here = (self.iterations, self.violation(), self.dual_infeasibility());
+            if before.replace(here) == Some(here) && round > perturbed {
                 return Ended::Failed;
             }
             let primal = self.violation() <= self.tolerance;

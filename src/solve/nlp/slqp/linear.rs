@@ -17,6 +17,10 @@ use crate::solve::lp::simplex_work;
 /// relaxations of models/walls/loop.blk end at points that are only feasible.)
 const MOST_WORK: f64 = 20.0;
 
+/// Of the program, in its units; and where that is not to be had, of derivatives that differ by many orders of magnitude. What is left of the
+/// rows is left to later steps.
+const TOLERANCES: [f64; 2] = [1e-7, 1e-5];
+
 /// What is left of a violation counts from here on.
 const SHORT: f64 = 1e-9;
 
@@ -119,8 +123,7 @@ impl Linear {
         p: &Program,
         budget: &Budget,
     ) -> Result<Result<(form::Point, Basis), Ended>, ()> {
-        let scaling = Scaling::new(&p.problem);
-        let scaled = scaling.apply(&p.problem);
+        let scaled = p.scaling.apply(&p.problem);
         let elastic = p.elastic.iter().map(|&(i, k)| self.elastic[i][k]);
         let columns = self.columns.iter().copied();
         let from = columns.chain(elastic).chain(self.rows.clone());
@@ -134,26 +137,27 @@ impl Linear {
                 state => state,
             })
             .collect();
+        let mut simplex = Simplex::new(&scaled);
+        simplex.limit = self.pivots;
+        simplex.most_work = MOST_WORK * simplex_work(&scaled);
+        simplex.set_basis(&from);
         let mut last = Ended::Failed;
-        for from in [from, Basis::new()] {
-            let mut simplex = Simplex::new(&scaled);
-            simplex.limit = self.pivots;
-            simplex.most_work = MOST_WORK * simplex_work(&scaled);
-            let ended = simplex.solve_from_basis(&from, &mut |_| budget.stop().map(Ended::from));
-            self.pivots = self.pivots.saturating_sub(simplex.iterations);
-            match ended {
-                Ended::Solved => {
-                    let Some(point) = simplex.point() else {
-                        continue;
-                    };
-                    return Ok(Ok((scaling.restore(point), simplex.basis())));
-                }
-                Ended::Iterations | Ended::Time | Ended::Interrupted => return Err(()),
-                Ended::Infeasible(_) | Ended::Unbounded(_) => return Ok(Err(ended)),
-                other => last = other,
+        for tolerance in TOLERANCES {
+            (simplex.tolerance, simplex.dual_tolerance) = (tolerance, tolerance);
+            last = simplex.solve(&mut |_| budget.stop().map(Ended::from));
+            if last != Ended::Failed {
+                break;
             }
         }
-        Ok(Err(last))
+        self.pivots = self.pivots.saturating_sub(simplex.iterations);
+        match last {
+            Ended::Solved => Ok(match simplex.point() {
+                Some(point) => Ok((p.scaling.restore(point), simplex.basis())),
+                None => Err(Ended::Failed),
+            }),
+            Ended::Iterations | Ended::Time | Ended::Interrupted => Err(()),
+            other => Ok(Err(other)),
+        }
     }
 
     /// Reads a solution, and keeps its basis.
@@ -215,6 +219,9 @@ struct Program {
     problem: Problem,
     /// Row and side of each elastic variable: 0 for what is too low.
     elastic: Vec<(usize, usize)>,
+    /// Columns in the units of the variables, bounds in that of the trust region: an entry that changes nothing there stays small, where
+    /// geometric means would make it count.
+    scaling: Scaling,
 }
 
 impl Program {
@@ -258,6 +265,11 @@ impl Program {
         problem.lower.resize(total, 0.0);
         problem.upper.resize(total, f64::INFINITY);
         problem.columns = problem.rows.transpose(total);
-        Self { problem, elastic }
+        let units: Vec<f64> = (0..n).map(|j| at.unit(j)).collect();
+        Self {
+            scaling: Scaling::of_steps(&problem, &units, aim.radius),
+            problem,
+            elastic,
+        }
     }
 }
