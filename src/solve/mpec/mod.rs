@@ -124,6 +124,9 @@ const STEPS: [f64; 2] = [1e-2, 0.1];
 /// From this μ on the solution of a relaxed program names a branch.
 const LAST_PHASE: f64 = 1.01e-4;
 
+/// Relaxed programs in a row that lead to no point; one without a feasible point counts for as many.
+const MOST_MISSED: u32 = 2;
+
 /// The option that leaves strategies out.
 const WITHOUT: &str = "without";
 
@@ -573,7 +576,15 @@ impl Search<'_, '_> {
                 self.keep_point(&level, pieces);
             }
             let usable = a.residuals.is_feasible(1e-4) && y.iter().all(|v| v.is_finite());
-            missed = if usable { 0 } else { missed + 1 };
+            let infeasible = matches!(
+                a.status,
+                ModelStatus::Infeasible | ModelStatus::LocallyInfeasible
+            );
+            missed = match usable {
+                true => 0,
+                false if infeasible => MOST_MISSED,
+                false => missed + 1,
+            };
             // where a program was given up, the next begins where this one began
             let given_up = self.budget.iterations() - before >= most;
             if usable && (!given_up || mu <= LAST_PHASE) {
@@ -597,7 +608,7 @@ impl Search<'_, '_> {
                 }
             }
             // With a smaller μ it only becomes harder.
-            if missed == 2 || self.is_spent() || mu <= self.options.last {
+            if missed >= MOST_MISSED || self.is_spent() || mu <= self.options.last {
                 break;
             }
             mu = (mu * factor).max(self.options.last);
