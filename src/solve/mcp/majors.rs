@@ -43,7 +43,7 @@ const RAY_MIN: f64 = 1e-2;
 const STAGNATION: usize = 30;
 /// Pivots without that, at least and times n: problems without a solution have many and long paths.
 const STAGNATION_PIVOTS: (usize, usize) = (10_000, 40);
-/// The same where the residual would be accepted already, and the problem is large.
+/// The same where the residual would be accepted already.
 const STAGNATION_NEAR: usize = 4;
 /// Steps in a row to solutions ~ 1/v before the run is called stuck: it follows a ray.
 const DOUBTFUL_LIMIT: usize = 8;
@@ -162,8 +162,7 @@ impl Majors {
                 pivots_then = run.pivots;
             }
             // Good enough to accept, and no better in sight: another method may do better.
-            let acceptable =
-                run.n > LARGE && self.best.residual <= run.settings.acceptable_tolerance;
+            let acceptable = self.best.residual <= run.settings.acceptable_tolerance;
             let long = run.pivots - pivots_then > most;
             if idle > STAGNATION || long || acceptable && idle > STAGNATION_NEAR {
                 return Ok(());

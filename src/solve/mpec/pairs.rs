@@ -150,6 +150,23 @@ impl<'a> Program<'a> {
         })
     }
 
+    /// Only what is linear: without an objective, rows with nonlinear terms free and without partners.
+    pub fn linear_rows(&self) -> Instance {
+        let mut out = self.instance.clone();
+        let nonlinear = out.nonlinear_rows();
+        let relations = out.rows.relation.iter_mut().zip(&nonlinear);
+        relations
+            .filter(|(_, n)| **n)
+            .for_each(|(r, _)| *r = Relation::Free);
+        let partners = out.matched.iter_mut().flatten();
+        partners
+            .filter(|row| row.is_some_and(|i| nonlinear[i as usize]))
+            .for_each(|row| *row = None);
+        out.nonlinear.clear();
+        out.objective = None;
+        out
+    }
+
     /// +1 for a minimum, −1 for a maximum.
     pub fn sign(&self) -> f64 {
         self.instance.sign()

@@ -384,6 +384,9 @@ impl Driver<'_, '_> {
             return Ok(self.finish());
         }
         if self.infeasibility.is_some() {
+            if !self.settings.runs(Strategy::InteriorDoubt) {
+                return Ok(self.finish());
+            }
             self.attempt_iterations = DOUBT;
         }
         let before = self.iterations;

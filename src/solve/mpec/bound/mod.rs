@@ -135,11 +135,12 @@ pub(crate) enum Any {
     Unknown,
 }
 
-/// A point that satisfies all pairs of a linear program, where the other methods find none; or a proof that there
-/// is none.
+/// A point that satisfies all pairs, where the other methods find none; or a proof that there is none. Rows that are not
+/// linear, and their pairs, are left out: such a point is a start, and none of the rest is none of all.
 pub(crate) fn any(program: &Program, budget: &Budget) -> Any {
     if !program.envelope.is_linear() {
-        return Any::Unknown;
+        let rest = program.linear_rows();
+        return Program::new(&rest).map_or(Any::Unknown, |p| any(&p, budget));
     }
     let limits = tree::Limits {
         nodes: NODES,
