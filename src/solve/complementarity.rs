@@ -2,6 +2,7 @@
 //!
 //! What happens at a solution is decided by the bounds: F is left minus right whatever the relation.
 
+use super::answer;
 use super::backend::{About, Backend, Replied, Supports, Task, Terms};
 use super::certificate::{self, TOLERANCE, nonlinear::linearise};
 use super::mcp;
@@ -178,6 +179,9 @@ impl Backend for Bmcp {
         let proved: Infeasible = if square { &never } else { &infeasible };
         let mut outcome = solve(instance, square, settings, budget, proved)?;
         if square && !is_solved(instance, &outcome.level) {
+            if let Some(found) = by_newton(task, settings, budget) {
+                return Ok(found.into());
+            }
             // Either the rows hold and the point they determine is beyond a bound, or no method from any start
             // found a point where they hold.
             outcome.claim = match outcome.claim {
@@ -191,6 +195,22 @@ impl Backend for Bmcp {
         }
         Ok(outcome.into())
     }
+}
+
+/// A point where the rows hold, by Newton's method on them as a nonlinear program without an objective, which begins its iterations after it.
+fn by_newton(task: &Task, settings: &Settings, budget: &Budget) -> Option<Outcome> {
+    let system = Task {
+        using: ProblemType::Nlp,
+        ..task.by(None)
+    };
+    let found = budget.within(f64::INFINITY, 1, |b| {
+        answer::subproblem(&system, settings, b)
+    });
+    let mut outcome = found.ok().map(|a| a.outcome)?;
+    // they have no meaning
+    outcome.row_marginal.fill(0.0);
+    outcome.column_marginal.fill(0.0);
+    is_solved(task.instance, &outcome.level).then_some(outcome)
 }
 
 /// Whether rows and bounds hold.
