@@ -9,7 +9,7 @@ use super::mcp;
 use super::mpec::pairs::Program;
 use super::nlp::relaxation::is_infeasible;
 use super::pairing::{match_rows, refuse};
-use super::{Budget, Claim, Outcome, Settings, SolveError, SolverStatus};
+use super::{Budget, Claim, Outcome, Settings, SolveError, SolverStatus, Strategy};
 use crate::autodiff::Evaluator;
 use crate::model::instance::{Instance, Relation};
 use crate::model::problem_type::ProblemType;
@@ -175,13 +175,18 @@ impl Backend for Bmcp {
             *known.get_or_init(|| is_proved_infeasible(instance, budget).unwrap_or(false))
         };
         let square = task.using == ProblemType::Cns;
+        if square
+            && task.choice.is_none()
+            && match_rows(instance, square).is_ok()
+            && settings.runs(Strategy::SquareNewton)
+            && let Some(found) = by_newton(task, settings, budget)
+        {
+            return Ok(found.into());
+        }
         let never = |_: &Budget| false;
         let proved: Infeasible = if square { &never } else { &infeasible };
         let mut outcome = solve(instance, square, settings, budget, proved)?;
         if square && !is_solved(instance, &outcome.level) {
-            if let Some(found) = by_newton(task, settings, budget) {
-                return Ok(found.into());
-            }
             // Either the rows hold and the point they determine is beyond a bound, or no method from any start
             // found a point where they hold.
             outcome.claim = match outcome.claim {
@@ -197,12 +202,13 @@ impl Backend for Bmcp {
     }
 }
 
-/// A point where the rows hold, by Newton's method on them as a nonlinear program without an objective, which begins its iterations after it.
+/// A point where the rows of a square system hold, by Newton's method alone ([`super::nlp`]).
 fn by_newton(task: &Task, settings: &Settings, budget: &Budget) -> Option<Outcome> {
     let system = Task {
         using: ProblemType::Nlp,
-        ..task.by(None)
+        ..*task
     };
+    // its steps are counted at its end: no other method begins
     let found = budget.within(f64::INFINITY, 1, |b| {
         answer::subproblem(&system, settings, b)
     });

@@ -81,14 +81,19 @@ pub(super) fn solve(nlp: &mut dyn Nlp, stop: &mut dyn FnMut(u64) -> bool) -> Opt
     if end.1.size > NEARLY && equations >= nlp.size().0 {
         let (x, taken) = end_of_path(nlp, stop);
         steps += taken;
-        let (x, less) = match x {
-            Some(x) => (x, Less::Residual),
-            None => (start, Less::NextStep),
-        };
-        let (other, taken) = iterate(nlp, x, less, stop)?;
-        steps += taken;
-        if other.1.size < end.1.size {
-            end = other;
+        let others = [
+            x.map(|x| (x, Less::Residual)),
+            Some((start, Less::NextStep)),
+        ];
+        for (x, less) in others.into_iter().flatten() {
+            let (other, taken) = iterate(nlp, x, less, stop)?;
+            steps += taken;
+            if other.1.size < end.1.size {
+                end = other;
+            }
+            if end.1.size <= NEARLY {
+                break;
+            }
         }
     }
     let (x, there) = end;
@@ -385,6 +390,11 @@ enum Kind {
 }
 
 impl Factors {
+    /// Whether as many rows count as variables are free.
+    pub(super) fn is_square(&self) -> bool {
+        self.rows.iter().flatten().count() == self.free
+    }
+
     /// Factors whose order may serve again.
     fn symmetric(self) -> Option<Symmetric> {
         match self.kind {

@@ -125,6 +125,8 @@ impl Matrix {
         let residual = here.residual.iter_mut().zip(first);
         residual.for_each(|(r, f)| *r -= left * f);
         let (_, factors) = here.step(nlp, x, LEAST_DAMPING, &mut None)?;
+        // a variable that stays at a bound leaves more equations than variables: no path
+        factors.is_square().then_some(())?;
         let back = here.again(&factors, first)?;
         Some(Self {
             slope: back.into_iter().map(|d| -d).collect(),
