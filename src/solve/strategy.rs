@@ -104,7 +104,7 @@ strategies! {
             "an evaluation and a factorisation",
             "Gill, Murray & Saunders 2005";
         SquareNewton "square_newton",
-            "at least as many equations as variables (first of all in `cns`): Newton's method with Levenberg and Marquardt's damping, then along the path of residuals, then with steps that shorten the next one",
+            "at least as many equations as variables, also in `cns`: Newton's method, damped (Levenberg, Marquardt), along the path of residuals, then with steps that shorten the next one",
             "250 steps",
             "Nocedal & Wright 2006, chapter 10; Allgower & Georg 2003; Deuflhard 2004, 3.3";
         TruncatedNewton "truncated_newton",
