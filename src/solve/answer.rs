@@ -4,7 +4,10 @@
 //! what the backend claims.
 
 use super::backend::{Backend, Reply, Task, choose};
-use super::bridge::{self, Bridge, elastic::Elastic};
+use super::bridge::{
+    Bridge, elastic::Elastic, epigraph::Epigraph, inner_sums::InnerSums, kkt::Kkt,
+    least_squares::LeastSquares, triangular::Triangular,
+};
 use super::budget::Size;
 use super::certificate::{self, Residuals, TOLERANCE, nonlinear};
 use super::lp::certify::{Proof, Unproved};
@@ -121,23 +124,47 @@ fn solve(
     settings: &Settings,
     budget: &Budget,
 ) -> Result<Answer, SolveError> {
-    let by = |build: bridge::Build| {
-        let bridge = build(backends, task, settings)?;
-        across(backends, &*bridge, task, settings, budget)
-    };
-    if let Some(answer) = bridge::BEFORE.into_iter().find_map(by) {
-        return Ok(answer);
-    }
-    if let Some(outcome) = nlp::solve_by_products(task, settings, budget) {
-        return Ok(certified(task, outcome.into(), None));
-    }
-    if let Some(answer) = by(bridge::LAST) {
+    let by = |way: Way| way(backends, task, settings, budget);
+    if let Some(answer) = WAYS.into_iter().find_map(by) {
         return Ok(answer);
     }
     affords_hessian(task, budget)?;
     let backend = choose(backends, task).ok_or_else(|| missing(task))?;
     let reply = backend.solve(task, settings, budget)?;
     Ok(certified(task, reply, None))
+}
+
+/// A way to an answer, where it applies and leads to one.
+type Way = fn(&[&dyn Backend], &Task, &Settings, &Budget) -> Option<Answer>;
+
+/// What is tried before a task is given to a backend as it is.
+const WAYS: [Way; 6] = [
+    over::<Kkt>,
+    over::<Triangular>,
+    over::<Epigraph>,
+    over::<LeastSquares>,
+    by_products,
+    over::<InnerSums>,
+];
+
+fn over<B: Bridge>(
+    backends: &[&dyn Backend],
+    task: &Task,
+    settings: &Settings,
+    budget: &Budget,
+) -> Option<Answer> {
+    let bridge = B::build(backends, task, settings)?;
+    across(backends, &bridge, task, settings, budget)
+}
+
+fn by_products(
+    _: &[&dyn Backend],
+    task: &Task,
+    settings: &Settings,
+    budget: &Budget,
+) -> Option<Answer> {
+    let outcome = nlp::solve_by_products(task, settings, budget)?;
+    Some(certified(task, outcome.into(), None))
 }
 
 /// Solves the instance of a bridge, and comes back.

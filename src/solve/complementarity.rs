@@ -2,13 +2,14 @@
 //!
 //! What happens at a solution is decided by the bounds: F is left minus right whatever the relation.
 
+use super::answer;
 use super::backend::{About, Backend, Replied, Supports, Task, Terms};
 use super::certificate::{self, TOLERANCE, nonlinear::linearise};
 use super::mcp;
 use super::mpec::pairs::Program;
 use super::nlp::relaxation::is_infeasible;
 use super::pairing::{match_rows, refuse};
-use super::{Budget, Claim, Outcome, Settings, SolveError, SolverStatus};
+use super::{Budget, Claim, Outcome, Settings, SolveError, SolverStatus, Strategy};
 use crate::autodiff::Evaluator;
 use crate::model::instance::{Instance, Relation};
 use crate::model::problem_type::ProblemType;
@@ -174,6 +175,14 @@ impl Backend for Bmcp {
             *known.get_or_init(|| is_proved_infeasible(instance, budget).unwrap_or(false))
         };
         let square = task.using == ProblemType::Cns;
+        if square
+            && task.choice.is_none()
+            && match_rows(instance, square).is_ok()
+            && settings.runs(Strategy::SquareNewton)
+            && let Some(found) = by_newton(task, settings, budget)
+        {
+            return Ok(found.into());
+        }
         let never = |_: &Budget| false;
         let proved: Infeasible = if square { &never } else { &infeasible };
         let mut outcome = solve(instance, square, settings, budget, proved)?;
@@ -191,6 +200,23 @@ impl Backend for Bmcp {
         }
         Ok(outcome.into())
     }
+}
+
+/// A point where the rows of a square system hold, by Newton's method alone ([`super::nlp`]).
+fn by_newton(task: &Task, settings: &Settings, budget: &Budget) -> Option<Outcome> {
+    let system = Task {
+        using: ProblemType::Nlp,
+        ..*task
+    };
+    // its steps are counted at its end: no other method begins
+    let found = budget.within(f64::INFINITY, 1, |b| {
+        answer::subproblem(&system, settings, b)
+    });
+    let mut outcome = found.ok().map(|a| a.outcome)?;
+    // they have no meaning
+    outcome.row_marginal.fill(0.0);
+    outcome.column_marginal.fill(0.0);
+    is_solved(task.instance, &outcome.level).then_some(outcome)
 }
 
 /// Whether rows and bounds hold.

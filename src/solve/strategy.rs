@@ -93,7 +93,7 @@ strategies! {
             "Griewank & Toint 1982";
         VanishingSquares "vanishing_squares",
             "the objective is a sum of squares, and these and the equations are as many as the variables: they are solved as equations",
-            "200 steps of Newton's method",
+            "250 steps of Newton's method",
             "Nocedal & Wright 2006, chapters 10 and 11";
         ConvexQuadratic "convex_quadratic",
             "linear rows and a positive semidefinite Hessian of the objective: Clarabel solves it",
@@ -104,8 +104,8 @@ strategies! {
             "an evaluation and a factorisation",
             "Gill, Murray & Saunders 2005";
         SquareNewton "square_newton",
-            "at least as many equations as variables: Newton's method with Levenberg and Marquardt's damping, then along the path of residuals, then with steps that shorten the next one",
-            "200 steps",
+            "at least as many equations as variables, also in `cns`: Newton's method, damped (Levenberg, Marquardt), along the path of residuals, then with steps that shorten the next one",
+            "250 steps",
             "Nocedal & Wright 2006, chapter 10; Allgower & Georg 2003; Deuflhard 2004, 3.3";
         TruncatedNewton "truncated_newton",
             "no constraints, a factor of the Hessian takes 5·10⁹ operations, or a step with its entries 200 products: conjugate gradients in a trust region",

@@ -36,7 +36,7 @@ const SHORTER: usize = 10;
 const COMPILED: f64 = 200.0;
 
 /// A program without long sums inside functions in place of one with some.
-pub(super) struct InnerSums {
+pub struct InnerSums {
     instance: Instance,
 }
 
@@ -62,20 +62,6 @@ impl InnerSums {
         replaced.then(|| Self {
             instance: builder.finish(instance),
         })
-    }
-
-    /// For nonlinear programs in continuous columns.
-    pub(super) fn bridge(
-        _: &[&dyn Backend],
-        task: &Task,
-        settings: &Settings,
-    ) -> Option<Box<dyn Bridge>> {
-        let instance = task.instance;
-        let other = instance.objective.is_none() || !task.is_continuous();
-        if other || !settings.runs(Strategy::InnerSums) {
-            return None;
-        }
-        Some(Box::new(Self::new(instance)?))
     }
 }
 
@@ -128,6 +114,16 @@ fn pays(sum: &Parts, shorter: usize) -> bool {
 }
 
 impl Bridge for InnerSums {
+    /// For nonlinear programs in continuous columns.
+    fn build(_: &[&dyn Backend], task: &Task, settings: &Settings) -> Option<Self> {
+        let instance = task.instance;
+        let other = instance.objective.is_none() || !task.is_continuous();
+        if other || !settings.runs(Strategy::InnerSums) {
+            return None;
+        }
+        Self::new(instance)
+    }
+
     fn instance(&self) -> &Instance {
         &self.instance
     }

@@ -12,32 +12,9 @@ use crate::solve::backend::{Backend, Reply, Task, is_called};
 use crate::solve::{Claim, Outcome, Settings};
 
 /// The optimality conditions of a linear program: its columns, then its multipliers; a row for each.
-pub(super) struct Kkt(Instance);
+pub struct Kkt(Instance);
 
-impl Kkt {
-    /// Where the user named a backend that takes the conditions and not the program.
-    pub(super) fn bridge(
-        backends: &[&dyn Backend],
-        task: &Task,
-        _: &Settings,
-    ) -> Option<Box<dyn Bridge>> {
-        let name = task.choice?;
-        let program = task.instance;
-        program.objective.filter(|_| program.is_linear())?;
-        if !task.is_continuous() {
-            return None;
-        }
-        let named = || backends.iter().filter(|b| is_called(**b, name));
-        if named().any(|b| b.takes(task)) {
-            return None;
-        }
-        named().find(|b| {
-            let supports = b.about().supports;
-            supports.pairs && supports.types.contains(&ProblemType::Mcp)
-        })?;
-        Some(Box::new(Self(conditions(program))))
-    }
-}
+impl Kkt {}
 
 fn conditions(program: &Instance) -> Instance {
     let (m, n) = (program.row_count(), program.column_count());
@@ -76,6 +53,25 @@ fn conditions(program: &Instance) -> Instance {
 }
 
 impl Bridge for Kkt {
+    /// Where the user named a backend that takes the conditions and not the program.
+    fn build(backends: &[&dyn Backend], task: &Task, _: &Settings) -> Option<Self> {
+        let name = task.choice?;
+        let program = task.instance;
+        program.objective.filter(|_| program.is_linear())?;
+        if !task.is_continuous() {
+            return None;
+        }
+        let named = || backends.iter().filter(|b| is_called(**b, name));
+        if named().any(|b| b.takes(task)) {
+            return None;
+        }
+        named().find(|b| {
+            let supports = b.about().supports;
+            supports.pairs && supports.types.contains(&ProblemType::Mcp)
+        })?;
+        Some(Self(conditions(program)))
+    }
+
     fn instance(&self) -> &Instance {
         &self.0
     }

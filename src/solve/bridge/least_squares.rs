@@ -31,7 +31,7 @@ const MOST_OPERATIONS: f64 = 5e10;
 const FLAT: f64 = 1e-7;
 
 /// The equations.
-pub(super) struct LeastSquares {
+pub struct LeastSquares {
     instance: Instance,
     /// The row that defines the objective, and its coefficient there.
     row: usize,
@@ -101,23 +101,6 @@ impl LeastSquares {
             coefficient,
         })
     }
-
-    /// For nonlinear programs in continuous columns of which no solver is asked for.
-    pub(super) fn bridge(
-        _: &[&dyn Backend],
-        task: &Task,
-        settings: &Settings,
-    ) -> Option<Box<dyn Bridge>> {
-        let instance = task.instance;
-        let other = instance.objective.is_none() || !task.is_continuous();
-        if other || task.choice.is_some() || task.seen.is_some() {
-            return None;
-        }
-        let made = Self::new(instance)?;
-        settings
-            .runs(Strategy::VanishingSquares)
-            .then(|| Box::new(made) as Box<dyn Bridge>)
-    }
 }
 
 /// What factors of a step on the equations cost, [I Jᵀ; J −I].
@@ -149,6 +132,17 @@ fn roots(parts: Parts) -> Option<Vec<Term>> {
 }
 
 impl Bridge for LeastSquares {
+    /// For nonlinear programs in continuous columns of which no solver is asked for.
+    fn build(_: &[&dyn Backend], task: &Task, settings: &Settings) -> Option<Self> {
+        let instance = task.instance;
+        let other = instance.objective.is_none() || !task.is_continuous();
+        if other || task.choice.is_some() || task.seen.is_some() {
+            return None;
+        }
+        let made = Self::new(instance)?;
+        settings.runs(Strategy::VanishingSquares).then_some(made)
+    }
+
     fn instance(&self) -> &Instance {
         &self.instance
     }

@@ -14,13 +14,13 @@ pub mod binaries;
 mod builder;
 pub mod elastic;
 pub mod epigraph;
-mod inner_sums;
+pub mod inner_sums;
 pub mod kkt;
-mod least_squares;
+pub mod least_squares;
 mod parts;
 pub mod products;
 pub mod squares;
-mod triangular;
+pub mod triangular;
 
 use super::Settings;
 use super::answer::Answer;
@@ -30,6 +30,14 @@ use crate::model::problem_type::ProblemType;
 
 /// An instance in place of another.
 pub(super) trait Bridge {
+    /// The bridge where it applies by itself.
+    fn build(_: &[&dyn Backend], _: &Task, _: &Settings) -> Option<Self>
+    where
+        Self: Sized,
+    {
+        None
+    }
+
     /// The instance to solve; the columns and rows of the original come first.
     fn instance(&self) -> &Instance;
 
@@ -49,15 +57,3 @@ pub(super) trait Bridge {
         u64::MAX
     }
 }
-
-/// Makes a bridge where it applies.
-pub(super) type Build = fn(&[&dyn Backend], &Task, &Settings) -> Option<Box<dyn Bridge>>;
-
-/// What is tried before a task is given to a backend as it is; and what last.
-pub(super) const BEFORE: [Build; 4] = [
-    kkt::Kkt::bridge,
-    triangular::Triangular::bridge,
-    epigraph::Epigraph::bridge,
-    least_squares::LeastSquares::bridge,
-];
-pub(super) const LAST: Build = inner_sums::InnerSums::bridge;

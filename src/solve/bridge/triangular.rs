@@ -33,7 +33,7 @@ struct Pivot {
 }
 
 /// A program without its triangular rows.
-pub(super) struct Triangular {
+pub struct Triangular {
     instance: Instance,
     using: ProblemType,
     pattern: Pattern,
@@ -348,23 +348,6 @@ impl Triangular {
             irregular: Cell::new(false),
         })
     }
-
-    /// For nonlinear programs in continuous columns.
-    pub(super) fn bridge(
-        _: &[&dyn Backend],
-        task: &Task,
-        settings: &Settings,
-    ) -> Option<Box<dyn Bridge>> {
-        let instance = task.instance;
-        let other = instance.is_linear() || !task.is_continuous();
-        if other || task.seen.is_some() {
-            return None;
-        }
-        let made = Self::new(instance, task.using)?;
-        settings
-            .runs(Strategy::TriangularRows)
-            .then(|| Box::new(made) as Box<dyn Bridge>)
-    }
 }
 
 /// Derivatives of the rows at a point. None where they do not exist.
@@ -375,6 +358,17 @@ fn jacobian(evaluator: &mut Evaluator, level: &[f64]) -> Option<Vec<f64>> {
 }
 
 impl Bridge for Triangular {
+    /// For nonlinear programs in continuous columns.
+    fn build(_: &[&dyn Backend], task: &Task, settings: &Settings) -> Option<Self> {
+        let instance = task.instance;
+        let other = instance.is_linear() || !task.is_continuous();
+        if other || task.seen.is_some() {
+            return None;
+        }
+        let made = Self::new(instance, task.using)?;
+        settings.runs(Strategy::TriangularRows).then_some(made)
+    }
+
     fn instance(&self) -> &Instance {
         &self.instance
     }

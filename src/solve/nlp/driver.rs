@@ -127,13 +127,15 @@ pub fn solve_by_products(task: &Task, settings: &Settings, budget: &Budget) -> O
         .zip(&columns.upper)
         .all(|(l, u)| l <= u);
     let free = task.choice.is_none() && task.seen.is_none() && task.is_continuous();
-    if !free || !ordered || instance.row_count() != 1 || kinks(instance) == Some(Kinks::Anywhere) {
+    let many = (columns.lower.len() as f64).powi(2) > MANY_ENTRIES;
+    let applies = free && ordered && many && instance.row_count() == 1;
+    if !applies || kinks(instance) == Some(Kinks::Anywhere) {
         return None;
     }
-    let most = most_products(instance)?;
     if !settings.runs(Strategy::TruncatedNewton) {
         return None;
     }
+    let most = most_products(instance)?;
     let mut problem = Problem::with_products(instance);
     let start = problem.start().to_vec();
     if problem.size().1 > 0 || problem.without_derivatives(&start).is_some() {

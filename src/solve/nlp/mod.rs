@@ -16,6 +16,7 @@ pub mod interior_point;
 pub mod ipopt;
 mod newton;
 mod options;
+mod path;
 pub mod polish;
 #[cfg(feature = "pounce")]
 pub mod pounce;

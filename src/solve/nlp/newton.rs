@@ -15,14 +15,13 @@
 //! multipliers are those of least |∇f + Jᵀλ|. (Nocedal & Wright, Numerical Optimization, 2006, chapter 10.)
 //!
 //! A step that is too long is halved until the residual is less. Where that creeps, or ends, the method begins anew and follows the path on
-//! which a part of the first residual is left, F(x) = t F(x₀), from t = 1 to 0, by Newton's method at each t from where the last two points
-//! lead (Allgower & Georg, Introduction to Numerical Continuation Methods, 2003): each of these systems is near to one that is solved, however
-//! ill-conditioned both are. A driven cavity with Reynolds number 1000 on a grid of 97 × 97 takes 16 steps so. A path may lead nowhere: then steps
-//! with next to no damping are halved until the next one with the same matrix is shorter. |J⁻¹r|, unlike |r|, does not depend on the units of
-//! the equations (Deuflhard, Newton Methods for Nonlinear Problems, 2004, 3.3). A flowsheet of 87 equations is solved so.
+//! which a part of the first residual is left ([`super::path`]). A path may lead nowhere: then steps with next to no damping are halved until
+//! the next one with the same matrix is shorter. |J⁻¹r|, unlike |r|, does not depend on the units of the equations (Deuflhard, Newton Methods
+//! for Nonlinear Problems, 2004, 3.3). A flowsheet of 87 equations is solved so.
 //!
 //! Where as many rows count as variables are free, and these are many, J itself is factorised: that takes a third of the time, without damping.
 
+use super::path::end_of_path;
 use super::polish::number;
 use super::problem::{Entry, Nlp};
 use super::symmetric::{Lower, Symmetric};
@@ -31,28 +30,20 @@ use faer::sparse::linalg::solvers::Lu;
 use faer::sparse::{SparseColMat, Triplet};
 
 /// Steps at most, of each kind: to lessen the residual, or the next step, and half of those along the path.
-const STEPS: u64 = 50;
+pub(super) const STEPS: u64 = 50;
 /// δ at a residual of 1.
 const DAMPING: f64 = 1e-8;
 /// δ never falls below this, which makes a system with dependent columns, and that of the multipliers, regular.
-const LEAST_DAMPING: f64 = 1e-14;
+pub(super) const LEAST_DAMPING: f64 = 1e-14;
 /// A step is halved so often.
 const HALVINGS: u32 = 12;
 /// The residual, in its units, that is rounding.
 const EXACT: f64 = 1e-14;
 
 /// A residual, in its units, at which the equations are all but satisfied.
-const NEARLY: f64 = 1e-9;
+pub(super) const NEARLY: f64 = 1e-9;
 /// Steps that do not halve it.
 const MOST_CREEPING: u64 = 10;
-
-/// The part of the first residual that a first stride along the path takes off; shorter ones than the shortest lead nowhere.
-const FIRST_STRIDE: f64 = 0.2;
-const SHORTEST_STRIDE: f64 = 1e-3;
-/// A point is on the path where steps to it have become shorter by this; after so many the next stride is twice as long; steps at most.
-const CONTRACTED: f64 = 0.1;
-const FEW: u64 = 3;
-const MOST_CORRECTIONS: u64 = 8;
 
 /// Variables from which on J is factorised, where rows and variables are as many; and nonzeros of JᵀJ, which bound its factors.
 const MANY: usize = 500;
@@ -88,16 +79,21 @@ pub(super) fn solve(nlp: &mut dyn Nlp, stop: &mut dyn FnMut(u64) -> bool) -> Opt
     let (a, b) = nlp.sides();
     let equations = a.iter().zip(b).filter(|(a, b)| a == b).count();
     if end.1.size > NEARLY && equations >= nlp.size().0 {
-        let (x, taken) = along_path(nlp, stop)?;
+        let (x, taken) = end_of_path(nlp, stop);
         steps += taken;
-        let (x, less) = match x {
-            Some(x) => (x, Less::Residual),
-            None => (start, Less::NextStep),
-        };
-        let (other, taken) = iterate(nlp, x, less, stop)?;
-        steps += taken;
-        if other.1.size < end.1.size {
-            end = other;
+        let others = [
+            x.map(|x| (x, Less::Residual)),
+            Some((start, Less::NextStep)),
+        ];
+        for (x, less) in others.into_iter().flatten() {
+            let (other, taken) = iterate(nlp, x, less, stop)?;
+            steps += taken;
+            if other.1.size < end.1.size {
+                end = other;
+            }
+            if end.1.size <= NEARLY {
+                break;
+            }
         }
     }
     let (x, there) = end;
@@ -142,73 +138,6 @@ fn iterate(
     Some(((x, here), steps))
 }
 
-/// The end of the path from the start point, if it is reached, and the steps that were taken.
-fn along_path(
-    nlp: &mut dyn Nlp,
-    stop: &mut dyn FnMut(u64) -> bool,
-) -> Option<(Option<Vec<f64>>, u64)> {
-    let mut x = nlp.start().to_vec();
-    let first = residuals(nlp, &x)?;
-    let (mut left, mut stride, mut steps) = (1.0_f64, FIRST_STRIDE, 0);
-    let mut ahead = vec![0.0; x.len()];
-    let mut order = None;
-    while left > 0.0 {
-        if stop(nlp.failures()) || stride < SHORTEST_STRIDE || steps >= 2 * STEPS {
-            return Some((None, steps));
-        }
-        let next = if stride < 0.99 * left {
-            left - stride
-        } else {
-            0.0
-        };
-        let guess = moved(nlp, &x, &ahead, left - next);
-        let rest: Vec<f64> = first.iter().map(|r| next * r).collect();
-        let (end, taken) = corrected(nlp, guess, &rest, &mut order);
-        steps += taken;
-        stride *= match end {
-            Some(_) if taken <= FEW => 2.0,
-            Some(_) => 1.0,
-            None => 0.4,
-        };
-        if let Some(y) = end {
-            let change = y.iter().zip(&x).map(|(y, x)| (y - x) / (left - next));
-            ahead = change.collect();
-            (x, left) = (y, next);
-        }
-    }
-    Some((Some(x), steps))
-}
-
-/// Newton's method to where just this residual is left: none if a step is longer than the one before. How many there were.
-fn corrected(
-    nlp: &mut dyn Nlp,
-    mut x: Vec<f64>,
-    left: &[f64],
-    order: &mut Option<Symmetric>,
-) -> (Option<Vec<f64>>, u64) {
-    let (mut first, mut last) = (0.0, f64::INFINITY);
-    for taken in 1..=MOST_CORRECTIONS {
-        let step = System::at(nlp, &x).and_then(|mut here| {
-            here.residual
-                .iter_mut()
-                .zip(left)
-                .for_each(|(r, l)| *r -= l);
-            let (d, factors) = here.step(nlp, &x, LEAST_DAMPING, order)?;
-            *order = factors.symmetric();
-            Some((here.length(&d), d))
-        });
-        let Some((length, d)) = step.filter(|s| s.0 <= last) else {
-            return (None, taken);
-        };
-        x = moved(nlp, &x, &d, 1.0);
-        if length <= CONTRACTED * first || length <= NEARLY {
-            return (Some(x), taken);
-        }
-        (first, last) = (length.max(first), length);
-    }
-    (None, MOST_CORRECTIONS)
-}
-
 /// The first point along the step, halved again and again, where the residual is less.
 fn shortened(nlp: &mut dyn Nlp, x: &[f64], d: &[f64], here: &System) -> Option<(Vec<f64>, System)> {
     let mut length = 1.0;
@@ -249,7 +178,7 @@ fn nearer(
 }
 
 /// x + t d, put into the bounds.
-fn moved(nlp: &dyn Nlp, x: &[f64], d: &[f64], t: f64) -> Vec<f64> {
+pub(super) fn moved(nlp: &dyn Nlp, x: &[f64], d: &[f64], t: f64) -> Vec<f64> {
     let (lower, upper) = nlp.bounds();
     let all = x.iter().zip(d).zip(lower.iter().zip(upper));
     all.map(|((x, d), (&l, &u))| (x + t * d).max(l).min(u))
@@ -257,7 +186,7 @@ fn moved(nlp: &dyn Nlp, x: &[f64], d: &[f64], t: f64) -> Vec<f64> {
 }
 
 /// What the constraints are violated by: positive above, negative below.
-fn residuals(nlp: &mut dyn Nlp, x: &[f64]) -> Option<Vec<f64>> {
+pub(super) fn residuals(nlp: &mut dyn Nlp, x: &[f64]) -> Option<Vec<f64>> {
     let mut g = vec![0.0; nlp.size().1];
     nlp.constraints(x, &mut g)?;
     let (a, b) = nlp.sides();
@@ -268,10 +197,10 @@ fn residuals(nlp: &mut dyn Nlp, x: &[f64]) -> Option<Vec<f64>> {
 }
 
 /// The equations at a point.
-struct System {
+pub(super) struct System {
     /// Jacobian in the units of rows and columns.
     jacobian: Vec<Entry>,
-    residual: Vec<f64>,
+    pub(super) residual: Vec<f64>,
     row_unit: Vec<f64>,
     column_unit: Vec<f64>,
     /// Largest residual in its units.
@@ -279,7 +208,7 @@ struct System {
 }
 
 impl System {
-    fn at(nlp: &mut dyn Nlp, x: &[f64]) -> Option<Self> {
+    pub(super) fn at(nlp: &mut dyn Nlp, x: &[f64]) -> Option<Self> {
         let residual = residuals(nlp, x)?;
         let mut jacobian = nlp.jacobian_entries(x)?;
         let column_unit: Vec<f64> = x.iter().map(|x| x.abs().max(1.0)).collect();
@@ -320,27 +249,34 @@ impl System {
     }
 
     /// Length of a step in the units of the variables.
-    fn length(&self, d: &[f64]) -> f64 {
-        let each = d
-            .iter()
-            .zip(&self.column_unit)
-            .map(|(d, u)| (d / u).powi(2));
-        each.sum::<f64>().sqrt()
+    pub(super) fn length(&self, d: &[f64]) -> f64 {
+        self.product(d, d).sqrt()
+    }
+
+    /// Inner product of two steps in the units of the variables.
+    pub(super) fn product(&self, d: &[f64], e: &[f64]) -> f64 {
+        let each = d.iter().zip(e).zip(&self.column_unit);
+        each.map(|((d, e), u)| d / u * (e / u)).sum()
     }
 
     /// The step with the same factors at another residual; none where other rows would count there.
-    fn again(&self, factors: &Factors, residual: &[f64]) -> Option<Vec<f64>> {
+    pub(super) fn again(&self, factors: &Factors, residual: &[f64]) -> Option<Vec<f64>> {
         let counted = |(r, row): (&f64, &Option<usize>)| *r == 0.0 || row.is_some();
         if !residual.iter().zip(&factors.rows).all(counted) {
             return None;
         }
+        self.by(factors, residual)
+    }
+
+    /// The step by these factors.
+    fn by(&self, factors: &Factors, residual: &[f64]) -> Option<Vec<f64>> {
         let right = |i: usize| -residual[i] / self.row_unit[i];
         Some(factors.solve(self, |_| 0.0, right)?.0)
     }
 
     /// The step, none of it out of the bounds that the point is at, and the factors that gave it; `order`: factors whose order may
     /// serve again.
-    fn step(
+    pub(super) fn step(
         &self,
         nlp: &dyn Nlp,
         x: &[f64],
@@ -352,9 +288,8 @@ impl System {
         let counts = |i: usize| a[i] == b[i] || self.residual[i] != 0.0;
         let mut stays = vec![false; x.len()];
         loop {
-            let right = |i: usize| -self.residual[i] / self.row_unit[i];
             let factors = self.factors([damping, 1.0], &stays, counts, order.take())?;
-            let d = factors.solve(self, |_| 0.0, right)?.0;
+            let d = self.by(&factors, &self.residual)?;
             let leaves =
                 |j: usize| d[j] < 0.0 && x[j] <= lower[j] || d[j] > 0.0 && x[j] >= upper[j];
             let out: Vec<usize> = (0..x.len()).filter(|&j| !stays[j] && leaves(j)).collect();
@@ -441,7 +376,7 @@ fn lu(n: usize, entries: impl Iterator<Item = Entry> + Clone) -> Option<Lu<usize
 }
 
 /// Factors, and the place of each variable and row.
-struct Factors {
+pub(super) struct Factors {
     columns: Vec<Option<usize>>,
     rows: Vec<Option<usize>>,
     free: usize,
@@ -455,6 +390,11 @@ enum Kind {
 }
 
 impl Factors {
+    /// Whether as many rows count as variables are free.
+    pub(super) fn is_square(&self) -> bool {
+        self.rows.iter().flatten().count() == self.free
+    }
+
     /// Factors whose order may serve again.
     fn symmetric(self) -> Option<Symmetric> {
         match self.kind {

@@ -58,7 +58,7 @@ impl Symmetric {
     /// and finite; otherwise there are no factors.
     pub(super) fn factor(&mut self, n: usize, lower: &Lower) -> bool {
         let entries = (&lower.rows, &lower.columns, &lower.values);
-        if (n >= MANY) != (self.matrix.n >= MANY) {
+        if n != self.matrix.n {
             self.solver = solver(n);
         }
         let finite = lower.values.iter().all(|v| v.is_finite());

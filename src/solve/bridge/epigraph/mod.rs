@@ -33,7 +33,7 @@ use std::collections::BTreeMap;
 const SWEEPS: usize = 20;
 
 /// A program without kinks in place of one with some.
-pub(super) struct Epigraph {
+pub struct Epigraph {
     /// The program without kinks.
     instance: Instance,
     /// By equation: the column that makes it hold.
@@ -81,22 +81,18 @@ impl Epigraph {
             makes_up,
         })
     }
+}
 
+impl Bridge for Epigraph {
     /// For nonlinear programs in continuous columns.
-    pub(super) fn bridge(
-        _: &[&dyn Backend],
-        task: &Task,
-        settings: &Settings,
-    ) -> Option<Box<dyn Bridge>> {
+    fn build(_: &[&dyn Backend], task: &Task, settings: &Settings) -> Option<Self> {
         let other = task.instance.is_linear() || !task.is_continuous();
         if other || !settings.runs(Strategy::ConvexEpigraph) {
             return None;
         }
-        Some(Box::new(Self::new(task.instance)?))
+        Self::new(task.instance)
     }
-}
 
-impl Bridge for Epigraph {
     fn instance(&self) -> &Instance {
         &self.instance
     }
