@@ -8,8 +8,7 @@ use super::derive;
 use super::graph::Graph;
 use super::program::{Operands, Program};
 use crate::model::instance::{Function, Instance, Kernel, KernelTerms, Op};
-use rustc_hash::{FxHashMap, FxHasher};
-use std::hash::{Hash, Hasher};
+use rustc_hash::FxHashMap;
 
 /// How kernels are compiled.
 #[derive(Clone, Copy, Debug)]
@@ -91,7 +90,7 @@ impl Block {
         self.constants[slot as usize * self.terms() + term]
     }
 
-    fn new(kernel: &Kernel, parts: &[KernelTerms], wanted: Wanted) -> Self {
+    fn new(kernel: &Kernel, parts: &[&KernelTerms], wanted: Wanted) -> Self {
         let (v, c) = (kernel.variables as usize, kernel.constants as usize);
         let terms: usize = parts.iter().map(|p| p.row.len()).sum();
         let mut row = Vec::with_capacity(terms);
@@ -174,7 +173,7 @@ impl Block {
 pub(super) fn compile(instance: &Instance, wanted: Wanted) -> Vec<Block> {
     groups(instance)
         .into_iter()
-        .map(|(kernel, parts)| Block::new(&kernel, &parts, wanted))
+        .map(|(kernel, parts)| Block::new(kernel, &parts, wanted))
         .collect()
 }
 
@@ -183,7 +182,7 @@ pub fn second_derivatives(instance: &Instance) -> (f64, f64) {
     let of_groups = groups(instance).into_iter().map(|(kernel, parts)| {
         let terms: usize = parts.iter().map(|p| p.row.len()).sum();
         let triangle = |set: Vec<u32>| (set.len() * (set.len() + 1)) as f64 / 2.0;
-        let each: f64 = curved(&kernel).into_iter().map(triangle).sum();
+        let each: f64 = curved(kernel).into_iter().map(triangle).sum();
         (terms as f64 * each, each)
     });
     of_groups.fold((0.0, 0.0), |all, (a, b)| (all.0 + a, all.1 + b))
@@ -193,8 +192,8 @@ pub fn second_derivatives(instance: &Instance) -> (f64, f64) {
 pub(crate) fn curved_columns(instance: &Instance) -> Vec<Vec<u32>> {
     let mut out = Vec::new();
     for (kernel, parts) in groups(instance) {
-        let sets = curved(&kernel);
-        for slots in parts.iter().flat_map(KernelTerms::terms) {
+        let sets = curved(kernel);
+        for slots in parts.iter().flat_map(|p| p.terms()) {
             let columns = |set: &Vec<u32>| set.iter().map(|&k| slots.columns[k as usize]).collect();
             out.extend(sets.iter().map(columns));
         }
@@ -253,38 +252,15 @@ fn begins(ops: &[Op]) -> Vec<usize> {
 }
 
 /// Terms by their programs.
-fn groups(instance: &Instance) -> Vec<(Kernel, Vec<KernelTerms>)> {
-    let mut groups: Vec<(Kernel, Vec<KernelTerms>)> = Vec::new();
-    let mut known: FxHashMap<u64, Vec<usize>> = FxHashMap::default();
+fn groups(instance: &Instance) -> Vec<(&Kernel, Vec<&KernelTerms>)> {
+    let mut groups: Vec<(&Kernel, Vec<&KernelTerms>)> = Vec::new();
+    let mut known: FxHashMap<&Kernel, usize> = FxHashMap::default();
     for terms in instance.nonlinear.iter().filter(|t| !t.row.is_empty()) {
-        let candidates = known.entry(hash(&terms.kernel)).or_default();
-        match candidates.iter().find(|&&g| groups[g].0 == terms.kernel) {
-            Some(&g) => groups[g].1.push(terms.clone()),
-            None => {
-                candidates.push(groups.len());
-                groups.push((terms.kernel.clone(), vec![terms.clone()]));
-            }
+        let group = *known.entry(&terms.kernel).or_insert(groups.len());
+        if group == groups.len() {
+            groups.push((&terms.kernel, Vec::new()));
         }
+        groups[group].1.push(terms);
     }
     groups
-}
-
-fn hash(kernel: &Kernel) -> u64 {
-    let mut h = FxHasher::default();
-    (kernel.variables, kernel.constants).hash(&mut h);
-    for op in &kernel.ops {
-        std::mem::discriminant(op).hash(&mut h);
-        match *op {
-            Op::Var(k) | Op::Const(k) | Op::AddN(k) | Op::MultiplyN(k) => k.hash(&mut h),
-            Op::Affine {
-                constant,
-                variable,
-                terms,
-            } => (constant, variable, terms).hash(&mut h),
-            Op::PowerInt(n) => n.hash(&mut h),
-            Op::Call(f, n) => (f, n).hash(&mut h),
-            Op::Add | Op::Subtract | Op::Multiply | Op::Divide | Op::Negate | Op::Power => {}
-        }
-    }
-    h.finish()
 }
