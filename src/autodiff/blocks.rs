@@ -2,13 +2,15 @@
 //!
 //! Kernel terms with equal programs are merged, whatever equation they come from. A constant slot on
 //! which all terms agree becomes a number of the program (so `x ** c` with c = 2 everywhere is a
-//! square).
+//! square). Long sums at the root of a kernel with few terms are taken apart into terms of their own:
+//! the addends usually have few shapes.
 
 use super::derive;
 use super::graph::Graph;
 use super::program::{Operands, Program};
 use crate::model::instance::{Function, Instance, Kernel, KernelTerms, Op};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHasher};
+use std::hash::{Hash, Hasher};
 
 /// How kernels are compiled.
 #[derive(Clone, Copy, Debug)]
@@ -90,7 +92,7 @@ impl Block {
         self.constants[slot as usize * self.terms() + term]
     }
 
-    fn new(kernel: &Kernel, parts: &[&KernelTerms], wanted: Wanted) -> Self {
+    fn new(kernel: &Kernel, parts: &[KernelTerms], wanted: Wanted) -> Self {
         let (v, c) = (kernel.variables as usize, kernel.constants as usize);
         let terms: usize = parts.iter().map(|p| p.row.len()).sum();
         let mut row = Vec::with_capacity(terms);
@@ -173,7 +175,7 @@ impl Block {
 pub(super) fn compile(instance: &Instance, wanted: Wanted) -> Vec<Block> {
     groups(instance)
         .into_iter()
-        .map(|(kernel, parts)| Block::new(kernel, &parts, wanted))
+        .map(|(kernel, parts)| Block::new(&kernel, &parts, wanted))
         .collect()
 }
 
@@ -182,7 +184,7 @@ pub fn second_derivatives(instance: &Instance) -> (f64, f64) {
     let of_groups = groups(instance).into_iter().map(|(kernel, parts)| {
         let terms: usize = parts.iter().map(|p| p.row.len()).sum();
         let triangle = |set: Vec<u32>| (set.len() * (set.len() + 1)) as f64 / 2.0;
-        let each: f64 = curved(kernel).into_iter().map(triangle).sum();
+        let each: f64 = curved(&kernel).into_iter().map(triangle).sum();
         (terms as f64 * each, each)
     });
     of_groups.fold((0.0, 0.0), |all, (a, b)| (all.0 + a, all.1 + b))
@@ -192,8 +194,8 @@ pub fn second_derivatives(instance: &Instance) -> (f64, f64) {
 pub(crate) fn curved_columns(instance: &Instance) -> Vec<Vec<u32>> {
     let mut out = Vec::new();
     for (kernel, parts) in groups(instance) {
-        let sets = curved(kernel);
-        for slots in parts.iter().flat_map(|p| p.terms()) {
+        let sets = curved(&kernel);
+        for slots in parts.iter().flat_map(KernelTerms::terms) {
             let columns = |set: &Vec<u32>| set.iter().map(|&k| slots.columns[k as usize]).collect();
             out.extend(sets.iter().map(columns));
         }
@@ -252,15 +254,151 @@ fn begins(ops: &[Op]) -> Vec<usize> {
 }
 
 /// Terms by their programs.
-fn groups(instance: &Instance) -> Vec<(&Kernel, Vec<&KernelTerms>)> {
-    let mut groups: Vec<(&Kernel, Vec<&KernelTerms>)> = Vec::new();
-    let mut known: FxHashMap<&Kernel, usize> = FxHashMap::default();
+fn groups(instance: &Instance) -> Vec<(Kernel, Vec<KernelTerms>)> {
+    let mut groups: Vec<(Kernel, Vec<KernelTerms>)> = Vec::new();
+    let mut known: FxHashMap<u64, Vec<usize>> = FxHashMap::default();
     for terms in instance.nonlinear.iter().filter(|t| !t.row.is_empty()) {
-        let group = *known.entry(&terms.kernel).or_insert(groups.len());
-        if group == groups.len() {
-            groups.push((&terms.kernel, Vec::new()));
+        for part in split_sum(terms).unwrap_or_else(|| vec![terms.clone()]) {
+            let candidates = known.entry(hash(&part.kernel)).or_default();
+            match candidates.iter().find(|&&g| groups[g].0 == part.kernel) {
+                Some(&g) => groups[g].1.push(part),
+                None => {
+                    candidates.push(groups.len());
+                    groups.push((part.kernel.clone(), vec![part]));
+                }
+            }
         }
-        groups[group].1.push(terms);
     }
     groups
+}
+
+/// Operations of one addend: a range of the program.
+type Addend = std::ops::Range<usize>;
+
+/// Takes a kernel that is a long sum apart; None where that does not pay.
+fn split_sum(terms: &KernelTerms) -> Option<Vec<KernelTerms>> {
+    const LONG: usize = 16;
+    let kernel = &terms.kernel;
+    let Some(&Op::AddN(n)) = kernel.ops.last() else {
+        return None;
+    };
+    if (n as usize) < LONG || terms.row.len() > LONG {
+        return None;
+    }
+    let addends = addends(&kernel.ops[..kernel.ops.len() - 1], n as usize)?;
+    let mut out: Vec<KernelTerms> = Vec::with_capacity(addends.len());
+    for range in addends {
+        let (piece, variables, constants) = renumber(&kernel.ops[range]);
+        let mut part = KernelTerms {
+            kernel: piece,
+            row: terms.row.clone(),
+            coef: terms.coef.clone(),
+            ..KernelTerms::default()
+        };
+        let (v, c) = (kernel.variables as usize, kernel.constants as usize);
+        for t in 0..terms.row.len() {
+            let slots = |s: &u32| terms.columns[t * v + *s as usize];
+            part.columns.extend(variables.iter().map(slots));
+            let slots = |s: &u32| terms.constants[t * c + *s as usize];
+            part.constants.extend(constants.iter().map(slots));
+        }
+        out.push(part);
+    }
+    Some(out)
+}
+
+/// The n subprograms that a sequence of operations leaves on the stack.
+fn addends(ops: &[Op], n: usize) -> Option<Vec<Addend>> {
+    let mut starts: Vec<usize> = Vec::new();
+    for (i, op) in ops.iter().enumerate() {
+        let keep = starts.len().checked_sub(op.arguments())?;
+        let start = starts.get(keep).copied().unwrap_or(i);
+        starts.truncate(keep);
+        starts.push(start);
+    }
+    if starts.len() != n {
+        return None;
+    }
+    let ends = starts.iter().skip(1).copied().chain([ops.len()]);
+    Some(
+        starts
+            .iter()
+            .copied()
+            .zip(ends)
+            .map(|(a, b)| a..b)
+            .collect(),
+    )
+}
+
+/// A subprogram with slots numbered by first occurrence, and the old slots in the new order.
+fn renumber(ops: &[Op]) -> (Kernel, Vec<u32>, Vec<u32>) {
+    let (mut variables, mut constants) = (Slots::default(), Slots::default());
+    let ops: Vec<Op> = ops
+        .iter()
+        .map(|op| match *op {
+            Op::Var(k) => Op::Var(variables.place(k)),
+            Op::Const(k) => Op::Const(constants.place(k)),
+            Op::Affine {
+                constant,
+                variable,
+                terms,
+            } => Op::Affine {
+                // an affine form needs its slots in sequence
+                constant: constants.sequence(constant, terms + 1),
+                variable: variables.sequence(variable, terms),
+                terms,
+            },
+            other => other,
+        })
+        .collect();
+    let kernel = Kernel {
+        ops,
+        variables: variables.old.len() as u32,
+        constants: constants.old.len() as u32,
+    };
+    (kernel, variables.old, constants.old)
+}
+
+#[derive(Default)]
+struct Slots {
+    old: Vec<u32>,
+    new: FxHashMap<u32, u32>,
+}
+
+impl Slots {
+    fn place(&mut self, k: u32) -> u32 {
+        *self.new.entry(k).or_insert_with(|| {
+            self.old.push(k);
+            self.old.len() as u32 - 1
+        })
+    }
+
+    fn sequence(&mut self, first: u32, count: u32) -> u32 {
+        let start = self.old.len() as u32;
+        for k in first..first + count {
+            self.new.insert(k, self.old.len() as u32);
+            self.old.push(k);
+        }
+        start
+    }
+}
+
+fn hash(kernel: &Kernel) -> u64 {
+    let mut h = FxHasher::default();
+    (kernel.variables, kernel.constants).hash(&mut h);
+    for op in &kernel.ops {
+        std::mem::discriminant(op).hash(&mut h);
+        match *op {
+            Op::Var(k) | Op::Const(k) | Op::AddN(k) | Op::MultiplyN(k) => k.hash(&mut h),
+            Op::Affine {
+                constant,
+                variable,
+                terms,
+            } => (constant, variable, terms).hash(&mut h),
+            Op::PowerInt(n) => n.hash(&mut h),
+            Op::Call(f, n) => (f, n).hash(&mut h),
+            Op::Add | Op::Subtract | Op::Multiply | Op::Divide | Op::Negate | Op::Power => {}
+        }
+    }
+    h.finish()
 }
