@@ -98,6 +98,8 @@ impl Builder<'_> {
     fn read(&mut self, ops: &[Op]) -> Option<Id> {
         let mut stack: Vec<Item> = Vec::new();
         for op in ops {
+            let at = stack.len().checked_sub(op.arguments())?;
+            let mut items = stack.split_off(at).into_iter();
             let item = match *op {
                 Op::Var(k) => Item::Node(self.node(Element::Var(k))),
                 Op::Const(k) => Item::Node(self.constant(k)),
@@ -118,63 +120,29 @@ impl Builder<'_> {
                         constant: base,
                     }
                 }
-                Op::Add => {
-                    let (b, a) = (stack.pop()?, stack.pop()?);
-                    self.sum(a, b)
-                }
+                Op::Add | Op::AddN(_) => items.reduce(|a, b| self.sum(a, b))?,
                 Op::Subtract => {
-                    let (b, a) = (stack.pop()?, stack.pop()?);
+                    let (a, b) = (items.next()?, items.next()?);
                     let b = self.multiple(b, -1.0);
                     self.sum(a, b)
                 }
-                Op::AddN(n) => {
-                    let at = stack.len().checked_sub(n as usize)?;
-                    let items = stack.split_off(at);
-                    let mut total = Item::Node(self.number(0.0));
-                    for item in items {
-                        total = self.sum(total, item);
-                    }
-                    total
-                }
-                Op::Negate => {
-                    let a = stack.pop()?;
-                    self.multiple(a, -1.0)
-                }
-                Op::Multiply => {
-                    let (b, a) = (stack.pop()?, stack.pop()?);
+                Op::Negate => self.multiple(items.next()?, -1.0),
+                Op::Multiply | Op::MultiplyN(_) => items.reduce(|a, b| {
                     let (a, b) = (self.settle(a), self.settle(b));
                     self.product(a, b)
-                }
-                Op::MultiplyN(n) => {
-                    let at = stack.len().checked_sub(n as usize)?;
-                    let items = stack.split_off(at);
-                    let mut total = Item::Node(self.number(1.0));
-                    for item in items {
-                        let (a, b) = (self.settle(total), self.settle(item));
-                        total = self.product(a, b);
-                    }
-                    total
-                }
-                Op::Divide => {
-                    let (b, a) = (stack.pop()?, stack.pop()?);
-                    let (a, b) = (self.settle(a), self.settle(b));
-                    Item::Node(self.quotient(a, b))
-                }
-                Op::Power => {
-                    let (b, a) = (stack.pop()?, stack.pop()?);
-                    let (a, b) = (self.settle(a), self.settle(b));
-                    Item::Node(self.power(a, b))
-                }
-                Op::PowerInt(n) => {
-                    let a = stack.pop()?;
-                    let a = self.settle(a);
-                    Item::Node(self.power_int(a, n))
-                }
-                Op::Call(f, n) => {
-                    let at = stack.len().checked_sub(n as usize)?;
-                    let items = stack.split_off(at);
-                    let args = items.into_iter().map(|i| self.settle(i)).collect();
+                })?,
+                Op::Call(f, _) => {
+                    let args = items.map(|i| self.settle(i)).collect();
                     Item::Node(self.call(f, args))
+                }
+                Op::Divide | Op::Power | Op::PowerInt(_) => {
+                    let args: Vec<Id> = items.map(|i| self.settle(i)).collect();
+                    Item::Node(match (*op, &args[..]) {
+                        (Op::PowerInt(n), &[a]) => self.power_int(a, n),
+                        (Op::Power, &[a, b]) => self.power(a, b),
+                        (_, &[a, b]) => self.quotient(a, b),
+                        _ => return None,
+                    })
                 }
             };
             stack.push(item);

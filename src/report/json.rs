@@ -212,6 +212,36 @@ pub struct SolveReport {
     pub why: Option<super::why::Explanation>,
 }
 
+impl SolveReport {
+    /// Of a model that was not solved.
+    pub fn new(model: &str, using: ProblemType) -> Self {
+        Self {
+            model: model.into(),
+            using,
+            sense: None,
+            objective_name: None,
+            solver: String::new(),
+            model_status: ModelStatus::NoSolution.into(),
+            solver_status: SolverStatus::NormalCompletion.into(),
+            objective: None,
+            rows: 0,
+            columns: 0,
+            nonzeros: 0,
+            nonlinear_nonzeros: 0,
+            iterations: 0,
+            seconds: Seconds::default(),
+            residual: Residual::default(),
+            complementarity_sum: None,
+            bounds: None,
+            search: None,
+            stationarity: None,
+            message: None,
+            hint: None,
+            why: None,
+        }
+    }
+}
+
 /// Times of a solve, in seconds.
 #[derive(Clone, Copy, Debug, Serialize, Default)]
 pub struct Seconds {
@@ -332,31 +362,20 @@ mod tests {
     fn has_the_documented_shape() {
         let mut report = Report::new("wall.blk");
         report.solves.push(SolveReport {
-            model: "static".into(),
-            using: ProblemType::Lp,
             sense: Some(Sense::Maximize),
             objective_name: Some("alpha".into()),
             solver: "clarabel".into(),
             model_status: ModelStatus::Optimal.into(),
-            solver_status: SolverStatus::NormalCompletion.into(),
             objective: Some(Number(0.642859003)),
             rows: 431,
             columns: 250,
             nonzeros: 1500,
-            nonlinear_nonzeros: 0,
             iterations: 14,
-            seconds: Seconds::default(),
             residual: Residual {
                 primal: Some(1e-12),
                 ..Residual::default()
             },
-            complementarity_sum: None,
-            bounds: None,
-            search: None,
-            stationarity: None,
-            message: None,
-            hint: None,
-            why: None,
+            ..SolveReport::new("static", ProblemType::Lp)
         });
         report.displays = vec![
             Display::Scalar {

@@ -190,18 +190,14 @@ mod tests {
 
     fn report() -> SolveReport {
         SolveReport {
-            model: "static".into(),
-            using: ProblemType::Lp,
             sense: Some(Sense::Maximize),
             objective_name: Some("alpha".into()),
             solver: "clarabel".into(),
             model_status: ModelStatus::Optimal.into(),
-            solver_status: SolverStatus::NormalCompletion.into(),
             objective: Some(Number(0.642_859_003_3)),
             rows: 431,
             columns: 250,
             nonzeros: 15_002,
-            nonlinear_nonzeros: 0,
             iterations: 14,
             seconds: Seconds {
                 generate: 0.001,
@@ -214,13 +210,7 @@ mod tests {
                 complementarity: Some(2e-14),
                 natural: None,
             },
-            complementarity_sum: None,
-            bounds: None,
-            search: None,
-            stationarity: None,
-            message: None,
-            hint: None,
-            why: None,
+            ..SolveReport::new("static", ProblemType::Lp)
         }
     }
 

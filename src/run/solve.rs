@@ -702,28 +702,12 @@ impl<'h> Machine<'h> {
     /// The report of a model that was generated only.
     fn not_solved(&self, s: &SolveCode, g: &Generated) -> json::SolveReport {
         json::SolveReport {
-            model: self.symbols.get(s.model).name.to_string(),
-            using: s.using,
-            sense: None,
-            objective_name: None,
-            solver: String::new(),
-            model_status: ModelStatus::NoSolution.into(),
-            solver_status: SolverStatus::NormalCompletion.into(),
-            objective: None,
             rows: g.instance.row_count(),
             columns: g.columns(),
             nonzeros: g.origin.nonzeros,
             nonlinear_nonzeros: g.origin.nonlinear_nonzeros,
-            iterations: 0,
             seconds: g.seconds,
-            residual: json::Residual::default(),
-            complementarity_sum: None,
-            bounds: None,
-            search: None,
-            stationarity: None,
-            message: None,
-            hint: None,
-            why: None,
+            ..json::SolveReport::new(&self.symbols.get(s.model).name, s.using)
         }
     }
 
