@@ -88,11 +88,11 @@ strategies! {
             "one solve of the larger program",
             "Boyd & Vandenberghe 2004, 4.1.3";
         InnerSums "inner_sums",
-            "linear sums of 500 variables and more inside functions, others of 1000 (a tenth of these where second derivatives or their programs would fill the memory), become columns",
+            "linear sums of 500 variables inside functions, others of 1000 (a tenth where second derivatives would fill the memory), become columns",
             "a row and a column for each",
             "Griewank & Toint 1982";
         VanishingSquares "vanishing_squares",
-            "the objective is a sum of squares, and these and the equations are as many as the variables: they are solved as equations",
+            "the objective is a sum of squares, with the equations as many as the variables: they are solved as equations",
             "250 steps of Newton's method",
             "Nocedal & Wright 2006, chapters 10 and 11";
         ConvexQuadratic "convex_quadratic",
@@ -104,7 +104,7 @@ strategies! {
             "an evaluation and a factorisation",
             "Gill, Murray & Saunders 2005";
         SquareNewton "square_newton",
-            "at least as many equations as variables, also in `cns`: Newton's method, damped (Levenberg, Marquardt), along the path of residuals, then with steps that shorten the next one",
+            "at least as many equations as variables: Newton's method, damped, along the path of residuals, then with steps that shorten the next one",
             "250 steps",
             "Nocedal & Wright 2006, chapter 10; Allgower & Georg 2003; Deuflhard 2004, 3.3";
         TruncatedNewton "truncated_newton",
@@ -114,7 +114,7 @@ strategies! {
         DifferentiableStart "differentiable_start",
             "a row has no derivatives at the start, as √x at 0: its variables are moved by a hundredth",
             "100 evaluations of the derivatives",
-            "as an interior point begins: Wächter & Biegler 2006, 3.6";
+            "Wächter & Biegler 2006, 3.6";
         ConsistentStart "consistent_start",
             "variables without a start level that are the only such one in an equation are computed from it",
             "50 evaluations of the rows and their derivatives",
@@ -124,7 +124,7 @@ strategies! {
             "100 steps",
             "Byrd, Gould, Nocedal & Waltz 2004";
         InteriorFirst "interior_first",
-            "a quarter of all constraints are nonlinear, and at least 50 of these are equations (ten inequalities count as one): the interior point goes first",
+            "a quarter of all constraints are nonlinear, 50 of them equations (ten inequalities count as one): the interior point goes first",
             "a run of the interior point",
             "ablation";
         SecondOrderCorrection "second_order_correction",
@@ -142,7 +142,7 @@ strategies! {
         RoundedData "rounded_data",
             "rows contradict each other by less than 5e-7 of their size: they are moved to where they agree best",
             "nothing",
-            "programs built from the rounded answers of others";
+            "bmod";
         InfeasibilityDoubt "infeasibility_doubt",
             "linear programs prove that nothing nearby is feasible: again from halfway between the bounds",
             "100 steps",
