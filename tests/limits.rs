@@ -169,9 +169,9 @@ fn slow() -> Vec<(&'static str, String)> {
             ),
         ),
         (
-            "a square system",
+            "a square system without a solution",
             format!(
-                "{}Variable x(i);  Equation f(i);  f(i)..  sum(j, a(i,j)*sin(x(j))) + power(x(i), 3) =e= 1;\n\
+                "{}Variable x(i);  Equation f(i);  f(i)..  sum(j, a(i,j)*sin(x(j))) + sqr(x(i)) =e= -10000;\n\
                  Model m / f /;  solve m using cns;",
                 square(700)
             ),

@@ -74,8 +74,8 @@ strategies! {
             "its iterations",
             "Wright 1997, chapter 8";
         RandomRestarts "random_restarts",
-            "all methods failed from the given start: ten random ones",
-            "twice the work so far, or a second",
+            "all methods failed from the given start: 30 random ones",
+            "twice the work so far, or 0.6 s",
             "PATH's restarts, Ferris & Munson 2000";
     }
     "nlp": {

@@ -19,7 +19,7 @@ pub const OPTIONS: OptionTable = OptionTable {
         row("cumulative_iteration_limit", LIMIT, "10000000", "pivots of all runs together"),
         row("proximal_perturbation", Kind::Real(0.0, f64::INFINITY), "0", "proximal term of the first major iteration"),
         row("nms_memory_size", LIMIT, "10", "memory of the nonmonotone line search"),
-        row("restart_limit", LIMIT, "10", "random restarts after all methods have failed; without the option they also end where they would cost more than what went before"),
+        row("restart_limit", LIMIT, "30", "random restarts after all methods have failed; without the option they also end where they would cost more than what went before"),
         row("time_limit", Kind::Real(0.0, f64::INFINITY), "inf", "seconds; `reslim` and `--time-limit` hold as well"),
         row("output", Kind::Switch, "yes", "with `log=1`: all parts of the log"),
         row("output_crash_iterations", Kind::Switch, "yes", "with `log=1`: crash iterations"),

@@ -82,10 +82,10 @@ pub(super) fn solve(
     outcome
 }
 
-/// Random restarts at most: no problem of the corpora and of some 80 public models is solved by a later one than the ninth.
-const RESTARTS: usize = 10;
-/// Work ([`Run::work`]) up to which they are made in any case: a second or so.
-const CHEAP: usize = 300_000;
+/// Random restarts at most.
+const RESTARTS: usize = 30;
+/// Work ([`Run::work`]) up to which they are made in any case: 0.6 s or so.
+const CHEAP: usize = 200_000;
 /// Otherwise all work may become this multiple of that from the given start.
 const MULTIPLE: usize = 2;
 
