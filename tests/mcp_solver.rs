@@ -555,3 +555,13 @@ proptest! {
         assert_near(&back, &expected, 1e-7);
     }
 }
+
+/// A solution that only a random start led to may be one of several: the report says so.
+#[test]
+fn random_starts_are_named() {
+    let file = std::path::Path::new("tests/suite/mcp/multipliers_without_limit.blk");
+    let finished = crate::common::run_file(file, &[], crate::common::quiet());
+    let solve = crate::common::last_solve(&finished).expect("a solve");
+    let message = solve.message.expect("a message");
+    assert!(message.starts_with("found from random start "), "{message}");
+}

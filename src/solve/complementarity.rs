@@ -354,6 +354,15 @@ fn solve(
             out.x[j]
         );
     }
+    if out.restarts > 0 && out.message.is_empty() {
+        let n = out.restarts;
+        out.message = match out.status {
+            mcp::Status::Solved => {
+                format!("found from random start {n}: nothing led on from the given one")
+            }
+            _ => format!("nothing led on from the given start, nor from {n} random ones"),
+        };
+    }
     let (claim, status) = match out.status {
         mcp::Status::Solved => (Claim::Solved, status),
         // That all methods from all starts failed is what GAMS calls locally infeasible.
