@@ -14,8 +14,6 @@ use crate::solve::{Claim, Outcome, Settings};
 /// The optimality conditions of a linear program: its columns, then its multipliers; a row for each.
 pub struct Kkt(Instance);
 
-impl Kkt {}
-
 fn conditions(program: &Instance) -> Instance {
     let (m, n) = (program.row_count(), program.column_count());
     let mut out = Instance {
