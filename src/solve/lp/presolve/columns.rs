@@ -11,6 +11,9 @@ const LONG_ROW: u32 = 1000;
 /// Entries that a substitution may add to those that it takes away.
 const FILL: usize = 4;
 
+/// Rows of a column that changes places with one of them, at most.
+const LONGEST_EXCHANGED: u32 = 20;
+
 /// A pivot of a substitution against the largest entry of its column.
 const PIVOT: f64 = 1e-2;
 
@@ -26,10 +29,15 @@ impl Work {
         if self.fix_by_cost(j)? {
             return Ok(());
         }
-        match self.column_count[j] {
+        let count = self.column_count[j];
+        match count {
             0 => Ok(()),
             1 => self.singleton_column(j),
-            n if n <= LONGEST => self.implied_free(j),
+            _ if count <= LONGEST && self.implied_free(j)? => Ok(()),
+            _ if count <= LONGEST_EXCHANGED => {
+                self.exchange(j);
+                Ok(())
+            }
             _ => Ok(()),
         }
     }
@@ -193,8 +201,53 @@ impl Work {
         });
     }
 
-    /// Substitutes a column whose bounds its rows imply, by an equation.
-    fn implied_free(&mut self, j: usize) -> Result<(), Hopeless> {
+    /// A free column and an inequality change places: what the row adds up to is the column then, and the row is gone. Taken where the row is short
+    /// and the matrix does not grow. (A wall's cones of friction, two rows for each two free forces, become bounds.)
+    fn exchange(&mut self, j: usize) {
+        if self.lower[j].is_finite() || self.upper[j].is_finite() {
+            return;
+        }
+        let entries: Vec<(usize, f64)> = self.column_entries(j).collect();
+        let largest = entries.iter().fold(0.0f64, |t, e| t.max(e.1.abs()));
+        let able = |e: &&(usize, f64)| !self.is_equation(e.0) && e.1.abs() >= PIVOT * largest;
+        let best = entries.iter().filter(able);
+        let Some(&(i, a)) = best.min_by_key(|e| (self.row_count[e.0], e.0)) else {
+            return;
+        };
+        if self.row_count[i] > LONGEST {
+            return;
+        }
+        let pick = |e: (usize, f64)| (e.0 as u32, e.1);
+        let row: Entries = self.row_entries(i).filter(|e| e.0 != j).map(pick).collect();
+        let others = entries.iter().filter(|e| e.0 != i);
+        let new = others.clone().flat_map(|&(r, _)| row.iter().map(move |&(k, _)| (r, k as usize)));
+        let fill = new.filter(|&(r, k)| self.entry(r, k).is_none()).count();
+        if fill > row.len() + FILL {
+            return;
+        }
+        let cost = self.cost[j] / a;
+        for &(k, v) in &row {
+            self.change_cost(k as usize, v * cost);
+        }
+        self.cost[j] = cost;
+        self.remove_row(i);
+        for &(r, v) in others {
+            self.add_multiple(r, &row, -v / a);
+            if let Ok(k) = self.rows[r].binary_search_by_key(&(j as u32), |e| e.0) {
+                self.rows[r][k].1 = v / a;
+            }
+        }
+        (self.lower[j], self.upper[j]) = (self.row_lower[i], self.row_upper[i]);
+        self.steps.push(Step::Exchanged {
+            row: i as u32,
+            column: j as u32,
+            a,
+            entries: row,
+        });
+    }
+
+    /// Substitutes a column whose bounds its rows imply, by an equation; whether it did.
+    fn implied_free(&mut self, j: usize) -> Result<bool, Hopeless> {
         let entries: Vec<(usize, f64)> = self.column_entries(j).collect();
         let largest = entries.iter().fold(0.0f64, |t, e| t.max(e.1.abs()));
         let mut implied = [self.lower[j].is_infinite(), self.upper[j].is_infinite()];
@@ -206,11 +259,11 @@ impl Work {
             }
         }
         let Some((count, i)) = best else {
-            return Ok(());
+            return Ok(false);
         };
         let (rows, columns) = (entries.len(), count as usize);
         if (rows - 1) * (columns - 1) > rows + columns - 1 + FILL {
-            return Ok(());
+            return Ok(false);
         }
         for &(r, a) in &entries {
             if implied == [true, true] {
@@ -223,8 +276,8 @@ impl Work {
             implied = [implied[0] || more[0], implied[1] || more[1]];
         }
         match implied {
-            [true, true] => self.substitute(i, j, State::Lower, None),
-            _ => Ok(()),
+            [true, true] => self.substitute(i, j, State::Lower, None).map(|()| true),
+            _ => Ok(false),
         }
     }
 

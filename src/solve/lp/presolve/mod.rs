@@ -7,6 +7,7 @@
 //! * a column whose reduced cost has one sign at every dual feasible point is fixed (*dominated*);
 //! * a column of one row is the slack of that row;
 //! * an equation gives a column as a combination of others where its bounds follow from theirs, or where there is but one other;
+//! * a free column gives its place to the activity of an inequality, which becomes the bounds of a column;
 //! * of rows, or columns, that are multiples of each other one stays.
 //!
 //! The data of the smaller program are rounded. That is harmless: the basis is what comes back, and the simplex method goes
@@ -82,6 +83,14 @@ enum Step {
         /// The column without the row.
         others: Entries,
         doubleton: Option<Doubleton>,
+    },
+    /// A free column that stands for what the row, gone since, adds up to.
+    Exchanged {
+        row: u32,
+        column: u32,
+        a: f64,
+        /// The row without the column.
+        entries: Entries,
     },
     /// A row that is `ratio` times another; which sides of the one that stays are its own.
     Row {

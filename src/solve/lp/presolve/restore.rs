@@ -171,6 +171,17 @@ impl Back {
             } => self.forcing(*row as usize, *upper, entries),
             Step::Slack { .. } => self.slack(step),
             Step::Substituted { .. } => self.substituted(step),
+            Step::Exchanged {
+                row,
+                column,
+                a,
+                entries,
+            } => {
+                let (i, j) = (*row as usize, *column as usize);
+                self.rows[i] = std::mem::replace(&mut self.columns[j], State::Basic);
+                self.y[i] = std::mem::take(&mut self.d[j]);
+                self.x[j] = (self.x[j] - Self::sum(entries, &self.x)) / a;
+            }
             Step::Row {
                 kept,
                 gone,
