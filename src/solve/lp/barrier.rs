@@ -75,8 +75,9 @@ const DEAR: f64 = 10_000.0;
 /// Lines with more entries than this times the root of their number come last, unsorted, as a rule; none where they make most of what is left.
 const DENSE: f64 = 10.0;
 
-/// So many short columns for each long one and each row are nearly all.
-const MANY: usize = 10;
+/// The system without its short columns may have so many entries for each of the whole one: its factor has longer blocks, and takes half to three quarters of
+/// the time (DFL001 and MAROS-R7 of Netlib, walls).
+const LARGER: usize = 2;
 
 /// The least distance to a bound of a point that is inside.
 const LEAST: f64 = 1e-10;
@@ -346,15 +347,13 @@ fn with_zeros(
     (starts, indices, values)
 }
 
-/// Which columns are eliminated one by one, before the factor is begun: those with bounds and few entries, where they are most of the program.
-/// None: they are not that many.
-fn short(p: &Program) -> Option<Vec<bool>> {
+/// Columns that can be eliminated one by one, before the factor is begun: those with bounds and few entries.
+fn short(p: &Program) -> Vec<bool> {
+    let mut short: Vec<bool> = (0..p.n).map(|j| p.columns.line(j).len() < LONG).collect();
     let mut bounded = vec![false; p.n + p.m];
     p.of.iter().for_each(|&k| bounded[k] = true);
-    let short = |j: usize| bounded[j] && p.columns.line(j).len() < LONG;
-    let short: Vec<bool> = (0..p.n).map(short).collect();
-    let count = short.iter().filter(|s| **s).count();
-    (count >= MANY * (p.n - count + p.m)).then_some(short)
+    short.iter_mut().zip(bounded).for_each(|(s, b)| *s &= b);
+    short
 }
 
 /// Where the entries of a program's Newton system are, the order of its pivots, and what a factor costs.
@@ -378,7 +377,14 @@ impl Layout {
     }
 
     fn of(p: &Program) -> Option<Self> {
-        let short = short(p);
+        let whole = p.rows.index.len() + p.n + p.m;
+        let condensed = Self::without(p, Some(short(p)), LARGER * whole);
+        condensed.or_else(|| Self::without(p, None, usize::MAX))
+    }
+
+    /// The layout without these columns. None: it would have more entries, or no order was found.
+    fn without(p: &Program, short: Option<Vec<bool>>, most: usize) -> Option<Self> {
+        let short = short.filter(|s| s.contains(&true));
         let is_kept = |k: &usize| short.as_ref().is_none_or(|s| *k >= p.n || !s[*k]);
         let kept: Vec<usize> = (0..p.n + p.m).filter(is_kept).collect();
         let (order, long) = (kept.len(), kept.len() - p.m);
@@ -414,12 +420,28 @@ impl Layout {
             entries.resize(index.len(), 0.0);
             start.push(index.len());
         }
+        if index.len() > most {
+            return None;
+        }
         let before = alike(&start, &index);
         if before.iter().any(|b| !b.is_empty()) {
             (start, index, entries) = with_zeros(&start, &index, &entries, &before);
         }
         let pattern = SymbolicSparseColMatRef::new_checked(order, order, &start, None, &index);
-        let dense = if short.is_some() { -1.0 } else { DENSE };
+        let mut met = vec![0usize; order];
+        for k in 0..order {
+            for &i in &index[start[k]..start[k + 1]] {
+                met[i] += 1;
+                met[k] += 1;
+            }
+        }
+        let long_lines = met
+            .iter()
+            .filter(|&&c| c as f64 > DENSE * (order as f64).sqrt());
+        let dense = match 2 * long_lines.count() > order {
+            true => -1.0,
+            false => DENSE,
+        };
         let (fwd, count) = pivots(pattern, dense)?;
         Some(Self {
             operations: operations + count.n_mult_subs_ldl,

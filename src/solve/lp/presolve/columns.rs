@@ -220,7 +220,9 @@ impl Work {
         let pick = |e: (usize, f64)| (e.0 as u32, e.1);
         let row: Entries = self.row_entries(i).filter(|e| e.0 != j).map(pick).collect();
         let others = entries.iter().filter(|e| e.0 != i);
-        let new = others.clone().flat_map(|&(r, _)| row.iter().map(move |&(k, _)| (r, k as usize)));
+        let new = others
+            .clone()
+            .flat_map(|&(r, _)| row.iter().map(move |&(k, _)| (r, k as usize)));
         let fill = new.filter(|&(r, k)| self.entry(r, k).is_none()).count();
         if fill > row.len() + FILL {
             return;
