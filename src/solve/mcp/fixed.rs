@@ -7,7 +7,7 @@
 use super::run::bound;
 use super::{EvalError, Problem};
 
-/// Sweeps over the rows whose sign depends on that of others.
+/// Sweeps over the rows at most, each of which may turn for the sake of others.
 const SIGN_SWEEPS: usize = 10;
 
 /// The reduced problem.
@@ -79,45 +79,38 @@ impl<'a> Reduced<'a> {
         reduced
     }
 
-    /// A row of a free variable has a positive diagonal; where that is zero, what two variables have in each other's rows is
-    /// opposite in sign, as in every positive semidefinite matrix.
+    /// In a positive semidefinite matrix no diagonal is negative, and where it is zero, what two variables have in each other's
+    /// rows is opposite in sign. A row is turned round where neither speaks against it.
     fn choose_signs(&mut self) {
-        let n = self.kept.len();
         let column = |j: usize| self.col_start[j]..self.col_start[j + 1];
         let at = |i: usize, j: usize| {
             let found = self.rows[column(j)].binary_search(&i).ok()?;
             Some(self.values[self.entry[column(j).start + found]])
         };
-        let free = |i: usize| self.lower[i] == f64::NEG_INFINITY && self.upper[i] == f64::INFINITY;
-        let mut sign: Vec<f64> = (0..n)
-            .map(|i| match at(i, i).unwrap_or(0.0) {
-                _ if !free(i) => 1.0,
-                0.0 => 0.0,
-                diagonal => diagonal.signum(),
-            })
-            .collect();
         for _ in 0..SIGN_SWEEPS {
             let mut changed = false;
-            for j in 0..n {
-                if sign[j] == 0.0 {
-                    let pairs = column(j).map(|k| {
-                        let i = self.rows[k];
-                        sign[i] * self.values[self.entry[k]] * at(j, i).unwrap_or(0.0)
-                    });
-                    let alike: f64 = pairs.sum();
-                    if alike != 0.0 {
-                        (sign[j], changed) = (-alike.signum(), true);
+            for j in 0..self.kept.len() {
+                if self.lower[j] != f64::NEG_INFINITY || self.upper[j] != f64::INFINITY {
+                    continue;
+                }
+                let (mut diagonal, mut alike) = (0.0, 0.0);
+                for k in column(j) {
+                    let (i, value) = (self.rows[k], self.values[self.entry[k]]);
+                    match i == j {
+                        true => diagonal = self.sign[j] * value,
+                        false => {
+                            alike += self.sign[j] * self.sign[i] * value * at(j, i).unwrap_or(0.0)
+                        }
                     }
+                }
+                if diagonal <= 0.0 && alike >= 0.0 && diagonal < alike {
+                    (self.sign[j], changed) = (-self.sign[j], true);
                 }
             }
             if !changed {
                 break;
             }
         }
-        self.sign = sign
-            .iter()
-            .map(|&s| if s < 0.0 { -1.0 } else { 1.0 })
-            .collect();
     }
 
     /// Variables of the problem as given.
