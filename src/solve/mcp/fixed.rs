@@ -1,7 +1,14 @@
-//! Fixed variables leave the problem.
+//! Fixed variables leave the problem, and rows of free variables get a sign.
+//!
+//! Where a variable is free its row is an equation, and F and −F mean the same. Proximal terms, and whatever else is
+//! good for monotone problems, ask for one of the two: conditions of optimality whose equations are written
+//! "demand − supply" have a saddle there that "supply − demand" has not.
 
 use super::run::bound;
 use super::{EvalError, Problem};
+
+/// Sweeps over the rows at most, each of which may turn for the sake of others.
+const SIGN_SWEEPS: usize = 10;
 
 /// The reduced problem.
 pub(super) struct Reduced<'a> {
@@ -15,6 +22,8 @@ pub(super) struct Reduced<'a> {
     rows: Vec<usize>,
     /// Position in the inner pattern of each kept entry.
     entry: Vec<usize>,
+    /// The sign of each row.
+    sign: Vec<f64>,
     /// A full point whose fixed variables have their values.
     x: Vec<f64>,
     f: Vec<f64>,
@@ -48,9 +57,9 @@ impl<'a> Reduced<'a> {
             }
             (col_start, rows, entry)
         };
-        let nonzeros = inner.pattern().1.len();
-        Reduced {
-            inner,
+        let mut values = vec![0.0; inner.pattern().1.len()];
+        let mut reduced = Reduced {
+            sign: vec![1.0; kept.len()],
             lower: kept.iter().map(|&i| lower[i]).collect(),
             upper: kept.iter().map(|&i| upper[i]).collect(),
             start: kept.iter().map(|&i| x[i]).collect(),
@@ -60,7 +69,47 @@ impl<'a> Reduced<'a> {
             entry,
             x,
             f: vec![0.0; n],
-            values: vec![0.0; nonzeros],
+            values: Vec::new(),
+            inner,
+        };
+        if reduced.inner.jacobian(&reduced.x, &mut values).is_ok() {
+            reduced.values = values;
+            reduced.choose_signs();
+        }
+        reduced
+    }
+
+    /// In a positive semidefinite matrix no diagonal is negative, and where it is zero, what two variables have in each other's
+    /// rows is opposite in sign. A row is turned round where neither speaks against it.
+    fn choose_signs(&mut self) {
+        let column = |j: usize| self.col_start[j]..self.col_start[j + 1];
+        let at = |i: usize, j: usize| {
+            let found = self.rows[column(j)].binary_search(&i).ok()?;
+            Some(self.values[self.entry[column(j).start + found]])
+        };
+        for _ in 0..SIGN_SWEEPS {
+            let mut changed = false;
+            for j in 0..self.kept.len() {
+                if self.lower[j] != f64::NEG_INFINITY || self.upper[j] != f64::INFINITY {
+                    continue;
+                }
+                let (mut diagonal, mut alike) = (0.0, 0.0);
+                for k in column(j) {
+                    let (i, value) = (self.rows[k], self.values[self.entry[k]]);
+                    match i == j {
+                        true => diagonal = self.sign[j] * value,
+                        false => {
+                            alike += self.sign[j] * self.sign[i] * value * at(j, i).unwrap_or(0.0)
+                        }
+                    }
+                }
+                if diagonal <= 0.0 && alike >= 0.0 && diagonal < alike {
+                    (self.sign[j], changed) = (-self.sign[j], true);
+                }
+            }
+            if !changed {
+                break;
+            }
         }
     }
 
@@ -105,8 +154,8 @@ impl Problem for Reduced<'_> {
         self.scatter(x);
         self.inner.function(&self.x, &mut self.f)?;
         f.iter_mut()
-            .zip(&self.kept)
-            .for_each(|(f, &i)| *f = self.f[i]);
+            .zip(self.kept.iter().zip(&self.sign))
+            .for_each(|(f, (&i, sign))| *f = sign * self.f[i]);
         Ok(())
     }
     fn jacobian(&mut self, x: &[f64], values: &mut [f64]) -> Result<(), EvalError> {
@@ -114,8 +163,8 @@ impl Problem for Reduced<'_> {
         self.inner.jacobian(&self.x, &mut self.values)?;
         values
             .iter_mut()
-            .zip(&self.entry)
-            .for_each(|(v, &k)| *v = self.values[k]);
+            .zip(self.entry.iter().zip(&self.rows))
+            .for_each(|(v, (&k, &i))| *v = self.sign[i] * self.values[k]);
         Ok(())
     }
     fn is_linear(&self) -> bool {
