@@ -216,3 +216,33 @@ fn extremes(values: impl Iterator<Item = f64> + Clone) -> f64 {
         1.0
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solve::lp::form::Sparse;
+
+    /// Geometric means would make an entry count that changes nothing.
+    #[test]
+    fn what_changes_nothing_in_a_step_stays_small() {
+        let mut rows = Sparse::new();
+        rows.push([(0, 1e3), (1, 1e-20)]);
+        rows.push([(1, 5.0), (2, 1.0)]);
+        let problem = Problem {
+            cost: vec![1.0, 1.0, 10.0],
+            lower: vec![-0.5, -4.0, 0.0],
+            upper: vec![0.5, 4.0, f64::INFINITY],
+            row_lower: vec![1.0; 2],
+            row_upper: vec![1.0; 2],
+            columns: rows.transpose(3),
+            rows,
+            ..Problem::default()
+        };
+        let scaled = Scaling::of_steps(&problem, &[1.0, 8.0], 0.5).apply(&problem);
+        let entries = scaled.rows.value;
+        let near = |v: f64| (0.5..=2.0).contains(&v.abs());
+        assert!(near(entries[0]) && near(entries[2]) && near(entries[3]));
+        assert!(entries[1] < 1e-19);
+        assert_eq!(scaled.upper[..2], [1.0, 1.0]);
+    }
+}

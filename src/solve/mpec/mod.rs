@@ -133,7 +133,8 @@ const WITHOUT: &str = "without";
 /// What a relaxed program is solved with.
 const RELAXED: [(&str, &str); 2] = [("bound_relax_factor", "0"), ("mu_strategy", "adaptive")];
 
-/// By the interior point in one run, in so many iterations at most, and coarsely: it only says which branch to solve.
+/// By the interior point in one run, coarsely, in so many iterations at most, and no more than half as many as rows and columns: it only says
+/// which branch to solve.
 const MOST_COARSE: u64 = 150;
 const COARSE: [(&str, &str); 5] = [
     ("tol", "1e-3"),
@@ -542,7 +543,7 @@ impl Search<'_, '_> {
         let first = super::nlp::interior_point_solvers().first();
         let solver = first.map(|p| p.about().name).filter(|_| interior);
         let (stride, most) = match interior {
-            true => (STRIDES, MOST_COARSE),
+            true => (STRIDES, MOST_COARSE.min(self.size() / 2)),
             false => (STEPS, u64::MAX),
         };
         let coarse = if interior { &COARSE[..] } else { &[] };

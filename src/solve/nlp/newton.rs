@@ -22,9 +22,8 @@
 //! Where as many rows count as variables are free, and these are many, J itself is factorised: that takes a third of the time, without damping.
 
 use super::path::end_of_path;
-use super::polish::number;
 use super::problem::{Entry, Nlp};
-use super::symmetric::{Lower, Symmetric};
+use super::symmetric::{Lower, Places, Symmetric};
 use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::solvers::Lu;
 use faer::sparse::{SparseColMat, Triplet};
@@ -48,6 +47,8 @@ const MOST_CREEPING: u64 = 10;
 /// Variables from which on J is factorised, where rows and variables are as many; and nonzeros of JᵀJ, which bound its factors.
 const MANY: usize = 500;
 const MOST_NONZEROS: f64 = 2e8;
+/// The part of variables and rows that counts from which on the other matrix has them all.
+const MOST: f64 = 0.5;
 /// What may be left of a right-hand side of ones.
 const SOUND: f64 = 1e-6;
 
@@ -262,7 +263,7 @@ impl System {
     /// The step with the same factors at another residual; none where other rows would count there.
     pub(super) fn again(&self, factors: &Factors, residual: &[f64]) -> Option<Vec<f64>> {
         let counted = |(r, row): (&f64, &Option<usize>)| *r == 0.0 || row.is_some();
-        if !residual.iter().zip(&factors.rows).all(counted) {
+        if !residual.iter().zip(&factors.places.row).all(counted) {
             return None;
         }
         self.by(factors, residual)
@@ -324,33 +325,29 @@ impl System {
         counts: impl Fn(usize) -> bool,
         order: Option<Symmetric>,
     ) -> Option<Factors> {
-        let (n, m) = (self.column_unit.len(), self.row_unit.len());
-        let (columns, free) = number(|j| !stays[j], n);
-        let (rows, kept) = number(counts, m);
-        let entries = self.jacobian.iter();
-        let entries = entries.filter_map(|&(i, j, a)| Some((rows[i]?, columns[j]?, a)));
-        if free == kept
-            && free >= MANY
-            && let Some(lu) = lu(free, entries.clone())
-        {
-            return Some(Factors {
-                columns,
-                rows,
-                free,
-                kind: Kind::Lu(Box::new(lu)),
-            });
+        let free: Vec<bool> = stays.iter().map(|s| !s).collect();
+        let held: Vec<bool> = (0..self.row_unit.len()).map(counts).collect();
+        // for a square matrix only what counts has a place
+        let places = Places::new(&free, &held, f64::INFINITY);
+        if places.is_square() && places.variables >= MANY {
+            let entries = self.jacobian.iter();
+            let entries =
+                entries.filter_map(|&(i, j, a)| Some((places.row[i]?, places.column[j]?, a)));
+            if let Some(lu) = lu(places.variables, entries) {
+                let kind = Kind::Lu(Box::new(lu));
+                return Some(Factors { places, kind });
+            }
         }
+        let places = Places::new(&free, &held, MOST);
         let mut matrix = Lower::default();
-        (0..free).for_each(|p| matrix.push(p, p, delta));
-        (free..free + kept).for_each(|p| matrix.push(p, p, -gamma));
-        entries.for_each(|(p, q, a)| matrix.push(free + p, q, a));
+        places.diagonal(&mut matrix, |_| delta, -gamma);
+        for &(i, j, a) in &self.jacobian {
+            places.slope(&mut matrix, i, j, a);
+        }
         let mut factors = order.unwrap_or_else(Symmetric::empty);
-        factors.factor(free + kept, &matrix).then_some(Factors {
-            columns,
-            rows,
-            free,
-            kind: Kind::Symmetric(Box::new(factors)),
-        })
+        let regular = factors.factor(places.total(), &matrix);
+        let kind = Kind::Symmetric(Box::new(factors));
+        regular.then_some(Factors { places, kind })
     }
 }
 
@@ -377,9 +374,7 @@ fn lu(n: usize, entries: impl Iterator<Item = Entry> + Clone) -> Option<Lu<usize
 
 /// Factors, and the place of each variable and row.
 pub(super) struct Factors {
-    columns: Vec<Option<usize>>,
-    rows: Vec<Option<usize>>,
-    free: usize,
+    pub(super) places: Places,
     kind: Kind,
 }
 
@@ -390,13 +385,8 @@ enum Kind {
 }
 
 impl Factors {
-    /// Whether as many rows count as variables are free.
-    pub(super) fn is_square(&self) -> bool {
-        self.rows.iter().flatten().count() == self.free
-    }
-
     /// Factors whose order may serve again.
-    fn symmetric(self) -> Option<Symmetric> {
+    pub(super) fn symmetric(self) -> Option<Symmetric> {
         match self.kind {
             Kind::Symmetric(factors) => Some(*factors),
             Kind::Lu(_) => None,
@@ -410,28 +400,30 @@ impl Factors {
         left: impl Fn(usize) -> f64,
         right: impl Fn(usize) -> f64,
     ) -> Option<(Vec<f64>, Vec<f64>)> {
-        let kept = self.rows.iter().flatten().count();
-        let mut side = vec![0.0; self.free + kept];
-        for (j, p) in self.columns.iter().enumerate() {
+        let places = &self.places;
+        let mut side = vec![0.0; places.total()];
+        for (j, p) in places.column.iter().enumerate() {
             p.iter().for_each(|p| side[*p] = left(j));
         }
-        for (i, p) in self.rows.iter().enumerate() {
-            p.iter().for_each(|p| side[self.free + p] = right(i));
+        for (i, p) in places.row.iter().enumerate() {
+            p.iter().for_each(|p| side[places.variables + p] = right(i));
         }
         let s = match &self.kind {
             Kind::Symmetric(factors) => factors.solve(&side)?,
             // Jᵀy = left, J d = right
             Kind::Lu(lu) => {
-                let (y, d) = side.split_at_mut(self.free);
+                let (y, d) = side.split_at_mut(places.variables);
                 lu.solve_transpose_in_place(faer::ColMut::from_slice_mut(y));
                 lu.solve_in_place(faer::ColMut::from_slice_mut(d));
                 [d, y].concat()
             }
         };
-        let d = self.columns.iter().zip(&system.column_unit);
+        let d = places.column.iter().zip(&system.column_unit);
         let d = d.map(|(p, u)| p.map_or(0.0, |p| s[p] * u)).collect();
-        let y = self.rows.iter();
-        let y = y.map(|p| p.map_or(0.0, |p| s[self.free + p])).collect();
+        let y = places.row.iter();
+        let y = y
+            .map(|p| p.map_or(0.0, |p| s[places.variables + p]))
+            .collect();
         Some((d, y))
     }
 }

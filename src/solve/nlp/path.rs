@@ -8,6 +8,7 @@
 
 use super::newton::{Factors, LEAST_DAMPING, NEARLY, STEPS, System, moved, residuals};
 use super::problem::Nlp;
+use super::symmetric::Symmetric;
 
 /// Strides shorter than this, in units of the first step or of a variable, lead nowhere.
 const SHORTEST: f64 = 1e-3;
@@ -46,12 +47,13 @@ pub(super) fn end_of_path(
 ) -> (Option<Vec<f64>>, u64) {
     let x = nlp.start().to_vec();
     let first = residuals(nlp, &x);
-    let begin = first.and_then(|r| Some((Matrix::at(nlp, &x, (1.0, &r), 1.0)?, r)));
+    let order = &mut None;
+    let begin = first.and_then(|r| Some((Matrix::at(nlp, &x, (1.0, &r), 1.0, order)?, r)));
     let Some((begin, first)) = begin else {
         return (None, 1);
     };
     let unit = begin.here.length(&begin.slope).max(1.0);
-    let mut path = Matrix { unit, ..begin }.onwards(x, 1.0, -1.0);
+    let mut path = Matrix { unit, ..begin }.onwards(x, 1.0, -1.0, order);
     let (mut stride, mut matrices) = (f64::INFINITY, 1);
     while path.left > 0.0 {
         if stop(nlp.failures()) || stride < SHORTEST || matrices >= 2 * STEPS {
@@ -61,7 +63,7 @@ pub(super) fn end_of_path(
         if aims {
             stride = -path.left / path.rate;
         }
-        let (next, taken) = path.next(nlp, &first, (stride, aims), unit);
+        let (next, taken) = path.next(nlp, &first, (stride, aims), unit, order);
         matrices += taken;
         stride *= match next {
             Some((_, FEW..)) => 1.0,
@@ -81,6 +83,7 @@ impl Path {
         first: &[f64],
         (stride, aims): (f64, bool),
         unit: f64,
+        order: &mut Option<Symmetric>,
     ) -> (Option<(Self, u64)>, u64) {
         let mut x = moved(nlp, &self.x, &self.ahead, stride);
         let mut left = match aims {
@@ -90,11 +93,11 @@ impl Path {
         let (mut largest, mut last, mut matrices) = (0.0, f64::INFINITY, 0);
         let mut matrix = None;
         for taken in 0..MOST_CORRECTIONS {
-            let known = match matrix.take().filter(|_| !aims) {
+            let known = match matrix.take() {
                 Some(known) => Some(known),
                 None => {
                     matrices += 1;
-                    Matrix::at(nlp, &x, (left, first), unit)
+                    Matrix::at(nlp, &x, (left, first), unit, order)
                 }
             };
             let step = known.and_then(|known| {
@@ -109,10 +112,16 @@ impl Path {
             (largest, last) = (length.max(largest), length);
             if length <= CONTRACTED * largest || length <= NEARLY {
                 let sign = known.product((&self.ahead, self.rate), (&known.slope, 1.0));
-                let on = known.onwards(x, left, sign.signum());
+                let on = known.onwards(x, left, sign.signum(), order);
                 return (Some((on, taken)), matrices);
             }
-            matrix = Some(known);
+            matrix = match aims {
+                true => {
+                    *order = known.factors.symmetric();
+                    None
+                }
+                false => Some(known),
+            };
         }
         (None, matrices)
     }
@@ -120,13 +129,19 @@ impl Path {
 
 impl Matrix {
     /// At a point where a part of the first residual is to be left.
-    fn at(nlp: &mut dyn Nlp, x: &[f64], (left, first): (f64, &[f64]), unit: f64) -> Option<Self> {
+    fn at(
+        nlp: &mut dyn Nlp,
+        x: &[f64],
+        (left, first): (f64, &[f64]),
+        unit: f64,
+        order: &mut Option<Symmetric>,
+    ) -> Option<Self> {
         let mut here = System::at(nlp, x)?;
         let residual = here.residual.iter_mut().zip(first);
         residual.for_each(|(r, f)| *r -= left * f);
-        let (_, factors) = here.step(nlp, x, LEAST_DAMPING, &mut None)?;
+        let (_, factors) = here.step(nlp, x, LEAST_DAMPING, order)?;
         // a variable that stays at a bound leaves more equations than variables: no path
-        factors.is_square().then_some(())?;
+        factors.places.is_square().then_some(())?;
         let back = here.again(&factors, first)?;
         Some(Self {
             slope: back.into_iter().map(|d| -d).collect(),
@@ -165,9 +180,10 @@ impl Matrix {
     }
 
     /// The path at this point, t growing with a positive sign.
-    fn onwards(self, x: Vec<f64>, left: f64, sign: f64) -> Path {
+    fn onwards(self, x: Vec<f64>, left: f64, sign: f64, order: &mut Option<Symmetric>) -> Path {
         let all = (&self.slope[..], 1.0);
         let rate = sign / self.product(all, all).sqrt();
+        *order = self.factors.symmetric();
         Path {
             ahead: self.slope.iter().map(|s| rate * s).collect(),
             x,

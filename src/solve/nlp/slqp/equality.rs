@@ -9,9 +9,8 @@
 //! part of it.
 
 use super::point::{Frame, Point};
-use crate::solve::nlp::polish::number;
 use crate::solve::nlp::problem::Entry;
-use crate::solve::nlp::symmetric::{Lower, Symmetric};
+use crate::solve::nlp::symmetric::{Lower, Places, Symmetric};
 use crate::solve::strategy::{Strategies, Strategy};
 use faer::Mat;
 use faer::linalg::solvers::Solve;
@@ -38,6 +37,9 @@ pub(super) struct Working {
 const SHIFTS: [f64; 10] = [0.0, 1e-8, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0];
 /// The number of the last one.
 pub(super) const ANY: usize = SHIFTS.len() - 1;
+
+/// The part of variables and rows that is free or held from which on the matrix has them all.
+const MOST: f64 = 0.75;
 
 /// The squared sine of the angle to what is held from which on something may join.
 const INDEPENDENT: f64 = 1e-10;
@@ -71,10 +73,7 @@ pub(super) struct Equality {
     pub(super) factors: Option<Symmetric>,
     /// What rows that stay violated pull with.
     pull: Vec<f64>,
-    column: Vec<Option<usize>>,
-    row: Vec<Option<usize>>,
-    free: usize,
-    held: usize,
+    places: Places,
     /// The solution of the factorised system alone.
     alone: Vec<f64>,
     /// The largest entry of H + τD in units.
@@ -96,8 +95,9 @@ impl Equality {
         most: usize,
         memory: &mut Memory,
     ) -> Option<Self> {
-        let (column, free) = number(|j| working.column[j].is_none(), frame.n);
-        let (row, held) = number(|i| working.row[i].is_some(), frame.m);
+        let free: Vec<bool> = working.column.iter().map(Option::is_none).collect();
+        let held: Vec<bool> = working.row.iter().map(Option::is_some).collect();
+        let places = Places::new(&free, &held, MOST);
         let mut d = vec![0.0; frame.n];
         let mut cost = at.gradient.clone();
         for (j, bound) in working.column.iter().enumerate() {
@@ -107,31 +107,29 @@ impl Equality {
         let mut largest = 0.0_f64;
         for &(i, j, h) in hessian {
             largest = largest.max((h * at.unit(i) * at.unit(j)).abs());
-            match (column[i], column[j]) {
-                (Some(p), Some(q)) => base.push(p, q, h),
-                (Some(_), None) => cost[i] += h * d[j],
-                (None, Some(_)) => cost[j] += h * d[i],
-                (None, None) => {}
+            match (free[i], free[j]) {
+                (true, false) => cost[i] += h * d[j],
+                (false, true) => cost[j] += h * d[i],
+                _ => {}
             }
+            places.curve(&mut base, i, j, h);
         }
-        let mut right = vec![0.0; free + held];
-        for (i, &place) in row.iter().enumerate().take(frame.m) {
-            if let (Some(p), Some(side)) = (place, working.row[i]) {
-                let mut rest = side - at.values.g[i];
+        let mut right = vec![0.0; places.total()];
+        for (i, &pull) in working.pull.iter().enumerate() {
+            for (j, a) in at.rows.line(i) {
+                places.slope(&mut base, i, j, a);
+            }
+            if let (Some(p), Some(side)) = (places.row[i], working.row[i]) {
+                let line = at.rows.line(i).filter(|e| !free[e.0]);
+                let known: f64 = line.map(|(j, a)| a * d[j]).sum();
+                right[places.variables + p] = side - at.values.g[i] - known;
+            } else if pull != 0.0 {
                 for (j, a) in at.rows.line(i) {
-                    match column[j] {
-                        Some(q) => base.push(free + p, q, a),
-                        None => rest -= a * d[j],
-                    }
-                }
-                right[free + p] = rest;
-            } else if working.pull[i] != 0.0 {
-                for (j, a) in at.rows.line(i) {
-                    cost[j] += working.pull[i] * a;
+                    cost[j] += pull * a;
                 }
             }
         }
-        for (j, p) in column.iter().enumerate() {
+        for (j, p) in places.column.iter().enumerate() {
             if let Some(p) = p {
                 right[*p] = -cost[j];
             }
@@ -141,43 +139,34 @@ impl Equality {
             lambda: working.pull.clone(),
             factors: None,
             pull: working.pull.clone(),
-            column,
-            row,
-            free,
-            held,
+            places,
             alone: Vec::new(),
             curvature: 0.0,
             joined: Vec::new(),
             shifted: false,
             yields: false,
         };
-        if free == 0 {
-            return (held == 0).then_some(out);
+        if !free.contains(&true) {
+            return (!held.contains(&true)).then_some(out);
         }
         let largest = if largest > 0.0 { largest } else { 1.0 };
         let before = memory.shift.saturating_sub(1).max(1);
         for k in std::iter::once(0).chain(before..=most) {
             let tau = SHIFTS[k] * largest;
             let mut matrix = base.clone();
-            for (j, p) in out.column.iter().enumerate() {
-                if let Some(p) = p {
-                    matrix.push(*p, *p, tau / at.unit(j).powi(2));
-                }
-            }
             let mut factors = memory.factors.take().unwrap_or_else(Symmetric::empty);
             let give = if out.yields { YIELDING } else { 0.0 };
-            for k in free..free + held {
-                matrix.push(k, k, -give);
-            }
-            let regular = factors.factor(free + held, &matrix);
+            let places = &out.places;
+            places.diagonal(&mut matrix, |j| tau / at.unit(j).powi(2), -give);
+            let regular = factors.factor(places.total(), &matrix);
             let inertia = factors.inertia().filter(|_| regular);
-            let solution = match inertia == Some((free, held)) {
+            let solution = match inertia == Some((places.variables, places.rows)) {
                 true => factors.solve(&right),
                 false => None,
             };
             let Some(s) = solution else {
                 // fewer negative eigenvalues than rows: these are dependent whatever the shift
-                let dependent = out.yields || inertia.is_some_and(|i| i.1 < held);
+                let dependent = out.yields || inertia.is_some_and(|i| i.1 < places.rows);
                 out.yields = dependent && memory.strategies.run(Strategy::DependentRows);
                 memory.factors = Some(factors);
                 continue;
@@ -197,11 +186,11 @@ impl Equality {
 
     /// Reads d and λ from the solution of the system and the multipliers of what joined.
     fn spread(&mut self, s: &[f64], joined: &[f64]) {
-        for (d, p) in self.d.iter_mut().zip(&self.column) {
+        for (d, p) in self.d.iter_mut().zip(&self.places.column) {
             *d = p.map_or(*d, |p| s[p]);
         }
-        for (l, p) in self.lambda.iter_mut().zip(&self.row) {
-            *l = p.map_or(*l, |p| s[self.free + p]);
+        for (l, p) in self.lambda.iter_mut().zip(&self.places.row) {
+            *l = p.map_or(*l, |p| s[self.places.variables + p]);
         }
         for (joined, multiplier) in self.joined.iter().zip(joined) {
             if let Met::Row(i, _) = joined.met {
@@ -230,7 +219,7 @@ impl Equality {
     /// A bound or a row joins the set: what d and λ were before. None if it depends on what is held: then nothing changes.
     pub(super) fn join(&mut self, at: &Point, met: Met) -> Option<(Vec<f64>, Vec<f64>)> {
         let (mut entries, mut to, mut size) = (Vec::new(), 0.0, 0.0);
-        let mut add = |j: usize, a: f64| match self.column[j] {
+        let mut add = |j: usize, a: f64| match self.places.column[j] {
             Some(p) => {
                 entries.push((p, a));
                 size += (a * at.unit(j)).powi(2);
@@ -245,7 +234,7 @@ impl Equality {
             Met::Column(j, bound) => bound - at.x[j],
             Met::Row(i, side) => side - at.values.g[i],
         };
-        let mut dense = vec![0.0; self.free + self.held];
+        let mut dense = vec![0.0; self.places.total()];
         entries.iter().for_each(|&(p, a)| dense[p] += a);
         let solved = self.factors.as_ref()?.solve(&dense)?;
         let (own, _) = self.bordered(solved.clone(), |_| 0.0);
@@ -284,10 +273,10 @@ impl Equality {
     /// The step that takes so much off the held rows besides: what their curvature added on the way.
     pub(super) fn correction(&self, curvature: &[f64]) -> Option<Vec<f64>> {
         let factors = self.factors.as_ref()?;
-        let mut right = vec![0.0; self.free + self.held];
-        for (c, p) in curvature.iter().zip(&self.row) {
+        let mut right = vec![0.0; self.places.total()];
+        for (c, p) in curvature.iter().zip(&self.places.row) {
             if let Some(p) = p {
-                right[self.free + p] = -c;
+                right[self.places.variables + p] = -c;
             }
         }
         let (s, _) = self.bordered(factors.solve(&right)?, |j| match j.met {
@@ -295,7 +284,8 @@ impl Equality {
             Met::Row(i, _) => -curvature[i],
         });
         Some(
-            self.column
+            self.places
+                .column
                 .iter()
                 .map(|p| p.map_or(0.0, |p| s[p]))
                 .collect(),

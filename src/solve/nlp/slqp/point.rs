@@ -213,11 +213,10 @@ impl Point {
         })
     }
 
-    /// Lower triangle of the Hessian of the Lagrangian; nothing where it has no value.
+    /// Lower triangle of the Hessian of the Lagrangian, its zeros too; nothing where it has no value.
     pub(super) fn hessian(&self, nlp: &mut dyn Nlp, frame: &Frame, lambda: &[f64]) -> Vec<Entry> {
         let lambda = frame.multipliers(lambda);
         let mut entries = nlp.hessian_entries(&self.x, &lambda).unwrap_or_default();
-        entries.retain(|e| e.2 != 0.0);
         entries.iter_mut().for_each(|e| e.2 /= frame.price);
         match entries.iter().all(|e| e.2.is_finite()) {
             true => entries,
