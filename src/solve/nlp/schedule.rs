@@ -12,10 +12,6 @@ pub(super) const BASE: [(&str, &str); 8] = [
     ("diverging_iterates_tol", "1e18"),
 ];
 
-/// Kinks are rounded by less and less; the last value also serves to judge points at a kink.
-pub(super) const ROUNDING: [f64; 4] = [1e-1, 1e-3, 1e-5, FINEST];
-pub(super) use crate::solve::certificate::nonlinear::KINK_WIDTH as FINEST;
-
 /// Where an attempt starts.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) enum From {
@@ -34,8 +30,6 @@ pub(super) enum From {
 /// Iterations that one attempt may take; the first less, for what takes so many is better begun elsewhere.
 pub(super) const MAX_ATTEMPT_ITERATIONS: u64 = 3000;
 pub(super) const FIRST_ATTEMPT_ITERATIONS: u64 = 500;
-/// What a proof that nothing nearby is feasible is doubted for.
-pub(super) const DOUBT: u64 = 100;
 /// Where there is an answer, a search for a better one may take this many at least.
 pub(super) const MIN_ATTEMPT_ITERATIONS: u64 = 50;
 
@@ -44,11 +38,6 @@ pub(super) const NEAR: &[(&str, &str)] = &[
     ("mu_strategy", "adaptive"),
     ("bound_push", "1e-6"),
     ("bound_frac", "1e-6"),
-];
-pub(super) const NEARER: &[(&str, &str)] = &[
-    ("mu_init", "1e-8"),
-    ("bound_push", "1e-8"),
-    ("bound_frac", "1e-8"),
 ];
 
 /// From where a better optimum than a certified one is looked for: the first [`AGREEMENT`] are always tried, the others where

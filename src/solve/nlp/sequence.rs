@@ -3,10 +3,9 @@
 use super::driver::Driver;
 use super::growth::Growth;
 use super::interior_point::{Ended, lock};
-use super::newton;
 use super::problem::Nlp;
 use super::schedule::From;
-use super::slqp::{self, Effort};
+use super::slqp;
 use super::trial::{Trial, active_set};
 use crate::solve::certificate::TOLERANCE;
 use crate::solve::certificate::nonlinear::is_locally_infeasible;
@@ -29,12 +28,10 @@ impl Driver<'_, '_> {
     pub(super) fn settle_by_sequence(
         &mut self,
         again: bool,
-        effort: Effort,
     ) -> Result<bool, SolveError> {
         if self.named {
             return Ok(false);
         }
-        let marginals = again.then(|| lock(&*self.problem).marginals_of(self.instance));
         let runs = |s| self.settings.runs(s);
         // Newton's method may have come to a feasible point that is no optimum
         let found = self.best.as_ref().filter(|t| t.is_feasible());
@@ -45,10 +42,10 @@ impl Driver<'_, '_> {
             }
             _ => self.start.clone(),
         };
-        self.sequential(start, marginals.as_deref(), effort);
+        self.sequential(start);
         if self.was_moved && !again && self.is_settled() {
             // slopes without limit may have held variables at 0 from which they were moved a little only
-            self.sequential(self.start_point(From::Middle), None, effort);
+            self.sequential(self.start_point(From::Middle));
         }
         let settled = self.is_settled_by("slqp")?;
         if settled {
@@ -68,7 +65,7 @@ impl Driver<'_, '_> {
         let violation = |t: &Trial| t.residuals.primal_relative;
         let before = self.best.as_ref().map_or(f64::INFINITY, violation);
         let x = self.start_point(From::Middle);
-        self.sequential(x, None, Effort::FULL);
+        self.sequential(x);
         if self.best.as_ref().is_some_and(Trial::is_feasible) {
             return self.is_settled_by("slqp");
         }
@@ -78,8 +75,8 @@ impl Driver<'_, '_> {
         Ok(false)
     }
 
-    /// Sequential programs from a point, judged and kept; with multipliers, from the active set that they name.
-    pub(super) fn sequential(&mut self, x: Vec<f64>, multipliers: Option<&[f64]>, effort: Effort) {
+    /// Sequential programs from a point, judged and kept.
+    pub(super) fn sequential(&mut self, x: Vec<f64>) {
         if !self.settings.runs(Strategy::SequentialQuadratic) || !self.affords_factors() {
             return;
         }
@@ -87,13 +84,8 @@ impl Driver<'_, '_> {
         problem.set_start(x);
         let own = self.settings.number("max_iter");
         let own = own.map_or(u64::MAX, |n| n as u64);
-        let effort = Effort {
-            steps: effort.steps.min(self.budget.iterations_left()).min(own),
-            ..effort
-        };
         let request = slqp::Request {
-            multipliers,
-            effort,
+            steps: slqp::STEPS.min(self.budget.iterations_left()).min(own),
             width: 0.0,
             strategies: self.settings.strategies(),
         };
@@ -118,7 +110,7 @@ impl Driver<'_, '_> {
             && let Some(x) = self.beyond_least_violation(&run.x, &run.lambda)
         {
             self.violation_escapes += 1;
-            return self.sequential(x, None, effort);
+            return self.sequential(x);
         }
         let trial = self.judge(run.x, run.lambda, ended);
         if run.end == slqp::End::Infeasible {
@@ -141,23 +133,11 @@ impl Driver<'_, '_> {
 
     /// Where rows have no multipliers, as a square that is to be 0: the point is optimal if the same rows, a little wider, have an
     /// optimum with multipliers and all but the same value.
-    fn without_multipliers(&mut self, mut trial: Trial) -> Trial {
+    fn without_multipliers(&mut self, trial: Trial) -> Trial {
         let mut problem = lock(&*self.problem);
         problem.set_start(trial.x.clone());
-        if !trial.is_feasible() {
-            let budget = self.budget;
-            let run = newton::solve(&mut *problem, &mut |_| budget.is_over());
-            drop(problem);
-            if let Some(run) = run {
-                self.spend(run.steps);
-                trial = self.judge(run.x, trial.lambda, trial.ended);
-            }
-            problem = lock(&*self.problem);
-            problem.set_start(trial.x.clone());
-        }
         let request = slqp::Request {
-            multipliers: None,
-            effort: Effort::FULL,
+            steps: slqp::STEPS,
             width: WIDTH,
             strategies: self.settings.strategies(),
         };
