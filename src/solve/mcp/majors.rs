@@ -27,8 +27,6 @@ use super::run::{Point, Run, StallCounter, Stop};
 
 /// Armijo constant of the M test and of the line search.
 const ARMIJO: f64 = 1e-4;
-/// Number of variables up to which the slack start is tried early.
-const SLACK_START: usize = 1000;
 /// Number of variables from which the crash is interior: one step of it replaces many pivots.
 pub(super) const INTERIOR: usize = 600;
 /// Number of variables from which long paths are avoided near a solution.
@@ -37,16 +35,10 @@ const LARGE: usize = 1000;
 /// to the least that counts.
 const PROX_FIRST: f64 = 1e-7;
 const PROX_MIN: f64 = 1e-12;
-/// A ray is worth a step if t got this far.
-const RAY_MIN: f64 = 1e-2;
 /// Major iterations without a notable fall of the residual before the run is called stuck.
 const STAGNATION: usize = 30;
 /// Pivots without that, at least and times n: problems without a solution have many and long paths.
 const STAGNATION_PIVOTS: (usize, usize) = (10_000, 40);
-/// The same where the residual would be accepted already.
-const STAGNATION_NEAR: usize = 4;
-/// Steps in a row to solutions ~ 1/v before the run is called stuck: it follows a ray.
-const DOUBTFUL_LIMIT: usize = 8;
 /// Pivots on a path near a solution, or a share 1/10 of n.
 const NEAR_LIMIT: usize = 200;
 /// Pivots on a path from a solution to a better one, times n: a second or so where directions are full.
@@ -98,13 +90,9 @@ struct Checkpoint {
 /// The next point, found on the path or otherwise.
 struct Candidate {
     y: Vec<f64>,
-    end: PathEnd,
-    t: f64,
-    /// Final state of the path, a warm start if it was solved.
-    kind: Option<Vec<Kind>>,
+    /// Final state of the path, a warm start.
+    kind: Vec<Kind>,
     prox: f64,
-    /// A solution of a linear problem for v > 0 that may stand for a ray.
-    doubtful: bool,
 }
 
 struct Majors {
@@ -116,8 +104,6 @@ struct Majors {
     warm: Option<Vec<Kind>>,
     untested: usize,
     gradient_steps: usize,
-    /// Steps in a row to solutions that may stand for rays.
-    doubtful: usize,
     seed: u64,
 }
 
@@ -135,7 +121,6 @@ impl Majors {
             warm: None,
             untested: 0,
             gradient_steps: 0,
-            doubtful: 0,
             seed: 1,
         }
     }
@@ -161,10 +146,8 @@ impl Majors {
             if idle == 0 {
                 pivots_then = run.pivots;
             }
-            // Good enough to accept, and no better in sight: another method may do better.
-            let acceptable = self.best.residual <= run.settings.acceptable_tolerance;
             let long = run.pivots - pivots_then > most;
-            if idle > STAGNATION || long || acceptable && idle > STAGNATION_NEAR {
+            if idle > STAGNATION || long {
                 return Ok(());
             }
             if run.converged(self.point.residual) {
@@ -210,14 +193,6 @@ impl Majors {
                 }
                 continue;
             };
-            self.doubtful = if candidate.doubtful {
-                self.doubtful + 1
-            } else {
-                0
-            };
-            if self.doubtful > DOUBTFUL_LIMIT {
-                return Ok(());
-            }
             if !self.accept(run, candidate, &jacobian, run.pivots - pivots, tries)? {
                 return Ok(());
             }
@@ -241,12 +216,12 @@ impl Majors {
             r if r <= 0.1 * self.point.residual => 'M',
             _ => '-',
         };
-        let (end, t, prox) = (candidate.end, candidate.t, candidate.prox);
+        let (end, t, prox) = (PathEnd::Solved, 1.0, candidate.prox);
         log::major_line(run, &next, pivots, end, t, prox, 1.0, kind, tries);
         if kind == '-' {
             return false;
         }
-        (self.warm, self.point) = (candidate.kind, next);
+        (self.warm, self.point) = (Some(candidate.kind), next);
         self.reduce_prox(prox);
         true
     }
@@ -259,7 +234,7 @@ impl Majors {
         polish: bool,
     ) -> Result<(Option<Candidate>, usize), Stop> {
         let r = (2.0 * self.point.merit).sqrt();
-        let prox = self.proximal_terms(run, r);
+        let prox = self.proximal_terms(r);
         // Large, and close to a solution: long paths are not worth their pivots any more.
         let near = run.n > LARGE && self.point.residual <= run.settings.acceptable_tolerance;
         let limit = match run.settings.minor_iteration_limit {
@@ -269,7 +244,6 @@ impl Majors {
             0 => pivot_limit(run.n),
             given => given,
         };
-        let (mut reserve, mut ray): (Option<(Candidate, f64)>, Option<Candidate>) = (None, None);
         let mut tries = 0;
         for (level, &v) in prox.iter().enumerate() {
             let Some((m, q)) = self.linearised(jacobian, v) else {
@@ -279,7 +253,7 @@ impl Majors {
                 if polish {
                     start.tolerance = HARRIS_CLOSE;
                 }
-                if (polish || near) && (start.cover || level > 2) {
+                if (polish || near) && level > 2 {
                     continue;
                 }
                 tries += 1;
@@ -299,59 +273,28 @@ impl Majors {
                     kind,
                     pivots,
                 } = result;
-                log::try_line(run, end, t, v, pivots, start.cover);
+                log::try_line(run, end, t, v, pivots);
                 match end {
                     PathEnd::Solved => {
-                        let off = x.iter().zip(&self.point.x).map(|(a, b)| (a - b).powi(2));
-                        let length = off.sum::<f64>().sqrt();
                         let found = Candidate {
                             y: x,
-                            end,
-                            t: 1.0,
-                            kind: Some(kind),
+                            kind,
                             prox: v,
-                            doubtful: run.problem.is_linear() && v > 0.0 && v * length > 0.7 * r,
                         };
-                        if !found.doubtful {
-                            return Ok((Some(found), tries));
-                        }
-                        // Of several, the one with the least merit.
-                        if let Some(point) = run.point(found.y.clone())
-                            && reserve
-                                .as_ref()
-                                .is_none_or(|(_, merit)| point.merit < *merit)
-                        {
-                            reserve = Some((found, point.merit));
-                        }
+                        return Ok((Some(found), tries));
                     }
-                    PathEnd::Ray | PathEnd::Limit | PathEnd::Numerical | PathEnd::Loop => {
-                        let better =
-                            t > RAY_MIN && t <= 1.0 && ray.as_ref().is_none_or(|r| t > r.t);
-                        if better && x.iter().all(|v| v.is_finite()) {
-                            ray = Some(Candidate {
-                                y: x,
-                                end,
-                                t,
-                                kind: None,
-                                prox: v,
-                                doubtful: false,
-                            });
-                        }
-                    }
-                    PathEnd::Singular => {}
+                    _ => {}
                 }
             }
         }
-        Ok((reserve.map(|r| r.0).or(ray), tries))
+        Ok((None, tries))
     }
 
     /// The proximal terms to try, from the last one upwards, at a point of residual r.
-    fn proximal_terms(&self, run: &Run, r: f64) -> Vec<f64> {
+    fn proximal_terms(&self, r: f64) -> Vec<f64> {
         let mut prox = vec![self.prox];
-        // Where one linearisation is exact, a small term saves the iterations that remove it again.
-        let small = if run.problem.is_linear() { 1e-5 } else { 1e-3 };
         for v in [
-            (small * r.min(1.0)).max(10.0 * self.prox).max(PROX_FIRST),
+            (1e-3 * r.min(1.0)).max(10.0 * self.prox).max(PROX_FIRST),
             (0.1 * r.min(1.0)).max(100.0 * self.prox),
             1.0,
             10.0,
@@ -401,7 +344,6 @@ impl Majors {
         starts.push(Start {
             kind: near.clone(),
             x: x.clone(),
-            cover: false,
             tolerance: HARRIS,
         });
         if level == 0 {
@@ -422,35 +364,9 @@ impl Majors {
                 starts.push(Start {
                     kind,
                     x: x.clone(),
-                    cover: false,
                     tolerance: HARRIS,
                 });
             }
-        }
-        // From the slacks the path is as long as the solution has variables off their bounds: the way
-        // out where n is small, and the last resort where it is large.
-        if if run.n <= SLACK_START {
-            level <= 1
-        } else {
-            level == 4
-        } {
-            let kind = (0..run.n)
-                .map(|i| {
-                    if run.lower[i].is_finite() {
-                        Kind::AtLower
-                    } else if run.upper[i].is_finite() {
-                        Kind::AtUpper
-                    } else {
-                        Kind::Between
-                    }
-                })
-                .collect();
-            starts.push(Start {
-                kind,
-                x: x.clone(),
-                cover: true,
-                tolerance: HARRIS,
-            });
         }
         starts
     }
@@ -474,17 +390,16 @@ impl Majors {
         if self.checkpoint.direction.is_none() {
             self.checkpoint.direction = Some(direction);
         }
-        let (end, t, prox) = (candidate.end, candidate.t, candidate.prox);
+        let (end, t, prox) = (PathEnd::Solved, 1.0, candidate.prox);
         let next = run.point(candidate.y);
         if let Some(next) = next {
             let monotone = next.merit <= (1.0 - ARMIJO) * reference;
-            let watched = (end == PathEnd::Solved || t > 0.3)
-                && self.untested < run.settings.watchdog_limit
-                && next.merit <= 1e8 * reference;
+            let watched =
+                self.untested < run.settings.watchdog_limit && next.merit <= 1e8 * reference;
             if monotone || watched {
                 let kind = if monotone { 'M' } else { 'O' };
                 log::major_line(run, &next, pivots, end, t, prox, 1.0, kind, tries);
-                self.warm = candidate.kind;
+                self.warm = Some(candidate.kind);
                 self.point = next;
                 if self.point.residual < self.best.residual {
                     self.best = self.point.clone();

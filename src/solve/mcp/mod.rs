@@ -62,8 +62,6 @@ pub trait Problem {
     fn function(&mut self, x: &[f64], f: &mut [f64]) -> Result<(), EvalError>;
     /// Values of the Jacobian at x, in pattern order.
     fn jacobian(&mut self, x: &[f64], values: &mut [f64]) -> Result<(), EvalError>;
-    /// True when F is affine: one linearisation is exact.
-    fn is_linear(&self) -> bool;
 }
 
 /// A function or derivative that cannot be evaluated at a point.
@@ -198,11 +196,6 @@ pub struct Outcome {
 
 /// What the solver may ask about the problem.
 pub trait Help {
-    /// Asked once, when the main method has failed: true if it is proved that there is no solution. Ends the run with
-    /// [`Status::NoSolution`].
-    fn proves_infeasible(&mut self) -> bool {
-        false
-    }
     /// Names of row i and of its variable, for the log.
     fn name(&self, i: usize) -> String {
         format!("{}", i + 1)

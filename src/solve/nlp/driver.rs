@@ -22,8 +22,8 @@ use super::interior_point_solvers;
 use super::problem::{Nlp, Problem};
 use super::quadratic::Quadratic;
 use super::schedule::{
-    AGREEMENT, CHEAP, ELSEWHERE, ENOUGH, FIRST_ATTEMPT_ITERATIONS, From,
-    MAX_ATTEMPT_ITERATIONS, MIN_ATTEMPT_ITERATIONS, NEAR, OVERHEAD, TIMES,
+    AGREEMENT, CHEAP, ELSEWHERE, ENOUGH, FIRST_ATTEMPT_ITERATIONS, From, MAX_ATTEMPT_ITERATIONS,
+    MIN_ATTEMPT_ITERATIONS, NEAR, OVERHEAD, TIMES,
 };
 use super::trial::{Trial, clean, polished, residuals_at, tidy, without_noise};
 use crate::autodiff::{

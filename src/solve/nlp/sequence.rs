@@ -25,10 +25,7 @@ const WIDTH: f64 = 1e-8;
 
 impl Driver<'_, '_> {
     /// Sequential programs, from where an earlier solve ended if there was one. Whether that settles it.
-    pub(super) fn settle_by_sequence(
-        &mut self,
-        again: bool,
-    ) -> Result<bool, SolveError> {
+    pub(super) fn settle_by_sequence(&mut self, again: bool) -> Result<bool, SolveError> {
         if self.named {
             return Ok(false);
         }
@@ -103,7 +100,7 @@ impl Driver<'_, '_> {
             slqp::End::Infeasible => Ended::Infeasible,
             slqp::End::Diverging => Ended::Diverging,
             slqp::End::Spent => Ended::Iterations,
-            slqp::End::Stuck | slqp::End::Outgrown => Ended::SmallStep,
+            slqp::End::Stuck => Ended::SmallStep,
         };
         if run.end == slqp::End::Infeasible
             && self.violation_escapes < MOST_ESCAPES

@@ -41,8 +41,6 @@ const TAKEN: f64 = 0.05;
 /// A step that keeps less than this of its promise is corrected, so many times at most.
 const KEPT: f64 = 0.5;
 const CORRECTIONS: u32 = 4;
-/// A row or an objective this much flatter, in units, than where its unit was measured is measured anew.
-const FLATTER: f64 = 1e-4;
 /// A point with a larger number is a start for nothing.
 const FARTHEST: f64 = 1e15;
 /// A trust region this small is none.
@@ -65,8 +63,6 @@ pub(super) enum End {
     Spent,
     /// Steps get short.
     Stuck,
-    /// Where rows or the objective are much flatter than their units say.
-    Outgrown,
 }
 
 /// What is asked for besides.
@@ -108,19 +104,7 @@ pub(super) fn solve(nlp: &mut dyn Nlp, request: Request, budget: &Budget) -> Opt
     {
         *x = x.max(l).min(u);
     }
-    solve_from(nlp, start, request, false, budget)
-}
-
-/// The same from a point within the bounds; from the second time on, curvature counts for the unit of the objective.
-fn solve_from(
-    nlp: &mut dyn Nlp,
-    start: Vec<f64>,
-    request: Request,
-    again: bool,
-    budget: &Budget,
-) -> Option<Run> {
-    let (n, m) = nlp.size();
-    let mut frame = Frame::new(nlp, &start, again)?;
+    let mut frame = Frame::new(nlp, &start)?;
     frame.widen(request.width);
     let values = Values::at(nlp, &frame, &start)?;
     let at = Point::new(nlp, &frame, start, values)?;
@@ -144,19 +128,7 @@ fn solve_from(
         refused: None,
         strategies: request.strategies,
     };
-    let (steps, mut end) = method.run(request.steps);
-    if !again && end == End::Solved && method.at.is_level(method.nlp, &method.frame, FLATTER) {
-        end = End::Outgrown;
-    }
-    if end == End::Outgrown {
-        let request = Request {
-            steps: request.steps - steps,
-            ..request
-        };
-        let mut run = solve_from(method.nlp, method.at.x, request, true, budget)?;
-        run.steps += steps;
-        return Some(run);
-    }
+    let (steps, end) = method.run(request.steps);
     let largest = method.lambda.iter().fold(0.0_f64, |s, l| s.max(l.abs()));
     budget.log(format!("largest multiplier {largest:.1e}"));
     Some(Run {
@@ -232,9 +204,6 @@ impl Method<'_, '_> {
                 Ok(next) => working = next,
                 Err(end) => return (steps, end),
             }
-            if self.at.is_flatter(&self.frame, FLATTER) {
-                return (steps, End::Outgrown);
-            }
             if self.at.x.iter().any(|x| x.abs() > FARTHEST) {
                 return (steps, End::Diverging);
             }
@@ -259,11 +228,6 @@ impl Method<'_, '_> {
                 self.weight,
             ));
         }
-    }
-
-    /// Whether the violated rows differ by rounding only from rows that hold, which they then become.
-    fn forgive(&mut self) -> bool {
-        self.strategies.run(Strategy::RoundedData) && self.frame.forgive(&self.at.values.g)
     }
 
     /// Newton's step on a working set, which is returned if it may stay. Otherwise nothing has changed, or a step was taken
@@ -327,7 +291,7 @@ impl Method<'_, '_> {
     /// The linear program, with a penalty that lets it lessen the violations if anything does.
     fn program(&mut self) -> Found {
         let radius = self.linear_radius;
-        let mut now = self.frame.violation(&self.at.values.g);
+        let now = self.frame.violation(&self.at.values.g);
         let mut least: Option<f64> = None;
         loop {
             let aim = Aim {
@@ -358,10 +322,6 @@ impl Method<'_, '_> {
                         return Found::Step(step);
                     };
                     if best.short > (1.0 - 1e-7) * now {
-                        if self.forgive() {
-                            now = 0.0;
-                            continue;
-                        }
                         self.lambda = best.lambda;
                         return Found::End(End::Infeasible);
                     }
