@@ -151,6 +151,9 @@ impl Problem for Model {
         }
         Ok(())
     }
+    fn is_linear(&self) -> bool {
+        self.linear.is_some()
+    }
 }
 
 fn assert_near(x: &[f64], y: &[f64], tolerance: f64) {

@@ -141,6 +141,10 @@ impl mcp::Problem for Square<'_> {
         }
         Ok(())
     }
+
+    fn is_linear(&self) -> bool {
+        self.instance.is_linear()
+    }
 }
 
 /// The complementarity solver as a backend; by name also for linear programs, whose optimality conditions it solves

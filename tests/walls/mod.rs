@@ -226,4 +226,7 @@ impl Problem for Linear {
         values.copy_from_slice(&self.values);
         Ok(())
     }
+    fn is_linear(&self) -> bool {
+        true
+    }
 }

@@ -118,4 +118,7 @@ impl Problem for Reduced<'_> {
             .for_each(|(v, &k)| *v = self.values[k]);
         Ok(())
     }
+    fn is_linear(&self) -> bool {
+        self.inner.is_linear()
+    }
 }

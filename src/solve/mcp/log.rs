@@ -113,8 +113,12 @@ pub(super) fn step_line(run: &mut Run, point: &Point, step: f64, kind: char) {
 }
 
 /// A path that was tried.
-pub(super) fn try_line(run: &mut Run, end: PathEnd, t: f64, prox: f64, pivots: usize) {
+pub(super) fn try_line(run: &mut Run, end: PathEnd, t: f64, prox: f64, pivots: usize, cover: bool) {
     note(run, Part::Paths, || {
-        format!("      {pivots:7}  {:<9} {t:5.3} {prox:8.1e}", end.word())
+        format!(
+            "      {pivots:7}  {:<9} {t:5.3} {prox:8.1e}{}",
+            end.word(),
+            if cover { " (from slacks)" } else { "" }
+        )
     });
 }

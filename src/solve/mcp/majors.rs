@@ -27,6 +27,8 @@ use super::run::{Point, Run, StallCounter, Stop};
 
 /// Armijo constant of the M test and of the line search.
 const ARMIJO: f64 = 1e-4;
+/// Number of variables up to which the slack start is tried early.
+const SLACK_START: usize = 1000;
 /// Number of variables from which the crash is interior: one step of it replaces many pivots.
 pub(super) const INTERIOR: usize = 600;
 /// Number of variables from which long paths are avoided near a solution.
@@ -39,6 +41,8 @@ const PROX_MIN: f64 = 1e-12;
 const STAGNATION: usize = 30;
 /// Pivots without that, at least and times n: problems without a solution have many and long paths.
 const STAGNATION_PIVOTS: (usize, usize) = (10_000, 40);
+/// The same where the residual would be accepted already.
+const STAGNATION_NEAR: usize = 4;
 /// Pivots on a path near a solution, or a share 1/10 of n.
 const NEAR_LIMIT: usize = 200;
 /// Pivots on a path from a solution to a better one, times n: a second or so where directions are full.
@@ -146,8 +150,10 @@ impl Majors {
             if idle == 0 {
                 pivots_then = run.pivots;
             }
+            // Good enough to accept, and no better in sight: another method may do better.
+            let acceptable = self.best.residual <= run.settings.acceptable_tolerance;
             let long = run.pivots - pivots_then > most;
-            if idle > STAGNATION || long {
+            if idle > STAGNATION || long || acceptable && idle > STAGNATION_NEAR {
                 return Ok(());
             }
             if run.converged(self.point.residual) {
@@ -234,7 +240,7 @@ impl Majors {
         polish: bool,
     ) -> Result<(Option<Candidate>, usize), Stop> {
         let r = (2.0 * self.point.merit).sqrt();
-        let prox = self.proximal_terms(r);
+        let prox = self.proximal_terms(run, r);
         // Large, and close to a solution: long paths are not worth their pivots any more.
         let near = run.n > LARGE && self.point.residual <= run.settings.acceptable_tolerance;
         let limit = match run.settings.minor_iteration_limit {
@@ -244,6 +250,7 @@ impl Majors {
             0 => pivot_limit(run.n),
             given => given,
         };
+        let mut reserve: Option<(Candidate, f64)> = None;
         let mut tries = 0;
         for (level, &v) in prox.iter().enumerate() {
             let Some((m, q)) = self.linearised(jacobian, v) else {
@@ -253,7 +260,7 @@ impl Majors {
                 if polish {
                     start.tolerance = HARRIS_CLOSE;
                 }
-                if (polish || near) && level > 2 {
+                if (polish || near) && (start.cover || level > 2) {
                     continue;
                 }
                 tries += 1;
@@ -273,28 +280,42 @@ impl Majors {
                     kind,
                     pivots,
                 } = result;
-                log::try_line(run, end, t, v, pivots);
-                match end {
-                    PathEnd::Solved => {
-                        let found = Candidate {
-                            y: x,
-                            kind,
-                            prox: v,
-                        };
-                        return Ok((Some(found), tries));
-                    }
-                    _ => {}
+                log::try_line(run, end, t, v, pivots, start.cover);
+                if end != PathEnd::Solved {
+                    continue;
+                }
+                let off = x.iter().zip(&self.point.x).map(|(a, b)| (a - b).powi(2));
+                let length = off.sum::<f64>().sqrt();
+                // a solution of a linear problem for v > 0 that may stand for a ray
+                let doubtful = run.problem.is_linear() && v > 0.0 && v * length > 0.7 * r;
+                let found = Candidate {
+                    y: x,
+                    kind,
+                    prox: v,
+                };
+                if !doubtful {
+                    return Ok((Some(found), tries));
+                }
+                // Of several, the one with the least merit.
+                if let Some(point) = run.point(found.y.clone())
+                    && reserve
+                        .as_ref()
+                        .is_none_or(|(_, merit)| point.merit < *merit)
+                {
+                    reserve = Some((found, point.merit));
                 }
             }
         }
-        Ok((None, tries))
+        Ok((reserve.map(|r| r.0), tries))
     }
 
     /// The proximal terms to try, from the last one upwards, at a point of residual r.
-    fn proximal_terms(&self, r: f64) -> Vec<f64> {
+    fn proximal_terms(&self, run: &Run, r: f64) -> Vec<f64> {
         let mut prox = vec![self.prox];
+        // Where one linearisation is exact, a small term saves the iterations that remove it again.
+        let small = if run.problem.is_linear() { 1e-5 } else { 1e-3 };
         for v in [
-            (1e-3 * r.min(1.0)).max(10.0 * self.prox).max(PROX_FIRST),
+            (small * r.min(1.0)).max(10.0 * self.prox).max(PROX_FIRST),
             (0.1 * r.min(1.0)).max(100.0 * self.prox),
             1.0,
             10.0,
@@ -344,6 +365,7 @@ impl Majors {
         starts.push(Start {
             kind: near.clone(),
             x: x.clone(),
+            cover: false,
             tolerance: HARRIS,
         });
         if level == 0 {
@@ -364,9 +386,35 @@ impl Majors {
                 starts.push(Start {
                     kind,
                     x: x.clone(),
+                    cover: false,
                     tolerance: HARRIS,
                 });
             }
+        }
+        // From the slacks the path is as long as the solution has variables off their bounds: the way
+        // out where n is small, and the last resort where it is large.
+        if if run.n <= SLACK_START {
+            level <= 1
+        } else {
+            level == 4
+        } {
+            let kind = (0..run.n)
+                .map(|i| {
+                    if run.lower[i].is_finite() {
+                        Kind::AtLower
+                    } else if run.upper[i].is_finite() {
+                        Kind::AtUpper
+                    } else {
+                        Kind::Between
+                    }
+                })
+                .collect();
+            starts.push(Start {
+                kind,
+                x: x.clone(),
+                cover: true,
+                tolerance: HARRIS,
+            });
         }
         starts
     }

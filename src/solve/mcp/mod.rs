@@ -62,6 +62,8 @@ pub trait Problem {
     fn function(&mut self, x: &[f64], f: &mut [f64]) -> Result<(), EvalError>;
     /// Values of the Jacobian at x, in pattern order.
     fn jacobian(&mut self, x: &[f64], values: &mut [f64]) -> Result<(), EvalError>;
+    /// True when F is affine: one linearisation is exact.
+    fn is_linear(&self) -> bool;
 }
 
 /// A function or derivative that cannot be evaluated at a point.

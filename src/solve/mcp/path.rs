@@ -54,6 +54,8 @@ pub(super) struct Start {
     pub(super) kind: Vec<Kind>,
     /// Values of the variables that are between their bounds.
     pub(super) x: Vec<f64>,
+    /// Cover all slacks by one size, as Lemke's method does, instead of by their own values.
+    pub(super) cover: bool,
     /// How far a bound may be passed for the sake of a larger pivot (Harris's ratio test).
     pub(super) tolerance: f64,
 }
@@ -133,6 +135,7 @@ pub(super) fn follow(
         let again = Start {
             kind: result.kind.clone(),
             x: result.x.clone(),
+            cover: false,
             tolerance: start.tolerance,
         };
         let left = limit - result.pivots;
@@ -228,6 +231,15 @@ impl<'a> Path<'a> {
         let mut r = vec![0.0; n];
         problem.m.matvec(&x0, &mut r);
         r.iter_mut().zip(problem.q).for_each(|(r, q)| *r += q);
+        let mut largest = 0.0f64;
+        for (k, kind) in start.kind.iter().enumerate() {
+            match kind {
+                Kind::Between => {}
+                Kind::AtLower => largest = largest.max(-r[k]),
+                Kind::AtUpper => largest = largest.max(r[k]),
+            }
+        }
+        let cover = (largest + 1.0).max(1.0);
         let mut values = x0;
         #[allow(clippy::needless_range_loop)]
         for k in 0..n {
@@ -237,7 +249,11 @@ impl<'a> Path<'a> {
                 Kind::AtUpper => -1.0,
             };
             let slack = sign * r[k];
-            values[k] = slack.max(SHIFT * (0.5 + random.uniform()));
+            values[k] = if start.cover {
+                slack + cover * (1.0 + 0.05 * random.uniform())
+            } else {
+                slack.max(SHIFT * (0.5 + random.uniform()))
+            };
             r[k] = sign * (slack - values[k]);
         }
         let slot: Vec<Variable> = start
@@ -680,6 +696,9 @@ mod tests {
         fn jacobian(&mut self, _x: &[f64], _values: &mut [f64]) -> Result<(), EvalError> {
             Ok(())
         }
+        fn is_linear(&self) -> bool {
+            true
+        }
     }
 
     /// A strictly monotone matrix that is neither symmetric nor diagonally dominant.
@@ -754,33 +773,36 @@ mod tests {
                 }
             })
             .collect();
-        let start = Start {
-            kind: kind.clone(),
-            x: vec![0.0; n],
-            tolerance: HARRIS,
-        };
-        let (settings, mut nothing, mut help) = (Settings::default(), Nothing, NoHelp);
-        let mut quiet = Quiet::default();
-        let budget = Budget::unlimited(&mut quiet);
-        let mut run = Run::new(&mut nothing, &settings, &budget, &mut help);
-        let mut solved = false;
-        for limit in 1..200 {
-            let mut path = Path::new(&problem, &start, 3);
-            let end = path.run(&mut run, limit).expect("no limit on time");
-            assert!(
-                violation(&path) < 1e-9,
-                "{} after {limit} pivots",
-                violation(&path)
-            );
-            if end == PathEnd::Solved {
-                let x = path.solution(&mut run).expect("a regular basis");
-                assert!(limit > 5 && solves(&problem, &x));
-                solved = true;
-                break;
+        for cover in [false, true] {
+            let start = Start {
+                kind: kind.clone(),
+                x: vec![0.0; n],
+                cover,
+                tolerance: HARRIS,
+            };
+            let (settings, mut nothing, mut help) = (Settings::default(), Nothing, NoHelp);
+            let mut quiet = Quiet::default();
+            let budget = Budget::unlimited(&mut quiet);
+            let mut run = Run::new(&mut nothing, &settings, &budget, &mut help);
+            let mut solved = false;
+            for limit in 1..200 {
+                let mut path = Path::new(&problem, &start, 3);
+                let end = path.run(&mut run, limit).expect("no limit on time");
+                assert!(
+                    violation(&path) < 1e-9,
+                    "{} after {limit} pivots",
+                    violation(&path)
+                );
+                if end == PathEnd::Solved {
+                    let x = path.solution(&mut run).expect("a regular basis");
+                    assert!(limit > 5 && solves(&problem, &x));
+                    solved = true;
+                    break;
+                }
+                assert_eq!(end, PathEnd::Limit);
             }
-            assert_eq!(end, PathEnd::Limit);
+            assert!(solved);
         }
-        assert!(solved);
     }
 
     #[test]
@@ -800,6 +822,7 @@ mod tests {
         let start = Start {
             kind: vec![Kind::AtLower],
             x: vec![0.0],
+            cover: true,
             tolerance: HARRIS,
         };
         let (settings, mut nothing, mut help) = (Settings::default(), Nothing, NoHelp);

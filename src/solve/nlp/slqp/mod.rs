@@ -180,7 +180,6 @@ impl Method<'_, '_> {
     fn run(&mut self, most: u64) -> (u64, End) {
         let (mut working, mut steps): (Option<Working>, _) = (None, 0);
         while steps < most && !self.budget.is_over() {
-            self.frame.see_rounding(&self.at);
             let residual = self.at.residual(&self.frame, &self.lambda);
             if residual <= SOLVED {
                 return (steps, End::Solved);

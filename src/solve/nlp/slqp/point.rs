@@ -9,9 +9,6 @@ const UNITS: (f64, f64) = (1e-3, 1e12);
 /// A row that is violated by less than this, relative to its size, is satisfied.
 const MET: f64 = 1e-11;
 
-/// What rounding may make of the sum of a row, relative to its largest term.
-const ROUNDING: f64 = 16.0 * f64::EPSILON;
-
 /// What stays the same from point to point.
 pub(super) struct Frame {
     pub(super) n: usize,
@@ -24,8 +21,6 @@ pub(super) struct Frame {
     pub(super) above: Vec<f64>,
     /// What a row is divided by.
     pub(super) row_unit: Vec<f64>,
-    /// What rounding makes of each row where the run is, in units.
-    rounding: Vec<f64>,
     /// What the objective is divided by.
     pub(super) price: f64,
     /// Whether a variable has second derivatives.
@@ -63,7 +58,6 @@ impl Frame {
             upper: upper.to_vec(),
             below: divided(a),
             above: divided(b),
-            rounding: vec![0.0; m],
             row_unit,
             price: unit(steepest, (1e-6, 1e15)),
             nonlinear,
@@ -94,17 +88,9 @@ impl Frame {
         let (a, b) = (self.below[i], self.above[i]);
         let missing = (a - value).max(0.0) - (value - b).max(0.0);
         let size = if missing > 0.0 { a.abs() } else { b.abs() };
-        match missing.abs() <= (MET * size.max(1.0)).max(self.rounding[i]) {
+        match missing.abs() <= MET * size.max(1.0) {
             true => 0.0,
             false => missing,
-        }
-    }
-
-    /// What differs by no more than rounding at this point holds: terms may have grown since the units were measured.
-    pub(super) fn see_rounding(&mut self, at: &Point) {
-        for (i, rounding) in self.rounding.iter_mut().enumerate() {
-            let terms = at.rows.line(i).map(|(j, a)| (a * at.x[j]).abs());
-            *rounding = ROUNDING * terms.fold(0.0, f64::max);
         }
     }
 
