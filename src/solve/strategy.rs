@@ -167,6 +167,10 @@ strategies! {
             "a run diverges: the program in two boxes tells whether it is unbounded",
             "four solves",
             "bmod";
+        KinkSmoothing "kink_smoothing",
+            "kinks, and no certified point: they are smoothed with a shrinking parameter",
+            "four runs of the interior point",
+            "Chen & Mangasarian 1996";
         RestartFromBest "restart_from_best",
             "no certified point: again from the best one, near its bounds",
             "a run of each method",

@@ -1,13 +1,16 @@
-//! Attempts other than a plain run of the interior-point solver: from where an earlier solve ended, Newton's method on the equations, and
-//! Clarabel for convex quadratic programs.
+//! Attempts other than a plain run of the interior-point solver: from where an earlier solve ended, Newton's method on the equations, Clarabel
+//! for convex quadratic programs, and rounded kinks.
 
 use super::driver::Driver;
 use super::interior_point::Ended;
 use super::interior_point::lock;
 use super::newton;
+use super::problem::Problem;
 use super::quadratic::Quadratic;
+use super::schedule::{NEARER, ROUNDING};
 use super::truncated;
 use crate::solve::{SolveError, Strategy};
+use std::sync::{Arc, Mutex};
 
 /// Residuals of a point that is taken without a run.
 const SHARPLY: f64 = 1e-9;
@@ -101,5 +104,29 @@ impl Driver<'_, '_> {
         self.note_end(solution.ended);
         let trial = self.judge(solution.x, solution.lambda, solution.ended);
         self.keep(trial);
+    }
+
+    /// Solves with rounded kinks, each time from the last point.
+    pub(super) fn round_kinks(&mut self) -> Result<(), SolveError> {
+        let mut x = self.start.clone();
+        for (k, delta) in ROUNDING.into_iter().enumerate() {
+            if self.is_settled() || self.ended == Ended::TooFewDegrees {
+                break;
+            }
+            let mut problem = Problem::smoothed(self.instance, delta);
+            problem.set_start(x.clone());
+            let options = if k == 0 { &[][..] } else { NEARER };
+            let solution = self.call(Arc::new(Mutex::new(problem)), options)?;
+            if solution.x.iter().all(|v| v.is_finite()) {
+                x.clone_from(&solution.x);
+                let trial = self.judge(solution.x, solution.lambda, solution.ended);
+                self.keep(trial);
+            }
+            // what is not solved with this parameter is not with a smaller one
+            if self.ended == Ended::Iterations {
+                break;
+            }
+        }
+        Ok(())
     }
 }

@@ -405,12 +405,15 @@ impl Driver<'_, '_> {
             return Ok(self.finish());
         }
         self.attempt_iterations = MAX_ATTEMPT_ITERATIONS;
+        if self.kinks.is_some() && self.settings.runs(Strategy::KinkSmoothing) {
+            self.round_kinks()?;
+        }
         let lacks_point = !self.best.as_ref().is_some_and(Trial::is_feasible);
         let proved = self.infeasibility.is_some() && lacks_point;
         let goes_on = !self.is_settled() && !proved && self.work() <= self.enough;
         if goes_on && self.settings.runs(Strategy::RestartFromBest) {
             if !self.named {
-                self.sequential(self.start_point(From::Best));
+                self.sequential(self.start_point(From::Best), None);
                 self.leave_saddles()?;
             }
             if !self.is_settled() {

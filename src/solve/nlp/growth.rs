@@ -127,7 +127,7 @@ impl Driver<'_, '_> {
         let mut inner = Driver::new(&instance, problem, interior_point, settings, self.budget);
         inner.growth = Growth::Ignored;
         inner.iterations = self.iterations;
-        inner.sequential(inner.start.clone());
+        inner.sequential(inner.start.clone(), None);
         inner.leave_saddles()?;
         if !inner.is_settled() {
             inner.attempt(From::Start, &[])?;

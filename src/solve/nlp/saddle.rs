@@ -49,7 +49,7 @@ impl Driver<'_, '_> {
             let before = best.objective;
             let margin = 1e-9 * before.abs().max(1.0);
             if !self.named {
-                self.sequential(x.clone());
+                self.sequential(x.clone(), None);
             }
             let now = self.best.as_ref().map_or(before, |t| t.objective);
             if now < before - margin {

@@ -1,5 +1,7 @@
 //! Options and starts: what is tried first, and what when that does not lead to a certified point.
 
+use crate::solve::certificate::nonlinear::KINK_WIDTH;
+
 /// Options of every attempt; the user's own come after them.
 pub(super) const BASE: [(&str, &str); 8] = [
     ("tol", "1e-9"),
@@ -11,6 +13,9 @@ pub(super) const BASE: [(&str, &str); 8] = [
     ("honor_original_bounds", "yes"),
     ("diverging_iterates_tol", "1e18"),
 ];
+
+/// Kinks are rounded by less and less; the last value also serves to judge points at a kink.
+pub(super) const ROUNDING: [f64; 4] = [1e-1, 1e-3, 1e-5, KINK_WIDTH];
 
 /// Where an attempt starts.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -38,6 +43,12 @@ pub(super) const NEAR: &[(&str, &str)] = &[
     ("mu_strategy", "adaptive"),
     ("bound_push", "1e-6"),
     ("bound_frac", "1e-6"),
+];
+
+pub(super) const NEARER: &[(&str, &str)] = &[
+    ("mu_init", "1e-8"),
+    ("bound_push", "1e-8"),
+    ("bound_frac", "1e-8"),
 ];
 
 /// From where a better optimum than a certified one is looked for: the first [`AGREEMENT`] are always tried, the others where

@@ -29,6 +29,7 @@ impl Driver<'_, '_> {
         if self.named {
             return Ok(false);
         }
+        let marginals = again.then(|| lock(&*self.problem).marginals_of(self.instance));
         let runs = |s| self.settings.runs(s);
         // Newton's method may have come to a feasible point that is no optimum
         let found = self.best.as_ref().filter(|t| t.is_feasible());
@@ -39,10 +40,10 @@ impl Driver<'_, '_> {
             }
             _ => self.start.clone(),
         };
-        self.sequential(start);
+        self.sequential(start, marginals.as_deref());
         if self.was_moved && !again && self.is_settled() {
             // slopes without limit may have held variables at 0 from which they were moved a little only
-            self.sequential(self.start_point(From::Middle));
+            self.sequential(self.start_point(From::Middle), None);
         }
         let settled = self.is_settled_by("slqp")?;
         if settled {
@@ -62,7 +63,7 @@ impl Driver<'_, '_> {
         let violation = |t: &Trial| t.residuals.primal_relative;
         let before = self.best.as_ref().map_or(f64::INFINITY, violation);
         let x = self.start_point(From::Middle);
-        self.sequential(x);
+        self.sequential(x, None);
         if self.best.as_ref().is_some_and(Trial::is_feasible) {
             return self.is_settled_by("slqp");
         }
@@ -72,8 +73,8 @@ impl Driver<'_, '_> {
         Ok(false)
     }
 
-    /// Sequential programs from a point, judged and kept.
-    pub(super) fn sequential(&mut self, x: Vec<f64>) {
+    /// Sequential programs from a point and its multipliers, if there are some, judged and kept.
+    pub(super) fn sequential(&mut self, x: Vec<f64>, multipliers: Option<&[f64]>) {
         if !self.settings.runs(Strategy::SequentialQuadratic) || !self.affords_factors() {
             return;
         }
@@ -82,6 +83,7 @@ impl Driver<'_, '_> {
         let own = self.settings.number("max_iter");
         let own = own.map_or(u64::MAX, |n| n as u64);
         let request = slqp::Request {
+            multipliers,
             steps: slqp::STEPS.min(self.budget.iterations_left()).min(own),
             width: 0.0,
             strategies: self.settings.strategies(),
@@ -107,7 +109,7 @@ impl Driver<'_, '_> {
             && let Some(x) = self.beyond_least_violation(&run.x, &run.lambda)
         {
             self.violation_escapes += 1;
-            return self.sequential(x);
+            return self.sequential(x, None);
         }
         let trial = self.judge(run.x, run.lambda, ended);
         if run.end == slqp::End::Infeasible {
@@ -134,6 +136,7 @@ impl Driver<'_, '_> {
         let mut problem = lock(&*self.problem);
         problem.set_start(trial.x.clone());
         let request = slqp::Request {
+            multipliers: None,
             steps: slqp::STEPS,
             width: WIDTH,
             strategies: self.settings.strategies(),

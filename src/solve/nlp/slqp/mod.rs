@@ -67,7 +67,9 @@ pub(super) enum End {
 
 /// What is asked for besides.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Request {
+pub(super) struct Request<'a> {
+    /// Multipliers to begin with.
+    pub multipliers: Option<&'a [f64]>,
     /// Steps at most.
     pub steps: u64,
     /// Equations are met by so much, in units of their largest entry: 0, but where they have no multipliers.
@@ -92,7 +94,7 @@ pub(super) struct Run {
 }
 
 /// Runs from the start point. None where the start has no values or derivatives, and where the problem is too large.
-pub(super) fn solve(nlp: &mut dyn Nlp, request: Request, budget: &Budget) -> Option<Run> {
+pub(super) fn solve(nlp: &mut dyn Nlp, request: Request<'_>, budget: &Budget) -> Option<Run> {
     let (n, m) = nlp.size();
     if n + m > LARGEST {
         return None;
@@ -111,7 +113,10 @@ pub(super) fn solve(nlp: &mut dyn Nlp, request: Request, budget: &Budget) -> Opt
     let linear = Linear::new(&frame, &at, PIVOTS * (n + m) as u64);
     let mut method = Method {
         nlp,
-        lambda: vec![0.0; m],
+        lambda: match request.multipliers {
+            Some(l) => frame.in_units(l),
+            None => vec![0.0; m],
+        },
         linear,
         frame,
         at,

@@ -83,6 +83,12 @@ impl Frame {
         all.map(|(l, u)| l * self.price / u).collect()
     }
 
+    /// The other way round.
+    pub(super) fn in_units(&self, lambda: &[f64]) -> Vec<f64> {
+        let all = lambda.iter().zip(&self.row_unit);
+        all.map(|(l, u)| l * u / self.price).collect()
+    }
+
     /// By how much a row with this value is violated: above 0 too low, below 0 too high, 0 within rounding.
     pub(super) fn missing(&self, i: usize, value: f64) -> f64 {
         let (a, b) = (self.below[i], self.above[i]);
