@@ -5,11 +5,13 @@
 //! `Σ (⌊a_j⌋ + max(0, f_j − f)/(1 − f)) t_j + Σ min(0, g_k)/(1 − f) s_k ≤ ⌊b⌋`. A row of the optimal tableau gives
 //! Gomory's mixed-integer cut (1960); single rows, and rows added so that continuous columns between their bounds cancel,
 //! with variable bounds `x ≤ u·y` put in, give those that lot sizing and fixed charges need. Knapsack rows give extended
-//! covers besides.
+//! covers besides; rows of integers alone, added so that what is odd cancels, cuts of halves.
 
 use super::linear::{Cut, Linear};
 use super::model::Mip;
 use crate::solve::lp::simplex::factor::Entries;
+
+mod parity;
 
 /// Fractions nearer to 0 or 1 give nothing but numerical trouble.
 const FRACTION: f64 = 0.01;
@@ -179,6 +181,12 @@ impl<'a> Separator<'a> {
         for i in (0..self.mip.problem.m()).take(3000) {
             self.path(linear, i, &values, &mut add);
             add(self.cover(i, &values));
+        }
+        for weights in parity::odd_sums(self, linear, &values) {
+            let row = self.aggregate(linear, &weights);
+            for sign in [1.0, -1.0] {
+                add(self.round(linear, &row, sign, &values, &[2.0]));
+            }
         }
         found.sort_by(|a, b| b.0.total_cmp(&a.0));
         let mut kept: Vec<Cut> = Vec::new();
