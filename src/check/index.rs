@@ -33,7 +33,6 @@ impl Compiler {
             let s = match (named, set) {
                 (Some(s), _) | (None, DomainPosition::Set(s)) => s,
                 (None, DomainPosition::Universe) => UNIVERSE,
-                (None, DomainPosition::Relaxed(_)) => continue,
             };
             self.fits_as(s, a, of, position + k, span)?;
         }
@@ -110,15 +109,7 @@ impl Compiler {
             1 => "1 index".to_string(),
             n => format!("{n} indices"),
         };
-        let names: Vec<String> = s
-            .domain
-            .iter()
-            .map(|d| match d {
-                DomainPosition::Universe => "*".to_string(),
-                DomainPosition::Set(i) => self.symbols.get(*i).name.to_string(),
-                DomainPosition::Relaxed(n) => n.to_string(),
-            })
-            .collect();
+        let names = self.symbols.domain_names(&s);
         let shape = if names.is_empty() {
             s.name.to_string()
         } else {

@@ -262,7 +262,7 @@ impl Compiler {
         };
         let set = match index {
             DomainPosition::Set(s) => *s,
-            DomainPosition::Universe | DomainPosition::Relaxed(_) => UNIVERSE,
+            DomainPosition::Universe => UNIVERSE,
         };
         let set = self.symbols.get(set).table;
         self.symbols.get_mut(p).assigned = true;

@@ -35,8 +35,6 @@ pub enum DomainPosition {
     Universe,
     /// Members of a set.
     Set(SymbolId),
-    /// A set that is not known (or dynamic): any label.
-    Relaxed(Box<str>),
 }
 
 /// What a symbol is.
@@ -285,7 +283,6 @@ impl Symbols {
         let name = |d: &DomainPosition| match d {
             DomainPosition::Universe => "*".to_string(),
             DomainPosition::Set(i) => self.get(*i).name.to_string(),
-            DomainPosition::Relaxed(n) => n.to_string(),
         };
         symbol.domain.iter().map(name).collect()
     }

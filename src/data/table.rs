@@ -641,11 +641,6 @@ impl Table {
     pub fn all(&self) -> Rows<'static> {
         Rows::Range(0, self.values.len() as u32)
     }
-
-    /// Bytes held, about.
-    pub fn bytes(&self) -> usize {
-        self.keys.capacity() * 4 + self.values.capacity() * 8
-    }
 }
 
 #[cfg(test)]

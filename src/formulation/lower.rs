@@ -20,8 +20,6 @@ pub struct Equation {
     pub relation: Relation,
     /// Right side.
     pub right: Expr,
-    /// Place.
-    pub span: crate::source::Span,
 }
 
 /// Turns checked trees into formulas.
@@ -66,7 +64,6 @@ impl<'a> Lowering<'a> {
             left: self.expr(&e.left),
             relation: e.relation,
             right: self.expr(&e.right),
-            span: e.span,
         }
     }
 

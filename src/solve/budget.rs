@@ -258,11 +258,6 @@ impl<'m> Budget<'m> {
         self.stopped.get()
     }
 
-    /// Whether the user has asked to stop.
-    pub fn interrupted(&self) -> bool {
-        self.stop() == Some(Stop::Interrupted)
-    }
-
     /// A part of the work that may take so many seconds and iterations at most. That it used them up does not end the whole.
     pub fn within<T>(&self, seconds: f64, iterations: u64, work: impl FnOnce(&Self) -> T) -> T {
         let (deadline, last) = (self.deadline.get(), self.last.get());

@@ -14,7 +14,6 @@ use crate::autodiff::Evaluator;
 use crate::model::instance::{Instance, Relation};
 use crate::model::problem_type::ProblemType;
 use crate::solve::noise;
-use std::cell::OnceCell;
 
 /// Rows and columns put side by side.
 struct Square<'a> {
@@ -170,10 +169,6 @@ impl Backend for Bmcp {
 
     fn solve(&self, task: &Task, settings: &Settings, budget: &Budget) -> Replied {
         let instance = task.instance;
-        let known = OnceCell::new();
-        let infeasible = |budget: &Budget| {
-            *known.get_or_init(|| is_proved_infeasible(instance, budget).unwrap_or(false))
-        };
         let square = task.using == ProblemType::Cns;
         if square
             && task.choice.is_none()
@@ -183,9 +178,7 @@ impl Backend for Bmcp {
         {
             return Ok(found.into());
         }
-        let never = |_: &Budget| false;
-        let proved: Infeasible = if square { &never } else { &infeasible };
-        let mut outcome = solve(instance, square, settings, budget, proved)?;
+        let mut outcome = solve(instance, square, settings, budget)?;
         if square && !is_solved(instance, &outcome.level) {
             // Either the rows hold and the point they determine is beyond a bound, or no method from any start
             // found a point where they hold.
@@ -195,8 +188,9 @@ impl Backend for Bmcp {
                 _ => Claim::LocallyInfeasible,
             };
         }
-        if outcome.claim == Claim::LocallyInfeasible && infeasible(budget) {
+        if outcome.claim == Claim::LocallyInfeasible && is_proved_infeasible(instance, budget)? {
             outcome.claim = Claim::Infeasible;
+            outcome.message = None;
         }
         Ok(outcome.into())
     }
@@ -246,49 +240,29 @@ fn is_proved_infeasible(instance: &Instance, budget: &Budget) -> Result<bool, So
     Ok(is_infeasible(&rows, budget))
 }
 
-/// What the complementarity solver asks.
-struct Help<'a, 'm> {
-    budget: &'a Budget<'m>,
-    names: Names<'a>,
-    infeasible: Infeasible<'a>,
-}
-
-/// Whether it can be proved, at the price of a linear program, that there is no solution.
-type Infeasible<'a> = &'a dyn Fn(&Budget) -> bool;
-
 /// What index k of a complementarity problem is called.
 type Names<'a> = &'a dyn Fn(usize) -> String;
 
-impl mcp::Help for Help<'_, '_> {
-    fn proves_infeasible(&mut self) -> bool {
-        (self.infeasible)(self.budget)
-    }
-
+impl mcp::Help for Names<'_> {
     fn name(&self, i: usize) -> String {
-        (self.names)(i)
+        self(i)
     }
 }
 
 /// Runs the complementarity solver: its outcome, and how it ended in GAMS's terms.
 fn run(
     problem: &mut dyn mcp::Problem,
-    names: Names,
+    mut names: Names,
     settings: &Settings,
     budget: &Budget,
-    infeasible: Infeasible,
 ) -> Result<(mcp::Outcome, SolverStatus), SolveError> {
     let mut limits = mcp::Settings::with(&settings.options);
     limits.strategies = settings.strategies();
     let left = usize::try_from(budget.iterations_left()).unwrap_or(usize::MAX);
     limits.cumulative_iteration_limit = limits.cumulative_iteration_limit.min(left);
-    let mut help = Help {
-        budget,
-        names,
-        infeasible,
-    };
     let seconds = limits.time_limit;
     let out = budget.within(seconds, u64::MAX, |budget| {
-        mcp::solve(problem, &limits, budget, &mut help)
+        mcp::solve(problem, &limits, budget, &mut names)
     });
     budget.spend((out.majors + out.pivots) as u64);
     let status = match out.status {
@@ -304,14 +278,12 @@ fn run(
     Ok((out, status))
 }
 
-/// Solves an mcp (or, with `square`, a cns), of which `infeasible` is asked when the main method fails. The outcome's marginals are those of GAMS: of a row the
-/// level of its column, of a column F.
+/// Solves an mcp (or, with `square`, a cns). The outcome's marginals are those of GAMS: of a row the level of its column, of a column F.
 fn solve(
     instance: &Instance,
     square: bool,
     settings: &Settings,
     budget: &Budget,
-    infeasible: Infeasible,
 ) -> Result<Outcome, SolveError> {
     let mut problem = Square::new(instance, square)?;
     let row_of = problem.row_of.clone();
@@ -319,7 +291,7 @@ fn solve(
         Some(r) => format!("{}.{}", budget.row_name(r as usize), budget.column_name(j)),
         None => budget.column_name(j),
     };
-    let (mut out, status) = run(&mut problem, &names, settings, budget, infeasible)?;
+    let (mut out, status) = run(&mut problem, &names, settings, budget)?;
     let (lower, upper) = (&instance.columns.lower, &instance.columns.upper);
     noise::snap(&mut out.x, lower, upper);
     if square && out.status != mcp::Status::Solved {

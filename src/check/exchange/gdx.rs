@@ -470,7 +470,6 @@ pub(super) fn write(
         let alias = is_alias(w);
         let domain = symbol.domain.iter().map(|d| match d {
             DomainPosition::Universe => Domain::Universe,
-            DomainPosition::Relaxed(name) => Domain::Relaxed(name.to_string()),
             // A set must stand before what runs over it.
             DomainPosition::Set(s) => match place(*s).filter(|n| *n < contents.symbols.len()) {
                 Some(n) => Domain::Set(n),

@@ -37,16 +37,12 @@ const LARGE: usize = 1000;
 /// to the least that counts.
 const PROX_FIRST: f64 = 1e-7;
 const PROX_MIN: f64 = 1e-12;
-/// A ray is worth a step if t got this far.
-const RAY_MIN: f64 = 1e-2;
 /// Major iterations without a notable fall of the residual before the run is called stuck.
 const STAGNATION: usize = 30;
 /// Pivots without that, at least and times n: problems without a solution have many and long paths.
 const STAGNATION_PIVOTS: (usize, usize) = (10_000, 40);
 /// The same where the residual would be accepted already.
 const STAGNATION_NEAR: usize = 4;
-/// Steps in a row to solutions ~ 1/v before the run is called stuck: it follows a ray.
-const DOUBTFUL_LIMIT: usize = 8;
 /// Pivots on a path near a solution, or a share 1/10 of n.
 const NEAR_LIMIT: usize = 200;
 /// Pivots on a path from a solution to a better one, times n: a second or so where directions are full.
@@ -98,13 +94,9 @@ struct Checkpoint {
 /// The next point, found on the path or otherwise.
 struct Candidate {
     y: Vec<f64>,
-    end: PathEnd,
-    t: f64,
-    /// Final state of the path, a warm start if it was solved.
-    kind: Option<Vec<Kind>>,
+    /// Final state of the path, a warm start.
+    kind: Vec<Kind>,
     prox: f64,
-    /// A solution of a linear problem for v > 0 that may stand for a ray.
-    doubtful: bool,
 }
 
 struct Majors {
@@ -116,8 +108,6 @@ struct Majors {
     warm: Option<Vec<Kind>>,
     untested: usize,
     gradient_steps: usize,
-    /// Steps in a row to solutions that may stand for rays.
-    doubtful: usize,
     seed: u64,
 }
 
@@ -135,7 +125,6 @@ impl Majors {
             warm: None,
             untested: 0,
             gradient_steps: 0,
-            doubtful: 0,
             seed: 1,
         }
     }
@@ -210,14 +199,6 @@ impl Majors {
                 }
                 continue;
             };
-            self.doubtful = if candidate.doubtful {
-                self.doubtful + 1
-            } else {
-                0
-            };
-            if self.doubtful > DOUBTFUL_LIMIT {
-                return Ok(());
-            }
             if !self.accept(run, candidate, &jacobian, run.pivots - pivots, tries)? {
                 return Ok(());
             }
@@ -241,12 +222,12 @@ impl Majors {
             r if r <= 0.1 * self.point.residual => 'M',
             _ => '-',
         };
-        let (end, t, prox) = (candidate.end, candidate.t, candidate.prox);
+        let (end, t, prox) = (PathEnd::Solved, 1.0, candidate.prox);
         log::major_line(run, &next, pivots, end, t, prox, 1.0, kind, tries);
         if kind == '-' {
             return false;
         }
-        (self.warm, self.point) = (candidate.kind, next);
+        (self.warm, self.point) = (Some(candidate.kind), next);
         self.reduce_prox(prox);
         true
     }
@@ -269,7 +250,7 @@ impl Majors {
             0 => pivot_limit(run.n),
             given => given,
         };
-        let (mut reserve, mut ray): (Option<(Candidate, f64)>, Option<Candidate>) = (None, None);
+        let mut reserve: Option<(Candidate, f64)> = None;
         let mut tries = 0;
         for (level, &v) in prox.iter().enumerate() {
             let Some((m, q)) = self.linearised(jacobian, v) else {
@@ -300,49 +281,32 @@ impl Majors {
                     pivots,
                 } = result;
                 log::try_line(run, end, t, v, pivots, start.cover);
-                match end {
-                    PathEnd::Solved => {
-                        let off = x.iter().zip(&self.point.x).map(|(a, b)| (a - b).powi(2));
-                        let length = off.sum::<f64>().sqrt();
-                        let found = Candidate {
-                            y: x,
-                            end,
-                            t: 1.0,
-                            kind: Some(kind),
-                            prox: v,
-                            doubtful: run.problem.is_linear() && v > 0.0 && v * length > 0.7 * r,
-                        };
-                        if !found.doubtful {
-                            return Ok((Some(found), tries));
-                        }
-                        // Of several, the one with the least merit.
-                        if let Some(point) = run.point(found.y.clone())
-                            && reserve
-                                .as_ref()
-                                .is_none_or(|(_, merit)| point.merit < *merit)
-                        {
-                            reserve = Some((found, point.merit));
-                        }
-                    }
-                    PathEnd::Ray | PathEnd::Limit | PathEnd::Numerical | PathEnd::Loop => {
-                        let better =
-                            t > RAY_MIN && t <= 1.0 && ray.as_ref().is_none_or(|r| t > r.t);
-                        if better && x.iter().all(|v| v.is_finite()) {
-                            ray = Some(Candidate {
-                                y: x,
-                                end,
-                                t,
-                                kind: None,
-                                prox: v,
-                                doubtful: false,
-                            });
-                        }
-                    }
-                    PathEnd::Singular => {}
+                if end != PathEnd::Solved {
+                    continue;
+                }
+                let off = x.iter().zip(&self.point.x).map(|(a, b)| (a - b).powi(2));
+                let length = off.sum::<f64>().sqrt();
+                // a solution of a linear problem for v > 0 that may stand for a ray
+                let doubtful = run.problem.is_linear() && v > 0.0 && v * length > 0.7 * r;
+                let found = Candidate {
+                    y: x,
+                    kind,
+                    prox: v,
+                };
+                if !doubtful {
+                    return Ok((Some(found), tries));
+                }
+                // Of several, the one with the least merit.
+                if let Some(point) = run.point(found.y.clone())
+                    && reserve
+                        .as_ref()
+                        .is_none_or(|(_, merit)| point.merit < *merit)
+                {
+                    reserve = Some((found, point.merit));
                 }
             }
         }
-        Ok((reserve.map(|r| r.0).or(ray), tries))
+        Ok((reserve.map(|r| r.0), tries))
     }
 
     /// The proximal terms to try, from the last one upwards, at a point of residual r.
@@ -474,17 +438,16 @@ impl Majors {
         if self.checkpoint.direction.is_none() {
             self.checkpoint.direction = Some(direction);
         }
-        let (end, t, prox) = (candidate.end, candidate.t, candidate.prox);
+        let (end, t, prox) = (PathEnd::Solved, 1.0, candidate.prox);
         let next = run.point(candidate.y);
         if let Some(next) = next {
             let monotone = next.merit <= (1.0 - ARMIJO) * reference;
-            let watched = (end == PathEnd::Solved || t > 0.3)
-                && self.untested < run.settings.watchdog_limit
-                && next.merit <= 1e8 * reference;
+            let watched =
+                self.untested < run.settings.watchdog_limit && next.merit <= 1e8 * reference;
             if monotone || watched {
                 let kind = if monotone { 'M' } else { 'O' };
                 log::major_line(run, &next, pivots, end, t, prox, 1.0, kind, tries);
-                self.warm = candidate.kind;
+                self.warm = Some(candidate.kind);
                 self.point = next;
                 if self.point.residual < self.best.residual {
                     self.best = self.point.clone();

@@ -198,11 +198,6 @@ pub struct Outcome {
 
 /// What the solver may ask about the problem.
 pub trait Help {
-    /// Asked once, when the main method has failed: true if it is proved that there is no solution. Ends the run with
-    /// [`Status::NoSolution`].
-    fn proves_infeasible(&mut self) -> bool {
-        false
-    }
     /// Names of row i and of its variable, for the log.
     fn name(&self, i: usize) -> String {
         format!("{}", i + 1)

@@ -146,9 +146,8 @@ fn attempt(run: &mut Run, restarts: &mut usize) -> Result<(), Stop> {
             true => &[Crash::Newton],
             false => &[Crash::None],
         };
-        for (tried, &crash) in crashes.iter().enumerate() {
-            let solved = succeeds(run, crash, start.clone())?;
-            if solved || tried == 0 && run.help.proves_infeasible() {
+        for &crash in crashes {
+            if succeeds(run, crash, start.clone())? {
                 return Ok(());
             }
         }

@@ -7,7 +7,7 @@ use super::outer::{Convex, Outer};
 use super::presolve;
 use super::relaxation::{Control, Relaxation, Solved};
 use super::symmetry::Symmetry;
-use super::tree::{Aim, End, Record, Search, Smaller};
+use super::tree::{Aim, End, Record, Search};
 use crate::solve::Settings;
 use crate::solve::strategy::Strategy;
 
@@ -75,19 +75,11 @@ pub(super) struct Begin<'s> {
     pub settings: Option<&'s Settings>,
     /// The squares that the linear program has columns for.
     pub convex: Option<Convex<'s>>,
-    /// Value and point of a solution: only better ones count.
-    pub best: Option<(f64, Vec<f64>)>,
-    /// How often the search began anew.
-    pub renewals: u32,
 }
-
-/// How often a search may begin anew.
-const RENEWALS: u32 = 5;
 
 /// The best solution of a linear program with discrete columns.
 pub(super) fn search_linear(mip: &Mip, aim: Aim, begin: Begin, control: &mut Control) -> Found {
-    let cutoff = begin.best.as_ref().map_or(f64::INFINITY, |b| b.0);
-    let Some(reduced) = presolve::reduce(mip, &[], cutoff - mip.problem.offset) else {
+    let Some(reduced) = presolve::reduce(mip, &[]) else {
         return Found::empty();
     };
     let line = format!(
@@ -110,34 +102,21 @@ pub(super) fn search_linear(mip: &Mip, aim: Aim, begin: Begin, control: &mut Con
         let x = reduced.reduce(&x);
         x.iter().zip(&scaling.column).map(|(x, c)| x / c).collect()
     };
-    let is_first = begin.best.is_none();
-    let renews = begin.renewals < RENEWALS && begin.convex.is_none();
-    let smaller = |cutoff: f64| {
-        let left = presolve::reduce(mip, &[], cutoff - mip.problem.offset);
-        left.is_none_or(|left| is_much_smaller(&left.mip, &reduced.mip))
-    };
     let runs = |s: &Settings| s.runs(Strategy::OrbitalBranching);
     let uses_symmetry = begin.convex.is_none() && begin.settings.is_none_or(runs);
-    // A search that ends soon without them had luck that they could spoil.
-    let waits = uses_symmetry && renews && begin.renewals == 0;
-    let symmetry = match uses_symmetry && !waits {
-        true => Symmetry::find(&reduced.mip),
-        false => None,
-    };
+    let symmetry = uses_symmetry
+        .then(|| Symmetry::find(&reduced.mip))
+        .flatten();
     if let Some(symmetry) = &symmetry {
         let line = format!("symmetries: {}", symmetry.count());
         control.budget.log_timed(&line);
     }
-    let has_symmetry = || Symmetry::find(&reduced.mip).is_some();
     let explore = Explore {
         mip: &scaled,
         symmetry: symmetry.as_ref(),
-        grown: waits.then_some(&has_symmetry),
         aim,
         units,
         start: begin.start.map(inner),
-        best: begin.best.map(|(v, x)| (units.inner(v), inner(x))),
-        smaller: renews.then_some(&smaller),
         settings: begin.settings,
     };
     let mut found = match begin.convex {
@@ -166,7 +145,7 @@ pub(super) fn search_linear(mip: &Mip, aim: Aim, begin: Begin, control: &mut Con
             ..some
         };
     }
-    if found.end == End::Gap && found.x.is_none() && is_first {
+    if found.end == End::Gap && found.x.is_none() {
         found.end = End::Complete;
     }
     found.x = found.x.map(|x| {
@@ -187,42 +166,7 @@ pub(super) fn search_linear(mip: &Mip, aim: Aim, begin: Begin, control: &mut Con
     }
     found.value = units.shown(found.value);
     found.bound = units.shown(found.bound);
-    if found.end == End::Renewed {
-        let begin = Begin {
-            best: found.x.clone().map(|x| (found.value, x)),
-            settings: begin.settings,
-            renewals: begin.renewals + 1,
-            ..Begin::default()
-        };
-        return renewed_search(mip, aim, found, begin, control);
-    }
     found
-}
-
-/// The search of what is left below the best solution of a first one, which ended early; the tree is the last one's.
-fn renewed_search(mip: &Mip, aim: Aim, first: Found, begin: Begin, control: &mut Control) -> Found {
-    let mut found = search_linear(mip, aim, begin, control);
-    found.nodes += first.nodes;
-    found.relaxed |= first.relaxed;
-    found.bound = found.bound.max(first.bound);
-    if found.x.is_none() {
-        found.bound = found.bound.min(first.value);
-        (found.value, found.x) = (first.value, first.x);
-    }
-    found
-}
-
-/// Whether a tenth of the integers is decided, or the coefficients of integers have lost three tenths of their sum.
-fn is_much_smaller(left: &Mip, before: &Mip) -> bool {
-    let integers = |m: &Mip| m.integer.iter().filter(|i| **i).count() as f64;
-    let weight = |m: &Mip| -> f64 {
-        let rows = &m.problem.rows;
-        let all = rows.index.iter().zip(&rows.value);
-        all.filter(|e| m.integer[*e.0 as usize])
-            .map(|e| e.1.abs())
-            .sum()
-    };
-    integers(left) < 0.9 * integers(before) || weight(left) < 0.7 * weight(before)
 }
 
 /// A search over a program that is presolved and scaled.
@@ -231,10 +175,7 @@ struct Explore<'e> {
     aim: Aim,
     units: Units,
     start: Option<Vec<f64>>,
-    best: Option<(f64, Vec<f64>)>,
-    smaller: Option<Smaller<'e>>,
     symmetry: Option<&'e Symmetry>,
-    grown: Option<&'e dyn Fn() -> bool>,
     settings: Option<&'e Settings>,
 }
 
@@ -246,20 +187,12 @@ impl Explore<'_> {
         let mut search = Search::new(self.mip, relaxation, self.aim, self.units);
         search.neighbourhood = Some(&near);
         search.settings = self.settings;
-        search.smaller = self.smaller;
         search.symmetry = self.symmetry;
-        search.grown = self.grown;
-        let known = self.best.as_ref().map(|b| b.0);
-        search.best = self.best;
         if let Some(x) = self.start {
             search.offer(&x, control);
         }
         let end = search.run(control);
-        let mut found = search.found(end);
-        if known == Some(found.value) {
-            found.x = None;
-        }
-        found
+        search.found(end)
     }
 }
 
@@ -303,7 +236,7 @@ fn strengthen(mip: &Mip, linear: &mut Linear, rounds: usize, control: &mut Contr
 
 /// A search of a few nodes where some columns are fixed.
 fn nearby(mip: &Mip, fixed: &[Change], cutoff: f64, control: &mut Control) -> Option<Vec<f64>> {
-    let reduced = presolve::reduce(mip, fixed, f64::INFINITY)?;
+    let reduced = presolve::reduce(mip, fixed)?;
     let units = Units {
         price: 1.0,
         offset: reduced.mip.problem.offset - mip.problem.offset,

@@ -50,7 +50,7 @@ impl Reduced {
 
 /// The program that is left where these columns are fixed besides and cost times columns is not above `cutoff`;
 /// None: it has no solution.
-pub fn reduce(mip: &Mip, fixed: &[Change], cutoff: f64) -> Option<Reduced> {
+pub fn reduce(mip: &Mip, fixed: &[Change]) -> Option<Reduced> {
     let mut work = mip.clone();
     for c in fixed {
         (work.problem.lower[c.column], work.problem.upper[c.column]) = (c.lower, c.upper);
@@ -75,7 +75,6 @@ pub fn reduce(mip: &Mip, fixed: &[Change], cutoff: f64) -> Option<Reduced> {
         let (mut lower, mut upper) = (work.problem.lower.clone(), work.problem.upper.clone());
         let mut propagator = Propagator::new(&work);
         propagator.continuous = round < 2;
-        propagator.cutoff = cutoff - (work.problem.offset - mip.problem.offset);
         if !propagator.run(&work, None, &mut lower, &mut upper) {
             return None;
         }

@@ -73,8 +73,6 @@ pub enum End {
     Gap,
     /// `nodLim`.
     Nodes,
-    /// The search begins anew: the program that is left is much smaller, or symmetries are to be used from now on.
-    Renewed,
     /// Another limit, or the user.
     Stopped(Ended),
     /// The relaxation is unbounded.
@@ -156,9 +154,6 @@ impl<S> Ord for Node<S> {
     }
 }
 
-/// Whether the program is much smaller with solutions below a value only (in units of the instance).
-pub type Smaller<'n> = &'n dyn Fn(f64) -> bool;
-
 /// Finds solutions of the program that is left where columns are fixed.
 pub type Neighbourhood<'n> = &'n dyn Fn(&Mip, &[Change], f64, &mut Control) -> Option<Vec<f64>>;
 
@@ -192,12 +187,6 @@ pub struct Search<'a, R: Relaxation> {
     pub neighbourhood: Option<Neighbourhood<'a>>,
     /// Permutations that leave the program as it is.
     pub(super) symmetry: Option<&'a Symmetry>,
-    /// Asked once, when it is no longer young: whether it begins anew, with symmetries.
-    pub(super) grown: Option<&'a dyn Fn() -> bool>,
-    /// Asked when a young search has found a better solution; None: it does not begin anew.
-    pub smaller: Option<Smaller<'a>>,
-    /// A better solution was found since.
-    improved: bool,
     /// What may be left out; None: all that may.
     pub settings: Option<&'a Settings>,
     pub(super) dives: Dives,
@@ -235,9 +224,6 @@ enum Fixed {
     /// Nothing better is left below it.
     Empty,
 }
-
-/// A search of no more nodes may begin anew: little is lost.
-const YOUNG: u64 = 500;
 
 /// How many nodes may be divided without a value of their relaxation.
 const FAILURES: u32 = 200;
@@ -286,9 +272,6 @@ impl<'a, R: Relaxation> Search<'a, R> {
             incomplete: false,
             neighbourhood: None,
             symmetry: None,
-            grown: None,
-            smaller: None,
-            improved: false,
             settings: None,
             dives: Dives::default(),
             next_log: 0.0,
@@ -537,17 +520,6 @@ impl<'a, R: Relaxation> Search<'a, R> {
                 }
                 Evaluated::Ended(end) => return self.put_back(node, end),
             };
-            if std::mem::take(&mut self.improved)
-                && self.nodes <= YOUNG
-                && self
-                    .smaller
-                    .is_some_and(|smaller| smaller(self.units.shown(self.cutoff())))
-            {
-                return self.put_back(node, End::Renewed);
-            }
-            if self.nodes >= YOUNG && self.grown.take().is_some_and(|has_symmetry| has_symmetry()) {
-                return self.put_back(node, End::Renewed);
-            }
             self.fate(node.number, "branched");
             node = self.descend(&node, branch)?;
             let least = self
@@ -945,7 +917,6 @@ impl<'a, R: Relaxation> Search<'a, R> {
             .map_or(f64::INFINITY, |c| self.units.inner(c));
         if value <= asked && self.best.as_ref().is_none_or(|b| value < b.0) {
             self.best = Some((value, x));
-            self.improved = true;
             if let Some(r) = self.records.get_mut(self.at as usize) {
                 r.solution = Some(value);
             }

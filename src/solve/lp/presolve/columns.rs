@@ -17,9 +17,6 @@ const LONGEST_EXCHANGED: u32 = 20;
 /// A pivot of a substitution against the largest entry of its column.
 const PIVOT: f64 = 1e-2;
 
-/// A reduced cost is clearly positive beyond this part of its terms.
-const CLEAR: f64 = 1e-9;
-
 impl Work {
     /// What can be done about a column.
     pub(super) fn column(&mut self, j: usize) -> Result<(), Hopeless> {
@@ -69,64 +66,6 @@ impl Work {
         };
         self.fix(j, state)?;
         Ok(true)
-    }
-
-    /// Fixes columns whose reduced cost has one sign for all multipliers that columns of one row allow.
-    pub(super) fn dominated(&mut self) -> Result<(), Hopeless> {
-        let mut y: Vec<[f64; 2]> = (0..self.rows.len())
-            .map(|i| {
-                let [low, high] = self.sides(i);
-                let least = if high.is_finite() {
-                    f64::NEG_INFINITY
-                } else {
-                    0.0
-                };
-                [least, if low.is_finite() { f64::INFINITY } else { 0.0 }]
-            })
-            .collect();
-        for j in 0..self.cost.len() {
-            if !self.column_alive[j] || self.column_count[j] != 1 {
-                continue;
-            }
-            let Some((i, a)) = self.column_entries(j).next() else {
-                continue;
-            };
-            let most = self.cost[j] / a;
-            // c − a·y ≥ 0 without an upper bound, ≤ 0 without a lower one
-            if self.upper[j].is_infinite() {
-                let k = usize::from(a > 0.0);
-                y[i][k] = if a > 0.0 {
-                    y[i][k].min(most)
-                } else {
-                    y[i][k].max(most)
-                };
-            }
-            if self.lower[j].is_infinite() {
-                let k = usize::from(a < 0.0);
-                y[i][k] = if a > 0.0 {
-                    y[i][k].max(most)
-                } else {
-                    y[i][k].min(most)
-                };
-            }
-        }
-        for j in 0..self.cost.len() {
-            // What bounds the multipliers stays.
-            if !self.column_alive[j] || self.column_count[j] < 2 {
-                continue;
-            }
-            let mut range = Range::default();
-            range.add([self.cost[j]; 2]);
-            self.column_entries(j)
-                .for_each(|(i, a)| range.add(term(-a, y[i])));
-            let clear = CLEAR * range.size;
-            if range.low() > clear {
-                self.fix(j, State::Lower)?;
-            } else if range.high() < -clear {
-                self.fix(j, State::Upper)?;
-            }
-        }
-        Ok(())
     }
 
     /// A column of one row: given by it, or its slack.

@@ -4,7 +4,6 @@
 //! program before it that is optimal if the other was (Andersen & Andersen 1995; Gondzio 1997):
 //!
 //! * a row of one column becomes bounds; a row that bounds imply goes; one that only one point can hold fixes it (*forcing*);
-//! * a column whose reduced cost has one sign at every dual feasible point is fixed (*dominated*);
 //! * a column of one row is the slack of that row;
 //! * an equation gives a column as a combination of others where its bounds follow from theirs, or where there is but one other;
 //! * a free column gives its place to the activity of an inequality, which becomes the bounds of a column;
@@ -313,7 +312,6 @@ impl Work {
             }
             if self.new_rows.list.is_empty() && self.new_columns.list.is_empty() {
                 let before = self.steps.len();
-                self.dominated()?;
                 if parallel < 3 {
                     parallel += 1;
                     self.parallel_rows()?;
